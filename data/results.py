@@ -1,0 +1,180 @@
+"""What a run found out, as values: the content of ``results.json``."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from data.errors import InputError
+from data.files import write_text
+
+SCHEMA = 1
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A value with its standard error; both None where the input cannot tell."""
+
+    value: float | None = None
+    stderr: float | None = None
+
+
+@dataclass(frozen=True)
+class Friction(Estimate):
+    """Coefficient of friction of the ice, with the law that it belongs to."""
+
+    law: str = "constant"
+
+
+@dataclass(frozen=True)
+class StoneState:
+    """Place (m), velocity (m/s) and spin (rad/s) of one stone; None where unknown."""
+
+    x: float
+    y: float
+    vx: float
+    vy: float
+    omega: float | None = None
+
+
+@dataclass(frozen=True)
+class Collision:
+    """One hit of two stones.
+
+    ``normal`` is the unit vector from the first stone to the second at contact,
+    ``restitution`` may be None where the hit cannot tell (``note`` says why),
+    ``momentum_residual`` is |Σv' − Σv| / |Σv| (masses as given) and ``energy_lost`` the
+    fraction of the translational kinetic energy that is gone.
+    """
+
+    t: float
+    stderr_t: float | None
+    stones: tuple[str, str]
+    normal: tuple[float, float]
+    restitution: float | None
+    stderr: float | None
+    before: Mapping[str, StoneState]
+    after: Mapping[str, StoneState]
+    momentum_residual: float | None = None
+    stderr_momentum: float | None = None
+    energy_lost: float | None = None
+    stone_friction: float | None = None
+    stderr_stone_friction: float | None = None
+    note: str | None = None
+
+
+@dataclass(frozen=True)
+class Glide:
+    """One free glide of one stone and the friction that slowed it."""
+
+    stone: str
+    t0: float
+    t1: float
+    friction: float | None
+    stderr: float | None
+
+
+@dataclass(frozen=True)
+class SimulationScore:
+    """How far a simulated shot was from the measured one.
+
+    ``rmse`` over all stones and times after the first hit, m; ``rest_error`` per stone the
+    distance between simulated and measured last place, m.
+    """
+
+    rmse: float | None
+    rest_error: Mapping[str, float | None] = field(default_factory=dict)
+    note: str | None = None
+
+
+@dataclass(frozen=True)
+class Input:
+    """What was read."""
+
+    files: tuple[str, ...]
+    fps: float | None
+    frames: int
+    duration: float
+
+
+@dataclass(frozen=True)
+class Results:
+    """All that a run found out; see `to_json` for the file's form."""
+
+    input: Input
+    restitution: Estimate
+    friction: Friction
+    collisions: tuple[Collision, ...] = ()
+    glides: tuple[Glide, ...] = ()
+    simulations: Mapping[str, SimulationScore] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+    radius: float = 0.1455
+
+    def to_json(self) -> str:
+        """Text of ``results.json``: strict JSON, values that are not finite as null."""
+        return json.dumps(
+            _plain({"schema": SCHEMA, **asdict(self)}),
+            indent=1,
+            ensure_ascii=False,
+            allow_nan=False,
+        )
+
+    def write(self, path: Path) -> None:
+        """Write ``results.json`` whole or not at all."""
+        write_text(path, self.to_json() + "\n")
+
+    @classmethod
+    def read(cls, path: Path) -> Results:
+        """Read a ``results.json``.
+
+        Raises
+        ------
+        InputError
+            Where the file is missing or no such thing.
+        """
+        try:
+            raw = json.loads(path.read_text(encoding="utf-8"))
+            if raw.pop("schema") != SCHEMA:
+                raise InputError(f"{path}: results of another version; run again")
+            return cls(
+                input=Input(**{**raw["input"], "files": tuple(raw["input"]["files"])}),
+                restitution=Estimate(**raw["restitution"]),
+                friction=Friction(**raw["friction"]),
+                collisions=tuple(_collision(item) for item in raw["collisions"]),
+                glides=tuple(Glide(**item) for item in raw["glides"]),
+                simulations={
+                    name: SimulationScore(**item) for name, item in raw["simulations"].items()
+                },
+                warnings=tuple(raw["warnings"]),
+                radius=raw["radius"],
+            )
+        except OSError as error:
+            raise InputError(f"{path}: {error.strerror}") from None
+        except (ValueError, KeyError, TypeError, AttributeError):
+            raise InputError(f"{path}: not a results.json of this program") from None
+
+
+def _collision(item: dict[str, Any]) -> Collision:
+    states = {
+        when: {name: StoneState(**state) for name, state in item[when].items()}
+        for when in ("before", "after")
+    }
+    first, second = item["stones"]
+    nx, ny = item["normal"]
+    return Collision(**{**item, **states, "stones": (first, second), "normal": (nx, ny)})
+
+
+def _plain(value: Any) -> Any:
+    """Reduce to what JSON knows; numbers that are not finite become None."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    if isinstance(value, bool) or value is None or isinstance(value, (str, int)):
+        return value
+    number = float(value)
+    return number if math.isfinite(number) else None

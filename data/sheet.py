@@ -1,0 +1,53 @@
+"""Dimensions of the curling sheet and of the stone (SI units).
+
+Sources: The Rules of Curling and Rules of Competition, World Curling, 2023 (sheet, house,
+stone, rule C1); Nyberg et al., 2013, Wear 299 (running band); cap radius and height
+measured on broadcast stills.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+GRAVITY = 9.81
+"""Acceleration of free fall, m/s²."""
+
+
+@dataclass(frozen=True)
+class House:
+    """Painted radii of the house, m, from its centre (the tee)."""
+
+    twelve_foot: float = 1.829
+    eight_foot: float = 1.219
+    four_foot: float = 0.610
+    button: float = 0.152
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """Lines of the sheet, m, measured from the tee along y or across along x."""
+
+    back_line: float = 1.829
+    hog_line: float = 6.401
+    far_tee: float = 34.747
+    half_width_min: float = 2.16
+    half_width_max: float = 2.50
+
+
+@dataclass(frozen=True)
+class Stone:
+    """The stone: outer radius, visible cap and its height above the ice, m; mass, kg.
+
+    ``inertia`` is k in I = k m R² about the vertical (0.5 for a cylinder).
+    """
+
+    radius: float = 0.1455
+    cap_radius: float = 0.1045
+    cap_height: float = 0.12
+    mass: float = 19.1
+    inertia: float = 0.5
+
+
+HOUSE = House()
+SHEET = Sheet()
+STONE = Stone()

@@ -1,0 +1,159 @@
+"""The table of tracks: one row per stone and frame, checked once at the boundary."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from data.errors import InputError
+from data.files import whole_file
+
+TRACK_COLUMNS: tuple[str, ...] = (
+    "stone", "frame", "t", "x", "y", "theta", "vx", "vy", "omega",
+    "sd_x", "sd_y", "sd_theta", "sd_vx", "sd_vy", "sd_omega", "seen",
+)  # fmt: skip
+"""Columns of ``tracks.csv``: m, s, rad; ``seen`` is 1 where the frame showed the stone."""
+
+SIGHTING_COLUMNS: tuple[str, ...] = (
+    "stone", "frame", "t", "x", "y", "theta", "sd_x", "sd_y", "sd_theta",
+)  # fmt: skip
+"""Columns of a table of sightings: measured places, before any filter. sd may be NaN."""
+
+STONE_NAMES: tuple[str, ...] = tuple("ABCDEFGHIJKLMNOPQRSTUVWXYZ")
+
+
+def stone_name(index: int) -> str:
+    """Name of the stone of rank `index`: A to Z, then A1, B1 and so on."""
+    letter = STONE_NAMES[index % len(STONE_NAMES)]
+    turn = index // len(STONE_NAMES)
+    return letter if turn == 0 else f"{letter}{turn}"
+
+
+def check_sightings(table: pd.DataFrame, source: str = "tracks") -> pd.DataFrame:
+    """Return the sightings of `table`, sorted by stone and time, or say all that is wrong.
+
+    Parameters
+    ----------
+    table : DataFrame
+        At least ``stone, t, x, y``; `frame`, `theta` and the sd columns are filled in
+        (NaN, and the rank of the time for `frame`) where they are missing. Rows whose x
+        or y is missing are dropped: a missing sample is no sighting.
+    source : str
+        What to call the table in messages.
+
+    Returns
+    -------
+    DataFrame
+        With exactly `SIGHTING_COLUMNS`.
+
+    Raises
+    ------
+    InputError
+        One line that lists every fault found.
+    """
+    missing = [name for name in ("stone", "t", "x", "y") if name not in table.columns]
+    if missing:
+        raise InputError(f"{source}: no column {', '.join(missing)}; needs stone, t, x, y")
+    out = pd.DataFrame({"stone": table["stone"].astype(str)})
+    faults: list[str] = []
+    for name in SIGHTING_COLUMNS[1:]:
+        if name in table.columns:
+            values = pd.to_numeric(table[name], errors="coerce").astype(float)
+            given = table[name].notna() & (table[name].astype(str).str.strip() != "")
+            if bool((values.isna() & given).any()):
+                row = int(np.flatnonzero((values.isna() & given).to_numpy())[0])
+                faults.append(f"column {name} is not a number in data row {row + 1}")
+            out[name] = values.to_numpy()
+        else:
+            out[name] = np.nan
+    if (
+        not np.isfinite(out["t"].to_numpy(float)).all()
+        or np.isinf(out[["x", "y"]].to_numpy()).any()
+    ):
+        faults.append("a time is missing or a number is infinite")
+    out = out[out["x"].notna() & out["y"].notna()]
+    for name, group in out.groupby("stone", sort=False):
+        steps = np.diff(group["t"].to_numpy(float))
+        if (steps < 0).any():
+            row = int(np.flatnonzero(steps < 0)[0])
+            faults.append(
+                f"stone {name}: time goes back after t = {group['t'].iloc[row]:g} s"
+                " (two stones of one name?)"
+            )
+        elif (steps == 0).any():
+            row = int(np.flatnonzero(steps == 0)[0])
+            faults.append(
+                f"stone {name}: two rows at t = {group['t'].iloc[row]:g} s"
+                " (two stones of one name?)"
+            )
+    if out.empty:
+        faults.append("no row with a place (x and y)")
+    if faults:
+        raise InputError(f"{source}: {'; '.join(faults)}")
+    if out["frame"].isna().any():
+        times = np.unique(out["t"].to_numpy(float))
+        out["frame"] = np.searchsorted(times, out["t"].to_numpy(float))
+    out["frame"] = out["frame"].astype(int)
+    out = out.sort_values(["stone", "t"], kind="stable").reset_index(drop=True)
+    return out[list(SIGHTING_COLUMNS)]
+
+
+def empty_tracks() -> pd.DataFrame:
+    """Return a table of tracks without rows."""
+    return pd.DataFrame({name: pd.Series(dtype=float) for name in TRACK_COLUMNS}).astype(
+        {"stone": str, "frame": int, "seen": int}
+    )
+
+
+def write_table(table: pd.DataFrame, path: Path, columns: Sequence[str] | None = None) -> None:
+    """Write a table as CSV, whole or not at all, nine significant digits, NaN as empty."""
+    with whole_file(path) as part:
+        table.to_csv(
+            part,
+            index=False,
+            columns=None if columns is None else list(columns),
+            float_format="%.9g",
+            lineterminator="\n",
+        )
+
+
+def write_tracks(tracks: pd.DataFrame, path: Path) -> None:
+    """Write ``tracks.csv`` with `TRACK_COLUMNS` in their order."""
+    write_table(tracks, path, TRACK_COLUMNS)
+
+
+def read_tracks(path: Path) -> pd.DataFrame:
+    """Read a ``tracks.csv`` that this program wrote, as sightings.
+
+    Rows that the filter carried (``seen`` = 0) are left out: they are no measurements.
+
+    Raises
+    ------
+    InputError
+        Where the file is no such table.
+    """
+    try:
+        table = pd.read_csv(path)
+    except (OSError, ValueError, pd.errors.ParserError) as error:
+        raise InputError(f"{path}: not a table of tracks ({error})") from None
+    if "seen" in table.columns:
+        table = table[table["seen"] != 0]
+    return check_sightings(table, str(path))
+
+
+def order_of_motion(first_moved: dict[str, float], others: Iterable[str]) -> dict[str, str]:
+    """Names by the order in which stones first move: A the thrown one, then B, C and so on.
+
+    Parameters
+    ----------
+    first_moved : dict
+        Old name to the time at which it first moved.
+    others : iterable of str
+        Old names of the stones that never move, in the order they shall be named.
+    """
+    order = sorted(first_moved, key=lambda name: first_moved[name])
+    order += [name for name in others if name not in first_moved]
+    return {old: stone_name(index) for index, old in enumerate(order)}

@@ -1,0 +1,1 @@
+"""Motion on ice, contact, the Kalman filter, the estimates and the simulator."""

@@ -1,0 +1,1 @@
+"""From a clip to tracks: the only room that knows pixels."""
