@@ -1,0 +1,15 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+SHARED = Path(__file__).resolve().parents[2] / "shared"
+
+
+@pytest.fixture(scope="session")
+def shared() -> Path:
+    """Third-party footage and tracks beside the repository, where they are at hand."""
+    if not SHARED.is_dir():
+        pytest.skip("the folder ../shared with real footage and tracks is not here")
+    return SHARED
