@@ -1,0 +1,782 @@
+"""The command ``curlshot`` and the order of the work, from Python as `run`, `track` and so on.
+
+Everything heavy is imported where it is used, so that ``curlshot --help`` answers at once.
+"""
+
+from __future__ import annotations
+
+import argparse
+import glob
+import json
+import re
+import shutil
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from data.errors import CurlshotError, InputError
+from data.progress import Progress, no_progress
+from data.sheet import STONE
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from data.results import Results
+    from physics.simulate import Simulation
+    from vision.camera import Camera
+    from vision.clip import Clip
+
+VERSION = "0.1.0"
+PICTURES = frozenset({".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp"})
+TABLES = frozenset({".csv", ".txt", ".tsv", ".dat"})
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What a person may say about the input.
+
+    Attributes
+    ----------
+    fps : float, optional
+        Rate of pictures, or of a table without times, 1/s.
+    frames : (int, int or None), optional
+        First and last frame of a clip to use, both included.
+    stick : (x1, y1, x2, y2, metres), optional
+        Calibration stick: two pixels and their distance, for a still camera and no house.
+    radius : float
+        Radius of the discs, m.
+    masses : mapping
+        Masses by stone, in any unit, where they are not all equal.
+    length_unit, angle_unit : str, optional
+        Units of tables.
+    overlay : bool
+        Whether the annotated clip is written.
+    """
+
+    fps: float | None = None
+    frames: tuple[int, int | None] | None = None
+    stick: tuple[float, float, float, float, float] | None = None
+    radius: float = STONE.radius
+    masses: Mapping[str, float] = field(default_factory=dict)
+    length_unit: str = "m"
+    angle_unit: str | None = None
+    overlay: bool = True
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Sightings of the stones and where they come from."""
+
+    files: tuple[Path, ...]
+    sightings: pd.DataFrame
+    fps: float | None
+    frames: int
+    warnings: tuple[str, ...]
+    clip: Clip | None = None
+    cameras: tuple[Camera, ...] = ()
+    rings: tuple[float, ...] | None = None
+
+
+@dataclass(frozen=True)
+class Run:
+    """The outcome of a run.
+
+    Attributes
+    ----------
+    tracks : DataFrame
+        As ``tracks.csv``.
+    cameras : DataFrame or None
+        As ``camera.csv``; None for imported tracks.
+    results : data.results.Results
+        Estimates with errors, as ``results.json``.
+    simulations : DataFrame
+        As ``simulation.csv``: one column ``model``, else as the tracks.
+    out : Path or None
+        Where the files are.
+    """
+
+    tracks: pd.DataFrame
+    cameras: pd.DataFrame | None
+    results: Results
+    simulations: pd.DataFrame
+    out: Path | None = None
+
+
+def sample_clip() -> Path:
+    """Path of the bundled, rendered clip of the paper's shot."""
+    return Path(__file__).resolve().parent / "data" / "sample.mp4"
+
+
+def find_inputs(names: Sequence[str | Path]) -> tuple[Path, ...]:
+    """Files behind what a person names: files, globs, folders of pictures in natural order.
+
+    Raises
+    ------
+    InputError
+        Something that is not there, or a folder without pictures.
+    """
+    found: list[Path] = []
+    for name in names:
+        path = Path(name)
+        if path.is_dir():
+            pictures = [p for p in path.iterdir() if p.suffix.lower() in PICTURES]
+            if not pictures:
+                raise InputError(f"{path}: no pictures in this folder")
+            found += sorted(pictures, key=_natural)
+        elif path.exists():
+            found.append(path)
+        else:
+            matches = [Path(m) for m in glob.glob(str(name))]  # noqa: PTH207 - absolute globs too
+            if not matches:
+                raise InputError(f"{name}: no such file")
+            found += sorted(matches, key=_natural)
+    if not found:
+        raise InputError("no input; name a clip, pictures or a table of tracks")
+    return tuple(found)
+
+
+def _natural(path: Path) -> list[tuple[int, str]]:
+    """Sort key by which picture 9 comes before picture 10."""
+    parts = re.findall(r"\d+|\D+", path.name)
+    return [(int(p), "") if p.isdecimal() else (-1, p) for p in parts]
+
+
+def measure(
+    inputs: Sequence[str | Path],
+    settings: Settings = Settings(),
+    progress: Progress = no_progress,
+) -> Measured:
+    """Sightings of every stone, from a clip, pictures or a table of tracks.
+
+    Raises
+    ------
+    data.errors.CurlshotError
+        Where the input cannot be used; one line says why.
+    """
+    files = find_inputs(inputs)
+    tables = [path.suffix.lower() in TABLES for path in files]
+    if any(tables):
+        if not all(tables):
+            odd = files[tables.index(False)]
+            raise InputError(f"{odd}: tables of tracks and pictures do not mix; give one kind")
+        return _import_tables(files, settings)
+    return _look_at_clip(files, settings, progress)
+
+
+def _import_tables(files: tuple[Path, ...], settings: Settings) -> Measured:
+    from data.tracker import read_table
+
+    table = read_table(
+        files,
+        length_unit=settings.length_unit,
+        angle_unit=settings.angle_unit,
+        fps=settings.fps,
+    )
+    sightings = table.sightings
+    return Measured(files, sightings, table.fps, sightings["t"].nunique(), table.warnings)
+
+
+def _look_at_clip(files: tuple[Path, ...], settings: Settings, progress: Progress) -> Measured:
+    from data.sheet import Stone
+    from vision.clip import open_clip
+    from vision.follow_house import follow_house
+    from vision.stick import stick_cameras
+    from vision.track import track_stones
+
+    clip = open_clip(files, settings.fps, settings.frames)
+    warnings: tuple[str, ...] = ()
+    rings: tuple[float, ...] | None = None
+    if settings.stick is not None:
+        cameras = stick_cameras(clip, settings.stick, progress)
+        disc = Stone(radius=settings.radius, cap_radius=settings.radius, cap_height=0.0)
+    else:
+        house = follow_house(clip, progress)
+        cameras, rings, warnings = house.cameras, tuple(house.radii), house.warnings
+        disc = Stone(radius=settings.radius)
+    stones = track_stones(clip, cameras, disc=disc, progress=progress)
+    return Measured(
+        files,
+        stones.sightings,
+        clip.fps,
+        len(cameras),
+        (*clip.warnings, *warnings, *stones.warnings),
+        clip,
+        cameras,
+        rings,
+    )
+
+
+def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
+    """Tracks, estimates and simulations from sightings; writes nothing."""
+    import pandas as pd
+
+    from data.results import Input, Results
+    from physics.contacts import find_contacts
+    from physics.estimate import estimate
+    from physics.kalman import smooth
+    from physics.predict import simulate_measured
+    from vision.camera import camera_table
+
+    sightings, radius = measured.sightings, settings.radius
+    contacts = find_contacts(sightings, radius)
+    tracks = smooth(sightings, contacts, radius=radius)
+    estimates = estimate(sightings, contacts, radius=radius, masses=settings.masses or None)
+    sampled, scores, notes = simulate_measured(tracks, estimates, radius=radius)
+    times = sightings["t"]
+    results = Results(
+        input=Input(
+            files=tuple(path.name for path in measured.files),
+            fps=measured.fps,
+            frames=measured.frames,
+            duration=float(times.max() - times.min()),
+        ),
+        restitution=estimates.restitution,
+        friction=estimates.friction,
+        collisions=estimates.collisions,
+        glides=estimates.glides,
+        simulations=scores,
+        warnings=tuple(dict.fromkeys((*measured.warnings, *estimates.warnings, *notes))),
+        radius=radius,
+    )
+    cameras = camera_table(measured.cameras) if measured.cameras else None
+    simulations = [as_tracks(table, model) for model, table in sampled.items()]
+    return Run(
+        tracks,
+        cameras,
+        results,
+        pd.concat(simulations, ignore_index=True) if simulations else as_tracks(None, ""),
+    )
+
+
+def as_tracks(simulated: pd.DataFrame | None, model: str) -> pd.DataFrame:
+    """Table of ``simulation.csv`` from a sampled simulation: no errors, nothing seen."""
+    from data.tracks import TRACK_COLUMNS, empty_tracks
+
+    table = empty_tracks() if simulated is None else simulated.reindex(columns=list(TRACK_COLUMNS))
+    table["seen"] = 0
+    table.insert(0, "model", model)
+    return table
+
+
+def run(
+    inputs: Sequence[str | Path] = (),
+    out: str | Path | None = None,
+    settings: Settings = Settings(),
+    progress: Progress = no_progress,
+) -> Run:
+    """Go the whole road: from a clip or tracks to e, μ, simulations and a report.
+
+    Parameters
+    ----------
+    inputs : sequence of str or Path
+        A video, pictures (files, a folder or a glob), or tables of tracks; the bundled
+        sample if none.
+    out : str or Path, optional
+        Folder for the files of the run; nothing is written without it.
+    settings : Settings
+        What to know about the input.
+    progress : callable
+        Called as the work goes on.
+
+    Returns
+    -------
+    Run
+        Tracks, cameras, estimates and simulations.
+
+    Raises
+    ------
+    data.errors.CurlshotError
+        Where the input cannot be used; then nothing is written.
+    """
+    folder = _check_out(out)
+    measured = measure(inputs or (sample_clip(),), settings, progress)
+    done = analyse(measured, settings)
+    if folder is None:
+        return done
+    with staged(folder) as stage:
+        _write_run(stage, measured, done, settings, progress)
+    return replace(done, out=folder)
+
+
+def _write_run(
+    stage: Path, measured: Measured, done: Run, settings: Settings, progress: Progress
+) -> None:
+    from data.sheet import HOUSE
+    from data.tracks import write_table, write_tracks
+    from report.overlay import write_overlay
+    from report.page import write_report
+
+    write_tracks(done.tracks, stage / "tracks.csv")
+    write_table(done.simulations, stage / "simulation.csv")
+    done.results.write(stage / "results.json")
+    if done.cameras is not None:
+        write_table(done.cameras, stage / "camera.csv")
+    overlay: Path | None = None
+    if measured.clip is not None and settings.overlay:
+        overlay = stage / "overlay.mp4"
+        write_overlay(
+            measured.clip,
+            measured.cameras,
+            done.tracks,
+            done.results.collisions,
+            overlay,
+            rings=measured.rings,
+            radius=settings.radius,
+            progress=progress,
+        )
+    house = None
+    if settings.stick is None and settings.radius == STONE.radius:
+        house = HOUSE
+    progress("report", 0, 1)
+    write_report(
+        stage,
+        results=done.results,
+        tracks=done.tracks,
+        simulations={str(m): table for m, table in done.simulations.groupby("model")},
+        cameras=done.cameras,
+        clip_name=measured.files[0].name,
+        overlay=overlay,
+        house=house,
+        version=VERSION,
+    )
+    progress("report", 1, 1)
+
+
+def _check_out(out: str | Path | None) -> Path | None:
+    """Refuse a bad place for results before an hour of work, not after."""
+    if out is None:
+        return None
+    folder = Path(out)
+    for part in (folder, *folder.parents):
+        if part.exists():
+            if not part.is_dir():
+                raise InputError(f"{part}: is a file; name a folder for the results with -o")
+            break
+    return folder
+
+
+@contextmanager
+def staged(folder: Path) -> Iterator[Path]:
+    """Give a hidden folder beside `folder`; its content moves there if the block ends well.
+
+    Files that were there under the same names are replaced, others left alone.
+    """
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(
+        dir=folder.parent, prefix=f".{folder.name}-", ignore_cleanup_errors=True
+    ) as name:
+        stage = Path(name)
+        yield stage
+        folder.mkdir(parents=True, exist_ok=True)
+        for item in sorted(stage.iterdir()):
+            target = folder / item.name
+            if target.is_dir() and not target.is_symlink():
+                shutil.rmtree(target)
+            item.replace(target)
+
+
+# ---------------------------------------------------------------------------------------
+# The command line
+# ---------------------------------------------------------------------------------------
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong in one line, exit code 2."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"{self.prog}: {message} (see {self.prog} --help)\n")
+
+
+class _Bars:
+    """Progress bars on stderr, one for each kind of work."""
+
+    def __init__(self, quiet: bool) -> None:
+        self.quiet = quiet
+        self.bars: dict[str, Any] = {}
+
+    def __call__(self, what: str, done: int, total: int | None) -> None:
+        from tqdm import tqdm
+
+        if self.quiet:
+            return
+        if what not in self.bars:
+            self.close()
+            self.bars[what] = tqdm(total=total, desc=what.ljust(16), file=sys.stderr, leave=True)
+        bar = self.bars[what]
+        if total is not None and bar.total != total:
+            bar.total = total
+        bar.update(done - bar.n)
+
+    def close(self) -> None:
+        for bar in self.bars.values():
+            bar.close()
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Entry point of the command; returns its exit code (0 well, 2 a person's mistake)."""
+    arguments = _parser().parse_args(argv)
+    bars = _Bars(quiet=arguments.quiet)
+    try:
+        text = arguments.work(arguments, bars)
+    except CurlshotError as error:
+        bars.close()
+        print(f"curlshot: {_one_line(str(error))}", file=sys.stderr)
+        return 2
+    except OSError as error:
+        bars.close()
+        where = f"{error.filename}: " if error.filename else ""
+        print(f"curlshot: {where}{error.strerror or error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        bars.close()
+        print("curlshot: stopped; nothing was written", file=sys.stderr)
+        return 130
+    bars.close()
+    print(text)
+    return 0
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(
+        prog="curlshot",
+        description="From a clip of a curling shot to its physics: tracks, restitution, friction, "
+        "and the shot simulated again.",
+        epilog="examples:\n"
+        "  curlshot run                               the bundled sample clip\n"
+        "  curlshot run shot.mp4 -o shot              a clip, into the folder shot\n"
+        "  curlshot run A.txt B.txt C.txt             tracks exported from Tracker\n"
+        "  curlshot simulate SHOT.toml                a shot of your own\n",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action="version", version=f"curlshot {VERSION}")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+
+    run_ = _command(
+        commands,
+        "run",
+        "the whole road: clip or tracks to e, μ, simulation and report",
+        "  curlshot run                                     the bundled sample\n"
+        "  curlshot run shot.mp4                            a clip that shows the house\n"
+        "  curlshot run frames/ --fps 25                    a folder of pictures\n"
+        "  curlshot run 'frames/*.png' --fps 25             or a glob\n"
+        "  curlshot run still.jpg                           one picture: positions only\n"
+        "  curlshot run pucks.mp4 --stick 20,10,20,38,0.1 --radius 0.045 --frames 2:31\n"
+        "                                                   no house: still camera, known length\n"
+        "  curlshot run A.txt B.txt --length-unit cm        one Tracker export per stone\n"
+        "  curlshot run old/tracks.csv                      earlier tracks\n",
+        _do_run,
+    )
+    run_.add_argument("inputs", nargs="*", metavar="INPUT", help="clip, pictures or tables")
+    _clip_options(run_)
+    _table_options(run_)
+    run_.add_argument(
+        "--no-overlay", action="store_true", help="do not write the annotated clip overlay.mp4"
+    )
+
+    track_ = _command(
+        commands,
+        "track",
+        "clip to tracks.csv and camera.csv only",
+        "  curlshot track shot.mp4 -o shot\n",
+        _do_track,
+    )
+    track_.add_argument("inputs", nargs="+", metavar="CLIP", help="a video or pictures")
+    _clip_options(track_)
+
+    estimate_ = _command(
+        commands,
+        "estimate",
+        "tracks to results.json",
+        "  curlshot estimate shot/tracks.csv\n"
+        "  curlshot estimate pucks.csv --length-unit cm --radius 0.035 --mass 1=32 --mass 2=30\n",
+        _do_estimate,
+    )
+    estimate_.add_argument("inputs", nargs="+", metavar="TRACKS", help="tables of tracks")
+    _disc_options(estimate_)
+    _table_options(estimate_)
+    estimate_.add_argument("--fps", type=_positive, help="rate of a table without times, 1/s")
+
+    simulate_ = _command(
+        commands,
+        "simulate",
+        "a shot described in SHOT.toml to simulation.csv",
+        "  curlshot simulate SHOT.toml\n"
+        "  curlshot simulate SHOT.toml --json --fps 50\n"
+        "\n"
+        "SHOT.toml:\n"
+        "  [physics]                  # all optional\n"
+        '  model = "frictional"       # point-mass | rigid-body | frictional\n'
+        "  restitution = 1.0\n"
+        "  stone_friction = 0.2\n"
+        '  ice = "fcv1"               # constant (with friction = 0.0109) | fcv1 | penner\n'
+        '  curl = "fcv1"              # none | fcv1\n'
+        "  radius = 0.145\n"
+        "  inertia = 0.5              # I / (m R^2)\n"
+        "  [[stone]]                  # one for each stone\n"
+        '  name = "A"\n'
+        "  x = 0.0\n"
+        "  y = 0.0\n"
+        "  vx = 0.0\n"
+        "  vy = 2.4\n"
+        "  omega = 1.5708             # rigid-body also needs omega_after\n",
+        _do_simulate,
+    )
+    simulate_.add_argument("shot", metavar="SHOT.toml", type=Path)
+    simulate_.add_argument("--fps", type=_positive, default=25.0, help="samples per second (25)")
+    simulate_.add_argument("--json", action="store_true", help="print the outcome as JSON")
+    return parser
+
+
+def _command(
+    commands: Any, name: str, summary: str, examples: str, work: Any
+) -> argparse.ArgumentParser:
+    parser: argparse.ArgumentParser = commands.add_parser(
+        name,
+        help=summary,
+        description=summary[0].upper() + summary[1:] + ".",
+        epilog=f"examples:\n{examples}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.set_defaults(work=work)
+    parser.add_argument("-o", "--out", metavar="OUT", help="folder for the files (NAME-curlshot)")
+    parser.add_argument("-q", "--quiet", action="store_true", help="no progress bars")
+    return parser
+
+
+def _disc_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--radius",
+        type=_positive,
+        default=STONE.radius,
+        metavar="METRES",
+        help=f"radius of the discs ({STONE.radius}: a curling stone)",
+    )
+    parser.add_argument(
+        "--mass",
+        type=_mass,
+        action="append",
+        default=[],
+        metavar="STONE=MASS",
+        help="mass of a disc, where they are not all equal (any unit)",
+    )
+
+
+def _clip_options(parser: argparse.ArgumentParser) -> None:
+    _disc_options(parser)
+    parser.add_argument("--fps", type=_positive, help="rate of pictures, 1/s (25)")
+    parser.add_argument(
+        "--frames", type=_range, metavar="FIRST:LAST", help="frames to use, both included"
+    )
+    parser.add_argument(
+        "--stick",
+        type=_stick,
+        metavar="X1,Y1,X2,Y2,METRES",
+        help="calibration stick for a still camera without a house: two pixels, their distance",
+    )
+
+
+def _table_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--length-unit", choices=("m", "cm", "mm", "in", "ft"), default="m", help="of tables (m)"
+    )
+    parser.add_argument("--angle-unit", choices=("rad", "deg"), help="of tables")
+
+
+def _positive(text: str) -> float:
+    value = float(text)
+    if not 0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text} is not a positive number")
+    return value
+
+
+def _range(text: str) -> tuple[int, int | None]:
+    match = re.fullmatch(r"(\d*):(\d*)", text)
+    if match is None:
+        raise argparse.ArgumentTypeError(f"{text!r} is not FIRST:LAST, e.g. 2:31 or 10:")
+    first, last = match.groups()
+    return int(first or 0), int(last) if last else None
+
+
+def _stick(text: str) -> tuple[float, float, float, float, float]:
+    try:
+        x1, y1, x2, y2, metres = (float(part) for part in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not X1,Y1,X2,Y2,METRES") from None
+    if (x1, y1) == (x2, y2) or not metres > 0:
+        raise argparse.ArgumentTypeError(f"{text!r}: the stick has no length")
+    return x1, y1, x2, y2, metres
+
+
+def _mass(text: str) -> tuple[str, float]:
+    name, _, value = text.rpartition("=")
+    if not name:
+        raise argparse.ArgumentTypeError(f"{text!r} is not STONE=MASS, e.g. A=19.1")
+    return name, _positive(value)
+
+
+def _settings(arguments: argparse.Namespace) -> Settings:
+    known = vars(arguments)
+    return Settings(
+        fps=known.get("fps"),
+        frames=known.get("frames"),
+        stick=known.get("stick"),
+        radius=known["radius"],
+        masses=dict(known["mass"]),
+        length_unit=known.get("length_unit", "m"),
+        angle_unit=known.get("angle_unit"),
+        overlay=not known.get("no_overlay", False),
+    )
+
+
+def _out(arguments: argparse.Namespace, first: str | Path) -> Path:
+    """Folder for the files: as given, else NAME-curlshot in the current folder."""
+    if arguments.out is not None:
+        return Path(arguments.out)
+    path = Path(first)
+    name = path.name if path.is_dir() else path.stem
+    plain = re.sub(r"[*?\[\]]", "", name)  # a glob's signs do not belong in a name
+    return Path(f"{plain or 'out'}-curlshot")
+
+
+def _do_run(arguments: argparse.Namespace, bars: _Bars) -> str:
+    inputs = arguments.inputs or [sample_clip()]
+    done = run(inputs, _out(arguments, inputs[0]), _settings(arguments), bars)
+    return summary(done)
+
+
+def _do_track(arguments: argparse.Namespace, bars: _Bars) -> str:
+    from data.tracks import write_table, write_tracks
+    from physics.contacts import find_contacts
+    from physics.kalman import smooth
+    from vision.camera import camera_table
+
+    settings, folder = _settings(arguments), _out(arguments, arguments.inputs[0])
+    _check_out(folder)
+    measured = measure(arguments.inputs, settings, bars)
+    if measured.clip is None:
+        raise InputError(f"{measured.files[0]}: already a table of tracks; try curlshot estimate")
+    contacts = find_contacts(measured.sightings, settings.radius)
+    tracks = smooth(measured.sightings, contacts, radius=settings.radius)
+    with staged(folder) as stage:
+        write_tracks(tracks, stage / "tracks.csv")
+        write_table(camera_table(measured.cameras), stage / "camera.csv")
+    lines = [
+        f"{tracks['stone'].nunique()} stones in {measured.frames} frames: "
+        f"{folder / 'tracks.csv'}, {folder / 'camera.csv'}"
+    ]
+    return "\n".join(lines + [f"warning: {text}" for text in measured.warnings])
+
+
+def _do_estimate(arguments: argparse.Namespace, bars: _Bars) -> str:
+    settings, folder = _settings(arguments), _out(arguments, arguments.inputs[0])
+    _check_out(folder)
+    measured = measure(arguments.inputs, settings, bars)
+    if measured.clip is not None:
+        raise InputError(f"{measured.files[0]}: not a table of tracks; try curlshot run")
+    done = analyse(measured, settings)
+    with staged(folder) as stage:
+        done.results.write(stage / "results.json")
+    return summary(replace(done, out=folder))
+
+
+def _do_simulate(arguments: argparse.Namespace, bars: _Bars) -> str:
+    import numpy as np
+
+    from data.tracks import write_table
+    from physics.shot import read_shot
+    from physics.simulate import simulate
+
+    folder = _out(arguments, arguments.shot)
+    _check_out(folder)
+    shot = read_shot(arguments.shot)
+    simulation = simulate(shot)
+    end = max((rest.t for rest in simulation.rest.values()), default=0.0)
+    times = np.append(np.arange(0.0, end, 1 / arguments.fps), end)
+    table = as_tracks(simulation.sample(times), shot.impact.name)
+    with staged(folder) as stage:
+        write_table(table, stage / "simulation.csv")
+    if arguments.json:
+        return json.dumps(simulation_json(simulation), indent=1)
+    return _simulation_text(simulation, folder / "simulation.csv")
+
+
+def simulation_json(simulation: Simulation) -> dict[str, Any]:
+    """Rest positions and hits of a simulation as plain values, for ``--json``."""
+    return {
+        "stones": {
+            name: {"x": rest.x, "y": rest.y, "theta": rest.theta, "t": rest.t}
+            for name, rest in simulation.rest.items()
+        },
+        "hits": [
+            {
+                "t": hit.t,
+                "stones": list(hit.stones),
+                "normal": list(hit.normal),
+                "before": {name: vars(state) for name, state in hit.before.items()},
+                "after": {name: vars(state) for name, state in hit.after.items()},
+            }
+            for hit in simulation.hits
+        ],
+    }
+
+
+def _simulation_text(simulation: Simulation, path: Path) -> str:
+    lines = ["at rest:"]
+    lines += [
+        f"  {name}  x {rest.x:+8.3f} m   y {rest.y:+8.3f} m   after {rest.t:6.2f} s"
+        for name, rest in simulation.rest.items()
+    ]
+    lines.append("hits:" if simulation.hits else "no hits")
+    lines += [f"  {hit.t:6.3f} s  {hit.stones[0]} on {hit.stones[1]}" for hit in simulation.hits]
+    return "\n".join([*lines, f"written: {path}"])
+
+
+def summary(done: Run) -> str:
+    """Put the outcome into a dozen lines that a person can read."""
+    results = done.results
+    moved = {name for hit in results.collisions for name in hit.stones}
+    moved |= {glide.stone for glide in results.glides}
+    names = sorted(done.tracks["stone"].unique())
+    lines = [
+        f"input       {', '.join(results.input.files[:3])}"
+        f"{' …' if len(results.input.files) > 3 else ''}: "
+        f"{results.input.frames} frames, {results.input.duration:.2f} s",
+        f"stones      {len(names)} ({', '.join(names)}); "
+        f"moved: {', '.join(sorted(moved)) or 'none'}",
+    ]
+    for hit in results.collisions:
+        lines.append(
+            f"hit         {hit.stones[0]} on {hit.stones[1]} at {hit.t:.3f} s: "
+            f"e = {_plus_minus(hit.restitution, hit.stderr)}"
+        )
+    lines += [
+        f"restitution e = {_plus_minus(results.restitution.value, results.restitution.stderr)}",
+        f"friction    μ = {_plus_minus(results.friction.value, results.friction.stderr)}"
+        f" ({results.friction.law})",
+    ]
+    for model, score in results.simulations.items():
+        off = "—" if score.rmse is None else f"{score.rmse * 100:.1f} cm RMS off"
+        lines.append(f"simulated   {model}: {off}")
+    lines += [f"warning     {text}" for text in results.warnings]
+    if done.out is not None:
+        report = done.out / "report.html"
+        lines.append(f"written     {report if report.exists() else done.out}")
+    return "\n".join(lines)
+
+
+def _plus_minus(value: float | None, stderr: float | None) -> str:
+    from report.numbers import plus_minus
+
+    return plus_minus(value, stderr)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

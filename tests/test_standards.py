@@ -1,0 +1,73 @@
+"""Lint, format, types and the direction of imports, as part of the one test command."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+MAY_IMPORT = {
+    "data": set(),
+    "physics": {"data"},
+    "vision": {"data", "physics"},
+    "report": {"data", "physics", "vision"},
+    "pipeline": {"data", "physics", "vision", "report"},
+}
+
+
+def modules(room: str) -> list[Path]:
+    return [ROOT / "pipeline.py"] if room == "pipeline" else sorted((ROOT / room).rglob("*.py"))
+
+
+def imported_rooms(path: Path) -> set[str]:
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found |= {alias.name.split(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: relative imports hide the direction"
+            found.add((node.module or "").split(".")[0])
+    return found & (MAY_IMPORT.keys() | {"tests", "benchmarks"})
+
+
+@pytest.mark.parametrize("room", sorted(MAY_IMPORT))
+def test_imports_point_one_way(room: str) -> None:
+    for path in modules(room):
+        wrong = imported_rooms(path) - MAY_IMPORT[room] - {room}
+        assert not wrong, f"{path.relative_to(ROOT)} imports {', '.join(sorted(wrong))}"
+
+
+def test_renderer_shares_no_code_with_what_it_tests() -> None:
+    for path in sorted((ROOT / "tests" / "synthetic").glob("*.py")):
+        if not path.name.startswith("test_"):
+            assert not imported_rooms(path) - {"tests"}, path.name
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["ruff", "check", "."],
+        ["ruff", "format", "--check", "."],
+        ["mypy"],
+    ],
+    ids=["lint", "format", "types"],
+)
+def test_clean(command: list[str]) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", *command], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_tracks_from_a_table_never_load_opencv_or_matplotlib() -> None:
+    code = (
+        "import sys, physics, data; print([m for m in ('cv2', 'matplotlib') if m in sys.modules])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == "[]"
