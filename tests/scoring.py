@@ -43,7 +43,7 @@ def score_tracks(
         Leave out what the filter carried.
     """
     rows = tracks[tracks["seen"] == 1] if seen_only else tracks
-    by_frame = {frame: group for frame, group in rows.groupby("frame")}
+    by_frame = {frame: group for frame, group in rows.groupby("frame")}  # noqa: C416
     pairs: list[tuple[str, str, float, float, float]] = []
     wanted = found = false = 0
     false_by_name: dict[str, int] = {}

@@ -1,0 +1,273 @@
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pandas as pd
+import pytest
+
+import pipeline
+from data.errors import CurlshotError, InputError
+from data.results import Results
+from data.tracks import TRACK_COLUMNS
+from tests.scoring import score_tracks
+
+SAMPLE = pipeline.sample_clip()
+CONTRACT = {
+    "tracks.csv",
+    "camera.csv",
+    "results.json",
+    "simulation.csv",
+    "report.html",
+    "figures",
+    "overlay.mp4",
+}
+SHOT = """
+[[stone]]
+name = "A"
+x = 0.0
+y = 0.0
+vx = 0.0
+vy = 2.4
+omega = 1.5707963267948966
+"""
+
+
+def curlshot(*words: str | Path, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-W", "error", "-m", "pipeline", *map(str, words)],
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=cwd or Path(pipeline.__file__).parent,
+    )
+
+
+@pytest.fixture(scope="module")
+def sample(tmp_path_factory: pytest.TempPathFactory) -> pipeline.Run:
+    return pipeline.run(out=tmp_path_factory.mktemp("sample") / "out")
+
+
+def test_sample_is_measured_to_the_bars(sample: pipeline.Run) -> None:
+    truth = json.loads(SAMPLE.with_suffix(".truth.json").read_text())
+    score = score_tracks(sample.tracks, pd.read_csv(SAMPLE.with_suffix(".truth.csv")))
+    assert score.missed == ()
+    assert score.switches == 0
+    assert score.false_tracks == ()
+    assert score.rmse < 0.020
+    e, mu = sample.results.restitution, sample.results.friction
+    assert e.value == pytest.approx(truth["e"], abs=0.03)
+    assert mu.value == pytest.approx(truth["mu"], rel=0.10)
+    assert e.stderr is not None and mu.stderr is not None
+    assert abs(e.value - truth["e"]) < 4 * e.stderr
+    assert abs(mu.value - truth["mu"]) < 4 * mu.stderr
+
+
+def test_sample_names_stones_by_their_first_motion(sample: pipeline.Run) -> None:
+    assert [hit.stones for hit in sample.results.collisions] == [("A", "B"), ("B", "C")]
+
+
+def test_run_writes_the_whole_contract(sample: pipeline.Run) -> None:
+    assert sample.out is not None
+    assert {item.name for item in sample.out.iterdir()} == CONTRACT
+    tracks = pd.read_csv(sample.out / "tracks.csv")
+    assert tuple(tracks.columns) == TRACK_COLUMNS
+    simulation = pd.read_csv(sample.out / "simulation.csv")
+    assert tuple(simulation.columns) == ("model", *TRACK_COLUMNS)
+    assert set(simulation["model"]) == {"point-mass", "rigid-body", "frictional"}
+    assert Results.read(sample.out / "results.json") == Results.read(sample.out / "results.json")
+    raw = json.loads((sample.out / "results.json").read_text())
+    assert raw["schema"] == 1
+    assert raw["restitution"]["value"] == sample.results.restitution.value
+
+
+def test_tracks_come_back_to_the_same_physics(sample: pipeline.Run) -> None:
+    assert sample.out is not None
+    again = pipeline.run([sample.out / "tracks.csv"])
+    first, second = sample.results.restitution, again.results.restitution
+    assert first.value is not None and second.value is not None and first.stderr is not None
+    assert abs(second.value - first.value) < 3 * first.stderr
+    assert len(again.results.collisions) == len(sample.results.collisions)
+    assert again.cameras is None
+
+
+def test_summary_says_what_a_person_asks(sample: pipeline.Run) -> None:
+    text = pipeline.summary(sample)
+    for word in ("stones", "A on B", "B on C", "e = ", "μ = ", "±", "report.html"):
+        assert word in text
+
+
+def test_single_picture_gives_positions_only(tmp_path: Path) -> None:
+    capture = cv2.VideoCapture(str(SAMPLE))
+    capture.set(cv2.CAP_PROP_POS_FRAMES, 0)
+    ok, image = capture.read()
+    capture.release()
+    assert ok
+    picture = tmp_path / "still.png"
+    cv2.imwrite(str(picture), image)
+    done = pipeline.run([picture], tmp_path / "out")
+    truth = pd.read_csv(SAMPLE.with_suffix(".truth.csv"))
+    score = score_tracks(done.tracks, truth[truth["frame"] == 0])
+    assert score.recall == 1
+    assert score.rmse < 0.03
+    assert done.tracks["vx"].isna().all()
+    assert done.results.restitution.value is None
+    assert done.results.friction.value is None
+    assert done.results.warnings
+
+
+def test_folder_of_pictures_is_a_clip(tmp_path: Path) -> None:
+    capture = cv2.VideoCapture(str(SAMPLE))
+    for index in range(12):
+        _, image = capture.read()
+        cv2.imwrite(str(tmp_path / f"f{index}.png"), image)
+    capture.release()
+    measured = pipeline.measure([tmp_path], pipeline.Settings(fps=25))
+    assert measured.frames == 12
+    assert measured.sightings["t"].max() == pytest.approx(11 / 25)
+    assert [p.name for p in measured.files[8:]] == ["f8.png", "f9.png", "f10.png", "f11.png"]
+
+
+def test_simulate_prints_and_writes(tmp_path: Path) -> None:
+    shot = tmp_path / "SHOT.toml"
+    shot.write_text(SHOT)
+    done = curlshot("simulate", shot, "--json", "-o", tmp_path / "out")
+    assert done.returncode == 0, done.stderr
+    rest = json.loads(done.stdout)["stones"]["A"]
+    # From an independent program: see the regression values of the ice law FCV1.
+    assert rest["x"] == pytest.approx(-2.098, abs=0.002)
+    assert rest["y"] == pytest.approx(38.232, abs=0.002)
+    assert rest["t"] == pytest.approx(28.75, abs=0.01)
+    table = pd.read_csv(tmp_path / "out" / "simulation.csv")
+    assert table["t"].iloc[1] == pytest.approx(1 / 25)
+    assert table["y"].iloc[-1] == pytest.approx(rest["y"], abs=1e-6)
+
+
+def test_help_has_examples_everywhere() -> None:
+    for words in (
+        ["--help"],
+        *([name, "--help"] for name in ("run", "track", "estimate", "simulate")),
+    ):
+        done = curlshot(*words)
+        assert done.returncode == 0
+        assert "example" in done.stdout
+
+
+def test_help_loads_nothing_heavy() -> None:
+    code = "import sys, pipeline\npipeline._parser().format_help()\nprint(sorted(sys.modules))"
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=Path(pipeline.__file__).parent,
+    )
+    for heavy in ("numpy", "pandas", "cv2", "scipy", "matplotlib", "av"):
+        assert f"'{heavy}'" not in done.stdout
+
+
+def bad_inputs(folder: Path) -> dict[str, list[str | Path]]:
+    (folder / "empty.mp4").touch()
+    (folder / "text.mp4").write_text("this is no film\n" * 100)
+    (folder / "column.csv").write_text("t\n1\n2\n3\n")
+    (folder / "nan.csv").write_text("stone,t,x,y\nA,0,nan,nan\nA,1,nan,nan\n")
+    (folder / "back.csv").write_text("stone,t,x,y\nA,0,0,0\nA,0.2,0,1\nA,0.1,0,2\n")
+    (folder / "twice.csv").write_text("stone,t,x,y\nA,0,0,0\nA,0,1,1\nA,1,0,0\nA,1,1,1\n")
+    (folder / "empty folder").mkdir()
+    (folder / "bad.toml").write_text("[[stone]]\nname = 'A'\n")
+    grey = np.full((240, 320, 3), 128, np.uint8)
+    (folder / "ice").mkdir()
+    for index in range(3):
+        cv2.imwrite(str(folder / "ice" / f"{index}.png"), grey)
+    return {
+        "missing": ["run", folder / "none.mp4"],
+        "empty": ["run", folder / "empty.mp4"],
+        "text": ["run", folder / "text.mp4"],
+        "one column": ["run", folder / "column.csv"],
+        "nan": ["run", folder / "nan.csv"],
+        "time goes back": ["run", folder / "back.csv"],
+        "two of one name": ["run", folder / "twice.csv"],
+        "empty folder": ["run", folder / "empty folder"],
+        "no house": ["run", folder / "ice"],
+        "mixed": ["run", folder / "back.csv", folder / "text.mp4"],
+        "estimate a clip": ["estimate", folder / "text.mp4"],
+        "track a table": ["track", folder / "back.csv"],
+        "bad shot": ["simulate", folder / "bad.toml"],
+        "bad stick": ["run", folder / "ice", "--stick", "1,2,3"],
+        "bad frames": ["run", folder / "ice", "--frames", "x"],
+        "no frames left": ["run", folder / "ice", "--frames", "9:"],
+        "no command": [],
+        "unknown option": ["run", "--what"],
+    }
+
+
+def test_mistakes_end_in_one_line_and_exit_code_2(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    places = tmp_path / "in"
+    places.mkdir()
+    for name, words in bad_inputs(places).items():
+        out = tmp_path / "out"
+        extra = ["-o", str(out)] if words and words[0] in ("run", "estimate", "track") else []
+        try:
+            code = pipeline.main([*map(str, words), *extra])
+        except SystemExit as exit_:  # argparse leaves by itself
+            code = int(exit_.code or 0)
+        said = capsys.readouterr()
+        assert code == 2, name
+        lines = [line for line in said.err.splitlines() if "curlshot" in line]
+        assert len(lines) == 1, (name, said.err)
+        assert "Traceback" not in said.err, name
+        assert not out.exists(), name
+        assert [item.name for item in tmp_path.iterdir()] == ["in"], name
+
+
+def test_out_that_is_a_file_is_refused_before_the_work(tmp_path: Path) -> None:
+    (tmp_path / "out").write_text("here already")
+    with pytest.raises(InputError, match="folder"):
+        pipeline.run([SAMPLE], tmp_path / "out")
+    assert (tmp_path / "out").read_text() == "here already"
+
+
+def test_failed_run_leaves_earlier_results_alone(tmp_path: Path) -> None:
+    folder = tmp_path / "out"
+    folder.mkdir()
+    (folder / "results.json").write_text("earlier")
+
+    def fail(stage: Path) -> None:
+        (stage / "results.json").write_text("half")
+        raise CurlshotError("the disc is full")
+
+    with pytest.raises(CurlshotError), pipeline.staged(folder) as stage:
+        fail(stage)
+    assert (folder / "results.json").read_text() == "earlier"
+    assert [item.name for item in tmp_path.iterdir()] == ["out"]
+
+
+def test_truncated_clip_is_used_as_far_as_it_goes(tmp_path: Path) -> None:
+    cut = tmp_path / "cut.mp4"
+    shutil.copy(SAMPLE, cut)
+    with cut.open("r+b") as file:
+        file.truncate(int(SAMPLE.stat().st_size * 0.5))
+    measured = pipeline.measure([cut])
+    assert 10 < measured.frames < pipeline.measure([SAMPLE]).frames
+    assert any("ends after" in text for text in measured.warnings)
+
+
+def test_pucks_from_a_stick(shared: Path) -> None:
+    clip = shared / "clips" / "collision-pucks.mp4"
+    settings = pipeline.Settings(
+        frames=(2, 31), stick=(20.0, 11.0, 20.0, 235.0, 0.8), radius=0.046, overlay=False
+    )
+    done = pipeline.run([clip], settings=settings)
+    assert done.tracks["stone"].nunique() == 2
+    (hit,) = done.results.collisions
+    assert hit.restitution is not None and hit.stderr is not None
+    assert 0.5 < hit.restitution < 1.05
+    assert hit.momentum_residual is not None and hit.momentum_residual < 0.15
+    assert done.tracks.groupby("stone")["omega"].count().min() > 20
