@@ -262,7 +262,7 @@ def test_truncated_clip_is_used_as_far_as_it_goes(tmp_path: Path) -> None:
 def test_pucks_from_a_stick(shared: Path) -> None:
     clip = shared / "clips" / "collision-pucks.mp4"
     settings = pipeline.Settings(
-        frames=(2, 31), stick=(20.0, 11.0, 20.0, 235.0, 0.8), radius=0.046, overlay=False
+        frames=(2, 31), stick=(20.0, 35.6, 20.0, 219.6, 0.5), radius=0.0465, overlay=False
     )
     done = pipeline.run([clip], settings=settings)
     assert done.tracks["stone"].nunique() == 2
