@@ -1,0 +1,429 @@
+"""The shot again: stones glide, hit each other and come to rest, event by event.
+
+Nothing is stepped through time. Each stone's path to rest is known in closed form (see
+`physics.motion.Path`); the first moment at which two paths come within two radii is found by
+bounds on how far a path can leave its chord, so that no contact is stepped over however fast
+the stones are; a hit gives two stones new paths.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from itertools import combinations
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike
+
+from data.errors import InputError
+from data.results import StoneState
+from data.sheet import STONE
+from physics.impact import Frictional, Impact
+from physics.motion import FCV1, Curl, FCV1Curl, IceLaw, Motion, Path, Point
+
+SIMULATION_COLUMNS: tuple[str, ...] = (
+    "stone", "frame", "t", "x", "y", "theta", "vx", "vy", "omega",
+)  # fmt: skip
+"""Columns of a sampled simulation."""
+
+TOUCHING = 1e-9
+"""Gap up to which two stones touch, m."""
+PRESSED = 1e-7
+"""Overlap at which stones that lean on each other are set apart again, m."""
+SLOW = 5e-4
+"""Closing speed up to which two touching stones lean on each other and do not hit, m/s."""
+SIMULTANEOUS = 1e-9
+"""Contacts this close in time count as one moment, s."""
+MAX_IMPULSES = 200_000
+"""More than any shot needs."""
+
+
+@dataclass(frozen=True)
+class StoneStart:
+    """One stone at the time 0.
+
+    Attributes
+    ----------
+    name : str
+        Its name, unique in the shot.
+    x, y, vx, vy, omega, theta : float
+        Place (m), velocity (m/s), spin (rad/s) and angle (rad).
+    omega_after : float or tuple of float, optional
+        Spin after its hits, rad/s, for the rigid-body model; of several the k-th belongs to
+        the stone's k-th hit and the last to all that follow.
+    mass : float
+        Mass, kg.
+    """
+
+    name: str
+    x: float
+    y: float
+    vx: float = 0.0
+    vy: float = 0.0
+    omega: float = 0.0
+    theta: float = 0.0
+    omega_after: float | tuple[float, ...] | None = None
+    mass: float = STONE.mass
+
+
+@dataclass(frozen=True)
+class Shot:
+    """The stones at the time 0 and the laws that they follow; `radius` in m."""
+
+    stones: tuple[StoneStart, ...]
+    impact: Impact = field(default_factory=Frictional)
+    ice: IceLaw = field(default_factory=FCV1)
+    curl: Curl = field(default_factory=FCV1Curl)
+    radius: float = STONE.radius
+
+
+@dataclass(frozen=True)
+class Hit:
+    """One hit: when, of whom, and their states before and after.
+
+    The first stone is the one that was faster before the hit; ``normal`` is the unit vector
+    from it to the second.
+    """
+
+    t: float
+    stones: tuple[str, str]
+    normal: tuple[float, float]
+    before: Mapping[str, StoneState]
+    after: Mapping[str, StoneState]
+
+
+@dataclass(frozen=True)
+class Rest:
+    """Where (m, rad) and when (s) a stone came to rest; t = 0 where it never moved."""
+
+    x: float
+    y: float
+    theta: float
+    t: float
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """A simulated shot.
+
+    Attributes
+    ----------
+    hits : tuple of Hit
+        In the order in which they happened.
+    rest : dict
+        Per stone its place of rest, or its place at the end where the simulation was ended
+        sooner.
+    paths : dict
+        Per stone its paths from hit to hit.
+    """
+
+    hits: tuple[Hit, ...]
+    rest: Mapping[str, Rest]
+    paths: Mapping[str, tuple[Path, ...]]
+
+    def sample(self, times: ArrayLike) -> pd.DataFrame:
+        """States of all stones at given times.
+
+        Parameters
+        ----------
+        times : array_like, shape (n,)
+            Times >= 0, s. At the moment of a hit the state is that after it.
+
+        Returns
+        -------
+        DataFrame
+            `SIMULATION_COLUMNS`, sorted by stone, then in the order of `times`, whose index
+            is `frame`.
+
+        Raises
+        ------
+        ValueError
+            Where a time lies before 0 or is not finite.
+        """
+        moments = np.asarray(times, float).ravel()
+        if not (np.isfinite(moments).all() and (moments >= 0).all()):
+            raise ValueError("a simulation starts at t = 0: sample it at finite times from there")
+        names = sorted(self.paths)
+        rows = np.array(
+            [_at(self.paths[name], t) for name in names for t in moments.tolist()], float
+        ).reshape(-1, 6)
+        table = pd.DataFrame(rows, columns=["x", "y", "theta", "vx", "vy", "omega"])
+        table.insert(0, "t", np.tile(moments, len(names)))
+        table.insert(0, "frame", np.tile(np.arange(moments.size), len(names)))
+        table.insert(
+            0, "stone", pd.Series(np.repeat(np.array(names, object), moments.size), dtype=str)
+        )
+        return table[list(SIMULATION_COLUMNS)]
+
+
+def simulate(shot: Shot, *, until: float | None = None) -> Simulation:
+    """Let the stones of a shot glide and hit each other until all rest.
+
+    Stones that touch are hit one pair at a time, in the order of the shot's stones where two
+    pairs meet at one moment, until none of them closes. Stones that lean on each other
+    without hitting (they touch and close by less than `SLOW`) push each other by small
+    impulses, which are not listed as hits. Stones placed closer than two radii are taken
+    to touch where they are, which gives no energy to either. A stone that leaves the sheet
+    goes on as if there were ice.
+
+    Parameters
+    ----------
+    shot : Shot
+        Stones and laws.
+    until : float, optional
+        Time at which to end, s; else when all stones rest.
+
+    Raises
+    ------
+    InputError
+        Where stones share a name or place, numbers make no sense, or a stone that is hit
+        lacks the spin after the hit which the model needs.
+    """
+    check_shot(shot)
+    return _Run(shot).run(math.inf if until is None else until)
+
+
+def check_shot(shot: Shot, source: str = "shot") -> None:
+    """Say all that is wrong with a shot in one InputError; see `simulate`."""
+    faults: list[str] = []
+    names = [stone.name for stone in shot.stones]
+    if not names:
+        faults.append("no stone")
+    if not (math.isfinite(shot.radius) and shot.radius > 0):
+        faults.append(f"radius = {shot.radius:g} must be above 0")
+    faults += [f"two stones named {n}" for n in sorted({n for n in names if names.count(n) > 1})]
+    for stone in shot.stones:
+        after = stone.omega_after
+        spins = () if after is None else after if isinstance(after, tuple) else (after,)
+        numbers = {key: getattr(stone, key) for key in _NUMBERS}
+        faults += [
+            f"stone {stone.name}: {key} = {value:g} is not finite"
+            for key, value in [*numbers.items(), *(("omega_after", spin) for spin in spins)]
+            if not math.isfinite(value)
+        ]
+        if stone.mass <= 0:
+            faults.append(f"stone {stone.name}: mass = {stone.mass:g} must be above 0")
+    for one, two in combinations(shot.stones, 2):
+        if one.x == two.x and one.y == two.y:
+            faults.append(f"stones {one.name} and {two.name} lie on the same place")
+    if faults:
+        raise InputError(f"{source}: {'; '.join(faults)}")
+
+
+_NUMBERS = ("x", "y", "vx", "vy", "omega", "theta", "mass")
+
+
+def _at(paths: tuple[Path, ...], t: float) -> Motion:
+    """State at the time `t` on the last path that has begun by then."""
+    return paths[bisect_right(paths, t, key=lambda path: path.start) - 1].at(t)
+
+
+class _Run:
+    """The state of a simulation under way."""
+
+    def __init__(self, shot: Shot) -> None:
+        self.shot = shot
+        self.t = 0.0
+        self.hits: list[Hit] = []
+        self.hit_count = [0] * len(shot.stones)
+        self.paths: list[list[Path]] = [[] for _ in shot.stones]
+        for k, stone in enumerate(shot.stones):
+            motion = Motion(stone.x, stone.y, stone.theta, stone.vx, stone.vy, stone.omega)
+            self._set_off(k, motion)
+        # Stones that were placed too close keep the distance that they had.
+        self.reach = {
+            (i, j): min(2 * shot.radius, math.dist((a.x, a.y), (b.x, b.y)))
+            for (i, a), (j, b) in combinations(enumerate(shot.stones), 2)
+        }
+        self.contacts = {pair: self._next_contact(*pair) for pair in self.reach}
+
+    def run(self, until: float) -> Simulation:
+        """Go from contact to contact."""
+        for _ in range(MAX_IMPULSES):
+            first = min(self.contacts.values(), default=math.inf)
+            if first > until or first == math.inf:
+                break
+            pair = min(p for p, t in self.contacts.items() if t <= first + SIMULTANEOUS)
+            self.t = max(self.t, self.contacts[pair])
+            self._hit(*pair)
+            for other in self.reach:
+                if not set(pair).isdisjoint(other):
+                    self.contacts[other] = self._next_contact(*other)
+        else:
+            raise RuntimeError("the stones do not come to rest")
+        names = [stone.name for stone in self.shot.stones]
+        return Simulation(
+            tuple(self.hits),
+            {name: _rest(paths[-1], until) for name, paths in zip(names, self.paths, strict=True)},
+            {name: tuple(paths) for name, paths in zip(names, self.paths, strict=True)},
+        )
+
+    def _set_off(self, k: int, motion: Motion) -> None:
+        """Give stone `k` a new path from now on."""
+        path = Path(self.t, motion, self.shot.ice, self.shot.curl)
+        paths = self.paths[k]
+        if paths and paths[-1].start >= self.t:
+            paths.pop()  # it never came into effect
+        paths.append(path)
+
+    def _next_contact(self, i: int, j: int) -> float:
+        """Time of the next contact of two stones, inf where there is none."""
+        a, b = self.paths[i][-1], self.paths[j][-1]
+        if a.stop <= self.t and b.stop <= self.t:
+            return math.inf
+        pa, pb = a.at(self.t), b.at(self.t)
+        dx, dy = pb.x - pa.x, pb.y - pa.y
+        distance = math.hypot(dx, dy)
+        reach = self.reach[i, j]
+        if distance - reach > a.length + b.length:
+            return math.inf
+        if distance <= reach + TOUCHING:
+            closing = ((pa.vx - pb.vx) * dx + (pa.vy - pb.vy) * dy) / distance
+            if closing > SLOW:
+                return self.t
+            reach -= PRESSED
+        return first_contact(a, b, self.t, reach)
+
+    def _hit(self, i: int, j: int) -> None:
+        """Resolve the contact of stones `i` and `j` at the present time."""
+        shot = self.shot
+        one, two = self.paths[i][-1].at(self.t), self.paths[j][-1].at(self.t)
+        if math.hypot(two.vx, two.vy) > math.hypot(one.vx, one.vy):
+            i, j, one, two = j, i, two, one
+        first, second = shot.stones[i], shot.stones[j]
+        dx, dy = two.x - one.x, two.y - one.y
+        distance = math.hypot(dx, dy)
+        n = (dx / distance, dy / distance)
+        closing = (one.vx - two.vx) * n[0] + (one.vy - two.vy) * n[1]
+        listed = closing > SLOW
+        if closing > 0:
+            spins = (one.omega, two.omega)
+            if listed:
+                spins = self._spin_after(i, one.omega), self._spin_after(j, two.omega)
+            after = shot.impact.resolve(
+                (one.vx, one.vy), (two.vx, two.vy), one.omega, two.omega, n, shot.radius,
+                mass1=first.mass, mass2=second.mass, spin_after=spins,
+            )  # fmt: skip
+            new_one = _changed(one, after.v1, after.w1)
+            new_two = _changed(two, after.v2, after.w2)
+        else:
+            new_one, new_two = one, two
+        if listed:
+            before = {first.name: _state(one), second.name: _state(two)}
+            then = {first.name: _state(new_one), second.name: _state(new_two)}
+            self.hits.append(Hit(self.t, (first.name, second.name), n, before, then))
+            self.hit_count[i] += 1
+            self.hit_count[j] += 1
+        overlap = self.reach[min(i, j), max(i, j)] - distance
+        if overlap > TOUCHING:
+            # Set apart about their centre of mass.
+            share = first.mass / (first.mass + second.mass)
+            new_one = _moved(new_one, n, -overlap * (1 - share))
+            new_two = _moved(new_two, n, overlap * share)
+        self._set_off(i, new_one)
+        self._set_off(j, new_two)
+
+    def _spin_after(self, k: int, omega: float) -> float:
+        """Spin of stone `k` after its present hit, as far as the model asks for it."""
+        if not self.shot.impact.needs_spin_after:
+            return omega
+        stone = self.shot.stones[k]
+        given = stone.omega_after
+        if given is None or given == ():
+            raise InputError(
+                f"stone {stone.name} is hit at t = {self.t:.3f} s but has no omega_after:"
+                " the rigid-body model needs its spin after the hit"
+            )
+        if isinstance(given, tuple):
+            return given[min(self.hit_count[k], len(given) - 1)]
+        return given
+
+
+def first_contact(a: Path, b: Path, start: float, reach: float) -> float:
+    """First time after `start` at which two paths are within `reach`, inf where never.
+
+    Over an interval of length h the velocity of a stone stays within a set of the diameter
+    D = v0 - v1 + v0 |Δφ|, because its speed only falls and its path turns one way; its place
+    is then within h D / 4 of the point that goes along the chord at a constant speed. An
+    interval over which the chords stay further apart than that is passed over as a whole;
+    others are halved, the earlier half first.
+    """
+    end = max(a.stop, b.stop)
+    if end <= start:
+        return math.inf
+    later = [(end, a.point(end), b.point(end))]
+    t0, a0, b0 = start, a.point(start), b.point(start)
+    while later:
+        t1, a1, b1 = later[-1]
+        step = t1 - t0
+        slack = step / 4 * (_spread(a0, a1) + _spread(b0, b1))
+        x0, y0, x1, y1 = b0.x - a0.x, b0.y - a0.y, b1.x - a1.x, b1.y - a1.y
+        if _nearest(x0, y0, x1, y1) - slack > reach:
+            t0, a0, b0 = later.pop()
+            continue
+        if math.hypot(x1, y1) <= reach and slack < 1e-3 * reach:
+            return _crossing(a, b, t0, t1, reach)
+        middle = t0 + step / 2
+        if step < 1e-9 or not t0 < middle < t1:
+            # They graze, closer than numbers can tell.
+            t0, a0, b0 = later.pop()
+            continue
+        later.append((middle, a.point(middle), b.point(middle)))
+    return math.inf
+
+
+def _spread(p0: Point, p1: Point) -> float:
+    """Bound on the diameter of the set of velocities between two points of a path."""
+    turn = abs(p1.heading - p0.heading)
+    return p0.speed - p1.speed + p0.speed * min(turn, 2 * math.pi - turn)
+
+
+def _nearest(x0: float, y0: float, x1: float, y1: float) -> float:
+    """Distance of the origin from a segment."""
+    dx, dy = x1 - x0, y1 - y0
+    square = dx * dx + dy * dy
+    s = min(max(-(x0 * dx + y0 * dy) / square, 0.0), 1.0) if square else 0.0
+    return math.hypot(x0 + s * dx, y0 + s * dy)
+
+
+def _crossing(a: Path, b: Path, low: float, high: float, reach: float) -> float:
+    """Time between `low` (apart) and `high` (within reach) at which the distance is `reach`."""
+    t = (low + high) / 2
+    for _ in range(100):
+        pa, pb = a.at(t), b.at(t)
+        dx, dy = pb.x - pa.x, pb.y - pa.y
+        distance = math.hypot(dx, dy)
+        if distance > reach:
+            low = t
+        else:
+            high = t
+        rate = ((pb.vx - pa.vx) * dx + (pb.vy - pa.vy) * dy) / distance
+        new = t - (distance - reach) / rate if rate < 0 else low
+        if not low < new < high:
+            new = (low + high) / 2
+        if abs(new - t) <= 1e-15 * max(1.0, t):
+            return new
+        t = new
+    return t
+
+
+def _changed(motion: Motion, velocity: ArrayLike, omega: ArrayLike) -> Motion:
+    vx, vy = np.asarray(velocity, float).tolist()
+    return motion._replace(vx=vx, vy=vy, omega=float(np.asarray(omega)))
+
+
+def _moved(motion: Motion, n: tuple[float, float], by: float) -> Motion:
+    return motion._replace(x=motion.x + by * n[0], y=motion.y + by * n[1])
+
+
+def _state(motion: Motion) -> StoneState:
+    return StoneState(motion.x, motion.y, motion.vx, motion.vy, motion.omega)
+
+
+def _rest(path: Path, until: float) -> Rest:
+    t = min(max(path.rest, path.start), until) if path.rest > 0 else 0.0
+    motion = path.at(t)
+    return Rest(motion.x, motion.y, motion.theta, t)
