@@ -1,0 +1,305 @@
+"""Follow the house through a clip: one camera place, pan, tilt, roll and zoom per frame.
+
+The house is found once. From then on each frame is predicted, its edges are measured along
+their normals and the view is refined. When the clip has been read, place, distortion and painted
+radii are fitted jointly to many frames, and every view again with these held.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.errors import SceneError
+from data.progress import Progress, no_progress
+from data.sheet import HOUSE
+from vision.camera import Camera
+from vision.clip import Clip, Frame, Image
+from vision.flow import carried, similarity, thumbnail
+from vision.house import find_house, judge
+from vision.marks import measure
+from vision.pose import (
+    ANYWHERE,
+    CIRCLES,
+    OVERHEAD,
+    POSITION,
+    R4,
+    R8,
+    Marks,
+    Prior,
+    Solution,
+    View,
+    camera,
+    joined,
+    solve,
+)
+
+Array = NDArray[np.float64]
+
+FIND_EVERY = 5
+"""Frames from one attempt to find the house to the next."""
+
+LOOK_BACK = 60
+"""Frames kept while the house has not been found, to be followed backwards from the first find."""
+
+JOINT_FRAMES = 30
+
+CARRY_MAX_S = 4.0
+"""A view carried longer than this without rings is given up."""
+
+
+@dataclass(frozen=True)
+class HouseTrack:
+    """The cameras of a clip.
+
+    Attributes
+    ----------
+    cameras : tuple of Camera
+        One per frame in which the house is known, in order; found is False where carried.
+    radii : ndarray, shape (3,)
+        Radii of the painted 12-, 8- and 4-ft edges, m; the first is the yardstick.
+    radii_sd : ndarray, shape (3,)
+    position_sd : ndarray, shape (3,)
+        Standard deviation of the camera's place, m.
+    warnings : tuple of str
+    """
+
+    cameras: tuple[Camera, ...]
+    radii: Array
+    radii_sd: Array
+    position_sd: Array
+    warnings: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """One followed frame."""
+
+    index: int
+    t: float
+    view: View
+    marks: Marks
+    quality: float
+    found: bool
+
+
+@dataclass
+class _Piece:
+    """Frames without a cut in between, and what was found first."""
+
+    rig: Array
+    prior: Prior
+    seen: list[_Seen] = field(default_factory=list)
+
+    @property
+    def length(self) -> int:
+        return sum(s.found for s in self.seen)
+
+
+def follow_house(clip: Clip, progress: Progress = no_progress) -> HouseTrack:
+    """Follow the house through a clip.
+
+    Parameters
+    ----------
+    clip : Clip
+        Read once, in order; a single picture is a clip of one frame.
+    progress : Progress
+
+    Raises
+    ------
+    SceneError
+        No house can be made out in any frame.
+    """
+    pieces = _read(clip, progress)
+    if not pieces:
+        raise SceneError(
+            f"{clip.files[0]}: no house in view; for another scene with a still camera use"
+            " --stick X1,Y1,X2,Y2,METRES"
+        )
+    best = max(pieces, key=lambda p: p.length)
+    progress("camera", 0, 1)
+    track = _finish(best, clip.size, len(pieces))
+    progress("camera", 1, 1)
+    return track
+
+
+def _read(clip: Clip, progress: Progress) -> list[_Piece]:
+    pieces: list[_Piece] = []
+    piece: _Piece | None = None
+    waiting: deque[Frame] = deque(maxlen=LOOK_BACK)
+    before: Image | None = None
+    for count, frame in enumerate(clip):
+        progress("house", count, clip.expected)
+        small = thumbnail(frame.image)
+        if piece is not None:
+            seen = _next(piece, frame, before, small)
+            if seen is None:
+                _trim(piece)
+                piece, last_try = None, -FIND_EVERY
+                waiting.clear()
+            else:
+                piece.seen.append(seen)
+        if piece is None:
+            if not waiting or count - last_try >= FIND_EVERY or clip.expected == count + 1:
+                last_try = count
+                piece = _start(frame, waiting)
+                if piece is not None:
+                    pieces.append(piece)
+                    waiting.clear()
+            if piece is None:
+                waiting.append(frame)
+        before = small
+    if piece is not None:
+        _trim(piece)
+    return [p for p in pieces if p.length]
+
+
+def _start(frame: Frame, waiting: deque[Frame]) -> _Piece | None:
+    """Find the house, then follow it back through the frames before."""
+    fit = find_house(frame.image)
+    if fit is None:
+        return None
+    piece = _Piece(fit.rig, OVERHEAD if fit.overhead else ANYWHERE)
+    first = _Seen(frame.index, frame.t, fit.view, fit.evidence.marks, judge(fit.evidence), True)
+    piece.seen.append(first)
+    after = thumbnail(frame.image)
+    for earlier in reversed(waiting):
+        small = thumbnail(earlier.image)
+        seen = _next(piece, earlier, after, small)
+        if seen is None or not seen.found:
+            break
+        piece.seen.append(seen)
+        after = small
+    piece.seen.reverse()
+    return piece
+
+
+def _trim(piece: _Piece) -> None:
+    """Take carried frames off the end: a cut may have come among them."""
+    while piece.seen and not piece.seen[-1].found:
+        piece.seen.pop()
+
+
+def _next(piece: _Piece, frame: Frame, before: Image | None, small: Image) -> _Seen | None:
+    """Follow into one more frame; None where the scene is another one."""
+    last = piece.seen[-1]
+    speed = np.zeros(4)
+    if len(piece.seen) > 1 and piece.seen[-2].found and last.found:
+        speed = last.view.vector - piece.seen[-2].view.vector
+    seen = _settle(piece, frame, View(last.view.vector + speed))
+    if seen is not None:
+        return seen
+    size = (frame.image.shape[1], frame.image.shape[0])
+    matrix = None if before is None else similarity(before, small, size[0])
+    if matrix is None:
+        return None
+    ghosts = carried(matrix, last.view, piece.rig, size)
+    if len(ghosts) < 8:
+        return None
+    moved = solve([ghosts], [last.view], piece.rig, size, view_sd=(1, 1, 0.02, 0.1)).views[0]
+    seen = _settle(piece, frame, moved)
+    if seen is not None:
+        return seen
+    since = next((s.t for s in reversed(piece.seen) if s.found), frame.t)
+    if abs(frame.t - since) > CARRY_MAX_S:
+        return None
+    if (frame.index - piece.seen[0].index) % FIND_EVERY == 0:
+        fit = find_house(frame.image)
+        if fit is not None:
+            seen = _settle(piece, frame, fit.view)
+            if seen is not None:
+                return seen
+    lines = measure(frame.image, moved.vector, piece.rig, reach=_reach(size)).marks
+    marks = joined([ghosts, lines.pick(lines.line >= CIRCLES)])
+    view = solve([marks], [moved], piece.rig, size, view_sd=(1, 1, 0.02, 0.1)).views[0]
+    return _Seen(frame.index, frame.t, view, marks, 0.0, False)
+
+
+def _reach(size: tuple[int, int]) -> float:
+    return max(7.0, 0.007 * size[0])
+
+
+def _settle(piece: _Piece, frame: Frame, view: View) -> _Seen | None:
+    """Refine a predicted view on the rings; None where they are not there."""
+    size = (frame.image.shape[1], frame.image.shape[0])
+    reach = _reach(size)
+    for attempt in range(3):
+        evidence = measure(frame.image, view.vector, piece.rig, reach=reach)
+        if judge(evidence) == 0:
+            return None
+        fit = solve(
+            [evidence.marks], [view], piece.rig, size, view_sd=(np.inf, np.inf, 0.02, np.inf)
+        )
+        shift = np.abs(fit.views[0].vector - view.vector)
+        view = fit.views[0]
+        if attempt and shift[:3].max() * view.focal < 1.0:
+            break
+    marks = evidence.marks.pick(fit.inliers[0])
+    return _Seen(frame.index, frame.t, view, marks, judge(evidence), True)
+
+
+def _finish(piece: _Piece, size: tuple[int, int], pieces: int) -> HouseTrack:
+    """Joint fit, then every view with the shared part held."""
+    good = [s for s in piece.seen if s.found]
+    chosen = _spread(good)
+    joint = solve(
+        [s.marks for s in chosen], [s.view for s in chosen], piece.rig, size,
+        prior=piece.prior, iterations=25,
+    )  # fmt: skip
+    cameras = []
+    for s in piece.seen:
+        fit = solve([s.marks], [s.view], joint.rig, size, view_sd=(np.inf, np.inf, 0.05, np.inf))
+        cameras.append(
+            camera(
+                fit.views[0],
+                joint.rig,
+                size,
+                frame=s.index,
+                t=s.t,
+                rms_px=float(fit.rms[0]) if s.found else float("nan"),
+                found=s.found,
+            )
+        )
+    sd = np.sqrt(np.diag(joint.rig_cov))
+    return HouseTrack(
+        tuple(cameras),
+        np.array([HOUSE.twelve_foot, joint.rig[R8], joint.rig[R4]]),
+        np.array([0.0, sd[R8], sd[R4]]),
+        sd[POSITION],
+        _warnings(piece, joint, pieces),
+    )
+
+
+def _spread(seen: list[_Seen]) -> list[_Seen]:
+    """Frames for the joint fit, spread over the clip."""
+    at = np.unique(np.round(np.linspace(0, len(seen) - 1, JOINT_FRAMES)).astype(int))
+    return [seen[i] for i in at]
+
+
+def _warnings(piece: _Piece, joint: Solution, pieces: int) -> tuple[str, ...]:
+    found = []
+    if pieces > 1:
+        first, last = piece.seen[0].index, piece.seen[-1].index
+        found.append(
+            f"the house is shown in {pieces} separate pieces; only the longest is used, frames"
+            f" {first} to {last}"
+        )
+    lost = sum(not s.found for s in piece.seen)
+    if lost:
+        found.append(
+            f"{lost} of {len(piece.seen)} frames do not show the rings; there the camera is"
+            " carried by the motion of the picture"
+        )
+    height_sd = float(np.sqrt(joint.rig_cov[2, 2]))
+    if height_sd > 0.7 * piece.prior.sd[2]:
+        found.append(
+            f"the camera's height cannot be told from this view ({joint.rig[2]:.1f} ±"
+            f" {height_sd:.1f} m assumed); stones far from the picture's middle may be"
+            " centimetres off"
+        )
+    if not (np.concatenate([s.marks.line for s in piece.seen]) >= CIRCLES).any():
+        found.append("neither centre line nor tee line is seen; y is up in the picture")
+    return tuple(found)
