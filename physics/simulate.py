@@ -39,6 +39,10 @@ SIMULTANEOUS = 1e-9
 """Contacts this close in time count as one moment, s."""
 MAX_IMPULSES = 200_000
 """More than any shot needs."""
+FASTEST = 100.0
+"""Highest speed (m/s) and spin (rad/s) that a stone may start with."""
+FARTHEST = 1000.0
+"""Farthest place that a stone may start from, m."""
 
 
 @dataclass(frozen=True)
@@ -204,6 +208,11 @@ def check_shot(shot: Shot, source: str = "shot") -> None:
             for key, value in [*numbers.items(), *(("omega_after", spin) for spin in spins)]
             if not math.isfinite(value)
         ]
+        faults += [
+            f"stone {stone.name}: {key} = {getattr(stone, key):g} is out of all bounds"
+            for key, limit in _LIMITS.items()
+            if abs(getattr(stone, key)) > limit
+        ]
         if stone.mass <= 0:
             faults.append(f"stone {stone.name}: mass = {stone.mass:g} must be above 0")
     for one, two in combinations(shot.stones, 2):
@@ -214,6 +223,7 @@ def check_shot(shot: Shot, source: str = "shot") -> None:
 
 
 _NUMBERS = ("x", "y", "vx", "vy", "omega", "theta", "mass")
+_LIMITS = {"x": FARTHEST, "y": FARTHEST, "vx": FASTEST, "vy": FASTEST, "omega": FASTEST}
 
 
 def _at(paths: tuple[Path, ...], t: float) -> Motion:

@@ -1,0 +1,217 @@
+"""A shot written by hand: ``SHOT.toml`` in, `Shot` out, or one line with all its mistakes."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+from data.errors import InputError
+from physics.impact import Frictional, Impact, PointMass, RigidBody
+from physics.motion import CURL_LAWS, ICE_LAWS, Constant, curl_law, ice_law
+from physics.simulate import FARTHEST, FASTEST, Shot, StoneStart
+
+IMPACT_MODELS: tuple[str, ...] = ("point-mass", "rigid-body", "frictional")
+
+RADIUS = 0.145
+"""Radius of a stone where the file gives none, m."""
+
+LARGEST_OVERLAP = 0.2
+"""How far two stones may overlap as placed, in radii: more is a mistake, less is measuring."""
+
+_PHYSICS_KEYS = (
+    "model", "restitution", "stone_friction", "ice", "friction", "curl", "radius", "inertia",
+)  # fmt: skip
+_STONE_KEYS = ("name", "x", "y", "vx", "vy", "omega", "theta", "omega_after", "mass")
+
+
+@dataclass(frozen=True)
+class _Table:
+    """One table of the file, read key by key; what is wrong goes on the list of faults."""
+
+    where: str
+    content: Mapping[str, Any]
+    faults: list[str]
+
+    def only(self, known: Sequence[str]) -> None:
+        """Note the keys that are not known, each with the nearest that is."""
+        for key in self.content:
+            if key not in known:
+                near = get_close_matches(key, known, n=1, cutoff=0.5)
+                hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}"
+                self.faults.append(f"{self.where}: unknown key {key} ({hint})")
+
+    def number(
+        self,
+        key: str,
+        default: float | None,
+        low: float = -math.inf,
+        high: float = math.inf,
+        *,
+        above: bool = False,
+    ) -> float:
+        """Read a finite number in low..high (`above`: greater than low); no default: needed."""
+        value = self.content.get(key, default)
+        if value is None:
+            self.faults.append(f"{self.where}: {key} is missing")
+        elif isinstance(value, bool) or not isinstance(value, int | float):
+            self.faults.append(f"{self.where}: {key} must be a number, not {value!r}")
+        elif not _finite(value):
+            self.faults.append(f"{self.where}: {key} = {value!s:.12} is not finite")
+        elif not low <= value <= high or (above and value == low):
+            allowed = f"within {low:g}..{high:g}" if math.isfinite(high) else f"at least {low:g}"
+            allowed = f"above {low:g}" if above and not math.isfinite(high) else allowed
+            self.faults.append(f"{self.where}: {key} = {value:g} must be {allowed}")
+        else:
+            return float(value)
+        # Stands in until the faults are reported.
+        return 1.0
+
+    def choice(self, key: str, default: str, known: Sequence[str]) -> str:
+        """Read one of the known words."""
+        value = self.content.get(key, default)
+        if isinstance(value, str) and value in known:
+            return value
+        near = get_close_matches(str(value), known, n=1, cutoff=0.5)
+        hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(known)}"
+        self.faults.append(f"{self.where}: no {key} {value!r} ({hint})")
+        return default
+
+
+def read_shot(path: Path) -> Shot:
+    """Read a shot from a ``SHOT.toml``.
+
+    A table ``[physics]``, all optional: model (point-mass, rigid-body, frictional),
+    restitution, stone_friction, ice (constant, fcv1, penner), friction (of the ice, for
+    constant and penner), curl (none, fcv1), radius (m), inertia (I / (m R²)). One table
+    ``[[stone]]`` a stone: name, x, y (m); vx, vy (m/s), omega (rad/s), theta (rad), mass (kg)
+    and omega_after (rad/s; a number, or a list with one a hit) where they matter.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        One line that lists everything that is wrong with it.
+    """
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: not a text file") from None
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{path}: not TOML: {error}") from None
+    faults: list[str] = []
+    _Table("file", content, faults).only(("physics", "stone"))
+    shot = _shot(content, faults)
+    if faults:
+        # Names and words from the file may hold line breaks.
+        raise InputError(" ".join(f"{path}: {'; '.join(faults)}".split()))
+    return shot
+
+
+def _shot(content: Mapping[str, Any], faults: list[str]) -> Shot:
+    laws = content.get("physics", {})
+    if not isinstance(laws, dict):
+        faults.append("physics must be a table, [physics]")
+        laws = {}
+    tables = content.get("stone", [])
+    if not (isinstance(tables, list) and all(isinstance(item, dict) for item in tables)):
+        faults.append("stones must be tables, [[stone]]")
+        tables = []
+    elif not tables:
+        faults.append("no stone: add a table [[stone]] with name, x and y")
+    physics = _Table("[physics]", laws, faults)
+    physics.only(_PHYSICS_KEYS)
+    impact = _impact(physics)
+    radius = physics.number("radius", RADIUS, 0.0, above=True)
+    ice = physics.choice("ice", "fcv1", ICE_LAWS)
+    friction = None
+    if "friction" in laws:
+        if ice == "fcv1":
+            faults.append('[physics]: friction is for ice = "constant" or "penner"')
+        else:
+            friction = physics.number("friction", Constant.friction, 0.0, 1.0, above=True)
+    curl = physics.choice("curl", "fcv1", CURL_LAWS)
+    stones = tuple(_stone(k, item, faults) for k, item in enumerate(tables, start=1))
+    _check_together(stones, radius, faults)
+    if ice == "fcv1":
+        friction = None
+    return Shot(stones, impact, ice_law(ice, friction), curl_law(curl), radius)
+
+
+def _impact(physics: _Table) -> Impact:
+    model = physics.choice("model", "frictional", IMPACT_MODELS)
+    restitution = physics.number("restitution", Frictional.restitution, 0.0, 1.0)
+    stone_friction = physics.number("stone_friction", Frictional.stone_friction, 0.0)
+    inertia = physics.number("inertia", Frictional.inertia, 0.0, above=True)
+    if model == "point-mass":
+        return PointMass(restitution)
+    if model == "rigid-body":
+        return RigidBody(restitution)
+    return Frictional(restitution, stone_friction, inertia)
+
+
+def _stone(rank: int, content: Mapping[str, Any], faults: list[str]) -> StoneStart:
+    name = content.get("name")
+    known = isinstance(name, str) and name.strip() != ""
+    table = _Table(f"stone {name}" if known else f"stone number {rank}", content, faults)
+    if not known:
+        faults.append(f"{table.where}: name is missing or no text")
+    table.only(_STONE_KEYS)
+    return StoneStart(
+        name=str(name),
+        x=table.number("x", None, -FARTHEST, FARTHEST),
+        y=table.number("y", None, -FARTHEST, FARTHEST),
+        vx=table.number("vx", 0.0, -FASTEST, FASTEST),
+        vy=table.number("vy", 0.0, -FASTEST, FASTEST),
+        omega=table.number("omega", 0.0, -FASTEST, FASTEST),
+        theta=table.number("theta", 0.0),
+        omega_after=_spins(table),
+        mass=table.number("mass", StoneStart.mass, 0.0, above=True),
+    )
+
+
+def _spins(table: _Table) -> float | tuple[float, ...] | None:
+    given = table.content.get("omega_after")
+    if given is None:
+        return None
+    if not isinstance(given, list):
+        return table.number("omega_after", None)
+    if not given:
+        table.faults.append(f"{table.where}: omega_after is an empty list")
+    spins = [_Table(table.where, {"omega_after": item}, table.faults) for item in given]
+    return tuple(spin.number("omega_after", None) for spin in spins)
+
+
+def _check_together(stones: Sequence[StoneStart], radius: float, faults: list[str]) -> None:
+    """Note names given twice; places too, where no stone has a fault of its own."""
+    names = [stone.name for stone in stones]
+    twice = sorted({name for name in names if name != "None" and names.count(name) > 1})
+    faults += [f"two stones named {name}" for name in twice]
+    if faults:
+        return
+    for one, two in combinations(stones, 2):
+        overlap = 2 * radius - math.dist((one.x, one.y), (two.x, two.y))
+        if overlap > LARGEST_OVERLAP * radius:
+            faults.append(
+                f"stones {one.name} and {two.name} overlap by {1000 * overlap:.0f} mm:"
+                " move them apart"
+            )
+
+
+def _finite(value: float) -> bool:
+    """Tell whether a number is finite as a float; TOML's integers know no bounds."""
+    try:
+        return math.isfinite(float(value))
+    except OverflowError:
+        return False
