@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -21,6 +22,9 @@ SIGHTING_COLUMNS: tuple[str, ...] = (
     "stone", "frame", "t", "x", "y", "theta", "sd_x", "sd_y", "sd_theta",
 )  # fmt: skip
 """Columns of a table of sightings: measured places, before any filter. sd may be NaN."""
+
+_LAST_FRAME = 2**52
+"""Beyond this a float no longer tells one frame from the next."""
 
 STONE_NAMES: tuple[str, ...] = tuple("ABCDEFGHIJKLMNOPQRSTUVWXYZ")
 
@@ -69,24 +73,32 @@ def check_sightings(table: pd.DataFrame, source: str = "tracks") -> pd.DataFrame
             out[name] = values.to_numpy()
         else:
             out[name] = np.nan
-    if (
-        not np.isfinite(out["t"].to_numpy(float)).all()
-        or np.isinf(out[["x", "y"]].to_numpy()).any()
-    ):
-        faults.append("a time is missing or a number is infinite")
+    if table["stone"].isna().any():
+        faults.append("a stone without a name")
+    if out["t"].isna().any():
+        faults.append("a time is missing")
+    infinite = [name for name in SIGHTING_COLUMNS[1:] if np.isinf(out[name]).any()]
+    if infinite:
+        faults.append(f"infinite numbers in column {', '.join(infinite)}")
+    frames = out["frame"].dropna()
+    if not infinite and ((frames % 1 != 0) | (frames.abs() > _LAST_FRAME)).any():
+        faults.append("column frame holds numbers that are no frames")
+    if (out[["sd_x", "sd_y", "sd_theta"]] < 0).any(axis=None):
+        faults.append("a standard deviation is negative")
     out = out[out["x"].notna() & out["y"].notna()]
-    for name, group in out.groupby("stone", sort=False):
-        steps = np.diff(group["t"].to_numpy(float))
+    for stone, group in out.groupby("stone", sort=False):
+        with np.errstate(invalid="ignore", over="ignore"):
+            steps = np.diff(group["t"].to_numpy(float))
         if (steps < 0).any():
             row = int(np.flatnonzero(steps < 0)[0])
             faults.append(
-                f"stone {name}: time goes back after t = {group['t'].iloc[row]:g} s"
+                f"stone {stone}: time goes back after t = {group['t'].iloc[row]:g} s"
                 " (two stones of one name?)"
             )
         elif (steps == 0).any():
             row = int(np.flatnonzero(steps == 0)[0])
             faults.append(
-                f"stone {name}: two rows at t = {group['t'].iloc[row]:g} s"
+                f"stone {stone}: two rows at t = {group['t'].iloc[row]:g} s"
                 " (two stones of one name?)"
             )
     if out.empty:
@@ -136,9 +148,13 @@ def read_tracks(path: Path) -> pd.DataFrame:
         Where the file is no such table.
     """
     try:
-        table = pd.read_csv(path)
-    except (OSError, ValueError, pd.errors.ParserError) as error:
-        raise InputError(f"{path}: not a table of tracks ({error})") from None
+        with warnings.catch_warnings():
+            # Rows longer than the header would lose their last cells.
+            warnings.simplefilter("error", pd.errors.ParserWarning)
+            table = pd.read_csv(path, index_col=False, low_memory=False, dtype={"stone": str})
+    except (OSError, ValueError, pd.errors.ParserWarning) as error:
+        reason = " ".join(str(error).split())
+        raise InputError(f"{path}: not a table of tracks ({reason})") from None
     if "seen" in table.columns:
         table = table[table["seen"] != 0]
     return check_sightings(table, str(path))

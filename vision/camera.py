@@ -99,7 +99,9 @@ class Camera:
 
     def ice(self, pixels: ArrayLike, height: float = 0.0) -> Array:
         """Pixels to the place (x, y), m, of what is seen there `height` above the ice."""
-        xy = apply_homography(np.linalg.inv(self.homography), self.undistort(pixels))
+        xy = apply_homography(
+            np.asarray(np.linalg.inv(self.homography), np.float64), self.undistort(pixels)
+        )
         if height and self.position is not None and np.isfinite(self.position).all():
             xy = xy + (self.position[:2] - xy) * (height / self.position[2])
         return xy

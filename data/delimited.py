@@ -1,0 +1,355 @@
+"""Text tables of numbers in any dialect: encoding, delimiter, decimal sign, minus, digits."""
+
+from __future__ import annotations
+
+import csv
+import re
+import unicodedata
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.errors import InputError
+
+Array = NDArray[np.float64]
+
+LARGEST = 200_000_000
+"""Bytes; a larger file is no table of tracks."""
+
+_PREFACE = 10
+"""How many lines may stand above the header or the first row of numbers."""
+
+_EXPORT = "from Tracker, save tracks as text with File > Export > Data"
+
+_NUMBER = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)(e[+-]?\d+)?|[+-]?(inf|infinity|∞)", re.IGNORECASE)
+_UNIT = re.compile(r"[(\[]?(m?s|sec|[cm]?m|in|ft|px|kg|rad|deg|°|(m|rad|deg|°)/s[²2]?)?[)\]]?")
+_MISSING = frozenset({"", "nan", "na", "n/a", "#n/a", "null", "none", "-"})
+_BIDI_MARKS = dict.fromkeys(map(ord, "\u200e\u200f\u061c\u2066\u2067\u2068\u2069"))
+_MINUS = dict.fromkeys(map(ord, "\u2212\u2010\u2011\u2012\u2013\ufe63\uff0d"), "-")
+
+
+@dataclass(frozen=True)
+class TextTable:
+    """The rows of a text table, not yet numbers.
+
+    Attributes
+    ----------
+    path : Path
+        The file it was read from.
+    names : tuple of str or None
+        Names of the columns as written; None where the file has no header.
+    title : str
+        The line above the header (in Tracker's exports: the names of the tracks), or "".
+    delimiter : str
+        What stands between two cells.
+    width : int
+        Number of columns.
+    rows : tuple of str
+        Lines of data, with ASCII digits, minus and exponents.
+    line_numbers : tuple of int
+        Their numbers in the file, from 1.
+    warnings : tuple of str
+        What was decided on evidence.
+    """
+
+    path: Path
+    names: tuple[str, ...] | None
+    title: str
+    delimiter: str
+    width: int
+    rows: tuple[str, ...]
+    line_numbers: tuple[int, ...]
+    split: Callable[[str], list[str]]
+    warnings: tuple[str, ...] = ()
+
+    def cells(self, columns: Sequence[int]) -> list[list[str]]:
+        """Cells of the given columns as written, one list per column.
+
+        Raises
+        ------
+        InputError
+            Where a row has more cells than there are columns.
+        """
+        picked: list[list[str]] = [[] for _ in columns]
+        for fields, line in self._split_rows():
+            if len(fields) > self.width and any(cell.strip() for cell in fields[self.width :]):
+                raise InputError(
+                    f"{self.path}: line {line} has {len(fields)} cells, but there are"
+                    f" {self.width} columns"
+                )
+            for cells, column in zip(picked, columns, strict=True):
+                cells.append(fields[column].strip() if column < len(fields) else "")
+        return picked
+
+    def numbers(self, columns: Sequence[int]) -> Array:
+        """Numbers of the given columns, shape (rows, columns); NaN where a cell is empty.
+
+        Raises
+        ------
+        InputError
+            Where a cell is no number, or the decimal sign is ambiguous.
+        """
+        picked = self.cells(columns)
+        out = np.empty((len(self.rows), len(columns)))
+        for k, cells in enumerate(plain_decimals(picked, str(self.path))):
+            for row, cell in enumerate(cells):
+                try:
+                    # Python's float also takes 1_000, which nobody means.
+                    out[row, k] = float(cell) if "_" not in cell else float("")
+                except ValueError:
+                    if cell.lower() not in _MISSING:
+                        column = f" in column {self.names[columns[k]]}" if self.names else ""
+                        raise InputError(
+                            f"{self.path}: line {self.line_numbers[row]}: {_short(cell)} is not a"
+                            f" number{column}"
+                        ) from None
+                    out[row, k] = np.nan
+        return out
+
+    def _split_rows(self) -> Iterator[tuple[list[str], int]]:
+        for row, line in zip(self.rows, self.line_numbers, strict=True):
+            yield self.split(row), line
+
+
+def read_text_table(path: Path, is_header: Callable[[Sequence[str]], bool]) -> TextTable:
+    """Read a file as a text table, whatever its dialect.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    is_header : callable
+        Tells from the cells of a line whether it is the header.
+
+    Raises
+    ------
+    InputError
+        Where the file is missing, empty, no text, or no table.
+    """
+    lines = [line for line in enumerate(_text(path).split("\n"), 1) if line[1].strip()]
+    if not lines:
+        raise InputError(f"{path}: the file is empty")
+    title = ""
+    for k, (_, line) in enumerate(lines[:_PREFACE]):
+        header = _header(line.lstrip("# "), is_header)
+        if header is not None:
+            return _with_header(path, title, line, *header, lines[k + 1 :])
+        if line.startswith("#"):
+            continue
+        if (delimiter := _delimiter_of_numbers(plain_digits(line))) is not None:
+            return _without_header(path, title, delimiter, lines[k:])
+        title = line
+    raise InputError(
+        f"{path}: not a table of tracks: no header with t, x and y, and no rows of numbers"
+        f" (line {lines[0][0]}: {_short(lines[0][1])})"
+    )
+
+
+def plain_digits(text: str) -> str:
+    """Write digits, minus signs and exponents as ASCII: ``−2,6×10^−2`` becomes ``-2,6E-2``."""
+    if text.isascii():
+        return text
+    signs: dict[int, str | None] = {**_BIDI_MARKS, **_MINUS, ord("\u066b"): "."}
+    for character in set(text):
+        if not character.isascii() and character.isdecimal():
+            signs[ord(character)] = str(unicodedata.decimal(character))
+    plain = text.translate(signs).replace("أس", "E").replace("اس", "E")
+    return re.sub(r"\s*[×·⋅]\s*10\^?(?=[+-]?\d)", "E", plain)
+
+
+def plain_decimals(columns: Sequence[list[str]], source: str) -> list[list[str]]:
+    """Write decimal commas as points, in all columns or in none.
+
+    Raises
+    ------
+    InputError
+        Where some numbers have a decimal comma and others a point.
+    """
+    commas = any("," in cell for cells in columns for cell in cells)
+    if not commas:
+        return list(columns)
+    for cells in columns:
+        for cell in cells:
+            if "." in cell and _NUMBER.fullmatch(cell.replace(",", "")):
+                raise InputError(
+                    f"{source}: both commas and points in numbers ({_short(cell)}): which is the"
+                    " decimal sign?"
+                )
+    return [[cell.replace(",", ".") for cell in cells] for cells in columns]
+
+
+def _text(path: Path) -> str:
+    """Return the text of a file with Unix line ends."""
+    try:
+        size = path.stat().st_size
+        if size > LARGEST:
+            raise InputError(f"{path}: {size / 1e6:.0f} MB is too large for a table of tracks")
+        raw = path.read_bytes()
+    except FileNotFoundError:
+        raise InputError(f"{path}: no such file") from None
+    except IsADirectoryError:
+        raise InputError(f"{path}: a folder, not a table of tracks") from None
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path}: cannot be read ({error})") from None
+    if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
+        text = raw.decode("utf-16", errors="replace")
+    elif b"\0" in raw or raw.startswith(b"PK\x03\x04"):
+        raise InputError(f"{path}: not text, so no table of tracks; {_EXPORT}")
+    else:
+        try:
+            text = raw.decode("utf-8-sig")
+        except UnicodeDecodeError:
+            text = raw.decode("latin-1")
+    if text.lstrip()[:1] == "<":
+        raise InputError(f"{path}: XML, not a table of tracks; {_EXPORT}")
+    return text.replace("\r\n", "\n").replace("\r", "\n").replace("\0", "\ufffd")
+
+
+def _header(
+    line: str, is_header: Callable[[Sequence[str]], bool]
+) -> tuple[str, tuple[str, ...]] | None:
+    """Delimiter and names, if the line is a header in some dialect."""
+    candidates = ["\t", ";", ","]
+    # A delimiter of the user's own is whatever stands after the first name.
+    own = re.match(r"\w+\s*([^\w\s\"'()\[\]{}°]+)\s*\w", line)
+    if own:
+        candidates.append(own.group(1))
+    for delimiter in [*candidates, " "]:
+        if delimiter in line:
+            cells = line.split() if delimiter == " " else _splitter(delimiter, line)(line)
+            names = [name.strip() for name in cells]
+            while names and not names[-1]:
+                names.pop()
+            if len(names) > 1 and names[0] and is_header(names):
+                return delimiter, tuple(names)
+    return None
+
+
+def _with_header(
+    path: Path,
+    title: str,
+    header: str,
+    delimiter: str,
+    names: tuple[str, ...],
+    lines: Sequence[tuple[int, str]],
+) -> TextTable:
+    rows, numbers = _data_rows(lines, delimiter)
+    split = _splitter(delimiter, header + "".join(rows[:1]))
+    width = len(names)
+    units = [cell.strip() for cell in split(rows[0])] if rows else []
+    if any(units) and all(not unit or _UNIT.fullmatch(unit) for unit in units):
+        named = zip(names, units, strict=False)
+        names = (*(f"{name} ({unit})" for name, unit in named), *names[len(units) :])
+        rows, numbers = rows[1:], numbers[1:]
+    warnings: tuple[str, ...] = ()
+    if delimiter == " " and any(len(row.rstrip().split(" ")) > width for row in rows):
+        split = _aligned(path, width)
+    elif delimiter == "," and any(_cells_used(split(row)) > width for row in rows):
+        split = _joined_decimals(path, names)
+        warnings = (f"{path}: commas both between and in the numbers; read in pairs",)
+    return TextTable(path, names, title, delimiter, width, rows, numbers, split, warnings)
+
+
+def _without_header(
+    path: Path, title: str, delimiter: str, lines: Sequence[tuple[int, str]]
+) -> TextTable:
+    rows, numbers = _data_rows(lines, delimiter)
+    split = _splitter(delimiter, rows[0])
+    width = _cells_used(split(rows[0]))
+    if delimiter == " ":
+        width = len(rows[0].split())
+        split = _aligned(path, width)
+    return TextTable(path, None, title, delimiter, width, rows, numbers, split)
+
+
+def _data_rows(
+    lines: Sequence[tuple[int, str]], delimiter: str
+) -> tuple[tuple[str, ...], tuple[int, ...]]:
+    """Rows with anything in them, and their line numbers."""
+    blank = delimiter + ' \t"'
+    kept = [line for line in lines if line[1].strip(blank) and not line[1].startswith("#")]
+    rows = plain_digits("\n".join(line for _, line in kept)).split("\n") if kept else []
+    return tuple(rows), tuple(number for number, _ in kept)
+
+
+def _delimiter_of_numbers(line: str) -> str | None:
+    """Find the delimiter that makes all cells of a line numbers; None if there is none."""
+    for delimiter in ("\t", ";", " ", ","):
+        cells = line.split() if delimiter == " " else line.split(delimiter)
+        cells = [cell.strip().strip('"') for cell in cells]
+        while cells and not cells[-1]:
+            cells.pop()
+        if len(cells) > 1 and cells[0] and all(not c or _NUMBER.fullmatch(c) for c in cells):
+            return delimiter
+    return "\t" if _NUMBER.fullmatch(line.strip()) else None
+
+
+def _splitter(delimiter: str, first_line: str) -> Callable[[str], list[str]]:
+    """Split lines at the delimiter; quotes count only where the first line has some."""
+    if '"' in first_line and len(delimiter) == 1:
+
+        def quoted(line: str) -> list[str]:
+            try:
+                return next(csv.reader([line], delimiter=delimiter))
+            except (csv.Error, StopIteration):
+                return line.split(delimiter)
+
+        return quoted
+    return lambda line: line.split(delimiter)
+
+
+def _aligned(path: Path, width: int) -> Callable[[str], list[str]]:
+    """Split at runs of blanks; then every cell must be there, or they would shift."""
+
+    def split(line: str) -> list[str]:
+        cells = line.split()
+        if len(cells) != width:
+            raise InputError(
+                f"{path}: a row has {len(cells)} numbers instead of {width}; between blanks a"
+                " missing one cannot be placed"
+            )
+        return cells
+
+    return split
+
+
+def _joined_decimals(path: Path, names: tuple[str, ...]) -> Callable[[str], list[str]]:
+    """Join the halves of numbers where the comma is delimiter and decimal sign alike.
+
+    Tracker writes decimals for all but the counters, at least three for the time, so each
+    number but the counters is two fields and each empty cell one.
+    """
+    counters = {k for k, name in enumerate(names) if name in ("step", "frame", "n")}
+
+    def split(line: str) -> list[str]:
+        fields = line.split(",")
+        cells: list[str] = []
+        clear = len(fields) > 1 and re.fullmatch(r"\d{3,}(E-?\d+)?", fields[1], re.I) is not None
+        while fields:
+            cell = fields.pop(0)
+            if cell.strip() and len(cells) not in counters:
+                clear = clear and bool(fields) and fields[0][:1].isdigit()
+                cell += "," + fields.pop(0) if fields else ""
+            cells.append(cell)
+        if not clear or len(cells) != len(names):
+            raise InputError(
+                f"{path}: {_short(line)} does not fit the header; if its commas stand between and"
+                " in the numbers, export with another delimiter"
+            )
+        return cells
+
+    return split
+
+
+def _cells_used(cells: Sequence[str]) -> int:
+    """Count the cells up to the last one that is not empty."""
+    return max((k + 1 for k, cell in enumerate(cells) if cell.strip()), default=0)
+
+
+def _short(text: str) -> str:
+    """Quote the beginning of a text for a message."""
+    clean = " ".join("".join(c if c.isprintable() else " " for c in text[:200]).split())
+    return f"“{clean[:40]}…”" if len(clean) > 40 else f"“{clean}”"
