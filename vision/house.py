@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from data.sheet import HOUSE
 from vision.camera import Camera
+from vision.lines import sides, upright
 from vision.marks import Evidence, Image, measure
 from vision.pose import (
     ANYWHERE,
@@ -24,11 +25,9 @@ from vision.pose import (
     View,
     aim,
     camera,
-    project,
     rescaled,
     solve,
     start_rig,
-    turned,
 )
 
 Array = NDArray[np.float64]
@@ -235,6 +234,7 @@ def _refine(
     size = (image.shape[1], image.shape[0])
     view, rig = rescaled(solution.views[0], 1 / factor), solution.rig
     view, rig = upright(image, view, rig)
+    rig = sides(image, view, rig)
     evidence, fit = None, None
     for reach in (4 / factor, 8.0, 6.0):
         evidence = measure(image, view.vector, rig, reach=max(reach, 6.0))
@@ -250,39 +250,3 @@ def _refine(
     return HouseFit(
         camera(view, rig, size, frame=frame, t=t, rms_px=rms), view, rig, evidence, rms, True
     )
-
-
-def upright(image: Image, view: View, rig: Array) -> tuple[View, Array]:
-    """Turn the ice's axes onto the centre and tee lines, if these can be seen."""
-    angles = np.radians(np.arange(-45.0, 45.0, 0.25))
-    along = np.concatenate([np.arange(0.2, 2.6, 0.03), -np.arange(0.2, 2.6, 0.03)])
-    ends = np.where(np.abs(along) < 2.15, along, np.nan)
-    # Shape (axis, offset across, place along): the line itself and the ice on either side of it.
-    across = np.array([0.0, -0.04, 0.04])[:, None]
-    centre = np.stack([across + 0 * along, along + 0 * across], axis=-1)
-    tee = np.stack([ends + 0 * across, across + 0 * along], axis=-1)
-    cross = np.stack([centre, tee])
-    turn = np.array([[np.cos(angles), -np.sin(angles)], [np.sin(angles), np.cos(angles)]])
-    ice = np.einsum("ija,lokj->aloki", turn, cross)
-    size = (image.shape[1], image.shape[0])
-    place = project(ice.reshape(-1, 2), view.vector, rig, size).reshape(ice.shape)
-    with np.errstate(invalid="ignore"):
-        within = (place > 0) & (place < np.array(size) - 1)
-    inside = np.asarray(within.all((2, 4)))
-    flat = np.nan_to_num(place, nan=-1.0).astype(np.float32).reshape(len(angles), -1, 2)
-    colour = cv2.remap(image, flat[..., 0], flat[..., 1], cv2.INTER_LINEAR).astype(float)
-    colour = colour.reshape(*ice.shape[:-1], 3)
-    ridge = colour[:, :, 0] - 0.5 * (colour[:, :, 1] + colour[:, :, 2])
-    ridge = np.where(inside[..., None], np.clip(ridge, -12, 12), 0.0)
-    # Both halves of a line on their own: a broom or a stone lies on one only.
-    half = ridge.reshape(len(angles), 2, 2, -1, 3)
-    count = inside.reshape(len(angles), 2, 2, -1).sum(-1)
-    mean = np.linalg.norm(half.sum(3), axis=-1) / np.maximum(count, 1)
-    score = (np.where(count > 20, mean, 0.0) * np.sqrt(np.maximum(count, 1))).sum((1, 2))
-    noise = float(np.median(score)) + 1e-9
-    spread = float(np.median(np.abs(score - noise))) + 0.05 * noise
-    preferred = score - 0.02 * noise * np.abs(np.degrees(angles)) / 10
-    top = int(preferred.argmax())
-    if score[top] - noise < 6 * spread:
-        return view, rig
-    return turned(view, rig, float(angles[top]))

@@ -18,6 +18,8 @@ from data.sheet import SHEET
 from vision.pose import (
     CENTRE_LINE,
     CIRCLES,
+    LEFT,
+    RIGHT,
     TEE_LINE,
     Marks,
     ice_points,
@@ -195,6 +197,13 @@ def _line_marks(image: Image, view: Array, rig: Array, reach: float) -> list[Mar
         marks = _ridges(line, seen, _profiles(image, seen, reach), group=8)
         if marks is not None:
             found.append(marks)
+    for line in (LEFT, RIGHT):
+        seen = _normals(line, np.arange(-4.0, SHEET.hog_line + 3, 0.1), view, rig, (w, h), reach)
+        if len(seen.along) < 15:
+            continue
+        offset, good = _steps(_profiles(image, seen, reach), reach)
+        if good.sum() > max(12, 0.3 * len(good)):
+            found.append(_marks(line, seen, offset, good, EDGE_SD))
     return found
 
 

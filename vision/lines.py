@@ -1,0 +1,77 @@
+"""The straight lines of the sheet: which way is up, and where the sheet's sides are."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from data.sheet import SHEET
+from vision.pose import SIDE_L, SIDE_R, View, project, turned
+
+Array = NDArray[np.float64]
+Image = NDArray[np.uint8]
+
+
+def upright(image: Image, view: View, rig: Array) -> tuple[View, Array]:
+    """Turn the ice's axes onto the centre and tee lines, if these can be seen."""
+    angles = np.radians(np.arange(-45.0, 45.0, 0.25))
+    along = np.concatenate([np.arange(0.2, 2.6, 0.03), -np.arange(0.2, 2.6, 0.03)])
+    ends = np.where(np.abs(along) < SHEET.half_width_min, along, np.nan)
+    # Shape (line, offset, place along it): each line itself and the ice on either side of it.
+    across = np.array([0.0, -0.04, 0.04])[:, None]
+    centre = np.stack([across + 0 * along, along + 0 * across], axis=-1)
+    tee = np.stack([ends + 0 * across, across + 0 * along], axis=-1)
+    cross = np.stack([centre, tee])
+    turn = np.array([[np.cos(angles), -np.sin(angles)], [np.sin(angles), np.cos(angles)]])
+    ice = np.einsum("ija,lokj->aloki", turn, cross)
+    size = (image.shape[1], image.shape[0])
+    place = project(ice.reshape(-1, 2), view.vector, rig, size).reshape(ice.shape)
+    with np.errstate(invalid="ignore"):
+        within = (place > 0) & (place < np.array(size) - 1)
+    inside = np.asarray(within.all((2, 4)))
+    colour = _colours(image, place.reshape(len(angles), -1, 2)).reshape(*ice.shape[:-1], 3)
+    ridge = colour[:, :, 0] - 0.5 * (colour[:, :, 1] + colour[:, :, 2])
+    ridge = np.where(inside[..., None], np.clip(ridge, -12, 12), 0.0)
+    # Both halves of a line on their own: a broom or a stone lies on one only.
+    half = ridge.reshape(len(angles), 2, 2, -1, 3)
+    count = inside.reshape(len(angles), 2, 2, -1).sum(-1)
+    mean = np.linalg.norm(half.sum(3), axis=-1) / np.maximum(count, 1)
+    score = (np.where(count > 20, mean, 0.0) * np.sqrt(np.maximum(count, 1))).sum((1, 2))
+    noise = float(np.median(score)) + 1e-9
+    spread = float(np.median(np.abs(score - noise))) + 0.05 * noise
+    preferred = score - 0.02 * noise * np.abs(np.degrees(angles)) / 10
+    top = int(preferred.argmax())
+    if score[top] - noise < 6 * spread:
+        return view, rig
+    return turned(view, rig, float(angles[top]))
+
+
+def sides(image: Image, view: View, rig: Array) -> Array:
+    """Look for the sheet's sides, long steps beside the house; the rig with their places.
+
+    A side that is not seen stays where the rig has it.
+    """
+    size = (image.shape[1], image.shape[0])
+    found = rig.copy()
+    along = np.arange(-4.0, 9.0, 0.05)
+    for which, sign in ((SIDE_L, -1.0), (SIDE_R, 1.0)):
+        across = sign * np.arange(SHEET.half_width_min - 0.1, SHEET.half_width_max + 0.1, 0.01)
+        ice = np.stack(np.broadcast_arrays(across, along[:, None]), axis=-1)
+        place = project(ice.reshape(-1, 2), view.vector, rig, size).reshape(ice.shape)
+        with np.errstate(invalid="ignore"):
+            inside = ((place > 0) & (place < np.array(size) - 1)).all((1, 2))
+        if inside.sum() < 15:
+            continue
+        colour = _colours(image, place[inside])
+        step = np.linalg.norm(np.median(colour[:, 4:] - colour[:, :-4], axis=0), axis=-1)
+        top = int(step.argmax())
+        if step[top] > 25 and 1 < top < len(step) - 2:
+            found[which] = across[top + 2]
+    return found
+
+
+def _colours(image: Image, place: Array) -> Array:
+    """Colours at places (n, m, 2), shape (n, m, 3); black outside the picture."""
+    at = np.nan_to_num(place, nan=-9.0).astype(np.float32)
+    return np.asarray(cv2.remap(image, at[..., 0], at[..., 1], cv2.INTER_LINEAR), np.float64)
