@@ -31,6 +31,11 @@ class Impact(Protocol):
     """What a hit does to two stones."""
 
     @property
+    def name(self) -> str:
+        """Name of the model, as in files and on the command line."""
+        ...
+
+    @property
     def needs_spin_after(self) -> bool:
         """Whether `resolve` must be told the spins after the hit."""
         ...
@@ -81,6 +86,7 @@ class PointMass:
     """
 
     restitution: float = 1.0
+    name = "point-mass"
     needs_spin_after = False
 
     def resolve(
@@ -119,6 +125,7 @@ class RigidBody:
     """
 
     restitution: float = 1.0
+    name = "rigid-body"
     needs_spin_after = True
 
     def resolve(
@@ -171,6 +178,7 @@ class Frictional:
     restitution: float = 1.0
     stone_friction: float = 0.2
     inertia: float = STONE.inertia
+    name = "frictional"
     needs_spin_after = False
 
     def resolve(
