@@ -1,0 +1,403 @@
+"""Restitution and friction from tracks, each with a standard error.
+
+Everything comes from fits to places on either side of a hit and never across it; nothing is
+differentiated twice. See `physics.fit` for the model.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from data.results import Collision, Estimate, Friction, Glide, StoneState
+from data.sheet import GRAVITY, STONE
+from physics.contacts import Contact, cut_all
+from physics.fit import Deceleration, Encounter, Meeting, ShotFit, fit_shot
+from physics.segments import Piece, Trace, traces
+
+Floats = NDArray[np.float64]
+
+FREE = Deceleration(0.0, 3.0, 3.0)
+"""What is assumed of decelerations when they are to be measured: nothing."""
+
+LEAST_SPREAD = 0.015
+"""Least spread of decelerations from glide to glide, m/s²: no ice law is exactly constant."""
+
+LONGEST_SPIN = 1.0
+"""Time beside a hit over which a spin is taken as constant, s."""
+
+WORST_RESTITUTION, WORST_FRICTION = 0.3, 0.02
+"""Standard errors beyond which a hit or a glide is said to tell nothing."""
+
+
+@dataclass(frozen=True)
+class Estimates:
+    """What a table of sightings says about the physics of the shot.
+
+    Attributes
+    ----------
+    restitution : Estimate
+        Pooled over all hits.
+    friction : Friction
+        Pooled over all glides.
+    collisions : tuple of Collision
+        In order of time.
+    glides : tuple of Glide
+        In order of stone and time.
+    warnings : tuple of str
+        What could not be told and why; what does not agree.
+    """
+
+    restitution: Estimate = field(default_factory=Estimate)
+    friction: Friction = field(default_factory=Friction)
+    collisions: tuple[Collision, ...] = ()
+    glides: tuple[Glide, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+
+def estimate(
+    sightings: pd.DataFrame,
+    contacts: Sequence[Contact],
+    *,
+    radius: float,
+    masses: Mapping[str, float] | None = None,
+    friction_expected: bool = True,
+    inertia: float = STONE.inertia,
+) -> Estimates:
+    """Estimate restitution, friction and the state of the stones at each hit.
+
+    Parameters
+    ----------
+    sightings : DataFrame
+        `data.tracks.SIGHTING_COLUMNS`.
+    contacts : sequence of Contact
+        The hits, as `physics.contacts.find_contacts` gives them.
+    radius : float
+        Of the discs, m.
+    masses : mapping, optional
+        Stone to mass in any unit; equal where absent.
+    friction_expected : bool
+        Whether to warn when no glide gives a friction.
+    inertia : float
+        k in I = k m R²; decides whether a contact can have slid throughout.
+    """
+    known = traces(sightings)
+    meetings = [
+        Meeting(c.t, c.stones, max(_gap(known[stone], c.t) for stone in c.stones))
+        for c in contacts
+    ]
+    pieces, _ = cut_all(known, meetings, radius)
+    pieces = [piece for piece in pieces if not (piece.rest and _alone(piece))]
+    warnings: list[str] = []
+    if not pieces:
+        return Estimates(warnings=("no stone moves: neither restitution nor friction",))
+    loose = fit_shot(known, pieces, meetings, radius, masses=masses, deceleration=FREE)
+    glides, found = _glides(loose, known, radius)
+    friction, spread = _pooled_friction(found)
+    prior = Deceleration(
+        (friction.value or 0.0) * GRAVITY,
+        max(spread, LEAST_SPREAD) if friction.value is not None else 0.3,
+        max(spread, LEAST_SPREAD) if friction.value is not None else 0.3,
+    )
+    if friction.value is None and friction_expected:
+        warnings.append("friction: no stone glides freely for long enough to tell it")
+    if not meetings:
+        warnings.append("restitution: no hit seen")
+        return Estimates(Estimate(), friction, (), glides, tuple(warnings))
+    joint = fit_shot(known, pieces, meetings, radius, masses=masses, deceleration=prior)
+    apart = fit_shot(
+        known, pieces, meetings, radius, masses=masses, deceleration=prior, momentum=False
+    )
+    values, cov = joint.propagate(range(len(meetings)), _restitutions)
+    notes = [_why_not(joint, k, known, values[k], cov[k, k]) for k in range(len(meetings))]
+    collisions = tuple(
+        _collision(joint, apart, k, known, masses or {}, radius, inertia, values, cov, notes[k])
+        for k in range(len(meetings))
+    )
+    for hit in collisions:
+        name = f"hit of {hit.stones[0]} and {hit.stones[1]} at {hit.t:.2f} s"
+        if hit.note:
+            warnings.append(f"{name}: {hit.note}")
+        if (
+            hit.momentum_residual is not None
+            and hit.stderr_momentum is not None
+            and hit.momentum_residual > max(0.05, 3 * hit.stderr_momentum)
+        ):
+            warnings.append(
+                f"{name}: momentum changes by {100 * hit.momentum_residual:.0f} %"
+                f" ± {100 * hit.stderr_momentum:.0f} %: scale, masses or tracks are off"
+            )
+    warnings += _distances(joint, radius)
+    usable = [k for k, note in enumerate(notes) if note is None]
+    restitution = _pooled(values[usable], cov[np.ix_(usable, usable)])
+    return Estimates(restitution, friction, collisions, glides, tuple(warnings))
+
+
+def _alone(piece: Piece) -> bool:
+    return piece.opens is None and piece.closes is None
+
+
+def _gap(trace: Trace, time: float) -> float:
+    """Time between the sightings either side of `time`, at least the usual step."""
+    if len(trace.t) < 2:
+        return trace.step
+    k = int(np.clip(np.searchsorted(trace.t, time), 1, len(trace.t) - 1))
+    return max(trace.step, float(trace.t[k] - trace.t[k - 1]))
+
+
+# Friction of the ice
+
+
+@dataclass(frozen=True)
+class _Slowing:
+    """Decelerations of one glide along and across its path, m/s², and their errors."""
+
+    along: float
+    across: float
+    sd: float
+
+
+def _glides(
+    fit: ShotFit, known: Mapping[str, Trace], radius: float
+) -> tuple[tuple[Glide, ...], list[_Slowing]]:
+    """Friction of each piece that is long enough to tell it."""
+    glides, found = [], []
+    for i, piece in enumerate(fit.pieces):
+        if piece.rest or len(piece.samples) < 5:
+            continue
+        t = known[piece.stone].t[piece.samples]
+        x = fit.theta[6 * i : 6 * i + 6].reshape(2, 3)
+        cov = fit.cov[6 * i : 6 * i + 6, 6 * i : 6 * i + 6]
+        end = _stop(x, fit.origins[i], float(t[-1]))
+        speed = x[:, 1] + x[:, 2] * 0.5 * (float(t[0]) + end - 2 * fit.origins[i])
+        size = float(np.hypot(*speed))
+        if size < radius or size * (end - float(t[0])) < radius:
+            continue
+        along = speed / size
+        slope = np.array([0.0, 0.0, -along[0], 0.0, 0.0, -along[1]])
+        value = float(slope @ fit.theta[6 * i : 6 * i + 6])
+        sd = float(np.sqrt(slope @ cov @ slope))
+        if sd / GRAVITY > WORST_FRICTION:
+            continue
+        found.append(_Slowing(value, float(along[0] * x[1, 2] - along[1] * x[0, 2]), sd))
+        glides.append(Glide(piece.stone, float(t[0]), end, value / GRAVITY, sd / GRAVITY))
+    return tuple(glides), found
+
+
+def _stop(x: Floats, origin: float, last: float) -> float:
+    """Time at which a piece's stone stops, or `last` where it does not."""
+    braking = -float(x[:, 1] @ x[:, 2])
+    if braking < 1e-9:
+        return last
+    return min(last, origin + float(x[:, 1] @ x[:, 1]) / braking)
+
+
+def _pooled_friction(found: Sequence[_Slowing]) -> tuple[Friction, float]:
+    """Mean friction over the glides, and the spread of decelerations between them, m/s².
+
+    Random effects after DerSimonian and Laird, 1986, Control. Clin. Trials 7, 177.
+    """
+    if not found:
+        return Friction(), 0.0
+    values = np.array([slowing.along for slowing in found])
+    variance = np.array([slowing.sd for slowing in found]) ** 2
+    weights = 1 / variance
+    mean = float(weights @ values / weights.sum())
+    between = 0.0
+    if len(values) > 1:
+        excess = float(weights @ (values - mean) ** 2) - (len(values) - 1)
+        between = max(0.0, excess / float(weights.sum() - (weights**2).sum() / weights.sum()))
+    weights = 1 / (variance + between)
+    mean = float(weights @ values / weights.sum())
+    stderr = float(np.sqrt(1 / weights.sum()))
+    return Friction(mean / GRAVITY, stderr / GRAVITY), float(np.sqrt(between))
+
+
+# Hits
+
+
+def _restitutions(states: Sequence[Encounter]) -> Floats:
+    out = []
+    for state in states:
+        closing = (state.before[0] - state.before[1]) @ state.normal
+        leaving = (state.after[1] - state.after[0]) @ state.normal
+        out.append(leaving / closing)
+    return np.array(out)
+
+
+def _why_not(
+    fit: ShotFit, k: int, known: Mapping[str, Trace], value: float, variance: float
+) -> str | None:
+    """Why a hit cannot tell its restitution; None where it can."""
+    stderr = float(np.sqrt(variance))
+    if np.isfinite(value) and stderr < WORST_RESTITUTION:
+        return None
+    for stone in fit.meetings[k].stones:
+        for rank, when in zip(fit.sides[k, stone], ("before", "after"), strict=True):
+            seen = len(fit.pieces[rank].samples)
+            if seen < 4:
+                return f"restitution unknown: {stone} is seen {seen} times {when} it"
+    return f"restitution unknown: its standard error would be {stderr:.2g}"
+
+
+def _collision(
+    joint: ShotFit,
+    apart: ShotFit,
+    k: int,
+    known: Mapping[str, Trace],
+    masses: Mapping[str, float],
+    radius: float,
+    inertia: float,
+    values: Floats,
+    cov: Floats,
+    note: str | None,
+) -> Collision:
+    first, second = joint.meetings[k].stones
+    state = joint.encounter(k)
+    mass = np.array([masses.get(first, 1.0), masses.get(second, 1.0)])
+    spins = [
+        [_spin(joint, rank, known, state.t) for rank in joint.sides[k, stone]]
+        for stone in (first, second)
+    ]
+    before, after = (
+        {
+            stone: StoneState(
+                *(float(value) for value in (*state.places[i], *speeds[i])),
+                omega=spins[i][when][0],
+            )
+            for i, stone in enumerate((first, second))
+        }
+        for when, speeds in ((0, state.before), (1, state.after))
+    )
+    energy = [float(mass @ np.sum(speeds**2, axis=1)) for speeds in (state.before, state.after)]
+    residual, stderr_residual = _momentum(apart, k, mass)
+    rubbing = _stone_friction(joint, k, spins, radius, inertia) if note is None else None
+    at = 6 * len(joint.pieces) + k
+    nx, ny = (float(value) for value in state.normal)
+    return Collision(
+        t=state.t,
+        stderr_t=float(np.sqrt(joint.cov[at, at])),
+        stones=(first, second),
+        normal=(nx, ny),
+        restitution=float(values[k]) if note is None else None,
+        stderr=float(np.sqrt(cov[k, k])) if note is None else None,
+        before=before,
+        after=after,
+        momentum_residual=residual,
+        stderr_momentum=stderr_residual,
+        energy_lost=1 - energy[1] / energy[0] if energy[0] > 0 else None,
+        stone_friction=None if rubbing is None else rubbing[0],
+        stderr_stone_friction=None if rubbing is None else rubbing[1],
+        note=note,
+    )
+
+
+def _momentum(fit: ShotFit, k: int, mass: Floats) -> tuple[float | None, float | None]:
+    """Relative change of momentum at hit k where it is not held, and its standard error."""
+
+    def change(states: Sequence[Encounter]) -> Floats:
+        out: Floats = mass @ (states[0].after - states[0].before)
+        return out
+
+    value, cov = fit.propagate([k], change)
+    total = float(np.hypot(*(mass @ fit.encounter(k).before)))
+    if total < 1e-6:
+        return None, None
+    return float(np.hypot(*value)) / total, float(np.sqrt(np.trace(cov))) / total
+
+
+def _spin(
+    fit: ShotFit, rank: int, known: Mapping[str, Trace], time: float
+) -> tuple[float | None, float]:
+    """Spin of a stone on one side of a hit, rad/s, and its standard error."""
+    piece = fit.pieces[rank]
+    if piece.rest:
+        return 0.0, 0.0
+    trace = known[piece.stone]
+    t, theta, sd = (a[piece.samples] for a in (trace.t, trace.theta, trace.sd_theta))
+    x = fit.theta[6 * rank : 6 * rank + 6].reshape(2, 3)
+    stop = _stop(x, fit.origins[rank], np.inf)
+    ok = np.isfinite(theta) & (np.abs(t - time) < LONGEST_SPIN) & (t <= stop)
+    if ok.sum() < 3:
+        return None, np.inf
+    weights = sd[ok] ** -2.0
+    tau = t[ok] - float(weights @ t[ok]) / weights.sum()
+    slope = float(weights @ (tau * theta[ok])) / float(weights @ tau**2)
+    return slope, float((weights @ tau**2) ** -0.5)
+
+
+def _stone_friction(
+    fit: ShotFit,
+    k: int,
+    spins: Sequence[Sequence[tuple[float | None, float]]],
+    radius: float,
+    inertia: float,
+) -> tuple[float, float] | None:
+    """Friction between the stones where they slid throughout the contact, else None.
+
+    The tangential impulse that stops the slip is u_t / ((1/m1 + 1/m2)(1 + 1/k)); a smaller
+    one is Coulomb's limit, μ_s times the normal impulse.
+    """
+    (w1, sd1), (w2, sd2) = spins[0][0], spins[1][0]
+    if w1 is None or w2 is None:
+        return None
+    turn = radius * (w1 + w2)
+
+    def parts(states: Sequence[Encounter]) -> Floats:
+        state = states[0]
+        normal = state.normal
+        tangent = np.array([-normal[1], normal[0]])
+        jump = (state.after[1] - state.before[1]) - (state.after[0] - state.before[0])
+        slip = float((state.before[0] - state.before[1]) @ tangent) + turn
+        push = float(jump @ normal)
+        closing = float((state.before[0] - state.before[1]) @ normal)
+        rub = float(jump @ tangent) / push
+        # Both impulses as changes of relative velocity, in which the masses drop out.
+        stick = slip / ((1 + 1 / inertia) * push)
+        return np.array([rub, stick, closing])
+
+    value, cov = fit.propagate([k], parts)
+    rub, stick = value[0] * np.sign(value[1]), abs(value[1])
+    push = value[2] if value[2] > 0 else np.inf
+    spin_sd = radius * float(np.hypot(sd1, sd2)) / ((1 + 1 / inertia) * push)
+    sd = float(np.sqrt(cov[0, 0]))
+    room = stick - rub
+    sd_room = float(np.sqrt(cov[0, 0] + cov[1, 1] + spin_sd**2))
+    if room < 2 * sd_room or rub < -2 * sd:
+        return None
+    return max(float(rub), 0.0), sd
+
+
+def _pooled(values: Floats, cov: Floats) -> Estimate:
+    """Weighted mean of correlated values; its error grows with their scatter (Birge ratio)."""
+    if not len(values):
+        return Estimate()
+    weights = np.linalg.solve(cov, np.ones(len(values)))
+    mean = float(weights @ values / weights.sum())
+    variance = 1 / float(weights.sum())
+    if len(values) > 1:
+        off = values - mean
+        variance *= max(1.0, float(off @ np.linalg.solve(cov, off)) / (len(values) - 1))
+    return Estimate(mean, float(np.sqrt(variance)))
+
+
+def _distances(fit: ShotFit, radius: float) -> list[str]:
+    """Say so where hits happen at another distance than two radii."""
+
+    def ratios(states: Sequence[Encounter]) -> Floats:
+        return np.array([np.hypot(*(s.places[1] - s.places[0])) / (2 * radius) for s in states])
+
+    values, cov = fit.propagate(range(len(fit.meetings)), ratios)
+    mean = _pooled(values, cov)
+    if mean.value is None or mean.stderr is None:
+        return []
+    if abs(mean.value - 1) < max(0.02, 2 * mean.stderr):
+        return []
+    return [
+        f"discs meet at {mean.value * 2 * radius:.4g} m where two radii are {2 * radius:.4g} m:"
+        " the scale or the radius is off"
+    ]

@@ -1,0 +1,460 @@
+"""One least-squares fit of a whole shot, hit by hit joined.
+
+Between hits each stone moves with an acceleration that is constant and mostly against its
+motion, until it stops. At a hit the paths on either side meet, the centres are two radii
+apart, and the momentum of the two stones is the same before and after. All of this is linear
+in the unknowns but for the times of the hits, so a few Gauss-Newton steps find it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physics.segments import Piece, Trace
+
+Floats = NDArray[np.float64]
+
+HUBER = 2.5
+"""Normalised residual beyond which a sighting loses weight."""
+
+DISTANCE_SD = 0.03
+"""How well two radii are known as the distance at contact (scale, shape), relative."""
+
+MOMENTUM_SD = 0.01
+"""How well momentum is known to be kept (local scale, masses), relative to the speeds."""
+
+STILL_SD = 1e-5
+"""How still a stone at rest lies, m/s and m/s²."""
+
+
+@dataclass(frozen=True)
+class Deceleration:
+    """Prior of the acceleration on one piece, m/s².
+
+    ``mean`` against the motion with standard deviation ``along``; ``across`` it zero mean.
+    """
+
+    mean: float = 0.0
+    along: float = 1.0
+    across: float = 1.0
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """A hit, or what may be one, as the fit needs it: time and its looseness, s; stones."""
+
+    t: float
+    stones: tuple[str, str]
+    looseness: float
+
+
+@dataclass(frozen=True)
+class Encounter:
+    """Places, and velocities before and after, of the two stones of a hit at its time."""
+
+    t: float
+    places: Floats
+    before: Floats
+    after: Floats
+
+    @property
+    def normal(self) -> Floats:
+        """Unit vector from the first stone to the second."""
+        apart = self.places[1] - self.places[0]
+        out: Floats = apart / np.hypot(*apart)
+        return out
+
+
+@dataclass(frozen=True)
+class ShotFit:
+    """Result of `fit_shot`.
+
+    Attributes
+    ----------
+    pieces : tuple of Piece
+        With the samples as assigned at the end.
+    meetings : tuple of Meeting
+        As given.
+    theta : (6 P + M,) array
+        Per piece x, vx, ax, y, vy, ay at `origins`; then the times of the meetings.
+    cov : (6 P + M, 6 P + M) array
+        Covariance, enlarged for residuals that are too big or alike from frame to frame.
+    origins : (P,) array
+        Time at which a piece's state is given, s.
+    inflation : float
+        Factor that `cov` was enlarged by.
+    sides : mapping
+        Rank of meeting and stone to the ranks of the pieces before and after.
+    """
+
+    pieces: tuple[Piece, ...]
+    meetings: tuple[Meeting, ...]
+    theta: Floats
+    cov: Floats
+    origins: Floats
+    inflation: float
+    sides: Mapping[tuple[int, str], tuple[int, int]]
+
+    def motion(self, rank: int, t: float, theta: Floats | None = None) -> tuple[Floats, Floats]:
+        """Place and velocity on piece `rank` at time t, without regard to a stop."""
+        values = self.theta if theta is None else theta
+        x = values[6 * rank : 6 * rank + 6].reshape(2, 3)
+        tau = t - self.origins[rank]
+        place: Floats = x @ np.array([1.0, tau, 0.5 * tau * tau])
+        speed: Floats = x @ np.array([0.0, 1.0, tau])
+        return place, speed
+
+    def time(self, k: int, theta: Floats | None = None) -> float:
+        """Time of meeting k, s."""
+        values = self.theta if theta is None else theta
+        return float(values[6 * len(self.pieces) + k])
+
+    def encounter(self, k: int, theta: Floats | None = None) -> Encounter:
+        """State of the two stones at meeting k."""
+        t = self.time(k, theta)
+        places, before, after = [], [], []
+        for stone in self.meetings[k].stones:
+            first, second = self.sides[k, stone]
+            place, speed = self.motion(first, t, theta)
+            places.append(place)
+            before.append(speed)
+            after.append(self.motion(second, t, theta)[1])
+        return Encounter(t, np.array(places), np.array(before), np.array(after))
+
+    def propagate(
+        self, hits: Sequence[int], function: Callable[[Sequence[Encounter]], Floats]
+    ) -> tuple[Floats, Floats]:
+        """Value and covariance of a function of the states at some hits, to first order.
+
+        Parameters
+        ----------
+        hits : sequence of int
+            Ranks of the meetings whose encounters `function` takes.
+        function : callable
+            From the encounters to m numbers.
+
+        Returns
+        -------
+        value : (m,) array
+        cov : (m, m) array
+        """
+        ranks = sorted({r for k in hits for s in self.meetings[k].stones for r in self.sides[k, s]})
+        index = [6 * r + i for r in ranks for i in range(6)]
+        index += [6 * len(self.pieces) + k for k in hits]
+        value = np.atleast_1d(function([self.encounter(k) for k in hits]))
+        slopes = np.zeros((len(value), len(index)))
+        for column, i in enumerate(index):
+            step = 0.01 * float(np.sqrt(max(self.cov[i, i], 1e-24)))
+            ends = []
+            for sign in (1.0, -1.0):
+                moved = self.theta.copy()
+                moved[i] += sign * step
+                ends.append(np.atleast_1d(function([self.encounter(k, moved) for k in hits])))
+            slopes[:, column] = (ends[0] - ends[1]) / (2 * step)
+        return value, slopes @ self.cov[np.ix_(index, index)] @ slopes.T
+
+
+def fit_shot(
+    paths: Mapping[str, Trace],
+    pieces: Sequence[Piece],
+    meetings: Sequence[Meeting],
+    radius: float,
+    *,
+    masses: Mapping[str, float] | None = None,
+    deceleration: Deceleration | None = None,
+    momentum: bool = True,
+    iterations: int = 15,
+) -> ShotFit:
+    """Fit all pieces and the times of all meetings at once.
+
+    Parameters
+    ----------
+    paths : mapping
+        Stone to its sightings.
+    pieces : sequence of Piece
+        All pieces to fit; each meeting must open and close one of either stone.
+    meetings : sequence of Meeting
+        The hits, with starting values of their times.
+    radius : float
+        Of the discs, m.
+    masses : mapping, optional
+        Stone to mass in any unit; equal where absent.
+    deceleration : Deceleration, optional
+        Prior of the acceleration on each piece that moves.
+    momentum : bool
+        Whether each pair's momentum is held (otherwise only their paths are joined).
+    iterations : int
+        Most Gauss-Newton steps.
+    """
+    return _Solver(
+        paths, pieces, meetings, radius, masses or {}, deceleration or Deceleration(), momentum
+    ).solve(iterations)
+
+
+class _Solver:
+    """Working state of one fit."""
+
+    def __init__(
+        self,
+        paths: Mapping[str, Trace],
+        pieces: Sequence[Piece],
+        meetings: Sequence[Meeting],
+        radius: float,
+        masses: Mapping[str, float],
+        deceleration: Deceleration,
+        momentum: bool,
+    ) -> None:
+        self.paths, self.pieces, self.meetings = paths, list(pieces), tuple(meetings)
+        self.radius, self.masses = radius, masses
+        self.prior, self.momentum = deceleration, momentum
+        self.size = 6 * len(self.pieces) + len(self.meetings)
+        opened = {(p.opens, p.stone): i for i, p in enumerate(pieces) if p.opens is not None}
+        self.sides = {
+            (p.closes, p.stone): (i, opened[p.closes, p.stone])
+            for i, p in enumerate(pieces)
+            if p.closes is not None
+        }
+        self.origins = np.array([self._origin(piece) for piece in pieces])
+        self.theta = np.zeros(self.size)
+        for k, meeting in enumerate(self.meetings):
+            self.theta[6 * len(self.pieces) + k] = meeting.t
+        for i, piece in enumerate(self.pieces):
+            self._guess(i, piece)
+
+    def _origin(self, piece: Piece) -> float:
+        if piece.opens is not None:
+            return self.meetings[piece.opens].t
+        if len(piece.samples):
+            return float(self.paths[piece.stone].t[piece.samples[0]])
+        return piece.start if np.isfinite(piece.start) else piece.end
+
+    def _guess(self, i: int, piece: Piece) -> None:
+        """Start from a straight line, or for the shortest pieces from the neighbours."""
+        path = self.paths[piece.stone]
+        samples = piece.samples
+        if len(samples) < 3:
+            low = max(int(np.searchsorted(path.t, piece.start)) - 1, 0)
+            high = min(int(np.searchsorted(path.t, piece.end)) + 1, len(path.t))
+            samples = np.arange(low, high)
+        tau = path.t[samples] - self.origins[i]
+        degree = 0 if piece.rest or len(samples) < 2 else 1
+        line = np.polynomial.polynomial.polyfit(tau, path.xy[samples], degree)
+        self.theta[[6 * i, 6 * i + 3]] = line[0]
+        if degree:
+            self.theta[[6 * i + 1, 6 * i + 4]] = line[1]
+
+    def solve(self, iterations: int) -> ShotFit:
+        first = 6 * len(self.pieces)
+        settled = False
+        for _ in range(iterations):
+            self._assign()
+            data, right = self._data()
+            rules, rules_right = self._rules()
+            cov = _inverse(data + rules)
+            new = cov @ (right + rules_right)
+            step = new - self.theta
+            for k, meeting in enumerate(self.meetings):
+                low = meeting.t - 3 * meeting.looseness - self.theta[first + k]
+                high = meeting.t + 3 * meeting.looseness - self.theta[first + k]
+                step[first + k] = np.clip(step[first + k], max(low, -meeting.looseness), min(high, meeting.looseness))
+            scale = np.sqrt(np.maximum(np.diag(cov), 1e-24))
+            settled = bool(np.all(np.abs(step) < 0.02 * scale))
+            self.theta = self.theta + step
+            if settled:
+                break
+        inflation = self._inflation(float(np.trace(cov @ data)))
+        return ShotFit(
+            tuple(self.pieces),
+            self.meetings,
+            self.theta,
+            cov * inflation,
+            self.origins,
+            inflation,
+            self.sides,
+        )
+
+    def _assign(self) -> None:
+        """Give each sighting beside a hit to the side of it that it lies on."""
+        for (k, stone), (i, j) in self.sides.items():
+            t = self.theta[6 * len(self.pieces) + k]
+            both = np.concatenate([self.pieces[i].samples, self.pieces[j].samples])
+            early = self.paths[stone].t[both] < t
+            for rank, samples in ((i, both[early]), (j, both[~early])):
+                self.pieces[rank] = _with_samples(self.pieces[rank], samples)
+
+    def _basis(self, i: int) -> Floats:
+        """Rows 1, τ, τ²/2 of a piece's sightings; τ stands still once the stone does."""
+        piece = self.pieces[i]
+        tau = self.paths[piece.stone].t[piece.samples] - self.origins[i]
+        state = self.theta[6 * i : 6 * i + 6].reshape(2, 3)
+        braking = -float(state[:, 1] @ state[:, 2])
+        if piece.rest or braking > 1e-9:
+            stop = float(state[:, 1] @ state[:, 1]) / braking if braking > 1e-9 else 0.0
+            # The velocity vanishes there, so that the stop's own shift is of second order.
+            tau = np.minimum(tau, stop) if not piece.rest else np.zeros_like(tau)
+        return np.stack([np.ones_like(tau), tau, 0.5 * tau * tau], axis=1)
+
+    def _residuals(self, i: int, basis: Floats) -> Floats:
+        piece = self.pieces[i]
+        path = self.paths[piece.stone]
+        fitted = basis @ self.theta[6 * i : 6 * i + 6].reshape(2, 3).T
+        out: Floats = (path.xy[piece.samples] - fitted) / path.sd[piece.samples]
+        return out
+
+    def _data(self) -> tuple[Floats, Floats]:
+        """Normal equations of the sightings, outliers weighted down."""
+        normal, right = np.zeros((self.size, self.size)), np.zeros(self.size)
+        for i, piece in enumerate(self.pieces):
+            if not len(piece.samples):
+                continue
+            path = self.paths[piece.stone]
+            basis = self._basis(i)
+            weights = _huber(self._residuals(i, basis)) / path.sd[piece.samples] ** 2
+            for axis in range(2):
+                at = slice(6 * i + 3 * axis, 6 * i + 3 * axis + 3)
+                weighted = basis * weights[:, axis : axis + 1]
+                normal[at, at] += weighted.T @ basis
+                right[at] += weighted.T @ path.xy[piece.samples, axis]
+        return normal, right
+
+    def _rules(self) -> tuple[Floats, Floats]:
+        """Normal equations of what is known besides the sightings."""
+        normal, right = np.zeros((self.size, self.size)), np.zeros(self.size)
+        for i, piece in enumerate(self.pieces):
+            place, speed, change = ([6 * i + k, 6 * i + 3 + k] for k in range(3))
+            normal[place, place] += 1e-8
+            if piece.rest:
+                normal[speed, speed] += STILL_SD**-2
+                normal[change, change] += STILL_SD**-2
+                continue
+            normal[speed, speed] += 1e-3
+            turn, mean = self._slowing(self.theta[speed])
+            normal[np.ix_(change, change)] += turn
+            right[change] += turn @ mean
+        for k in range(len(self.meetings)):
+            rows, values, sd = self._meeting(k)
+            weighted = rows / sd[:, None] ** 2
+            normal += weighted.T @ rows
+            right += weighted.T @ (rows @ self.theta - values)
+        return normal, right
+
+    def _slowing(self, speed: Floats) -> tuple[Floats, Floats]:
+        """Precision and mean of a piece's acceleration, given its direction of motion."""
+        size = float(np.hypot(*speed))
+        if size < 0.02:
+            return np.eye(2) / (self.prior.along**2 + self.prior.mean**2), np.zeros(2)
+        along = speed / size
+        across = np.array([-along[1], along[0]])
+        precision = (
+            np.outer(along, along) / self.prior.along**2
+            + np.outer(across, across) / self.prior.across**2
+        )
+        return precision, -self.prior.mean * along
+
+    def _meeting(self, k: int) -> tuple[Floats, Floats, Floats]:
+        """Derivatives, values and standard deviations of the rules at one meeting."""
+        meeting = self.meetings[k]
+        at = 6 * len(self.pieces) + k
+        t = self.theta[at]
+        rows: list[Floats] = []
+        values: list[float] = []
+        sd: list[float] = []
+
+        def rule(value: float, width: float) -> Floats:
+            row = np.zeros(self.size)
+            rows.append(row)
+            values.append(value)
+            sd.append(width)
+            return row
+
+        def state(i: int) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+            tau = t - self.origins[i]
+            x = self.theta[6 * i : 6 * i + 6].reshape(2, 3)
+            one, slope = np.array([1.0, tau, 0.5 * tau * tau]), np.array([0.0, 1.0, tau])
+            return x @ one, x @ slope, x[:, 2], one, slope
+
+        rule(t - meeting.t, 2 * meeting.looseness)[at] = 1.0
+        ranks = [self.sides[k, stone] for stone in meeting.stones]
+        states = [(state(i), state(j)) for i, j in ranks]
+        for (i, j), (old, new) in zip(ranks, states, strict=True):
+            for axis in range(2):
+                row = rule(new[0][axis] - old[0][axis], 1e-3 * self.radius)
+                row[6 * j + 3 * axis : 6 * j + 3 * axis + 3] = new[3]
+                row[6 * i + 3 * axis : 6 * i + 3 * axis + 3] = -old[3]
+                row[at] = new[1][axis] - old[1][axis]
+        apart = states[1][0][0] - states[0][0][0]
+        distance = max(float(np.hypot(*apart)), 1e-9)
+        normal = apart / distance
+        row = rule(distance - 2 * self.radius, DISTANCE_SD * 2 * self.radius)
+        for sign, (i, _), (old, _) in zip((-1.0, 1.0), ranks, states, strict=True):
+            for axis in range(2):
+                row[6 * i + 3 * axis : 6 * i + 3 * axis + 3] = sign * normal[axis] * old[3]
+            row[at] += sign * float(normal @ old[1])
+        if self.momentum:
+            masses = np.array([self.masses.get(stone, 1.0) for stone in meeting.stones])
+            masses = masses / masses.mean()
+            speed = sum(float(np.hypot(*old[1])) for old, _ in states)
+            for axis in range(2):
+                change = [float(new[1][axis] - old[1][axis]) for old, new in states]
+                row = rule(float(masses @ change), MOMENTUM_SD * speed + 1e-4)
+                for mass, (i, j), (old, new) in zip(masses, ranks, states, strict=True):
+                    row[6 * j + 3 * axis : 6 * j + 3 * axis + 3] += mass * new[4]
+                    row[6 * i + 3 * axis : 6 * i + 3 * axis + 3] -= mass * old[4]
+                    row[at] += mass * float(new[2][axis] - old[2][axis])
+        return np.array(rows), np.array(values), np.array(sd)
+
+    def _inflation(self, parameters: float) -> float:
+        """Factor for residuals larger than stated, and alike from frame to frame."""
+        square = pair = 0.0
+        count = lagged = 0
+        for i, piece in enumerate(self.pieces):
+            if not len(piece.samples):
+                continue
+            r = np.clip(self._residuals(i, self._basis(i)), -HUBER, HUBER)
+            square += float(np.sum(r * r))
+            count += r.size
+            if len(r) >= 8:
+                pair += float(np.sum(r[1:] * r[:-1]))
+                lagged += r.size
+        free = count - parameters
+        if free < 1:
+            return 1.0
+        size = max(1.0, square / free)
+        if not lagged:
+            return size
+        # A fit of p parameters makes white residuals look anti-correlated by about p / n.
+        alike = float(np.clip(pair / max(square, 1e-12) + parameters / count, 0.0, 0.95))
+        return size * (1 + alike) / (1 - alike)
+
+
+def _inverse(normal: Floats) -> Floats:
+    """Inverse of a positive matrix whose rows differ much in size."""
+    size = 1.0 / np.sqrt(np.diag(normal))
+    inverse = np.linalg.inv(normal * size[:, None] * size[None, :])
+    out: Floats = 0.5 * (inverse + inverse.T) * size[:, None] * size[None, :]
+    return out
+
+
+def _with_samples(piece: Piece, samples: NDArray[np.int64]) -> Piece:
+    if len(samples) == len(piece.samples):
+        return piece
+    return Piece(
+        piece.stone,
+        piece.start,
+        piece.end,
+        samples,
+        piece.rest,
+        piece.stops,
+        piece.opens,
+        piece.closes,
+    )
+
+
+def _huber(residuals: Floats) -> Floats:
+    """Weights of Huber's estimator."""
+    out: Floats = HUBER / np.maximum(np.abs(residuals), HUBER)
+    return out
