@@ -16,19 +16,21 @@ FLOW_SD = 1.0
 """Standard deviation of a carried point, px."""
 
 
-def thumbnail(image: Image) -> Image:
+def _thumbnail(image: Image) -> Image:
     """Small grey picture that `similarity` works on."""
     factor = FLOW_WIDTH / image.shape[1]
     small = cv2.resize(image, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA)
     return np.asarray(cv2.cvtColor(small, cv2.COLOR_BGR2GRAY), np.uint8)
 
 
-def similarity(before: Image, after: Image, width: int) -> Array | None:
-    """How the picture moved: shape (2, 3), in pixels of the full picture; None if it did not.
+def similarity(before: Image, after: Image) -> Array | None:
+    """How the picture moved: shape (2, 3), px; None where the two do not show the same scene.
 
     Corners are followed from one thumbnail to the next and back; most of the picture must move
-    as one, else the two frames do not show the same scene.
+    as one.
     """
+    width = before.shape[1]
+    before, after = _thumbnail(before), _thumbnail(after)
     corners = cv2.goodFeaturesToTrack(before, 200, 0.01, 8)
     if corners is None or len(corners) < 12:
         return None

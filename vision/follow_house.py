@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 from data.errors import SceneError
 from data.progress import Progress, no_progress
 from data.sheet import HOUSE
+from vision.adjust import Solution, solve
 from vision.camera import Camera
 from vision.clip import Clip, Frame, Image
-from vision.flow import carried, similarity, thumbnail
+from vision.flow import carried, similarity
 from vision.house import find_house, judge
 from vision.marks import measure
 from vision.pose import (
@@ -30,11 +31,9 @@ from vision.pose import (
     R8,
     Marks,
     Prior,
-    Solution,
     View,
     camera,
     joined,
-    solve,
 )
 
 Array = NDArray[np.float64]
@@ -133,9 +132,8 @@ def _read(clip: Clip, progress: Progress) -> list[_Piece]:
     before: Image | None = None
     for count, frame in enumerate(clip):
         progress("house", count, clip.expected)
-        small = thumbnail(frame.image)
         if piece is not None:
-            seen = _next(piece, frame, before, small)
+            seen = _next(piece, frame, before)
             if seen is None:
                 _trim(piece)
                 piece, last_try = None, -FIND_EVERY
@@ -151,7 +149,7 @@ def _read(clip: Clip, progress: Progress) -> list[_Piece]:
                     waiting.clear()
             if piece is None:
                 waiting.append(frame)
-        before = small
+        before = frame.image
     if piece is not None:
         _trim(piece)
     return [p for p in pieces if p.length]
@@ -165,14 +163,13 @@ def _start(frame: Frame, waiting: deque[Frame]) -> _Piece | None:
     piece = _Piece(fit.rig, OVERHEAD if fit.overhead else ANYWHERE)
     first = _Seen(frame.index, frame.t, fit.view, fit.evidence.marks, judge(fit.evidence), True)
     piece.seen.append(first)
-    after = thumbnail(frame.image)
+    after = frame.image
     for earlier in reversed(waiting):
-        small = thumbnail(earlier.image)
-        seen = _next(piece, earlier, after, small)
+        seen = _next(piece, earlier, after)
         if seen is None or not seen.found:
             break
         piece.seen.append(seen)
-        after = small
+        after = earlier.image
     piece.seen.reverse()
     return piece
 
@@ -183,7 +180,7 @@ def _trim(piece: _Piece) -> None:
         piece.seen.pop()
 
 
-def _next(piece: _Piece, frame: Frame, before: Image | None, small: Image) -> _Seen | None:
+def _next(piece: _Piece, frame: Frame, before: Image | None) -> _Seen | None:
     """Follow into one more frame; None where the scene is another one."""
     last = piece.seen[-1]
     speed = np.zeros(4)
@@ -193,7 +190,7 @@ def _next(piece: _Piece, frame: Frame, before: Image | None, small: Image) -> _S
     if seen is not None:
         return seen
     size = (frame.image.shape[1], frame.image.shape[0])
-    matrix = None if before is None else similarity(before, small, size[0])
+    matrix = None if before is None else similarity(before, frame.image)
     if matrix is None:
         return None
     ghosts = carried(matrix, last.view, piece.rig, size)

@@ -15,18 +15,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import HOUSE
+from vision.adjust import Solution, solve
 from vision.camera import Camera
 from vision.lines import sides, upright
 from vision.marks import Evidence, Image, measure
 from vision.pose import (
     ANYWHERE,
     OVERHEAD,
-    Solution,
     View,
     aim,
     camera,
     rescaled,
-    solve,
     start_rig,
 )
 
