@@ -1,0 +1,195 @@
+"""Stones drawn as stacks of discs at their true heights, each pixel's ray met exactly.
+
+The granite is a rounded body (its outline at height z a circle of radius r(z)), the cap a
+disc at 0.12 m, the handle a bar above it with one thick end.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tests.synthetic.camera import View
+from tests.synthetic.ice import Picture
+from tests.synthetic.scene import Light, Stone
+
+Array = NDArray[np.float64]
+
+SLICES = np.deg2rad([-35.0, -5.0, 15.0, 35.0, 50.0, 63.0, 76.0, 90.0])
+HEIGHT, EDGE = 0.114, 0.040
+HANDLE_HEIGHT = 0.148
+NECK, FREE_END, HALF_WIDTH, NECK_WIDTH = -0.056, 0.072, 0.0105, 0.0175
+
+
+def draw_stones(
+    picture: Picture, view: View, stones: tuple[Stone, ...], states: Array, light: Light
+) -> None:
+    """Draw shadows, then stones from far to near, into `picture`.
+
+    Parameters
+    ----------
+    picture : ndarray, shape (h, w, 3)
+        Changed in place.
+    view : View
+        The camera.
+    stones : tuple of Stone
+        Their looks.
+    states : ndarray, shape (stones, 6)
+        x, y, theta, vx, vy, omega.
+    light : Light
+        Lamps and shadows.
+    """
+    seen = []
+    for stone, state in zip(stones, states, strict=True):
+        window = _window(view, stone, state)
+        if window is not None:
+            ground = view.ground(_pixels(window))
+            seen.append((stone, state, window, ground))
+    for stone, state, window, ground in seen:
+        _shade_ice(picture[window], stone, state, ground, light)
+    eye = view.position
+    seen.sort(key=lambda s: -float(np.hypot(s[1][0] - eye[0], s[1][1] - eye[1])))
+    for stone, state, window, ground in seen:
+        scale = view.scale(float(state[0]), float(state[1]))
+        part = picture[window].astype(np.float32)
+        _paint_stone(part, stone, state, ground, eye, scale, light)
+        picture[window] = np.clip(part + 0.5, 0, 255).astype(np.uint8)
+
+
+def _window(view: View, stone: Stone, state: Array) -> tuple[slice, slice] | None:
+    x, y = float(state[0]), float(state[1])
+    around = np.linspace(0, 2 * np.pi, 12, endpoint=False)
+    reach = stone.radius + 0.12
+    points = np.concatenate(
+        [
+            np.column_stack([x + reach * np.cos(around), y + reach * np.sin(around), 0 * around]),
+            np.column_stack(
+                [x + 0.2 * np.cos(around), y + 0.2 * np.sin(around), 0 * around + 0.15]
+            ),
+        ]
+    )
+    undistorted, depth = view.pinhole(points)
+    if (depth < 0.5).any():
+        return None
+    size = float(np.hypot(*view.lens.size))
+    if (np.abs(undistorted - view.lens.centre) > size).any():
+        return None  # radial distortion is only meant for what is near the picture
+    p = view.lens.distort(undistorted)
+    w, h = view.lens.size
+    low = np.maximum(np.floor(p.min(0)).astype(int), 0)
+    high = np.minimum(np.ceil(p.max(0)).astype(int) + 1, [w, h])
+    if (low >= high).any():
+        return None
+    return slice(int(low[1]), int(high[1])), slice(int(low[0]), int(high[0]))
+
+
+def _pixels(window: tuple[slice, slice]) -> Array:
+    rows, columns = window
+    return np.stack(
+        np.meshgrid(np.arange(columns.start, columns.stop), np.arange(rows.start, rows.stop)),
+        axis=-1,
+    ).astype(float)
+
+
+def _shade_ice(part: Picture, stone: Stone, state: Array, ground: Array, light: Light) -> None:
+    dark = np.zeros(ground.shape[:2])
+    for along, across, spread, depth in (
+        (0.0, 0.0, 0.022, 1.0), (0.05, 0.03, 0.035, 0.35), (-0.045, 0.03, 0.035, 0.3),
+        (0.01, -0.06, 0.04, 0.3),
+    ):  # fmt: skip
+        r = np.hypot(ground[..., 0] - state[0] - along, ground[..., 1] - state[1] - across)
+        dark += depth / (1 + np.exp((r - 0.13 * stone.radius / 0.1455) / (spread * 0.5)))
+    keep = np.exp(-light.shadow * dark)
+    part[:] = (part * keep[..., None] + 0.5).astype(np.uint8)
+
+
+def _paint_stone(
+    part: NDArray[np.float32],
+    stone: Stone,
+    state: Array,
+    ground: Array,
+    eye: Array,
+    scale: float,
+    light: Light,
+) -> None:
+    centre = state[:2]
+    towards_eye = eye[:2] - ground
+    size = stone.radius / 0.1455
+
+    def at(z: float) -> Array:
+        return np.asarray(ground + towards_eye * (z / eye[2]) - centre)
+
+    def blend(distance: Array, colour: Array, strength: float = 1.0) -> None:
+        cover = np.clip(0.5 - distance * scale, 0, 1)[..., None] * strength
+        part[:] += (cover * (colour - part)).astype(np.float32)
+
+    granite = np.array(stone.granite, float)
+    bulge = HEIGHT / 2
+    p = at(HEIGHT)
+    azimuth = np.arctan2(p[..., 1], p[..., 0])
+    grain = (_speckle(p, float(state[2]), stone.name) + 6 * np.sin(azimuth - 0.7))[..., None]
+    shine = _glints(azimuth, light.lamps)[..., None]
+    for phi in SLICES:
+        p = at(bulge + bulge * float(np.sin(phi)))
+        r = np.hypot(p[..., 0], p[..., 1])
+        outline = stone.radius - EDGE * size * (1 - float(np.cos(phi)))
+        lit = 0.42 + 0.50 * max(float(np.sin(phi)), 0.0) ** 0.7 + 0.06 * float(np.cos(phi))
+        tone = granite * lit + grain
+        if np.deg2rad(45) < phi < np.deg2rad(80):
+            tone = tone + shine * 95
+        blend(r - outline, tone)
+
+    p = at(stone.cap_height)
+    r = np.hypot(p[..., 0], p[..., 1])
+    cap = np.array(stone.cap, float)
+    rim = stone.cap_radius
+    blend(r - rim, cap * 0.62 + shine * 90)
+    sheen = 1 + 0.09 * np.sin(azimuth - 1.1) * (r / rim)
+    groove = 0.10 * np.exp(-(((r - 0.72 * rim) / (0.06 * rim)) ** 2))
+    arc = 34 * np.exp(-(((r - 0.80 * rim) / (0.05 * rim)) ** 2)) * (np.cos(azimuth - 2.6) > 0.2)
+    blend(r - 0.93 * rim, cap * (sheen - groove)[..., None] + arc[..., None])
+
+    shadow = at(stone.cap_height + 0.004) + np.array([0.006, 0.006])
+    blend(_handle(shadow, float(state[2]), rim), cap * 0.45, 0.75)
+    p = at(HANDLE_HEIGHT)
+    bar = np.array(stone.handle, float)
+    distance = _handle(p, float(state[2]), rim)
+    blend(distance, bar * (0.86 + 0.14 * np.clip(-distance / 0.008, 0, 1))[..., None])
+
+
+def _handle(p: Array, theta: float, rim: float) -> Array:
+    """Distance to the handle's outline: a bar along theta with its neck thicker, m."""
+    size = rim / 0.1045
+    along = p[..., 0] * np.cos(theta) + p[..., 1] * np.sin(theta)
+    across = p[..., 1] * np.cos(theta) - p[..., 0] * np.sin(theta)
+    nearest = np.clip(along, NECK * size, FREE_END * size)
+    bar = np.hypot(along - nearest, across) - HALF_WIDTH * size
+    neck = np.hypot(along - NECK * size, across) - NECK_WIDTH * size
+    return np.asarray(np.minimum(bar, neck))
+
+
+def _glints(azimuth: Array, lamps: tuple[float, ...]) -> Array:
+    return np.asarray(_lamp_table(lamps)[(azimuth * (720 / (2 * np.pi))).astype(int) % 720])
+
+
+@cache
+def _lamp_table(lamps: tuple[float, ...]) -> Array:
+    around = np.arange(720) * (2 * np.pi / 720)
+    off = np.angle(np.exp(1j * (around[:, None] - np.array(lamps))))
+    return np.asarray(np.exp(-((off / 0.085) ** 2)).sum(-1))
+
+
+def _speckle(p: Array, theta: float, name: str) -> Array:
+    """Grain of the granite that turns with the stone, grey levels."""
+    table = _grain_table(name)
+    u = p[..., 0] * np.cos(theta) + p[..., 1] * np.sin(theta)
+    v = p[..., 1] * np.cos(theta) - p[..., 0] * np.sin(theta)
+    cell = 0.008
+    return np.asarray(table[(u // cell).astype(int) % 64, (v // cell).astype(int) % 64])
+
+
+@cache
+def _grain_table(name: str) -> Array:
+    return np.random.default_rng(sum(map(ord, name))).normal(0, 7, (64, 64))
