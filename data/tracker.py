@@ -250,7 +250,7 @@ def _blocks(table: TextTable, names: Sequence[str]) -> list[_Place]:
     xs = [k for k, name in enumerate(names) if name == "x"]
     ys = [k for k, name in enumerate(names) if name == "y"]
     if len(xs) != len(ys):
-        raise InputError(f"{table.path}: {len(xs)} columns x, but {len(ys)} columns y")
+        raise InputError(f"{table.path}: columns x: {len(xs)}, columns y: {len(ys)}; needs as many")
     frames = [k for k, name in enumerate(names) if name == "frame"]
     angles = [k for k, name in enumerate(names) if name in _ANGLE]
     stones = _titles(table, xs, len(names))
@@ -574,12 +574,13 @@ def _with_clock(
     if len(times) < 2:
         return table, None
     printed = max((d for d in decimals if d is not None), default=None)
-    resolution = 10.0 ** -(printed if printed is not None else 12)
     count, start, step = uniform_steps(times)
     even = start + step * count
     off = float(np.abs(even - times).max())
-    uniform = off < 0.25 * step
-    if uniform and off < 0.75 * resolution < 0.3 * step and off > 1e-6 * step:
+    rounding = 0.75 * 10.0**-printed if printed is not None else 0.0
+    explained = off < rounding < 0.3 * step
+    uniform = explained or off < 0.05 * step
+    if explained and off > 1e-6 * step:
         # Equal steps explain the printed times: the rounding goes.
         table = table.assign(t=even[rank])
     frame = table["frame"] if "frame" in table else pd.Series(np.nan, index=table.index)
