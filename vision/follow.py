@@ -1,0 +1,273 @@
+"""Which sighting is which stone: association over time by gating and global assignment.
+
+Two discs are never nearer than two radii, so between frames a stone is told from its
+neighbours by place alone as long as it moves by less than about a radius more or less than
+expected; a hit changes its course by no more than that from one frame to the next. Out of
+sight a moving stone is expected to glide on and come to rest; one at rest stays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+from vision.stones import Sighting, colour_difference
+
+Array = NDArray[np.float64]
+
+_FORBIDDEN = 1e6
+
+
+@dataclass(frozen=True)
+class Gate:
+    """When a sighting may belong to a track. Lengths are shares of the disc's radius.
+
+    Attributes
+    ----------
+    reach : float
+        Largest distance from where a stone seen in the frame before is expected.
+    growth : float
+        How much that grows per second out of sight.
+    most : float
+        Beyond this it grows no more.
+    colours : float
+        Difference of cap colours (L*a*b* units) that says: another stone.
+    patience : float
+        Seconds for which a moving stone is waited for.
+    births : int
+        Sightings that make a track.
+    least_score : float
+        Evidence that the better part of a track's sightings must show.
+    deceleration : float
+        Of a stone that glides unseen, m/s².
+    """
+
+    reach: float = 1.25
+    growth: float = 2.0
+    most: float = 3.5
+    colours: float = 45.0
+    patience: float = 3.0
+    births: int = 5
+    least_score: float = 0.0
+    deceleration: float = 0.1
+
+
+GATE = Gate()
+
+
+@dataclass
+class Track:
+    """One stone's sightings, each with the index of its frame in the clip.
+
+    Attributes
+    ----------
+    frames, times : list
+        Frame numbers and times, s, of the sightings.
+    sightings : list of Sighting
+    colour : ndarray, shape (3,)
+        Running mean of the cap's colour, L*a*b*.
+    """
+
+    frames: list[int] = field(default_factory=list)
+    times: list[float] = field(default_factory=list)
+    sightings: list[Sighting] = field(default_factory=list)
+    colour: Array = field(default_factory=lambda: np.zeros(3))
+    _place: Array = field(default_factory=lambda: np.zeros(2))
+    _velocity: Array = field(default_factory=lambda: np.zeros(2))
+    _covariance: Array = field(default_factory=lambda: np.zeros((2, 2)))
+
+    @property
+    def speed(self) -> float:
+        """Speed at the last sighting, m/s; 0 where it cannot be told from 0."""
+        speed = float(np.hypot(*self._velocity))
+        return speed if speed > 3 * float(np.sqrt(self._covariance[1, 1])) else 0.0
+
+    def expected(self, t: float, deceleration: float) -> Array:
+        """Place at time t if nothing hits it: it glides on, slows down and stops."""
+        speed = self.speed
+        if speed == 0:
+            return self._place
+        wait = min(t - self.times[-1], speed / deceleration if deceleration > 0 else np.inf)
+        path = speed * wait - 0.5 * deceleration * wait**2
+        return np.asarray(self._place + self._velocity / speed * path)
+
+    def add(self, frame: int, t: float, sighting: Sighting, radius: float) -> None:
+        """Take in a sighting: a filter of constant velocity that starts anew at a hit."""
+        seen = np.array([sighting.x, sighting.y])
+        noise = sighting.sd_x * sighting.sd_y + (0.004 * radius) ** 2
+        colour = np.asarray(sighting.colour, float)
+        if not self.times:
+            self._place, self._velocity = seen, np.zeros(2)
+            self._covariance = np.diag([noise, (10 * radius) ** 2])
+            self.colour = colour
+        else:
+            step = t - self.times[-1]
+            move = np.array([[1.0, step], [0.0, 1.0]])
+            jolt = (2.0 * radius) ** 2 * np.array([[step**3 / 3, step**2 / 2], [step**2 / 2, step]])
+            predicted = move @ self._covariance @ move.T + jolt
+            innovation = seen - (self._place + self._velocity * step)
+            if (innovation**2).sum() > 25 * (predicted[0, 0] + noise):
+                predicted[1, 1] += (10 * radius) ** 2
+                predicted[0, 0] += (10 * radius * step) ** 2
+                predicted[0, 1] = predicted[1, 0] = predicted[0, 1] + (10 * radius) ** 2 * step
+            gain = predicted[:, 0] / (predicted[0, 0] + noise)
+            self._place = self._place + self._velocity * step + gain[0] * innovation
+            self._velocity = self._velocity + gain[1] * innovation
+            self._covariance = predicted - np.outer(gain, predicted[0])
+            self.colour = self.colour + 0.1 * (colour - self.colour)
+        self.frames.append(frame)
+        self.times.append(t)
+        self.sightings.append(sighting)
+
+
+def follow(
+    frames: Iterable[tuple[int, float, Sequence[Sighting]]], radius: float, gate: Gate = GATE
+) -> list[Track]:
+    """Join the sightings of a clip to tracks.
+
+    Parameters
+    ----------
+    frames : iterable of (frame, t, sightings)
+        In order of time; read once.
+    radius : float
+        Of the discs, m.
+
+    Returns
+    -------
+    list of Track
+        Those with enough sightings to be a stone, in order of birth.
+    """
+    tracks: list[Track] = []
+    closed: list[Track] = []
+    count = 0
+    for frame, t, sightings in frames:
+        count += 1
+        for index in [i for i, track in enumerate(tracks) if _given_up(track, t, gate)][::-1]:
+            closed.append(tracks.pop(index))
+        taken = _assign(tracks, t, sightings, radius, gate)
+        for column, sighting in enumerate(sightings):
+            if column in taken:
+                taken[column].add(frame, t, sighting, radius)
+            else:
+                track = Track()
+                track.add(frame, t, sighting, radius)
+                tracks.append(track)
+    births = min(gate.births, (count + 1) // 2)
+    return sorted(
+        (
+            track
+            for track in closed + tracks
+            if len(track.frames) >= births and _convincing(track, gate)
+        ),
+        key=lambda track: (track.frames[0], track.sightings[0].x),
+    )
+
+
+def _convincing(track: Track, gate: Gate) -> bool:
+    scores = [sighting.score for sighting in track.sightings]
+    return float(np.percentile(scores, 75)) >= gate.least_score
+
+
+def _given_up(track: Track, t: float, gate: Gate) -> bool:
+    wait = t - track.times[-1]
+    if len(track.frames) < gate.births:
+        return wait > 0.25 * gate.patience
+    return track.speed > 0 and wait > gate.patience
+
+
+def _assign(
+    tracks: Sequence[Track], t: float, sightings: Sequence[Sighting], radius: float, gate: Gate
+) -> dict[int, Track]:
+    """Sighting index to the track that it continues."""
+    if not tracks or not sightings:
+        return {}
+    seen = np.array([(s.x, s.y) for s in sightings])
+    cost = np.full((len(tracks), len(sightings)), _FORBIDDEN)
+    for row, track in enumerate(tracks):
+        wait = t - track.times[-1]
+        reach = min(gate.reach + gate.growth * wait, gate.most) * radius
+        away = np.hypot(*(seen - track.expected(t, gate.deceleration)).T) / reach
+        # A stone that has been hit a moment ago is still near where it was.
+        near = np.hypot(*(seen - track._place).T) / reach
+        distance = np.minimum(away, near + 0.1)
+        unlike = np.array([colour_difference(track.colour, s.colour) for s in sightings])
+        ok = (distance < 1) & (unlike < gate.colours)
+        # Young tracks yield to old ones.
+        youth = 0.5 if len(track.frames) < gate.births else 0.0
+        value = distance**2 + (0.5 * unlike / gate.colours) ** 2 + youth
+        cost[row, ok] = value[ok]
+    rows, columns = linear_sum_assignment(cost)
+    return {
+        int(column): tracks[row]
+        for row, column in zip(rows, columns, strict=True)
+        if cost[row, column] < _FORBIDDEN
+    }
+
+
+def first_motion(track: Track, radius: float) -> float | None:
+    """Time at which a stone first moved, s; None for one that stays where it is.
+
+    A stone moves when it leaves its first place for good by more than its jitter and a
+    share of its radius; the time is carried back to when it was still there.
+    """
+    places = np.array([(s.x, s.y) for s in track.sightings])
+    times = np.array(track.times)
+    if len(times) < 3:
+        return None
+    least = 0.25 * radius
+    start = places[0]
+    if float(np.hypot(*(places - start).T).max()) < least:
+        return None
+    # Its first place is that of all its first sightings that are alike.
+    still = 1
+    while still < len(times) and np.hypot(*(places[still] - np.median(places[:still], 0))) < least:
+        still += 1
+    if still >= len(times):
+        return None
+    home = np.median(places[:still], axis=0)
+    away = np.hypot(*(places - home).T)
+    jitter = float(np.median(away[:still])) if still > 3 else 0.0
+    limit = max(least, 6 * jitter)
+    beyond = away > limit
+    if beyond.sum() < min(3, len(times) - still):
+        return None
+    first = int(beyond.argmax())
+    if first == 0:
+        return float(times[0])
+    last = min(first + 3, len(times) - 1)
+    speed = (away[last] - away[first]) / (times[last] - times[first]) if last > first else 0.0
+    if speed <= 0:
+        return float(times[first - 1])
+    return float(max(times[first] - away[first] / speed, times[0]))
+
+
+def names_by_motion(
+    tracks: Sequence[Track], radius: float
+) -> tuple[Mapping[str, float], Sequence[str]]:
+    """Tell the times of first motion, and the stones at rest by their distance to the tee.
+
+    Returns
+    -------
+    moved : mapping
+        Number of the track, as text, to its time; the faster first among equals.
+    rest : sequence of str
+        The others.
+    """
+    moved: list[tuple[float, float, str]] = []
+    rest: list[tuple[float, str]] = []
+    for number, track in enumerate(tracks):
+        start = first_motion(track, radius)
+        if start is None:
+            x, y = np.median([(s.x, s.y) for s in track.sightings], axis=0)
+            rest.append((float(np.hypot(x, y)), str(number)))
+        else:
+            travelled = np.hypot(
+                track.sightings[-1].x - track.sightings[0].x,
+                track.sightings[-1].y - track.sightings[0].y,
+            )
+            moved.append((start, -float(travelled), str(number)))
+    return {name: start for start, _, name in sorted(moved)}, [name for _, name in sorted(rest)]

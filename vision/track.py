@@ -1,0 +1,182 @@
+"""From a clip and its cameras to the table of sightings: each stone, each frame, each angle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+
+from data.progress import Progress, no_progress
+from data.sheet import STONE, Stone
+from data.tracks import SIGHTING_COLUMNS, check_sightings, order_of_motion
+from vision.camera import Camera
+from vision.clip import Clip, Frame
+from vision.follow import Gate, Track, follow, names_by_motion
+from vision.handle import Complex, cap_spectrum, handle_angles
+from vision.stones import (
+    SEARCH,
+    Appearance,
+    Search,
+    Sighting,
+    colour_difference,
+    find_stones,
+    is_plain,
+    lab_to_bgr,
+    learn,
+)
+
+LEARNING_FRAMES = 24
+"""Frames of a clip from which the look of its stones is learned."""
+
+CONVINCING = 2.2
+"""Evidence from which a sighting teaches what stones look like."""
+
+HANDLE_VISIBLE = 0.75
+"""Share of a stone that must be seen for its angle to be measured."""
+
+
+@dataclass(frozen=True)
+class StoneTracks:
+    """The stones of a clip.
+
+    Attributes
+    ----------
+    sightings : DataFrame
+        With `SIGHTING_COLUMNS`; stones A, B, C … in the order in which they first move,
+        then those at rest by their distance to the tee.
+    teams : mapping of str to (blue, green, red)
+        Each stone's cap colour, 0 to 255; stones of one team share one.
+    warnings : tuple of str
+        What a person should know.
+    """
+
+    sightings: pd.DataFrame
+    teams: Mapping[str, tuple[int, int, int]]
+    warnings: tuple[str, ...] = ()
+
+
+def track_stones(
+    clip: Clip,
+    cameras: Sequence[Camera],
+    *,
+    disc: Stone = STONE,
+    progress: Progress = no_progress,
+    search: Search = SEARCH,
+) -> StoneTracks:
+    """Find, follow and name the stones of a clip and measure how they are turned.
+
+    Parameters
+    ----------
+    clip : Clip
+        Read twice: parts of it to learn what its stones look like, then all of it.
+    cameras : sequence of Camera
+        One per frame; frames without one are left out.
+    disc : Stone
+        Size of the stones, or `plain_disc(radius)` for other discs.
+    progress : Progress
+        Told how far it is.
+
+    Returns
+    -------
+    StoneTracks
+        Possibly without any stone; then a warning says so.
+    """
+    by_frame = {camera.frame: camera for camera in cameras}
+    appearance = None
+    if not is_plain(disc):
+        appearance = _learn(clip, by_frame, disc, search, progress)
+    gate = Gate(least_score=0.0 if is_plain(disc) else 2.0)
+    tracks = follow(
+        _sightings(clip, by_frame, appearance, disc, search, progress), disc.radius, gate
+    )
+    moved, rest = names_by_motion(tracks, disc.radius)
+    names = order_of_motion(dict(moved), rest)
+    named = {names[str(number)]: track for number, track in enumerate(tracks)}
+    named = dict(sorted(named.items(), key=lambda item: (len(item[0]), item[0])))
+    rows = [row for name, track in named.items() for row in _rows(name, track)]
+    teams = _teams(named, appearance)
+    if not rows:
+        empty = pd.DataFrame({name: pd.Series(dtype=float) for name in SIGHTING_COLUMNS})
+        empty = empty.astype({"stone": str, "frame": int})
+        return StoneTracks(empty, {}, ("no stones were found on the ice",))
+    table = pd.DataFrame(rows, columns=list(SIGHTING_COLUMNS))
+    return StoneTracks(check_sightings(table, "the stones found"), teams)
+
+
+def _learn(
+    clip: Clip,
+    cameras: Mapping[int, Camera],
+    disc: Stone,
+    search: Search,
+    progress: Progress,
+) -> Appearance | None:
+    every = max(1, len(cameras) // LEARNING_FRAMES)
+    convincing: list[Sighting] = []
+    for done, frame in enumerate(clip):
+        if frame.index in cameras and done % every == 0:
+            camera = cameras[frame.index]
+            found = find_stones(frame.image, camera, None, disc, search)
+            convincing += [sighting for sighting in found if sighting.score > CONVINCING]
+        progress("learning the stones", done + 1, clip.expected)
+    return learn(convincing)
+
+
+def _sightings(
+    clip: Clip,
+    cameras: Mapping[int, Camera],
+    appearance: Appearance | None,
+    disc: Stone,
+    search: Search,
+    progress: Progress,
+) -> Iterator[tuple[int, float, list[Sighting]]]:
+    for done, frame in enumerate(clip):
+        if frame.index in cameras:
+            yield frame.index, frame.t, _seen(frame, cameras[frame.index], appearance, disc, search)
+        progress("following the stones", done + 1, clip.expected)
+
+
+def _seen(
+    frame: Frame, camera: Camera, appearance: Appearance | None, disc: Stone, search: Search
+) -> list[Sighting]:
+    """Sightings of one frame, the patch of each reduced to what the angle needs."""
+    found = find_stones(frame.image, camera, appearance, disc, search)
+    outer = (0.80 * disc.radius / 1.3) if is_plain(disc) else 0.86 * disc.cap_radius / 1.04
+    return [
+        replace(
+            item,
+            patch=np.empty((0, 0, 3), np.uint8),
+            spectrum=cap_spectrum(item.patch, 0.05, outer / disc.radius)
+            if item.visible >= HANDLE_VISIBLE
+            else None,
+            cap_samples=np.empty((0, 3)),
+            granite_samples=np.empty((0, 3)),
+        )
+        for item in found
+    ]
+
+
+def _rows(name: str, track: Track) -> list[tuple[str | float, ...]]:
+    spectra: list[Complex | None] = [sighting.spectrum for sighting in track.sightings]
+    theta, sd_theta = handle_angles(np.array(track.times), spectra)
+    return [
+        (name, frame, t, s.x, s.y, float(angle), s.sd_x, s.sd_y, float(sd))
+        for frame, t, s, angle, sd in zip(
+            track.frames, track.times, track.sightings, theta, sd_theta, strict=True
+        )
+    ]
+
+
+def _teams(
+    tracks: Mapping[str, Track], appearance: Appearance | None
+) -> dict[str, tuple[int, int, int]]:
+    teams = {}
+    for name, track in tracks.items():
+        caps = () if appearance is None else appearance.caps
+        if caps:
+            nearest = min(caps, key=lambda cap: colour_difference(cap.mean, track.colour))
+            teams[name] = nearest.bgr
+        else:
+            teams[name] = lab_to_bgr(track.colour)
+    return teams
