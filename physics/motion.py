@@ -369,8 +369,45 @@ def _curve_for(ice: IceLaw, curl: Curl, speed: float) -> Curve:
     return curve(ice, curl, top)
 
 
+class _Arc(NamedTuple):
+    """A piece of the curve, laid where it would end at rest."""
+
+    x: float
+    y: float
+    heading: float
+    cos: float
+    sin: float
+    sense: int
+
+    def place(self, cell: _Cell, s: float) -> tuple[float, float]:
+        """Place at `s` into a cell of the curve, m."""
+        if not self.sense:
+            way = _cubic(cell.straight, s)
+            return self.x - self.cos * way, self.y - self.sin * way
+        along, aside = _cubic(cell.along, s), self.sense * _cubic(cell.aside, s)
+        return (
+            self.x - self.cos * along - self.sin * aside,
+            self.y - self.sin * along + self.cos * aside,
+        )
+
+    def direction(self, cell: _Cell, s: float) -> float:
+        """Direction of the motion at `s` into a cell of the curve, rad."""
+        return self.heading - self.sense * _cubic(cell.turn, s) if self.sense else self.heading
+
+
+def _arc(x: float, y: float, heading: float, sense: int, cell: _Cell, s: float) -> _Arc:
+    """Lay the curve through a place and a direction at `s` into a cell."""
+    last = heading + sense * _cubic(cell.turn, s)
+    through = _Arc(0.0, 0.0, last, math.cos(last), math.sin(last), sense)
+    dx, dy = through.place(cell, s)
+    return through._replace(x=x - dx, y=y - dy)
+
+
 class Path:
     """The way of one stone from a state until it rests, if nothing hits it.
+
+    As long as it spins the stone follows the curve, then goes straight; if it stops before its
+    spin is gone, it turns on the spot until the law has taken the rest.
 
     Attributes
     ----------
@@ -382,91 +419,79 @@ class Path:
     """
 
     __slots__ = (
-        "_curve", "_final", "_heading", "_last", "_loss", "_motion", "_pivot", "_sense", "_tau",
-        "_tau_spin", "_turned", "_unspun", "length", "rest", "start", "stop",
+        "_arc", "_curve", "_loss", "_motion", "_pivot", "_sense", "_spin", "_straight", "_tau",
+        "_tau_spin", "_theta", "_unwound", "length", "rest", "start", "stop",
     )  # fmt: skip
 
     def __init__(self, start: float, motion: Motion, ice: IceLaw, curl: Curl) -> None:
         """Lay the path through `motion` at the time `start`."""
-        self.start = start
         speed = math.hypot(motion.vx, motion.vy)
         if speed < REST_SPEED:
             motion = motion._replace(vx=0.0, vy=0.0)
             speed = 0.0
         self._motion = motion
-        self._heading = math.atan2(motion.vy, motion.vx)
-        self._sense = (motion.omega > 0) - (motion.omega < 0)
         self._curve = _curve_for(ice, curl, speed)
-        self._tau = self._curve.tau_at_speed(speed) if speed else 0.0
-        self.stop = start + self._tau
-        cell, s = self._curve.cell(self._tau)
+        self._tau = tau = self._curve.tau_at_speed(speed) if speed else 0.0
+        self.start, self.stop = start, start + tau
+        cell, s = self._curve.cell(tau)
         self.length = _cubic(cell.straight, s)
-        self._turned = self._heading + self._sense * _cubic(cell.turn, s)
-        self._loss = _cubic(cell.loss, s)
+        self._loss, self._unwound = _cubic(cell.loss, s), _cubic(cell.unwound, s)
+        self._sense = sense = (motion.omega > 0) - (motion.omega < 0)
+        heading = math.atan2(motion.vy, motion.vx)
+        self._arc = _arc(motion.x, motion.y, heading, sense, cell, s)
         left = abs(motion.omega) - self._loss
-        self._tau_spin = self._curve.tau_at_loss(-left) if self._sense and left < 0 else 0.0
-        self._unspun = self._curved(self._tau_spin) if self._tau_spin else motion
-        # At rest a stone turns on the spot until the law has taken its spin.
-        loss = float(curl.spin_loss(0.0))
-        left = max(left, 0.0) if loss > 0 and self._sense else 0.0
-        self._pivot = self._sense * loss
-        last = self._glide(0.0)
-        self._final = self._turned
-        if self._tau_spin:
-            self._final = math.atan2(self._unspun.vy, self._unspun.vx)
-        self._last = last._replace(vx=0.0, vy=0.0, omega=self._sense * left)
-        self.rest = self.stop + (left / loss if left else 0.0)
+        self._tau_spin = 0.0
+        self._straight = self._arc
+        if left < 0 and sense:
+            self._tau_spin = self._curve.tau_at_loss(-left)
+            cell, s = self._curve.cell(self._tau_spin)
+            x, y = self._arc.place(cell, s)
+            self._straight = _arc(x, y, self._arc.direction(cell, s), 0, cell, s)
+        self._theta = self._turned(self._tau_spin)
+        # A law that takes no spin leaves it to the stone until it stops.
+        self._pivot = float(curl.spin_loss(0.0))
+        self._spin = max(left, 0.0) if self._pivot > 0 else 0.0
+        self.rest = self.stop + (self._spin / self._pivot if self._spin else 0.0)
 
     def at(self, t: float) -> Motion:
         """State at the time `t` >= start; where it rests, from then on."""
-        if t < self.stop:
-            return self._glide(self.stop - t)
-        since = min(t, self.rest) - self.stop
-        omega = self._last.omega - self._pivot * since if t < self.rest else 0.0
-        theta = self._last.theta + (self._last.omega - self._pivot * since / 2) * since
-        return self._last._replace(theta=theta, omega=omega)
+        tau = self.stop - t
+        if tau <= 0:
+            since = min(-tau, self.rest - self.stop)
+            omega = self._spin - self._pivot * since if t < self.rest else 0.0
+            theta = self._theta + self._sense * (self._spin - self._pivot * since / 2) * since
+            if self._tau == 0:
+                x, y = self._motion.x, self._motion.y
+            else:
+                x, y = self._straight.x, self._straight.y
+            return Motion(x, y, theta, 0.0, 0.0, self._sense * omega)
+        cell, s = self._curve.cell(tau)
+        spins = tau > self._tau_spin
+        arc = self._arc if spins else self._straight
+        x, y = arc.place(cell, s)
+        heading, speed = arc.direction(cell, s), _cubic(cell.speed, s)
+        omega = self._motion.omega
+        theta = self._theta
+        if self._sense and spins:
+            omega += self._sense * (_cubic(cell.loss, s) - self._loss)
+            theta = self._turned(tau)
+        elif self._sense:
+            omega = 0.0
+        return Motion(x, y, theta, speed * math.cos(heading), speed * math.sin(heading), omega)
 
     def point(self, t: float) -> Point:
         """Place, speed and direction at the time `t` >= start; at rest the last direction."""
-        motion = self.at(t)
-        if t >= self.stop:
-            return Point(motion.x, motion.y, 0.0, self._final)
-        speed = math.hypot(motion.vx, motion.vy)
-        return Point(motion.x, motion.y, speed, math.atan2(motion.vy, motion.vx))
-
-    def _glide(self, tau: float) -> Motion:
-        if self._sense and tau >= self._tau_spin:
-            return self._curved(tau)
-        # Without spin: on along the direction in which it was lost.
-        start = self._unspun
-        from_tau = self._tau_spin or self._tau
-        heading = math.atan2(start.vy, start.vx)
-        cell0, s0 = self._curve.cell(from_tau)
+        tau = self.stop - t
+        if tau <= 0:
+            return Point(self._straight.x, self._straight.y, 0.0, self._straight.heading)
         cell, s = self._curve.cell(tau)
-        speed = _cubic(cell.speed, s)
-        way = _cubic(cell0.straight, s0) - _cubic(cell.straight, s)
-        c, d = math.cos(heading), math.sin(heading)
-        return Motion(start.x + c * way, start.y + d * way, start.theta, speed * c, speed * d, 0.0)
+        arc = self._arc if tau > self._tau_spin else self._straight
+        x, y = arc.place(cell, s)
+        return Point(x, y, _cubic(cell.speed, s), arc.direction(cell, s))
 
-    def _curved(self, tau: float) -> Motion:
-        start, sense = self._motion, self._sense
-        cell0, s0 = self._curve.cell(self._tau)
+    def _turned(self, tau: float) -> float:
+        """Angle of the stone while it spins, `tau` before rest."""
         cell, s = self._curve.cell(tau)
-        along = _cubic(cell0.along, s0) - _cubic(cell.along, s)
-        aside = sense * (_cubic(cell.aside, s) - _cubic(cell0.aside, s0))
-        c, d = math.cos(self._turned), math.sin(self._turned)
-        heading = self._turned - sense * _cubic(cell.turn, s)
-        speed = _cubic(cell.speed, s)
-        omega = start.omega + sense * (_cubic(cell.loss, s) - self._loss)
-        unwound = _cubic(cell0.unwound, s0) - _cubic(cell.unwound, s)
-        theta = (
-            start.theta + (start.omega - sense * self._loss) * (self._tau - tau) + sense * unwound
-        )
-        return Motion(
-            start.x + c * along - d * aside,
-            start.y + d * along + c * aside,
-            theta,
-            speed * math.cos(heading),
-            speed * math.sin(heading),
-            omega,
-        )
+        spin = self._motion.omega - self._sense * self._loss
+        unwound = self._unwound - _cubic(cell.unwound, s)
+        return self._motion.theta + spin * (self._tau - tau) + self._sense * unwound

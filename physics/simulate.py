@@ -31,11 +31,11 @@ SIMULATION_COLUMNS: tuple[str, ...] = (
 
 TOUCHING = 1e-9
 """Gap up to which two stones touch, m."""
-PRESSED = 1e-7
+PRESSED = 1e-6
 """Overlap at which stones that lean on each other are set apart again, m."""
-SLOW = 5e-4
+SLOW = 1e-3
 """Closing speed up to which two touching stones lean on each other and do not hit, m/s."""
-SIMULTANEOUS = 1e-9
+SIMULTANEOUS = 1e-10
 """Contacts this close in time count as one moment, s."""
 MAX_IMPULSES = 200_000
 """More than any shot needs."""
@@ -294,7 +294,7 @@ class _Run:
             closing = ((pa.vx - pb.vx) * dx + (pa.vy - pb.vy) * dy) / distance
             if closing > SLOW:
                 return self.t
-            reach -= PRESSED
+            reach = min(reach, distance) - PRESSED
         return first_contact(a, b, self.t, reach)
 
     def _hit(self, i: int, j: int) -> None:
@@ -333,8 +333,9 @@ class _Run:
             share = first.mass / (first.mass + second.mass)
             new_one = _moved(new_one, n, -overlap * (1 - share))
             new_two = _moved(new_two, n, overlap * share)
-        self._set_off(i, new_one)
-        self._set_off(j, new_two)
+        if new_one is not one:
+            self._set_off(i, new_one)
+            self._set_off(j, new_two)
 
     def _spin_after(self, k: int, omega: float) -> float:
         """Spin of stone `k` after its present hit, as far as the model asks for it."""
@@ -355,11 +356,9 @@ class _Run:
 def first_contact(a: Path, b: Path, start: float, reach: float) -> float:
     """First time after `start` at which two paths are within `reach`, inf where never.
 
-    Over an interval of length h the velocity of a stone stays within a set of the diameter
-    D = v0 - v1 + v0 |Δφ|, because its speed only falls and its path turns one way; its place
-    is then within h D / 4 of the point that goes along the chord at a constant speed. An
-    interval over which the chords stay further apart than that is passed over as a whole;
-    others are halved, the earlier half first.
+    Over an interval of time both paths are bounded by their ends (see `_slack`). An interval
+    over which they stay apart for certain is passed over as a whole; others are halved, the
+    earlier half first, so that no contact is missed however short it is.
     """
     end = max(a.stop, b.stop)
     if end <= start:
@@ -369,7 +368,7 @@ def first_contact(a: Path, b: Path, start: float, reach: float) -> float:
     while later:
         t1, a1, b1 = later[-1]
         step = t1 - t0
-        slack = step / 4 * (_spread(a0, a1) + _spread(b0, b1))
+        slack = _slack(a0, a1, b0, b1, step)
         x0, y0, x1, y1 = b0.x - a0.x, b0.y - a0.y, b1.x - a1.x, b1.y - a1.y
         if _nearest(x0, y0, x1, y1) - slack > reach:
             t0, a0, b0 = later.pop()
@@ -385,10 +384,26 @@ def first_contact(a: Path, b: Path, start: float, reach: float) -> float:
     return math.inf
 
 
+def _slack(a0: Point, a1: Point, b0: Point, b1: Point, step: float) -> float:
+    """Bound on how far two stones can be from where their chords say, m.
+
+    A path turns one way by |Δφ|, so it leaves its chord of length c by c/2 tan(|Δφ|/2) at
+    most: that is all that counts if the other stone rests. If both move their places along
+    the chords count too: the velocity stays within a set of the diameter
+    D = v0 - v1 + v0 |Δφ|, as the speed only falls, and so the place within h D / 4 of a point
+    that runs along the chord evenly in the time h.
+    """
+    if a0.speed == 0 or b0.speed == 0:
+        p0, p1 = (b0, b1) if a0.speed == 0 else (a0, a1)
+        turn = abs(p1.heading - p0.heading)
+        if turn < 1:
+            return math.hypot(p1.x - p0.x, p1.y - p0.y) / 2 * math.tan(turn / 2)
+    return step / 4 * (_spread(a0, a1) + _spread(b0, b1))
+
+
 def _spread(p0: Point, p1: Point) -> float:
     """Bound on the diameter of the set of velocities between two points of a path."""
-    turn = abs(p1.heading - p0.heading)
-    return p0.speed - p1.speed + p0.speed * min(turn, 2 * math.pi - turn)
+    return p0.speed - p1.speed + p0.speed * abs(p1.heading - p0.heading)
 
 
 def _nearest(x0: float, y0: float, x1: float, y1: float) -> float:
