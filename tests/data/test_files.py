@@ -1,0 +1,60 @@
+from __future__ import annotations
+
+import os
+import stat
+from pathlib import Path
+
+import pytest
+
+from data.files import whole_file, write_text
+
+
+def names(folder: Path) -> list[str]:
+    return [path.name for path in folder.iterdir()]
+
+
+def test_text_is_written_whole_with_unix_line_ends(tmp_path: Path) -> None:
+    path = tmp_path / "new" / "folder" / "a.txt"
+    write_text(path, "μ = 0,01\nzwei\n")
+    assert path.read_bytes() == "μ = 0,01\nzwei\n".encode()
+    assert names(path.parent) == ["a.txt"]
+
+
+def test_a_failure_leaves_the_old_file_and_no_rest(tmp_path: Path) -> None:
+    path = tmp_path / "results.json"
+    write_text(path, "old")
+    with pytest.raises(RuntimeError, match="half way"), whole_file(path) as part:
+        part.write_text("half of the n")
+        raise RuntimeError("half way")
+    assert path.read_text() == "old"
+    assert names(tmp_path) == ["results.json"]
+
+
+def test_a_failure_leaves_no_file_where_there_was_none(tmp_path: Path) -> None:
+    with pytest.raises(KeyboardInterrupt), whole_file(tmp_path / "a.mp4") as part:
+        part.write_text("half")
+        raise KeyboardInterrupt
+    assert names(tmp_path) == []
+
+
+def test_the_temporary_file_has_the_same_ending_and_folder(tmp_path: Path) -> None:
+    with whole_file(tmp_path / "overlay.mp4") as part:
+        assert part.suffix == ".mp4"
+        assert part.parent == tmp_path
+        assert not (tmp_path / "overlay.mp4").exists()
+
+
+def test_a_writer_may_replace_or_remove_its_part(tmp_path: Path) -> None:
+    with whole_file(tmp_path / "a.txt") as part:
+        part.unlink()
+        part.write_text("again")
+    assert (tmp_path / "a.txt").read_text() == "again"
+
+
+def test_others_may_read_the_file(tmp_path: Path) -> None:
+    old = os.umask(0o022)
+    try:
+        write_text(tmp_path / "a.txt", "a")
+    finally:
+        os.umask(old)
+    assert stat.S_IMODE((tmp_path / "a.txt").stat().st_mode) == 0o644

@@ -1,0 +1,162 @@
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from data.errors import InputError
+from data.results import (
+    SCHEMA,
+    Collision,
+    Estimate,
+    Friction,
+    Glide,
+    Input,
+    Results,
+    SimulationScore,
+    StoneState,
+)
+
+RESULTS = Results(
+    input=Input(("clip Ä.mp4",), 25.0, 150, 5.96),
+    restitution=Estimate(0.83, 0.02),
+    friction=Friction(0.0109, 3e-4, "constant"),
+    collisions=(
+        Collision(
+            t=1.12,
+            stderr_t=0.004,
+            stones=("A", "B"),
+            normal=(0.6, -0.8),
+            restitution=0.81,
+            stderr=0.03,
+            before={"A": StoneState(0, 1, 0.05, -1.36, 0.66), "B": StoneState(0, 0, 0, 0)},
+            after={"A": StoneState(0, 1, -0.4, -0.3, 2.0), "B": StoneState(0, 0, 0.4, -1.0, 1.5)},
+            momentum_residual=0.05,
+            energy_lost=0.2,
+            note="seen for four frames only",
+        ),
+    ),
+    glides=(Glide("A", 1.2, 5.5, 0.011, 4e-4), Glide("B", 1.2, 1.4, None, None)),
+    simulations={
+        "point-mass": SimulationScore(0.03, {"A": 0.05, "B": None}),
+        "rigid-body": SimulationScore(None, note="no spins"),
+    },
+    warnings=("two frames are missing",),
+)
+
+
+def strict(text: str) -> dict[str, object]:
+    def refuse(word: str) -> float:
+        raise AssertionError(f"{word} is no JSON")
+
+    parsed = json.loads(text, parse_constant=refuse)
+    assert isinstance(parsed, dict)
+    return parsed
+
+
+def test_round_trip(tmp_path: Path) -> None:
+    RESULTS.write(tmp_path / "results.json")
+    assert Results.read(tmp_path / "results.json") == RESULTS
+
+
+def test_the_form_of_the_file() -> None:
+    raw = strict(RESULTS.to_json())
+    assert raw["schema"] == SCHEMA == 1
+    assert set(raw) == {
+        *("schema", "input", "restitution", "friction", "collisions", "glides"),
+        *("simulations", "warnings", "radius"),
+    }
+    assert raw["input"] == {
+        "files": ["clip Ä.mp4"],
+        "fps": 25.0,
+        "frames": 150,
+        "duration": 5.96,
+    }
+    assert raw["friction"] == {"value": 0.0109, "stderr": 3e-4, "law": "constant"}
+    assert raw["collisions"][0]["stones"] == ["A", "B"]  # type: ignore[index]
+    assert raw["collisions"][0]["before"]["B"]["omega"] is None  # type: ignore[index]
+    assert raw["glides"][1]["friction"] is None  # type: ignore[index]
+
+
+def test_what_is_not_finite_is_null(tmp_path: Path) -> None:
+    odd = replace(
+        RESULTS,
+        restitution=Estimate(math.nan, math.inf),
+        simulations={"frictional": SimulationScore(np.float64("nan"), {"A": -math.inf})},
+        input=replace(RESULTS.input, frames=np.int64(7), fps=np.float32(25)),  # type: ignore[arg-type]
+    )
+    raw = strict(odd.to_json())
+    assert raw["restitution"] == {"value": None, "stderr": None}
+    assert raw["input"]["frames"] == 7  # type: ignore[index]
+    odd.write(tmp_path / "results.json")
+    back = Results.read(tmp_path / "results.json")
+    assert back.restitution == Estimate(None, None)
+    assert back.simulations["frictional"].rest_error == {"A": None}
+
+
+numbers = st.one_of(st.none(), st.floats())
+
+
+@given(value=numbers, stderr=numbers, text=st.text())
+def test_any_value_is_strict_json(value: float | None, stderr: float | None, text: str) -> None:
+    results = replace(
+        RESULTS,
+        restitution=Estimate(value, stderr),
+        warnings=(text,),
+        glides=(Glide(text, 0.0, 1.0, value, stderr),),
+    )
+    raw = strict(results.to_json())
+    known = value is not None and math.isfinite(value)
+    assert raw["restitution"]["value"] == (value if known else None)  # type: ignore[index]
+    assert raw["warnings"] == [text]
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("", "not a results.json"),
+        ("{", "not a results.json"),
+        ("[]", "not a results.json"),
+        ("3", "not a results.json"),
+        ("null", "not a results.json"),
+        ("{}", "not a results.json"),
+        ('{"schema": 2}', "another version"),
+        ('{"schema": 1}', "not a results.json"),
+    ],
+)
+def test_other_files_are_refused(tmp_path: Path, text: str, reason: str) -> None:
+    path = tmp_path / "results.json"
+    path.write_text(text)
+    with pytest.raises(InputError, match=reason):
+        Results.read(path)
+    path.write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(InputError, match=r"not a results\.json"):
+        Results.read(path)
+    with pytest.raises(InputError, match="No such file"):
+        Results.read(tmp_path / "none.json")
+
+
+@settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    key=st.sampled_from(sorted(json.loads(RESULTS.to_json()))),
+    value=st.recursive(
+        st.one_of(st.none(), st.integers(), st.text(max_size=5), st.booleans()),
+        lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner),
+        max_leaves=4,
+    ),
+)
+def test_damaged_results_are_read_or_refused(tmp_path: Path, key: str, value: object) -> None:
+    raw = json.loads(RESULTS.to_json())
+    raw[key] = value
+    path = tmp_path / "results.json"
+    path.write_text(json.dumps(raw))
+    try:
+        Results.read(path)
+    except InputError as refusal:
+        assert str(path) in str(refusal)
