@@ -18,11 +18,24 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Lens:
-    """Radial distortion of a picture of a given size (width, height)."""
+    """Radial distortion of a picture of a given size (width, height).
+
+    Raises
+    ------
+    ValueError
+        Where the distortion folds back before it has filled the picture's corners.
+    """
 
     size: tuple[int, int]
     k1: float = 0.0
     k2: float = 0.0
+
+    def __post_init__(self) -> None:
+        r2 = np.linspace(0, 2, 200) ** 2
+        shown = np.sqrt(r2) * (1 + r2 * (self.k1 + r2 * self.k2))
+        falls = np.flatnonzero(np.diff(shown) <= 0)
+        if len(falls) and shown[falls[0]] < 1:
+            raise ValueError(f"k1 = {self.k1}, k2 = {self.k2} do not fill the picture's corners")
 
     @property
     def centre(self) -> Array:
@@ -42,10 +55,13 @@ class Lens:
         d, unit = self._unit(p)
         seen = d[..., 0] ** 2 + d[..., 1] ** 2
         r2 = seen.copy()  # solve g(r²) = r² (1 + k1 r² + k2 r⁴)² = |d|² by Newton's method
-        for _ in range(6):
+        for _ in range(12):
             stretch = 1 + r2 * (self.k1 + r2 * self.k2)
             slope = stretch * (stretch + 2 * r2 * (self.k1 + 2 * r2 * self.k2))
-            r2 -= (r2 * stretch * stretch - seen) / slope
+            step = (r2 * stretch * stretch - seen) / slope
+            r2 -= step
+            if np.abs(step).max(initial=0.0) < 1e-13:
+                break
         return np.asarray(self.centre + unit * d / (1 + r2 * (self.k1 + r2 * self.k2))[..., None])
 
     def _unit(self, p: ArrayLike) -> tuple[Array, float]:

@@ -50,9 +50,10 @@ class _Canvas:
     """A float picture of the ice in which shapes are blended by their coverage."""
 
     def __init__(self, extent: Extent, density: float, ground: Colour) -> None:
-        self.extent, self.density = extent, density
         w = round((extent.x1 - extent.x0) * density)
         h = round((extent.y1 - extent.y0) * density)
+        whole = Extent(extent.x0, extent.x0 + w / density, extent.y1 - h / density, extent.y1)
+        self.extent, self.density = whole, density
         self.image = np.empty((h, w, 3), np.float32)
         self.image[:] = ground
         self.x = (extent.x0 + (np.arange(w) + 0.5) / density).astype(np.float32)
@@ -130,7 +131,7 @@ def paint_plate(scene: Scene, extent: Extent, density: float) -> Plate:
                 np.uint8,
             )
         )
-    return Plate(extent, tuple(levels), sheet.carpet)
+    return Plate(canvas.extent, tuple(levels), sheet.carpet)
 
 
 def _paint_sheet(canvas: _Canvas, sheet: Sheet, paint: Paint, x: float) -> None:
@@ -167,7 +168,7 @@ def _texture(canvas: _Canvas, light: Light, rng: np.random.Generator) -> None:
     for length, depth in ((2.2, 3.0), (0.6, 1.6), (0.05, 0.8)):
         cells = (max(int(h / metre / length), 2), max(int(w / metre / length), 2))
         grain = rng.standard_normal(cells).astype(np.float32)
-        tone += depth * cv2.resize(grain, (w, h), interpolation=cv2.INTER_CUBIC)
+        tone += light.texture * depth * cv2.resize(grain, (w, h), interpolation=cv2.INTER_CUBIC)
     for _ in range(14):
         x = rng.uniform(canvas.extent.x0, canvas.extent.x1)
         y = rng.uniform(canvas.extent.y0, canvas.extent.y1)

@@ -215,13 +215,15 @@ def simulate(
                     continue
                 late = min((reach - gap) / closing, step)
                 if math.hypot(b[3], b[4]) > math.hypot(a[3], a[4]):
-                    i_first, i_second, nx, ny = j, i, -nx, -ny
+                    i_first, i_second = j, i
                 else:
                     i_first, i_second = i, j
                 p, q = now[i_first], now[i_second]
                 for s in (p, q):
                     s[0] -= s[3] * late
                     s[1] -= s[4] * late
+                gap = math.hypot(q[0] - p[0], q[1] - p[1])
+                nx, ny = (q[0] - p[0]) / gap, (q[1] - p[1]) / gap
                 before = ((p[3], p[4], p[5]), (q[3], q[4], q[5]))
                 after = collide(before[0], before[1], (nx, ny), impact)
                 keep(t - late)

@@ -135,6 +135,8 @@ class Light:
         Directions of the lamps that glint on granite, rad.
     glare : float
         Bright spots of lamps on the ice, grey levels.
+    texture : float
+        Unevenness of the ice, 1 for what is usual.
     vignette : float
         Loss of light in the corners, 0..1.
     softness : float
@@ -147,6 +149,7 @@ class Light:
     shadow: float = 0.32
     lamps: tuple[float, ...] = (0.2, 0.45, 1.4, 1.6, 1.8, 3.0, 3.3, 4.6, 4.85)
     glare: float = 9.0
+    texture: float = 1.0
     vignette: float = 0.12
     softness: float = 0.55
     noise: float = 2.2

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 SLICES = np.deg2rad([-35.0, -5.0, 15.0, 35.0, 50.0, 63.0, 76.0, 90.0])
 HEIGHT, EDGE = 0.114, 0.040
 HANDLE_HEIGHT = 0.148
-NECK, FREE_END, HALF_WIDTH, NECK_WIDTH = -0.056, 0.072, 0.0105, 0.0175
+NECK, FREE_END, HALF_WIDTH, NECK_WIDTH = -0.056, 0.074, 0.0125, 0.0195
 
 
 def draw_stones(
@@ -137,19 +137,19 @@ def _paint_stone(
         outline = stone.radius - EDGE * size * (1 - float(np.cos(phi)))
         lit = 0.42 + 0.50 * max(float(np.sin(phi)), 0.0) ** 0.7 + 0.06 * float(np.cos(phi))
         tone = granite * lit + grain
-        if np.deg2rad(45) < phi < np.deg2rad(80):
-            tone = tone + shine * 95
+        if np.deg2rad(55) < phi < np.deg2rad(70):
+            tone = tone + shine * 55
         blend(r - outline, tone)
 
     p = at(stone.cap_height)
     r = np.hypot(p[..., 0], p[..., 1])
     cap = np.array(stone.cap, float)
     rim = stone.cap_radius
-    blend(r - rim, cap * 0.62 + shine * 90)
+    blend(r - rim, cap * 0.80 + shine * 45)
     sheen = 1 + 0.09 * np.sin(azimuth - 1.1) * (r / rim)
     groove = 0.10 * np.exp(-(((r - 0.72 * rim) / (0.06 * rim)) ** 2))
     arc = 34 * np.exp(-(((r - 0.80 * rim) / (0.05 * rim)) ** 2)) * (np.cos(azimuth - 2.6) > 0.2)
-    blend(r - 0.93 * rim, cap * (sheen - groove)[..., None] + arc[..., None])
+    blend(r - 0.95 * rim, cap * (sheen - groove)[..., None] + arc[..., None])
 
     shadow = at(stone.cap_height + 0.004) + np.array([0.006, 0.006])
     blend(_handle(shadow, float(state[2]), rim), cap * 0.45, 0.75)
@@ -178,7 +178,7 @@ def _glints(azimuth: Array, lamps: tuple[float, ...]) -> Array:
 def _lamp_table(lamps: tuple[float, ...]) -> Array:
     around = np.arange(720) * (2 * np.pi / 720)
     off = np.angle(np.exp(1j * (around[:, None] - np.array(lamps))))
-    return np.asarray(np.exp(-((off / 0.085) ** 2)).sum(-1))
+    return np.asarray(np.exp(-((off / 0.06) ** 2)).sum(-1))
 
 
 def _speckle(p: Array, theta: float, name: str) -> Array:

@@ -1,0 +1,137 @@
+"""Rendered pictures against the camera's closed forms."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+
+from tests.synthetic import (
+    CameraPath,
+    Light,
+    Paint,
+    Scene,
+    Sheet,
+    Start,
+    broadcast_camera,
+    describe,
+    random_scene,
+    red_stone,
+    render_still,
+    still_camera,
+    tilted_camera,
+)
+
+CLEAN = Light(glare=0, vignette=0, softness=0, noise=0, texture=0)
+BARE = Scene(paint=Paint(outline=None, logo=""), sheet=Sheet(marks=()), light=CLEAN)
+
+
+def edge_errors(picture, view, radius: float) -> np.ndarray:
+    """Distance in px, along the normal, from where the circle should be to where it is."""
+    angles = np.deg2rad(np.arange(5, 360, 7.0))
+    angles = angles[np.abs(np.sin(2 * angles)) > 0.5]  # clear of tee, centre and back line
+    errors = []
+    for a in angles:
+        out = np.array([np.cos(a), np.sin(a), 0.0])
+        along = np.array([-np.sin(a), np.cos(a), 0.0])
+        where, beside = view.project([radius * out, radius * out + 1e-4 * along])
+        normal = np.array([beside[1] - where[1], where[0] - beside[0]])
+        normal /= np.linalg.norm(normal)
+        s = np.arange(-4, 4.01, 0.05)
+        points = (where + s[:, None] * normal).astype(np.float32)
+        w, h = view.lens.size
+        if not ((points > 2) & (points < [w - 3, h - 3])).all():
+            continue
+        line = cv2.remap(
+            picture.astype(np.float32).sum(-1), points[:, 0].copy(), points[:, 1].copy(),
+            cv2.INTER_LINEAR,
+        ).ravel()  # fmt: skip
+        level = (line - line[0]) / (line[-1] - line[0])
+        errors.append(np.trapezoid(1 - level, s) - 4)
+    assert len(errors) > 10
+    return np.array(errors)
+
+
+@pytest.mark.parametrize(
+    ("camera", "supersample"),
+    [
+        (still_camera(), 1),
+        (broadcast_camera(k1=(-0.1, 0.0), k2=(0.03, 0.0), shake=1.0), 1),
+        (tilted_camera(np.deg2rad(45), k1=-0.05), 2),
+    ],
+)
+def test_ring_edges_lie_where_the_camera_says(camera: CameraPath, supersample: int) -> None:
+    picture = render_still(BARE, camera, 0.5, supersample=supersample, shutter=1e-4)
+    for radius in BARE.paint.radii[:3]:
+        errors = edge_errors(picture, camera.at(0.5), radius)
+        assert abs(errors.mean()) < 0.03
+        assert np.sqrt((errors**2).mean()) < 0.06
+
+
+def red_centre(picture) -> np.ndarray:
+    """Centroid of what is redder than the ice, px."""
+    weight = np.clip(picture[..., 2].astype(float) - picture[..., 0], 0, None)
+    weight[weight < 12] = 0
+    rows, columns = np.indices(weight.shape)
+    return np.array([(weight * columns).sum(), (weight * rows).sum()]) / weight.sum()
+
+
+def lone_stone(start: Start) -> Scene:
+    stone = replace(red_stone("A", start), handle=(44, 26, 178))
+    sheet = Sheet(marks=(), line=BARE.sheet.ice)
+    plain = Paint(*(BARE.sheet.ice,) * 4, outline=None, logo="")
+    return replace(BARE, stones=(stone,), paint=plain, sheet=sheet, light=replace(CLEAN, lamps=()))
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0), (1.6, 1.2), (-1.9, -1.4)])
+def test_cap_stands_at_its_height(place: tuple[float, float]) -> None:
+    camera = still_camera(px_per_m=100, target=(0, 0))
+    picture = render_still(lone_stone(Start(*place)), camera)
+    view = camera.at(0)
+    where, on_the_ice = view.project([(*place, 0.12), (*place, 0.0)])
+    off = np.hypot(*(red_centre(picture) - where))
+    assert off < 0.6  # the handle stands higher and has one thick end
+    if place != (0.0, 0.0):
+        assert np.hypot(*(red_centre(picture) - on_the_ice)) > 2 * off
+
+
+def test_blur_is_centred_on_the_frame_s_time() -> None:
+    scene = lone_stone(Start(-0.5, -1.0, vx=0.4, vy=2.4))
+    camera = still_camera(target=(0, 0))
+    sharp = red_centre(render_still(scene, camera, 0.4, shutter=1e-5))
+    blurred = red_centre(render_still(scene, camera, 0.4, shutter=0.03))
+    assert np.hypot(*(sharp - blurred)) < 0.05
+
+
+def test_handle_points_along_theta() -> None:
+    theta = 0.8
+    scene = lone_stone(Start(0.0, 0.0, theta=theta))
+    stone = replace(scene.stones[0], handle=(255, 255, 255))
+    camera = still_camera(target=(0, 0), px_per_m=300)
+    picture = render_still(replace(scene, stones=(stone,)), camera)
+    view = camera.at(0)
+
+    def brightness(along: float) -> int:
+        x, y = view.project([along * np.cos(theta), along * np.sin(theta), 0.148])
+        return int(picture[round(y), round(x)].min())
+
+    assert min(brightness(r) for r in (-0.05, 0.0, 0.04, 0.07)) > 180
+    assert brightness(0.095) < 120
+
+
+def test_the_picture_is_a_function_of_the_scene() -> None:
+    scene = random_scene(np.random.default_rng(3))
+    first, second = (render_still(scene, broadcast_camera(), 1.0) for _ in range(2))
+    assert np.array_equal(first, second)
+
+
+def test_truth_of_visibility() -> None:
+    scene = lone_stone(Start(0.0, 0.0))
+    inside = describe(scene, still_camera(target=(0, 0)), [0.0]).tracks["visible"]
+    edge = lone_stone(Start(640 / 110 * (9.9 - 0.12) / 9.9, 0.0))  # the cap's centre on the rim
+    half = describe(edge, still_camera(target=(0, 0)), [0.0]).tracks["visible"]
+    outside = describe(scene, still_camera(target=(0, 6.0)), [0.0]).tracks["visible"]
+    assert (inside[0], outside[0]) == (1.0, 0.0)
+    assert 0.3 < half[0] < 0.7
