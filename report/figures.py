@@ -15,6 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
+from matplotlib.patheffects import withStroke
 from numpy.typing import ArrayLike, NDArray
 
 from data.results import Collision, StoneState
@@ -98,7 +99,7 @@ def motion_figure(tracks: pd.DataFrame, stone: str, collisions: Sequence[Collisi
             ax.set_ylabel(_LABELS[column])
         _time_axis(axes, [(rank, c.t) for rank, c in hits], rows["t"].to_numpy(float))
         figure.align_ylabels(axes)
-        figure.suptitle(f"Stone {plain_text(stone)}: motion", x=0.01, ha="left", **_TITLE)
+        figure.suptitle(f"Stone {_short(stone, 40)}: motion", x=0.01, ha="left", **_TITLE)
     return figure
 
 
@@ -126,14 +127,14 @@ def comparison_figure(
         _time_axis(axes, hits, rows["t"].to_numpy(float))
         figure.align_ylabels(axes)
         figure.suptitle(
-            f"Stone {plain_text(stone)}: simulated and measured", x=0.01, ha="left", **_TITLE
+            f"Stone {_short(stone, 40)}: simulated and measured", x=0.01, ha="left", **_TITLE
         )
         handles: list[Artist] = [Line2D([], [], color=BLACK, label="measured (± 2 sd)")]
         handles += [
             Line2D([], [], color=colour, linestyle=dash, lw=1.6, label=plain_text(model))
             for model, (colour, dash) in lines.items()
         ]
-        figure.legend(handles=handles, loc="outside lower center", ncols=4, columnspacing=1.2)
+        _legend_below(figure, handles)
     return figure
 
 
@@ -159,13 +160,13 @@ def speed_figure(
             ax.fill_between(
                 t, np.maximum(speed - 2 * sd, 0), speed + 2 * sd, color=colour, alpha=0.2, lw=0
             )
-            ax.plot(t, speed, color=colour, label=f"stone {plain_text(stone)}")
+            ax.plot(t, speed, color=colour, label=f"stone {_short(stone)}")
         ax.set_ylabel("speed (m/s)")
         ax.set_ylim(bottom=0)
         _time_axis([ax], [(k, c.t) for k, c in enumerate(collisions, 1)], tracks["t"].to_numpy())
         figure.suptitle("Speed", x=0.01, ha="left", **_TITLE)
         if stones:
-            figure.legend(loc="outside lower center", ncols=min(len(stones), 5))
+            _legend_below(figure, ax.get_legend_handles_labels()[0])
     return figure
 
 
@@ -185,7 +186,7 @@ def hit_figure(collision: Collision, rank: int = 1, radius: float = STONE.radius
         (when, name): _velocity(side[name])
         for when, side in states.items()
         for name in collision.stones
-        if name in side
+        if name in side and np.isfinite(_velocity(side[name])).all()
     }
     longest = max((float(np.hypot(*v)) for v in arrows.values()), default=0.0) or 1.0
     scale = 2.2 * radius / longest
@@ -212,7 +213,14 @@ def hit_figure(collision: Collision, rank: int = 1, radius: float = STONE.radius
                 -v if when == "before" else v for (when, who), v in arrows.items() if who == name
             ]
             place = centres[name] + 0.62 * radius * _free_direction([*busy, n, -n])
-            ax.text(*place, _short(name), ha="center", va="center", weight="bold", zorder=6)
+            ax.text(
+                *place,
+                _symbols(collision.stones)[name],
+                ha="center",
+                va="center",
+                weight="bold",
+                zorder=6,
+            )
         for (when, name), v in arrows.items():
             if np.hypot(*v) * scale < 0.05 * radius:
                 continue
@@ -236,7 +244,7 @@ def hit_figure(collision: Collision, rank: int = 1, radius: float = STONE.radius
         ax.spines[:].set_visible(False)
         _components(text, collision, n, t)
         figure.suptitle(
-            f"Hit {rank}: {plain_text(first)} on {plain_text(second)} at {fixed(collision.t)} s",
+            f"Hit {rank}: {_short(first)} on {_short(second)} at {fixed(collision.t)} s",
             x=0.01,
             ha="left",
             **_TITLE,
@@ -261,7 +269,7 @@ def plan_figure(
     simulations : mapping of str to DataFrame, optional
         Sampled simulation of each model; their last places are drawn as empty circles.
     collisions : sequence of Collision
-        The hits, marked by their rank where the stones touched.
+        The hits, a cross where the stones touched.
     house : House or None
         The rings to draw; None where the scene has no house.
     radius : float
@@ -299,10 +307,12 @@ def plan_figure(
             ax.add_patch(
                 Circle(_pair(last[stone]), radius, fc="white", ec=colours[stone], lw=1.6, zorder=4)
             )
-        _name_stones(ax, last, colours, radius, scale)
         for collision in collisions:
             ax.plot(*_contact(collision, radius), "x", color=BLACK, ms=6, mew=1.6, zorder=6)
         ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
+        drawn = [np.asarray(line.get_xydata(), float) for line in ax.lines]
+        paths = np.concatenate([np.empty((0, 2)), *drawn])
+        _name_stones(ax, last, colours, paths, radius, scale)
         ax.set(xlabel="$x$ (m)", ylabel="$y$ (m)")
         ax.grid(False)
         figure.suptitle("Plan view", x=0.01, ha="left", **_TITLE)
@@ -314,7 +324,7 @@ def plan_figure(
         if collisions:
             handles.append(Line2D([], [], color=BLACK, marker="x", ls="none", mew=1.6, label="hit"))
         if moved:
-            figure.legend(handles=handles, loc="outside lower center", ncols=3, columnspacing=1.2)
+            _legend_below(figure, handles)
     return figure
 
 
@@ -411,10 +421,11 @@ def _time_axis(
     margin = 0.02 * (last - first) or 0.5
     axes[0].set_xlim(first - margin, last + margin)
     axes[-1].set_xlabel("time (s)")
-    level, before = 0, -np.inf
+    levels: list[float] = []  # time of the last label on each level
     for rank, when in hits:
-        close = (when - before) / (last - first + 2 * margin) < 0.045
-        level, before = (level + 1 if close else 0), when
+        room = when - 0.045 * (last - first + 2 * margin)
+        level = next((k for k, taken in enumerate(levels) if taken < room), len(levels))
+        levels[level : level + 1] = [when]
         for ax in axes:
             ax.axvline(when, color=GREY, lw=0.8, linestyle=(0, (3, 2)), zorder=2)
         axes[0].annotate(
@@ -455,12 +466,32 @@ def _free_direction(busy: Sequence[Array]) -> Array:
     return np.asarray(candidates[int(np.argmin(nearest))], float)
 
 
-def _short(name: str, letters: int = 2) -> str:
-    return plain_text(name if len(name) <= letters else name[:1] + "…")
+def _short(name: str, letters: int = 16) -> str:
+    return plain_text(name if len(name) <= letters else name[: letters - 1] + "…")
+
+
+def _symbols(names: Sequence[str]) -> dict[str, str]:
+    """Give what fits into a stone: its name, or 1 and 2 where a name is longer than that."""
+    if all(len(name) <= 2 for name in names):
+        return {name: plain_text(name) for name in names}
+    return {name: str(rank) for rank, name in enumerate(names, 1)}
+
+
+def _legend_below(figure: Figure, handles: Sequence[Artist]) -> None:
+    """Put a legend under the figure in as many columns as its width has room for."""
+    longest = max(len(str(handle.get_label())) for handle in handles)
+    columns = int((WIDTH - 0.3) / (0.55 + 0.07 * longest))
+    figure.legend(
+        handles=handles,
+        loc="outside lower center",
+        ncols=max(1, min(len(handles), columns)),
+        columnspacing=1.2,
+    )
 
 
 def _components(ax: Axes, collision: Collision, n: Array, t: Array) -> None:
     """Write the n and t components as a small table in the figure."""
+    symbols = _symbols(collision.stones)
     ax.set_axis_off()
     ax.set(xlim=(0, 1), ylim=(0, 1))
     y = 0.93
@@ -469,7 +500,8 @@ def _components(ax: Axes, collision: Collision, n: Array, t: Array) -> None:
         ax.text(column, y, f"{label} (m/s)", ha="right", **kwargs)
     for name in collision.stones:
         y -= 0.13
-        ax.text(0, y, _short(name, 14), weight="bold", **kwargs)
+        title = _short(name) if symbols[name] == name else f"{symbols[name]}: {_short(name)}"
+        ax.text(0, y, title, weight="bold", **kwargs)
         for when, side, colour in (
             ("before", collision.before, BEFORE),
             ("after", collision.after, AFTER),
@@ -506,7 +538,7 @@ def _extent(
     """
     edge = 2 * radius
     ends = np.array(list(last.values()))
-    core = [ends - edge, ends + edge]
+    core = [ends - edge, ends + edge] if len(ends) else [np.zeros((1, 2)) - edge]
     if house is not None:
         core.append(np.array([[-1, -1], [1, 1]]) * (house.twelve_foot + 0.5 * edge))
     low, high = np.concatenate(core).min(axis=0), np.concatenate(core).max(axis=0)
@@ -546,30 +578,53 @@ def _draw_house(ax: Axes, house: House, low: Array, high: Array) -> None:
 
 
 def _name_stones(
-    ax: Axes, last: Mapping[str, Array], colours: Mapping[str, str], radius: float, scale: float
+    ax: Axes,
+    last: Mapping[str, Array],
+    colours: Mapping[str, str],
+    lines: Array,
+    radius: float,
+    scale: float,
 ) -> None:
     """Names inside the stones where they fit, else beside them where there is room."""
     inside = 72 * scale * radius  # the stone's radius in points
     size = min(9.0, max(6.5, inside))
+    (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
+    low, high = np.array([left, bottom]), np.array([right, top])
     em = size / 72 / scale  # height of the letters in metres
     taken = [(place - radius, place + radius) for place in last.values()]
     for name, place in last.items():
         text: dict[str, Any] = {
             "color": colours[name], "weight": "bold", "fontsize": size, "zorder": 7,
-            "va": "center", "ha": "center", "clip_on": True,
+            "va": "center", "ha": "center",
+            "path_effects": [withStroke(linewidth=2, foreground="white")],
         }  # fmt: skip
-        half = np.array([0.36 * em * len(name), 0.6 * em])
+        label = _short(name)
+        half = np.array([0.36 * em * len(label), 0.6 * em])
         if np.hypot(*half) < radius:
-            ax.text(place[0], place[1], plain_text(name), **text)
+            ax.text(place[0], place[1], label, **text)
             continue
         boxes = []
         for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)):
             centre = place + np.array([dx, dy]) * (radius + half + 0.2 * em)
             boxes.append((centre - half, centre + half))
-        box = min(boxes, key=lambda b: sum(_overlap(b, other) for other in taken))
+        box = min(boxes, key=lambda b: _cost(b, taken, lines, low, high))
         taken.append(box)
         x, y = (box[0] + box[1]) / 2
-        ax.text(x, y, plain_text(name), **text)
+        ax.text(x, y, label, **text)
+
+
+def _cost(
+    box: tuple[Array, Array],
+    taken: Sequence[tuple[Array, Array]],
+    lines: Array,
+    low: Array,
+    high: Array,
+) -> float:
+    """Area of a label's box that is taken or outside the picture, and a little for lines in it."""
+    whole = float(np.prod(box[1] - box[0]))
+    crossed = bool(((lines > box[0]) & (lines < box[1])).all(axis=1).any())
+    outside = whole - _overlap(box, (low, high))
+    return sum(_overlap(box, other) for other in taken) + outside + 0.3 * whole * crossed
 
 
 def _overlap(one: tuple[Array, Array], other: tuple[Array, Array]) -> float:

@@ -1,0 +1,147 @@
+"""A shot in closed form: A hits B, B hits C, all slowed at one rate; D never moves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+import pytest
+from numpy.typing import NDArray
+
+from data.results import (
+    Collision,
+    Estimate,
+    Friction,
+    Glide,
+    Input,
+    Results,
+    SimulationScore,
+    StoneState,
+)
+from data.tracks import TRACK_COLUMNS
+
+RADIUS = 0.1455
+SLOWING = 0.0109 * 9.81
+Vector = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Shot:
+    tracks: pd.DataFrame
+    simulations: dict[str, pd.DataFrame]
+    results: Results
+
+
+@dataclass(frozen=True)
+class Piece:
+    """One stone's motion from `t`: a straight glide that ends in rest, at a steady spin."""
+
+    t: float
+    place: Vector
+    velocity: Vector
+    omega: float
+
+    def at(self, when: float) -> tuple[Vector, Vector]:
+        speed = float(np.hypot(*self.velocity))
+        if speed == 0:
+            return self.place, self.velocity
+        gone = min(when - self.t, speed / SLOWING)
+        way = self.velocity / speed
+        return self.place + way * (speed * gone - SLOWING * gone**2 / 2), way * (
+            speed - SLOWING * gone
+        )
+
+
+def shot_pieces(e: float) -> tuple[dict[str, list[Piece]], list[tuple[float, str, str, Vector]]]:
+    """Pieces of motion per stone, and the hits (time, first, second, normal)."""
+    start = Piece(0.0, np.array([0.2, 1.9]), np.array([-0.05, -1.5]), 0.66)
+    pieces = {"A": [start], "B": [], "C": []}
+    hits = []
+    t, turns = 0.0, (("A", "B", 0.35), ("B", "C", -0.25))
+    for gap, (first, second, angle) in zip((0.8, 0.7), turns, strict=True):
+        t += gap
+        place, velocity = pieces[first][-1].at(t)
+        along = velocity / np.hypot(*velocity)
+        c, s = np.cos(angle), np.sin(angle)
+        n = np.array([c * along[0] - s * along[1], s * along[0] + c * along[1]])
+        target = place + 2 * RADIUS * n
+        impulse = (1 + e) / 2 * float(velocity @ n)
+        pieces[first].append(Piece(t, place, velocity - impulse * n, 0.4))
+        pieces[second] = [
+            Piece(0.0, target, np.zeros(2), 0.0),
+            Piece(t, target, impulse * n, 0.3),
+        ]
+        hits.append((t, first, second, n))
+    pieces["D"] = [Piece(0.0, np.array([-1.1, 0.5]), np.zeros(2), 0.0)]
+    return pieces, hits
+
+
+def sample(pieces: dict[str, list[Piece]], times: Vector) -> pd.DataFrame:
+    rows = []
+    for stone, parts in pieces.items():
+        theta, before = 0.0, 0.0
+        for frame, t in enumerate(times):
+            piece = [p for p in parts if p.t <= t][-1]
+            place, velocity = piece.at(t)
+            theta, before = theta + piece.omega * (t - before), t
+            rows.append([stone, frame, t, *place, theta, *velocity, piece.omega])
+    return pd.DataFrame(
+        rows, columns=["stone", "frame", "t", "x", "y", "theta", "vx", "vy", "omega"]
+    )
+
+
+def make_shot(frames: int = 170) -> Shot:
+    times = np.arange(frames) / 25
+    pieces, hits = shot_pieces(0.83)
+    tracks = sample(pieces, times)
+    for name in ("x", "y", "theta", "vx", "vy", "omega"):
+        tracks[f"sd_{name}"] = 0.004 if name in ("x", "y") else 0.02
+    tracks["seen"] = 1
+    tracks.loc[(tracks["stone"] == "B") & tracks["frame"].between(60, 70), "seen"] = 0
+    collisions = tuple(collision(hit, pieces) for hit in hits)
+    simulations = {
+        "point-mass": sample(shot_pieces(0.80)[0], times),
+        "rigid-body": sample(shot_pieces(0.5)[0], times),
+        "frictional": sample(shot_pieces(0.84)[0], times),
+    }
+    results = Results(
+        input=Input(('clips/take 7 <best> & "last".mp4',), 25.0, frames, float(times[-1])),
+        restitution=Estimate(0.8312345, 0.0123456),
+        friction=Friction(0.01093456, 0.00041234),
+        collisions=collisions,
+        glides=(
+            Glide("A", 0.04, 0.76, 0.0112, 0.0011),
+            Glide("C", 1.52, 6.76, 0.01091, 0.00012),
+            Glide("B", 1.52, 1.6, None, None),
+        ),
+        simulations={
+            "point-mass": SimulationScore(0.0312, {"A": 0.0213, "B": 0.0411, "C": 0.0987}),
+            "rigid-body": SimulationScore(None, {}, "no spins after the hit could be measured"),
+            "frictional": SimulationScore(0.0123, {"A": 0.011, "B": None, "C": 0.0219}),
+        },
+        warnings=("clip ends after 170 of 175 frames <used as far as it goes>",),
+    )
+    return Shot(tracks[list(TRACK_COLUMNS)], simulations, results)
+
+
+def collision(hit: tuple[float, str, str, Vector], pieces: dict[str, list[Piece]]) -> Collision:
+    t, first, second, n = hit
+    before, after = {}, {}
+    for name in (first, second):
+        late = next(p for p in pieces[name] if p.t == t)
+        early = pieces[name][pieces[name].index(late) - 1]
+        place, velocity = early.at(t)
+        before[name] = StoneState(*map(float, (*place, *velocity)), early.omega)
+        after[name] = StoneState(*map(float, (*place, *late.velocity)), late.omega)
+    return Collision(
+        t=t, stderr_t=0.0021, stones=(first, second), normal=(float(n[0]), float(n[1])),
+        restitution=0.83, stderr=0.02, before=before, after=after, momentum_residual=0.013,
+        stderr_momentum=0.006, energy_lost=0.15, stone_friction=None,
+        note=None if first == "A" else "the angle of the hit is known to 8° only",
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="session")
+def shot() -> Shot:
+    return make_shot()

@@ -1,0 +1,53 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from report.numbers import DASH, MINUS, fixed, parts, plus_minus, significant
+
+
+@pytest.mark.parametrize(
+    ("value", "stderr", "text"),
+    [
+        (0.8312345, 0.0123456, "0.831 ± 0.012"),
+        (0.01093456, 0.00041234, "0.01093 ± 0.00041"),
+        (0.83, 0.0996, "0.83 ± 0.10"),
+        (-0.0004, 0.0123, "0.000 ± 0.012"),
+        (-1.25, 0.25, f"{MINUS}1.25 ± 0.25"),
+        (12345.6, 1234.5, "12300 ± 1200"),
+        (0.83449, None, "0.834"),
+        (0.83449, 0.0, "0.834"),
+        (0.83449, math.nan, "0.834"),
+        (None, 0.1, DASH),
+        (math.nan, 0.1, DASH),
+    ],
+)
+def test_value_and_error_round_together(value, stderr, text):
+    assert plus_minus(value, stderr) == text
+
+
+@given(
+    st.floats(-1e4, 1e4, allow_nan=False),
+    st.floats(1e-6, 1e3, allow_nan=False),
+)
+def test_rounding_stays_within_half_of_the_last_digit(value, stderr):
+    first, second = parts(value, stderr)
+    assert second is not None
+    decimals = len(second.split(".")[1]) if "." in second else 0
+    unit = max(10.0**-decimals, 10.0 ** math.floor(math.log10(float(second)) - 1 + 1e-9))
+    assert abs(float(first.replace(MINUS, "-")) - value) <= 0.5001 * unit
+    assert abs(float(second) - stderr) <= 0.0501 * stderr * 1.0001
+    digits = second.replace(".", "").lstrip("0")
+    assert len(digits) == 2 or (decimals == 0 and float(second) >= 100)
+
+
+def test_numbers_without_an_error():
+    assert fixed(-0.0001, 2) == "0.00"
+    assert fixed(-1.23456, 2) == f"{MINUS}1.23"
+    assert fixed(None) == fixed(math.inf) == significant(None) == DASH
+    assert significant(0.0) == "0"
+    assert significant(0.000123456) == "0.000123"
+    assert significant(29.97, 4) == "29.97"

@@ -1,0 +1,202 @@
+from __future__ import annotations
+
+import base64
+import dataclasses
+import json
+import re
+import time
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from data.results import Estimate, Friction
+from data.sheet import HOUSE
+from report.numbers import MINUS
+from report.page import EMBED_LIMIT, write_report
+from vision.camera import Camera
+
+VOID = {"meta", "img", "br", "hr", "link", "input", "source"}
+
+
+class Page(HTMLParser):
+    """Reads a page, and fails where a tag is not closed in its turn."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self.text = path.read_text(encoding="utf-8")
+        self.open: list[str] = []
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.words: list[str] = []
+        self.numbers: list[tuple[float, str]] = []
+        self.feed(self.text)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag, attrs):
+        assert len(dict(attrs)) == len(attrs), f"an attribute twice in {tag}"
+        self.tags.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open and self.open[-1] == tag, f"</{tag}> closes {self.open[-1:]}"
+        self.open.pop()
+
+    def handle_data(self, data):
+        if self.open and self.open[-1] not in ("style", "script"):
+            self.words.append(data)
+        if self.open and self.open[-1] == "data":
+            value = self.tags[-1][1]["value"]
+            assert value is not None
+            self.numbers.append((float(value), data))
+
+    @property
+    def said(self) -> str:
+        return re.sub(r"\s+", " ", "".join(self.words))
+
+    def all(self, tag: str) -> list[dict[str, str | None]]:
+        return [attrs for name, attrs in self.tags if name == tag]
+
+
+def numbers_in(value: object) -> list[float]:
+    if isinstance(value, dict):
+        return [n for item in value.values() for n in numbers_in(item)]
+    if isinstance(value, list):
+        return [n for item in value for n in numbers_in(item)]
+    return [float(value)] if isinstance(value, (int, float)) else []
+
+
+def write(folder: Path, shot, **kwargs) -> Path:
+    options = {
+        "results": shot.results,
+        "tracks": shot.tracks,
+        "simulations": shot.simulations,
+        "house": HOUSE,
+        "version": "1.2.3",
+    }
+    return write_report(folder, **(options | kwargs))
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory, shot) -> tuple[Path, float]:
+    folder = tmp_path_factory.mktemp("report")
+    (folder / "overlay.mp4").write_bytes(b"not really a film")
+    cameras = [
+        Camera(k, k / 25, np.eye(3), (1280, 720), rms_px=0.25 + 0.001 * k, found=k != 3)
+        for k in range(5)
+    ]
+    start = time.process_time()
+    path = write(folder, shot, cameras=cameras, overlay=folder / "overlay.mp4")
+    return path, time.process_time() - start
+
+
+def test_page_is_well_formed_and_offline(written):
+    page = Page(written[0])
+    assert page.text.startswith("<!DOCTYPE html>")
+    assert page.tags[0] == ("html", {"lang": "en-GB"})
+    sources = [a["src"] for tag in ("img", "video", "script") for a in page.all(tag)]
+    assert sources
+    assert all(source is not None and source.startswith("data:") for source in sources)
+    assert not page.all("link")
+    assert not re.search(r"(src|href)=\"https?:|@import|url\(http", page.text)
+    ids = [attrs["id"] for _, attrs in page.tags if "id" in attrs]
+    assert len(ids) == len(set(ids))
+    assert all(attrs.get("alt") for attrs in page.all("img"))
+    assert written[0].stat().st_size < 3_000_000
+
+
+def test_it_is_quick(written):
+    assert written[1] < 10
+
+
+def test_numbers_are_those_of_the_results(written, shot):
+    page = Page(written[0])
+    values = {value for value, _ in page.numbers}
+    raw = json.loads(shot.results.to_json())
+    raw.pop("schema")
+    missing = [number for number in numbers_in(raw) if number not in values]
+    assert missing == []
+
+
+def test_what_is_read_is_what_is_meant(written):
+    factors = (1, 100, 1000)  # as it is, per cent, millimetres
+    for value, text in Page(written[0]).numbers:
+        shown = float(text.replace(MINUS, "-"))
+        digits = len(text.split(".")[1]) if "." in text else 0
+        half = 0.5000001 * 10.0**-digits
+        assert any(abs(value * factor - shown) <= half for factor in factors), (value, text)
+
+
+def test_the_answer_comes_first(written):
+    said = Page(written[0]).said
+    assert "0.831 ± 0.012" in said
+    assert "0.01093 ± 0.00041" in said
+    first = said.index("The shot")
+    for words in ("A on B at", "31 mm rms", "no spins after the hit", "4 of 5 fixed", "0.25 px"):
+        assert said.index(words) < first
+    assert "1.2.3" in said
+
+
+def test_names_of_files_are_no_markup(written):
+    page = Page(written[0])
+    assert 'take 7 <best> & "last".mp4' in page.said
+    assert "<used as far as it goes>" in page.said
+    assert "<best>" not in page.text
+
+
+def test_the_clip_is_embedded_when_small_and_linked_when_large(written, tmp_path, shot):
+    (video,) = Page(written[0]).all("video")
+    kind, content = (video["src"] or "").split(",")
+    assert kind == "data:video/mp4;base64"
+    assert base64.b64decode(content) == b"not really a film"
+    large = tmp_path / "my overlay.mp4"
+    large.write_bytes(bytes(EMBED_LIMIT + 1))
+    still = shot.tracks[shot.tracks["frame"] == 0]
+    results = dataclasses.replace(shot.results, collisions=())
+    options = {"results": results, "tracks": still, "simulations": {}}
+    page = Page(write(tmp_path, shot, overlay=large, **options))
+    assert page.all("video")[0]["src"] == "my%20overlay.mp4"
+
+
+def test_figures_lie_beside_the_page(written):
+    names = {p.name for p in (written[0].parent / "figures").iterdir()}
+    stems = ["plan", "speed", "hit_1", "hit_2"]
+    stems += [f"{kind}_{stone}" for kind in ("motion", "simulated") for stone in "ABC"]
+    assert names == {f"{stem}.{suffix}" for stem in stems for suffix in ("svg", "png")}
+
+
+def test_what_is_not_known_is_said_with_its_reason(tmp_path, shot):
+    results = dataclasses.replace(
+        shot.results,
+        restitution=Estimate(),
+        friction=Friction(),
+        collisions=(),
+        glides=(),
+        simulations={},
+        warnings=("no hit was seen: no restitution", "no glide is long enough: no friction"),
+    )
+    (tmp_path / "figures").mkdir()
+    for name in ("hit_7.svg", "mine.svg"):
+        (tmp_path / "figures" / name).write_text("old")
+    still = shot.tracks[shot.tracks["frame"] == 0]
+    page = Page(write(tmp_path, shot, results=results, tracks=still, simulations={}, house=None))
+    assert page.said.count("no hit was seen: no restitution") == 2
+    assert page.said.count("no glide is long enough: no friction") == 2
+    assert "—" in page.said
+    assert "nan" not in page.said.lower().replace("resonance", "")
+    assert "None" not in page.said
+    names = {p.name for p in (tmp_path / "figures").iterdir()}
+    assert names == {"plan.svg", "plan.png", "mine.svg"}
+
+
+def test_strange_stone_names_make_files_and_pages(tmp_path, shot):
+    new = {"A": "../a/b", "B": "a/b", "C": "<i>$c</i>", "D": "D"}
+    tracks = shot.tracks.replace({"stone": new})
+    results = dataclasses.replace(shot.results, collisions=(), simulations={})
+    page = Page(write(tmp_path, shot, results=results, tracks=tracks, simulations={}))
+    assert "<i>" not in page.text
+    assert "<i>$c</i>" in page.said
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["figures", "report.html"]
+    assert len(list((tmp_path / "figures").glob("motion_*.svg"))) == 3
