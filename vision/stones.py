@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import cv2
 import numpy as np
@@ -239,7 +240,7 @@ def rectify(image: Image, camera: Camera, disc: Stone, search: Search = SEARCH) 
     if coarser > 1:
         small = (width // coarser, height // coarser)
         image = np.asarray(cv2.resize(image, small, interpolation=cv2.INTER_AREA), np.uint8)
-        pixels = (pixels + 0.5) / coarser - 0.5
+        pixels = np.asarray((pixels + 0.5) / coarser - 0.5, np.float32)
     ice_image = cv2.remap(
         image, pixels[..., 0], pixels[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT
     )
@@ -260,10 +261,12 @@ def _visible_area(nodes: Floats, width: int, height: int) -> float:
 # --- what a colour says ----------------------------------------------------------------
 
 
+@lru_cache(maxsize=1)
 def _lab_of_table() -> Array:
     steps = (np.arange(64) * 4 + 2).astype(np.uint8)
     bgr = np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), -1).reshape(64, -1, 3)
-    return cv2.cvtColor(bgr, cv2.COLOR_BGR2LAB).reshape(64, 64, 64, 3).astype(float)
+    lab = cv2.cvtColor(bgr, cv2.COLOR_BGR2LAB).reshape(64, 64, 64, 3)
+    return np.asarray(lab, float)
 
 
 def any_stone(white: float = 210.0) -> Appearance:
@@ -342,12 +345,13 @@ def _colour(samples: Array, floor: tuple[float, float, float]) -> Colour:
 def membership(image: Image, appearance: Appearance) -> Floats:
     """Say what each pixel may be: 1 cap, −1 granite, 0 neither; shape (h, w)."""
     b, g, r = (image[..., channel].astype(np.int32) >> 2 for channel in range(3))
-    return np.asarray(appearance.membership.ravel()[(b << 12) | (g << 6) | r], np.float32)
+    return np.asarray(appearance.membership.ravel().take((b << 12) | (g << 6) | r), np.float32)
 
 
 # --- candidates ------------------------------------------------------------------------
 
 
+@lru_cache(maxsize=16)
 def _annulus(inner: float, outer: float, size: int) -> Floats:
     """Weights of sum 1 over a ring, px, anti-aliased; shape (2 size + 1, 2 size + 1)."""
     fine = 6
@@ -414,7 +418,8 @@ def _peaks(response: Floats, least: float, spacing_px: float, most: int = 60) ->
 class _Rays:
     """Colours on rays around candidates, from the picture itself."""
 
-    lab: NDArray[np.uint8]  # (n, rays, radii, 3)
+    bgr: Image  # (n, rays, radii, 3)
+    lab: NDArray[np.uint8]  # the same in L*a*b*
     inside: NDArray[np.bool_]  # (n, rays, radii)
     radius: Array  # (radii,)
     angle: Array  # (rays,)
@@ -438,9 +443,15 @@ def _sample_rays(image: Image, camera: Camera, places: Array, disc: Stone, searc
         cv2.remap(image, part[..., 0], part[..., 1], cv2.INTER_LINEAR)
         for part in np.split(flat, range(rows, len(flat), rows))
     ]
-    lab = np.asarray(cv2.cvtColor(np.concatenate(parts), cv2.COLOR_BGR2LAB), np.uint8)
+    bgr = np.asarray(np.concatenate(parts), np.uint8)
+    lab = np.asarray(cv2.cvtColor(bgr, cv2.COLOR_BGR2LAB), np.uint8)
+    shape = (*inside.shape, 3)
     return _Rays(
-        lab.reshape(*inside.shape, 3), np.asarray(inside), np.asarray(radius), np.asarray(angle)
+        bgr.reshape(shape),
+        lab.reshape(shape),
+        np.asarray(inside),
+        np.asarray(radius),
+        np.asarray(angle),
     )
 
 
@@ -519,7 +530,7 @@ def _fit_circles(
     least = reach * float(expected[-1]) + 2 * noise
     solution = np.zeros(2 + circles)
     residual = target
-    for _ in range(8):
+    for _ in range(6):
         if (w > 0).sum() < 8:
             return None
         solution = np.linalg.solve(
@@ -540,16 +551,17 @@ def _fit_circles(
     return _Fit(solution[:2], expected + solution[2:], covariance, rms, shares)
 
 
-def _fall(signal: Array) -> Array:
-    """Negative derivative along the rays, lightly smoothed, per step of the radius."""
-    smooth = cv2.GaussianBlur(signal.astype(np.float32), (0, 0), 1.6, sigmaY=0.6)
-    return -np.gradient(smooth.astype(float), axis=1)
+def _falls(lab: NDArray[np.uint8]) -> Array:
+    """Negative derivative of colours along the rays, lightly smoothed, per step of the radius.
 
-
-def _steps(lab: Array) -> Array:
-    """Change of colour along the rays, whatever its sign."""
-    falls = np.stack([_fall(lab[..., channel]) for channel in range(3)])
-    return np.asarray(np.sqrt((falls**2).sum(0)), float)
+    Shape (rays, radii, 3) as given; the derivative of a Gaussian of 1.6 steps.
+    """
+    x = np.arange(-5, 6, dtype=np.float32)
+    gauss = np.exp(-0.5 * (x / 1.6) ** 2)
+    slope = gauss * x
+    slope /= (slope * x).sum()
+    across = np.exp(-0.5 * (np.arange(-2, 3, dtype=np.float32) / 0.6) ** 2)
+    return np.asarray(cv2.sepFilter2D(lab, cv2.CV_32F, -slope, across / across.sum()), float)
 
 
 @dataclass(frozen=True)
@@ -567,10 +579,10 @@ def _measure_stone(
 ) -> _Measured | None:
     """Fit the edges of cap and granite; None where there are none."""
     lab, inside, radius = rays.lab[index].astype(float), rays.inside[index], rays.radius
+    falls = _falls(rays.lab[index])
     in_cap = (radius > 0.15 * disc.cap_radius) & (radius < 0.88 * disc.cap_radius)
     in_ring = (radius > 1.10 * disc.cap_radius) & (radius < 0.97 * disc.radius)
-    bgr = cv2.cvtColor(rays.lab[index], cv2.COLOR_LAB2BGR)
-    worth = membership(np.asarray(bgr, np.uint8), appearance)
+    worth = membership(rays.bgr[index], appearance)
     cap_pixels = lab[:, in_cap][inside[:, in_cap] & (worth[:, in_cap] > 0.3)]
     ring_pixels = lab[:, in_ring][inside[:, in_ring] & (worth[:, in_ring] < -0.3)]
     if len(cap_pixels) < 60 or len(ring_pixels) < 30:
@@ -578,15 +590,18 @@ def _measure_stone(
     cap, granite = np.median(cap_pixels, axis=0), np.median(ring_pixels, axis=0)
     # Bolts and highlights are light and dark alike; the hue is what ends at the cap's edge.
     apart = np.array([0.1, 1.0, 1.0]) * (cap - granite)
-    signal = ((lab - granite) @ apart) / float((cap - granite) @ apart)
+    apart = apart / float((cap - granite) @ apart)
+    signal = (lab - granite) @ apart
     capped = _share(signal[:, in_cap] > 0.5, inside[:, in_cap]) > 0.4
     greyed = (
         _share((worth[:, in_ring] < 0.1) & (signal[:, in_ring] < 0.55), inside[:, in_ring]) > 0.4
     )
     cap_edge, cap_strength = _edge(
-        _fall(signal), inside, radius, disc.cap_radius, 0.12 * disc.cap_radius
+        falls @ apart, inside, radius, disc.cap_radius, 0.12 * disc.cap_radius
     )
-    rim_edge, rim_strength = _edge(_steps(lab), inside, radius, disc.radius, 0.05 * disc.radius)
+    rim_edge, rim_strength = _edge(
+        np.sqrt((falls**2).sum(-1)), inside, radius, disc.radius, 0.05 * disc.radius
+    )
     at_cap = inside[:, np.searchsorted(radius, disc.cap_radius)]
     at_rim = inside[:, np.searchsorted(radius, disc.radius)]
     fit = _fit_circles(
@@ -613,8 +628,9 @@ def _measure_disc(
     rays: _Rays, index: int, disc: Stone, search: Search, noise: float
 ) -> _Measured | None:
     """Fit the rim of a disc of unknown colours; None where there is no such circle."""
-    lab, inside, radius = rays.lab[index].astype(float), rays.inside[index], rays.radius
-    edge, strength = _edge(_steps(lab), inside, radius, disc.radius, 0.06 * disc.radius)
+    lab, inside, radius = rays.lab[index], rays.inside[index], rays.radius
+    steps = np.sqrt((_falls(lab) ** 2).sum(-1))
+    edge, strength = _edge(steps, inside, radius, disc.radius, 0.06 * disc.radius)
     at_rim = inside[:, np.searchsorted(radius, disc.radius)]
     ok = (strength > max(12.0, 0.25 * float(np.median(strength)))) & at_rim
     fit = _fit_circles(
