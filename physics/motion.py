@@ -3,7 +3,8 @@
 Between two hits a stone's speed falls by the ice law alone, and the direction of its path
 turns at a rate that depends on the speed and on the sense of the spin alone. So every glide
 on one ice is a piece of one and the same curve, shifted, rotated and mirrored. `Curve` holds
-that curve by the time that is left until rest; `Path` lays it through a stone's state.
+that curve by the time that is left until rest; `Path` lays it through a stone's state. (A law
+of curl that asks for the amount of the spin too would need a curve for every path.)
 """
 
 from __future__ import annotations
@@ -231,7 +232,7 @@ def _cubic(c: tuple[float, float, float, float], s: float) -> float:
     return c[0] + s * (c[1] + s * (c[2] + s * c[3]))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False, eq=False)
 class Curve:
     """The one curve of all glides, by the time τ that is left until rest.
 

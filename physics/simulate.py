@@ -284,15 +284,13 @@ class _Run:
         a, b = self.paths[i][-1], self.paths[j][-1]
         if a.stop <= self.t and b.stop <= self.t:
             return math.inf
-        pa, pb = a.at(self.t), b.at(self.t)
-        dx, dy = pb.x - pa.x, pb.y - pa.y
-        distance = math.hypot(dx, dy)
+        pa, pb = a.point(self.t), b.point(self.t)
+        distance = math.dist(pa[:2], pb[:2])
         reach = self.reach[i, j]
         if distance - reach > a.length + b.length:
             return math.inf
         if distance <= reach + TOUCHING:
-            closing = ((pa.vx - pb.vx) * dx + (pa.vy - pb.vy) * dy) / distance
-            if closing > SLOW:
+            if _closing(a.at(self.t), b.at(self.t)) > SLOW:
                 return self.t
             reach = min(reach, distance) - PRESSED
         return first_contact(a, b, self.t, reach)
@@ -307,7 +305,7 @@ class _Run:
         dx, dy = two.x - one.x, two.y - one.y
         distance = math.hypot(dx, dy)
         n = (dx / distance, dy / distance)
-        closing = (one.vx - two.vx) * n[0] + (one.vy - two.vy) * n[1]
+        closing = _closing(one, two)
         listed = closing > SLOW
         if closing > 0:
             spins = (one.omega, two.omega)
@@ -433,6 +431,12 @@ def _crossing(a: Path, b: Path, low: float, high: float, reach: float) -> float:
             return new
         t = new
     return t
+
+
+def _closing(one: Motion, two: Motion) -> float:
+    """Speed at which two stones close, m/s."""
+    dx, dy = two.x - one.x, two.y - one.y
+    return ((one.vx - two.vx) * dx + (one.vy - two.vy) * dy) / math.hypot(dx, dy)
 
 
 def _changed(motion: Motion, velocity: ArrayLike, omega: ArrayLike) -> Motion:

@@ -1,0 +1,114 @@
+"""How fast and how exact the simulator is, on one core.
+
+Run ``python -m benchmarks.simulate [REPEATS]``. It prints, for shots of one to sixteen stones,
+the median time of one simulation with its number of hits, the time that a new ice law costs,
+and the difference of the places of rest from an ODE solver at its tightest and from a curve
+of twice as many cells.
+"""
+
+from __future__ import annotations
+
+import math
+import statistics
+import sys
+import time
+from collections.abc import Callable
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from physics.impact import Frictional
+from physics.motion import FCV1, FCV1Curl, Motion, Path, curve
+from physics.simulate import Shot, StoneStart, simulate
+
+
+def single() -> Shot:
+    return Shot((StoneStart("A", 0, 0, 0, 2.4, math.pi / 2),))
+
+
+def two_hits() -> Shot:
+    stones = (
+        StoneStart("A", -0.02, -3, 0, 2.0, 0.8),
+        StoneStart("B", 0.1, 0),
+        StoneStart("C", 0.7, 1.2),
+    )
+    return Shot(stones, Frictional(0.83, 0.2))
+
+
+def house(seed: int) -> Shot:
+    """Sixteen stones: a fast one thrown into fifteen that lie about the house."""
+    rng = np.random.default_rng(seed)
+    cells = rng.permutation(25)[:15]
+    places = 0.55 * np.stack([cells % 5 - 2, cells // 5 - 2], 1) + rng.uniform(-0.1, 0.1, (15, 2))
+    lying = tuple(StoneStart(f"S{k:02d}", x, y) for k, (x, y) in enumerate(places.tolist()))
+    thrown = StoneStart("A", rng.uniform(-1, 1), -8, 0, 3.0, 1.5)
+    return Shot((thrown, *lying), Frictional(0.83, 0.2))
+
+
+def rack() -> Shot:
+    """Fifteen stones that almost touch, broken by a sixteenth."""
+    lying = tuple(
+        StoneStart(f"S{row}{k}", (k - row / 2) * 0.2912, 2 + row * 0.2912 * math.sqrt(3) / 2)
+        for row in range(5)
+        for k in range(row + 1)
+    )
+    return Shot((StoneStart("A", 0.01, 0, 0, 3.0, 1.0), *lying), Frictional(0.83, 0.2))
+
+
+def seconds(call: Callable[[], object], repeats: int) -> float:
+    """Median time of one call, s."""
+    times = []
+    for _ in range(repeats):
+        begin = time.perf_counter()
+        call()
+        times.append(time.perf_counter() - begin)
+    return statistics.median(times)
+
+
+def error_against_ode(speed: float) -> float:
+    """Distance from the place of rest that a general ODE solver finds, m."""
+    ice, curl = FCV1(), FCV1Curl()
+
+    def rates(v: float, state: np.ndarray) -> list[float]:
+        per_speed = -1 / float(ice.deceleration(v))
+        heading = state[0]
+        return [
+            per_speed * float(curl.turn_rate(v)),
+            per_speed * v * math.cos(heading),
+            per_speed * v * math.sin(heading),
+        ]
+
+    run = solve_ivp(rates, (speed, 1e-12), [math.pi / 2, 0, 0], rtol=1e-12, atol=1e-13)
+    last = Path(0.0, Motion(0, 0, 0, 0, speed, 2.0), ice, curl).at(math.inf)
+    return math.dist((last.x, last.y), run.y[1:, -1])
+
+
+def error_of_curve() -> float:
+    """Largest difference of the distance to rest between two densities of cells, m."""
+    coarse = curve(FCV1(), FCV1Curl(), 4.0)
+    fine = curve(FCV1(), FCV1Curl(), 4.0, 2 * len(coarse.cells))
+    return max(
+        abs(coarse.cells[k].along[0] - fine.cells[2 * k].along[0]) for k in range(len(coarse.cells))
+    )
+
+
+def main(repeats: int) -> None:
+    shots = {
+        "1 stone": [single()],
+        "3 stones, 2 hits": [two_hits()],
+        "16 stones in the house": [house(seed) for seed in range(10)],
+        "16 stones, rack": [rack()],
+    }
+    for name, group in shots.items():
+        hits = statistics.mean(len(simulate(shot).hits) for shot in group)
+        spent = statistics.mean(seconds(lambda s=shot: simulate(s), repeats) for shot in group)  # type: ignore[misc]
+        print(f"{name:24} {1e3 * spent:8.3f} ms {1 / spent:8.0f} shots/s {hits:6.1f} hits")
+    build = seconds(lambda: curve.__wrapped__(FCV1(), FCV1Curl(), 4.0), repeats)
+    print(f"{'a new ice law':24} {1e3 * build:8.3f} ms")
+    for speed in (0.5, 2.0, 3.5):
+        print(f"rest from {speed} m/s, against an ODE solver {error_against_ode(speed):.1e} m")
+    print(f"distance to rest, twice as many cells {error_of_curve():.1e} m")
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 20)
