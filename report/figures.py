@@ -479,8 +479,8 @@ def _symbols(names: Sequence[str]) -> dict[str, str]:
 
 def _legend_below(figure: Figure, handles: Sequence[Artist]) -> None:
     """Put a legend under the figure in as many columns as its width has room for."""
-    longest = max(len(str(handle.get_label())) for handle in handles)
-    columns = int((WIDTH - 0.3) / (0.55 + 0.07 * longest))
+    widths = [0.5 + 0.066 * len(str(handle.get_label())) for handle in handles]
+    columns = len(handles) if sum(widths) < WIDTH - 0.2 else int((WIDTH - 0.2) / max(widths))
     figure.legend(
         handles=handles,
         loc="outside lower center",
