@@ -2,22 +2,19 @@
 
     python -m benchmarks.shots [CLIP.mp4 ...] [--shared ../shared]
 
-A clip ``NAME.mp4`` has its truth in ``NAME.truth.csv`` (stone, frame, t, x, y, visible) and
-``NAME.truth.json`` (e, mu) beside it. The yardstick for the time is decoding the clip alone.
+The truth of a clip ``NAME.mp4`` lies beside it, in ``NAME.truth.json`` and perhaps ``.csv``.
+The yardstick for the time is decoding the clip alone.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
 import tempfile
 import time
 from pathlib import Path
 
-import pandas as pd
-
 import pipeline
-from tests.scoring import score_tracks
+from tests.scoring import read_truth, score_tracks
 from vision.clip import open_clip
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -39,17 +36,15 @@ def main() -> None:
 
 
 def row(clip: Path, out: Path) -> str:
-    truth = json.loads(clip.with_suffix(".truth.json").read_text())
-    stones = pd.read_csv(clip.with_suffix(".truth.csv"))
+    truth = read_truth(clip)
     start = time.process_time()
     frames = sum(1 for _ in open_clip([clip]))
     decoding = time.process_time() - start
     start, wall = time.process_time(), time.perf_counter()
     done = pipeline.run([clip], out)
     cpu, wall = time.process_time() - start, time.perf_counter() - wall
-    score = score_tracks(done.tracks, stones)
+    score = score_tracks(done.tracks, truth.stones)
     e, mu = done.results.restitution, done.results.friction
-    true_e, true_mu = float(truth["e"]), float(truth["mu"])
     return "\n".join(
         [
             f"{clip.stem}: {frames} frames, {cpu:.1f} s CPU, {wall:.1f} s, decoding {decoding:.1f}",
@@ -57,8 +52,8 @@ def row(clip: Path, out: Path) -> str:
             f"  false {score.false_tracks} ({score.false_frames} frames)",
             f"  position RMSE {score.rmse * 1e3:.1f} mm  bias {score.bias[0] * 1e3:+.1f}"
             f" {score.bias[1] * 1e3:+.1f} mm  within two sd {score.within_two_sd:.2f}",
-            f"  e {e.value} ± {e.stderr} (true {true_e})",
-            f"  mu {mu.value} ± {mu.stderr} (true {true_mu:.5f})",
+            f"  e {e.value} ± {e.stderr} (true {truth.restitution})",
+            f"  mu {mu.value} ± {mu.stderr} (true {truth.friction:.5f})",
             *(f"  {hit.stones} t {hit.t:.4f} e {hit.restitution} ± {hit.stderr}"
               for hit in done.results.collisions),
             *(f"  {model} rmse {s.rmse} rest {dict(s.rest_error)}"

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -25,6 +27,29 @@ class TrackScore:
     bias: tuple[float, float]
     within_two_sd: float
     names: dict[str, str]
+
+
+@dataclass(frozen=True)
+class Truth:
+    """The stones of a clip as they were: ``stone, frame, t, x, y, …, visible``; e and μ."""
+
+    stones: pd.DataFrame
+    restitution: float
+    friction: float
+
+
+def read_truth(clip: Path) -> Truth:
+    """Truth beside `clip`: one .truth.json of this project's, or .truth.csv and .truth.json."""
+    facts = json.loads(clip.with_suffix(".truth.json").read_text())
+    if clip.with_suffix(".truth.csv").exists():
+        stones = pd.read_csv(clip.with_suffix(".truth.csv"))
+        return Truth(stones, float(facts["e"]), float(facts["mu"]))
+    tables = [
+        pd.DataFrame({"stone": name, "frame": range(len(facts["t"])), "t": facts["t"], **columns})
+        for name, columns in facts["stones"].items()
+    ]
+    restitution = float(facts["hits"][0]["restitution"])
+    return Truth(pd.concat(tables, ignore_index=True), restitution, float(facts["friction"]))
 
 
 def score_tracks(

@@ -15,7 +15,7 @@ import pipeline
 from data.errors import CurlshotError, InputError
 from data.results import Results
 from data.tracks import TRACK_COLUMNS
-from tests.scoring import score_tracks
+from tests.scoring import read_truth, score_tracks
 
 SAMPLE = pipeline.sample_clip()
 CONTRACT = {
@@ -54,18 +54,18 @@ def sample(tmp_path_factory: pytest.TempPathFactory) -> pipeline.Run:
 
 
 def test_sample_is_measured_to_the_bars(sample: pipeline.Run) -> None:
-    truth = json.loads(SAMPLE.with_suffix(".truth.json").read_text())
-    score = score_tracks(sample.tracks, pd.read_csv(SAMPLE.with_suffix(".truth.csv")))
+    truth = read_truth(SAMPLE)
+    score = score_tracks(sample.tracks, truth.stones)
     assert score.missed == ()
     assert score.switches == 0
     assert score.false_tracks == ()
     assert score.rmse < 0.020
     e, mu = sample.results.restitution, sample.results.friction
-    assert e.value == pytest.approx(truth["e"], abs=0.03)
-    assert mu.value == pytest.approx(truth["mu"], rel=0.10)
+    assert e.value == pytest.approx(truth.restitution, abs=0.03)
+    assert mu.value == pytest.approx(truth.friction, rel=0.10)
     assert e.stderr is not None and mu.stderr is not None
-    assert abs(e.value - truth["e"]) < 4 * e.stderr
-    assert abs(mu.value - truth["mu"]) < 4 * mu.stderr
+    assert abs(e.value - truth.restitution) < 4 * e.stderr
+    assert abs(mu.value - truth.friction) < 4 * mu.stderr
 
 
 def test_sample_names_stones_by_their_first_motion(sample: pipeline.Run) -> None:
@@ -111,7 +111,7 @@ def test_single_picture_gives_positions_only(tmp_path: Path) -> None:
     picture = tmp_path / "still.png"
     cv2.imwrite(str(picture), image)
     done = pipeline.run([picture], tmp_path / "out")
-    truth = pd.read_csv(SAMPLE.with_suffix(".truth.csv"))
+    truth = read_truth(SAMPLE).stones
     score = score_tracks(done.tracks, truth[truth["frame"] == 0])
     assert score.recall == 1
     assert score.rmse < 0.03
