@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -97,11 +98,14 @@ class Clip:
         capture = cv2.VideoCapture(str(self.files[0]))
         try:
             index, before = 0, -np.inf
+            start = end = longest = 0.0
             while self.last is None or index <= self.last:
                 if not capture.grab():
                     break
                 # Read after grab: the presentation time stamp of this very frame.
                 t = capture.get(cv2.CAP_PROP_POS_MSEC) / 1000
+                start = t if index == 0 else start
+                longest, end = max(longest, t - end if index else 0.0), t
                 if index >= self.first:
                     ok, image = capture.retrieve()
                     if not ok:
@@ -114,8 +118,12 @@ class Clip:
                         before = t
                         yield Frame(index, t, np.asarray(image, np.uint8))
                 index += 1
+            # Where the container does not count its frames (Matroska), the promised number is
+            # duration times rate, too many if the rate varies: so the time is asked as well.
+            rate = self.fps or np.inf
+            missing = self.frames / rate - (end - start) > 1.5 * max(1 / rate, longest)
             ended_early = self.last is None or self.last >= index
-            if ended_early and index < self.frames:
+            if ended_early and index < self.frames and missing:
                 self._warn(
                     f"{self.files[0]}: ends after {index} of {self.frames} frames; used as far as"
                     " it goes"
@@ -145,7 +153,8 @@ def open_clip(
     Parameters
     ----------
     paths : sequence of Path
-        One video file, or one or more pictures.
+        One video file, one or more pictures, or a folder of pictures (in the order of their
+        names, numbers by value: 2 before 10).
     fps : float, optional
         Rate of pictures (25 if not given); not for videos, which carry their times.
     frames : (first, last), optional
@@ -156,6 +165,9 @@ def open_clip(
     InputError
         A file that is missing, empty or cannot be read as what it is.
     """
+    paths = [file for path in paths for file in (_pictures(path) if path.is_dir() else [path])]
+    if not paths:
+        raise InputError("no clip given")
     for path in paths:
         if not path.exists():
             raise InputError(f"{path}: no such file")
@@ -197,10 +209,24 @@ def _open_video(paths: Sequence[Path], first: int, last: int | None) -> Clip:
     return Clip((paths[0],), size, fps if fps > 0 else None, max(count, 1), first, last)
 
 
+def _pictures(folder: Path) -> list[Path]:
+    """Pictures in a folder by name, numbers by value."""
+
+    def by_value(path: Path) -> list[tuple[int, int, str]]:
+        parts = re.findall(r"\d+|\D+", path.name.casefold())
+        return [(0, int(p), "") if p.isdecimal() else (1, 0, p) for p in parts]
+
+    found = [path for path in folder.iterdir() if path.suffix.lower() in IMAGE_SUFFIXES]
+    if not found:
+        raise InputError(f"{folder}: no pictures in this folder")
+    return sorted(found, key=by_value)
+
+
 def _read_image(path: Path) -> Image | None:
     # imdecode of bytes: imread fails on non-ASCII names on some systems.
-    raw = np.fromfile(path, np.uint8)
-    if raw.size == 0:
+    try:
+        raw = np.fromfile(path, np.uint8)
+        image = cv2.imdecode(raw, cv2.IMREAD_COLOR) if raw.size else None
+    except (OSError, cv2.error):
         return None
-    image = cv2.imdecode(raw, cv2.IMREAD_COLOR)
     return None if image is None else np.asarray(image, np.uint8)
