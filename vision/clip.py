@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -153,8 +152,7 @@ def open_clip(
     Parameters
     ----------
     paths : sequence of Path
-        One video file, one or more pictures, or a folder of pictures (in the order of their
-        names, numbers by value: 2 before 10).
+        One video file, or one or more pictures.
     fps : float, optional
         Rate of pictures (25 if not given); not for videos, which carry their times.
     frames : (first, last), optional
@@ -165,12 +163,13 @@ def open_clip(
     InputError
         A file that is missing, empty or cannot be read as what it is.
     """
-    paths = [file for path in paths for file in (_pictures(path) if path.is_dir() else [path])]
     if not paths:
         raise InputError("no clip given")
     for path in paths:
         if not path.exists():
             raise InputError(f"{path}: no such file")
+        if path.is_dir():
+            raise InputError(f"{path}: a folder, not a clip; give the pictures in it")
         if path.stat().st_size == 0:
             raise InputError(f"{path}: the file is empty")
     first, last = frames if frames is not None else (0, None)
@@ -207,19 +206,6 @@ def _open_video(paths: Sequence[Path], first: int, last: int | None) -> Clip:
     size = (image.shape[1], image.shape[0])
     # Some containers do not know their length; then the clip ends where reading ends.
     return Clip((paths[0],), size, fps if fps > 0 else None, max(count, 1), first, last)
-
-
-def _pictures(folder: Path) -> list[Path]:
-    """Pictures in a folder by name, numbers by value."""
-
-    def by_value(path: Path) -> list[tuple[int, int, str]]:
-        parts = re.findall(r"\d+|\D+", path.name.casefold())
-        return [(0, int(p), "") if p.isdecimal() else (1, 0, p) for p in parts]
-
-    found = [path for path in folder.iterdir() if path.suffix.lower() in IMAGE_SUFFIXES]
-    if not found:
-        raise InputError(f"{folder}: no pictures in this folder")
-    return sorted(found, key=by_value)
 
 
 def _read_image(path: Path) -> Image | None:

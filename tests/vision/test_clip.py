@@ -136,7 +136,7 @@ def test_what_is_no_clip_is_refused_in_one_line(
         (empty, "the file is empty"),
         (noise, "not a readable picture"),
         (tmp_path / "none.mp4", "no such file"),
-        (tmp_path / "folder", "no pictures"),
+        (tmp_path / "folder", "a folder"),
     ):
         with pytest.raises(InputError, match=reason) as refusal:
             open_clip([path])
@@ -172,14 +172,6 @@ def test_pictures_have_the_rate_that_is_given(tmp_path: Path, suffix: str) -> No
     assert not clip.is_video
     ranged = open_clip(clip.files, fps=10, frames=(3, 5))
     assert [frame.t for frame in ranged] == pytest.approx([0.3, 0.4, 0.5])
-
-
-def test_a_folder_is_read_in_the_order_of_its_numbers(tmp_path: Path) -> None:
-    write_pictures(tmp_path, 12)
-    (tmp_path / "notes.txt").write_text("not a picture")
-    clip = open_clip([tmp_path])
-    assert [number(frame) for frame in clip] == list(range(12))
-    assert clip.fps == 25
 
 
 def test_a_single_picture_has_no_rate(tmp_path: Path) -> None:
