@@ -24,6 +24,9 @@ RADIUS = 0.145
 LARGEST_OVERLAP = 0.2
 """How far two stones may overlap as placed, in radii: more is a mistake, less is measuring."""
 
+LEAST_FRICTION = 1e-4
+"""On smoother ice a shot would last for ever."""
+
 _PHYSICS_KEYS = (
     "model", "restitution", "stone_friction", "ice", "friction", "curl", "radius", "inertia",
 )  # fmt: skip
@@ -140,7 +143,7 @@ def _shot(content: Mapping[str, Any], faults: list[str]) -> Shot:
         if ice == "fcv1":
             faults.append('[physics]: friction is for ice = "constant" or "penner"')
         else:
-            friction = physics.number("friction", Constant.friction, 0.0, 1.0, above=True)
+            friction = physics.number("friction", Constant.friction, LEAST_FRICTION, 1.0)
     curl = physics.choice("curl", "fcv1", CURL_LAWS)
     stones = tuple(_stone(k, item, faults) for k, item in enumerate(tables, start=1))
     _check_together(stones, radius, faults)

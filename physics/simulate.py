@@ -185,7 +185,11 @@ def simulate(shot: Shot, *, until: float | None = None) -> Simulation:
     InputError
         Where stones share a name or place, numbers make no sense, or a stone that is hit
         lacks the spin after the hit which the model needs.
+    ValueError
+        Where `until` lies before 0.
     """
+    if until is not None and not until >= 0:
+        raise ValueError(f"a simulation starts at t = 0: it cannot end at {until} s")
     check_shot(shot)
     return _Run(shot).run(math.inf if until is None else until)
 
@@ -263,7 +267,7 @@ class _Run:
                 if not set(pair).isdisjoint(other):
                     self.contacts[other] = self._next_contact(*other)
         else:
-            raise RuntimeError("the stones do not come to rest")
+            raise InputError(f"shot: more than {MAX_IMPULSES} impulses: set fewer stones to touch")
         names = [stone.name for stone in self.shot.stones]
         return Simulation(
             tuple(self.hits),

@@ -105,6 +105,10 @@ def test_laws(tmp_path: Path, laws: str, field: str, value: object) -> None:
         ("[physics]\nice = 3\n" + ONE_STONE, "no ice 3"),
         ("[physics]\ncurl = 'fcv2'\n" + ONE_STONE, "did you mean fcv1?"),
         ("[physics]\nfriction = 0.01\n" + ONE_STONE, 'friction is for ice = "constant"'),
+        (
+            "[physics]\nice = 'penner'\nfriction = 0\n" + ONE_STONE,
+            "friction = 0 must be within 0.0001..1",
+        ),
         ("[[stone]]\nx = 0\ny = 0", "stone number 1: name is missing"),
         ("[[stone]]\nname = 7\nx = 0\ny = 0", "stone number 1: name is missing or no text"),
         ("[[stone]]\nname = 'A'\ny = 0", "stone A: x is missing"),

@@ -354,6 +354,8 @@ def test_samples_form_a_table() -> None:
     for wrong in ([-0.1], [math.nan]):
         with pytest.raises(ValueError, match="finite times"):
             sim.sample(wrong)
+    with pytest.raises(ValueError, match="cannot end"):
+        simulate(shot(StoneStart("A", 0, 0)), until=-1.0)
 
 
 def test_a_sample_at_a_hit_shows_the_state_after_it() -> None:
