@@ -31,6 +31,7 @@ from tests.synthetic.scenes import (
     red_stone,
     sample_camera,
     sample_scene,
+    sweepers,
     yellow_stone,
 )
 from tests.synthetic.video import write_video
@@ -40,5 +41,5 @@ __all__ = [
     "Person", "Scene", "Sheet", "Start", "Stone", "TrueHit", "Truth", "View", "broadcast_camera",
     "cached_clip", "describe", "frame_times", "pictures", "random_scene", "red_stone",
     "render_clip", "render_still", "sample_camera", "sample_scene", "simulate", "still_camera",
-    "tilted_camera", "write_video", "yellow_stone",
+    "sweepers", "tilted_camera", "write_video", "yellow_stone",
 ]  # fmt: skip

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import pickle
 import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -214,20 +213,14 @@ def cached_clip(
     key = hashlib.sha256(repr(what).encode()).hexdigest()[:24]
     folder = Path(tempfile.gettempdir()) / "curlshot-clips"
     folder.mkdir(exist_ok=True)
-    clip, truth_file = folder / f"{key}.mp4", folder / f"{key}.truth"
-    if not (clip.exists() and truth_file.exists()):
+    clip = folder / f"{key}.mp4"
+    if not clip.exists():
         with tempfile.TemporaryDirectory(dir=folder) as scratch:
-            fresh = Path(scratch) / "clip.mp4"
-            truth = render_clip(
-                scene, camera, fresh, fps=fps, times=moments, shutter=shutter, crf=crf,
-                supersample=supersample,
-            )  # fmt: skip
-            noted = Path(scratch) / "truth"
-            noted.write_bytes(pickle.dumps(truth))
+            fresh = Path(scratch) / clip.name
+            frames = pictures(scene, camera, moments, shutter=shutter, supersample=supersample)
+            write_video(fresh, frames, fps=fps, crf=crf)
             fresh.replace(clip)
-            noted.replace(truth_file)
-        return clip, truth
-    return clip, pickle.loads(truth_file.read_bytes())
+    return clip, describe(scene, camera, moments, fps=fps)
 
 
 @cache

@@ -7,6 +7,7 @@ shows and what was chosen is told at `tests.synthetic.scenes.sample_scene`.
 from __future__ import annotations
 
 import json
+import tempfile
 from pathlib import Path
 
 from tests.synthetic.clip import Truth, render_clip
@@ -53,10 +54,13 @@ def truth_as_json(truth: Truth) -> str:
 def main() -> None:
     """Render the clip and write its truth."""
     folder = Path(__file__).resolve().parents[2] / "data"
-    truth = render_clip(
-        sample_scene(), sample_camera(), folder / "sample.mp4",
-        fps=FPS, duration=DURATION, crf=CRF, shutter=SHUTTER,
-    )  # fmt: skip
+    with tempfile.TemporaryDirectory(dir=folder) as scratch:
+        fresh = Path(scratch) / "sample.mp4"
+        truth = render_clip(
+            sample_scene(), sample_camera(), fresh,
+            fps=FPS, duration=DURATION, crf=CRF, shutter=SHUTTER,
+        )  # fmt: skip
+        fresh.replace(folder / "sample.mp4")
     (folder / "sample.truth.json").write_text(truth_as_json(truth), encoding="utf-8")
 
 

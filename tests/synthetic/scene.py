@@ -61,7 +61,7 @@ class Sheet:
     border_width: float = 0.10
     carpet: Colour = (66, 30, 16)
     line: Colour = (150, 130, 208)
-    line_width: float = 0.022
+    line_width: float = 0.015
     hog_line: Colour = (60, 40, 190)
     pitch: float = 6.1
     marks: tuple[Mark, ...] = (

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from tests.synthetic.camera import CameraPath, broadcast_camera
-from tests.synthetic.physics import RADIUS, Ice, Impact, Start
+from tests.synthetic.physics import RADIUS, Ice, Impact, Start, simulate
 from tests.synthetic.scene import (
     CRIMSON,
     RED_CAP,
@@ -158,6 +158,38 @@ def random_scene(
     )  # fmt: skip
 
 
+def sweepers(scene: Scene, duration: float, *, stone: str = "A") -> tuple[Person, ...]:
+    """Two people who sweep before a stone as it moves, one on each side of its path.
+
+    Parameters
+    ----------
+    scene : Scene
+        Tells how the stone moves.
+    duration : float
+        Length of their walk, s; where the stone stops or turns, they stay.
+    stone : str
+        Name of the stone.
+    """
+    index = [s.name for s in scene.stones].index(stone)
+    starts = [s.start for s in scene.stones]
+    motion = simulate(starts, duration, ice=scene.ice, impact=scene.impact)
+    times = np.arange(0, duration, 0.2)
+    states = motion.at(times)[:, index]
+    heading = np.arctan2(states[0, 4], states[0, 3])
+    ahead = np.array([np.cos(heading), np.sin(heading)])
+    way = np.maximum.accumulate((states[:, :2] - states[0, :2]) @ ahead)
+    people = []
+    for side, lead, shirt in ((1, 0.42, (40, 30, 190)), (-1, 0.62, (150, 120, 30))):
+        aside = -1.05 * side * np.array([-ahead[1], ahead[0]])
+        hips = states[0, :2] + (way + lead)[:, None] * ahead + aside
+        facing = float(heading) + side * np.pi / 2
+        path = tuple(
+            (float(t), float(x), float(y), facing) for t, (x, y) in zip(times, hips, strict=True)
+        )
+        people.append(Person(path, shirt=shirt, sweep=0.12, rate=3.5))
+    return tuple(people)
+
+
 def _random_sheet(rng: np.random.Generator) -> Sheet:
     carpet = ((66, 30, 16), (140, 30, 20), (50, 50, 52), (30, 60, 20))[int(rng.integers(4))]
     names = ("NORDVIK", "Fjellbank", "ARKTIS", "Sno & Is")
@@ -206,4 +238,12 @@ def _back(
     )
 
 
-__all__ = ["PAINTS", "random_scene", "red_stone", "sample_camera", "sample_scene", "yellow_stone"]
+__all__ = [
+    "PAINTS",
+    "random_scene",
+    "red_stone",
+    "sample_camera",
+    "sample_scene",
+    "sweepers",
+    "yellow_stone",
+]

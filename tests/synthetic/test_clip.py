@@ -22,6 +22,7 @@ from tests.synthetic import (
     sample_camera,
     sample_scene,
     still_camera,
+    sweepers,
     write_video,
 )
 
@@ -111,3 +112,18 @@ def test_bundled_sample_matches_its_truth() -> None:
         assert reader.get(cv2.CAP_PROP_POS_MSEC) / 1000 == pytest.approx(told["t"][count], abs=1e-4)
         count += 1
     assert count == len(told["t"])
+
+
+def test_sweepers_go_before_the_stone() -> None:
+    scene = random_scene(np.random.default_rng(4), resting=1, speed=1.5)
+    people = sweepers(scene, 1.4)
+    assert len(people) == 2
+    truth = describe(scene, still_camera(px_per_m=70), np.arange(0, 1.3, 0.1)).tracks
+    stone = truth[truth["stone"] == "A"][["x", "y"]].to_numpy()
+    for person in people:
+        keys = np.array(person.path)
+        t = np.arange(0, 1.3, 0.1)
+        hips = np.column_stack([np.interp(t, keys[:, 0], keys[:, k]) for k in (1, 2)])
+        far = np.hypot(*(hips - stone).T)
+        assert far.min() > 0.9
+        assert far.max() < 1.4
