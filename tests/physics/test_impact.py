@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from physics.impact import After, Frictional, Impact, PointMass, RigidBody, tangent
 
@@ -17,6 +18,8 @@ normals = st.floats(-math.pi, math.pi).map(lambda a: np.array([math.cos(a), math
 unit = st.floats(0, 1)
 masses = st.floats(0.02, 20)
 hits = st.tuples(velocities, velocities, spins, spins, normals, masses, masses)
+Array = NDArray[np.float64]
+Spin = float | Array
 Case = tuple[np.ndarray, np.ndarray, float, float, np.ndarray, float, float]
 
 
@@ -29,7 +32,7 @@ def closing(case: Case) -> float:
     return float((case[0] - case[1]) @ case[4])
 
 
-def energy(v1: np.ndarray, v2: np.ndarray, w1: float, w2: float, m1: float, m2: float) -> float:
+def energy(v1: Array, v2: Array, w1: Spin, w2: Spin, m1: float, m2: float) -> float:
     k = 0.5 * R**2
     return float(m1 * (v1 @ v1 + k * w1**2) + m2 * (v2 @ v2 + k * w2**2)) / 2
 
@@ -54,7 +57,7 @@ def test_angular_momentum(case: Case, e: float, mu: float, k: float, place: np.n
     v1, v2, w1, w2, n, m1, m2 = case
     r1, r2 = place, place + 2 * R * n
 
-    def angular(v1: np.ndarray, v2: np.ndarray, w1: float, w2: float) -> float:
+    def angular(v1: Array, v2: Array, w1: Spin, w2: Spin) -> float:
         orbit = m1 * (r1[0] * v1[1] - r1[1] * v1[0]) + m2 * (r2[0] * v2[1] - r2[1] * v2[0])
         return float(orbit + k * R**2 * (m1 * w1 + m2 * w2))
 
@@ -70,7 +73,7 @@ def test_friction_sticks_or_slips(case: Case, e: float, mu: float) -> None:
     t = tangent(n)
     after = resolve(Frictional(e, mu, 0.5), case)
 
-    def slip(v1: np.ndarray, v2: np.ndarray, w1: float, w2: float) -> float:
+    def slip(v1: Array, v2: Array, w1: Spin, w2: Spin) -> float:
         return float((v1 - v2) @ t + R * (w1 + w2))
 
     along, aside = -m1 * (after.v1 - v1) @ n, m1 * (after.v1 - v1) @ t
@@ -98,7 +101,7 @@ def test_rigid_body_keeps_each_contact_speed(case: Case, e: float, a1: float, a2
     v1, v2, w1, w2, n, m1, m2 = case
     t = tangent(n)
     after = resolve(RigidBody(e), case, spin_after=(a1, a2))
-    assert (after.w1, after.w2) == (a1, a2)
+    assert (float(after.w1), float(after.w2)) == (a1, a2)
     assert after.v1 @ t + R * a1 == pytest.approx(v1 @ t + R * w1, abs=1e-12)
     assert after.v2 @ t - R * a2 == pytest.approx(v2 @ t - R * w2, abs=1e-12)
     normal = m1 * (after.v1 - v1) @ n + m2 * (after.v2 - v2) @ n

@@ -54,7 +54,8 @@ def houses(draw: st.DrawFn) -> tuple[StoneStart, ...]:
 
 
 def momentum(hit: Hit, states: dict[str, StoneState], masses: dict[str, float]) -> np.ndarray:
-    return np.sum([masses[n] * np.array([states[n].vx, states[n].vy]) for n in hit.stones], axis=0)
+    one, two = (masses[n] * np.array([states[n].vx, states[n].vy]) for n in hit.stones)
+    return one + two
 
 
 def energies(sim: Simulation, times: Sequence[float]) -> np.ndarray:
