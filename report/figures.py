@@ -538,7 +538,7 @@ def _extent(
     """
     edge = 2 * radius
     ends = np.array(list(last.values()))
-    core = [ends - edge, ends + edge] if len(ends) else [np.zeros((1, 2)) - edge]
+    core = [ends - edge, ends + edge] if len(ends) else [np.array([[-edge] * 2, [edge] * 2])]
     if house is not None:
         core.append(np.array([[-1, -1], [1, 1]]) * (house.twelve_foot + 0.5 * edge))
     low, high = np.concatenate(core).min(axis=0), np.concatenate(core).max(axis=0)
@@ -560,7 +560,7 @@ def _extent(
             core_high = max(core_high, house.twelve_foot + edge)
         high[1] = max(core_high, min(high[1], core_low + 2.2 * width))
         low[1] = min(core_low, max(low[1], high[1] - 2.2 * width))
-    short = max(0.6 * (high[0] - low[0]) - (high[1] - low[1]), 0) / 2
+    short = max(0.35 * (high[0] - low[0]) - (high[1] - low[1]), 0) / 2
     margin = np.array([0, short])
     return low - margin, high + margin
 

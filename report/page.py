@@ -24,7 +24,6 @@ from data.sheet import House
 from report import figures, tables
 from report.numbers import DASH, fixed, parts, significant
 from report.style import render
-from vision.camera import Camera
 
 EMBED_LIMIT = 8_000_000
 """Largest overlay, bytes, that goes into the page; a larger one is linked."""
@@ -71,7 +70,7 @@ def write_report(
     results: Results,
     tracks: pd.DataFrame,
     simulations: Mapping[str, pd.DataFrame],
-    cameras: Sequence[Camera] | None = None,
+    cameras: pd.DataFrame | None = None,
     clip_name: str | None = None,
     overlay: Path | None = None,
     house: House | None = None,
@@ -89,8 +88,9 @@ def write_report(
         With `data.tracks.TRACK_COLUMNS`.
     simulations : mapping of str to DataFrame
         Sampled simulation of each model: ``stone, frame, t, x, y, theta, vx, vy, omega``.
-    cameras : sequence of Camera, optional
-        For how good the calibration is; None for tracks that came in metres.
+    cameras : DataFrame, optional
+        With `vision.camera.CAMERA_COLUMNS`, for how good the calibration is; None for tracks
+        that came in metres.
     clip_name : str, optional
         What the page is called; the first input file's name if not given.
     overlay : Path, optional
@@ -150,8 +150,11 @@ def pictures(
     moved = figures.moving_stones(tracks, collisions, radius)
     yield Picture(
         "plan",
-        "Plan view: measured paths (solid) and simulated ones (broken), each stone where it was"
-        " last seen, to scale; crosses where stones touched.",
+        "Plan view: "
+        + ("measured paths (solid)" if moved else "nothing moved")
+        + (" and simulated ones (broken)" if len(simulations) else "")
+        + ("; crosses where stones touched" if collisions else "")
+        + ". Each stone where it was last seen, to scale.",
         f"Plan view of the sheet with {tracks['stone'].nunique()} stones, of which {len(moved)}"
         f" moved, and {len(collisions)} hits.",
         lambda: figures.plan_figure(tracks, simulations, collisions, house=house, radius=radius),
@@ -412,14 +415,14 @@ def _score(model: str, results: Results) -> dict[str, object]:
     return {"model": model, "rmse": score.rmse, "note": score.note}
 
 
-def _calibration(cameras: Sequence[Camera] | None) -> dict[str, float | int | None] | None:
-    if not cameras:
+def _calibration(cameras: pd.DataFrame | None) -> dict[str, float | None] | None:
+    if cameras is None or cameras.empty:
         return None
-    residuals = np.array([c.rms_px for c in cameras if np.isfinite(c.rms_px)])
+    residuals = cameras["rms_px"].dropna()
     return {
         "frames": len(cameras),
-        "found": sum(c.found for c in cameras),
-        "rms": float(np.median(residuals)) if len(residuals) else None,
+        "found": int(cameras["found"].sum()),
+        "rms": float(residuals.median()) if len(residuals) else None,
     }
 
 

@@ -15,7 +15,7 @@ from data.results import Estimate, Friction
 from data.sheet import HOUSE
 from report.numbers import MINUS
 from report.page import EMBED_LIMIT, write_report
-from vision.camera import Camera
+from vision.camera import Camera, camera_table
 
 VOID = {"meta", "img", "br", "hr", "link", "input", "source"}
 
@@ -88,7 +88,7 @@ def written(tmp_path_factory, shot) -> tuple[Path, float]:
         for k in range(5)
     ]
     start = time.process_time()
-    path = write(folder, shot, cameras=cameras, overlay=folder / "overlay.mp4")
+    path = write(folder, shot, cameras=camera_table(cameras), overlay=folder / "overlay.mp4")
     return path, time.process_time() - start
 
 
