@@ -18,6 +18,9 @@ from data.sheet import STONE
 Array = NDArray[np.float64]
 
 
+IMPACT_MODELS: tuple[str, ...] = ("point-mass", "rigid-body", "frictional")
+
+
 class After(NamedTuple):
     """Velocities (m/s, shape (..., 2)) and spins (rad/s, shape (...)) of both after a hit."""
 
@@ -33,6 +36,11 @@ class Impact(Protocol):
     @property
     def name(self) -> str:
         """Name of the model, as in files and on the command line."""
+        ...
+
+    @property
+    def name(self) -> str:
+        """What the model is called, one of `IMPACT_MODELS`."""
         ...
 
     @property
@@ -87,6 +95,7 @@ class PointMass:
 
     restitution: float = 1.0
     name = "point-mass"
+    name = "point-mass"
     needs_spin_after = False
 
     def resolve(
@@ -125,6 +134,7 @@ class RigidBody:
     """
 
     restitution: float = 1.0
+    name = "rigid-body"
     name = "rigid-body"
     needs_spin_after = True
 
@@ -178,6 +188,7 @@ class Frictional:
     restitution: float = 1.0
     stone_friction: float = 0.2
     inertia: float = STONE.inertia
+    name = "frictional"
     name = "frictional"
     needs_spin_after = False
 

@@ -12,11 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from data.errors import InputError
-from physics.impact import Frictional, Impact, PointMass, RigidBody
+from physics.impact import IMPACT_MODELS, Frictional, Impact, PointMass, RigidBody
 from physics.motion import CURL_LAWS, ICE_LAWS, Constant, curl_law, ice_law
 from physics.simulate import FARTHEST, FASTEST, Shot, StoneStart
-
-IMPACT_MODELS: tuple[str, ...] = ("point-mass", "rigid-body", "frictional")
 
 RADIUS = 0.145
 """Radius of a stone where the file gives none, m."""
