@@ -43,7 +43,7 @@ Array = NDArray[np.float64]
 WIDTH = 5.6
 """Width of a figure, inches: its text stays readable on a phone."""
 
-_TANGENT = 0.4  # s of fitted velocity drawn on either side of a hit
+_TANGENT = 0.4  # s of fitted velocity drawn on either side of a hit, at most
 _UNITS = {"x": "m", "y": "m", "theta": "rad"}
 _RATES = {
     "x": ("vx", "$v_x$", "m/s"),
@@ -370,6 +370,7 @@ def _draw_fits(
     rate, symbol, unit = _RATES[column]
     t, values = rows[["t", column]].to_numpy(float).T
     times = [c.t for _, c in hits]
+    length = min(_TANGENT, 0.15 * float(t[-1] - t[0]))
     handles = []
     for index, (rank, collision) in enumerate(hits):
         before_end = times[index - 1] if index else -np.inf
@@ -382,8 +383,8 @@ def _draw_fits(
             else float(getattr(state, column))
         )
         for when, side, colour, end in (
-            ("before", collision.before, BEFORE, max(before_end, collision.t - _TANGENT)),
-            ("after", collision.after, AFTER, min(after_end, collision.t + _TANGENT)),
+            ("before", collision.before, BEFORE, max(before_end, collision.t - length)),
+            ("after", collision.after, AFTER, min(after_end, collision.t + length)),
         ):
             value = None if stone not in side else getattr(side[stone], rate)
             if value is None:

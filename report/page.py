@@ -217,7 +217,7 @@ def page_tables(
         _number("way", "path", 3, "m"),
         _number("top speed", "top_speed", 3, "m/s"),
         _number("turned", "turned", 2, "rad"),
-        _number("sd", "sd", 1, "mm", 1000),
+        _millimetres("sd", "sd"),
     ]
     hits = [
         _text("hit"),
@@ -248,7 +248,7 @@ def page_tables(
     ]
     scores = tables.score_table(results.simulations)
     last_places = [
-        _number(f"last place of {name}", str(name), 0, "mm", 1000)
+        _millimetres(f"last place of {name}", str(name))
         for name in scores.columns
         if name not in ("model", "rmse", "note")
     ]
@@ -285,7 +285,7 @@ def page_tables(
             "Root mean square distance over all stones and times after the first hit, and the"
             " distance of the last places.",
             scores,
-            [_text("model"), _number("rms", "rmse", 0, "mm", 1000), *last_places, _text("note")],
+            [_text("model"), _millimetres("rms", "rmse"), *last_places, _text("note")],
         ),
     ]
     return [table for table in made if table.rows]
@@ -318,6 +318,10 @@ def _number(head: str, key: str, decimals: int, unit: str = "", factor: float = 
     return Column(head, lambda row: data(_value(row[key]), decimals, factor), unit)
 
 
+def _millimetres(head: str, key: str) -> Column:
+    return Column(head, lambda row: data_significant(_value(row[key]), 3, 1000), "mm")
+
+
 def _pair(head: str, key: str, stderr: str, unit: str = "") -> Column:
     return Column(head, lambda row: data_pair(_value(row[key]), _value(row[stderr])), unit)
 
@@ -343,6 +347,13 @@ def data(value: float | None, decimals: int = 3, factor: float = 1.0) -> Markup:
     if value is None:
         return Markup(DASH)
     return _element(value, fixed(value * factor, decimals))
+
+
+def data_significant(value: float | None, digits: int = 3, factor: float = 1.0) -> Markup:
+    """Write a number with so many significant digits, all of them kept for machines."""
+    if value is None:
+        return Markup(DASH)
+    return _element(value, significant(value * factor, digits))
 
 
 def data_pair(value: float | None, stderr: float | None) -> Markup:
@@ -373,9 +384,7 @@ def _environment() -> Environment:
         lstrip_blocks=True,
     )
     environment.filters["number"] = data
-    environment.filters["significant"] = lambda value, digits=3: (
-        Markup(DASH) if value is None else _element(value, significant(value, digits))
-    )
+    environment.filters["significant"] = data_significant
     environment.globals["pair"] = data_pair
     return environment
 

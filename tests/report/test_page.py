@@ -134,7 +134,7 @@ def test_the_answer_comes_first(written):
     assert "0.831 ± 0.012" in said
     assert "0.01093 ± 0.00041" in said
     first = said.index("The shot")
-    for words in ("A on B at", "31 mm rms", "no spins after the hit", "4 of 5 fixed", "0.25 px"):
+    for words in ("A on B at", "31.2 mm rms", "no spins after the hit", "4 of 5 fixed", "0.25 px"):
         assert said.index(words) < first
     assert "1.2.3" in said
 
