@@ -107,7 +107,7 @@ def _renumbered(cuts: Mapping[str, list[Piece]], gone: int) -> dict[str, list[Pi
 
 def cut_all(
     known: Mapping[str, Trace],
-    meetings: Sequence[Meeting],
+    meetings: Sequence[Meeting | Contact],
     radius: float,
     done: Mapping[str, list[Piece]] | None = None,
 ) -> tuple[list[Piece], dict[str, list[Piece]]]:
@@ -153,17 +153,18 @@ def _approaches(
     step = _over_gaps(a, b, t, step)
     reach = REACH * 2 * radius + 0.6 * np.maximum(np.append(step, 0.0), np.append(0.0, step))
     near = np.flatnonzero(distance < reach)
+    # One approach lasts until they are clearly out of reach of each other.
+    far = np.cumsum(distance > 1.1 * reach + noise)
     looseness = max(a.step, b.step)
     out: list[Meeting] = []
-    for run in np.split(near, np.flatnonzero(np.diff(near) > 1) + 1):
+    for run in np.split(near, np.flatnonzero(np.diff(far[near])) + 1):
         if not len(run):
             continue
         times = _meeting_times(t, distance, run, turns.get(a.stone, ()), turns.get(b.stone, ()))
         for time in times:
-            gap = max(_gap(a, time), _gap(b, time), looseness)
-            if not (_moves(a, time, radius) or _moves(b, time, radius)):
-                continue
-            out.append(Meeting(time, (a.stone, b.stone), gap))
+            if _moves(a, time, radius) or _moves(b, time, radius):
+                gap = max(_gap(a, time), _gap(b, time), looseness)
+                out.append(Meeting(time, (a.stone, b.stone), gap))
     return out
 
 
@@ -174,22 +175,22 @@ def _meeting_times(
     turns_a: Sequence[float],
     turns_b: Sequence[float],
 ) -> list[float]:
-    """Times within one stretch of nearness at which the two may have met.
+    """List the times within one stretch of nearness at which the two may have met.
 
-    The closest approach; and, where they lay side by side, the times at which the motion of
-    both changed.
+    The closest approach, and the times at which the motion of both changed: two stones may
+    lie side by side for long, or one follow the other and hit it again.
     """
     k = int(run[np.argmin(distance[run])])
-    time = _vertex(t, distance, k)
-    dip = float(distance[run].max() - distance[k])
-    depth = 0.15 * float(distance[k])
-    edges = run[0] > 0 and run[-1] < len(t) - 1
-    if dip > depth or edges or not turns_a or not turns_b:
-        return [time]
-    low, high = t[run[0]], t[run[-1]]
-    width = 4 * float(np.median(np.diff(t)))
-    both = [x for x in turns_a if low <= x <= high and min(abs(x - y) for y in turns_b) < width]
-    return both or [time]
+    times = [_vertex(t, distance, k)]
+    step = float(np.median(np.diff(t)))
+    for turn in turns_a:
+        if not t[run[0]] <= turn <= t[run[-1]]:
+            continue
+        if turns_b and min(abs(turn - other) for other in turns_b) < 3 * step:
+            others = [abs(turn - time) for time in times]
+            if min(others) > 6 * step:
+                times.append(turn)
+    return times
 
 
 def _moves(path: Trace, time: float, radius: float) -> bool:

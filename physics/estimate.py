@@ -14,24 +14,19 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from data.results import Collision, Estimate, Friction, Glide, StoneState
-from data.sheet import GRAVITY, STONE
+from data.sheet import STONE
 from physics.contacts import Contact, cut_all
-from physics.fit import Deceleration, Encounter, Meeting, ShotFit, fit_shot
+from physics.fit import Encounter, Meeting, ShotFit, fit_shot
+from physics.glides import FREE, measure_glides, stop_time
 from physics.segments import Piece, Trace, traces
 
 Floats = NDArray[np.float64]
 
-FREE = Deceleration(0.0, 3.0, 3.0)
-"""What is assumed of decelerations when they are to be measured: nothing."""
-
-LEAST_SPREAD = 0.015
-"""Least spread of decelerations from glide to glide, m/s²: no ice law is exactly constant."""
-
 LONGEST_SPIN = 1.0
 """Time beside a hit over which a spin is taken as constant, s."""
 
-WORST_RESTITUTION, WORST_FRICTION = 0.3, 0.02
-"""Standard errors beyond which a hit or a glide is said to tell nothing."""
+WORST = 0.3
+"""Standard error of a restitution beyond which a hit is said to tell nothing."""
 
 
 @dataclass(frozen=True)
@@ -87,30 +82,34 @@ def estimate(
     """
     known = traces(sightings)
     meetings = [
-        Meeting(c.t, c.stones, max(_gap(known[stone], c.t) for stone in c.stones))
-        for c in contacts
+        Meeting(c.t, c.stones, max(_gap(known[stone], c.t) for stone in c.stones)) for c in contacts
     ]
     pieces, _ = cut_all(known, meetings, radius)
+    idle = [piece for piece in pieces if piece.rest and _alone(piece)]
+    still = [_scatter(known[piece.stone], piece) for piece in idle]
     pieces = [piece for piece in pieces if not (piece.rest and _alone(piece))]
     warnings: list[str] = []
     if not pieces:
         return Estimates(warnings=("no stone moves: neither restitution nor friction",))
-    loose = fit_shot(known, pieces, meetings, radius, masses=masses, deceleration=FREE)
-    glides, found = _glides(loose, known, radius)
-    friction, spread = _pooled_friction(found)
-    prior = Deceleration(
-        (friction.value or 0.0) * GRAVITY,
-        max(spread, LEAST_SPREAD) if friction.value is not None else 0.3,
-        max(spread, LEAST_SPREAD) if friction.value is not None else 0.3,
-    )
+    loose = fit_shot(known, pieces, meetings, radius, masses=masses, still=still, deceleration=FREE)
+    glides, friction, prior = measure_glides(loose, known, radius)
     if friction.value is None and friction_expected:
         warnings.append("friction: no stone glides freely for long enough to tell it")
     if not meetings:
         warnings.append("restitution: no hit seen")
         return Estimates(Estimate(), friction, (), glides, tuple(warnings))
-    joint = fit_shot(known, pieces, meetings, radius, masses=masses, deceleration=prior)
+    joint = fit_shot(
+        known, pieces, meetings, radius, masses=masses, still=still, deceleration=prior
+    )
     apart = fit_shot(
-        known, pieces, meetings, radius, masses=masses, deceleration=prior, momentum=False
+        known,
+        pieces,
+        meetings,
+        radius,
+        masses=masses,
+        still=still,
+        deceleration=prior,
+        momentum=False,
     )
     values, cov = joint.propagate(range(len(meetings)), _restitutions)
     notes = [_why_not(joint, k, known, values[k], cov[k, k]) for k in range(len(meetings))]
@@ -141,83 +140,19 @@ def _alone(piece: Piece) -> bool:
     return piece.opens is None and piece.closes is None
 
 
+def _scatter(trace: Trace, piece: Piece) -> Floats:
+    """Normalised residuals of a stone at rest."""
+    xy = trace.xy[piece.samples]
+    out: Floats = (xy - np.median(xy, axis=0)) / trace.sd[piece.samples]
+    return np.clip(out, -2.5, 2.5)
+
+
 def _gap(trace: Trace, time: float) -> float:
     """Time between the sightings either side of `time`, at least the usual step."""
     if len(trace.t) < 2:
         return trace.step
     k = int(np.clip(np.searchsorted(trace.t, time), 1, len(trace.t) - 1))
     return max(trace.step, float(trace.t[k] - trace.t[k - 1]))
-
-
-# Friction of the ice
-
-
-@dataclass(frozen=True)
-class _Slowing:
-    """Decelerations of one glide along and across its path, m/s², and their errors."""
-
-    along: float
-    across: float
-    sd: float
-
-
-def _glides(
-    fit: ShotFit, known: Mapping[str, Trace], radius: float
-) -> tuple[tuple[Glide, ...], list[_Slowing]]:
-    """Friction of each piece that is long enough to tell it."""
-    glides, found = [], []
-    for i, piece in enumerate(fit.pieces):
-        if piece.rest or len(piece.samples) < 5:
-            continue
-        t = known[piece.stone].t[piece.samples]
-        x = fit.theta[6 * i : 6 * i + 6].reshape(2, 3)
-        cov = fit.cov[6 * i : 6 * i + 6, 6 * i : 6 * i + 6]
-        end = _stop(x, fit.origins[i], float(t[-1]))
-        speed = x[:, 1] + x[:, 2] * 0.5 * (float(t[0]) + end - 2 * fit.origins[i])
-        size = float(np.hypot(*speed))
-        if size < radius or size * (end - float(t[0])) < radius:
-            continue
-        along = speed / size
-        slope = np.array([0.0, 0.0, -along[0], 0.0, 0.0, -along[1]])
-        value = float(slope @ fit.theta[6 * i : 6 * i + 6])
-        sd = float(np.sqrt(slope @ cov @ slope))
-        if sd / GRAVITY > WORST_FRICTION:
-            continue
-        found.append(_Slowing(value, float(along[0] * x[1, 2] - along[1] * x[0, 2]), sd))
-        glides.append(Glide(piece.stone, float(t[0]), end, value / GRAVITY, sd / GRAVITY))
-    return tuple(glides), found
-
-
-def _stop(x: Floats, origin: float, last: float) -> float:
-    """Time at which a piece's stone stops, or `last` where it does not."""
-    braking = -float(x[:, 1] @ x[:, 2])
-    if braking < 1e-9:
-        return last
-    return min(last, origin + float(x[:, 1] @ x[:, 1]) / braking)
-
-
-def _pooled_friction(found: Sequence[_Slowing]) -> tuple[Friction, float]:
-    """Mean friction over the glides, and the spread of decelerations between them, m/s².
-
-    Random effects after DerSimonian and Laird, 1986, Control. Clin. Trials 7, 177.
-    """
-    if not found:
-        return Friction(), 0.0
-    values = np.array([slowing.along for slowing in found])
-    variance = np.array([slowing.sd for slowing in found]) ** 2
-    weights = 1 / variance
-    mean = float(weights @ values / weights.sum())
-    between = 0.0
-    if len(values) > 1:
-        excess = float(weights @ (values - mean) ** 2) - (len(values) - 1)
-        between = max(0.0, excess / float(weights.sum() - (weights**2).sum() / weights.sum()))
-    weights = 1 / (variance + between)
-    mean = float(weights @ values / weights.sum())
-    stderr = float(np.sqrt(1 / weights.sum()))
-    return Friction(mean / GRAVITY, stderr / GRAVITY), float(np.sqrt(between))
-
-
-# Hits
 
 
 def _restitutions(states: Sequence[Encounter]) -> Floats:
@@ -234,7 +169,7 @@ def _why_not(
 ) -> str | None:
     """Why a hit cannot tell its restitution; None where it can."""
     stderr = float(np.sqrt(variance))
-    if np.isfinite(value) and stderr < WORST_RESTITUTION:
+    if np.isfinite(value) and stderr < WORST:
         return None
     for stone in fit.meetings[k].stones:
         for rank, when in zip(fit.sides[k, stone], ("before", "after"), strict=True):
@@ -265,10 +200,7 @@ def _collision(
     ]
     before, after = (
         {
-            stone: StoneState(
-                *(float(value) for value in (*state.places[i], *speeds[i])),
-                omega=spins[i][when][0],
-            )
+            stone: _state(state.places[i], speeds[i], spins[i][when][0])
             for i, stone in enumerate((first, second))
         }
         for when, speeds in ((0, state.before), (1, state.after))
@@ -296,6 +228,10 @@ def _collision(
     )
 
 
+def _state(place: Floats, speed: Floats, spin: float | None) -> StoneState:
+    return StoneState(float(place[0]), float(place[1]), float(speed[0]), float(speed[1]), spin)
+
+
 def _momentum(fit: ShotFit, k: int, mass: Floats) -> tuple[float | None, float | None]:
     """Relative change of momentum at hit k where it is not held, and its standard error."""
 
@@ -320,7 +256,7 @@ def _spin(
     trace = known[piece.stone]
     t, theta, sd = (a[piece.samples] for a in (trace.t, trace.theta, trace.sd_theta))
     x = fit.theta[6 * rank : 6 * rank + 6].reshape(2, 3)
-    stop = _stop(x, fit.origins[rank], np.inf)
+    stop = stop_time(x, fit.origins[rank], np.inf)
     ok = np.isfinite(theta) & (np.abs(t - time) < LONGEST_SPIN) & (t <= stop)
     if ok.sum() < 3:
         return None, np.inf

@@ -21,11 +21,17 @@ Floats = NDArray[np.float64]
 HUBER = 2.5
 """Normalised residual beyond which a sighting loses weight."""
 
-DISTANCE_SD = 0.03
+DISTANCE_SD = 0.015
 """How well two radii are known as the distance at contact (scale, shape), relative."""
 
-MOMENTUM_SD = 0.01
+MOMENTUM_SD = 0.003
 """How well momentum is known to be kept (local scale, masses), relative to the speeds."""
+
+DOUBT = 2.5
+"""Normalised violation beyond which distance and momentum are no longer believed."""
+
+LAGS = 0.25
+"""Longest lag, relative to sightings per parameter, at which residuals are compared."""
 
 STILL_SD = 1e-5
 """How still a stone at rest lies, m/s and m/s²."""
@@ -159,7 +165,7 @@ class ShotFit:
 
 
 def fit_shot(
-    paths: Mapping[str, Trace],
+    traces: Mapping[str, Trace],
     pieces: Sequence[Piece],
     meetings: Sequence[Meeting],
     radius: float,
@@ -167,13 +173,14 @@ def fit_shot(
     masses: Mapping[str, float] | None = None,
     deceleration: Deceleration | None = None,
     momentum: bool = True,
+    still: Sequence[Floats] = (),
     iterations: int = 15,
 ) -> ShotFit:
     """Fit all pieces and the times of all meetings at once.
 
     Parameters
     ----------
-    paths : mapping
+    traces : mapping
         Stone to its sightings.
     pieces : sequence of Piece
         All pieces to fit; each meeting must open and close one of either stone.
@@ -187,12 +194,16 @@ def fit_shot(
         Prior of the acceleration on each piece that moves.
     momentum : bool
         Whether each pair's momentum is held (otherwise only their paths are joined).
+    still : sequence of (n, 2) array
+        Normalised residuals of stones that never move, for how alike errors are in time.
     iterations : int
         Most Gauss-Newton steps.
     """
-    return _Solver(
-        paths, pieces, meetings, radius, masses or {}, deceleration or Deceleration(), momentum
-    ).solve(iterations)
+    solver = _Solver(
+        traces, pieces, meetings, radius, masses or {}, deceleration or Deceleration(), momentum
+    )
+    solver.still = [(residuals, 1) for residuals in still]
+    return solver.solve(iterations)
 
 
 class _Solver:
@@ -200,7 +211,7 @@ class _Solver:
 
     def __init__(
         self,
-        paths: Mapping[str, Trace],
+        traces: Mapping[str, Trace],
         pieces: Sequence[Piece],
         meetings: Sequence[Meeting],
         radius: float,
@@ -208,9 +219,10 @@ class _Solver:
         deceleration: Deceleration,
         momentum: bool,
     ) -> None:
-        self.paths, self.pieces, self.meetings = paths, list(pieces), tuple(meetings)
+        self.traces, self.pieces, self.meetings = traces, list(pieces), tuple(meetings)
         self.radius, self.masses = radius, masses
         self.prior, self.momentum = deceleration, momentum
+        self.still: list[tuple[Floats, int]] = []
         self.size = 6 * len(self.pieces) + len(self.meetings)
         opened = {(p.opens, p.stone): i for i, p in enumerate(pieces) if p.opens is not None}
         self.sides = {
@@ -229,20 +241,20 @@ class _Solver:
         if piece.opens is not None:
             return self.meetings[piece.opens].t
         if len(piece.samples):
-            return float(self.paths[piece.stone].t[piece.samples[0]])
+            return float(self.traces[piece.stone].t[piece.samples[0]])
         return piece.start if np.isfinite(piece.start) else piece.end
 
     def _guess(self, i: int, piece: Piece) -> None:
         """Start from a straight line, or for the shortest pieces from the neighbours."""
-        path = self.paths[piece.stone]
+        trace = self.traces[piece.stone]
         samples = piece.samples
         if len(samples) < 3:
-            low = max(int(np.searchsorted(path.t, piece.start)) - 1, 0)
-            high = min(int(np.searchsorted(path.t, piece.end)) + 1, len(path.t))
+            low = max(int(np.searchsorted(trace.t, piece.start)) - 1, 0)
+            high = min(int(np.searchsorted(trace.t, piece.end)) + 1, len(trace.t))
             samples = np.arange(low, high)
-        tau = path.t[samples] - self.origins[i]
+        tau = trace.t[samples] - self.origins[i]
         degree = 0 if piece.rest or len(samples) < 2 else 1
-        line = np.polynomial.polynomial.polyfit(tau, path.xy[samples], degree)
+        line = np.polynomial.polynomial.polyfit(tau, trace.xy[samples], degree)
         self.theta[[6 * i, 6 * i + 3]] = line[0]
         if degree:
             self.theta[[6 * i + 1, 6 * i + 4]] = line[1]
@@ -260,7 +272,9 @@ class _Solver:
             for k, meeting in enumerate(self.meetings):
                 low = meeting.t - 3 * meeting.looseness - self.theta[first + k]
                 high = meeting.t + 3 * meeting.looseness - self.theta[first + k]
-                step[first + k] = np.clip(step[first + k], max(low, -meeting.looseness), min(high, meeting.looseness))
+                step[first + k] = np.clip(
+                    step[first + k], max(low, -meeting.looseness), min(high, meeting.looseness)
+                )
             scale = np.sqrt(np.maximum(np.diag(cov), 1e-24))
             settled = bool(np.all(np.abs(step) < 0.02 * scale))
             self.theta = self.theta + step
@@ -282,14 +296,14 @@ class _Solver:
         for (k, stone), (i, j) in self.sides.items():
             t = self.theta[6 * len(self.pieces) + k]
             both = np.concatenate([self.pieces[i].samples, self.pieces[j].samples])
-            early = self.paths[stone].t[both] < t
+            early = self.traces[stone].t[both] < t
             for rank, samples in ((i, both[early]), (j, both[~early])):
                 self.pieces[rank] = _with_samples(self.pieces[rank], samples)
 
     def _basis(self, i: int) -> Floats:
         """Rows 1, τ, τ²/2 of a piece's sightings; τ stands still once the stone does."""
         piece = self.pieces[i]
-        tau = self.paths[piece.stone].t[piece.samples] - self.origins[i]
+        tau = self.traces[piece.stone].t[piece.samples] - self.origins[i]
         state = self.theta[6 * i : 6 * i + 6].reshape(2, 3)
         braking = -float(state[:, 1] @ state[:, 2])
         if piece.rest or braking > 1e-9:
@@ -300,29 +314,29 @@ class _Solver:
 
     def _residuals(self, i: int, basis: Floats) -> Floats:
         piece = self.pieces[i]
-        path = self.paths[piece.stone]
+        trace = self.traces[piece.stone]
         fitted = basis @ self.theta[6 * i : 6 * i + 6].reshape(2, 3).T
-        out: Floats = (path.xy[piece.samples] - fitted) / path.sd[piece.samples]
+        out: Floats = (trace.xy[piece.samples] - fitted) / trace.sd[piece.samples]
         return out
 
     def _data(self) -> tuple[Floats, Floats]:
-        """Normal equations of the sightings, outliers weighted down."""
+        """Set up the normal equations of the sightings, outliers weighted down."""
         normal, right = np.zeros((self.size, self.size)), np.zeros(self.size)
         for i, piece in enumerate(self.pieces):
             if not len(piece.samples):
                 continue
-            path = self.paths[piece.stone]
+            trace = self.traces[piece.stone]
             basis = self._basis(i)
-            weights = _huber(self._residuals(i, basis)) / path.sd[piece.samples] ** 2
+            weights = _huber(self._residuals(i, basis)) / trace.sd[piece.samples] ** 2
             for axis in range(2):
                 at = slice(6 * i + 3 * axis, 6 * i + 3 * axis + 3)
                 weighted = basis * weights[:, axis : axis + 1]
                 normal[at, at] += weighted.T @ basis
-                right[at] += weighted.T @ path.xy[piece.samples, axis]
+                right[at] += weighted.T @ trace.xy[piece.samples, axis]
         return normal, right
 
     def _rules(self) -> tuple[Floats, Floats]:
-        """Normal equations of what is known besides the sightings."""
+        """Set up the normal equations of what is known besides the sightings."""
         normal, right = np.zeros((self.size, self.size)), np.zeros(self.size)
         for i, piece in enumerate(self.pieces):
             place, speed, change = ([6 * i + k, 6 * i + 3 + k] for k in range(3))
@@ -356,7 +370,7 @@ class _Solver:
         return precision, -self.prior.mean * along
 
     def _meeting(self, k: int) -> tuple[Floats, Floats, Floats]:
-        """Derivatives, values and standard deviations of the rules at one meeting."""
+        """Linearise the rules at one meeting: derivatives, values, standard deviations."""
         meeting = self.meetings[k]
         at = 6 * len(self.pieces) + k
         t = self.theta[at]
@@ -405,30 +419,62 @@ class _Solver:
                     row[6 * j + 3 * axis : 6 * j + 3 * axis + 3] += mass * new[4]
                     row[6 * i + 3 * axis : 6 * i + 3 * axis + 3] -= mass * old[4]
                     row[at] += mass * float(new[2][axis] - old[2][axis])
-        return np.array(rows), np.array(values), np.array(sd)
+        # A rule that the sightings contradict has less of a say (Cauchy weights).
+        width = np.array(sd)
+        doubt = np.abs(values) / (DOUBT * width)
+        doubt[: 1 + 2 * len(ranks)] = 0.0
+        return np.array(rows), np.array(values), width * np.sqrt(1 + doubt**2)
 
     def _inflation(self, parameters: float) -> float:
         """Factor for residuals larger than stated, and alike from frame to frame."""
-        square = pair = 0.0
-        count = lagged = 0
+        runs = []
         for i, piece in enumerate(self.pieces):
-            if not len(piece.samples):
-                continue
-            r = np.clip(self._residuals(i, self._basis(i)), -HUBER, HUBER)
-            square += float(np.sum(r * r))
-            count += r.size
-            if len(r) >= 8:
-                pair += float(np.sum(r[1:] * r[:-1]))
-                lagged += r.size
-        free = count - parameters
-        if free < 1:
+            if len(piece.samples):
+                r = self._residuals(i, self._basis(i))
+                runs.append((np.clip(r, -HUBER, HUBER), 1 if piece.rest else 3))
+        count = sum(r.size for r, _ in runs)
+        if count - parameters < 1:
             return 1.0
-        size = max(1.0, square / free)
-        if not lagged:
-            return size
-        # A fit of p parameters makes white residuals look anti-correlated by about p / n.
-        alike = float(np.clip(pair / max(square, 1e-12) + parameters / count, 0.0, 0.95))
-        return size * (1 + alike) / (1 - alike)
+        square = sum(float(np.sum(r * r)) for r, _ in runs)
+        return max(1.0, square / (count - parameters)) * likeness([*runs, *self.still])
+
+
+def likeness(runs: Sequence[tuple[Floats, int]]) -> float:
+    """Long-run variance of residuals over their variance: 1 for white noise, never less.
+
+    Means and slopes have errors larger by this factor than white noise would give them. The
+    sum of autocorrelations runs as far as they are significant; what the fit itself took out
+    of each lag (p / n of the long-run variance) is put back.
+
+    Parameters
+    ----------
+    runs : sequence of ((n, k) array, int)
+        Residuals in order of time, and the number of parameters fitted to each column.
+    """
+    runs = [(r, p) for r, p in runs if len(r) >= 8]
+    if not runs:
+        return 1.0
+    level = sum(float(np.sum(r * r)) for r, _ in runs) / sum(r.size for r, _ in runs)
+    if level <= 0:
+        return 1.0
+    ratio = 1.0
+    for _ in range(4):
+        total = 1.0
+        for lag in range(1, 60):
+            usable = [(r, p) for r, p in runs if lag <= LAGS * len(r) / p]
+            if not usable:
+                break
+            size = sum(r[lag:].size for r, _ in usable)
+            sums = (
+                float(np.sum(r[lag:] * r[:-lag])) / level + ratio * p / len(r) * r[lag:].size
+                for r, p in usable
+            )
+            alike = sum(sums) / size
+            if alike < 2 / np.sqrt(size):
+                break
+            total += 2 * alike
+        ratio = max(1.0, total)
+    return ratio
 
 
 def _inverse(normal: Floats) -> Floats:

@@ -140,7 +140,7 @@ def local_residuals(t: Floats, values: Floats) -> Floats:
 
 
 def breaks(t: Floats, xy: Floats, sd: Floats) -> list[float]:
-    """Times at which a path stops being one motion of constant acceleration.
+    """Find the times at which a path stops being one motion of constant acceleration.
 
     The partition with the highest marginal likelihood, found exactly by pruned dynamic
     programming (Killick et al., 2012, J. Am. Stat. Assoc. 107, 1590), the likelihood of each
@@ -274,7 +274,7 @@ def cut(path: Trace, hits: Sequence[tuple[int, float]], radius: float) -> list[P
 
 
 def _spaced(edges: Sequence[float], t: Floats) -> list[float]:
-    """Breaks that leave at least `FEWEST` sightings on either side of them."""
+    """Keep the breaks that leave at least `FEWEST` sightings on either side of them."""
     kept: list[float] = []
     passed = 0
     for edge in edges:

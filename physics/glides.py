@@ -1,0 +1,120 @@
+"""How the ice slows the stones: friction from every glide, and pooled."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.results import Friction, Glide
+from data.sheet import GRAVITY
+from physics.fit import Deceleration, ShotFit
+from physics.segments import Trace
+
+Floats = NDArray[np.float64]
+
+FREE = Deceleration(0.0, 3.0, 3.0)
+"""What is assumed of decelerations when they are to be measured: nothing."""
+
+LEAST_SPREAD = 0.015
+"""Least spread of decelerations from glide to glide, m/s²: no ice law is exactly constant."""
+
+WORST = 0.02
+"""Standard error of a friction beyond which a glide is said to tell nothing."""
+
+
+def measure_glides(
+    fit: ShotFit, known: Mapping[str, Trace], radius: float
+) -> tuple[tuple[Glide, ...], Friction, Deceleration]:
+    """Measure the friction of each glide of a fit that assumed `FREE` decelerations.
+
+    Returns
+    -------
+    glides : tuple of Glide
+        Each piece that is long enough to tell its friction.
+    friction : Friction
+        Pooled over them.
+    prior : Deceleration
+        What to assume of a glide that is too short to tell.
+    """
+    glides, found = _each(fit, known, radius)
+    friction, spread = _pooled(found)
+    if friction.value is None:
+        return glides, friction, Deceleration(0.0, 0.3, 0.3)
+    spread = max(spread, LEAST_SPREAD)
+    return glides, friction, Deceleration(friction.value * GRAVITY, spread, spread)
+
+
+@dataclass(frozen=True)
+class _Slowing:
+    """Decelerations of one glide along and across its path, m/s², and their errors."""
+
+    along: float
+    across: float
+    sd: float
+
+
+def _each(
+    fit: ShotFit, known: Mapping[str, Trace], radius: float
+) -> tuple[tuple[Glide, ...], list[_Slowing]]:
+    """Friction of each piece that is long enough to tell it."""
+    glides, found = [], []
+    for i, piece in enumerate(fit.pieces):
+        if piece.rest or len(piece.samples) < 5:
+            continue
+        t = known[piece.stone].t[piece.samples]
+        x = fit.theta[6 * i : 6 * i + 6].reshape(2, 3)
+        cov = fit.cov[6 * i : 6 * i + 6, 6 * i : 6 * i + 6]
+        end = stop_time(x, fit.origins[i], float(t[-1]))
+        speed = x[:, 1] + x[:, 2] * 0.5 * (float(t[0]) + end - 2 * fit.origins[i])
+        size = float(np.hypot(*speed))
+        if size < radius or size * (end - float(t[0])) < radius:
+            continue
+        along = speed / size
+        slope = np.array([0.0, 0.0, -along[0], 0.0, 0.0, -along[1]])
+        value = float(slope @ fit.theta[6 * i : 6 * i + 6])
+        sd = float(np.sqrt(slope @ cov @ slope))
+        if sd / GRAVITY > WORST:
+            continue
+        found.append(_Slowing(value, float(along[0] * x[1, 2] - along[1] * x[0, 2]), sd))
+        glides.append(Glide(piece.stone, float(t[0]), end, value / GRAVITY, sd / GRAVITY))
+    return tuple(glides), found
+
+
+def stop_time(x: Floats, origin: float, last: float) -> float:
+    """Time at which a piece's stone stops, or `last` where it does not stop sooner.
+
+    Parameters
+    ----------
+    x : (2, 3) array
+        Place, velocity and acceleration at the time `origin`.
+    origin, last : float
+        Times, s.
+    """
+    braking = -float(x[:, 1] @ x[:, 2])
+    if braking < 1e-9:
+        return last
+    return min(last, origin + float(x[:, 1] @ x[:, 1]) / braking)
+
+
+def _pooled(found: Sequence[_Slowing]) -> tuple[Friction, float]:
+    """Mean friction over the glides, and the spread of decelerations between them, m/s².
+
+    Random effects after DerSimonian and Laird, 1986, Control. Clin. Trials 7, 177.
+    """
+    if not found:
+        return Friction(), 0.0
+    values = np.array([slowing.along for slowing in found])
+    variance = np.array([slowing.sd for slowing in found]) ** 2
+    weights = 1 / variance
+    mean = float(weights @ values / weights.sum())
+    between = 0.0
+    if len(values) > 1:
+        excess = float(weights @ (values - mean) ** 2) - (len(values) - 1)
+        between = max(0.0, excess / float(weights.sum() - (weights**2).sum() / weights.sum()))
+    weights = 1 / (variance + between)
+    mean = float(weights @ values / weights.sum())
+    stderr = float(np.sqrt(1 / weights.sum()))
+    return Friction(mean / GRAVITY, stderr / GRAVITY), float(np.sqrt(between))
