@@ -39,11 +39,6 @@ class Impact(Protocol):
         ...
 
     @property
-    def name(self) -> str:
-        """What the model is called, one of `IMPACT_MODELS`."""
-        ...
-
-    @property
     def needs_spin_after(self) -> bool:
         """Whether `resolve` must be told the spins after the hit."""
         ...
@@ -95,7 +90,6 @@ class PointMass:
 
     restitution: float = 1.0
     name = "point-mass"
-    name = "point-mass"
     needs_spin_after = False
 
     def resolve(
@@ -134,7 +128,6 @@ class RigidBody:
     """
 
     restitution: float = 1.0
-    name = "rigid-body"
     name = "rigid-body"
     needs_spin_after = True
 
@@ -188,7 +181,6 @@ class Frictional:
     restitution: float = 1.0
     stone_friction: float = 0.2
     inertia: float = STONE.inertia
-    name = "frictional"
     name = "frictional"
     needs_spin_after = False
 

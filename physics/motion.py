@@ -456,6 +456,8 @@ class Path:
 
     def at(self, t: float) -> Motion:
         """State at the time `t` >= start; where it rests, from then on."""
+        if t <= self.start:
+            return self._motion
         tau = self.stop - t
         if tau <= 0:
             since = min(-tau, self.rest - self.stop)
