@@ -15,6 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from vision.pose import (
+    CENTRE_LINE,
+    CENTRE_X,
     DOWN,
     EIGHT,
     FOUR,
@@ -29,6 +31,8 @@ from vision.pose import (
     RIGHT,
     SIDE_L,
     SIDE_R,
+    TEE_LINE,
+    TEE_Y,
     VIEW_SIZE,
     Marks,
     Prior,
@@ -45,17 +49,24 @@ _FAR = 1e6
 """Residual, in standard deviations, of a point that the camera cannot see."""
 
 
+_MEASURED = (
+    (EIGHT, R8), (FOUR, R4), (CENTRE_LINE, CENTRE_X), (TEE_LINE, TEE_Y), (LEFT, SIDE_L),
+    (RIGHT, SIDE_R),
+)  # fmt: skip
+"""Kinds of mark whose measure is an unknown of the rig."""
+
+
 @dataclass(frozen=True)
 class Solution:
     """Result of `solve`.
 
     Attributes
     ----------
-    rig : ndarray, shape (10,)
+    rig : ndarray, shape (12,)
         Shared part, in the order of `vision.pose.Prior`.
     views : tuple of View
         One per frame.
-    rig_cov : ndarray, shape (10, 10)
+    rig_cov : ndarray, shape (12, 12)
         Covariance of the shared part; zero where it was held.
     rms : ndarray
         Residual of the inlying marks per frame, px; NaN where there are none.
@@ -90,6 +101,7 @@ def solve(
     *,
     prior: Prior | None = None,
     view_sd: ArrayLike = (np.inf, np.inf, 0.15, np.inf),
+    sharing: float = 1.0,
     width: float = 3.0,
     iterations: int = 12,
 ) -> Solution:
@@ -100,7 +112,7 @@ def solve(
     frames : sequence of Marks
     views : sequence of View
         Start values, one per frame, and the centres of the weak prior `view_sd`.
-    rig : ndarray, shape (10,)
+    rig : ndarray, shape (12,)
         Shared part: start values if `prior` is given, else held as it is.
     size : tuple of int
         Width and height of the picture, px.
@@ -108,17 +120,21 @@ def solve(
         Makes the rig an unknown.
     view_sd : array_like, shape (4,)
         Standard deviation of each view about its start (the roll is free where no line is seen).
+    sharing : float
+        How many marks share one error (of paint, of the lens): so much less do they weigh
+        against the rig's prior.
     width : float
         Width of the Cauchy loss in standard deviations.
     """
     designs = [_Design(m, *ice_frame(m.line, m.along)) for m in frames]
+    held = np.zeros(0) if prior is None else sharing / prior.sd**2
     hold = 1 / np.asarray(view_sd, float) ** 2
     start = [v.vector for v in views]
     now, shared = list(start), rig
     count = RIG_SIZE if prior is not None else 0
 
     def total(vs: Sequence[Array], s: Array) -> float:
-        value = 0.0 if prior is None else 0.5 * float((((s - prior.mean) / prior.sd) ** 2).sum())
+        value = 0.0 if prior is None else 0.5 * float((held * (s - prior.mean) ** 2).sum())
         for design, v, v0 in zip(designs, vs, start, strict=True):
             value += _cost(_residuals(design, v, s, size), width)
             value += 0.5 * float(hold @ (v - v0) ** 2)
@@ -129,8 +145,8 @@ def solve(
     for _ in range(iterations):
         schur, right = np.zeros((count, count)), np.zeros(count)
         if prior is not None:
-            schur += np.diag(1 / prior.sd**2)
-            right += (shared - prior.mean) / prior.sd**2
+            schur += np.diag(held)
+            right += held * (shared - prior.mean)
         blocks = []
         for design, v, v0 in zip(designs, now, start, strict=True):
             r, jv, js = _linearised(design, v, shared, size, count > 0)
@@ -165,7 +181,7 @@ def solve(
         rms.append(float(np.sqrt(np.mean(px**2))) if len(px) else float("nan"))
     cov = np.zeros((RIG_SIZE, RIG_SIZE))
     if count:
-        cov[:] = np.linalg.inv(schur)
+        cov[:] = sharing * np.linalg.inv(schur)
     return Solution(
         shared, tuple(View(v) for v in now), cov, np.array(rms), tuple(inliers), float(cost)
     )
@@ -226,6 +242,6 @@ def _linearised(
     js[:, K1], js[:, K2] = by_k1, by_k1 * r2
     js[:, K1_ZOOM] = by_k1 * zoom(view[3], size)
     by_measure = (by_p @ rotation[:, :2] * design.way).sum(-1)
-    for kind, column in ((EIGHT, R8), (FOUR, R4), (LEFT, SIDE_L), (RIGHT, SIDE_R)):
+    for kind, column in _MEASURED:
         js[:, column] = np.where(marks.line == kind, by_measure, 0.0)
     return r, jv, js

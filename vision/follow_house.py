@@ -20,7 +20,7 @@ from vision.adjust import Solution, solve
 from vision.camera import Camera
 from vision.clip import Clip, Frame, Image
 from vision.flow import carried, similarity
-from vision.house import find_house, judge
+from vision.house import SHARING, find_house, judge
 from vision.marks import measure
 from vision.pose import (
     ANYWHERE,
@@ -45,6 +45,9 @@ LOOK_BACK = 60
 """Frames kept while the house has not been found, to be followed backwards from the first find."""
 
 JOINT_FRAMES = 30
+
+FRAMES_ALIKE = 4
+"""Frames of the joint fit that see the house differently enough to err independently."""
 
 CARRY_MAX_S = 4.0
 """A view carried longer than this without rings is given up."""
@@ -244,7 +247,7 @@ def _finish(piece: _Piece, size: tuple[int, int], pieces: int) -> HouseTrack:
     chosen = _spread(good)
     joint = solve(
         [s.marks for s in chosen], [s.view for s in chosen], piece.rig, size,
-        prior=piece.prior, iterations=25,
+        prior=piece.prior, iterations=25, sharing=SHARING * max(len(chosen) / 4, 1),
     )  # fmt: skip
     cameras = []
     for s in piece.seen:

@@ -32,6 +32,9 @@ from vision.pose import (
 Array = NDArray[np.float64]
 
 WORK_WIDTH = 640
+SHARING = 20.0
+"""Edge points of one frame that share an error of the paint, about 30° of a circle."""
+
 FORESHORTENINGS = (1.0, 0.9, 0.78, 0.64, 0.5)
 RATIOS = np.array([1.0, 1.2135 / HOUSE.twelve_foot, 0.619 / HOUSE.twelve_foot])
 
@@ -207,7 +210,7 @@ def _fit(image: Image, guess: _Guess) -> tuple[Solution, Evidence]:
         evidence = measure(image, view.vector, rig, reach=max(reach, 3.0), spacing=4, lines=False)
         if len(evidence.marks) < 30:
             break
-        solution = solve([evidence.marks], [view], rig, size, prior=prior)
+        solution = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
         view, rig = solution.views[0], solution.rig
     evidence = measure(image, view.vector, rig, reach=5.0, spacing=4, lines=False)
     if solution is None or len(evidence.marks) < 30:
@@ -232,15 +235,15 @@ def _refine(
     """Fit at full resolution, with the lines."""
     size = (image.shape[1], image.shape[0])
     view, rig = rescaled(solution.views[0], 1 / factor), solution.rig
-    view, rig = upright(image, view, rig)
-    rig = sides(image, view, rig)
     evidence, fit = None, None
-    for reach in (4 / factor, 8.0, 6.0):
-        evidence = measure(image, view.vector, rig, reach=max(reach, 6.0))
+    for lines, reach in ((False, 4 / factor), (True, 8.0), (True, 6.0)):
+        if lines and fit is not None and evidence is not None and reach == 8.0:
+            view, rig = upright(image, view, rig)
+            rig = sides(image, view, rig)
+        evidence = measure(image, view.vector, rig, reach=max(reach, 6.0), lines=lines)
         if len(evidence.marks) < 30:
             return None
-        prior = OVERHEAD
-        fit = solve([evidence.marks], [view], rig, size, prior=prior)
+        fit = solve([evidence.marks], [view], rig, size, prior=OVERHEAD, sharing=SHARING)
         view, rig = fit.views[0], fit.rig
     assert evidence is not None and fit is not None
     if judge(evidence) == 0:

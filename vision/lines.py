@@ -15,11 +15,26 @@ Image = NDArray[np.uint8]
 
 def upright(image: Image, view: View, rig: Array) -> tuple[View, Array]:
     """Turn the ice's axes onto the centre and tee lines, if these can be seen."""
-    angles = np.radians(np.arange(-45.0, 45.0, 0.25))
-    along = np.concatenate([np.arange(0.2, 2.6, 0.03), -np.arange(0.2, 2.6, 0.03)])
+    coarse = np.radians(np.arange(-45.0, 45.0, 0.25))
+    score = _cross_score(image, view, rig, coarse)
+    noise = float(np.median(score)) + 1e-9
+    spread = float(np.median(np.abs(score - noise))) + 0.05 * noise
+    top = int((score - 0.02 * noise * np.abs(np.degrees(coarse)) / 10).argmax())
+    if score[top] - noise < 6 * spread:
+        return view, rig
+    fine = coarse[top] + np.radians(np.arange(-0.5, 0.5, 0.02))
+    # The middle of the plateau: a line is wider than a step of the angle.
+    height = _cross_score(image, view, rig, fine)
+    weight = np.clip(height - 0.8 * height.max(), 0, None)
+    return turned(view, rig, float((weight * fine).sum() / weight.sum()))
+
+
+def _cross_score(image: Image, view: View, rig: Array, angles: Array) -> Array:
+    """How much the two lines through the tee stand out, for each angle of the cross."""
+    along = np.concatenate([np.arange(0.2, 2.6, 0.06), -np.arange(0.2, 2.6, 0.06)])
     ends = np.where(np.abs(along) < SHEET.half_width_min, along, np.nan)
     # Shape (line, offset, place along it): each line itself and the ice on either side of it.
-    across = np.array([0.0, -0.04, 0.04])[:, None]
+    across = np.array([-0.015, 0.0, 0.015, -0.055, 0.055])[:, None]
     centre = np.stack([across + 0 * along, along + 0 * across], axis=-1)
     tee = np.stack([ends + 0 * across, across + 0 * along], axis=-1)
     cross = np.stack([centre, tee])
@@ -31,20 +46,14 @@ def upright(image: Image, view: View, rig: Array) -> tuple[View, Array]:
         within = (place > 0) & (place < np.array(size) - 1)
     inside = np.asarray(within.all((2, 4)))
     colour = _colours(image, place.reshape(len(angles), -1, 2)).reshape(*ice.shape[:-1], 3)
-    ridge = colour[:, :, 0] - 0.5 * (colour[:, :, 1] + colour[:, :, 2])
+    ridge = colour[:, :, :3].mean(2) - colour[:, :, 3:].mean(2)
     ridge = np.where(inside[..., None], np.clip(ridge, -12, 12), 0.0)
     # Both halves of a line on their own: a broom or a stone lies on one only.
     half = ridge.reshape(len(angles), 2, 2, -1, 3)
     count = inside.reshape(len(angles), 2, 2, -1).sum(-1)
     mean = np.linalg.norm(half.sum(3), axis=-1) / np.maximum(count, 1)
-    score = (np.where(count > 20, mean, 0.0) * np.sqrt(np.maximum(count, 1))).sum((1, 2))
-    noise = float(np.median(score)) + 1e-9
-    spread = float(np.median(np.abs(score - noise))) + 0.05 * noise
-    preferred = score - 0.02 * noise * np.abs(np.degrees(angles)) / 10
-    top = int(preferred.argmax())
-    if score[top] - noise < 6 * spread:
-        return view, rig
-    return turned(view, rig, float(angles[top]))
+    score = np.where(count > 10, mean, 0.0) * np.sqrt(np.maximum(count, 1))
+    return np.asarray(score.sum((1, 2)), np.float64)
 
 
 def sides(image: Image, view: View, rig: Array) -> Array:

@@ -8,7 +8,7 @@ of its two sides, in the direction of colour in which the whole line does.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -40,6 +40,9 @@ EDGE_SD = 0.45
 """Standard deviation of one edge point, px; neighbours share errors of paint and outline."""
 
 LINE_SD = 0.5
+
+LINE_REACH = 0.05
+"""Half width looked at across a thin line, m: some are painted as two stripes 3 cm apart."""
 
 
 @dataclass(frozen=True)
@@ -191,10 +194,16 @@ def _line_marks(image: Image, view: Array, rig: Array, reach: float) -> list[Mar
         (CENTRE_LINE, -4.0, SHEET.hog_line + 3),
         (TEE_LINE, -SHEET.half_width_min, SHEET.half_width_min),
     ):
-        seen = _normals(line, np.arange(lo, hi, 0.03), view, rig, (w, h), reach)
+        along = np.arange(lo, hi, 0.03)
+        seen = _normals(line, along, view, rig, (w, h), 0.0)
         if len(seen.along) < 24:
             continue
-        marks = _ridges(line, seen, _profiles(image, seen, reach), group=8)
+        spread = float(np.median(np.hypot(*np.diff(seen.point, axis=0).T))) / 0.03
+        wide = max(reach, LINE_REACH * spread)
+        seen = _normals(line, along, view, rig, (w, h), wide)
+        if len(seen.along) < 24:
+            continue
+        marks = _ridges(line, seen, _profiles(image, seen, wide), group=8)
         if marks is not None:
             found.append(marks)
     for line in (LEFT, RIGHT):
@@ -204,51 +213,72 @@ def _line_marks(image: Image, view: Array, rig: Array, reach: float) -> list[Mar
         offset, good = _steps(_profiles(image, seen, reach), reach)
         if good.sum() > max(12, 0.3 * len(good)):
             found.append(_marks(line, seen, offset, good, EDGE_SD))
-    return found
+    return [_straight(marks) for marks in found]
+
+
+def _straight(marks: Marks) -> Marks:
+    """Drop what lies off a smooth curve through a line's marks; what is ragged counts less."""
+    offset = (marks.pixel * marks.normal.mean(0)).sum(-1)
+    s = marks.along - marks.along.mean()
+    keep = np.ones(len(s), bool)
+    spread = 1.0
+    for _ in range(3):
+        curve = np.polynomial.Polynomial.fit(s[keep], offset[keep], 2 if keep.sum() > 5 else 1)
+        away = np.abs(offset - curve(s))
+        spread = max(1.5 * float(np.median(away[keep])), LINE_SD)
+        keep = away < 2.5 * spread
+        if keep.sum() < 3:
+            break
+    kept = marks.pick(keep)
+    return replace(kept, sd=np.full(len(kept), spread))
 
 
 def _ridges(line: int, seen: _Normals, profile: Array, group: int) -> Marks | None:
     """Measure a thin line, `group` neighbouring normals together; None where none is seen."""
     n, m, _ = profile.shape
-    quarter = m // 4
+    quarter = m // 5
     first, last = profile[:, :quarter].mean(1), profile[:, -quarter:].mean(1)
     s = (np.arange(m) - (m - 1) / 2) * STEP
-    slant = (last - first)[:, None, :] * (s / (s[-1] - s[0]) / 0.75)[None, :, None]
-    level = 0.5 * (first + last)[:, None, :] + slant
-    deviation = profile - level
+    slant = (last - first)[:, None, :] * (s / (s[-1] - s[0]) / 0.8)[None, :, None]
+    deviation = profile - 0.5 * (first + last)[:, None, :] - slant
     calm = np.linalg.norm(last - first, axis=1) < 12
-    calm &= np.abs(deviation).max((1, 2)) < 60
+    calm &= np.abs(deviation).max((1, 2)) < 80
     if calm.sum() < 3 * group:
         return None
-    mean = np.median(deviation[calm], axis=0)
-    middle = slice(quarter, m - quarter)
-    peak = int(np.linalg.norm(mean[middle], axis=1).argmax()) + quarter
-    height = float(np.linalg.norm(mean[peak]))
-    spread = float(np.linalg.norm(np.std(mean[np.r_[:quarter, m - quarter : m]], axis=0)))
-    if height < max(1.5, 4 * spread):
+    rows = np.nonzero(calm)[0]
+    # The straight path across the profiles along which they deviate most, and alike.
+    ends = np.arange(quarter, m - quarter, 2) - (m - 1) // 2
+    share = (seen.along[rows] - seen.along[0]) / (seen.along[-1] - seen.along[0])
+    one, two = (g.ravel() for g in np.meshgrid(ends, ends))
+    path = np.round(one[:, None] + (two - one)[:, None] * share).astype(np.int64) + (m - 1) // 2
+    held = np.clip(deviation[rows], -30, 30)
+    mean = held[np.arange(len(rows)), path].mean(1)
+    strength = np.linalg.norm(mean, axis=1)
+    best = int(strength.argmax())
+    height = float(strength[best])
+    if height < max(1.5, 3 * float(np.percentile(strength, 25))):
         return None
-    value = deviation @ (mean[peak] / height)
-    places, offsets, sds = [], [], []
-    for start in range(0, n - group + 1, group):
-        rows = np.arange(start, start + group)
-        rows = rows[calm[rows]]
-        if len(rows) < group // 2:
+    value = held @ (mean[best] / height)
+    window = np.arange(-6, 7)
+    at = np.clip(path[best][:, None] + window, 0, m - 1)
+    near = value[np.arange(len(rows))[:, None], at]
+    places, offsets = [], []
+    for start in range(0, len(rows) - group // 2, group):
+        block = slice(start, start + group)
+        v = near[block].mean(0)
+        top = 3 + int(v[3:-3].argmax())
+        if not 0.4 * height < v[top] < 3 * height:
             continue
-        v = value[rows].mean(0)
-        lo, hi = max(peak - 5, 0), min(peak + 6, m)
-        top = lo + int(v[lo:hi].argmax())
-        if not 1 <= top < m - 1 or v[top] < 0.4 * height or v[top] > 2.5 * height:
-            continue
-        near = slice(max(top - 4, 0), min(top + 5, m))
-        weight = np.clip(v[near] - 0.3 * v[top], 0, None)
-        places.append(start + group // 2)
-        offsets.append(float((weight * s[near]).sum() / weight.sum()))
-        sds.append(LINE_SD)
+        around = slice(top - 3, top + 4)
+        weight = np.clip(v[around] - 0.35 * v[top], 0, None)
+        index = float((weight * window[around]).sum() / weight.sum())
+        places.append(start + len(rows[block]) // 2)
+        offsets.append(STEP * (float(path[best][block].mean()) + index - (m - 1) / 2))
     if len(places) < 3:
         return None
-    at = np.array(places)
-    picked = _Normals(seen.along[at], seen.point[at], seen.normal[at])
-    return _marks(line, picked, np.array(offsets), np.ones(len(at), bool), LINE_SD)
+    middle = rows[np.array(places)]
+    picked = _Normals(seen.along[middle], seen.point[middle], seen.normal[middle])
+    return _marks(line, picked, np.array(offsets), np.ones(len(middle), bool), LINE_SD)
 
 
 def _marks(line: int, seen: _Normals, offset: Array, good: NDArray[np.bool_], sd: float) -> Marks:

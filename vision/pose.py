@@ -26,7 +26,8 @@ DOWN = np.diag([1.0, -1.0, -1.0])
 """Rotation of a camera that looks straight down with y up in the picture."""
 
 POSITION, K1, K1_ZOOM, K2, R8, R4, SIDE_L, SIDE_R = slice(0, 3), 3, 4, 5, 6, 7, 8, 9
-RIG_SIZE = 10
+CENTRE_X, TEE_Y = 10, 11
+RIG_SIZE = 12
 VIEW_SIZE = 4
 
 
@@ -82,23 +83,25 @@ def joined(parts: Sequence[Marks]) -> Marks:
 
 @dataclass(frozen=True)
 class Prior:
-    """Gaussian prior of the rig: mean and standard deviation, shape (10,) each.
+    """Gaussian prior of the rig: mean and standard deviation, shape (12,) each.
 
     Order: position x, y, z (m); k1, its change per unit of log focal length, k2; radii of the
-    8-ft and 4-ft edges (m); place x of the left and the right side of the sheet (m).
+    8-ft and 4-ft edges (m); place x of the left and the right side of the sheet (m); x of the centre
+    line and y of the tee line (m).
     """
 
     mean: Array
     sd: Array
 
 
-_PAINT = ((0.0, 0.05), (0.0, 0.05), (0.0, 0.02))  # k1, k1 by zoom, k2 (see design of broadcasts)
-_RADII = ((1.2135, 0.008), (0.619, 0.009))  # measured on fourteen painted houses
+_LENS = ((-0.015, 0.05), (0.0, 0.05), (0.01, 0.02))  # k1, k1 by zoom, k2: broadcast lenses
+_RADII = ((1.2135, 0.005), (0.619, 0.006))  # measured on fourteen painted houses
 _SIDES = ((-2.35, 0.1), (2.35, 0.1))
+_CROSS = ((0.0, 0.008), (0.0, 0.008))  # a line may be two stripes, of which one is measured
 
 
 def _prior(*position: tuple[float, float]) -> Prior:
-    rows = np.array([*position, *_PAINT, *_RADII, *_SIDES])
+    rows = np.array([*position, *_LENS, *_RADII, *_SIDES, *_CROSS])
     return Prior(rows[:, 0].copy(), rows[:, 1].copy())
 
 
@@ -133,9 +136,8 @@ def ice_points(line: NDArray[np.int64], along: ArrayLike, rig: Array) -> Array:
 
 
 def measures(rig: Array) -> Array:
-    """List the measure of each kind of mark: radius of a circle, place of a side, 0, m."""
-    r8, r4, left, right = rig[[R8, R4, SIDE_L, SIDE_R]]
-    return np.array([HOUSE.twelve_foot, r8, r4, 0.0, 0.0, left, right])
+    """List the measure of each kind of mark: radius of a circle or place of a line, m."""
+    return np.array([HOUSE.twelve_foot, *rig[[R8, R4, CENTRE_X, TEE_Y, SIDE_L, SIDE_R]]])
 
 
 def ice_frame(line: NDArray[np.int64], along: Array) -> tuple[Array, Array]:
