@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -37,6 +37,7 @@ def energy(v1: Array, v2: Array, w1: Spin, w2: Spin, m1: float, m2: float) -> fl
     return float(m1 * (v1 @ v1 + k * w1**2) + m2 * (v2 @ v2 + k * w2**2)) / 2
 
 
+@settings(deadline=None)
 @given(hits, unit, st.floats(0, 1))
 def test_momentum_restitution_and_energy(case: Case, e: float, mu: float) -> None:
     assume(closing(case) > 1e-6)
@@ -51,6 +52,7 @@ def test_momentum_restitution_and_energy(case: Case, e: float, mu: float) -> Non
         assert energy(*after, m1, m2) <= before * (1 + 1e-12)
 
 
+@settings(deadline=None)
 @given(hits, unit, st.floats(0, 1), st.floats(0.2, 0.6), velocities)
 def test_angular_momentum(case: Case, e: float, mu: float, k: float, place: np.ndarray) -> None:
     assume(closing(case) > 0)
@@ -66,6 +68,7 @@ def test_angular_momentum(case: Case, e: float, mu: float, k: float, place: np.n
     assert angular(*after) == pytest.approx(angular(v1, v2, w1, w2), abs=1e-12 * scale)
 
 
+@settings(deadline=None)
 @given(hits, unit, st.floats(0.01, 1))
 def test_friction_sticks_or_slips(case: Case, e: float, mu: float) -> None:
     assume(closing(case) > 1e-3)
@@ -84,6 +87,7 @@ def test_friction_sticks_or_slips(case: Case, e: float, mu: float) -> None:
         assert abs(aside) == pytest.approx(mu * along, rel=1e-6, abs=1e-12)
 
 
+@settings(deadline=None)
 @given(hits, unit)
 def test_special_cases_agree(case: Case, e: float) -> None:
     assume(closing(case) > 0)
@@ -95,6 +99,7 @@ def test_special_cases_agree(case: Case, e: float) -> None:
             assert b == pytest.approx(a, abs=1e-12)
 
 
+@settings(deadline=None)
 @given(hits, unit, spins, spins)
 def test_rigid_body_keeps_each_contact_speed(case: Case, e: float, a1: float, a2: float) -> None:
     assume(closing(case) > 0)
@@ -114,6 +119,7 @@ def test_rigid_body_needs_the_spins_after() -> None:
         RigidBody().resolve((1, 0), (0, 0), 0, 0, (1, 0))
 
 
+@settings(deadline=None)
 @given(hits, unit, st.floats(0, 1), st.floats(-math.pi, math.pi))
 def test_rotation_mirror_and_exchange(case: Case, e: float, mu: float, angle: float) -> None:
     assume(closing(case) > 0)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
@@ -64,6 +64,7 @@ def test_laws_by_name() -> None:
             wrong()
 
 
+@settings(deadline=None)
 @given(speeds, st.floats(0.002, 0.05), st.floats(0.0, 1.0))
 def test_constant_friction_has_its_closed_form(v: float, mu: float, part: float) -> None:
     path = Path(3.0, along_y(v), Constant(mu), NoCurl())
@@ -75,6 +76,7 @@ def test_constant_friction_has_its_closed_form(v: float, mu: float, part: float)
     assert path.at(3.0 + t).vy == pytest.approx(v - a * t, abs=1e-12)
 
 
+@settings(deadline=None)
 @given(speeds, st.floats(0.0, 1.0))
 def test_penner_has_its_closed_form(v: float, part: float) -> None:
     path = Path(0.0, along_y(v), Penner(), NoCurl())
@@ -173,6 +175,7 @@ def test_stone_at_rest_stays_at_rest() -> None:
     assert path.at(5.0) == path.at(50.0) == state
 
 
+@settings(deadline=None)
 @given(speeds, angles, spins, st.sampled_from(LAWS), st.sampled_from(CURLS), st.floats(0.05, 0.95))
 def test_a_path_taken_up_again_is_the_same_path(
     v: float,
@@ -194,6 +197,7 @@ def test_a_path_taken_up_again_is_the_same_path(
         assert again.at(later)[2:] == pytest.approx(path.at(later)[2:], abs=1e-6)
 
 
+@settings(deadline=None)
 @given(speeds, spins, st.sampled_from(LAWS), angles, st.floats(0.0, 1.0))
 def test_mirror_and_rotation(
     v: float, omega: float, law: IceLaw, angle: float, part: float

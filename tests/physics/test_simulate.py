@@ -92,6 +92,7 @@ def test_hit_as_another_program_has_it() -> None:
 # --- contacts --------------------------------------------------------------------------------
 
 
+@settings(deadline=None)
 @given(st.floats(0.3, 5.0), st.floats(0.3, 3.0), st.floats(-0.28, 0.28))
 def test_contact_time_has_its_closed_form(v: float, ahead: float, offset: float) -> None:
     a = Constant().friction * GRAVITY
@@ -110,6 +111,7 @@ def test_contact_time_has_its_closed_form(v: float, ahead: float, offset: float)
     )
 
 
+@settings(deadline=None)
 @given(st.floats(1.0, 90.0), st.floats(1e-6, 0.01), st.sampled_from(LAWS))
 def test_no_contact_is_stepped_over(v: float, deep: float, law: IceLaw) -> None:
     """However fast the stone is and however briefly it grazes the other."""
@@ -118,17 +120,38 @@ def test_no_contact_is_stepped_over(v: float, deep: float, law: IceLaw) -> None:
     assert [hit.stones for hit in hits] == [("A", "B")]
 
 
+@settings(deadline=None)
 @given(st.floats(1.0, 90.0), st.floats(1e-8, 0.01), st.sampled_from(LAWS))
 def test_a_near_miss_is_no_hit(v: float, gap: float, law: IceLaw) -> None:
     stones = StoneStart("A", 0, -2, 0, v), StoneStart("B", 2 * R + gap, 0)
     assert simulate(shot(*stones, ice=law, curl=NoCurl())).hits == ()
 
 
-def test_both_may_move() -> None:
-    stones = StoneStart("A", 0, -2, 0.0, 1.5), StoneStart("B", -2, 0.05, 1.5, 0.0)
-    (hit,) = simulate(shot(*stones, ice=Constant(), curl=NoCurl())).hits
-    table = simulate(shot(*stones, ice=Constant(), curl=NoCurl())).sample([hit.t])
-    assert math.dist(*table[["x", "y"]].to_numpy()) == pytest.approx(2 * R, abs=1e-12)
+@settings(deadline=None, max_examples=50)
+@given(
+    st.tuples(st.floats(-1, 1), st.floats(0.2, 3), st.floats(-3, 3)),
+    st.tuples(st.floats(-3, -0.2), st.floats(-1, 1), st.floats(-3, 3)),
+    st.floats(-0.5, 0.5),
+    st.sampled_from(LAWS),
+)
+def test_the_first_contact_of_two_that_move(
+    a: tuple[float, float, float], b: tuple[float, float, float], aim: float, law: IceLaw
+) -> None:
+    """Against the distance of both, alone on the ice, at many moments."""
+    stones = (
+        StoneStart("A", 0, -1, a[0], a[1], a[2]),
+        StoneStart("B", 1, aim, b[0], b[1], b[2]),
+    )
+    times = np.linspace(0, 12, 1201)
+    alone = [simulate(shot(stone, ice=law)).sample(times)[["x", "y"]] for stone in stones]
+    distance = np.linalg.norm(alone[0].to_numpy() - alone[1].to_numpy(), axis=1)
+    hits = simulate(shot(*stones, ice=law)).hits
+    if not hits:
+        assert distance.min() > 2 * R - 1e-9
+        return
+    assert (distance[times < hits[0].t - 1e-9] > 2 * R - 1e-9).all()
+    places = simulate(shot(*stones, ice=law)).sample([hits[0].t])[["x", "y"]].to_numpy()
+    assert math.dist(*places) == pytest.approx(2 * R, abs=1e-9)
 
 
 @settings(deadline=None, max_examples=60)
