@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from vision.stones import Sighting, colour_difference
+from vision.appearance import colour_difference
+from vision.sighting import Sighting
 
 Array = NDArray[np.float64]
 

@@ -11,21 +11,13 @@ import pandas as pd
 from data.progress import Progress, no_progress
 from data.sheet import STONE, Stone
 from data.tracks import SIGHTING_COLUMNS, check_sightings, order_of_motion
+from vision.appearance import Appearance, colour_difference, lab_to_bgr, learn
 from vision.camera import Camera
 from vision.clip import Clip, Frame
 from vision.follow import Gate, Track, follow, names_by_motion
 from vision.handle import Complex, cap_spectrum, handle_angles
-from vision.stones import (
-    SEARCH,
-    Appearance,
-    Search,
-    Sighting,
-    colour_difference,
-    find_stones,
-    is_plain,
-    lab_to_bgr,
-    learn,
-)
+from vision.sighting import Sighting
+from vision.stones import PLAIN_REACH, SEARCH, STONE_REACH, Search, find_stones, is_plain
 
 LEARNING_FRAMES = 24
 """Frames of a clip from which the look of its stones is learned."""
@@ -142,7 +134,9 @@ def _seen(
 ) -> list[Sighting]:
     """Sightings of one frame, the patch of each reduced to what the angle needs."""
     found = find_stones(frame.image, camera, appearance, disc, search)
-    outer = (0.80 * disc.radius / 1.3) if is_plain(disc) else 0.86 * disc.cap_radius / 1.04
+    outer = (
+        0.80 * disc.radius / PLAIN_REACH if is_plain(disc) else 0.86 * disc.cap_radius / STONE_REACH
+    )
     return [
         replace(
             item,

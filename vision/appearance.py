@@ -1,0 +1,156 @@
+"""What stones look like in a clip: the colours of caps and granite, learned from sightings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from vision.clip import Image
+from vision.sighting import Sighting
+
+Array = NDArray[np.float64]
+Floats = NDArray[np.float32]
+
+
+@dataclass(frozen=True)
+class Colour:
+    """A colour in CIE L*a*b* (8-bit scaling of OpenCV): mean and covariance."""
+
+    mean: Array
+    covariance: Array
+
+    def distance2(self, lab: Array) -> Array:
+        """Squared Mahalanobis distance of colours, shape (..., 3)."""
+        away = lab - self.mean
+        return np.asarray(
+            np.einsum("...i,ij,...j->...", away, np.linalg.inv(self.covariance), away)
+        )
+
+    @property
+    def bgr(self) -> tuple[int, int, int]:
+        """The mean colour as blue, green, red of 0 to 255."""
+        return lab_to_bgr(self.mean)
+
+
+@dataclass(frozen=True)
+class Appearance:
+    """What stones look like in a clip.
+
+    Attributes
+    ----------
+    membership : ndarray, shape (64, 64, 64)
+        For a colour (blue, green, red in steps of 4): 1 cap, −1 granite, 0 neither.
+    caps : tuple of Colour
+        The cap colours of the clip; empty where they are not known yet.
+    granite : Colour or None
+        The colour of the granite.
+    outline : tuple of float
+        Radii at which cap and granite are seen to end, as shares of the nominal ones.
+    slack : float
+        Standard deviation of a stone's radii about these, as a share.
+    """
+
+    membership: Floats
+    caps: tuple[Colour, ...] = ()
+    granite: Colour | None = None
+    outline: tuple[float, float] = (1.0, 0.98)
+    slack: float = 0.03
+
+
+def lab_to_bgr(lab: Array) -> tuple[int, int, int]:
+    """Blue, green, red of 0 to 255 from a colour in L*a*b*."""
+    pixel = np.clip(lab, 0, 255).astype(np.uint8).reshape(1, 1, 3)
+    blue, green, red = cv2.cvtColor(pixel, cv2.COLOR_LAB2BGR).ravel().tolist()
+    return int(blue), int(green), int(red)
+
+
+@lru_cache(maxsize=1)
+def _lab_of_table() -> Array:
+    steps = (np.arange(64) * 4 + 2).astype(np.uint8)
+    bgr = np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), -1).reshape(64, -1, 3)
+    lab = cv2.cvtColor(bgr, cv2.COLOR_BGR2LAB).reshape(64, 64, 64, 3)
+    return np.asarray(lab, float)
+
+
+def any_stone(white: float = 210.0) -> Appearance:
+    """Appearance of stones before any is known: saturated caps, grey granite darker than ice.
+
+    Parameters
+    ----------
+    white : float
+        Lightness L* of the white ice in the picture, 0 to 255.
+    """
+    lab = _lab_of_table()
+    chroma = np.hypot(lab[..., 1] - 128, lab[..., 2] - 128)
+    light = lab[..., 0] / white
+    cap = np.clip((chroma - 28) / 14, 0, 1)
+    granite = (
+        np.clip((36 - chroma) / 16, 0, 1)
+        * np.clip((light - 0.08) / 0.1, 0, 1)
+        * np.clip((0.78 - light) / 0.1, 0, 1)
+    )
+    return Appearance((cap - granite).astype(np.float32))
+
+
+def learn(sightings: Sequence[Sighting], most_colours: int = 2) -> Appearance | None:
+    """Learn the cap colours and the granite of a clip from sightings in many frames.
+
+    Caps are grouped by their colour; groups that are rare beside the others are left out.
+
+    Returns
+    -------
+    Appearance or None
+        None where there are no sightings.
+    """
+    groups: list[list[Sighting]] = []
+    for sighting in sorted(sightings, key=lambda item: -item.score):
+        for group in groups:
+            if colour_difference(group[0].colour, sighting.colour) < 30:
+                group.append(sighting)
+                break
+        else:
+            groups.append([sighting])
+    groups.sort(key=len, reverse=True)
+    groups = [group for group in groups[:most_colours] if len(group) >= 0.08 * len(groups[0])]
+    if not groups:
+        return None
+    caps = tuple(
+        _colour(np.concatenate([s.cap_samples for s in group]), (18.0, 6.0, 6.0))
+        for group in groups
+    )
+    granite = _colour(
+        np.concatenate([s.granite_samples for group in groups for s in group]), (15.0, 9.0, 9.0)
+    )
+    lab = _lab_of_table()
+    distances = [np.sqrt(cap.distance2(lab)) for cap in caps]
+    cap = np.clip((4.5 - np.min(distances, axis=0)) / 1.5, 0, 1)
+    grey = np.clip((4.0 - np.sqrt(granite.distance2(lab))) / 1.5, 0, 1)
+    chosen = [s.outline for group in groups for s in group if s.visible > 0.8]
+    if len(chosen) < 3:
+        return Appearance((cap - grey).astype(np.float32), caps, granite)
+    cap_share, rim_share = np.median(np.array(chosen), axis=0).tolist()
+    return Appearance((cap - grey).astype(np.float32), caps, granite, (cap_share, rim_share), 0.01)
+
+
+def colour_difference(first: Array, second: Array) -> float:
+    """Difference of two cap colours, mostly of hue: lightness changes with the lamps."""
+    away = np.asarray(first, float) - np.asarray(second, float)
+    return float(np.sqrt(0.1 * away[0] ** 2 + away[1] ** 2 + away[2] ** 2))
+
+
+def _colour(samples: Array, floor: tuple[float, float, float]) -> Colour:
+    centre = np.median(samples, axis=0)
+    near = samples[(np.abs(samples - centre) < 4 * np.array(floor)).all(1)]
+    spread = np.cov(near.T) if len(near) > 10 else np.zeros((3, 3))
+    return Colour(centre, spread + np.diag(np.square(floor)))
+
+
+def membership(image: Image, appearance: Appearance) -> Floats:
+    """Say what each pixel may be: 1 cap, −1 granite, 0 neither; shape (h, w)."""
+    b, g, r = (image[..., channel].astype(np.int32) >> 2 for channel in range(3))
+    return np.asarray(appearance.membership.ravel().take((b << 12) | (g << 6) | r), np.float32)

@@ -1,0 +1,123 @@
+"""The ice seen from straight above: one picture rectified with its camera."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from vision.camera import Camera
+from vision.clip import Image
+
+Array = NDArray[np.float64]
+Floats = NDArray[np.float32]
+
+_CELL = 8
+"""Pixels of the map from one node at which the camera is evaluated to the next."""
+
+
+@dataclass(frozen=True)
+class IceMap:
+    """The ice as seen from straight above, at the height of the caps.
+
+    Attributes
+    ----------
+    image : ndarray, shape (h, w, 3)
+        BGR.
+    valid : ndarray of bool, shape (h, w)
+        Where the picture shows the ice.
+    left, top : float
+        Ice place of the middle of the pixel (0, 0), m.
+    scale : float
+        Pixels per metre.
+    """
+
+    image: Image
+    valid: NDArray[np.bool_]
+    left: float
+    top: float
+    scale: float
+
+    def place(self, column: Array, row: Array) -> Array:
+        """Ice place (x, y) of map pixels, shape (..., 2)."""
+        return np.stack([self.left + column / self.scale, self.top - row / self.scale], -1)
+
+
+def lifted(camera: Camera, ice: Array, height: Array | float) -> Array:
+    """Ice points hidden behind points (x, y), shape (..., 2), that are `height` above the ice."""
+    if camera.position is None or not np.isfinite(camera.position).all():
+        return ice
+    rise = np.asarray(height, float)[..., None]
+    return np.asarray(ice + (ice - camera.position[:2]) * rise / (camera.position[2] - rise))
+
+
+def rectify(
+    image: Image,
+    camera: Camera,
+    bounds: tuple[float, float, float, float],
+    *,
+    scale: float,
+    height: float = 0.0,
+) -> IceMap | None:
+    """Map the part of the picture that shows the sheet onto the ice.
+
+    Parameters
+    ----------
+    bounds : (x0, x1, y0, y1)
+        The part of the ice to map, m; what the picture does not show is left out.
+    scale : float
+        Pixels of the map per metre.
+    height : float
+        Height above the ice of the plane that is mapped, m.
+
+    Returns
+    -------
+    IceMap or None
+        None where the picture shows nothing of that part.
+    """
+    x0, x1, y0, y1 = bounds
+    width, high = camera.size
+    cell = _CELL
+    xs = np.arange(x0, x1 + cell / scale, cell / scale)
+    ys = np.arange(y1, y0 - cell / scale, -cell / scale)
+    ice = np.stack(np.meshgrid(xs, ys), -1)
+    ground = lifted(camera, ice, height)
+    depth = ground @ camera.homography[2, :2] + camera.homography[2, 2]
+    nodes = np.full(ground.shape, -1e4)
+    nodes[depth > 0.05] = camera.project(ground[depth > 0.05])
+    inside = np.all((nodes > -0.5) & (nodes < np.array([width, high]) - 0.5), axis=-1)
+    rows, columns = np.flatnonzero(np.any(inside, 1)), np.flatnonzero(np.any(inside, 0))
+    if len(rows) < 2 or len(columns) < 2:
+        return None
+    top, bottom = max(rows[0] - 1, 0), min(rows[-1] + 2, len(ys))
+    left, right = max(columns[0] - 1, 0), min(columns[-1] + 2, len(xs))
+    part = np.asarray(nodes[top:bottom, left:right], np.float32)
+    shape = ((bottom - top - 1) * cell, (right - left - 1) * cell)
+    column, row = np.meshgrid(
+        np.arange(shape[1], dtype=np.float32) / cell, np.arange(shape[0], dtype=np.float32) / cell
+    )
+    pixels = np.asarray(cv2.remap(part, column, row, cv2.INTER_LINEAR), np.float32)
+    # A picture much finer than the map is averaged first, else the map would be grainy.
+    fine = np.sqrt(inside.sum()) * cell
+    coarser = max(1, int(0.8 * np.sqrt(_visible_area(part, width, high)) / fine))
+    if coarser > 1:
+        small = (width // coarser, high // coarser)
+        image = np.asarray(cv2.resize(image, small, interpolation=cv2.INTER_AREA), np.uint8)
+        pixels = np.asarray((pixels + 0.5) / coarser - 0.5, np.float32)
+    ice_image = cv2.remap(
+        image, pixels[..., 0], pixels[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT
+    )
+    limit = np.array([image.shape[1], image.shape[0]]) - 1
+    valid = np.all((pixels >= 0) & (pixels <= limit), axis=-1)
+    return IceMap(
+        np.asarray(ice_image, np.uint8), valid, float(xs[left]), float(ys[top]), float(scale)
+    )
+
+
+def _visible_area(nodes: Floats, width: int, height: int) -> float:
+    """Pixels of the picture that the nodes' hull covers, at most all of them."""
+    low = np.clip(nodes.min((0, 1)), 0, [width, height])
+    high = np.clip(nodes.max((0, 1)), 0, [width, height])
+    return float(np.prod(np.maximum(high - low, 1)))

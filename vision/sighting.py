@@ -1,0 +1,49 @@
+"""One stone seen in one picture."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Sighting:
+    """One stone seen in one picture.
+
+    Attributes
+    ----------
+    x, y, sd_x, sd_y : float
+        Place on the ice under its centre and its standard error, m.
+    colour : ndarray, shape (3,)
+        Colour of the cap, L*a*b*.
+    visible : float
+        Share of the circle that was seen, 0 to 1.
+    score : float
+        Evidence that it is a stone: 1.5 is little, 3 is much.
+    outline : tuple of float
+        Radii found for cap and granite (or the rim alone), as shares of the nominal ones.
+    patch : ndarray, shape (rays, radii, 3)
+        L*a*b* on rays from the centre, counter-clockwise from the x axis of the ice, out to
+        1.04 radii.
+    cap_samples, granite_samples : ndarray, shape (n, 3)
+        Colours of the cap and of the granite, for learning.
+    spectrum : ndarray or None
+        What is kept of the patch to measure the angle (`vision.handle.cap_spectrum`).
+    """
+
+    x: float
+    y: float
+    sd_x: float
+    sd_y: float
+    colour: Array
+    visible: float
+    score: float
+    outline: tuple[float, ...] = field(repr=False)
+    patch: NDArray[np.uint8] = field(repr=False)
+    cap_samples: Array = field(repr=False, default_factory=lambda: np.empty((0, 3)))
+    granite_samples: Array = field(repr=False, default_factory=lambda: np.empty((0, 3)))
+    spectrum: NDArray[np.complex64] | None = field(repr=False, default=None)
