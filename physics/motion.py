@@ -287,7 +287,7 @@ def _solve(c: tuple[float, float, float, float], value: float, width: float) -> 
     return s
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=16)
 def curve(ice: IceLaw, curl: Curl, top: float, cells: int = 2048) -> Curve:
     """Integrate the curve of all glides up to a speed.
 
