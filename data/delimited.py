@@ -24,7 +24,9 @@ _PREFACE = 10
 
 _EXPORT = "from Tracker, save tracks as text with File > Export > Data"
 
-_NUMBER = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)(e[+-]?\d+)?|[+-]?(inf|infinity|∞)", re.IGNORECASE)
+_NUMBER = re.compile(
+    r"[+-]?(\d+([.,]\d*)?|[.,]\d+)(e[+-]?\d+)?|[+-]?(inf|infinity|∞)", re.IGNORECASE
+)
 _UNIT = re.compile(r"[(\[]?(m?s|sec|[cm]?m|in|ft|px|kg|rad|deg|°|(m|rad|deg|°)/s[²2]?)?[)\]]?")
 _MISSING = frozenset({"", "nan", "na", "n/a", "#n/a", "null", "none", "-"})
 _BIDI_MARKS = dict.fromkeys(map(ord, "\u200e\u200f\u061c\u2066\u2067\u2068\u2069"))
@@ -157,7 +159,7 @@ def plain_digits(text: str) -> str:
         if not character.isascii() and character.isdecimal():
             signs[ord(character)] = str(unicodedata.decimal(character))
     plain = text.translate(signs).replace("أس", "E").replace("اس", "E")
-    return re.sub(r"\s*[×·⋅]\s*10\^?(?=[+-]?\d)", "E", plain)
+    return re.sub(r"[ \xa0]?[×·⋅][ \xa0]?10\^(?=[+-]?\d)", "E", plain)
 
 
 def plain_decimals(columns: Sequence[list[str]], source: str) -> list[list[str]]:

@@ -204,12 +204,13 @@ def test_nameless_file_is_named_after_itself(tmp_path: Path) -> None:
 def test_tidy_table_in_any_order_keeps_spin_and_uncertainty(tmp_path: Path) -> None:
     text = (
         "seen;theta;y;x;sd_x;stone;t\n"
-        "1;0,5;1;2;0,01;A;0,04\n0;9;9;9;0,01;A;0,08\n1;;3;4;;B;0,04\n1;7,5;1;2,1;0,01;A;0,12\n"
+        "1;90,5;1;2;0,01;A;0,04\n0;9;9;9;0,01;A;0,08\n1;;3;4;;B;0,04\n1;97,5;1;2,1;0,01;A;0,12\n"
     )
     found = read(tmp_path, text).sightings
     assert list(found["stone"]) == ["A", "A", "B"]
     assert list(found["t"]) == [0.04, 0.12, 0.04]
-    assert list(found["theta"][:2]) == pytest.approx([0.5, 7.5 - 2 * np.pi])
+    # Our own angles run on: neither wrapped nor degrees, whatever they begin with.
+    assert list(found["theta"][:2]) == [90.5, 97.5]
     assert list(found["sd_x"][:2]) == [0.01, 0.01]
     assert found["theta"].isna()[2]
 
@@ -323,6 +324,7 @@ NONSENSE = {
     "t,x,y\n0,0,200\n60,1,200\n": "200 m from the origin: .*length unit",
     "t,x\n0,1\n": "columns x: 1, columns y: 0",
     "t,x,x,y\n0,1,1,1\n": "columns x: 2",
+    "t,x,y,t,x,y\n0,1,1,0.5,2,2\n": "two columns of times that differ",
     "t,θr,ω\n0,1,2\n": "only angles about the origin",
     "t,vx,vy,ax,ay\n0,1,2,3,4\n": "no columns x and y",
     "0 1 2 3\n1 1 2 3\n": "4 columns without a header",

@@ -1,0 +1,135 @@
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from data.delimited import TextTable, plain_decimals, plain_digits, read_text_table
+from data.errors import InputError
+
+
+def is_header(names: Sequence[str]) -> bool:
+    return names[0] == "t" and len(names) > 1
+
+
+def read(folder: Path, text: str | bytes) -> TextTable:
+    path = folder / "table.txt"
+    path.write_bytes(text.encode() if isinstance(text, str) else text)
+    return read_text_table(path, is_header)
+
+
+@pytest.mark.parametrize(
+    ("written", "plain"),
+    [
+        ("−2,641376×10^0", "-2,641376E0"),
+        ("3,333333×10^−2", "3,333333E-2"),
+        ("1.5 · 10^3", "1.5E3"),
+        ("\u200e−۱٫۵", "-1.5"),
+        ("؜-٢٫٥أس٣", "-2.5E3"),
+        ("१२३", "123"),
+        ("-1.5E-3", "-1.5E-3"),
+        ("2×10 cm", "2×10 cm"),
+        ("a×b", "a×b"),
+    ],
+)
+def test_signs_digits_and_exponents_of_all_locales(written: str, plain: str) -> None:
+    assert plain_digits(written) == plain
+
+
+@given(
+    st.floats(-1e6, 1e6),
+    st.sampled_from(["0123456789", "٠١٢٣٤٥٦٧٨٩", "۰۱۲۳۴۵۶۷۸۹", "०१२३४५६७८९"]),
+)
+def test_a_number_survives_its_locale(number: float, digits: str) -> None:
+    text = f"{number:.6E}".translate(str.maketrans("0123456789", digits))
+    text = text.replace("-", "\N{MINUS SIGN}").replace("E", "×10^").replace("+", "")
+    assert float(plain_digits(text)) == float(f"{number:.6E}")
+
+
+def test_decimal_commas_are_for_all_columns_or_none() -> None:
+    assert plain_decimals([["1,5", ""], ["2", "3"]], "f") == [["1.5", ""], ["2", "3"]]
+    assert plain_decimals([["1.5"], ["2"]], "f") == [["1.5"], ["2"]]
+    for columns in ([["1,5"], ["1.5"]], [["1.234,5"]], [["1,234.5"]]):
+        with pytest.raises(InputError, match="which is the decimal sign"):
+            plain_decimals(columns, "f")
+
+
+def test_rows_names_title_and_line_numbers(tmp_path: Path) -> None:
+    table = read(tmp_path, "#multi:\n\n;red;;\nt;x;y;\n0;1;2\n;;\n\n# note\n1;;4\n")
+    assert table.names == ("t", "x", "y")
+    assert table.title == ";red;;"
+    assert table.delimiter == ";"
+    assert table.line_numbers == (5, 9)
+    np.testing.assert_array_equal(table.numbers([2, 1]), [[2, 1], [4, np.nan]])
+    assert table.cells([1]) == [["1", ""]]
+
+
+@pytest.mark.parametrize("delimiter", ["\t", ";", ",", " ", "|", " | ", "::", "&"])
+def test_delimiters(tmp_path: Path, delimiter: str) -> None:
+    rows = [("t", "x", "y"), ("0", "1", "2"), ("1", "3", "4")]
+    text = "\n".join(delimiter.join(row) for row in rows)
+    np.testing.assert_array_equal(read(tmp_path, text).numbers([0, 1, 2]), [[0, 1, 2], [1, 3, 4]])
+
+
+def test_words_for_nothing(tmp_path: Path) -> None:
+    table = read(tmp_path, "t,x\n0,NaN\n1,#N/A\n2,null\n3,-\n4,\n5\n")
+    assert np.isnan(table.numbers([1])).all()
+
+
+def test_a_row_of_units_joins_the_names(tmp_path: Path) -> None:
+    assert read(tmp_path, "t;x\ns;(cm)\n0;1\n").names == ("t (s)", "x ((cm))")
+    assert read(tmp_path, "t;x\n;\n0;1\n").names == ("t", "x")
+
+
+def test_blanks_hide_what_is_missing(tmp_path: Path) -> None:
+    # One blank per cell, as Tracker writes, leaves no doubt; runs of blanks do.
+    table = read(tmp_path, "t x y \n0  2\n1 3 \n")
+    np.testing.assert_array_equal(table.numbers([1, 2]), [[np.nan, 2], [3, np.nan]])
+    with pytest.raises(InputError, match="cannot be placed"):
+        read(tmp_path, "t  x  y\n0  1  2\n1     2\n").numbers([0, 1, 2])
+
+
+def test_quoted_cells(tmp_path: Path) -> None:
+    table = read(tmp_path, '"t","x"\n"0,5","1,25"\n')
+    np.testing.assert_array_equal(table.numbers([0, 1]), [[0.5, 1.25]])
+
+
+MEGABYTE = 1_000_000
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "9" * MEGABYTE + "x",
+        "t,x,y\n" + "9" * MEGABYTE + ",1,1\n",
+        "t,x,y\n0,1," + "9" * MEGABYTE + "x\n",
+        "t,x,y\n0,1," + " " * MEGABYTE + "×\n",
+        "t," + "(" * MEGABYTE + "\n0,1\n",
+        "t" + " " * MEGABYTE + "x\n0,1\n",
+        't,"' + "x" * MEGABYTE + "\n0,1\n",
+        "t," + "x," * MEGABYTE + "\n0,1\n",
+        "," * MEGABYTE,
+        "\n" * MEGABYTE,
+    ],
+    ids=range(10),
+)
+def test_giant_cells_take_no_time(tmp_path: Path, text: str) -> None:
+    start = time.process_time()
+    try:
+        read(tmp_path, text).numbers([0, 1])
+    except InputError as refusal:
+        assert len(str(refusal)) < 400
+    assert time.process_time() - start < 5
+
+
+def test_a_giant_file_is_not_even_opened(tmp_path: Path) -> None:
+    path = tmp_path / "giant.txt"
+    with path.open("wb") as file:
+        file.truncate(300_000_000)  # sparse
+    with pytest.raises(InputError, match="300 MB is too large"):
+        read_text_table(path, is_header)
