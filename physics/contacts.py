@@ -10,8 +10,10 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from physics.fit import Deceleration, Encounter, Meeting, ShotFit, fit_shot
-from physics.segments import Piece, Trace, breaks, cut, traces
+from physics.fit import fit_shot
+from physics.segments import Piece, breaks, cut
+from physics.shot_fit import Deceleration, Encounter, Meeting, ShotFit
+from physics.traces import Trace, traces
 
 Floats = NDArray[np.float64]
 

@@ -16,14 +16,14 @@ from numpy.typing import NDArray
 from data.results import Collision, Estimate, Friction, Glide, StoneState
 from data.sheet import STONE
 from physics.contacts import Contact, cut_all
-from physics.fit import Encounter, Meeting, ShotFit, fit_shot
-from physics.glides import FREE, measure_glides, stop_time
-from physics.segments import Piece, Trace, traces
+from physics.fit import fit_shot
+from physics.glides import FREE, measure_glides
+from physics.segments import Piece
+from physics.shot_fit import Encounter, Meeting, ShotFit
+from physics.spins import spins_at, stone_friction
+from physics.traces import Trace, traces
 
 Floats = NDArray[np.float64]
-
-LONGEST_SPIN = 1.0
-"""Time beside a hit over which a spin is taken as constant, s."""
 
 WORST = 0.3
 """Standard error of a restitution beyond which a hit is said to tell nothing."""
@@ -194,20 +194,17 @@ def _collision(
     first, second = joint.meetings[k].stones
     state = joint.encounter(k)
     mass = np.array([masses.get(first, 1.0), masses.get(second, 1.0)])
-    spins = [
-        [_spin(joint, rank, known, state.t) for rank in joint.sides[k, stone]]
-        for stone in (first, second)
-    ]
+    spins = spins_at(joint, k, known, mass)
     before, after = (
         {
-            stone: _state(state.places[i], speeds[i], spins[i][when][0])
+            stone: _state(state.places[i], speeds[i], spins[i][when].value)
             for i, stone in enumerate((first, second))
         }
         for when, speeds in ((0, state.before), (1, state.after))
     )
     energy = [float(mass @ np.sum(speeds**2, axis=1)) for speeds in (state.before, state.after)]
     residual, stderr_residual = _momentum(apart, k, mass)
-    rubbing = _stone_friction(joint, k, spins, radius, inertia) if note is None else None
+    rubbing = stone_friction(joint, k, spins, radius, inertia) if note is None else None
     at = 6 * len(joint.pieces) + k
     nx, ny = (float(value) for value in state.normal)
     return Collision(
@@ -244,68 +241,6 @@ def _momentum(fit: ShotFit, k: int, mass: Floats) -> tuple[float | None, float |
     if total < 1e-6:
         return None, None
     return float(np.hypot(*value)) / total, float(np.sqrt(np.trace(cov))) / total
-
-
-def _spin(
-    fit: ShotFit, rank: int, known: Mapping[str, Trace], time: float
-) -> tuple[float | None, float]:
-    """Spin of a stone on one side of a hit, rad/s, and its standard error."""
-    piece = fit.pieces[rank]
-    if piece.rest:
-        return 0.0, 0.0
-    trace = known[piece.stone]
-    t, theta, sd = (a[piece.samples] for a in (trace.t, trace.theta, trace.sd_theta))
-    x = fit.theta[6 * rank : 6 * rank + 6].reshape(2, 3)
-    stop = stop_time(x, fit.origins[rank], np.inf)
-    ok = np.isfinite(theta) & (np.abs(t - time) < LONGEST_SPIN) & (t <= stop)
-    if ok.sum() < 3:
-        return None, np.inf
-    weights = sd[ok] ** -2.0
-    tau = t[ok] - float(weights @ t[ok]) / weights.sum()
-    slope = float(weights @ (tau * theta[ok])) / float(weights @ tau**2)
-    return slope, float((weights @ tau**2) ** -0.5)
-
-
-def _stone_friction(
-    fit: ShotFit,
-    k: int,
-    spins: Sequence[Sequence[tuple[float | None, float]]],
-    radius: float,
-    inertia: float,
-) -> tuple[float, float] | None:
-    """Friction between the stones where they slid throughout the contact, else None.
-
-    The tangential impulse that stops the slip is u_t / ((1/m1 + 1/m2)(1 + 1/k)); a smaller
-    one is Coulomb's limit, μ_s times the normal impulse.
-    """
-    (w1, sd1), (w2, sd2) = spins[0][0], spins[1][0]
-    if w1 is None or w2 is None:
-        return None
-    turn = radius * (w1 + w2)
-
-    def parts(states: Sequence[Encounter]) -> Floats:
-        state = states[0]
-        normal = state.normal
-        tangent = np.array([-normal[1], normal[0]])
-        jump = (state.after[1] - state.before[1]) - (state.after[0] - state.before[0])
-        slip = float((state.before[0] - state.before[1]) @ tangent) + turn
-        push = float(jump @ normal)
-        closing = float((state.before[0] - state.before[1]) @ normal)
-        rub = float(jump @ tangent) / push
-        # Both impulses as changes of relative velocity, in which the masses drop out.
-        stick = slip / ((1 + 1 / inertia) * push)
-        return np.array([rub, stick, closing])
-
-    value, cov = fit.propagate([k], parts)
-    rub, stick = value[0] * np.sign(value[1]), abs(value[1])
-    push = value[2] if value[2] > 0 else np.inf
-    spin_sd = radius * float(np.hypot(sd1, sd2)) / ((1 + 1 / inertia) * push)
-    sd = float(np.sqrt(cov[0, 0]))
-    room = stick - rub
-    sd_room = float(np.sqrt(cov[0, 0] + cov[1, 1] + spin_sd**2))
-    if room < 2 * sd_room or rub < -2 * sd:
-        return None
-    return max(float(rub), 0.0), sd
 
 
 def _pooled(values: Floats, cov: Floats) -> Estimate:

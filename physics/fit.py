@@ -8,18 +8,18 @@ in the unknowns but for the times of the hits, so a few Gauss-Newton steps find 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.segments import Piece, Trace
+from physics.residuals import HUBER, huber_weights, likeness
+from physics.segments import Piece
+from physics.shot_fit import Deceleration, Meeting, ShotFit
+from physics.traces import Trace
 
 Floats = NDArray[np.float64]
 
-HUBER = 2.5
-"""Normalised residual beyond which a sighting loses weight."""
 
 DISTANCE_SD = 0.015
 """How well two radii are known as the distance at contact (scale, shape), relative."""
@@ -30,138 +30,9 @@ MOMENTUM_SD = 0.003
 DOUBT = 2.5
 """Normalised violation beyond which distance and momentum are no longer believed."""
 
-LAGS = 0.25
-"""Longest lag, relative to sightings per parameter, at which residuals are compared."""
 
 STILL_SD = 1e-5
 """How still a stone at rest lies, m/s and m/s²."""
-
-
-@dataclass(frozen=True)
-class Deceleration:
-    """Prior of the acceleration on one piece, m/s².
-
-    ``mean`` against the motion with standard deviation ``along``; ``across`` it zero mean.
-    """
-
-    mean: float = 0.0
-    along: float = 1.0
-    across: float = 1.0
-
-
-@dataclass(frozen=True)
-class Meeting:
-    """A hit, or what may be one, as the fit needs it: time and its looseness, s; stones."""
-
-    t: float
-    stones: tuple[str, str]
-    looseness: float
-
-
-@dataclass(frozen=True)
-class Encounter:
-    """Places, and velocities before and after, of the two stones of a hit at its time."""
-
-    t: float
-    places: Floats
-    before: Floats
-    after: Floats
-
-    @property
-    def normal(self) -> Floats:
-        """Unit vector from the first stone to the second."""
-        apart = self.places[1] - self.places[0]
-        out: Floats = apart / np.hypot(*apart)
-        return out
-
-
-@dataclass(frozen=True)
-class ShotFit:
-    """Result of `fit_shot`.
-
-    Attributes
-    ----------
-    pieces : tuple of Piece
-        With the samples as assigned at the end.
-    meetings : tuple of Meeting
-        As given.
-    theta : (6 P + M,) array
-        Per piece x, vx, ax, y, vy, ay at `origins`; then the times of the meetings.
-    cov : (6 P + M, 6 P + M) array
-        Covariance, enlarged for residuals that are too big or alike from frame to frame.
-    origins : (P,) array
-        Time at which a piece's state is given, s.
-    inflation : float
-        Factor that `cov` was enlarged by.
-    sides : mapping
-        Rank of meeting and stone to the ranks of the pieces before and after.
-    """
-
-    pieces: tuple[Piece, ...]
-    meetings: tuple[Meeting, ...]
-    theta: Floats
-    cov: Floats
-    origins: Floats
-    inflation: float
-    sides: Mapping[tuple[int, str], tuple[int, int]]
-
-    def motion(self, rank: int, t: float, theta: Floats | None = None) -> tuple[Floats, Floats]:
-        """Place and velocity on piece `rank` at time t, without regard to a stop."""
-        values = self.theta if theta is None else theta
-        x = values[6 * rank : 6 * rank + 6].reshape(2, 3)
-        tau = t - self.origins[rank]
-        place: Floats = x @ np.array([1.0, tau, 0.5 * tau * tau])
-        speed: Floats = x @ np.array([0.0, 1.0, tau])
-        return place, speed
-
-    def time(self, k: int, theta: Floats | None = None) -> float:
-        """Time of meeting k, s."""
-        values = self.theta if theta is None else theta
-        return float(values[6 * len(self.pieces) + k])
-
-    def encounter(self, k: int, theta: Floats | None = None) -> Encounter:
-        """State of the two stones at meeting k."""
-        t = self.time(k, theta)
-        places, before, after = [], [], []
-        for stone in self.meetings[k].stones:
-            first, second = self.sides[k, stone]
-            place, speed = self.motion(first, t, theta)
-            places.append(place)
-            before.append(speed)
-            after.append(self.motion(second, t, theta)[1])
-        return Encounter(t, np.array(places), np.array(before), np.array(after))
-
-    def propagate(
-        self, hits: Sequence[int], function: Callable[[Sequence[Encounter]], Floats]
-    ) -> tuple[Floats, Floats]:
-        """Value and covariance of a function of the states at some hits, to first order.
-
-        Parameters
-        ----------
-        hits : sequence of int
-            Ranks of the meetings whose encounters `function` takes.
-        function : callable
-            From the encounters to m numbers.
-
-        Returns
-        -------
-        value : (m,) array
-        cov : (m, m) array
-        """
-        ranks = sorted({r for k in hits for s in self.meetings[k].stones for r in self.sides[k, s]})
-        index = [6 * r + i for r in ranks for i in range(6)]
-        index += [6 * len(self.pieces) + k for k in hits]
-        value = np.atleast_1d(function([self.encounter(k) for k in hits]))
-        slopes = np.zeros((len(value), len(index)))
-        for column, i in enumerate(index):
-            step = 0.01 * float(np.sqrt(max(self.cov[i, i], 1e-24)))
-            ends = []
-            for sign in (1.0, -1.0):
-                moved = self.theta.copy()
-                moved[i] += sign * step
-                ends.append(np.atleast_1d(function([self.encounter(k, moved) for k in hits])))
-            slopes[:, column] = (ends[0] - ends[1]) / (2 * step)
-        return value, slopes @ self.cov[np.ix_(index, index)] @ slopes.T
 
 
 def fit_shot(
@@ -327,7 +198,7 @@ class _Solver:
                 continue
             trace = self.traces[piece.stone]
             basis = self._basis(i)
-            weights = _huber(self._residuals(i, basis)) / trace.sd[piece.samples] ** 2
+            weights = huber_weights(self._residuals(i, basis)) / trace.sd[piece.samples] ** 2
             for axis in range(2):
                 at = slice(6 * i + 3 * axis, 6 * i + 3 * axis + 3)
                 weighted = basis * weights[:, axis : axis + 1]
@@ -439,44 +310,6 @@ class _Solver:
         return max(1.0, square / (count - parameters)) * likeness([*runs, *self.still])
 
 
-def likeness(runs: Sequence[tuple[Floats, int]]) -> float:
-    """Long-run variance of residuals over their variance: 1 for white noise, never less.
-
-    Means and slopes have errors larger by this factor than white noise would give them. The
-    sum of autocorrelations runs as far as they are significant; what the fit itself took out
-    of each lag (p / n of the long-run variance) is put back.
-
-    Parameters
-    ----------
-    runs : sequence of ((n, k) array, int)
-        Residuals in order of time, and the number of parameters fitted to each column.
-    """
-    runs = [(r, p) for r, p in runs if len(r) >= 8]
-    if not runs:
-        return 1.0
-    level = sum(float(np.sum(r * r)) for r, _ in runs) / sum(r.size for r, _ in runs)
-    if level <= 0:
-        return 1.0
-    ratio = 1.0
-    for _ in range(4):
-        total = 1.0
-        for lag in range(1, 60):
-            usable = [(r, p) for r, p in runs if lag <= LAGS * len(r) / p]
-            if not usable:
-                break
-            size = sum(r[lag:].size for r, _ in usable)
-            sums = (
-                float(np.sum(r[lag:] * r[:-lag])) / level + ratio * p / len(r) * r[lag:].size
-                for r, p in usable
-            )
-            alike = sum(sums) / size
-            if alike < 2 / np.sqrt(size):
-                break
-            total += 2 * alike
-        ratio = max(1.0, total)
-    return ratio
-
-
 def _inverse(normal: Floats) -> Floats:
     """Inverse of a positive matrix whose rows differ much in size."""
     size = 1.0 / np.sqrt(np.diag(normal))
@@ -498,9 +331,3 @@ def _with_samples(piece: Piece, samples: NDArray[np.int64]) -> Piece:
         piece.opens,
         piece.closes,
     )
-
-
-def _huber(residuals: Floats) -> Floats:
-    """Weights of Huber's estimator."""
-    out: Floats = HUBER / np.maximum(np.abs(residuals), HUBER)
-    return out

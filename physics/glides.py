@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from data.results import Friction, Glide
 from data.sheet import GRAVITY
-from physics.fit import Deceleration, ShotFit
-from physics.segments import Trace
+from physics.shot_fit import Deceleration, ShotFit
+from physics.traces import Trace
 
 Floats = NDArray[np.float64]
 

@@ -19,9 +19,10 @@ from numpy.typing import NDArray
 
 from data.tracks import TRACK_COLUMNS, empty_tracks
 from physics.contacts import Contact, cut_all
-from physics.fit import ShotFit, fit_shot
+from physics.fit import fit_shot
 from physics.glides import FREE, measure_glides, stop_time
-from physics.segments import Trace, traces
+from physics.shot_fit import ShotFit
+from physics.traces import Trace, traces
 
 Floats = NDArray[np.float64]
 
@@ -33,6 +34,9 @@ JUMP_SD = np.array([1.0, 5.0])
 
 STILL_SD = np.array([1e-3, 1e-3])
 """How still a stone at rest lies, m/s and rad/s."""
+
+STOPPED_SD = 0.01
+"""How well a stone is known to have stopped, m/s: the moment of it is not exactly known."""
 
 MEMORY = 0.5
 """Time over which a deceleration keeps its deviation from the mean, s."""
@@ -278,7 +282,7 @@ def _step(
             # What was left of the motion ends somewhere in the step.
             step[place, rate] = 0.0 if still[0] else 0.5 * dt
             step[rate, rate] = 0.0
-            noise[rate, rate] = STILL_SD[kind] ** 2
+            noise[rate, rate] = (STILL_SD[kind] if idle[1] else STOPPED_SD) ** 2
             continue
         step[place, rate] = dt
         density = deviation**2 * MEMORY

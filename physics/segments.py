@@ -1,4 +1,4 @@
-"""Paths of single stones: their noise, and where a motion of one kind ends.
+"""Where a motion of one kind ends: the paths of single stones cut into pieces.
 
 A free stone on ice moves for a while with nearly constant acceleration. `breaks` finds the
 times at which a path stops being such a motion: a push, a wall, a stop, a change of the ice.
@@ -11,13 +11,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from physics.traces import Trace
 
-SMALLEST_SD = 1e-5
-"""Smallest standard deviation of a place, m: what no track at hand surpasses."""
+Floats = NDArray[np.float64]
 
 SPEED_SD, ACCELERATION_SD = 3.0, 0.5
 """Prior of a segment's velocity (m/s) and acceleration (m/s²) when looking for breaks."""
@@ -30,113 +28,6 @@ FEWEST = 4
 
 OUTLIER = 16.0
 """Squared normalised error, two axes, at which a sample costs no more."""
-
-
-@dataclass(frozen=True)
-class Trace:
-    """The sightings of one stone as arrays.
-
-    Attributes
-    ----------
-    stone : str
-        Its name.
-    t : (n,) array
-        Times, s, increasing.
-    xy, sd : (n, 2) array
-        Places and their standard deviations, m.
-    theta, sd_theta : (n,) array
-        Angle and its standard deviation, rad; NaN where unknown.
-    """
-
-    stone: str
-    t: Floats
-    xy: Floats
-    sd: Floats
-    theta: Floats
-    sd_theta: Floats
-
-    @property
-    def step(self) -> float:
-        """Usual time between two sightings, s."""
-        return float(np.median(np.diff(self.t))) if len(self.t) > 1 else 0.04
-
-    def between(self, start: float, end: float) -> NDArray[np.bool_]:
-        """Which sightings lie in [start, end)."""
-        return np.asarray((self.t >= start) & (self.t < end))
-
-
-def traces(sightings: pd.DataFrame) -> dict[str, Trace]:
-    """Split a table of sightings by stone and give every place a standard deviation.
-
-    Where the table has none it is estimated from how places scatter about local parabolas;
-    where it has some that are smaller than that scatter, they are scaled up to it.
-
-    Parameters
-    ----------
-    sightings : DataFrame
-        `data.tracks.SIGHTING_COLUMNS`.
-    """
-    out: dict[str, Trace] = {}
-    for name, group in sightings.groupby("stone", sort=True):
-        columns = {key: group[key].to_numpy(float) for key in group.columns if key != "stone"}
-        t, xy = columns["t"], np.column_stack([columns["x"], columns["y"]])
-        sd = np.column_stack([columns["sd_x"], columns["sd_y"]])
-        theta = columns["theta"].copy()
-        known = np.isfinite(theta)
-        theta[known] = np.unwrap(theta[known])
-        turned = theta[known][:, None]
-        out[str(name)] = Trace(
-            stone=str(name),
-            t=t,
-            xy=xy,
-            sd=_filled(t, xy, sd, SMALLEST_SD, 0.005),
-            theta=theta,
-            sd_theta=_filled_angles(t[known], turned, columns["sd_theta"], known),
-        )
-    return out
-
-
-def _filled_angles(t: Floats, theta: Floats, sd: Floats, known: NDArray[np.bool_]) -> Floats:
-    out = np.full(len(known), np.nan)
-    if known.any():
-        out[known] = _filled(t, theta, sd[known][:, None], 1e-4, 0.05)[:, 0]
-    return out
-
-
-def _filled(t: Floats, values: Floats, sd: Floats, least: float, default: float) -> Floats:
-    """Fill in or scale up standard deviations from the scatter about local parabolas."""
-    given = np.where(np.isfinite(sd) & (sd > 0), sd, np.nan)
-    scatter = local_residuals(t, values)
-    if not np.isfinite(given).any():
-        if len(scatter) < 5:
-            return np.full_like(values, default)
-        level = max(1.4826 * float(np.median(np.abs(scatter))), least)
-        return np.full_like(values, level)
-    given = np.where(np.isfinite(given), given, float(np.nanmedian(given)))
-    if len(scatter) >= 5:
-        ratio = 1.4826 * float(np.median(np.abs(scatter / given[2:-2])))
-        given = given * max(1.0, ratio)
-    return np.maximum(given, least)
-
-
-def local_residuals(t: Floats, values: Floats) -> Floats:
-    """Residual of each sample from the parabola through it and two samples either side.
-
-    Scaled so that white noise keeps its standard deviation. Shape (n − 4, k); empty for
-    fewer than 5 samples.
-    """
-    if len(t) < 5:
-        return np.empty((0, values.shape[1]))
-    window = np.lib.stride_tricks.sliding_window_view(t, 5)
-    tau = window - window[:, 2:3]
-    tau = tau / np.abs(tau).max(axis=1, keepdims=True)
-    basis = np.linalg.qr(np.stack([np.ones_like(tau), tau, tau**2], axis=-1))[0]
-    stack = np.lib.stride_tricks.sliding_window_view(values, 5, axis=0)
-    middle = basis[:, 2, :]
-    fitted = np.einsum("np,nsp,nks->nk", middle, basis, stack)
-    free = 1.0 - np.sum(middle**2, axis=1)
-    out: Floats = (values[2:-2] - fitted) / np.sqrt(np.maximum(free, 1e-3))[:, None]
-    return out
 
 
 def breaks(t: Floats, xy: Floats, sd: Floats) -> list[float]:

@@ -1,0 +1,196 @@
+"""The measured shot simulated: from the states just before the first hit to the end."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+
+from data.results import SimulationScore
+from data.sheet import STONE
+from physics.estimate import Estimates
+from physics.impact import Frictional, Impact, PointMass, RigidBody
+from physics.motion import Constant, NoCurl
+from physics.simulate import Shot, StoneStart, simulate
+
+STONE_FRICTION = 0.05
+"""Friction between two stones where the shot does not tell it: granite on granite, wet."""
+
+RESTITUTION, FRICTION = 0.83, 0.0109
+"""What is assumed where the shot tells nothing; values of the 2018 Olympic final's study."""
+
+MOVED = 0.05
+"""Distance by which a stone must move to count in the score, m."""
+
+
+def simulate_measured(
+    tracks: pd.DataFrame,
+    estimates: Estimates,
+    *,
+    radius: float,
+    masses: Mapping[str, float] | None = None,
+) -> tuple[dict[str, pd.DataFrame], dict[str, SimulationScore], tuple[str, ...]]:
+    """Simulate a measured shot with each impact model and score it against the tracks.
+
+    The start is the last state of `tracks` before the first hit, which rests on what was
+    seen before the hit alone; restitution and friction are those of `estimates`.
+
+    Parameters
+    ----------
+    tracks : DataFrame
+        `data.tracks.TRACK_COLUMNS`, split at the hits as `physics.kalman.smooth` gives them.
+    estimates : Estimates
+        Of the same tracks.
+    radius : float
+        Of the discs, m.
+    masses : mapping, optional
+        Stone to mass in any unit; equal where absent.
+
+    Returns
+    -------
+    samples : dict of str to DataFrame
+        Model to the simulated states at the tracks' times from the start on, with the
+        columns ``stone, frame, t, x, y, theta, vx, vy, omega``.
+    scores : dict of str to SimulationScore
+        Root mean square distance over the stones that moved, m, and each stone's distance
+        between its simulated and measured last place.
+    warnings : tuple of str
+        What had to be assumed.
+    """
+    warnings: list[str] = []
+    if tracks.empty:
+        return {}, {}, ("no tracks to simulate",)
+    start = _start_time(tracks, estimates)
+    if not estimates.collisions:
+        warnings.append("simulation: no hit, the stones only glide")
+    stones = _states(tracks, start, estimates, masses or {})
+    models, notes = _models(estimates, stones, warnings)
+    friction = estimates.friction.value
+    if friction is None:
+        friction = FRICTION
+        warnings.append(f"simulation: friction not measured, {FRICTION} assumed")
+    elif friction < 0:
+        warnings.append(f"simulation: friction came out as {friction:.4f}, 0 used")
+    ice = Constant(max(friction, 0.0) or 1e-6)
+    clock = tracks.groupby("frame", sort=True)["t"].first()
+    clock = clock[clock >= start]
+    samples: dict[str, pd.DataFrame] = {}
+    scores: dict[str, SimulationScore] = {}
+    for name, impact in models.items():
+        if impact is None:
+            scores[name] = SimulationScore(None, {}, notes[name])
+            continue
+        run = simulate(Shot(stones, impact, ice, NoCurl(), radius))
+        table = run.sample(clock.to_numpy(float) - start)
+        table["frame"] = clock.index.to_numpy()[table["frame"].to_numpy()]
+        table["t"] = table["t"] + start
+        samples[name] = table
+        scores[name] = _score(tracks, table, start, notes.get(name))
+    return samples, scores, tuple(warnings)
+
+
+def _start_time(tracks: pd.DataFrame, estimates: Estimates) -> float:
+    """Time of the last frame before the first hit, or of the first frame that moves."""
+    times = np.unique(tracks["t"].to_numpy(float))
+    if not estimates.collisions:
+        return float(times[0])
+    before = times[times < min(hit.t for hit in estimates.collisions)]
+    return float(before[-1] if len(before) else times[0])
+
+
+def _states(
+    tracks: pd.DataFrame, start: float, estimates: Estimates, masses: Mapping[str, float]
+) -> tuple[StoneStart, ...]:
+    """Every stone's state at the start; one first seen later starts where it is then."""
+    first_hit = min((hit.t for hit in estimates.collisions), default=np.inf)
+    out = []
+    for name, group in tracks.groupby("stone", sort=True):
+        early = group[group["t"] < first_hit]
+        late = early.empty
+        row = group.iloc[0] if late else early.iloc[-1]
+        if not estimates.collisions:
+            row = group.iloc[0]
+        # A stone that comes into view later is where it lies; its way there is not known.
+        ahead = 0.0 if late else start - float(row["t"])
+        vx, vy = (0.0, 0.0) if late else (float(row["vx"]), float(row["vy"]))
+        spins = [hit.after[str(name)].omega for hit in estimates.collisions if name in hit.stones]
+        known = [spin for spin in spins if spin is not None]
+        omega = 0.0 if late else _or_zero(row["omega"])
+        # A stone that was not hit keeps its spin, should the simulation hit it.
+        after = tuple(known) if len(known) == len(spins) else None
+        out.append(
+            StoneStart(
+                name=str(name),
+                x=float(row["x"]) + ahead * vx,
+                y=float(row["y"]) + ahead * vy,
+                vx=vx,
+                vy=vy,
+                omega=omega,
+                theta=_or_zero(row["theta"]),
+                omega_after=after or (None if spins else omega),
+                mass=masses.get(str(name), STONE.mass),
+            )
+        )
+    return tuple(out)
+
+
+def _or_zero(value: float) -> float:
+    return float(value) if np.isfinite(value) else 0.0
+
+
+def _models(
+    estimates: Estimates, stones: tuple[StoneStart, ...], warnings: list[str]
+) -> tuple[dict[str, Impact | None], dict[str, str]]:
+    """Build the three models, None with a note where one cannot run."""
+    restitution = estimates.restitution.value
+    if restitution is None:
+        restitution = RESTITUTION
+        if estimates.collisions:
+            warnings.append(f"simulation: restitution not measured, {RESTITUTION} assumed")
+    measured = [
+        (hit.stone_friction, hit.stderr_stone_friction)
+        for hit in estimates.collisions
+        if hit.stone_friction is not None and hit.stderr_stone_friction
+    ]
+    notes: dict[str, str] = {}
+    stone_friction = STONE_FRICTION
+    if measured:
+        values, errors = np.array(measured, float).T
+        stone_friction = float(np.average(values, weights=errors**-2))
+        notes["frictional"] = f"friction between the stones {stone_friction:.3f}, measured"
+    elif estimates.collisions:
+        notes["frictional"] = f"friction between the stones {stone_friction:g}, assumed"
+    out: dict[str, Impact | None] = {
+        "point-mass": PointMass(restitution),
+        "rigid-body": RigidBody(restitution),
+        "frictional": Frictional(restitution, stone_friction),
+    }
+    hit_stones = {stone for hit in estimates.collisions for stone in hit.stones}
+    blind = [s.name for s in stones if s.name in hit_stones and s.omega_after is None]
+    if blind:
+        out["rigid-body"] = None
+        notes["rigid-body"] = f"needs the spin after the hit of {', '.join(blind)}"
+    return out, notes
+
+
+def _score(
+    tracks: pd.DataFrame, simulated: pd.DataFrame, start: float, note: str | None
+) -> SimulationScore:
+    """Distance between the simulated and the measured shot where stones were seen."""
+    later = tracks[(tracks["t"] >= start) & (tracks["seen"] != 0)]
+    both = later.merge(simulated, on=["stone", "frame"], suffixes=("", "_s"))
+    apart = both[["x", "y"]].to_numpy(float) - both[["x_s", "y_s"]].to_numpy(float)
+    off = np.hypot(apart[:, 0], apart[:, 1])
+    squares, rest = [], {}
+    for name, group in both.groupby("stone", sort=True):
+        spans = [group[[f"x{s}", f"y{s}"]].to_numpy(float) for s in ("", "_s")]
+        moved = max(float(np.hypot(*(xy - xy[0]).T).max()) for xy in spans)
+        if moved < MOVED:
+            continue
+        distance = off[group.index.to_numpy()]
+        squares.append(distance**2)
+        rest[str(name)] = float(distance[-1])
+    if not squares:
+        return SimulationScore(None, {}, note)
+    return SimulationScore(float(np.sqrt(np.mean(np.concatenate(squares)))), rest, note)

@@ -1,0 +1,60 @@
+"""What residuals tell of the noise: outliers, and errors that are alike from frame to frame."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+HUBER = 2.5
+"""Normalised residual beyond which a sighting loses weight."""
+
+LAGS = 0.25
+"""Longest lag, relative to sightings per parameter, at which residuals are compared."""
+
+
+def huber_weights(residuals: Floats) -> Floats:
+    """Weights of Huber's estimator."""
+    out: Floats = HUBER / np.maximum(np.abs(residuals), HUBER)
+    return out
+
+
+def likeness(runs: Sequence[tuple[Floats, int]]) -> float:
+    """Long-run variance of residuals over their variance: 1 for white noise, never less.
+
+    Means and slopes have errors larger by this factor than white noise would give them. The
+    sum of autocorrelations runs as far as they are significant; what the fit itself took out
+    of each lag (p / n of the long-run variance) is put back.
+
+    Parameters
+    ----------
+    runs : sequence of ((n, k) array, int)
+        Residuals in order of time, and the number of parameters fitted to each column.
+    """
+    runs = [(r, p) for r, p in runs if len(r) >= 8]
+    if not runs:
+        return 1.0
+    level = sum(float(np.sum(r * r)) for r, _ in runs) / sum(r.size for r, _ in runs)
+    if level <= 0:
+        return 1.0
+    ratio = 1.0
+    for _ in range(4):
+        total = 1.0
+        for lag in range(1, 60):
+            usable = [(r, p) for r, p in runs if lag <= LAGS * len(r) / p]
+            if not usable:
+                break
+            size = sum(r[lag:].size for r, _ in usable)
+            sums = (
+                float(np.sum(r[lag:] * r[:-lag])) / level + ratio * p / len(r) * r[lag:].size
+                for r, p in usable
+            )
+            alike = sum(sums) / size
+            if alike < 2 / np.sqrt(size):
+                break
+            total += 2 * alike
+        ratio = max(1.0, total)
+    return ratio
