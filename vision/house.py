@@ -1,13 +1,11 @@
 """Find the house in one picture, whatever its colours.
 
-Edges of concentric circles point at one centre: their gradients vote for it, under several
-foreshortenings; the radii at which edges face that centre must stand as 12 : 8 : 4 ft. Each
-hypothesis is then fitted with a camera and judged by how much of the circles it explains.
+Hypotheses of concentric rings are fitted with a camera in a small picture and judged by how much
+of the circles they explain; the best is refined at full resolution, with the lines.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import cv2
@@ -15,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import HOUSE
-from vision.adjust import Solution, solve
+from vision.adjust import solve
 from vision.camera import Camera
 from vision.lines import sides, upright
 from vision.marks import Evidence, Image, measure
@@ -28,6 +26,7 @@ from vision.pose import (
     rescaled,
     start_rig,
 )
+from vision.rings import Guess, guesses
 
 Array = NDArray[np.float64]
 
@@ -35,8 +34,11 @@ WORK_WIDTH = 640
 SHARING = 20.0
 """Edge points of one frame that share an error of the paint, about 30° of a circle."""
 
-FORESHORTENINGS = (1.0, 0.9, 0.78, 0.64, 0.5)
-RATIOS = np.array([1.0, 1.2135 / HOUSE.twelve_foot, 0.619 / HOUSE.twelve_foot])
+ENOUGH = 3.2
+"""A judgement at which no further hypothesis is tried: all of three circles, nearly."""
+
+TILT_GAIN = 8.0
+"""By how much the log likelihood must rise for a camera that does not hang over the tee."""
 
 
 @dataclass(frozen=True)
@@ -63,14 +65,6 @@ class HouseFit:
     overhead: bool
 
 
-@dataclass(frozen=True)
-class _Guess:
-    centre: Array
-    scale: float
-    foreshortening: float
-    score: float
-
-
 def find_house(image: Image, *, frame: int = 0, t: float = 0.0) -> HouseFit | None:
     """Find the house in a picture.
 
@@ -84,171 +78,93 @@ def find_house(image: Image, *, frame: int = 0, t: float = 0.0) -> HouseFit | No
         The most complete house; None where no house can be made out.
     """
     factor = WORK_WIDTH / image.shape[1]
-    small = cv2.resize(image, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA)
-    best: tuple[float, Solution] | None = None
-    for guess in _guesses(np.asarray(small, np.uint8)):
-        solution, evidence = _fit(np.asarray(small, np.uint8), guess)
-        score = judge(evidence)
-        if score > 0 and (best is None or score > best[0]):
-            best = (score, solution)
-    if best is None:
-        return None
-    return _refine(image, best[1], factor, frame, t)
-
-
-def _gradients(image: Image) -> tuple[Array, Array]:
-    """Thinned edge points, shape (n, 2), and the unit gradients there."""
-    soft = cv2.GaussianBlur(image, (0, 0), 1.2)
-    gx = cv2.Scharr(soft, cv2.CV_16S, 1, 0)
-    gy = cv2.Scharr(soft, cv2.CV_16S, 0, 1)
-    size = np.abs(gx.astype(np.int32)) + np.abs(gy.astype(np.int32))
-    channel = size.argmax(-1)[..., None]
-    dx = np.take_along_axis(gx, channel, -1)[..., 0]
-    dy = np.take_along_axis(gy, channel, -1)[..., 0]
-    edges = cv2.Canny(dx, dy, 150, 400, L2gradient=True)
-    y, x = np.nonzero(edges)
-    gradient = np.stack([dx[y, x], dy[y, x]], axis=-1).astype(float)
-    gradient /= np.linalg.norm(gradient, axis=1, keepdims=True)
-    return np.stack([x, y], axis=-1).astype(float), gradient
-
-
-def _guesses(image: Image) -> Iterator[_Guess]:
-    """Hypotheses of centre, scale and foreshortening, the best first."""
-    points, gradients = _gradients(image)
-    h, w = image.shape[:2]
-    found: list[_Guess] = []
-    if len(points) < 60:
-        return
-    for squash in FORESHORTENINGS:
-        p = points / [1.0, squash]
-        g = gradients * [1.0, squash]
-        g /= np.linalg.norm(g, axis=1, keepdims=True)
-        tall = h / squash
-        for centre in _centres(p, g, w, tall):
-            scale, score = _radii(p, g, centre, w, tall)
-            if score > 0:
-                found.append(_Guess(centre * [1.0, squash], scale, squash, score))
-    found.sort(key=lambda c: -c.score)
-    yield from found[:5]
-
-
-def _centres(points: Array, gradients: Array, w: float, h: float, count: int = 3) -> list[Array]:
-    """Places, also outside the picture, where most gradient lines meet."""
-    cell, margin = 4.0, 0.35
-    left, top = -margin * w, -margin * h
-    across, down = int((1 + 2 * margin) * w / cell) + 1, int((1 + 2 * margin) * h / cell) + 1
-    reach = np.arange(16.0, 0.62 * w, cell)
-    reach = np.concatenate([-reach, reach])
-    step = max(len(points) // 5000, 1)
-    p, g = points[::step], gradients[::step]
-    x = ((p[:, :1] + g[:, :1] * reach - left) / cell).astype(np.int64)
-    y = ((p[:, 1:] + g[:, 1:] * reach - top) / cell).astype(np.int64)
-    inside = (x >= 0) & (x < across) & (y >= 0) & (y < down)
-    votes = np.bincount((y * across + x)[inside], minlength=across * down)
-    heat = cv2.GaussianBlur(votes.reshape(down, across).astype(np.float32), (0, 0), 1.0)
-    # Straight edges lay broad ridges: a centre stands out from its surroundings.
-    heat = np.asarray(heat - cv2.blur(heat, (15, 15)))
-    centres = []
-    for _ in range(count):
-        _, top_value, _, (cx, cy) = cv2.minMaxLoc(heat)
-        if top_value <= 0:
+    small = np.asarray(
+        cv2.resize(image, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA), np.uint8
+    )
+    best: _Fitted | None = None
+    for guess in guesses(small):
+        fitted = _fit(small, guess)
+        if fitted is not None and (best is None or fitted.score > best.score):
+            best = fitted
+        if best is not None and best.score > ENOUGH:
             break
-        centres.append(np.array([left + (cx + 0.5) * cell, top + (cy + 0.5) * cell]))
-        cv2.circle(heat, (cx, cy), 6, 0.0, -1)
-    return centres
+    return None if best is None else _refine(image, best, factor, frame, t)
 
 
-def _radii(
-    points: Array, gradients: Array, centre: Array, w: float, h: float
-) -> tuple[float, float]:
-    """Pixels per metre that puts edges facing the centre at 12 : 8 : 4 ft, and its score."""
-    d = points - centre
-    r = np.hypot(d[:, 0], d[:, 1])
-    facing = (d * gradients).sum(1) / np.maximum(r, 1e-9)
-    tolerance = np.maximum(0.97 - 4.0 / np.maximum(r, 8.0), 0.8)
-    near = np.abs(facing) > tolerance
-    largest = int(0.95 * w)
-    bins = np.arange(largest + 1) - 0.5
-    angle = np.linspace(0, 2 * np.pi, 90, endpoint=False)
-    ring = np.arange(largest)[:, None]
-    x, y = centre[0] + ring * np.cos(angle), centre[1] + ring * np.sin(angle)
-    visible = ((x > 1) & (x < w - 2) & (y > 1) & (y < h - 2)).mean(1)
-    either = np.maximum(
-        np.histogram(r[near & (facing > 0)], bins)[0],
-        np.histogram(r[near & (facing < 0)], bins)[0],
-    ).astype(float)
-    wide = np.convolve(either, np.ones(5), "same")
-    length = 2 * np.pi * np.maximum(np.arange(largest), 4)
-    arc = np.minimum(wide / length, visible)
-    best_scale, best_score = 0.0, 0.0
-    for twelve in np.arange(50.0, 0.85 * w, 1.0):
-        if twelve >= largest - 4:
-            break
-        at = np.round(twelve * RATIOS).astype(int)
-        got = np.array([arc[max(i - 2, 0) : i + 3].max() for i in at])
-        share = np.where(visible[at] > 0.05, got / np.maximum(visible[at], 0.05), 0)
-        # Full circles beat pieces of one; what should be seen and is not counts against.
-        score = float((got + 0.35 * share).sum())
-        if share[0] > 0.2 and (share > 0.2).sum() >= 2 and score > best_score:
-            best_scale, best_score = twelve / HOUSE.twelve_foot, score
-    return best_scale, best_score
+@dataclass(frozen=True)
+class _Fitted:
+    """A hypothesis after the fit, in the small picture."""
+
+    view: View
+    rig: Array
+    overhead: bool
+    score: float
 
 
-def _fit(image: Image, guess: _Guess) -> tuple[Solution, Evidence]:
+def _fit(image: Image, guess: Guess) -> _Fitted | None:
+    """Fit a camera over the tee and, if circles look foreshortened, one anywhere."""
     size = (image.shape[1], image.shape[0])
-    steep = guess.foreshortening > 0.85
-    prior = OVERHEAD if steep else ANYWHERE
-    s = guess.foreshortening
-    distance = 8.5 if steep else 10.0
-    tilt = 0.0 if steep else float(np.sqrt(1 - s**2))
-    position = (0.0, -distance * tilt, distance * (1.0 if steep else s))
-    rig = start_rig(prior, position)
-    view = aim(guess.centre, guess.scale, position, size)
-    thickness = guess.scale * (HOUSE.twelve_foot - HOUSE.eight_foot)
-    solution = None
-    for reach in (0.3 * thickness, 0.2 * thickness, 0.15 * thickness):
-        evidence = measure(image, view.vector, rig, reach=max(reach, 3.0), spacing=4, lines=False)
-        if len(evidence.marks) < 30:
-            break
-        solution = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
-        view, rig = solution.views[0], solution.rig
-    evidence = measure(image, view.vector, rig, reach=5.0, spacing=4, lines=False)
-    if solution is None or len(evidence.marks) < 30:
-        return Solution(rig, (view,), np.zeros((1, 1)), np.zeros(1), (), 0), evidence
-    return solution, evidence
+    down = guess.foreshortening
+    starts = [(True, 0.0, 1.0)] if down > 0.85 else []
+    starts += [(False, -float(np.sqrt(1 - down**2)), down)] if down < 1 else []
+    best: _Fitted | None = None
+    for overhead, y, z in starts:
+        prior = OVERHEAD if overhead else ANYWHERE
+        position = prior.mean[2] * np.array([0.0, y, z])
+        view, rig = aim(guess.centre, guess.scale, position, size), start_rig(prior, position)
+        thickness = guess.scale * (HOUSE.twelve_foot - HOUSE.eight_foot)
+        for share in (0.3, 0.2, 0.15):
+            reach = max(share * thickness, 3.0)
+            evidence = measure(image, view.vector, rig, reach=reach, spacing=4, lines=False)
+            if len(evidence.marks) < 30:
+                break
+            solution = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
+            view, rig = solution.views[0], solution.rig
+        else:
+            evidence = measure(image, view.vector, rig, reach=5.0, spacing=4, lines=False)
+            score = judge(evidence)
+            if score > 0 and (best is None or score > best.score + 0.1):
+                best = _Fitted(view, rig, overhead, score)
+    return best
 
 
 def judge(evidence: Evidence) -> float:
-    """How much of a house this is; 0 where it is none."""
+    """How much of a house this is, up to 3.5; 0 where it is none."""
     support, covered = evidence.support, evidence.covered
     if covered[0] < 0.12 or support[0] < 0.35:
         return 0.0
     seen = evidence.visible > 0.05
-    if (support[seen] > 0.3).sum() < 2:
+    # The 12-ft ring has an inner edge: two edges of other things rarely stand as 3 : 2.
+    second = 1 if seen[1] else 2
+    if not seen[second] or support[second] < 0.3:
         return 0.0
     return float(covered.sum() + 0.5 * support[seen].mean())
 
 
-def _refine(
-    image: Image, solution: Solution, factor: float, frame: int, t: float
-) -> HouseFit | None:
-    """Fit at full resolution, with the lines."""
+def _refine(image: Image, best: _Fitted, factor: float, frame: int, t: float) -> HouseFit | None:
+    """Fit at full resolution: the circles, then with the lines."""
     size = (image.shape[1], image.shape[0])
-    view, rig = rescaled(solution.views[0], 1 / factor), solution.rig
-    evidence, fit = None, None
-    for lines, reach in ((False, 4 / factor), (True, 8.0), (True, 6.0)):
-        if lines and fit is not None and evidence is not None and reach == 8.0:
-            view, rig = upright(image, view, rig)
-            rig = sides(image, view, rig)
-        evidence = measure(image, view.vector, rig, reach=max(reach, 6.0), lines=lines)
+    view, rig, overhead = rescaled(best.view, 1 / factor), best.rig, best.overhead
+    circles = measure(image, view.vector, rig, reach=max(4 / factor, 6.0), lines=False)
+    if len(circles.marks) < 30:
+        return None
+    fits = {
+        kind: solve([circles.marks], [view], rig, size, prior=prior, sharing=SHARING)
+        for kind, prior in ((True, OVERHEAD), (False, ANYWHERE))
+    }
+    overhead = (fits[True].cost - fits[False].cost) / SHARING < TILT_GAIN
+    view, rig = fits[overhead].views[0], fits[overhead].rig
+    view, rig = upright(image, view, rig)
+    rig = sides(image, view, rig)
+    prior = OVERHEAD if overhead else ANYWHERE
+    for reach in (8.0, 6.0):
+        evidence = measure(image, view.vector, rig, reach=reach)
         if len(evidence.marks) < 30:
             return None
-        fit = solve([evidence.marks], [view], rig, size, prior=OVERHEAD, sharing=SHARING)
+        fit = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
         view, rig = fit.views[0], fit.rig
-    assert evidence is not None and fit is not None
     if judge(evidence) == 0:
         return None
     rms = float(fit.rms[0])
-    return HouseFit(
-        camera(view, rig, size, frame=frame, t=t, rms_px=rms), view, rig, evidence, rms, True
-    )
+    found = camera(view, rig, size, frame=frame, t=t, rms_px=rms)
+    return HouseFit(found, view, rig, evidence, rms, overhead)

@@ -235,7 +235,7 @@ def _straight(marks: Marks) -> Marks:
 
 def _ridges(line: int, seen: _Normals, profile: Array, group: int) -> Marks | None:
     """Measure a thin line, `group` neighbouring normals together; None where none is seen."""
-    n, m, _ = profile.shape
+    m = profile.shape[1]
     quarter = m // 5
     first, last = profile[:, :quarter].mean(1), profile[:, -quarter:].mean(1)
     s = (np.arange(m) - (m - 1) / 2) * STEP

@@ -86,8 +86,8 @@ class Prior:
     """Gaussian prior of the rig: mean and standard deviation, shape (12,) each.
 
     Order: position x, y, z (m); k1, its change per unit of log focal length, k2; radii of the
-    8-ft and 4-ft edges (m); place x of the left and the right side of the sheet (m); x of the centre
-    line and y of the tee line (m).
+    8-ft and 4-ft edges (m); x of the left and the right side of the sheet, x of the centre line
+    and y of the tee line (m).
     """
 
     mean: Array
