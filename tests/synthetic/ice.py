@@ -125,11 +125,10 @@ def paint_plate(scene: Scene, extent: Extent, density: float) -> Plate:
     levels = [finest]
     while min(levels[-1].shape[:2]) > 150 and len(levels) < 7:
         factor = 0.5 ** (len(levels) / 2)
+        h, w = (round(n * factor) for n in finest.shape[:2])
+        # by size and not by factor, so that the coarser picture spans the whole extent
         levels.append(
-            np.asarray(
-                cv2.resize(finest, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA),
-                np.uint8,
-            )
+            np.asarray(cv2.resize(finest, (w, h), interpolation=cv2.INTER_AREA), np.uint8)
         )
     return Plate(canvas.extent, tuple(levels), sheet.carpet)
 
