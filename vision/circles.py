@@ -103,6 +103,7 @@ class Rim:
     radius: float
     width: float
     strength: float  # least that an edge falls by
+    weight: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -160,6 +161,7 @@ def fit_circles(
                 for rim, (_, strength) in zip(rims, found, strict=True)
             ]
         ).astype(float)
+        base *= np.repeat([rim.weight for rim in rims], len(around))
         for _ in range(3):
             residual = target - design @ solution
             w = base * np.clip(1 - (residual / scale) ** 2, 0, None) ** 2
@@ -173,7 +175,7 @@ def fit_circles(
     if fits.sum() < 8:
         return None
     rms = float(np.sqrt(np.mean(residual[fits] ** 2)))
-    normal = design[fits].T @ design[fits] + prior
+    normal = (design[fits].T * base[fits]) @ design[fits] + prior
     covariance = np.linalg.inv(normal)[:2, :2] * max(rms, noise) ** 2
     shares = (fits.reshape(circles, -1) & inside).sum(1) / np.maximum(inside.sum(1), 1)
     return Fit(solution[:2], expected + solution[2:], covariance, rms, shares)

@@ -241,9 +241,16 @@ def first_motion(track: Track, radius: float) -> float | None:
         return float(times[0])
     last = min(first + 3, len(times) - 1)
     speed = (away[last] - away[first]) / (times[last] - times[first]) if last > first else 0.0
-    if speed <= 0:
-        return float(times[first - 1])
-    return float(max(times[first] - away[first] / speed, times[0]))
+    start = times[first] - away[first] / speed if speed > 0 else times[first - 1]
+    # Within a frame of its first it may as well have moved before.
+    return float(start if start > times[1] else times[0])
+
+
+def _first_speed(track: Track, steps: int = 5) -> float:
+    """Mean speed over the first few frames, m/s."""
+    first, last = track.sightings[0], track.sightings[min(steps, len(track.times) - 1)]
+    wait = track.times[min(steps, len(track.times) - 1)] - track.times[0]
+    return float(np.hypot(last.x - first.x, last.y - first.y) / wait) if wait > 0 else 0.0
 
 
 def names_by_motion(
@@ -266,9 +273,5 @@ def names_by_motion(
             x, y = np.median([(s.x, s.y) for s in track.sightings], axis=0)
             rest.append((float(np.hypot(x, y)), str(number)))
         else:
-            travelled = np.hypot(
-                track.sightings[-1].x - track.sightings[0].x,
-                track.sightings[-1].y - track.sightings[0].y,
-            )
-            moved.append((start, -float(travelled), str(number)))
+            moved.append((start, -_first_speed(track), str(number)))
     return {name: start for start, _, name in sorted(moved)}, [name for _, name in sorted(rest)]

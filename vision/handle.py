@@ -111,8 +111,9 @@ def angle_between(
     gain = max(likeness, 0.0) * float(np.linalg.norm(spectrum) / np.linalg.norm(reference))
     rest = float((np.abs(spectrum - gain * aligned) ** 2).sum())
     sharpness = gain**2 * float((HARMONICS[:, None] ** 2 * np.abs(reference) ** 2).sum())
-    # Neighbouring rings and colours err together; about one in six is independent.
-    free = 2 * spectrum.size / 6
+    # Neighbouring rings, colours and harmonics err together: about one in thirty is independent
+    # (so that the errors on rendered and real caps agree with it).
+    free = 2 * spectrum.size / 30
     sd = np.sqrt(rest / free / max(sharpness, 1e-12))
     return angle, float(sd), likeness
 

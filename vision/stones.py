@@ -52,6 +52,8 @@ class Search:
         Least evidence for a stone (0 to about 3.5) and for a plain disc (0 to 1).
     edge_reach : float
         Distance from the circle, as a share of the radius, up to which an edge may count.
+    most_tilt : float
+        Tangent of the view's angle to the vertical at which the granite's outline counts half.
     """
 
     x_max: float = 2.40
@@ -65,6 +67,7 @@ class Search:
     least_evidence: float = 1.6
     least_rim: float = 0.6
     edge_reach: float = 0.035
+    most_tilt: float = 0.15
 
 
 SEARCH = Search()
@@ -165,7 +168,13 @@ class _Measured:
 
 
 def _measure_stone(
-    rays: Rays, index: int, appearance: Appearance, disc: Stone, search: Search, noise: float
+    rays: Rays,
+    index: int,
+    appearance: Appearance,
+    disc: Stone,
+    search: Search,
+    noise: float,
+    tilt: float,
 ) -> _Measured | None:
     """Fit the edges of cap and granite; None where there are none."""
     lab, inside, radius = rays.lab[index].astype(float), rays.inside[index], rays.radius
@@ -194,7 +203,9 @@ def _measure_stone(
     at_cap, at_rim = rays.at(index, cap_radius), rays.at(index, rim_radius)
     cap_rim = Rim(falls @ apart, stony, at_cap, cap_radius, 0.12 * cap_radius, 0.3)
     edges = np.sqrt((falls**2).sum(-1))
-    granite_rim = Rim(edges, greyed, at_rim, rim_radius, 0.05 * rim_radius, 12.0)
+    # Seen aslant, the granite's outline is not a circle of one height.
+    trust = 1 / (1 + (tilt / search.most_tilt) ** 2)
+    granite_rim = Rim(edges, greyed, at_rim, rim_radius, 0.05 * rim_radius, 12.0, trust)
     fit = fit_circles(
         rays, index, (cap_rim, granite_rim), appearance.slack, search.edge_reach, noise
     )
@@ -318,12 +329,12 @@ def _measure(
     search: Search,
 ) -> Sighting | None:
     pixel = 1 / camera.scale_at(place)
-    noise = 0.25 * pixel
+    noise, tilt = 0.25 * pixel, _tilt(camera, place)
     if appearance is None:
         seen = _measure_disc(rays, index, disc, search, noise)
         expected, least = disc.radius, search.least_rim
     else:
-        seen = _measure_stone(rays, index, appearance, disc, search, noise)
+        seen = _measure_stone(rays, index, appearance, disc, search, noise, tilt)
         expected, least = disc.cap_radius, search.least_evidence
     if seen is None:
         return None
@@ -337,7 +348,7 @@ def _measure(
     x, y = place + seen.fit.shift
     if not is_plain(disc) and abs(x) > search.x_max - 0.4 * disc.radius:
         return None
-    floor = _floor(camera, place, pixel, disc)
+    floor = _floor(camera, tilt, pixel, disc)
     sd = np.sqrt(np.diag(seen.fit.covariance) + floor**2)
     return Sighting(
         float(x),
@@ -357,13 +368,20 @@ def _measure(
     )
 
 
-def _floor(camera: Camera, place: Array, pixel: float, disc: Stone) -> float:
-    """Least standard error, m: the camera's fit, and what the cap's height leaves open."""
+def _tilt(camera: Camera, place: Array) -> float:
+    """Tangent of the angle between the view of a place and the vertical; 0 where unknown."""
+    if camera.position is None or not np.isfinite(camera.position).all():
+        return 0.0
+    return float(np.hypot(*(place - camera.position[:2])) / camera.position[2])
+
+
+def _floor(camera: Camera, tilt: float, pixel: float, disc: Stone) -> float:
+    """Least standard error, m: the camera's fit, the cap's edge and its height."""
     rms = camera.rms_px if np.isfinite(camera.rms_px) else 0.3
-    tilt = 0.0
-    if camera.position is not None and np.isfinite(camera.position).all():
-        tilt = float(np.hypot(*(place - camera.position[:2]))) / float(camera.position[2])
-    return float(np.hypot(0.3 * rms * pixel + 0.05 * pixel, 0.04 * disc.cap_height * tilt))
+    edge = 0.0 if is_plain(disc) else 0.010 * disc.radius
+    return float(
+        np.sqrt((0.35 * rms * pixel) ** 2 + edge**2 + (0.04 * disc.cap_height * tilt) ** 2)
+    )
 
 
 def _apart(found: Sequence[Sighting], disc: Stone, search: Search) -> tuple[Sighting, ...]:

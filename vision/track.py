@@ -22,7 +22,7 @@ from vision.stones import PLAIN_REACH, SEARCH, STONE_REACH, Search, find_stones,
 LEARNING_FRAMES = 24
 """Frames of a clip from which the look of its stones is learned."""
 
-CONVINCING = 2.2
+CONVINCING = 1.9
 """Evidence from which a sighting teaches what stones look like."""
 
 HANDLE_VISIBLE = 0.75
