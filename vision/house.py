@@ -34,8 +34,11 @@ WORK_WIDTH = 640
 SHARING = 20.0
 """Edge points of one frame that share an error of the paint, about 30° of a circle."""
 
-ENOUGH = 3.2
+ENOUGH = 2.9
 """A judgement at which no further hypothesis is tried: all of three circles, nearly."""
+
+ASIDE = 2.0
+"""What a house loses when its centre is one picture's width aside: neighbours are at the sides."""
 
 TILT_GAIN = 8.0
 """By how much the log likelihood must rise for a camera that does not hang over the tee."""
@@ -108,6 +111,7 @@ def _fit(image: Image, guess: Guess) -> _Fitted | None:
     starts = [(True, 0.0, 1.0)] if down > 0.85 else []
     starts += [(False, -float(np.sqrt(1 - down**2)), down)] if down < 1 else []
     best: _Fitted | None = None
+    aside = ASIDE * abs(guess.centre[0] / size[0] - 0.5)
     for overhead, y, z in starts:
         prior = OVERHEAD if overhead else ANYWHERE
         position = prior.mean[2] * np.array([0.0, y, z])
@@ -122,8 +126,9 @@ def _fit(image: Image, guess: Guess) -> _Fitted | None:
             view, rig = solution.views[0], solution.rig
         else:
             evidence = measure(image, view.vector, rig, reach=5.0, spacing=4, lines=False)
-            score = judge(evidence)
-            if score > 0 and (best is None or score > best.score + 0.1):
+            worth = judge(evidence)
+            score = worth - aside
+            if worth > 0 and (best is None or score > best.score + 0.1):
                 best = _Fitted(view, rig, overhead, score)
     return best
 

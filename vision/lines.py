@@ -6,11 +6,17 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import SHEET
+from data.sheet import HOUSE, SHEET
 from vision.pose import SIDE_L, SIDE_R, View, project, turned
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
+
+
+FAINT = 6.0
+"""Grey levels beyond which a stronger contrast says no more about a thin line."""
+
+RINGS = (HOUSE.four_foot, HOUSE.eight_foot, HOUSE.twelve_foot)
 
 
 def upright(image: Image, view: View, rig: Array) -> tuple[View, Array]:
@@ -31,7 +37,7 @@ def upright(image: Image, view: View, rig: Array) -> tuple[View, Array]:
 
 def _cross_score(image: Image, view: View, rig: Array, angles: Array) -> Array:
     """How much the two lines through the tee stand out, for each angle of the cross."""
-    along = np.concatenate([np.arange(0.2, 2.6, 0.06), -np.arange(0.2, 2.6, 0.06)])
+    along = np.concatenate([np.arange(0.2, 2.6, 0.04), -np.arange(0.2, 2.6, 0.04)])
     ends = np.where(np.abs(along) < SHEET.half_width_min, along, np.nan)
     # Shape (line, offset, place along it): each line itself and the ice on either side of it.
     across = np.array([-0.015, 0.0, 0.015, -0.055, 0.055])[:, None]
@@ -47,12 +53,13 @@ def _cross_score(image: Image, view: View, rig: Array, angles: Array) -> Array:
     inside = np.asarray(within.all((2, 4)))
     colour = _colours(image, place.reshape(len(angles), -1, 2)).reshape(*ice.shape[:-1], 3)
     ridge = colour[:, :, :3].mean(2) - colour[:, :, 3:].mean(2)
-    ridge = np.where(inside[..., None], np.clip(ridge, -12, 12), 0.0)
-    # Both halves of a line on their own: a broom or a stone lies on one only.
-    half = ridge.reshape(len(angles), 2, 2, -1, 3)
-    count = inside.reshape(len(angles), 2, 2, -1).sum(-1)
-    mean = np.linalg.norm(half.sum(3), axis=-1) / np.maximum(count, 1)
-    score = np.where(count > 10, mean, 0.0) * np.sqrt(np.maximum(count, 1))
+    # A line is faint all the way, darker than ice and perhaps lighter than paint; stones, brooms
+    # and print are strong here and there. So each ring's part of each half counts on its own.
+    ridge = np.where(inside[..., None], np.clip(ridge, -FAINT, FAINT), 0.0)
+    part = np.flatnonzero(np.r_[True, np.diff(np.searchsorted(RINGS, np.abs(along))) != 0])
+    total = np.linalg.norm(np.add.reduceat(ridge, part, axis=2), axis=-1)
+    count = np.add.reduceat(inside, part, axis=2, dtype=int)
+    score = np.where(count > 5, total / np.sqrt(np.maximum(count, 1)), 0.0)
     return np.asarray(score.sum((1, 2)), np.float64)
 
 

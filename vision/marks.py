@@ -41,6 +41,9 @@ EDGE_SD = 0.45
 
 LINE_SD = 0.5
 
+STRONG = 15.0
+"""Grey levels beyond which a stronger contrast says no more about a thin line."""
+
 LINE_REACH = 0.05
 """Half width looked at across a thin line, m: some are painted as two stripes 3 cm apart."""
 
@@ -243,42 +246,35 @@ def _ridges(line: int, seen: _Normals, profile: Array, group: int) -> Marks | No
     deviation = profile - 0.5 * (first + last)[:, None, :] - slant
     calm = np.linalg.norm(last - first, axis=1) < 12
     calm &= np.abs(deviation).max((1, 2)) < 80
-    if calm.sum() < 3 * group:
+    at = np.flatnonzero(calm)
+    count = len(at) // group
+    if count < 3:
         return None
-    rows = np.nonzero(calm)[0]
-    # The straight path across the profiles along which they deviate most, and alike.
-    ends = np.arange(quarter, m - quarter, 2) - (m - 1) // 2
-    share = (seen.along[rows] - seen.along[0]) / (seen.along[-1] - seen.along[0])
+    rows = at[: count * group].reshape(count, group)
+    # Darker than the ice, perhaps lighter than the paint: only the size of the deviation counts.
+    value = np.linalg.norm(deviation[rows].mean(1), axis=-1)
+    along = seen.along[rows].mean(1)
+    share = (along - along[0]) / (along[-1] - along[0])
+    # The straight path across the profiles along which they deviate most.
+    ends = np.arange(quarter, m - quarter, 2)
     one, two = (g.ravel() for g in np.meshgrid(ends, ends))
-    path = np.round(one[:, None] + (two - one)[:, None] * share).astype(np.int64) + (m - 1) // 2
-    held = np.clip(deviation[rows], -30, 30)
-    mean = held[np.arange(len(rows)), path].mean(1)
-    strength = np.linalg.norm(mean, axis=1)
+    path = np.round(one[:, None] + (two - one)[:, None] * share).astype(np.int64)
+    strength = np.minimum(value, STRONG)[np.arange(count), path].mean(1)
     best = int(strength.argmax())
-    height = float(strength[best])
-    if height < max(1.5, 3 * float(np.percentile(strength, 25))):
+    if strength[best] < max(2.0, 2 * float(np.percentile(strength, 25))):
         return None
-    value = held @ (mean[best] / height)
     window = np.arange(-6, 7)
-    at = np.clip(path[best][:, None] + window, 0, m - 1)
-    near = value[np.arange(len(rows))[:, None], at]
-    places, offsets = [], []
-    for start in range(0, len(rows) - group // 2, group):
-        block = slice(start, start + group)
-        v = near[block].mean(0)
-        top = 3 + int(v[3:-3].argmax())
-        if not 0.4 * height < v[top] < 3 * height:
-            continue
-        around = slice(top - 3, top + 4)
-        weight = np.clip(v[around] - 0.35 * v[top], 0, None)
-        index = float((weight * window[around]).sum() / weight.sum())
-        places.append(start + len(rows[block]) // 2)
-        offsets.append(STEP * (float(path[best][block].mean()) + index - (m - 1) / 2))
-    if len(places) < 3:
-        return None
-    middle = rows[np.array(places)]
+    near = value[np.arange(count)[:, None], np.clip(path[best][:, None] + window, 0, m - 1)]
+    top = 3 + near[:, 3:-3].argmax(1)
+    around = top[:, None] + np.arange(-3, 4)
+    height = near[np.arange(count), top]
+    weight = np.clip(near[np.arange(count)[:, None], around] - 0.4 * height[:, None], 0, None)
+    index = (weight * (around - 6)).sum(1) / weight.sum(1)
+    offset = STEP * (path[best] + index - (m - 1) / 2)
+    good = height > 0.4 * strength[best]
+    middle = rows[:, group // 2]
     picked = _Normals(seen.along[middle], seen.point[middle], seen.normal[middle])
-    return _marks(line, picked, np.array(offsets), np.ones(len(middle), bool), LINE_SD)
+    return _marks(line, picked, offset, good, LINE_SD) if good.sum() >= 3 else None
 
 
 def _marks(line: int, seen: _Normals, offset: Array, good: NDArray[np.bool_], sd: float) -> Marks:

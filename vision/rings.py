@@ -49,6 +49,7 @@ class Guess:
     foreshortening : float
         Height over width of a circle.
     score : float
+        Falls with the distance from the picture's middle: there is the house that is filmed.
     """
 
     centre: Array
@@ -72,6 +73,7 @@ def guesses(image: Image, count: int = 5) -> list[Guess]:
         for centre in _centres(p, g, w, tall):
             scale, score = _radii(p, g, centre, w, tall)
             if score > 0:
+                score -= abs(centre[0] / w - 0.5)
                 found.append(Guess(centre * [1.0, squash], scale, squash, score))
     found.sort(key=lambda c: -c.score)
     return found[:count]
