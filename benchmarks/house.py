@@ -1,0 +1,218 @@
+"""How well the house is found and the ice measured: ``python benchmarks/house.py [SHARED]``.
+
+Prints one table: houses found on real stills, frames refused, precision against cameras measured
+by hand, and precision and time on clips whose camera is known.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+
+from data.sheet import HOUSE  # noqa: E402
+from vision.camera import Camera, apply_homography  # noqa: E402
+from vision.clip import open_clip  # noqa: E402
+from vision.follow_house import follow_house  # noqa: E402
+from vision.house import HouseFit, find_house  # noqa: E402
+
+Array = NDArray[np.float64]
+Image = NDArray[np.uint8]
+
+IOU = 0.8
+HOUSE_CLASS = 3
+
+
+@dataclass(frozen=True)
+class Still:
+    """A real frame with its labels and what was found in it."""
+
+    name: str
+    image: Image
+    overhead: bool
+    boxes: Array
+    whole: bool
+    fit: HouseFit | None
+    seconds: float
+
+    @property
+    def found(self) -> bool:
+        """Whether the 12-ft circle fills the box of a labelled house."""
+        return self.fit is not None and any(iou(self.fit.camera, b) > IOU for b in self.boxes)
+
+
+def circle(radius: float, count: int = 240) -> Array:
+    angle = np.linspace(0, 2 * np.pi, count, endpoint=False)
+    return radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+
+
+def iou(camera: Camera, box: Array) -> float:
+    """Overlap of the 12-ft circle's bounding box, cut to the picture, with a labelled box."""
+    place = np.clip(camera.project(circle(HOUSE.twelve_foot)), 0, np.array(camera.size) - 1)
+    mine = np.concatenate([place.min(0), place.max(0)])
+    low, high = np.maximum(mine[:2], box[:2]), np.minimum(mine[2:], box[2:])
+    shared = float(np.prod(np.clip(high - low, 0, None)))
+    areas = [float(np.prod(b[2:] - b[:2])) for b in (mine, box)]
+    return shared / (sum(areas) - shared)
+
+
+def stills(shared: Path) -> Iterator[Still]:
+    with (shared / "frames/index.csv").open() as table:
+        rows = list(csv.DictReader(table))
+    for row in rows:
+        picture = cv2.imread(str(shared / "frames/images" / f"{row['image']}.jpg"))
+        image = np.asarray(picture, np.uint8)
+        h, w = image.shape[:2]
+        labels = (shared / "frames/boxes" / f"{row['image']}.txt").read_text().split("\n")
+        fields = np.array([line.split() for line in labels if line], float).reshape(-1, 5)
+        fields = fields[fields[:, 0] == HOUSE_CLASS, 1:]
+        middle, half = fields[:, :2] * [w, h], fields[:, 2:] * [w, h] / 2
+        boxes = np.concatenate([middle - half, middle + half], axis=1)
+        whole = bool(((boxes[:, :2] > 3) & (boxes[:, 2:] < [w - 4, h - 4])).all(1).any())
+        start = time.process_time()
+        fit = find_house(image)
+        seconds = time.process_time() - start
+        overhead = row["overhead"] == "1"
+        yield Still(row["image"], image, overhead, boxes, whole, fit, seconds)
+
+
+def against_hand(camera: Camera, hand: dict[str, Any]) -> Array:
+    """Errors, m, of ring points mapped to the ice, against the camera measured by hand."""
+    truth = Camera(
+        0, 0.0, np.array(hand["homography"]), tuple(hand["size"]), hand["k1"], hand["k2"]
+    )
+    radii = (HOUSE.twelve_foot, HOUSE.eight_foot, HOUSE.four_foot)
+    places = np.concatenate([np.zeros((1, 2)), *(circle(r, 8) for r in radii)])
+    return np.asarray(np.linalg.norm(camera.ice(truth.project(places)) - places, axis=1))
+
+
+def marked(image: Image, fit: HouseFit | None, text: str) -> Image:
+    """Draw the fitted rings on the picture and shrink it."""
+    shown = image.copy()
+    if fit is not None:
+        for radius in (HOUSE.twelve_foot, *fit.rig[6:8]):
+            place = np.round(fit.camera.project(circle(radius)) * 8).astype(np.int32)
+            cv2.polylines(shown, [place], True, (255, 0, 255), 3, cv2.LINE_AA, 3)
+        for ends in ([[-2.2, 0], [2.2, 0]], [[0, -2.2], [0, 4]]):
+            place = np.round(fit.camera.project(np.array(ends)) * 8).astype(np.int32)
+            cv2.polylines(shown, [place], False, (255, 0, 255), 2, cv2.LINE_AA, 3)
+    small = cv2.resize(shown, (480, 270), interpolation=cv2.INTER_AREA)
+    cv2.putText(small, text, (4, 16), cv2.FONT_HERSHEY_SIMPLEX, 0.45, (0, 0, 255), 1)
+    return np.asarray(small, np.uint8)
+
+
+def write_sheet(tiles: list[Image], path: Path, across: int = 4) -> None:
+    while len(tiles) % across:
+        tiles.append(np.zeros((270, 480, 3), np.uint8))
+    rows = [np.hstack(tiles[i : i + across]) for i in range(0, len(tiles), across)]
+    cv2.imwrite(str(path), np.vstack(rows))
+
+
+def row(what: str, value: str) -> None:
+    print(f"{what:<74} {value}", flush=True)
+
+
+def score_stills(shared: Path, sheet: Path | None) -> None:
+    known = json.loads((shared / "frames/stills.json").read_text())
+    hand = {f["file"].removesuffix(".jpg"): f for f in known["frames"]}
+    refuse = {f["file"].removesuffix(".jpg") for f in known["negatives"]}
+    labelled, whole, unlabelled, oblique = [], [], [], []
+    errors: list[Array] = []
+    refused, tiles, seconds = 0, [], []
+    for still in stills(shared):
+        seconds.append(still.seconds)
+        group = "labelled" if still.overhead and len(still.boxes) else "other"
+        if group == "labelled":
+            labelled.append(still.found)
+            if still.whole:
+                whole.append(still.found)
+        elif not len(still.boxes):
+            unlabelled.append(still.fit is not None)
+        else:
+            oblique.append(still.fit is not None)
+        refused += still.name in refuse and still.fit is None
+        if still.name in hand and still.fit is not None:
+            errors.append(against_hand(still.fit.camera, hand[still.name]))
+        if (group == "labelled" and not still.found) or (group == "other" and still.fit):
+            kind = "missed" if group == "labelled" else "found, no label from overhead"
+            tiles.append(marked(still.image, still.fit, f"{still.name} {kind}"))
+    row("stills: whole house from overhead, box IoU > 0.8", f"{sum(whole)} of {len(whole)}")
+    row("stills: any labelled house from overhead", f"{sum(labelled)} of {len(labelled)}")
+    row("stills: house found in frames without a label", f"{sum(unlabelled)} of {len(unlabelled)}")
+    row("stills: house found in frames not from overhead", f"{sum(oblique)} of {len(oblique)}")
+    row("stills: frames to refuse that are refused", f"{refused} of {len(refuse)}")
+    row("stills.json: found", f"{len(errors)} of {len(hand)}")
+    all_errors = np.concatenate(errors) * 1e3
+    worst = max(float(np.median(e)) for e in errors) * 1e3
+    row("stills.json: ring points against the hand-measured camera, median", _mm(all_errors, 50))
+    row("stills.json: the same, 95 % and largest", f"{_mm(all_errors, 95)}, {_mm(all_errors, 100)}")
+    row("stills.json: the same, median of the worst frame", f"{worst:.1f} mm")
+    row("finding: CPU time a frame at 1080p, mean", f"{1e3 * np.mean(seconds):.0f} ms")
+    if sheet is not None and tiles:
+        write_sheet(tiles, sheet)
+
+
+def _mm(values: Array, percentile: float) -> str:
+    return f"{np.percentile(values, percentile):.1f} mm"
+
+
+def score_clips(shared: Path) -> None:
+    radii = (HOUSE.twelve_foot, HOUSE.eight_foot, HOUSE.four_foot)
+    rings = np.concatenate([np.zeros((1, 2)), *(circle(r, 16) for r in radii)])
+    guards = np.array([[x, y] for x in (-1.0, 0.0, 1.0) for y in (3.0, 4.0, 5.0)])
+    for truth_path in sorted((shared / "clips").glob("semireal_*.truth.json")):
+        truth = json.loads(truth_path.read_text())
+        clip = open_clip([truth_path.with_name(truth_path.name.replace(".truth.json", ".mp4"))])
+        start = time.process_time()
+        track = follow_house(clip)
+        spent = (time.process_time() - start) / clip.frames
+        house: list[float] = []
+        guard: list[float] = []
+        for camera in track.cameras:
+            matrix = np.array(truth["frames"][camera.frame]["homography"])
+            for places, into in ((rings, house), (guards, guard)):
+                pixels = apply_homography(matrix, places)
+                seen = ((pixels > 0) & (pixels < np.array(camera.size) - 1)).all(1)
+                error = camera.ice(pixels[seen]) - places[seen]
+                if seen.any():
+                    into.append(1e3 * float(np.sqrt((error**2).sum(1).mean())))
+        first = truth["frames"][0]
+        place = -np.array(first["R"]).T @ np.array(first["T"])
+        name = truth["name"]
+        position = track.cameras[0].position
+        assert position is not None
+        row(f"{name}: frames with a camera", f"{len(track.cameras)} of {clip.frames}")
+        row(f"{name}: seen ring points, RMS of a frame, median and worst",
+            f"{np.median(house):.1f} and {max(house):.1f} mm")  # fmt: skip
+        row(f"{name}: guards' places, RMS of a frame, median and worst",
+            f"{np.median(guard):.1f} and {max(guard):.1f} mm")  # fmt: skip
+        row(f"{name}: height of the camera, true and found",
+            f"{place[2]:.2f}, {position[2]:.2f} ± {track.position_sd[2]:.2f} m")  # fmt: skip
+        row(f"{name}: CPU time a frame, decoding included", f"{1e3 * spent:.1f} ms")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("shared", type=Path, nargs="?", default=ROOT.parent / "shared")
+    parser.add_argument("--sheet", type=Path, help="write doubtful stills to this picture")
+    options = parser.parse_args()
+    cv2.setNumThreads(1)
+    score_stills(options.shared, options.sheet)
+    score_clips(options.shared)
+
+
+if __name__ == "__main__":
+    main()
