@@ -18,9 +18,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from data.errors import CurlshotError, InputError
+from data.errors import CurlshotError, InputError, SceneError
 from data.progress import Progress, no_progress
-from data.sheet import STONE
+from data.sheet import HOUSE, STONE, House
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 VERSION = "0.1.0"
 PICTURES = frozenset({".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp"})
-TABLES = frozenset({".csv", ".txt", ".tsv", ".dat"})
+TABLES = frozenset({".csv", ".txt", ".tsv", ".dat", ".trk", ".trz"})
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class Measured:
     warnings: tuple[str, ...]
     clip: Clip | None = None
     cameras: tuple[Camera, ...] = ()
-    rings: tuple[float, ...] | None = None
+    house: House | None = None
 
 
 @dataclass(frozen=True)
@@ -177,36 +177,39 @@ def _import_tables(files: tuple[Path, ...], settings: Settings) -> Measured:
         fps=settings.fps,
     )
     sightings = table.sightings
-    return Measured(files, sightings, table.fps, sightings["t"].nunique(), table.warnings)
+    house = HOUSE if settings.radius == STONE.radius else None
+    return Measured(
+        files, sightings, table.fps, sightings["t"].nunique(), table.warnings, house=house
+    )
 
 
 def _look_at_clip(files: tuple[Path, ...], settings: Settings, progress: Progress) -> Measured:
-    from data.sheet import Stone
     from vision.clip import open_clip
     from vision.follow_house import follow_house
     from vision.stick import stick_cameras
+    from vision.stones import plain_disc
     from vision.track import track_stones
 
     clip = open_clip(files, settings.fps, settings.frames)
     warnings: tuple[str, ...] = ()
-    rings: tuple[float, ...] | None = None
+    house: House | None = None
     if settings.stick is not None:
-        cameras = stick_cameras(clip, settings.stick, progress)
-        disc = Stone(radius=settings.radius, cap_radius=settings.radius, cap_height=0.0)
+        cameras, disc = stick_cameras(clip, settings.stick, progress), plain_disc(settings.radius)
     else:
-        house = follow_house(clip, progress)
-        cameras, rings, warnings = house.cameras, tuple(house.radii), house.warnings
-        disc = Stone(radius=settings.radius)
+        followed = follow_house(clip, progress)
+        cameras, warnings = followed.cameras, followed.warnings
+        house = House(*(float(radius) for radius in followed.radii))
+        disc = replace(STONE, radius=settings.radius)
     stones = track_stones(clip, cameras, disc=disc, progress=progress)
     return Measured(
         files,
         stones.sightings,
         clip.fps,
-        len(cameras),
+        clip.read,
         (*clip.warnings, *warnings, *stones.warnings),
         clip,
         cameras,
-        rings,
+        house,
     )
 
 
@@ -222,6 +225,8 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
     from vision.camera import camera_table
 
     sightings, radius = measured.sightings, settings.radius
+    if sightings.empty:
+        raise SceneError(f"{measured.files[0]}: no stone in view; nothing to measure")
     contacts = find_contacts(sightings, radius)
     tracks = smooth(sightings, contacts, radius=radius)
     estimates = estimate(sightings, contacts, radius=radius, masses=settings.masses or None)
@@ -305,7 +310,6 @@ def run(
 def _write_run(
     stage: Path, measured: Measured, done: Run, settings: Settings, progress: Progress
 ) -> None:
-    from data.sheet import HOUSE
     from data.tracks import write_table, write_tracks
     from report.overlay import write_overlay
     from report.page import write_report
@@ -315,6 +319,7 @@ def _write_run(
     done.results.write(stage / "results.json")
     if done.cameras is not None:
         write_table(done.cameras, stage / "camera.csv")
+    house = measured.house
     overlay: Path | None = None
     if measured.clip is not None and settings.overlay:
         overlay = stage / "overlay.mp4"
@@ -324,13 +329,10 @@ def _write_run(
             done.tracks,
             done.results.collisions,
             overlay,
-            rings=measured.rings,
+            rings=None if house is None else (house.twelve_foot, house.eight_foot, house.four_foot),
             radius=settings.radius,
             progress=progress,
         )
-    house = None
-    if settings.stick is None and settings.radius == STONE.radius:
-        house = HOUSE
     progress("report", 0, 1)
     write_report(
         stage,

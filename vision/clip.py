@@ -64,6 +64,8 @@ class Clip:
         The range of frames that is used, both included.
     warnings : list of str
         Filled while reading: what could not be read.
+    read : int
+        How many frames the latest pass has given so far.
     """
 
     files: tuple[Path, ...]
@@ -73,6 +75,7 @@ class Clip:
     first: int = 0
     last: int | None = None
     warnings: list[str] = field(default_factory=list)
+    read: int = 0
 
     @property
     def is_video(self) -> bool:
@@ -87,7 +90,10 @@ class Clip:
 
     def __iter__(self) -> Iterator[Frame]:
         """Yield the frames in order, decoding as it goes."""
-        return self._read_video() if self.is_video else self._read_images()
+        self.read = 0
+        for frame in self._read_video() if self.is_video else self._read_images():
+            self.read += 1
+            yield frame
 
     def _warn(self, text: str) -> None:
         if text not in self.warnings:
