@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -22,6 +22,9 @@ REACH = 1.15
 
 SIGNIFICANT = 5.0
 """Normalised impulse below which two stones have passed each other."""
+
+MOST_PUSH = 3.0
+"""Most that a hit can change the relative speed of two stones, in closing speeds (1 + e)."""
 
 SHARE = 0.15
 """Smallest part of the other's change of velocity that a stone must show in a hit."""
@@ -130,7 +133,31 @@ def candidates(known: Mapping[str, Trace], radius: float) -> list[Meeting]:
     for first, second in combinations(sorted(known), 2):
         if first in moving or second in moving:
             found += _approaches(known[first], known[second], turns, radius)
-    return sorted(found, key=lambda meeting: meeting.t)
+    return _causal(sorted(found, key=lambda meeting: meeting.t), known)
+
+
+def _causal(meetings: list[Meeting], known: Mapping[str, Trace]) -> list[Meeting]:
+    """Put a hit that sets a touching pair in motion before the hit of that pair."""
+    out = list(meetings)
+    for i, late in enumerate(meetings):
+        for j, early in enumerate(meetings[:i]):
+            width = max(early.looseness, late.looseness)
+            if late.t - early.t > 2.5 * width or set(early.stones).isdisjoint(late.stones):
+                continue
+            if _closing(late, known, early.t) > 0 >= _closing(early, known, early.t):
+                out[j] = replace(early, t=late.t + 0.01 * width)
+    return sorted(out, key=lambda meeting: meeting.t)
+
+
+def _closing(meeting: Meeting, known: Mapping[str, Trace], time: float) -> float:
+    """How much nearer, m, a pair came over a few sightings before `time`; 0 if none for sure."""
+    first, second = (known[stone] for stone in meeting.stones)
+    step = max(first.step, second.step)
+    t = time - step * np.array([8.0, 7.0, 6.0, 3.0, 2.0, 1.0])
+    distance = np.hypot(*(_at(second, t) - _at(first, t)).T)
+    change = float(distance[:3].mean() - distance[3:].mean())
+    noise = np.sqrt(np.mean(first.sd**2) + np.mean(second.sd**2))
+    return change if change > 3 * noise else min(change, 0.0)
 
 
 def _extent(path: Trace) -> float:
@@ -162,7 +189,8 @@ def _approaches(
     for run in np.split(near, np.flatnonzero(np.diff(far[near])) + 1):
         if not len(run):
             continue
-        times = _meeting_times(t, distance, run, turns.get(a.stone, ()), turns.get(b.stone, ()))
+        both = turns.get(a.stone, ()), turns.get(b.stone, ())
+        times = _meeting_times(t, distance, run, noise, both)
         for time in times:
             if _moves(a, time, radius) or _moves(b, time, radius):
                 gap = max(_gap(a, time), _gap(b, time), looseness)
@@ -174,24 +202,26 @@ def _meeting_times(
     t: Floats,
     distance: Floats,
     run: NDArray[np.int64],
-    turns_a: Sequence[float],
-    turns_b: Sequence[float],
+    noise: float,
+    turns: tuple[Sequence[float], Sequence[float]],
 ) -> list[float]:
     """List the times within one stretch of nearness at which the two may have met.
 
-    The closest approach, and the times at which the motion of both changed: two stones may
-    lie side by side for long, or one follow the other and hit it again.
+    The closest approach; the first moment that is as close as noise can tell, since one may
+    follow the other from there; and the times at which the motion of both changed, since two
+    may lie side by side for long.
     """
     k = int(run[np.argmin(distance[run])])
+    first = int(run[np.argmax(distance[run] < distance[k] + noise)])
     times = [_vertex(t, distance, k)]
     step = float(np.median(np.diff(t)))
-    for turn in turns_a:
-        if not t[run[0]] <= turn <= t[run[-1]]:
-            continue
-        if turns_b and min(abs(turn - other) for other in turns_b) < 3 * step:
-            others = [abs(turn - time) for time in times]
-            if min(others) > 6 * step:
-                times.append(turn)
+    further = [] if first == 0 else [_vertex(t, distance, first)]
+    one, other = turns
+    inside = [turn for turn in one if t[run[0]] <= turn <= t[run[-1]]]
+    further += [turn for turn in inside if any(abs(turn - x) < 3 * step for x in other)]
+    for time in further:
+        if min(abs(time - x) for x in times) > 3 * step:
+            times.append(time)
     return times
 
 
@@ -252,7 +282,8 @@ def _evidence(fit: ShotFit, k: int, radius: float) -> float:
     def along(states: Sequence[Encounter]) -> Floats:
         state = states[0]
         change = (state.after - state.before) @ state.normal
-        return np.array([change[1] - change[0], -change[0], change[1]])
+        closing = float((state.before[0] - state.before[1]) @ state.normal)
+        return np.array([change[1] - change[0], -change[0], change[1], closing])
 
     value, cov = fit.propagate([k], impulses)
     both = float(np.sqrt(value @ np.linalg.solve(cov + 1e-12 * np.eye(2), value)))
@@ -261,12 +292,13 @@ def _evidence(fit: ShotFit, k: int, radius: float) -> float:
     state = fit.encounter(k)
     distance = float(np.hypot(*(state.places[1] - state.places[0])))
     closing = float((state.before[0] - state.before[1]) @ state.normal)
+    unsure = float(push_cov[3, 3] ** 0.5)
     if push[0] < 3 * error[0] or abs(distance / (2 * radius) - 1) > REACH - 1:
         return 0.0
-    if closing < -2 * error[0] or push[0] < 0.2 * radius:
+    if closing + 2 * unsure < push[0] / MOST_PUSH or push[0] < 0.2 * radius:
         return 0.0
-    least = float(np.min(push[1:] + 2 * error[1:]))
-    return 0.0 if least < SHARE * float(np.max(push[1:])) else both
+    least = float(np.min(push[1:3] + 2 * error[1:3]))
+    return 0.0 if least < SHARE * float(np.max(push[1:3])) else both
 
 
 def _contacts(fit: ShotFit) -> tuple[Contact, ...]:

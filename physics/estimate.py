@@ -18,6 +18,7 @@ from data.sheet import STONE
 from physics.contacts import Contact, cut_all
 from physics.fit import fit_shot
 from physics.glides import FREE, measure_glides
+from physics.residuals import huber_weights
 from physics.segments import Piece
 from physics.shot_fit import Encounter, Meeting, ShotFit
 from physics.spins import spins_at, stone_friction
@@ -25,7 +26,7 @@ from physics.traces import Trace, traces
 
 Floats = NDArray[np.float64]
 
-WORST = 0.3
+WORST = 0.2
 """Standard error of a restitution beyond which a hit is said to tell nothing."""
 
 
@@ -144,7 +145,7 @@ def _scatter(trace: Trace, piece: Piece) -> Floats:
     """Normalised residuals of a stone at rest."""
     xy = trace.xy[piece.samples]
     out: Floats = (xy - np.median(xy, axis=0)) / trace.sd[piece.samples]
-    return np.clip(out, -2.5, 2.5)
+    return out * huber_weights(out)
 
 
 def _gap(trace: Trace, time: float) -> float:

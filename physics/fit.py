@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.residuals import HUBER, huber_weights, likeness
+from physics.residuals import huber_weights, likeness
 from physics.segments import Piece
 from physics.shot_fit import Deceleration, Meeting, ShotFit
 from physics.traces import Trace
@@ -140,12 +140,8 @@ class _Solver:
             cov = _inverse(data + rules)
             new = cov @ (right + rules_right)
             step = new - self.theta
-            for k, meeting in enumerate(self.meetings):
-                low = meeting.t - 3 * meeting.looseness - self.theta[first + k]
-                high = meeting.t + 3 * meeting.looseness - self.theta[first + k]
-                step[first + k] = np.clip(
-                    step[first + k], max(low, -meeting.looseness), min(high, meeting.looseness)
-                )
+            for k in range(len(self.meetings)):
+                step[first + k] = np.clip(step[first + k], *self._room(k))
             scale = np.sqrt(np.maximum(np.diag(cov), 1e-24))
             settled = bool(np.all(np.abs(step) < 0.02 * scale))
             self.theta = self.theta + step
@@ -161,6 +157,22 @@ class _Solver:
             inflation,
             self.sides,
         )
+
+    def _room(self, k: int) -> tuple[float, float]:
+        """Least and most that the time of meeting k may move in one step."""
+        meeting = self.meetings[k]
+        times = self.theta[6 * len(self.pieces) :]
+        loose = meeting.looseness
+        low = max(meeting.t - 3 * loose - times[k], -loose)
+        high = min(meeting.t + 3 * loose - times[k], loose)
+        for other, t in enumerate(times):
+            # Hits of one stone stay in their order.
+            if other != k and not set(self.meetings[other].stones).isdisjoint(meeting.stones):
+                if self.meetings[other].t <= meeting.t:
+                    low = max(low, 0.49 * (t - times[k]))
+                else:
+                    high = min(high, 0.49 * (t - times[k]))
+        return min(low, 0.0), max(high, 0.0)
 
     def _assign(self) -> None:
         """Give each sighting beside a hit to the side of it that it lies on."""
@@ -302,7 +314,7 @@ class _Solver:
         for i, piece in enumerate(self.pieces):
             if len(piece.samples):
                 r = self._residuals(i, self._basis(i))
-                runs.append((np.clip(r, -HUBER, HUBER), 1 if piece.rest else 3))
+                runs.append((r * huber_weights(r), 1 if piece.rest else 3))
         count = sum(r.size for r, _ in runs)
         if count - parameters < 1:
             return 1.0

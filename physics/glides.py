@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from data.results import Friction, Glide
+from data.results import Estimate, Friction, Glide
 from data.sheet import GRAVITY
 from physics.shot_fit import Deceleration, ShotFit
 from physics.traces import Trace
@@ -17,6 +17,9 @@ Floats = NDArray[np.float64]
 
 FREE = Deceleration(0.0, 3.0, 3.0)
 """What is assumed of decelerations when they are to be measured: nothing."""
+
+USUAL = Estimate(0.1, 0.1)
+"""Deceleration of what glides, m/s²: only used where the glides at hand tell less."""
 
 LEAST_SPREAD = 0.015
 """Least spread of decelerations from glide to glide, m/s²: no ice law is exactly constant."""
@@ -41,10 +44,13 @@ def measure_glides(
     """
     glides, found = _each(fit, known, radius)
     friction, spread = _pooled(found)
-    if friction.value is None:
-        return glides, friction, Deceleration(0.0, 0.3, 0.3)
-    spread = max(spread, LEAST_SPREAD)
-    return glides, friction, Deceleration(friction.value * GRAVITY, spread, spread)
+    mean, sd = float(USUAL.value or 0.0), float(USUAL.stderr or 0.0)
+    if friction.value is not None and friction.stderr is not None:
+        measured, error = friction.value * GRAVITY, max(friction.stderr * GRAVITY, 1e-6)
+        share = sd**2 / (sd**2 + error**2)
+        mean, sd = mean + share * (measured - mean), sd * error / float(np.hypot(sd, error))
+    spread = float(np.sqrt(max(spread, LEAST_SPREAD) ** 2 + sd**2))
+    return glides, friction, Deceleration(mean, spread, spread)
 
 
 @dataclass(frozen=True)
@@ -110,11 +116,13 @@ def _pooled(found: Sequence[_Slowing]) -> tuple[Friction, float]:
     variance = np.array([slowing.sd for slowing in found]) ** 2
     weights = 1 / variance
     mean = float(weights @ values / weights.sum())
-    between = 0.0
+    between, clear = 0.0, False
     if len(values) > 1:
         excess = float(weights @ (values - mean) ** 2) - (len(values) - 1)
         between = max(0.0, excess / float(weights.sum() - (weights**2).sum() / weights.sum()))
+        # Two or three glides show some spread by chance alone.
+        clear = excess > 2 * float(np.sqrt(2 * (len(values) - 1)))
     weights = 1 / (variance + between)
     mean = float(weights @ values / weights.sum())
     stderr = float(np.sqrt(1 / weights.sum()))
-    return Friction(mean / GRAVITY, stderr / GRAVITY), float(np.sqrt(between))
+    return Friction(mean / GRAVITY, stderr / GRAVITY), float(np.sqrt(between)) if clear else 0.0

@@ -9,16 +9,20 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-HUBER = 2.5
-"""Normalised residual beyond which a sighting loses weight."""
+HUBER = 3.0
+"""Normalised distance of a sighting from the fit beyond which it loses weight."""
 
 LAGS = 0.25
 """Longest lag, relative to sightings per parameter, at which residuals are compared."""
 
 
 def huber_weights(residuals: Floats) -> Floats:
-    """Weights of Huber's estimator."""
-    out: Floats = HUBER / np.maximum(np.abs(residuals), HUBER)
+    """Weights of Huber's estimator for residuals of shape (n, 2); shape (n, 1).
+
+    A sighting is an outlier as a whole, so that no choice of axes matters.
+    """
+    size = np.hypot(residuals[:, 0], residuals[:, 1])
+    out: Floats = (HUBER / np.maximum(size, HUBER))[:, None]
     return out
 
 

@@ -92,13 +92,17 @@ def _filled(t: Floats, values: Floats, sd: Floats, least: float, default: float)
     if not np.isfinite(given).any():
         if len(scatter) < 5:
             return np.full_like(values, default)
-        level = max(1.4826 * float(np.median(np.abs(scatter))), least)
-        return np.full_like(values, level)
+        return np.full_like(values, max(_level(scatter), least))
     given = np.where(np.isfinite(given), given, float(np.nanmedian(given)))
     if len(scatter) >= 5:
-        ratio = 1.4826 * float(np.median(np.abs(scatter / given[2:-2])))
-        given = given * max(1.0, ratio)
+        given = given * max(1.0, _level(scatter / given[2:-2]))
     return np.maximum(given, least)
+
+
+def _level(scatter: Floats) -> float:
+    """Robust standard deviation of residuals of one or two columns, whatever their axes."""
+    usual = 0.6745 if scatter.shape[1] == 1 else 1.1774  # medians of |N| and of Rayleigh's law
+    return float(np.median(np.sqrt(np.sum(scatter**2, axis=1)))) / usual
 
 
 def local_residuals(t: Floats, values: Floats) -> Floats:

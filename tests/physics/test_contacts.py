@@ -1,0 +1,123 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import Phase, given, settings
+from hypothesis import strategies as st
+
+from physics.contacts import find_contacts
+from tests.physics.watch import RADIUS, airtable, discs, hit_motion, semireal, watch
+from tests.synthetic.physics import Start
+
+QUICK = (Phase.explicit, Phase.reuse, Phase.generate)  # shrinking repeats slow fits
+
+
+def test_a_hit_is_timed_to_a_fraction_of_a_frame() -> None:
+    rng = np.random.default_rng(1)
+    motion = hit_motion()
+    pulls = []
+    for _ in range(30):
+        (hit,) = find_contacts(watch(motion, rng), RADIUS)
+        pulls.append((hit.t - motion.hits[0].t) / hit.stderr_t)
+        assert abs(hit.t - motion.hits[0].t) < 0.3 / 30
+        assert hit.stones == ("A", "B")
+        assert np.dot(hit.normal, motion.hits[0].normal) > 0.998
+    assert 0.6 < np.std(pulls) < 1.5
+    assert abs(np.mean(pulls)) < 0.6
+
+
+def test_a_near_miss_is_no_hit() -> None:
+    rng = np.random.default_rng(2)
+    passing = hit_motion(offset=0.0, others=())
+    states = passing.states.copy()
+    # The same stone on a parallel path that clears the other by 5 mm.
+    free = hit_motion(offset=0.0, others=(), restitution=0.83)
+    t = free.times
+    v0, slow = free.states[0, 0, 4], 0.0109 * 9.81
+    states[:, 0, 0] = 2 * RADIUS + 0.005
+    states[:, 0, 1] = free.states[0, 0, 1] + v0 * t - 0.5 * slow * t**2
+    states[:, 1, :2] = 0.0
+    miss = type(free)(t, states, ())
+    for given_sd in (True, False):
+        assert find_contacts(watch(miss, rng, given=given_sd), RADIUS) == ()
+
+
+def test_chain_of_hits_two_frames_apart(shared: Path) -> None:
+    rng = np.random.default_rng(3)
+    for sd, slow in ((0.005, 0.0), (0.01, 0.005), (0.015, 0.0)):
+        seen = semireal(shared, "pyeongchang_two_hits", rng, sd=sd, slow=slow)
+        hits = find_contacts(seen, RADIUS)
+        assert [hit.stones for hit in hits] == [("A", "B"), ("B", "C")]
+        assert hits[0].t == pytest.approx(2.3130, abs=0.02)
+        assert hits[1].t == pytest.approx(2.3937, abs=0.02)
+
+
+def test_stones_that_touch_at_rest_hit_only_when_one_is_hit() -> None:
+    rng = np.random.default_rng(4)
+    frozen = Start(0.0, 2 * RADIUS + 0.002)
+    motion = hit_motion(offset=0.02, others=(frozen,))
+    hits = find_contacts(watch(motion, rng, sd=0.003), RADIUS)
+    assert hits[0].stones == ("A", "B")
+    assert all(abs(hit.t - motion.hits[0].t) < 0.1 for hit in hits)
+    still = watch(motion, rng, sd=0.003)
+    still = still[still["t"] < 0.9].reset_index(drop=True)
+    assert find_contacts(still, RADIUS) == ()
+
+
+def test_a_push_and_a_wall_are_no_hits() -> None:
+    rng = np.random.default_rng(5)
+    t = np.arange(0, 3, 1 / 30)
+    # At rest, pushed at 1 s, back from a wall at 2 s; another stone rests 0.5 m beside.
+    y = np.where(t < 1, 0, np.where(t < 2, t - 1, 1 - 0.7 * (t - 2)))
+    pushed = pd.DataFrame({"stone": "A", "t": t, "x": 0.0, "y": y})
+    rest = pd.DataFrame({"stone": "B", "t": t, "x": 0.5, "y": 0.5})
+    table = pd.concat([pushed, rest], ignore_index=True)
+    table["frame"] = np.round(table["t"] * 30).astype(int)
+    table[["theta", "sd_x", "sd_y", "sd_theta"]] = np.nan
+    table[["x", "y"]] += rng.normal(0, 0.003, (len(table), 2))
+    assert find_contacts(table, RADIUS) == ()
+
+
+def test_hit_behind_a_broom_is_found_from_the_paths_beside_it() -> None:
+    rng = np.random.default_rng(6)
+    motion = hit_motion()
+    seen = watch(motion, rng)
+    hidden = (np.abs(seen["t"] - motion.hits[0].t) < 0.15) & (seen["stone"] == "A")
+    (hit,) = find_contacts(seen[~hidden].reset_index(drop=True), RADIUS)
+    assert hit.t == pytest.approx(motion.hits[0].t, abs=0.03)
+
+
+def test_real_tracks_have_one_hit_each(shared: Path) -> None:
+    (hit,) = find_contacts(airtable(shared), 0.035)
+    assert hit.t == pytest.approx(0.178, abs=0.01)
+    for number, t in ((48, 1.624), (64, 1.024)):
+        (hit,) = find_contacts(discs(shared, number), 0.025)
+        assert hit.t == pytest.approx(t, abs=0.003)
+
+
+@settings(max_examples=15, deadline=None, phases=QUICK)
+@given(
+    turn=st.floats(0, 2 * np.pi), x=st.floats(-20, 20), y=st.floats(-20, 20), mirror=st.booleans()
+)
+def test_hits_do_not_depend_on_the_axes(turn: float, x: float, y: float, mirror: bool) -> None:
+    seen = watch(hit_motion(), np.random.default_rng(7))
+    (hit,) = find_contacts(seen, RADIUS)
+    c, s = np.cos(turn), np.sin(turn)
+    matrix = np.array([[c, -s], [s, c]]) @ np.diag([-1.0 if mirror else 1.0, 1.0])
+    moved = seen.copy()
+    moved[["x", "y"]] = seen[["x", "y"]].to_numpy() @ matrix.T + [x, y]
+    (other,) = find_contacts(moved, RADIUS)
+    assert other.t == pytest.approx(hit.t, abs=0.05 * hit.stderr_t)
+    assert other.stones == hit.stones
+    assert np.allclose(other.normal, matrix @ np.array(hit.normal), atol=1e-3)
+
+
+def test_few_or_lonely_sightings_have_no_hits() -> None:
+    seen = watch(hit_motion(), np.random.default_rng(8))
+    assert find_contacts(seen[seen["stone"] == "A"].reset_index(drop=True), RADIUS) == ()
+    assert find_contacts(seen.iloc[:1], RADIUS) == ()
+    assert find_contacts(seen.iloc[:0], RADIUS) == ()
+    assert find_contacts(seen.groupby("stone").head(2).reset_index(drop=True), RADIUS) == ()

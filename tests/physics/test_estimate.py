@@ -1,0 +1,198 @@
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from physics.contacts import find_contacts
+from physics.estimate import Estimates, estimate
+from tests.physics.watch import RADIUS, airtable, discs, hit_motion, semireal, watch
+from tests.synthetic.physics import Start
+
+MASSES = {"a": 28.73, "b": 28.19}
+
+
+def measure(seen: pd.DataFrame, radius: float = RADIUS) -> Estimates:
+    return estimate(seen, find_contacts(seen, radius), radius=radius)
+
+
+@pytest.mark.parametrize(
+    ("sd", "fps", "speed", "given"),
+    [(0.01, 30, 2.0, True), (0.003, 25, 1.0, False), (0.01, 60, 1.0, True)],
+)
+def test_errors_mean_what_they_say(sd: float, fps: float, speed: float, given: bool) -> None:
+    rng = np.random.default_rng(11)
+    truth, slow = 0.8, 0.0109
+    motion = hit_motion(speed, 0.06, before=1.0, after=2.0, restitution=truth, friction=slow)
+    rows = []
+    for _ in range(60):
+        found = measure(watch(motion, rng, fps=fps, sd=sd, given=given))
+        rows.append(
+            (
+                found.restitution.value,
+                found.restitution.stderr,
+                found.friction.value,
+                found.friction.stderr,
+            )
+        )
+    for value, stderr, true in zip(
+        np.array(rows, float).T[::2], np.array(rows, float).T[1::2], (truth, slow), strict=True
+    ):
+        pull = (value - true) / stderr
+        assert abs(np.mean(value) - true) < 4 * np.std(value) / np.sqrt(len(value))
+        assert np.std(value) == pytest.approx(np.median(stderr), rel=0.35)
+        assert 0.87 <= np.mean(np.abs(pull) < 2) <= 1.0
+
+
+def test_precision_of_a_short_clip() -> None:
+    motion = hit_motion(2.0, 0.0, before=0.5, after=0.5)
+    rng = np.random.default_rng(12)
+    found = [measure(watch(motion, rng, sd=0.01)).restitution for _ in range(12)]
+    assert np.median([float(e.stderr or np.nan) for e in found]) < 0.022
+    assert np.std([float(e.value or np.nan) for e in found]) < 0.025
+
+
+def test_two_hits_in_quick_succession(shared: Path) -> None:
+    rng = np.random.default_rng(13)
+    for sd, slow in ((0.005, 0.0), (0.015, 0.0), (0.005, 0.005)):
+        found = measure(semireal(shared, "pyeongchang_two_hits", rng, sd=sd, slow=slow))
+        assert found.restitution.value == pytest.approx(0.83, abs=0.04)
+        assert found.friction.value == pytest.approx(0.0109, rel=0.15)
+        for hit in found.collisions:
+            assert hit.stderr is not None
+            assert hit.restitution == pytest.approx(0.83, abs=3 * hit.stderr)
+
+
+def test_glancing_hit_and_the_friction_between_the_stones(shared: Path) -> None:
+    found = measure(semireal(shared, "lgt_glancing", np.random.default_rng(14), sd=0.003))
+    (hit,) = found.collisions
+    assert hit.restitution == pytest.approx(0.88, abs=0.04)
+    assert found.friction.value == pytest.approx(0.0085, rel=0.03)
+    assert hit.stone_friction is not None
+    assert hit.stderr_stone_friction is not None
+    assert abs(hit.stone_friction - 0.06) < 3 * hit.stderr_stone_friction
+
+
+def test_states_and_spins_beside_the_hit() -> None:
+    motion = hit_motion(1.5, 0.1, stone_friction=0.1)
+    (hit,) = measure(watch(motion, np.random.default_rng(15), sd=0.002)).collisions
+    true = motion.hits[0]
+    for name, before, after in zip("AB", true.before, true.after, strict=True):
+        for state, values in ((hit.before[name], before), (hit.after[name], after)):
+            assert (state.vx, state.vy) == pytest.approx(values[:2], abs=0.02)
+            assert state.omega == pytest.approx(values[2], abs=0.1)
+    assert hit.momentum_residual is not None
+    assert hit.stderr_momentum is not None
+    assert hit.momentum_residual < 3 * hit.stderr_momentum
+    speeds = [[np.hypot(*s[:2]) for s in states] for states in (true.before, true.after)]
+    lost = 1 - np.sum(np.square(speeds[1])) / np.sum(np.square(speeds[0]))
+    assert hit.energy_lost == pytest.approx(lost, abs=0.02)
+
+
+def test_three_stones_in_a_row() -> None:
+    # Two that touch, hit by a third: two hits within 2 ms.
+    motion = hit_motion(1.5, 0.02, others=(Start(0.0, 2 * RADIUS + 0.002),), restitution=0.8)
+    found = measure(watch(motion, np.random.default_rng(16), sd=0.003))
+    assert [hit.stones for hit in found.collisions] == [("A", "B"), ("B", "C")]
+    assert found.restitution.value == pytest.approx(0.8, abs=0.02)
+
+
+def test_air_table(shared: Path) -> None:
+    seen = airtable(shared)
+    found = estimate(
+        seen, find_contacts(seen, 0.035), radius=0.035, masses={"1": 31.64, "2": 29.80}
+    )
+    (hit,) = found.collisions
+    assert hit.restitution == pytest.approx(0.91, abs=0.03)
+    assert hit.stderr is not None
+    assert hit.stderr < 0.02
+    assert hit.momentum_residual is not None
+    assert hit.momentum_residual < 0.03
+    # An air table hardly brakes, and its discs are known to meet at 7.42 cm.
+    assert found.friction.value == pytest.approx(0.003, abs=0.003)
+    assert any("meet at 0.07" in warning for warning in found.warnings)
+
+
+@pytest.mark.parametrize("number", [38, 56, 80])
+def test_discs_of_a_motion_capture(shared: Path, number: int) -> None:
+    seen = discs(shared, number)
+    found = estimate(seen, find_contacts(seen, 0.025), radius=0.025, masses=MASSES)
+    (hit,) = found.collisions
+    assert hit.restitution is not None
+    assert hit.stderr is not None
+    assert 0.6 < hit.restitution < 0.85
+    assert hit.stderr < 0.03
+    assert hit.momentum_residual is not None
+    assert hit.momentum_residual < 0.1
+
+
+def test_unequal_masses() -> None:
+    # A heavy stone seen in a mirror of momentum: equal stones' truth must not fit.
+    motion = hit_motion(1.5, 0.05)
+    seen = watch(motion, np.random.default_rng(17), sd=0.002)
+    hits = find_contacts(seen, RADIUS)
+    wrong = estimate(seen, hits, radius=RADIUS, masses={"A": 1.0, "B": 2.0}).collisions[0]
+    right = estimate(seen, hits, radius=RADIUS, masses={"A": 3.0, "B": 3.0}).collisions[0]
+    assert right.momentum_residual is not None
+    assert wrong.momentum_residual is not None
+    assert right.momentum_residual < 0.03
+    assert wrong.momentum_residual > 0.5
+
+
+def test_outliers_do_not_decide() -> None:
+    rng = np.random.default_rng(18)
+    seen = watch(hit_motion(), rng, sd=0.003)
+    wild = rng.choice(len(seen), 8, replace=False)
+    seen.loc[wild, ["x", "y"]] += rng.uniform(-0.4, 0.4, (8, 2))
+    found = measure(seen)
+    assert found.restitution.value == pytest.approx(0.83, abs=0.03)
+    assert found.friction.value == pytest.approx(0.0109, rel=0.1)
+
+
+def test_uneven_times_and_gaps() -> None:
+    rng = np.random.default_rng(19)
+    seen = watch(hit_motion(), rng, sd=0.003, fps=60)
+    kept = seen[seen["frame"].isin(rng.choice(180, 90, replace=False))]
+    gap = kept[~((kept["stone"] == "B") & kept["t"].between(1.3, 1.8))].reset_index(drop=True)
+    found = measure(gap)
+    assert found.restitution.value == pytest.approx(0.83, abs=0.03)
+    assert found.friction.value == pytest.approx(0.0109, rel=0.1)
+
+
+def test_what_cannot_be_told_is_none_and_said() -> None:
+    seen = watch(hit_motion(), np.random.default_rng(20))
+    alone = measure(seen[seen["stone"] == "A"].reset_index(drop=True))
+    assert alone.restitution.value is None
+    assert any("no hit" in warning for warning in alone.warnings)
+    still = measure(seen[(seen["stone"] == "B") & (seen["t"] < 0.9)].reset_index(drop=True))
+    assert still.restitution.value is None
+    assert still.friction.value is None
+    assert still.warnings
+    hits = find_contacts(seen, RADIUS)
+    short = seen[seen["t"] < hits[0].t].reset_index(drop=True)
+    cut = estimate(short, hits, radius=RADIUS)
+    assert cut.collisions[0].restitution is None
+    assert "seen" in (cut.collisions[0].note or "")
+    assert cut.restitution.value is None
+
+
+def test_no_sightings_at_all() -> None:
+    seen = watch(hit_motion(), np.random.default_rng(21)).iloc[:0]
+    assert measure(seen).collisions == ()
+    assert measure(seen).warnings
+
+
+def test_result_is_the_same_each_time_and_for_any_name() -> None:
+    seen = watch(hit_motion(), np.random.default_rng(22))
+    one, two = measure(seen), measure(seen)
+    assert one == two
+    renamed = seen.assign(stone=seen["stone"].map({"A": "yellow", "B": "Red 2"}))
+    other = measure(renamed.sort_values(["stone", "t"]).reset_index(drop=True))
+    assert other.restitution.value == pytest.approx(one.restitution.value, abs=1e-4)
+    assert other.collisions[0].stones == ("yellow", "Red 2")
+    assert replace(one.collisions[0], stones=("x", "y")).t == pytest.approx(
+        other.collisions[0].t, abs=1e-4
+    )

@@ -1,0 +1,149 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from data.tracks import TRACK_COLUMNS
+from physics.contacts import find_contacts
+from physics.kalman import smooth
+from tests.physics.watch import RADIUS, airtable, hit_motion, watch
+from tests.synthetic.physics import Motion
+
+COLUMNS = ("x", "y", "theta", "vx", "vy", "omega")
+
+
+def errors(tracks: pd.DataFrame, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
+    """Errors of a table of tracks and their stated standard deviations, COLUMNS each."""
+    truth = motion.at(tracks["t"].to_numpy())
+    index = tracks["stone"].map({"A": 0, "B": 1}).to_numpy()
+    exact = truth[np.arange(len(tracks)), index]
+    off = tracks[list(COLUMNS)].to_numpy() - exact
+    return off, tracks[[f"sd_{name}" for name in COLUMNS]].to_numpy()
+
+
+def test_errors_are_as_large_as_stated() -> None:
+    rng = np.random.default_rng(31)
+    motion = hit_motion(1.2, 0.08, after=1.5)
+    pulls = []
+    for _ in range(12):
+        seen = watch(motion, rng, sd=0.006)
+        tracks = smooth(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+        off, sd = errors(tracks, motion)
+        speed = np.hypot(*motion.at(tracks["t"].to_numpy())[:, 0, 3:5].T)
+        beside = np.abs(tracks["t"] - motion.hits[0].t) < 0.01  # the hit itself may lie between
+        moving = (tracks["stone"] == "A") | (tracks["t"] > motion.hits[0].t)
+        pulls.append((off / sd)[moving & ~beside & (speed > 0.05)])
+    square = np.mean(np.concatenate(pulls) ** 2, axis=0)
+    # Normalised estimation error squared, 12 independent shots with some 5 free states each.
+    assert np.all(square > 0.4)
+    assert np.all(square < 1.6)
+    covered = np.mean(np.abs(np.concatenate(pulls)) < 2, axis=0)
+    assert np.all(covered > 0.88)
+
+
+def test_smoothing_is_better_than_looking() -> None:
+    motion = hit_motion(1.2, 0.08, after=1.5)
+    seen = watch(motion, np.random.default_rng(32), sd=0.006)
+    tracks = smooth(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    off, _ = errors(tracks, motion)
+    far = np.abs(tracks["t"] - motion.hits[0].t) > 0.05
+    assert np.sqrt(np.mean(off[far, :2] ** 2)) < 0.003
+    assert np.sqrt(np.mean(off[far, 3:5] ** 2)) < 0.012
+    assert np.sqrt(np.mean(off[far, 5] ** 2)) < 0.05
+
+
+def test_nothing_leaks_across_a_hit() -> None:
+    motion = hit_motion()
+    seen = watch(motion, np.random.default_rng(33))
+    hits = find_contacts(seen, RADIUS)
+    whole = smooth(seen, hits, radius=RADIUS)
+    late = seen["t"] > hits[0].t
+    other = seen.copy()
+    other.loc[late, ["x", "y"]] += 0.02 * np.sin(40 * other.loc[late, ["t"]].to_numpy())
+    changed = smooth(other, hits, radius=RADIUS)
+    before = whole["t"] < hits[0].t
+    after = whole[~before][["vx", "vy"]].to_numpy() - changed[~before][["vx", "vy"]].to_numpy()
+    assert np.abs(after).max() > 0.05
+    for column in ("x", "y", "vx", "vy"):
+        shift = np.abs(whole[before][column] - changed[before][column])
+        # Only what the deceleration and the noise of the whole shot say can differ.
+        assert shift.max() < 0.02
+    jump = whole[~before & (whole["stone"] == "B")].iloc[0]
+    assert np.hypot(jump["vx"], jump["vy"]) > 1.0
+
+
+def test_a_stone_at_rest_stays_at_rest() -> None:
+    motion = hit_motion()
+    seen = watch(motion, np.random.default_rng(34))
+    hits = find_contacts(seen, RADIUS)
+    tracks = smooth(seen, hits, radius=RADIUS)
+    resting = tracks[(tracks["stone"] == "B") & (tracks["t"] < hits[0].t)]
+    assert (resting[["vx", "vy", "omega"]] == 0).all().all()
+    assert np.ptp(resting["x"]) < 1e-3
+    assert np.hypot(resting["x"], resting["y"]).max() < 0.004
+
+
+def test_gaps_are_bridged_and_marked() -> None:
+    rng = np.random.default_rng(35)
+    motion = hit_motion()
+    seen = watch(motion, rng, fps=50)
+    dropped = seen["frame"].isin(rng.choice(150, 40, replace=False))
+    hidden = (seen["stone"] == "A") & seen["t"].between(0.4, 0.7)
+    left = seen[~dropped & ~hidden].reset_index(drop=True)
+    tracks = smooth(left, find_contacts(left, RADIUS), radius=RADIUS)
+    assert tuple(tracks.columns) == TRACK_COLUMNS
+    carried = tracks[tracks["seen"] == 0]
+    assert set(carried["stone"]) == {"A"}
+    assert carried["t"].between(0.4, 0.7).all()
+    assert len(carried) == (~dropped & hidden).sum()
+    off, sd = errors(tracks, motion)
+    gap = (tracks["seen"] == 0).to_numpy()
+    assert np.abs(off[gap, :2]).max() < 0.01
+    assert sd[gap, 0].max() > 1.3 * np.median(sd[~gap & (tracks["stone"] == "A"), 0])
+
+
+def test_outliers_are_refused() -> None:
+    rng = np.random.default_rng(36)
+    motion = hit_motion()
+    seen = watch(motion, rng)
+    wild = rng.choice(np.flatnonzero(seen["t"] > 0.3), 5, replace=False)
+    bad = seen.copy()
+    bad.loc[wild, "x"] += 0.3
+    tracks = smooth(bad, find_contacts(bad, RADIUS), radius=RADIUS)
+    keys = pd.MultiIndex.from_frame(bad.loc[wild, ["stone", "frame"]])
+    refused = tracks.set_index(["stone", "frame"]).loc[keys, "seen"]
+    assert (refused == 0).all()
+    off, _ = errors(tracks, motion)
+    assert np.abs(off[:, :2]).max() < 0.03
+
+
+def test_angles_that_nobody_saw_are_empty(shared: Path) -> None:
+    seen = airtable(shared)
+    tracks = smooth(seen, find_contacts(seen, 0.035), radius=0.035)
+    assert tracks[["theta", "omega", "sd_theta", "sd_omega"]].isna().all().all()
+    assert tracks[["x", "vx", "sd_x", "sd_vx"]].notna().all().all()
+
+
+def test_a_spin_is_seen_through_missing_angles() -> None:
+    motion = hit_motion(stone_friction=0.2)
+    seen = watch(motion, np.random.default_rng(37))
+    seen.loc[seen["frame"] % 3 == 0, ["theta", "sd_theta"]] = np.nan
+    tracks = smooth(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    off, _ = errors(tracks, motion)
+    assert np.abs(off[:, 5]).max() < 0.3
+    late = tracks[(tracks["stone"] == "B") & tracks["t"].between(1.3, 2.0)]["omega"]
+    assert late.mean() == pytest.approx(motion.hits[0].after[1][2], abs=0.05)
+
+
+def test_small_and_empty_tables() -> None:
+    seen = watch(hit_motion(), np.random.default_rng(38))
+    assert smooth(seen.iloc[:0], (), radius=RADIUS).empty
+    one = smooth(seen.iloc[:1], (), radius=RADIUS)
+    assert len(one) == 1
+    assert one["x"].iloc[0] == pytest.approx(seen["x"].iloc[0])
+    two = smooth(seen.groupby("stone").head(2).reset_index(drop=True), (), radius=RADIUS)
+    assert len(two) == 4
+    assert np.isfinite(two[["x", "y", "vx", "vy"]].to_numpy()).all()

@@ -1,0 +1,88 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from data.results import SimulationScore
+from physics.contacts import find_contacts
+from physics.estimate import estimate
+from physics.kalman import smooth
+from physics.predict import simulate_measured
+from tests.physics.watch import RADIUS, hit_motion, semireal, watch
+
+MODELS = {"point-mass", "rigid-body", "frictional"}
+
+
+def predict(
+    seen: pd.DataFrame,
+) -> tuple[dict[str, pd.DataFrame], dict[str, SimulationScore], tuple[str, ...]]:
+    hits = find_contacts(seen, RADIUS)
+    tracks = smooth(seen, hits, radius=RADIUS)
+    return simulate_measured(tracks, estimate(seen, hits, radius=RADIUS), radius=RADIUS)
+
+
+def test_the_shot_again_lands_where_it_did() -> None:
+    seen = watch(hit_motion(1.2, 0.08), np.random.default_rng(41), sd=0.002)
+    samples, scores, warnings = predict(seen)
+    assert set(scores) == MODELS
+    assert scores["frictional"].rmse is not None
+    assert scores["frictional"].rmse < 0.02
+    assert set(scores["frictional"].rest_error) == {"A", "B"}
+    assert max(float(v or 0) for v in scores["frictional"].rest_error.values()) < 0.04
+    assert warnings == ()
+    table = samples["frictional"]
+    hit = find_contacts(seen, RADIUS)[0].t
+    assert table["t"].min() < hit < table["t"].min() + 0.04
+    assert set(table["frame"]) <= set(seen["frame"])
+
+
+def test_who_glides_only_is_no_part_of_the_score() -> None:
+    seen = watch(hit_motion(), np.random.default_rng(42))
+    early = seen[seen["t"] < 0.9].reset_index(drop=True)
+    samples, scores, warnings = predict(early)
+    assert any("no hit" in warning for warning in warnings)
+    assert scores["point-mass"].rmse is not None
+    assert scores["point-mass"].rmse < 0.02
+    assert set(scores["point-mass"].rest_error) == {"A"}
+    assert set(samples) == MODELS
+
+
+def test_without_spins_the_rigid_bodies_say_so() -> None:
+    seen = watch(hit_motion(), np.random.default_rng(43))
+    seen[["theta", "sd_theta"]] = np.nan
+    samples, scores, _ = predict(seen)
+    assert scores["rigid-body"].rmse is None
+    assert "spin" in (scores["rigid-body"].note or "")
+    assert "rigid-body" not in samples
+    assert scores["frictional"].rmse is not None
+
+
+def test_two_hits_in_quick_succession(shared: Path) -> None:
+    seen = semireal(shared, "pyeongchang_two_hits", np.random.default_rng(44), sd=0.005)
+    _, scores, _ = predict(seen)
+    assert scores["frictional"].rmse is not None
+    assert scores["frictional"].rmse < 0.06
+    assert set(scores["frictional"].rest_error) == {"A", "B", "C"}
+
+
+def test_what_is_seen_after_the_hit_does_not_move_the_start() -> None:
+    motion = hit_motion()
+    seen = watch(motion, np.random.default_rng(45))
+    hits = find_contacts(seen, RADIUS)
+    estimates = estimate(seen, hits, radius=RADIUS)
+    tracks = smooth(seen, hits, radius=RADIUS)
+    other = tracks.copy()
+    other.loc[other["t"] > hits[0].t, ["x", "y"]] += 0.5
+    one, two = (simulate_measured(t, estimates, radius=RADIUS)[0] for t in (tracks, other))
+    pd.testing.assert_frame_equal(one["frictional"], two["frictional"])
+
+
+def test_empty_tracks() -> None:
+    seen = watch(hit_motion(), np.random.default_rng(46)).iloc[:0]
+    samples, scores, warnings = predict(seen)
+    assert samples == {}
+    assert scores == {}
+    assert warnings == pytest.approx(("no tracks to simulate",))

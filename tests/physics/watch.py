@@ -1,0 +1,112 @@
+"""Sightings whose truth is known: small-step motion seen with noise, and real tracks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from data.tracks import check_sightings
+from tests.synthetic.physics import Ice, Impact, Motion, Start, simulate
+
+RADIUS = 0.1455
+NAMES = "ABCDEF"
+
+
+def hit_motion(
+    speed: float = 1.5,
+    offset: float = 0.08,
+    *,
+    before: float = 1.0,
+    after: float = 2.0,
+    restitution: float = 0.83,
+    friction: float = 0.0109,
+    stone_friction: float = 0.05,
+    others: Sequence[Start] = (),
+) -> Motion:
+    """A stone that comes up y and hits one at rest at the origin after `before` seconds."""
+    slow = friction * 9.81
+    reach = np.sqrt((2 * RADIUS) ** 2 - offset**2)
+    way = speed * before + 0.5 * slow * before**2
+    starts = [Start(offset, -reach - way, 0.0, speed + slow * before, 0.3, 1.0), Start(0, 0)]
+    return simulate(
+        [*starts, *others],
+        before + after,
+        ice=Ice(b=friction),
+        impact=Impact(restitution=restitution, stone_friction=stone_friction),
+        step=5e-4,
+        keep_every=4,
+    )
+
+
+def watch(
+    motion: Motion,
+    rng: np.random.Generator,
+    *,
+    fps: float = 30.0,
+    sd: float = 0.005,
+    sd_theta: float = 0.02,
+    given: bool = True,
+) -> pd.DataFrame:
+    """What a camera sees of a motion: every stone in every frame, with white noise."""
+    t = np.arange(rng.uniform(0, 1 / fps), motion.times[-1], 1 / fps)
+    states = motion.at(t)
+    tables = []
+    for i in range(states.shape[1]):
+        x, y, theta = (states[:, i, k] for k in range(3))
+        table = pd.DataFrame({"stone": NAMES[i], "frame": np.arange(len(t)), "t": t})
+        table["x"], table["y"] = x + rng.normal(0, sd, len(t)), y + rng.normal(0, sd, len(t))
+        table["theta"] = theta + rng.normal(0, sd_theta, len(t))
+        if given:
+            table[["sd_x", "sd_y"]], table["sd_theta"] = sd, sd_theta
+        tables.append(table)
+    return check_sightings(pd.concat(tables))
+
+
+def semireal(
+    shared: Path, name: str, rng: np.random.Generator, *, sd: float, slow: float = 0.0
+) -> pd.DataFrame:
+    """Truth of a semi-real clip where a stone is in view, with white and slowly varying noise."""
+    truth = pd.read_csv(shared / "clips" / f"semireal_{name}.truth.csv")
+    seen = truth[truth["visible"] >= 0.5].reset_index(drop=True)
+    keep = float(np.exp(-1 / 12))
+    for column in ("x", "y"):
+        for _, group in seen.groupby("stone"):
+            drift = np.zeros(len(group))
+            for k in range(1, len(group)):
+                drift[k] = keep * drift[k - 1] + np.sqrt(1 - keep**2) * rng.normal(0, slow)
+            noise = drift + rng.normal(0, sd, len(group))
+            seen.loc[group.index, column] = group[column] + noise
+    return check_sightings(seen[["stone", "frame", "t", "x", "y", "theta"]])
+
+
+def airtable(shared: Path) -> pd.DataFrame:
+    """Two pucks on an air table, from Tracker, 100 frames a second."""
+    rows = np.loadtxt(shared / "tracks" / "airtable_two_pucks.csv", delimiter=";")
+    t, cm = rows[:, 0], rows[:, 1:] / 100
+    pucks = [
+        pd.DataFrame({"stone": name, "t": t, "x": cm[:, 2 * k], "y": cm[:, 2 * k + 1]})
+        for k, name in enumerate(("1", "2"))
+    ]
+    return check_sightings(pd.concat(pucks))
+
+
+def discs(shared: Path, number: int) -> pd.DataFrame:
+    """Two discs on a table, motion capture at 500 Hz."""
+    table = pd.read_csv(shared / "tracks" / "discs_500hz" / f"hit_{number}.csv")
+    t = np.arange(len(table)) / 500
+    both = [
+        pd.DataFrame(
+            {
+                "stone": name,
+                "t": t,
+                "x": table[f"c_{name}_x"],
+                "y": table[f"c_{name}_y"],
+                "theta": table[f"ang_{name}"],
+            }
+        )
+        for name in "ab"
+    ]
+    return check_sightings(pd.concat(both))
