@@ -127,14 +127,17 @@ def learn(sightings: Sequence[Sighting], most_colours: int = 2) -> Appearance | 
         np.concatenate([s.granite_samples for group in groups for s in group]), (15.0, 9.0, 9.0)
     )
     lab = _lab_of_table()
-    distances = [np.sqrt(cap.distance2(lab)) for cap in caps]
-    cap = np.clip((4.5 - np.min(distances, axis=0)) / 1.5, 0, 1)
-    grey = np.clip((4.0 - np.sqrt(granite.distance2(lab))) / 1.5, 0, 1)
+    to_cap = np.min([np.sqrt(cap.distance2(lab)) for cap in caps], axis=0)
+    to_granite = np.sqrt(granite.distance2(lab))
+    # What may be either is neither: the nearer counts, by how much nearer it is.
+    nearer = np.clip((to_granite - to_cap) / 1.5, -1, 1)
+    likely = np.clip((4.5 - np.minimum(to_cap, to_granite)) / 1.5, 0, 1)
+    worth = np.asarray(nearer * likely, np.float32)
     chosen = [s.outline for group in groups for s in group if s.visible > 0.8]
     if len(chosen) < 3:
-        return Appearance((cap - grey).astype(np.float32), caps, granite)
+        return Appearance(worth, caps, granite)
     cap_share, rim_share = np.median(np.array(chosen), axis=0).tolist()
-    return Appearance((cap - grey).astype(np.float32), caps, granite, (cap_share, rim_share), 0.01)
+    return Appearance(worth, caps, granite, (cap_share, rim_share), 0.01)
 
 
 def colour_difference(first: Array, second: Array) -> float:

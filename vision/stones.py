@@ -62,7 +62,7 @@ class Search:
     map_radius_px: float = 11.6
     rays: int = 64
     radii: int = 60
-    least_score: float = 0.55
+    least_score: float = 0.45
     least_visible: float = 0.30
     least_evidence: float = 1.6
     least_rim: float = 0.6
