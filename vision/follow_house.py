@@ -49,6 +49,9 @@ JOINT_FRAMES = 30
 FRAMES_ALIKE = 4
 """Frames of the joint fit that see the house differently enough to err independently."""
 
+SETTLED_PX = 1.5
+"""Correction below which the edges need not be measured anew from the corrected view, px."""
+
 CARRY_MAX_S = 4.0
 """A view carried longer than this without rings is given up."""
 
@@ -153,8 +156,6 @@ def _read(clip: Clip, progress: Progress) -> list[_Piece]:
             if piece is None:
                 waiting.append(frame)
         before = frame.image
-    if piece is not None:
-        _trim(piece)
     return [p for p in pieces if p.length]
 
 
@@ -169,7 +170,7 @@ def _start(frame: Frame, waiting: deque[Frame]) -> _Piece | None:
     after = frame.image
     for earlier in reversed(waiting):
         seen = _next(piece, earlier, after)
-        if seen is None or not seen.found:
+        if seen is None:
             break
         piece.seen.append(seen)
         after = earlier.image
@@ -226,7 +227,7 @@ def _settle(piece: _Piece, frame: Frame, view: View) -> _Seen | None:
     """Refine a predicted view on the rings; None where they are not there."""
     size = (frame.image.shape[1], frame.image.shape[0])
     reach = _reach(size)
-    for attempt in range(3):
+    for _ in range(3):
         evidence = measure(frame.image, view.vector, piece.rig, reach=reach)
         if judge(evidence) == 0:
             return None
@@ -235,7 +236,7 @@ def _settle(piece: _Piece, frame: Frame, view: View) -> _Seen | None:
         )
         shift = np.abs(fit.views[0].vector - view.vector)
         view = fit.views[0]
-        if attempt and shift[:3].max() * view.focal < 1.0:
+        if shift[:3].max() * view.focal < SETTLED_PX:
             break
     marks = evidence.marks.pick(fit.inliers[0])
     return _Seen(frame.index, frame.t, view, marks, judge(evidence), True)
