@@ -136,16 +136,27 @@ def _disc_response(ice: IceMap, disc: Stone) -> Floats:
     return np.asarray(2 * total, np.float32)
 
 
+def _far_apart(
+    places: NDArray[np.intp], order: NDArray[np.intp], spacing: float
+) -> NDArray[np.intp]:
+    """Those of the places, in this order, that are not nearer to one before than `spacing`."""
+    kept: list[int] = []
+    for index in order.tolist():
+        if not kept or np.hypot(*(places[kept] - places[index]).T).min() >= spacing:
+            kept.append(index)
+    return np.array(kept, np.intp)
+
+
 def _peaks(response: Floats, least: float, spacing_px: float, most: int = 60) -> Array:
     """Local maxima, strongest first: row, column (to a fraction) and height, shape (n, 3)."""
-    reach = 2 * int(spacing_px / 2) + 1
+    reach = 2 * int(0.5 * spacing_px) + 1
     shape = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (reach, reach))
     smooth = cv2.GaussianBlur(response, (0, 0), 0.7)
     top = (smooth >= cv2.dilate(smooth, shape)) & (smooth > least)
     top[[0, -1]] = top[:, [0, -1]] = False
     row, column = np.nonzero(top)
     height = smooth[row, column].astype(float)
-    order = np.argsort(-height)[:most]
+    order = _far_apart(np.stack([row, column], 1), np.argsort(-height), spacing_px)[:most]
     row, column, height = row[order], column[order], height[order]
     shifts = []
     for before, after in (
@@ -200,6 +211,8 @@ def _measure_stone(
     )
     cap_radius, rim_radius = np.array([disc.cap_radius, disc.radius]) * appearance.outline
     stony = capped & greyed
+    if stony.mean() < search.least_visible:
+        return None
     at_cap, at_rim = rays.at(index, cap_radius), rays.at(index, rim_radius)
     cap_rim = Rim(falls @ apart, stony, at_cap, cap_radius, 0.12 * cap_radius, 0.3)
     edges = np.sqrt((falls**2).sum(-1))
@@ -277,7 +290,7 @@ def find_stones(
         response = _disc_response(ice, disc)
     else:
         response = _stone_response(ice, appearance, disc)
-    spacing = 1.2 * disc.radius * ice.scale
+    spacing = 1.8 * disc.radius * ice.scale
     peaks = _peaks(response, search.least_score, spacing)
     if not len(peaks):
         return ()
