@@ -204,6 +204,7 @@ def aim(centre: ArrayLike, scale: float, position: ArrayLike, size: tuple[int, i
     f = scale * distance
     for _ in range(5):  # off the axis a picture is stretched: 1/cos² outwards, 1/cos across
         f = scale * distance * float(np.cos(np.arctan2(np.hypot(*u), f))) ** 1.5
+        f = max(f, float(np.hypot(*u)))
     forward = -c / distance
     right = np.array([1.0, 0.0, 0.0]) - forward[0] * forward
     right /= np.linalg.norm(right)

@@ -1,0 +1,134 @@
+from __future__ import annotations
+
+import numpy as np
+
+from vision.adjust import _Design, _linearised, _residuals, solve
+from vision.pose import (
+    CENTRE_LINE,
+    OVERHEAD,
+    POSITION,
+    R4,
+    R8,
+    RIG_SIZE,
+    VIEW_SIZE,
+    Marks,
+    View,
+    ice_frame,
+    ice_points,
+    project,
+    start_rig,
+)
+
+SIZE = (1280, 720)
+SD = 0.3
+
+
+def true_rig() -> np.ndarray:
+    rig = start_rig(OVERHEAD, (-0.1, 0.15, 9.4))
+    rig[3:6] = -0.03, 0.02, 0.01
+    rig[R8], rig[R4] = 1.2105, 0.6235
+    rig[8:] = -2.38, 2.36, 0.002, -0.001
+    return rig
+
+
+def marks(rng: np.random.Generator, view: np.ndarray, rig: np.ndarray, noise: float) -> Marks:
+    """Points of all lines in the picture, measured along random normals with noise."""
+    angle = np.linspace(-np.pi, np.pi, 60, endpoint=False)
+    straight = np.linspace(-2.0, 4.0, 60)
+    line = np.repeat(np.arange(7), 60)
+    along = np.concatenate([angle] * 3 + [straight] * 4)
+    place = project(ice_points(line, along, rig), view, rig, SIZE)
+    aside = project(ice_points(line, along + 1e-4, rig), view, rig, SIZE) - place
+    normal = np.stack([aside[:, 1], -aside[:, 0]], axis=-1)
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    seen = ((place > 0) & (place < SIZE)).all(1)
+    measured = place + normal * rng.normal(0, noise, (len(line), 1))
+    every = Marks(line, along, measured, normal, np.full(len(line), SD))
+    return every.pick(seen)
+
+
+def views(count: int) -> list[View]:
+    return [
+        View(np.array([0.15 - 0.2 * s, 0.01 * s, 0.03 - 0.04 * s, 7.5 - 0.3 * s]))
+        for s in np.linspace(0, 1, count)
+    ]
+
+
+def test_derivatives_are_those_of_the_residuals() -> None:
+    rng = np.random.default_rng(1)
+    rig, view = true_rig(), views(1)[0].vector
+    m = marks(rng, view, rig, 1.0)
+    design = _Design(m, *ice_frame(m.line, m.along))
+    _, by_view, by_rig = _linearised(design, view, rig, SIZE, True)
+    for i in range(VIEW_SIZE):
+        step = np.eye(VIEW_SIZE)[i] * 1e-6
+        ahead = _residuals(design, view + step, rig, SIZE)
+        behind = _residuals(design, view - step, rig, SIZE)
+        np.testing.assert_allclose(by_view[:, i], (ahead - behind) / 2e-6, rtol=1e-5, atol=1e-3)
+    for i in range(RIG_SIZE):
+        step = np.eye(RIG_SIZE)[i] * 1e-6
+        ahead = _residuals(design, view, rig + step, SIZE)
+        behind = _residuals(design, view, rig - step, SIZE)
+        np.testing.assert_allclose(by_rig[:, i], (ahead - behind) / 2e-6, rtol=1e-5, atol=1e-3)
+
+
+def test_exact_marks_give_the_camera_back() -> None:
+    rng = np.random.default_rng(2)
+    rig = true_rig()
+    truth = views(6)
+    frames = [marks(rng, v.vector, rig, 0.0) for v in truth]
+    start = [View(v.vector + rng.normal(0, 0.004, 4)) for v in truth]
+    solution = solve(frames, start, rig, SIZE)
+    for found, true in zip(solution.views, truth, strict=True):
+        np.testing.assert_allclose(found.vector, true.vector, atol=2e-4)
+
+
+def test_stated_errors_of_the_rig_cover() -> None:
+    rig, truth = true_rig(), views(8)
+    inside, count = 0, 0
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        frames = [marks(rng, v.vector, rig, SD) for v in truth]
+        solution = solve(frames, truth, start_rig(OVERHEAD), SIZE, prior=OVERHEAD, iterations=30)
+        sd = np.sqrt(np.diag(solution.rig_cov))
+        for which in (0, 1, 2, R8, R4):
+            inside += abs(solution.rig[which] - rig[which]) < 2.2 * sd[which]
+            count += 1
+    assert inside / count > 0.85
+
+
+def test_wrong_points_do_not_pull() -> None:
+    rng = np.random.default_rng(4)
+    rig, truth = true_rig(), views(4)
+    frames = []
+    for v in truth:
+        m = marks(rng, v.vector, rig, 0.1)
+        wrong = rng.random(len(m)) < 0.15
+        off = m.normal * (rng.uniform(3, 8, (len(m), 1)) * wrong[:, None])
+        frames.append(Marks(m.line, m.along, m.pixel + off, m.normal, m.sd))
+    solution = solve(frames, truth, rig, SIZE)
+    for found, true in zip(solution.views, truth, strict=True):
+        tee = project(np.zeros((1, 2)), found.vector, rig, SIZE)
+        np.testing.assert_allclose(tee, project(np.zeros((1, 2)), true.vector, rig, SIZE), atol=0.3)
+
+
+def test_shared_errors_let_the_prior_hold() -> None:
+    rng = np.random.default_rng(5)
+    rig, truth = true_rig(), views(1)
+    frames = [marks(rng, truth[0].vector, rig, SD)]
+    alone = solve(frames, truth, start_rig(OVERHEAD), SIZE, prior=OVERHEAD, sharing=1)
+    shared = solve(frames, truth, start_rig(OVERHEAD), SIZE, prior=OVERHEAD, sharing=50)
+    assert (np.diag(shared.rig_cov)[:3] > np.diag(alone.rig_cov)[:3]).all()
+    assert (np.sqrt(np.diag(shared.rig_cov)) <= OVERHEAD.sd * 1.001).all()
+
+
+def test_without_lines_the_roll_stays_where_it_was() -> None:
+    rng = np.random.default_rng(6)
+    rig = start_rig(OVERHEAD, (0.0, 0.0, 9.0))
+    view = View(np.array([0.0, 0.0, 0.05, 7.3]))
+    m = marks(rng, view.vector, rig, 0.1)
+    circles = m.pick(m.line < CENTRE_LINE)
+    found = solve([circles], [view], rig, SIZE).views[0]
+    assert abs(found.vector[2] - 0.05) < 0.01
+    assert np.isfinite(found.vector).all()
+    assert rig[POSITION][2] == 9.0

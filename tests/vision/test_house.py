@@ -1,0 +1,130 @@
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from data.sheet import HOUSE
+from tests.synthetic import (
+    PAINTS,
+    CameraPath,
+    Scene,
+    render_still,
+    sample_scene,
+    still_camera,
+    sweepers,
+    tilted_camera,
+)
+from vision.camera import Camera
+from vision.house import HouseFit, find_house
+
+SIZE = (1280, 720)
+ANGLE = np.arange(16) * np.pi / 8
+RINGS = np.concatenate(
+    [r * np.stack([np.cos(ANGLE), np.sin(ANGLE)], axis=-1) for r in (1.829, 1.219, 0.61)]
+)
+OUTLINE = 0.007
+"""The library takes the outer side of a painted outline as the edge; the renderer its middle."""
+
+
+def errors(fit: HouseFit | None, path: CameraPath, height: float = 0.0) -> np.ndarray:
+    """Errors, m, of the ring points that are in view."""
+    assert fit is not None
+    pixels = path.at(1.0).project(np.c_[RINGS, np.full(len(RINGS), height)])
+    seen = ((pixels > 0) & (pixels < np.array(fit.camera.size) - 1)).all(1)
+    return np.linalg.norm(fit.camera.ice(pixels[seen], height) - RINGS[seen], axis=1)
+
+
+def rms(values: np.ndarray) -> float:
+    return float(np.sqrt((values**2).mean()))
+
+
+@pytest.mark.parametrize("name", PAINTS)
+def test_found_in_every_colour(name: str) -> None:
+    rng = np.random.default_rng(len(name))
+    path = still_camera(
+        position=(*rng.uniform(-0.4, 0.4, 2), rng.uniform(7.5, 10)),
+        target=(rng.uniform(-0.5, 0.5), rng.uniform(-0.8, 1.5)),
+        px_per_m=rng.uniform(75, 125),
+        roll=rng.uniform(-0.05, 0.05),
+        k1=rng.uniform(-0.08, 0.08),
+    )
+    fit = find_house(render_still(replace(sample_scene(), paint=PAINTS[name]), path, 1.0))
+    outlined = 0.0 if PAINTS[name].outline is None else OUTLINE
+    assert rms(errors(fit, path)) < 0.002 + outlined
+    assert rms(errors(fit, path, 0.12)) < 0.006 + outlined
+
+
+@pytest.mark.parametrize(("tilt", "bar"), [(15, 0.006), (30, 0.005), (50, 0.01)])
+def test_found_from_a_tilted_camera(tilt: float, bar: float) -> None:
+    path = tilted_camera(np.radians(tilt), roll=0.03, k1=-0.05)
+    scene = replace(sample_scene(), paint=PAINTS["navy-orange"])
+    fit = find_house(render_still(scene, path, 1.0))
+    assert rms(errors(fit, path)) < bar
+    if tilt >= 30:
+        assert fit is not None and not fit.overhead
+        np.testing.assert_allclose(fit.camera.position, path.position, atol=0.5)
+
+
+@pytest.mark.parametrize("y", [2.1, 2.6])
+def test_part_of_the_house_is_enough(y: float) -> None:
+    path = still_camera(target=(0.2, y), px_per_m=130)
+    scene = replace(sample_scene(), paint=PAINTS["gold-purple"])
+    assert rms(errors(find_house(render_still(scene, path, 1.0)), path)) < 0.01
+
+
+def test_people_may_stand_on_the_rings() -> None:
+    scene = sample_scene()
+    scene = replace(scene, people=sweepers(scene, 2.0), paint=PAINTS["navy-orange"])
+    path = still_camera(target=(0.0, 0.5), px_per_m=100, roll=-0.03)
+    assert rms(errors(find_house(render_still(scene, path, 1.0)), path)) < 0.004
+
+
+def test_neighbours_are_not_taken() -> None:
+    path = still_camera(position=(0.1, 0.2, 8.0), target=(0.3, 0.5), px_per_m=72)
+    scene = Scene(paint=PAINTS["gold-purple"])
+    assert rms(errors(find_house(render_still(scene, path, 1.0)), path)) < 0.01
+
+
+def test_no_house_is_no_house() -> None:
+    rng = np.random.default_rng(0)
+    bare = render_still(sample_scene(), still_camera(target=(0.0, 6.5)), 1.0)
+    noise = rng.integers(0, 256, (*SIZE[::-1], 3), dtype=np.uint8)
+    blobs = np.full((*SIZE[::-1], 3), 90, np.uint8)
+    for _ in range(60):
+        centre = (int(rng.integers(SIZE[0])), int(rng.integers(SIZE[1])))
+        colour = tuple(int(c) for c in rng.integers(0, 256, 3))
+        cv2.circle(blobs, centre, int(rng.integers(10, 160)), colour, -1)
+    for image in (bare, noise, blobs, np.full_like(noise, 128)):
+        assert find_house(image) is None
+
+
+def test_real_stills_agree_with_cameras_measured_by_hand(shared: Path) -> None:
+    known = json.loads((shared / "frames/stills.json").read_text())
+    radii = (HOUSE.twelve_foot, HOUSE.eight_foot, HOUSE.four_foot)
+    places = np.concatenate(
+        [r * np.stack([np.cos(ANGLE[::2]), np.sin(ANGLE[::2])], axis=-1) for r in radii]
+    )
+    every = []
+    for still in known["frames"]:
+        image = cv2.imread(str(shared / "frames/images" / still["file"]))
+        fit = find_house(np.asarray(image, np.uint8))
+        assert fit is not None, still["file"]
+        hand = Camera(
+            0, 0.0, np.array(still["homography"]), tuple(still["size"]), still["k1"], still["k2"]
+        )
+        error = np.linalg.norm(fit.camera.ice(hand.project(places)) - places, axis=1)
+        assert error.max() < 0.02, still["file"]
+        every.append(error)
+    assert np.median(np.concatenate(every)) < 0.004
+
+
+def test_real_close_ups_are_refused(shared: Path) -> None:
+    known = json.loads((shared / "frames/stills.json").read_text())
+    for negative in known["negatives"]:
+        image = cv2.imread(str(shared / "frames/images" / negative["file"]))
+        assert find_house(np.asarray(image, np.uint8)) is None, negative["file"]

@@ -1,0 +1,48 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.synthetic import PAINTS, Scene, render_still, still_camera
+from vision.lines import sides, upright
+from vision.pose import OVERHEAD, SIDE_L, SIDE_R, View, start_rig, turned
+
+SIZE = (960, 540)
+SCALE = 90.0
+
+
+def level() -> tuple[View, np.ndarray]:
+    rig = start_rig(OVERHEAD, (0.0, 0.0, 9.0))
+    rig[3:6] = 0
+    return View(np.array([0.0, 0.0, 0.0, np.log(SCALE * 9)])), rig
+
+
+def picture(paint: str) -> np.ndarray:
+    path = still_camera(size=SIZE, position=(0, 0, 9.0), target=(0, 0), px_per_m=SCALE)
+    return render_still(Scene(paint=PAINTS[paint]), path)
+
+
+@pytest.mark.parametrize("paint", ["teal-red", "navy-orange", "grey-red"])
+@pytest.mark.parametrize("angle", [-0.2, 0.03, 0.3])
+def test_lines_give_the_rotation(paint: str, angle: float) -> None:
+    view, rig = turned(*level(), angle)
+    found, _ = upright(picture(paint), view, rig)
+    assert abs(found.vector[2]) < np.radians(0.3)
+
+
+def test_without_lines_nothing_turns() -> None:
+    view, rig = level()
+    plain = np.full((SIZE[1], SIZE[0], 3), 220, np.uint8)
+    noisy = plain + np.random.default_rng(0).integers(0, 6, plain.shape, dtype=np.uint8)
+    found, same = upright(noisy, view, rig)
+    np.testing.assert_array_equal(found.vector, view.vector)
+    np.testing.assert_array_equal(same, rig)
+
+
+def test_sides_are_found_where_they_are() -> None:
+    view, rig = level()
+    found = sides(picture("teal-red"), view, rig)
+    assert found[SIDE_L] == pytest.approx(-2.375, abs=0.03)
+    assert found[SIDE_R] == pytest.approx(2.36, abs=0.03)
+    blank = np.full((SIZE[1], SIZE[0], 3), 220, np.uint8)
+    np.testing.assert_array_equal(sides(blank, view, rig), rig)

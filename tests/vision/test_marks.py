@@ -1,0 +1,70 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.synthetic import PAINTS, Paint, render_still, sample_scene, still_camera
+from tests.synthetic.scene import Scene
+from vision.marks import measure
+from vision.pose import CENTRE_LINE, LEFT, OVERHEAD, RIGHT, TEE_LINE, View, start_rig
+
+SIZE = (960, 540)
+
+
+def scene(paint: Paint) -> Scene:
+    base = sample_scene()
+    return Scene(paint=paint, sheet=base.sheet, light=base.light)
+
+
+def truth(paint: Paint) -> tuple[View, np.ndarray]:
+    """The library's parameters of a camera straight above the tee."""
+    rig = start_rig(OVERHEAD, (0.0, 0.0, 9.0))
+    rig[3:6] = 0
+    rig[6:8] = paint.radii[1:3]
+    rig[8:10] = -2.375, 2.36
+    return View(np.array([0.0, 0.0, 0.0, np.log(90.0 * 9)])), rig
+
+
+def still(paint: Paint) -> np.ndarray:
+    path = still_camera(size=SIZE, position=(0, 0, 9.0), target=(0, 0), px_per_m=90)
+    return render_still(scene(paint), path)
+
+
+@pytest.mark.parametrize("name", ["navy-orange", "gold-purple", "teal-red"])
+def test_edges_lie_on_the_circles(name: str) -> None:
+    paint = PAINTS[name]
+    view, rig = truth(paint)
+    evidence = measure(still(paint), view.vector, rig, reach=7)
+    assert (evidence.support > 0.85).all()
+    # An outline is part of the paint: its outer side is the edge.
+    outline = 0.0 if paint.outline is None else 90 * paint.outline_width
+    middle = (np.array(SIZE) - 1) / 2
+    for kind, radius in enumerate((1.829, rig[6], rig[7])):
+        on = evidence.marks.pick(evidence.marks.line == kind)
+        off = np.linalg.norm(on.pixel - middle, axis=1) - radius * 90
+        assert abs(np.median(off)) < 0.15 + outline
+        assert np.std(off) < 0.35
+
+
+def test_lines_and_sides_are_measured() -> None:
+    paint = PAINTS["navy-orange"]
+    view, rig = truth(paint)
+    marks = measure(still(paint), view.vector, rig, reach=7).marks
+    middle = (np.array(SIZE) - 1) / 2
+    for kind, axis, place in (
+        (CENTRE_LINE, 0, 0.0),
+        (TEE_LINE, 1, 0.0),
+        (LEFT, 0, -2.375),
+        (RIGHT, 0, 2.36),
+    ):
+        on = marks.pick(marks.line == kind)
+        assert len(on) >= 3
+        assert abs(np.median(on.pixel[:, axis] - middle[axis] - 90 * place)) < 0.6
+
+
+def test_bare_ice_gives_no_edges() -> None:
+    view, rig = truth(PAINTS["navy-orange"])
+    noise = np.random.default_rng(0).normal(230, 2, (SIZE[1], SIZE[0], 3))
+    evidence = measure(noise.astype(np.uint8), view.vector, rig, reach=7)
+    assert (evidence.visible > 0.9).all()
+    assert (evidence.covered == 0).all()

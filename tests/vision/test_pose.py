@@ -1,0 +1,94 @@
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from vision.pose import (
+    ANYWHERE,
+    EIGHT,
+    OVERHEAD,
+    POSITION,
+    TEE_LINE,
+    TWELVE,
+    View,
+    aim,
+    camera,
+    ice_points,
+    project,
+    rescaled,
+    start_rig,
+    turned,
+)
+
+SIZE = (1280, 720)
+views = st.tuples(
+    st.floats(-0.4, 0.4), st.floats(-0.1, 0.1), st.floats(-0.2, 0.2), st.floats(6.8, 8.2)
+).map(lambda v: View(np.array(v)))
+places = st.tuples(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0), st.floats(6.0, 11.0)).map(np.array)
+
+
+def circle(radius: float) -> np.ndarray:
+    angle = np.linspace(0, 2 * np.pi, 50)
+    return radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+
+
+@given(views, places, st.floats(-0.1, 0.1))
+@settings(max_examples=50, deadline=None)
+def test_camera_shows_points_where_project_does(view: View, place: np.ndarray, k1: float) -> None:
+    rig = start_rig(OVERHEAD, place)
+    rig[3] = k1
+    points = circle(1.8)
+    seen = camera(view, rig, SIZE)
+    np.testing.assert_allclose(
+        seen.project(points), project(points, view.vector, rig, SIZE), atol=1e-6
+    )
+    np.testing.assert_allclose(seen.position, place)
+
+
+@given(
+    st.floats(300, 980),
+    st.floats(50, 650),
+    st.floats(110, 220),
+    st.sampled_from([(0.0, 0.0, 8.0), (0.3, -0.2, 9.0), (0.0, -6.0, 9.0)]),
+)
+@settings(max_examples=50, deadline=None)
+def test_aim_puts_the_tee_where_it_is_asked(
+    x: float, y: float, scale: float, place: tuple[float, float, float]
+) -> None:
+    rig = start_rig(ANYWHERE, place)
+    rig[3:6] = 0
+    view = aim((x, y), scale, place, SIZE)
+    tee, right = project(np.array([[0.0, 0.0], [0.01, 0.0]]), view.vector, rig, SIZE)
+    np.testing.assert_allclose(tee, (x, y), atol=1e-6)
+    assert right[0] > tee[0]
+    assert abs(np.hypot(*(right - tee)) / 0.01 / scale - 1) < 0.25
+
+
+@given(views, places, st.floats(-1.5, 1.5))
+@settings(max_examples=50, deadline=None)
+def test_turning_the_ice_leaves_circles_where_they_are(
+    view: View, place: np.ndarray, angle: float
+) -> None:
+    rig = start_rig(OVERHEAD, place)
+    other, moved = turned(view, rig, angle)
+    c, s = np.cos(angle), np.sin(angle)
+    points = circle(1.2)
+    before = project(points @ np.array([[c, s], [-s, c]]), view.vector, rig, SIZE)
+    np.testing.assert_allclose(before, project(points, other.vector, moved, SIZE), atol=1e-5)
+    assert np.isclose(np.linalg.norm(moved[POSITION]), np.linalg.norm(place))
+
+
+def test_marks_lie_on_their_lines() -> None:
+    rig = start_rig(OVERHEAD)
+    line = np.array([TWELVE, EIGHT, TEE_LINE])
+    place = ice_points(line, np.array([np.pi / 2, 0.0, 0.7]), rig)
+    np.testing.assert_allclose(place, [[0, 1.829], [rig[6], 0], [0.7, 0]], atol=1e-12)
+
+
+def test_a_larger_picture_is_the_same_picture() -> None:
+    rig = start_rig(OVERHEAD)
+    view = View(np.array([0.1, 0.02, 0.03, 7.0]))
+    small = project(circle(1.0), view.vector, rig, (640, 360))
+    large = project(circle(1.0), rescaled(view, 2).vector, rig, (1280, 720))
+    np.testing.assert_allclose((small + 0.5) * 2 - 0.5, large, atol=1e-9)
