@@ -111,9 +111,7 @@ def angle_between(
     gain = max(likeness, 0.0) * float(np.linalg.norm(spectrum) / np.linalg.norm(reference))
     rest = float((np.abs(spectrum - gain * aligned) ** 2).sum())
     sharpness = gain**2 * float((HARMONICS[:, None] ** 2 * np.abs(reference) ** 2).sum())
-    # Neighbouring rings, colours and harmonics err together: about one in thirty is independent
-    # (so that the errors on rendered and real caps agree with it).
-    free = 2 * spectrum.size / 30
+    free = 2 * spectrum.size
     sd = np.sqrt(rest / free / max(sharpness, 1e-12))
     return angle, float(sd), likeness
 
@@ -171,9 +169,26 @@ def handle_angles(
         # Most frames do not look like the mean: there is nothing on the cap to go by.
         told[:] = False
     theta[~told], sd[~told] = np.nan, np.nan
+    sd *= _jitter(times, theta, sd)
     if told.any():
         theta -= theta[told][0]
     return theta, sd
+
+
+def _jitter(times: Array, theta: Array, sd: Array) -> float:
+    """How many times larger than claimed the errors are.
+
+    The errors of rings and colours hang together, by how much depends on the clip: so the
+    scale is that of the angles about a steady turning in three frames in a row. Errors that
+    last for longer (light, the handle's height) make it about twice that.
+    """
+    step = np.diff(times)
+    bend = theta[2:] - 2 * theta[1:-1] + theta[:-2]
+    steady = np.isfinite(bend) & (np.abs(step[1:] - step[:-1]) < 0.2 * step[:-1])
+    if steady.sum() < 5:
+        return 5.0
+    scatter = 1.4826 * float(np.median(np.abs(bend[steady]))) / np.sqrt(6)
+    return max(2 * scatter / max(float(np.nanmedian(sd)), 1e-6), 1.0)
 
 
 def _mean_picture(

@@ -1,0 +1,146 @@
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import pytest
+
+from data.tracks import order_of_motion
+from vision.follow import Track, first_motion, follow, names_by_motion
+from vision.sighting import Sighting
+
+R = 0.1455
+RED, YELLOW = np.array([90.0, 180.0, 150.0]), np.array([190.0, 120.0, 195.0])
+Place = tuple[float, float]
+
+
+def sighting(place: Place, colour: np.ndarray = RED, score: float = 3.0) -> Sighting:
+    return Sighting(
+        place[0], place[1], 0.002, 0.002, colour, 1.0, score, (1.0, 1.0),
+        np.empty((0, 0, 3), np.uint8),
+    )  # fmt: skip
+
+
+def clip(
+    paths: Sequence[Callable[[float], Place | None]],
+    seconds: float = 4.0,
+    fps: float = 25.0,
+    noise: float = 0.002,
+    colours: Sequence[np.ndarray] | None = None,
+) -> list[tuple[int, float, list[Sighting]]]:
+    rng = np.random.default_rng(3)
+    frames = []
+    for index in range(int(seconds * fps)):
+        t = index / fps
+        seen = []
+        for number, path in enumerate(paths):
+            place = path(t)
+            if place is not None:
+                x, y = np.array(place) + rng.normal(0, noise, 2)
+                seen.append(sighting((x, y), RED if colours is None else colours[number]))
+        rng.shuffle(seen)
+        frames.append((index, t, seen))
+    return frames
+
+
+def ends(tracks: Sequence[Track]) -> list[tuple[float, float]]:
+    return sorted((round(t.sightings[-1].x, 1), round(t.sightings[-1].y, 1)) for t in tracks)
+
+
+@pytest.mark.parametrize("speed", [0.8, 2.0, 3.4])
+@pytest.mark.parametrize("fps", [25.0, 50.0])
+def test_a_full_hit_of_equal_stones_switches_nobody(speed: float, fps: float) -> None:
+    hit = 1.013
+
+    def thrown(t: float) -> Place:
+        return (0.0, 2 * R + speed * max(hit - t, 0.0))
+
+    def struck(t: float) -> Place:
+        return (0.0, -speed * max(t - hit, 0.0))
+
+    tracks = follow(clip([thrown, struck], 2.0, fps), R)
+    assert len(tracks) == 2
+    first = max(tracks, key=lambda track: track.sightings[0].y)
+    assert first.sightings[-1].y == pytest.approx(2 * R, abs=0.02)
+    assert [len(track.frames) for track in tracks] == [int(2 * fps)] * 2
+
+
+def test_three_stones_within_a_fifth_of_a_second() -> None:
+    speed, first, second = 1.5, 1.0, 1.15
+    gap = speed * (second - first)
+
+    def a(t: float) -> Place:
+        return (0.0, 2 * R + speed * max(first - t, 0))
+
+    def b(t: float) -> Place:
+        return (0.0, -speed * min(max(t - first, 0), second - first))
+
+    def c(t: float) -> Place:
+        return (0.0, -gap - 2 * R - speed * max(t - second, 0))
+
+    tracks = follow(clip([a, b, c], 2.0), R)
+    assert len(tracks) == 3
+    moved, rest = names_by_motion(tracks, R)
+    assert not rest
+    names = order_of_motion(dict(moved), rest)
+    by_name = {names[str(n)]: track for n, track in enumerate(tracks)}
+    assert by_name["A"].sightings[0].y > 1.5
+    assert by_name["B"].sightings[0].y == pytest.approx(0, abs=0.01)
+    assert by_name["C"].sightings[0].y == pytest.approx(-gap - 2 * R, abs=0.01)
+
+
+def test_two_seconds_out_of_sight_keep_the_identity() -> None:
+    def gliding(t: float) -> Place | None:
+        place = (0.3 * t, 2.0 - 1.2 * t + 0.05 * t**2)
+        return None if 1.0 < t < 3.0 else place
+
+    def resting(t: float) -> Place | None:
+        return None if 0.5 < t < 3.5 else (1.2, -1.0)
+
+    tracks = follow(clip([gliding, resting]), R)
+    assert len(tracks) == 2
+
+
+def test_a_blip_is_no_stone_and_single_pictures_count() -> None:
+    frames = clip([lambda t: (0.0, 0.0)], 2.0)
+    frames[10][2].append(sighting((1.0, 1.0)))
+    frames[11][2].append(sighting((1.0, 1.0)))
+    assert len(follow(frames, R)) == 1
+    assert len(follow([(0, 0.0, [sighting((0, 0)), sighting((1, 1))])], R)) == 2
+
+
+def test_colours_part_stones_that_swap_places_unseen() -> None:
+    def first(t: float) -> Place | None:
+        return (0.0, 0.0) if t < 1 else ((0.3, 0.0) if t > 1.4 else None)
+
+    def second(t: float) -> Place | None:
+        return (0.3, 0.0) if t < 1 else ((0.0, 0.0) if t > 1.4 else None)
+
+    tracks = follow(clip([first, second], 3.0, colours=[RED, YELLOW]), R)
+    for track in tracks:
+        assert np.ptp([s.colour[2] for s in track.sightings]) < 1
+
+
+def test_jitter_is_no_motion_and_a_start_is_timed_to_a_frame() -> None:
+    still = follow(clip([lambda t: (0.5, 0.5)], noise=0.004), R)
+    assert first_motion(still[0], R) is None
+    moved = follow(clip([lambda t: (0.5, 0.5 - 1.1 * max(t - 1.73, 0))]), R)
+    start = first_motion(moved[0], R)
+    assert start is not None
+    assert start == pytest.approx(1.73, abs=0.02)
+
+
+def test_a_stone_that_enters_moving_moves_from_its_first_frame() -> None:
+    tracks = follow(clip([lambda t: (0.0, 4 - 1.5 * t) if t > 0.5 else None], 2.0), R)
+    assert first_motion(tracks[0], R) == pytest.approx(tracks[0].times[0])
+
+
+def test_resting_stones_are_named_by_their_distance_to_the_tee() -> None:
+    paths = [lambda t: (1.5, 0.0), lambda t: (0.0, 0.2), lambda t: (0.0, 2.0 - t)]
+    tracks = follow(clip(paths, 1.0), R)
+    moved, rest = names_by_motion(tracks, R)
+    names = order_of_motion(dict(moved), rest)
+    start = {names[str(n)]: track.sightings[0] for n, track in enumerate(tracks)}
+    assert start["A"].y == pytest.approx(2, abs=0.01)
+    assert start["B"].y == pytest.approx(0.2, abs=0.01)
+    assert start["C"].x == pytest.approx(1.5, abs=0.01)

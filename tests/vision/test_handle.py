@@ -1,0 +1,76 @@
+from __future__ import annotations
+
+import cv2
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from vision.handle import angle_between, cap_spectrum, handle_angles
+
+RAYS, RADII = 64, 60
+
+
+def patch(turn: float, rng: np.random.Generator | None = None) -> NDArray[np.uint8]:
+    """A red cap with a pale bar that is longer on one side, turned counter-clockwise."""
+    angle = np.arange(RAYS)[:, None] * (2 * np.pi / RAYS)
+    radius = np.linspace(0.03, 1.04, RADII)[None]
+    along, aside = radius * np.cos(angle - turn), radius * np.sin(angle - turn)
+    bar = 1 / (1 + np.exp((np.abs(aside) - 0.08) / 0.02)) / (1 + np.exp((-along - 0.35) / 0.02))
+    value = np.stack([80 + 90 * bar, 170 - 30 * bar, 150 - 10 * bar], -1)
+    if rng is not None:
+        # Errors of compressed pictures hang together over several samples and all colours.
+        grain = cv2.GaussianBlur(rng.normal(0, 1, value.shape[:2]), (0, 0), 2.5)
+        value = value + 6 * (grain / grain.std())[..., None]
+    return np.clip(value, 0, 255).astype(np.uint8)
+
+
+def spectrum(turn: float, rng: np.random.Generator | None = None) -> NDArray[np.complex64]:
+    return cap_spectrum(patch(turn, rng), 0.05, 0.6)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(-3, 3), st.floats(-0.2, 0.2))
+def test_counter_clockwise_turn_is_found_to_a_fraction_of_a_ray(start: float, turn: float) -> None:
+    angle, sd, likeness = angle_between(spectrum(start), spectrum(start + turn), 0.0, 0.3)
+    assert angle == pytest.approx(turn, abs=0.004)
+    assert 0 <= sd < 0.01
+    assert likeness > 0.98
+
+
+def test_many_turns_are_counted_without_drift() -> None:
+    rng = np.random.default_rng(1)
+    times = np.arange(400) / 25
+    true = 0.4 + 2.2 * times
+    theta, sd = handle_angles(times, [spectrum(a, rng) for a in true])
+    error = theta - theta[0] - (true - true[0])
+    assert np.abs(error).max() < 0.03
+    assert abs(np.polyfit(times, error, 1)[0]) < 2e-4
+    assert 0.3 < np.std(error) / np.median(sd) < 2.0
+
+
+def test_two_seconds_out_of_sight_are_bridged() -> None:
+    times = np.arange(150) / 25
+    true = 0.9 * times
+    seen = [None if 50 <= i < 100 else spectrum(a) for i, a in enumerate(true)]
+    theta, _ = handle_angles(times, seen)
+    assert np.isnan(theta[50:100]).all()
+    assert theta[149] == pytest.approx(true[149], abs=0.02)
+
+
+def test_a_cap_that_looks_alike_all_round_has_no_angle() -> None:
+    rng = np.random.default_rng(2)
+    blank = np.full((RAYS, RADII, 3), 120.0)
+    noisy = [
+        cap_spectrum((blank + rng.normal(0, 6, blank.shape)).astype(np.uint8), 0.05, 0.6)
+        for _ in range(60)
+    ]
+    theta, sd = handle_angles(np.arange(60) / 25, noisy)
+    assert np.isnan(theta).all()
+    assert np.isnan(sd).all()
+
+
+def test_a_stone_never_seen_well_has_no_angle() -> None:
+    theta, _ = handle_angles(np.arange(3) / 25, [None, None, None])
+    assert np.isnan(theta).all()

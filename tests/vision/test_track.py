@@ -1,0 +1,114 @@
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from data.sheet import STONE
+from data.tracks import SIGHTING_COLUMNS
+from tests.scoring import score_tracks
+from vision.camera import Camera
+from vision.clip import open_clip
+from vision.stick import stick_cameras
+from vision.stones import plain_disc
+from vision.track import track_stones
+
+DATA = Path(__file__).resolve().parents[2] / "data"
+
+
+def sample_truth() -> tuple[pd.DataFrame, tuple[Camera, ...]]:
+    truth = json.loads((DATA / "sample.truth.json").read_text())
+    tracks = pd.concat(
+        [
+            pd.DataFrame({"stone": name, "frame": range(len(truth["t"])), **columns})
+            for name, columns in truth["stones"].items()
+        ]
+    )
+    width, height = truth["size"]
+    cameras = []
+    for index, t in enumerate(truth["t"]):
+        of = {name: values[index] for name, values in truth["camera"].items()}
+        matrix = np.array([[of[f"h{i}{j}"] for j in (1, 2, 3)] for i in (1, 2, 3)])
+        place = np.array([of["cam_x"], of["cam_y"], of["cam_z"]])
+        cameras.append(
+            Camera(index, t, matrix, (width, height), of["k1"], of["k2"], of["f_px"], place)
+        )
+    return tracks, tuple(cameras)
+
+
+def test_the_sample_is_followed_from_end_to_end() -> None:
+    truth, cameras = sample_truth()
+    clip = open_clip([DATA / "sample.mp4"], frames=(0, 80))
+    told: list[tuple[str, int, int | None]] = []
+    stones = track_stones(clip, cameras, progress=lambda *news: told.append(news))
+    assert tuple(stones.sightings.columns) == SIGHTING_COLUMNS
+    score = score_tracks(stones.sightings.assign(seen=1), truth[truth["frame"] <= 80], visible=0.5)
+    assert score.recall > 0.99
+    assert score.switches == 0
+    assert not score.false_tracks
+    assert score.rmse < 0.008
+    assert score.names["A"] == "A"
+    assert score.names["B"] == "B"
+    assert score.names["C"] == "C"
+    assert stones.teams["A"] == stones.teams["C"] != stones.teams["B"]
+    assert told[-1][1] == told[-1][2] == 81
+    turn = stones.sightings[stones.sightings["stone"] == "A"].set_index("frame")["theta"]
+    true = truth[truth["stone"] == "A"].set_index("frame")["theta"].loc[turn.index]
+    assert (turn - true - (turn - true).mean()).std() < 0.04
+
+
+def test_a_clip_without_stones_says_so(tmp_path: Path) -> None:
+    import cv2
+
+    path = tmp_path / "ice.png"
+    cv2.imwrite(str(path), np.full((120, 160, 3), 220, np.uint8))
+    clip = open_clip([path])
+    camera = Camera(
+        0, 0.0, np.array([[20.0, 0, 80], [0, -20, 60], [0, 0, 1]]), (160, 120),
+        position=np.array([0.0, 0, 10]),
+    )  # fmt: skip
+    stones = track_stones(clip, (camera,))
+    assert stones.sightings.empty
+    assert stones.warnings == ("no stones were found on the ice",)
+
+
+@pytest.mark.parametrize("name", ["pyeongchang_two_hits", "lgt_glancing"])
+def test_real_stones(shared: Path, name: str) -> None:
+    truth = json.loads((shared / "clips" / f"semireal_{name}.truth.json").read_text())
+    width, height = truth["size"]
+    cameras = tuple(
+        Camera(
+            frame["frame"], frame["t"], np.array(frame["homography"]), (width, height),
+            position=-np.array(frame["R"]).T @ np.array(frame["T"]),
+        )
+        for frame in truth["frames"]
+    )  # fmt: skip
+    assert all(frame["k1"] == 0 for frame in truth["frames"])
+    tracks = pd.read_csv(shared / "clips" / f"semireal_{name}.truth.csv")
+    clip = open_clip([shared / "clips" / f"semireal_{name}.mp4"], frames=(40, 110))
+    stones = track_stones(clip, cameras, disc=STONE)
+    score = score_tracks(stones.sightings.assign(seen=1), tracks[tracks["frame"].between(40, 110)])
+    assert score.recall > 0.97
+    assert score.switches == 0
+    assert not score.false_tracks
+    assert score.rmse < 0.015
+
+
+def test_pucks_on_a_dark_table(shared: Path) -> None:
+    clip = open_clip([shared / "clips" / "collision-pucks.mp4"], frames=(2, 31))
+    cameras = stick_cameras(clip, (20.0, 219.8, 20.0, 35.9, 0.5))
+    stones = track_stones(clip, cameras, disc=plain_disc(0.0465))
+    table = stones.sightings
+    assert table["stone"].value_counts().to_dict() == {"A": 30, "B": 30}
+    thrown, other = (table[table["stone"] == name] for name in "AB")
+    # The masses are equal: what the two move by in all stays the same through the hit.
+    total = thrown[["x", "y"]].to_numpy() + other[["x", "y"]].to_numpy()
+    before, after = (
+        np.polyfit(np.arange(13), total[:13], 1),
+        np.polyfit(np.arange(13), total[-13:], 1),
+    )
+    assert np.hypot(*(before[0] - after[0])) < 0.03 * np.hypot(*before[0])
+    assert np.abs(np.diff(thrown["theta"].dropna())).max() < 0.05
