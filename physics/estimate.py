@@ -7,7 +7,7 @@ differentiated twice. See `physics.fit` for the model.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pandas as pd
@@ -25,6 +25,10 @@ from physics.spins import spins_at, stone_friction
 from physics.traces import Trace, traces
 
 Floats = NDArray[np.float64]
+
+UNEVEN, BESIDE = 0.025, 1.0
+"""Where decelerations differ by more than UNEVEN (m/s²) from glide to glide, no glide is taken
+to be even either, and velocities at a hit come from BESIDE seconds on either side of it."""
 
 WORST = 0.2
 """Standard error of a restitution beyond which a hit is said to tell nothing."""
@@ -96,9 +100,17 @@ def estimate(
     glides, friction, prior = measure_glides(loose, known, radius)
     if friction.value is None and friction_expected:
         warnings.append("friction: no stone glides freely for long enough to tell it")
+    if friction.value is not None and prior.along > max(UNEVEN, 0.3 * prior.mean):
+        each = [glide.friction for glide in glides if glide.friction is not None]
+        warnings.append(
+            f"friction differs from glide to glide ({min(each):.4f} to {max(each):.4f}):"
+            " it depends on speed or place, the value is a mean"
+        )
     if not meetings:
         warnings.append("restitution: no hit seen")
         return Estimates(Estimate(), friction, (), glides, tuple(warnings))
+    if prior.along > UNEVEN:
+        pieces = [_near(piece, known[piece.stone], meetings) for piece in pieces]
     joint = fit_shot(
         known, pieces, meetings, radius, masses=masses, still=still, deceleration=prior
     )
@@ -139,6 +151,16 @@ def estimate(
 
 def _alone(piece: Piece) -> bool:
     return piece.opens is None and piece.closes is None
+
+
+def _near(piece: Piece, trace: Trace, meetings: Sequence[Meeting]) -> Piece:
+    """Leave out of a moving piece what is far from the hits that bound it."""
+    hits = [meetings[k].t for k in (piece.opens, piece.closes) if k is not None]
+    if piece.rest or not hits:
+        return piece
+    t = trace.t[piece.samples]
+    beside = np.min([np.abs(t - hit) for hit in hits], axis=0) < BESIDE
+    return replace(piece, samples=piece.samples[beside])
 
 
 def _scatter(trace: Trace, piece: Piece) -> Floats:

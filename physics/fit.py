@@ -27,6 +27,9 @@ DISTANCE_SD = 0.015
 MOMENTUM_SD = 0.003
 """How well momentum is known to be kept (local scale, masses), relative to the speeds."""
 
+FARTHEST = 100.0
+"""Longest step of any state (SI units), so that a fit of nonsense ends."""
+
 DOUBT = 2.5
 """Normalised violation beyond which distance and momentum are no longer believed."""
 
@@ -142,6 +145,7 @@ class _Solver:
             step = new - self.theta
             for k in range(len(self.meetings)):
                 step[first + k] = np.clip(step[first + k], *self._room(k))
+            step[:first] = np.clip(step[:first], -FARTHEST, FARTHEST)
             scale = np.sqrt(np.maximum(np.diag(cov), 1e-24))
             settled = bool(np.all(np.abs(step) < 0.02 * scale))
             self.theta = self.theta + step
@@ -323,10 +327,16 @@ class _Solver:
 
 
 def _inverse(normal: Floats) -> Floats:
-    """Inverse of a positive matrix whose rows differ much in size."""
+    """Inverse of a matrix that is positive but for rounding, its rows of very different size."""
     size = 1.0 / np.sqrt(np.diag(normal))
-    inverse = np.linalg.inv(normal * size[:, None] * size[None, :])
-    out: Floats = 0.5 * (inverse + inverse.T) * size[:, None] * size[None, :]
+    scaled = normal * size[:, None] * size[None, :]
+    try:
+        root = np.linalg.solve(np.linalg.cholesky(scaled), np.eye(len(scaled)))
+        inverse = root.T @ root
+    except np.linalg.LinAlgError:
+        values, vectors = np.linalg.eigh(scaled)
+        inverse = (vectors / np.maximum(values, 1e-12)) @ vectors.T
+    out: Floats = inverse * size[:, None] * size[None, :]
     return out
 
 

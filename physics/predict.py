@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
+from data.errors import InputError
 from data.results import SimulationScore
 from data.sheet import STONE
 from physics.estimate import Estimates
@@ -81,7 +82,11 @@ def simulate_measured(
         if impact is None:
             scores[name] = SimulationScore(None, {}, notes[name])
             continue
-        run = simulate(Shot(stones, impact, ice, NoCurl(), radius))
+        try:
+            run = simulate(Shot(stones, impact, ice, NoCurl(), radius))
+        except InputError as error:
+            scores[name] = SimulationScore(None, {}, f"cannot be simulated: {error}")
+            continue
         table = run.sample(clock.to_numpy(float) - start)
         table["frame"] = clock.index.to_numpy()[table["frame"].to_numpy()]
         table["t"] = table["t"] + start

@@ -1,0 +1,70 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from physics.contacts import cut_all
+from physics.fit import fit_shot
+from physics.residuals import likeness
+from physics.shot_fit import Deceleration, Meeting
+from physics.traces import traces
+from tests.physics.watch import RADIUS, hit_motion, watch
+
+
+def test_exact_sightings_give_the_exact_hit() -> None:
+    motion = hit_motion(1.5, 0.1)
+    known = traces(watch(motion, np.random.default_rng(61), sd=1e-6))
+    meetings = [Meeting(1.01, ("A", "B"), 1 / 30)]
+    pieces, _ = cut_all(known, meetings, RADIUS)
+    fit = fit_shot(known, pieces, meetings, RADIUS)
+    state, hit = fit.encounter(0), motion.hits[0]
+    assert state.t == pytest.approx(hit.t, abs=1e-4)
+    assert np.allclose(state.normal, hit.normal, atol=1e-3)
+    assert np.allclose(state.before, [v[:2] for v in hit.before], atol=2e-3)
+    assert np.allclose(state.after, [v[:2] for v in hit.after], atol=2e-3)
+
+
+def test_momentum_is_held_only_when_asked_for() -> None:
+    known = traces(watch(hit_motion(), np.random.default_rng(62), sd=0.01))
+    meetings = [Meeting(1.0, ("A", "B"), 1 / 30)]
+    pieces, _ = cut_all(known, meetings, RADIUS)
+    changes = []
+    for momentum in (True, False):
+        fit = fit_shot(
+            known, pieces, meetings, RADIUS,
+            deceleration=Deceleration(0.1, 0.05, 0.05), momentum=momentum,
+        )  # fmt: skip
+        state = fit.encounter(0)
+        changes.append(float(np.hypot(*np.sum(state.after - state.before, axis=0))))
+    assert changes[0] < 0.1 * changes[1]
+
+
+def test_covariance_follows_from_the_scatter() -> None:
+    motion = hit_motion()
+    rng = np.random.default_rng(63)
+    places, sd = [], []
+    for _ in range(40):
+        known = traces(watch(motion, rng, sd=0.005))
+        meetings = [Meeting(1.0, ("A", "B"), 1 / 30)]
+        pieces, _ = cut_all(known, meetings, RADIUS)
+        fit = fit_shot(known, pieces, meetings, RADIUS)
+        value, cov = fit.propagate([0], lambda states: states[0].before[0])
+        places.append(value)
+        sd.append(np.sqrt(np.diag(cov)))
+    assert np.allclose(np.std(places, axis=0), np.median(sd, axis=0), rtol=0.4)
+
+
+def test_alike_errors_are_told_from_white_ones() -> None:
+    rng = np.random.default_rng(64)
+    white = [(rng.normal(size=(60, 2)), 3) for _ in range(12)]
+    assert likeness(white) < 1.4
+    keep = 0.8
+    alike = []
+    for _ in range(12):
+        r = rng.normal(size=(60, 2))
+        for k in range(1, 60):
+            r[k] = keep * r[k - 1] + np.sqrt(1 - keep**2) * r[k]
+        alike.append((r - r.mean(axis=0), 1))
+    assert likeness(alike) == pytest.approx((1 + keep) / (1 - keep), rel=0.4)
+    assert likeness([]) == 1.0
+    assert likeness([(np.zeros((20, 2)), 1)]) == 1.0
