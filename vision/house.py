@@ -80,7 +80,7 @@ def find_house(image: Image, *, frame: int = 0, t: float = 0.0) -> HouseFit | No
     HouseFit or None
         The most complete house; None where no house can be made out.
     """
-    factor = WORK_WIDTH / image.shape[1]
+    factor = min(WORK_WIDTH / image.shape[1], 1.0)
     small = np.asarray(
         cv2.resize(image, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA), np.uint8
     )

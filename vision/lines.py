@@ -16,23 +16,56 @@ Image = NDArray[np.uint8]
 FAINT = 6.0
 """Grey levels beyond which a stronger contrast says no more about a thin line."""
 
+CANDIDATES = 4
+"""Crosses that are tried against the sheet's sides."""
+
+LEAST_STEP = 25.0
+"""Least step at a side of the sheet, grey levels."""
+
+FULL_STEP = 400.0
+"""Step of both sides together that weighs as much as the best cross, grey levels."""
+
+SURE_STEP = 150.0
+"""Step of both sides together that is proof of the direction even if the cross is faint."""
+
 RINGS = (HOUSE.four_foot, HOUSE.eight_foot, HOUSE.twelve_foot)
 
 
 def upright(image: Image, view: View, rig: Array) -> tuple[View, Array]:
-    """Turn the ice's axes onto the centre and tee lines, if these can be seen."""
+    """Turn the ice's axes onto the centre and tee lines, if these can be seen.
+
+    Of several crosses that stand out, the sheet's sides tell the true one: they run along it.
+    """
     coarse = np.radians(np.arange(-45.0, 45.0, 0.25))
     score = _cross_score(image, view, rig, coarse)
     noise = float(np.median(score)) + 1e-9
     spread = float(np.median(np.abs(score - noise))) + 0.05 * noise
-    top = int((score - 0.02 * noise * np.abs(np.degrees(coarse)) / 10).argmax())
-    if score[top] - noise < 6 * spread:
+    score -= 0.02 * noise * np.abs(np.degrees(coarse)) / 10
+    best, best_worth, sure = 0.0, -np.inf, False
+    for top in _peaks(score, CANDIDATES, apart=6):
+        angle = float(coarse[top])
+        strength = sum(step for _, _, step in _side_steps(image, *turned(view, rig, angle)))
+        worth = (score[top] - noise) / (score.max() - noise) + strength / FULL_STEP
+        if worth > best_worth:
+            best, best_worth = angle, worth
+            sure = score[top] - noise > 6 * spread or strength > SURE_STEP
+    if not sure:
         return view, rig
-    fine = coarse[top] + np.radians(np.arange(-0.5, 0.5, 0.02))
+    fine = best + np.radians(np.arange(-0.5, 0.5, 0.02))
     # The middle of the plateau: a line is wider than a step of the angle.
     height = _cross_score(image, view, rig, fine)
     weight = np.clip(height - 0.8 * height.max(), 0, None)
     return turned(view, rig, float((weight * fine).sum() / weight.sum()))
+
+
+def _peaks(score: Array, count: int, apart: int) -> list[int]:
+    """Find the highest values, none within `apart` of a higher one."""
+    left, found = score.copy(), []
+    for _ in range(count):
+        top = int(left.argmax())
+        found.append(top)
+        left[max(top - apart, 0) : top + apart + 1] = -np.inf
+    return found
 
 
 def _cross_score(image: Image, view: View, rig: Array, angles: Array) -> Array:
@@ -68,22 +101,31 @@ def sides(image: Image, view: View, rig: Array) -> Array:
 
     A side that is not seen stays where the rig has it.
     """
-    size = (image.shape[1], image.shape[0])
     found = rig.copy()
-    along = np.arange(-4.0, 9.0, 0.05)
+    for which, place, step in _side_steps(image, view, rig):
+        if step > LEAST_STEP:
+            found[which] = place
+    return found
+
+
+def _side_steps(image: Image, view: View, rig: Array) -> list[tuple[int, float, float]]:
+    """Strongest step along each side: which side, its x, m, and its height, grey levels."""
+    size = (image.shape[1], image.shape[0])
+    along = np.arange(-4.0, 9.0, 0.1)
+    found = []
     for which, sign in ((SIDE_L, -1.0), (SIDE_R, 1.0)):
         across = sign * np.arange(SHEET.half_width_min - 0.1, SHEET.half_width_max + 0.1, 0.01)
         ice = np.stack(np.broadcast_arrays(across, along[:, None]), axis=-1)
         place = project(ice.reshape(-1, 2), view.vector, rig, size).reshape(ice.shape)
         with np.errstate(invalid="ignore"):
             inside = ((place > 0) & (place < np.array(size) - 1)).all((1, 2))
-        if inside.sum() < 15:
+        if inside.sum() < 8:
             continue
         colour = _colours(image, place[inside])
         step = np.linalg.norm(np.median(colour[:, 4:] - colour[:, :-4], axis=0), axis=-1)
         top = int(step.argmax())
-        if step[top] > 25 and 1 < top < len(step) - 2:
-            found[which] = across[top + 2]
+        if 1 < top < len(step) - 2:
+            found.append((which, float(across[top + 2]), float(step[top])))
     return found
 
 
