@@ -118,7 +118,13 @@ class Fit:
 
 
 def fit_circles(
-    rays: Rays, index: int, rims: Sequence[Rim], slack: float, reach: float, noise: float
+    rays: Rays,
+    index: int,
+    rims: Sequence[Rim],
+    slack: float,
+    reach: float,
+    noise: float,
+    rounds: int = 2,
 ) -> Fit | None:
     """Fit concentric circles to the edges on rays from a centre that is nearly right.
 
@@ -132,6 +138,8 @@ def fit_circles(
         count, as shares of the radius.
     noise : float
         Least standard error of one edge, m.
+    rounds : int
+        How often edges are chosen.
     """
     circles = len(rims)
     expected = np.array([rim.radius for rim in rims])
@@ -146,7 +154,7 @@ def fit_circles(
     least = reach * float(expected[-1]) + 2 * noise
     scale = 0.10 * float(expected[-1])
     solution = np.zeros(2 + circles)
-    for _ in range(2):
+    for _ in range(rounds):
         shape = (design @ solution).reshape(circles, -1) + expected[:, None]
         found = [
             _edge(rim.fall, rays.inside[index], rays.radius, curve, rim.width)

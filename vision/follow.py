@@ -169,6 +169,7 @@ def follow(
 
 
 def _convincing(track: Track, gate: Gate) -> bool:
+    """Say whether the better quarter of the sightings shows enough."""
     scores = [sighting.score for sighting in track.sightings]
     return float(np.percentile(scores, 75)) >= gate.least_score
 

@@ -136,7 +136,7 @@ def handle_angles(
     n = len(times)
     theta, sd = np.full(n, np.nan), np.full(n, np.nan)
     seen: list[int] = [index for index in range(n) if spectra[index] is not None]
-    if not seen:
+    if len(seen) < 2:  # an angle is against another picture of the same stone
         return theta, sd
     likeness = np.zeros(n)
     picture = np.array(spectra[seen[0]], np.complex64)
@@ -188,7 +188,7 @@ def _jitter(times: Array, theta: Array, sd: Array) -> float:
     if steady.sum() < 5:
         return 5.0
     scatter = 1.4826 * float(np.median(np.abs(bend[steady]))) / np.sqrt(6)
-    return max(2 * scatter / max(float(np.nanmedian(sd)), 1e-6), 1.0)
+    return float(max(2 * scatter / max(float(np.nanmedian(sd)), 1e-6), 1.0))
 
 
 def _mean_picture(

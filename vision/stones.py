@@ -13,7 +13,7 @@ along the radius (a structure tensor summed over the circle), of either sign.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import cv2
@@ -54,6 +54,8 @@ class Search:
         Distance from the circle, as a share of the radius, up to which an edge may count.
     most_tilt : float
         Tangent of the view's angle to the vertical at which the granite's outline counts half.
+    rounds : int
+        How often the edges are chosen about the circle that they gave.
     """
 
     x_max: float = 2.40
@@ -68,6 +70,7 @@ class Search:
     least_rim: float = 0.6
     edge_reach: float = 0.035
     most_tilt: float = 0.15
+    rounds: int = 2
 
 
 SEARCH = Search()
@@ -220,7 +223,13 @@ def _measure_stone(
     trust = 1 / (1 + (tilt / search.most_tilt) ** 2)
     granite_rim = Rim(edges, greyed, at_rim, rim_radius, 0.05 * rim_radius, 12.0, trust)
     fit = fit_circles(
-        rays, index, (cap_rim, granite_rim), appearance.slack, search.edge_reach, noise
+        rays,
+        index,
+        (cap_rim, granite_rim),
+        appearance.slack,
+        search.edge_reach,
+        noise,
+        search.rounds,
     )
     if fit is None:
         return None
@@ -238,7 +247,7 @@ def _measure_disc(
     steps = np.sqrt((falls_along(lab) ** 2).sum(-1))
     at_rim = rays.at(index, disc.radius)
     rim = Rim(steps, at_rim, at_rim, disc.radius, 0.06 * disc.radius, 12.0)
-    fit = fit_circles(rays, index, (rim,), 0.03, search.edge_reach, noise)
+    fit = fit_circles(rays, index, (rim,), 0.03, search.edge_reach, noise, search.rounds)
     if fit is None:
         return None
     within = radius < 0.8 * disc.radius
@@ -296,11 +305,12 @@ def find_stones(
         return ()
     places, scores = ice.place(peaks[:, 1], peaks[:, 0]), peaks[:, 2]
     found: list[Sighting] = []
-    for _ in range(2):  # the second time from the centre that the first has found
+    # The second time from the centre that the first has found, roughly.
+    for effort in (replace(search, rounds=1), search):
         rays = sample_rays(image, camera, places, *_profile(disc, search), search.rays)
         found, kept = [], []
         for index, (place, score) in enumerate(zip(places, scores, strict=True)):
-            sighting = _measure(rays, index, place, float(score), camera, appearance, disc, search)
+            sighting = _measure(rays, index, place, float(score), camera, appearance, disc, effort)
             if sighting is not None:
                 found.append(sighting)
                 kept.append(index)
