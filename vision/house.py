@@ -34,11 +34,14 @@ WORK_WIDTH = 640
 SHARING = 20.0
 """Edge points of one frame that share an error of the paint, about 30° of a circle."""
 
-ENOUGH = 2.9
+ENOUGH = 2.8
 """A judgement at which no further hypothesis is tried: all of three circles, nearly."""
 
 ASIDE = 2.0
 """What a house loses when its centre is one picture's width aside: neighbours are at the sides."""
+
+ROUGH = 0.5
+"""What a house loses per pixel of residual in the small picture."""
 
 TILT_GAIN = 8.0
 """By how much the log likelihood must rise for a camera that does not hang over the tee."""
@@ -127,7 +130,7 @@ def _fit(image: Image, guess: Guess) -> _Fitted | None:
         else:
             evidence = measure(image, view.vector, rig, reach=5.0, spacing=4, lines=False)
             worth = judge(evidence)
-            score = worth - aside
+            score = worth - aside - ROUGH * float(np.nan_to_num(solution.rms[0], nan=9.0))
             if worth > 0 and (best is None or score > best.score + 0.1):
                 best = _Fitted(view, rig, overhead, score)
     return best
