@@ -19,9 +19,13 @@ TRACK_COLUMNS: tuple[str, ...] = (
 """Columns of ``tracks.csv``: m, s, rad; ``seen`` is 1 where the frame showed the stone."""
 
 SIGHTING_COLUMNS: tuple[str, ...] = (
-    "stone", "frame", "t", "x", "y", "theta", "sd_x", "sd_y", "sd_theta",
+    "stone", "frame", "t", "x", "y", "theta", "sd_x", "sd_y", "sd_theta", "sd_place",
 )  # fmt: skip
-"""Columns of a table of sightings: measured places, before any filter. sd may be NaN."""
+"""Columns of a table of sightings: measured places, before any filter. sd may be NaN.
+
+``sd_x`` and ``sd_y`` are of what differs from sighting to sighting, ``sd_place`` (m, per axis) of
+what the sightings of a stone share and no filter averages out: the camera, the scale.
+"""
 
 _LAST_FRAME = 2**52
 """Beyond this a float no longer tells one frame from the next."""

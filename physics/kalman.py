@@ -78,7 +78,8 @@ def smooth(sightings: pd.DataFrame, contacts: Sequence[Contact], *, radius: floa
     DataFrame
         `data.tracks.TRACK_COLUMNS`. ``seen`` is 0 in rows at which other stones were seen
         but not this one, or at which its sighting was refused as an outlier. Angles are
-        NaN where the stone's angle was never seen.
+        NaN where the stone's angle was never seen, velocities where it was seen once. The standard deviations of places include
+        what the sightings share (``sd_place``).
     """
     known = traces(sightings)
     if not known:
@@ -133,8 +134,12 @@ def _track(
             )
         else:
             mean[at], spread[at] = _bridge(trace, t[at])
+    spread[:, :2] = np.hypot(spread[:, :2], trace.sd_place[row][:, None])
     if not np.isfinite(trace.theta).any():
         mean[:, 4:], spread[:, 4:] = np.nan, np.nan
+    if len(trace.t) == 1:
+        # One look tells a place and an angle, but nothing of motion.
+        mean[:, [2, 3, 5]], spread[:, [2, 3, 5]] = np.nan, np.nan
     columns = ("x", "y", "vx", "vy", "theta", "omega")
     table = {"stone": trace.stone, "frame": frames, "t": t, "seen": seen}
     table |= {name: mean[:, i] for i, name in enumerate(columns)}

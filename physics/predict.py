@@ -62,6 +62,8 @@ def simulate_measured(
     warnings: list[str] = []
     if tracks.empty:
         return {}, {}, ("no tracks to simulate",)
+    if tracks["vx"].isna().all():
+        return {}, {}, ("no stone was seen twice: places only, nothing to simulate",)
     start = _start_time(tracks, estimates)
     if not estimates.collisions:
         warnings.append("simulation: no hit, the stones only glide")
@@ -118,7 +120,7 @@ def _states(
             row = group.iloc[0]
         # A stone that comes into view later is where it lies; its way there is not known.
         ahead = 0.0 if late else start - float(row["t"])
-        vx, vy = (0.0, 0.0) if late else (float(row["vx"]), float(row["vy"]))
+        vx, vy = (0.0, 0.0) if late else (_or_zero(row["vx"]), _or_zero(row["vy"]))
         spins = [hit.after[str(name)].omega for hit in estimates.collisions if name in hit.stones]
         known = [spin for spin in spins if spin is not None]
         omega = 0.0 if late else _or_zero(row["omega"])

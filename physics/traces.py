@@ -28,6 +28,8 @@ class Trace:
         Places and their standard deviations, m.
     theta, sd_theta : (n,) array
         Angle and its standard deviation, rad; NaN where unknown.
+    sd_place : (n,) array
+        Standard deviation of what the places share, m; 0 where unknown.
     """
 
     stone: str
@@ -36,6 +38,7 @@ class Trace:
     sd: Floats
     theta: Floats
     sd_theta: Floats
+    sd_place: Floats
 
     @property
     def step(self) -> float:
@@ -74,6 +77,7 @@ def traces(sightings: pd.DataFrame) -> dict[str, Trace]:
             sd=_filled(t, xy, sd, SMALLEST_SD, 0.005),
             theta=theta,
             sd_theta=_filled_angles(t[known], turned, columns["sd_theta"], known),
+            sd_place=np.nan_to_num(columns.get("sd_place", np.zeros(len(t)))),
         )
     return out
 

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from data.tracks import TRACK_COLUMNS
+from data.tracks import TRACK_COLUMNS, check_sightings
 from physics.contacts import find_contacts
 from physics.kalman import smooth
 from tests.physics.watch import RADIUS, airtable, hit_motion, watch
@@ -147,3 +147,12 @@ def test_small_and_empty_tables() -> None:
     two = smooth(seen.groupby("stone").head(2).reset_index(drop=True), (), radius=RADIUS)
     assert len(two) == 4
     assert np.isfinite(two[["x", "y", "vx", "vy"]].to_numpy()).all()
+
+
+def test_what_sightings_share_is_not_averaged_out() -> None:
+    t = np.arange(50) / 25
+    table = pd.DataFrame({"stone": "A", "frame": np.arange(50), "t": t, "x": 1.0, "y": 0.0})
+    table = table.assign(theta=np.nan, sd_x=0.002, sd_y=0.002, sd_theta=np.nan, sd_place=0.003)
+    tracks = smooth(check_sightings(table), (), radius=0.1455)
+    assert (tracks[["sd_x", "sd_y"]] > 0.003).all(axis=None)
+    assert (tracks[["sd_x", "sd_y"]] < 0.0036).all(axis=None)
