@@ -115,7 +115,10 @@ def clips_table() -> pd.DataFrame:
         start = time.process_time()
         stones = track_stones(clip, cameras)
         spent = time.process_time() - start
-        score = score_tracks(stones.sightings.assign(seen=1), truth)
+        table = stones.sightings.assign(seen=1)
+        for axis in ("sd_x", "sd_y"):
+            table[axis] = np.hypot(table[axis], table["sd_place"])
+        score = score_tracks(table, truth)
         rows.append(
             {
                 "clip": name,

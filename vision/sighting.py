@@ -16,8 +16,12 @@ class Sighting:
 
     Attributes
     ----------
-    x, y, sd_x, sd_y : float
-        Place on the ice under its centre and its standard error, m.
+    x, y : float
+        Place on the ice under its centre, m.
+    sd_x, sd_y : float
+        Standard error that is anew in each picture, m.
+    sd_place : float
+        Standard error, per axis, that the sightings of a stone share, m.
     colour : ndarray, shape (3,)
         Colour of the cap, L*a*b*.
     visible : float
@@ -39,6 +43,7 @@ class Sighting:
     y: float
     sd_x: float
     sd_y: float
+    sd_place: float
     colour: Array
     visible: float
     score: float

@@ -371,13 +371,13 @@ def _measure(
     x, y = place + seen.fit.shift
     if not is_plain(disc) and abs(x) > search.x_max - 0.4 * disc.radius:
         return None
-    floor = _floor(camera, tilt, pixel, disc)
-    sd = np.sqrt(np.diag(seen.fit.covariance) + floor**2)
+    sd = np.sqrt(np.diag(seen.fit.covariance) + (0.1 * pixel) ** 2)
     return Sighting(
         float(x),
         float(y),
         float(sd[0]),
         float(sd[1]),
+        _shared_error(camera, tilt, pixel, disc),
         seen.colour,
         seen.visible,
         evidence,
@@ -398,8 +398,8 @@ def _tilt(camera: Camera, place: Array) -> float:
     return float(np.hypot(*(place - camera.position[:2])) / camera.position[2])
 
 
-def _floor(camera: Camera, tilt: float, pixel: float, disc: Stone) -> float:
-    """Least standard error, m: the camera's fit, the cap's edge and its height."""
+def _shared_error(camera: Camera, tilt: float, pixel: float, disc: Stone) -> float:
+    """Give the standard error that no filter averages out, m: camera and cap."""
     rms = camera.rms_px if np.isfinite(camera.rms_px) else 0.3
     edge = 0.0 if is_plain(disc) else 0.010 * disc.radius
     return float(

@@ -87,14 +87,12 @@ def track_stones(
     names = order_of_motion(dict(moved), rest)
     named = {names[str(number)]: track for number, track in enumerate(tracks)}
     named = dict(sorted(named.items(), key=lambda item: (len(item[0]), item[0])))
-    rows = [row for name, track in named.items() for row in _rows(name, track)]
-    teams = _teams(named, appearance)
-    if not rows:
+    if not named:
         empty = pd.DataFrame({name: pd.Series(dtype=float) for name in SIGHTING_COLUMNS})
         empty = empty.astype({"stone": str, "frame": int})
         return StoneTracks(empty, {}, ("no stones were found on the ice",))
-    table = pd.DataFrame(rows, columns=list(SIGHTING_COLUMNS))
-    return StoneTracks(check_sightings(table, "the stones found"), teams)
+    table = pd.concat([_rows(name, track) for name, track in named.items()], ignore_index=True)
+    return StoneTracks(check_sightings(table, "the stones found"), _teams(named, appearance))
 
 
 def _learn(
@@ -151,15 +149,24 @@ def _seen(
     ]
 
 
-def _rows(name: str, track: Track) -> list[tuple[str | float, ...]]:
+def _rows(name: str, track: Track) -> pd.DataFrame:
     spectra: list[Complex | None] = [sighting.spectrum for sighting in track.sightings]
     theta, sd_theta = handle_angles(np.array(track.times), spectra)
-    return [
-        (name, frame, t, s.x, s.y, float(angle), s.sd_x, s.sd_y, float(sd))
-        for frame, t, s, angle, sd in zip(
-            track.frames, track.times, track.sightings, theta, sd_theta, strict=True
-        )
-    ]
+    seen = track.sightings
+    return pd.DataFrame(
+        {
+            "stone": name,
+            "frame": track.frames,
+            "t": track.times,
+            "x": [item.x for item in seen],
+            "y": [item.y for item in seen],
+            "theta": theta,
+            "sd_x": [item.sd_x for item in seen],
+            "sd_y": [item.sd_y for item in seen],
+            "sd_theta": sd_theta,
+            "sd_place": [item.sd_place for item in seen],
+        }
+    )
 
 
 def _teams(

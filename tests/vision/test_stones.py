@@ -78,7 +78,7 @@ def test_errors_are_within_what_is_claimed(caps: tuple[Colour, Colour]) -> None:
     found = look(scene)
     error = misses(found, scene)
     assert len(found) == len(places)
-    claimed = np.median([np.hypot(s.sd_x, s.sd_y) for s in found])
+    claimed = np.median([np.hypot(np.hypot(s.sd_x, s.sd_y), 2**0.5 * s.sd_place) for s in found])
     assert np.sqrt((error**2).mean()) < 2 * claimed
     assert claimed < 0.006
 
