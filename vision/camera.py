@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
@@ -15,6 +15,38 @@ CAMERA_COLUMNS: tuple[str, ...] = (
     "frame", "t", *(f"h{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)),
     "k1", "k2", "f_px", "cam_x", "cam_y", "cam_z", "rms_px", "found",
 )  # fmt: skip
+
+
+GRID_X = np.linspace(-2.4, 2.4, 7)
+GRID_Y = np.linspace(-4.0, 8.0, 13)
+"""Where the error is worked out, m; between is interpolated, beyond is as at the border."""
+
+
+@dataclass(frozen=True)
+class PlaceError:
+    """Standard deviation per axis of a mapped ice point, m, shape (len(GRID_Y), len(GRID_X))."""
+
+    grid: Array
+
+    def at(self, ice: ArrayLike) -> Array:
+        """Give the standard deviation per axis at ice points, shape (..., 2), m."""
+        p = np.asarray(ice, float)
+        i, u = _cell(GRID_Y, p[..., 1])
+        j, v = _cell(GRID_X, p[..., 0])
+        low = (1 - v) * self.grid[i, j] + v * self.grid[i, j + 1]
+        high = (1 - v) * self.grid[i + 1, j] + v * self.grid[i + 1, j + 1]
+        return np.asarray((1 - u) * low + u * high)
+
+    def grown(self, sd: float) -> PlaceError:
+        """Add an independent error of standard deviation `sd` (m) everywhere."""
+        return replace(self, grid=np.hypot(self.grid, sd))
+
+
+def _cell(grid: Array, value: Array) -> tuple[NDArray[np.int64], Array]:
+    """Index of the cell that holds each value and how far into it the value lies, 0..1."""
+    at = np.clip((value - grid[0]) / (grid[1] - grid[0]), 0, len(grid) - 1)
+    index = np.minimum(at.astype(np.int64), len(grid) - 2)
+    return index, at - index
 
 
 @dataclass(frozen=True)
@@ -40,6 +72,8 @@ class Camera:
         Residual of the edges that fixed it, px; NaN where there were none.
     found : bool
         True where the frame itself fixed it, False where it was carried.
+    place_error : PlaceError, optional
+        How well it knows the places of ice points; what neighbouring frames share.
     """
 
     frame: int
@@ -52,6 +86,7 @@ class Camera:
     position: Array | None = None
     rms_px: float = float("nan")
     found: bool = True
+    place_error: PlaceError | None = None
 
     @property
     def _centre_and_radius(self) -> tuple[Array, float]:
@@ -105,6 +140,11 @@ class Camera:
         if height and self.position is not None and np.isfinite(self.position).all():
             xy = xy + (self.position[:2] - xy) * (height / self.position[2])
         return xy
+
+    def place_sd(self, ice: ArrayLike) -> Array:
+        """Give the standard deviation per axis, m, of mapped ice points; 0 where unknown."""
+        p = np.asarray(ice, float)
+        return np.zeros(p.shape[:-1]) if self.place_error is None else self.place_error.at(p)
 
     def scale_at(self, ice: ArrayLike) -> float:
         """Pixels per metre at an ice point: root of the determinant of the Jacobian."""

@@ -22,6 +22,7 @@ from vision.clip import Clip, Frame, Image
 from vision.flow import carried, similarity
 from vision.house import SHARING, find_house, judge
 from vision.marks import measure
+from vision.place_error import place_error
 from vision.pose import (
     ANYWHERE,
     CIRCLES,
@@ -51,6 +52,12 @@ FRAMES_ALIKE = 4
 
 SETTLED_PX = 1.5
 """Correction below which the edges need not be measured anew from the corrected view, px."""
+
+ERROR_FRAMES = 4
+"""Frames from which the error of mapped points is worked out."""
+
+CARRY_DRIFT = 0.03
+"""How fast a carried view goes astray, m/s on the ice."""
 
 CARRY_MAX_S = 4.0
 """A view carried longer than this without rings is given up."""
@@ -250,8 +257,12 @@ def _finish(piece: _Piece, size: tuple[int, int], pieces: int) -> HouseTrack:
         [s.marks for s in chosen], [s.view for s in chosen], piece.rig, size,
         prior=piece.prior, iterations=25, sharing=SHARING * max(len(chosen) / 4, 1),
     )  # fmt: skip
-    cameras = []
+    few = chosen[:: max(len(chosen) // ERROR_FRAMES, 1)]
+    views = [solve([s.marks], [s.view], joint.rig, size).views[0] for s in few]
+    error = place_error([s.marks for s in few], views, joint.rig, joint.rig_cov, size)
+    cameras, since = [], piece.seen[0].t
     for s in piece.seen:
+        since = s.t if s.found else since
         fit = solve([s.marks], [s.view], joint.rig, size, view_sd=(np.inf, np.inf, 0.05, np.inf))
         cameras.append(
             camera(
@@ -262,6 +273,7 @@ def _finish(piece: _Piece, size: tuple[int, int], pieces: int) -> HouseTrack:
                 t=s.t,
                 rms_px=float(fit.rms[0]) if s.found else float("nan"),
                 found=s.found,
+                place_error=error.grown(CARRY_DRIFT * (s.t - since)),
             )
         )
     sd = np.sqrt(np.diag(joint.rig_cov))

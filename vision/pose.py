@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from data.sheet import HOUSE
-from vision.camera import Camera
+from vision.camera import Camera, PlaceError
 
 Array = NDArray[np.float64]
 
@@ -183,6 +183,7 @@ def camera(
     t: float = 0.0,
     rms_px: float = float("nan"),
     found: bool = True,
+    place_error: PlaceError | None = None,
 ) -> Camera:
     """Give the frame's `Camera`, with the homography K [r1 r2 −R C]."""
     w, h = size
@@ -192,7 +193,17 @@ def camera(
     matrix = k @ np.column_stack([r[:, 0], r[:, 1], -r @ rig[POSITION]])
     k1, k2 = distortion(rig, view.vector[3], size)
     return Camera(
-        frame, t, matrix / matrix[2, 2], size, k1, k2, f, rig[POSITION].copy(), rms_px, found
+        frame,
+        t,
+        matrix / matrix[2, 2],
+        size,
+        k1,
+        k2,
+        f,
+        rig[POSITION].copy(),
+        rms_px,
+        found,
+        place_error,
     )
 
 

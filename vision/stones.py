@@ -377,7 +377,7 @@ def _measure(
         float(y),
         float(sd[0]),
         float(sd[1]),
-        _shared_error(camera, tilt, pixel, disc),
+        _shared_error(camera, (x, y), tilt, pixel, disc),
         seen.colour,
         seen.visible,
         evidence,
@@ -398,13 +398,15 @@ def _tilt(camera: Camera, place: Array) -> float:
     return float(np.hypot(*(place - camera.position[:2])) / camera.position[2])
 
 
-def _shared_error(camera: Camera, tilt: float, pixel: float, disc: Stone) -> float:
-    """Give the standard error that no filter averages out, m: camera and cap."""
+def _shared_error(
+    camera: Camera, place: tuple[float, float], tilt: float, pixel: float, disc: Stone
+) -> float:
+    """Give the standard error that no filter averages out, m: camera, cap's edge and height."""
     rms = camera.rms_px if np.isfinite(camera.rms_px) else 0.3
     edge = 0.0 if is_plain(disc) else 0.010 * disc.radius
-    return float(
-        np.sqrt((0.35 * rms * pixel) ** 2 + edge**2 + (0.04 * disc.cap_height * tilt) ** 2)
-    )
+    aslant = 0.04 * disc.cap_height * tilt
+    parts = [0.35 * rms * pixel, edge, aslant, float(camera.place_sd(place))]
+    return float(np.linalg.norm(parts))
 
 
 def _apart(found: Sequence[Sighting], disc: Stone, search: Search) -> tuple[Sighting, ...]:
