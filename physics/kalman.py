@@ -78,8 +78,8 @@ def smooth(sightings: pd.DataFrame, contacts: Sequence[Contact], *, radius: floa
     DataFrame
         `data.tracks.TRACK_COLUMNS`. ``seen`` is 0 in rows at which other stones were seen
         but not this one, or at which its sighting was refused as an outlier. Angles are
-        NaN where the stone's angle was never seen, velocities where it was seen once. The standard deviations of places include
-        what the sightings share (``sd_place``).
+        NaN where the stone's angle was never seen, velocities where it was seen once. The
+        standard deviations of places include what the sightings share (``sd_place``).
     """
     known = traces(sightings)
     if not known:
