@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
 
 from data.errors import InputError
-from data.results import SimulationScore
+from data.results import Collision, SimulationScore
 from data.sheet import STONE
 from physics.estimate import Estimates
 from physics.impact import Frictional, Impact, PointMass, RigidBody
@@ -23,6 +23,9 @@ RESTITUTION, FRICTION = 0.83, 0.0109
 
 MOVED = 0.05
 """Distance by which a stone must move to count in the score, m."""
+
+SUDDEN, WITHIN = 0.1, 0.1
+"""Change of velocity (m/s) within a time (s) that neither ice nor air can give a stone."""
 
 
 def simulate_measured(
@@ -55,7 +58,8 @@ def simulate_measured(
         columns ``stone, frame, t, x, y, theta, vx, vy, omega``.
     scores : dict of str to SimulationScore
         Root mean square distance over the stones that moved, m, and each stone's distance
-        between its simulated and measured last place.
+        between its simulated and measured last place; both without what follows when
+        something else (a wall, a hand) moved a stone.
     warnings : tuple of str
         What had to be assumed.
     """
@@ -78,6 +82,16 @@ def simulate_measured(
     ice = Constant(max(friction, 0.0) or 1e-6)
     clock = tracks.groupby("frame", sort=True)["t"].first()
     clock = clock[clock >= start]
+    ends = {
+        str(name): _end(group, [hit.t for hit in estimates.collisions if name in hit.stones], start)
+        for name, group in tracks.groupby("stone", sort=True)
+    }
+    warnings += [
+        f"simulation: {name} is compared until {end:.2f} s; neither ice nor a hit in view"
+        " explains how it moves then"
+        for name, end in ends.items()
+        if np.isfinite(end)
+    ]
     samples: dict[str, pd.DataFrame] = {}
     scores: dict[str, SimulationScore] = {}
     for name, impact in models.items():
@@ -93,7 +107,7 @@ def simulate_measured(
         table["frame"] = clock.index.to_numpy()[table["frame"].to_numpy()]
         table["t"] = table["t"] + start
         samples[name] = table
-        scores[name] = _score(tracks, table, start, notes.get(name))
+        scores[name] = _score(tracks, table, start, ends, notes.get(name))
     return samples, scores, tuple(warnings)
 
 
@@ -161,13 +175,14 @@ def _models(
         if hit.stone_friction is not None and hit.stderr_stone_friction
     ]
     notes: dict[str, str] = {}
-    stone_friction = STONE_FRICTION
+    stone_friction = max([STONE_FRICTION, *(_rub(hit) for hit in estimates.collisions)])
     if measured:
         values, errors = np.array(measured, float).T
         stone_friction = float(np.average(values, weights=errors**-2))
         notes["frictional"] = f"friction between the stones {stone_friction:.3f}, measured"
     elif estimates.collisions:
-        notes["frictional"] = f"friction between the stones {stone_friction:g}, assumed"
+        how = "at least" if stone_friction > STONE_FRICTION else "assumed to be"
+        notes["frictional"] = f"friction between the stones {how} {stone_friction:.2g}"
     out: dict[str, Impact | None] = {
         "point-mass": PointMass(restitution),
         "rigid-body": RigidBody(restitution),
@@ -181,11 +196,48 @@ def _models(
     return out, notes
 
 
+def _rub(hit: Collision) -> float:
+    """Tangential over normal impulse of a hit: the friction between the stones is no less.
+
+    Where they stop sliding on each other before they part, any greater friction does the same.
+    """
+    first, second = hit.stones
+    (a, b), (c, d) = ((s[first], s[second]) for s in (hit.before, hit.after))
+    jump = (d.vx - b.vx - c.vx + a.vx, d.vy - b.vy - c.vy + a.vy)
+    push = jump[0] * hit.normal[0] + jump[1] * hit.normal[1]
+    rub = jump[1] * hit.normal[0] - jump[0] * hit.normal[1]
+    return abs(rub / push) if hit.note is None and push > 0 else 0.0
+
+
+def _end(track: pd.DataFrame, hits: Sequence[float], start: float) -> float:
+    """Time at which something else than ice and known hits moves a stone; infinity if never."""
+    seen = track[(track["seen"] != 0) & (track["t"] >= start)]
+    t, v = seen["t"].to_numpy(float), seen[["vx", "vy"]].to_numpy(float)
+    variance = (seen[["sd_vx", "sd_vy"]].to_numpy(float) ** 2).sum(axis=1)
+    later = np.searchsorted(t, t + WITHIN)
+    now = np.flatnonzero(later < len(t))
+    then = later[now]
+    # A change may take from the row before one to the row after the other.
+    edge = np.append(np.searchsorted(hits, t), len(hits))
+    free = edge[np.maximum(now - 1, 0)] == edge[np.minimum(then + 1, len(t) - 1)]
+    change = np.hypot(*(v[then] - v[now]).T)
+    sudden = free & (change > SUDDEN + 4 * np.sqrt(variance[now] + variance[then]))
+    return float(t[now[sudden][0]]) if sudden.any() else np.inf
+
+
 def _score(
-    tracks: pd.DataFrame, simulated: pd.DataFrame, start: float, note: str | None
+    tracks: pd.DataFrame,
+    simulated: pd.DataFrame,
+    start: float,
+    ends: Mapping[str, float],
+    note: str | None,
 ) -> SimulationScore:
-    """Distance between the simulated and the measured shot where stones were seen."""
+    """Distance between the simulated and the measured shot where stones were seen.
+
+    A stone counts until `ends`; its last place tells nothing where that is before the end.
+    """
     later = tracks[(tracks["t"] >= start) & (tracks["seen"] != 0)]
+    later = later[later["t"] <= later["stone"].map(ends)]
     both = later.merge(simulated, on=["stone", "frame"], suffixes=("", "_s"))
     apart = both[["x", "y"]].to_numpy(float) - both[["x_s", "y_s"]].to_numpy(float)
     off = np.hypot(apart[:, 0], apart[:, 1])
@@ -197,7 +249,8 @@ def _score(
             continue
         distance = off[group.index.to_numpy()]
         squares.append(distance**2)
-        rest[str(name)] = float(distance[-1])
+        if np.isinf(ends[str(name)]):
+            rest[str(name)] = float(distance[-1])
     if not squares:
         return SimulationScore(None, {}, note)
     return SimulationScore(float(np.sqrt(np.mean(np.concatenate(squares)))), rest, note)

@@ -80,6 +80,33 @@ def test_what_is_seen_after_the_hit_does_not_move_the_start() -> None:
     pd.testing.assert_frame_equal(one["frictional"], two["frictional"])
 
 
+def test_stones_that_grip_each_other_are_simulated_so() -> None:
+    # Much friction: the slip ends within the contact.
+    seen = watch(hit_motion(1.4, -0.12, stone_friction=0.4), np.random.default_rng(47), sd=0.002)
+    estimates = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    assert estimates.collisions[0].stone_friction is None
+    _, scores, _ = predict(seen)
+    point_mass, frictional = scores["point-mass"].rmse, scores["frictional"].rmse
+    assert frictional is not None
+    assert point_mass is not None
+    assert frictional < min(0.02, 0.5 * point_mass)
+    assert "at least" in (scores["frictional"].note or "")
+
+
+def test_a_stone_counts_until_something_else_moves_it() -> None:
+    seen = watch(hit_motion(1.2, 0.08), np.random.default_rng(48), sd=0.002)
+    hit = find_contacts(seen, RADIUS)[0].t
+    b = seen["stone"] == "B"
+    wall = hit + 0.8
+    k = seen[b & (seen["t"] >= wall)].index
+    seen.loc[k, "y"] = 2 * seen.loc[k[0], "y"] - seen.loc[k, "y"]
+    _, scores, warnings = predict(seen)
+    assert any("B is compared until" in warning for warning in warnings)
+    assert scores["frictional"].rmse is not None
+    assert scores["frictional"].rmse < 0.02
+    assert set(scores["frictional"].rest_error) == {"A"}
+
+
 def test_empty_tracks() -> None:
     seen = watch(hit_motion(), np.random.default_rng(46)).iloc[:0]
     samples, scores, warnings = predict(seen)
