@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from data.delimited import TextTable, plain_decimals, read_text_table
 from data.errors import InputError
-from data.tracks import stone_name
+from data.tracks import LATEST, stone_name
 
 Array = NDArray[np.float64]
 
@@ -27,9 +27,6 @@ LENGTH_UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 
 ANGLE_UNITS = {"rad": 1.0, "deg": np.pi / 180}
 """Radians in one of each."""
-
-LATEST = 1e12
-"""s; more is no time."""
 
 _TIME = {"t", "time"}
 _TIME_UNITS = {"s": 1.0, "sec": 1.0, "ms": 0.001}

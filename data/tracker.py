@@ -17,8 +17,8 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from data.errors import InputError
-from data.layouts import ANGLE_UNITS, LATEST, LENGTH_UNITS, TrackFile, read_layout
-from data.tracks import check_sightings
+from data.layouts import ANGLE_UNITS, LENGTH_UNITS, TrackFile, read_layout
+from data.tracks import LATEST, check_sightings
 
 Array = NDArray[np.float64]
 

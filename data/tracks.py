@@ -27,6 +27,9 @@ SIGHTING_COLUMNS: tuple[str, ...] = (
 what the sightings of a stone share and no filter averages out: the camera, the scale.
 """
 
+LATEST = 1e12
+"""s; more is no time."""
+
 _LAST_FRAME = 2**52
 """Beyond this a float no longer tells one frame from the next."""
 
@@ -81,6 +84,8 @@ def check_sightings(table: pd.DataFrame, source: str = "tracks") -> pd.DataFrame
         faults.append("a stone without a name")
     if out["t"].isna().any():
         faults.append("a time is missing")
+    elif out["t"].abs().max() > LATEST and not np.isinf(out["t"]).any():
+        faults.append(f"times up to {out['t'].abs().max():.3g} s make no sense")
     infinite = [name for name in SIGHTING_COLUMNS[1:] if np.isinf(out[name]).any()]
     if infinite:
         faults.append(f"infinite numbers in column {', '.join(infinite)}")
