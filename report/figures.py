@@ -34,6 +34,7 @@ from report.style import (
     stone_colours,
     styled,
 )
+from report.tables import moving_stones
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -51,23 +52,6 @@ _RATES = {
     "theta": ("omega", "ω", "rad/s"),
 }
 _LABELS = {"x": "$x$ (m)", "y": "$y$ (m)", "theta": "angle (rad)"}
-
-
-def moving_stones(
-    tracks: pd.DataFrame, collisions: Sequence[Collision] = (), radius: float = STONE.radius
-) -> tuple[str, ...]:
-    """Names of the stones that moved: in a hit, or by more than a third of the radius."""
-    hit = {name for collision in collisions for name in collision.stones}
-    moved = []
-    for name, group in tracks.groupby("stone", sort=True):
-        places = group[["x", "y"]].to_numpy(float)
-        window = min(5, len(places))
-        # Means of a few rows: one wild row is no motion.
-        kernel = np.ones(window) / window
-        calm = np.stack([np.convolve(places[:, k], kernel, "valid") for k in (0, 1)], axis=1)
-        if name in hit or np.ptp(calm, axis=0).max() > radius / 3:
-            moved.append(str(name))
-    return tuple(moved)
 
 
 def motion_figure(tracks: pd.DataFrame, stone: str, collisions: Sequence[Collision]) -> Figure:

@@ -147,7 +147,7 @@ def pictures(
 ) -> Iterator[Picture]:
     """Give the figures of a shot in the order of the page, the plan view first."""
     collisions, radius = results.collisions, results.radius
-    moved = figures.moving_stones(tracks, collisions, radius)
+    moved = tables.moving_stones(tracks, collisions, radius)
     yield Picture(
         "plan",
         "Plan view: "

@@ -18,6 +18,23 @@ STATE_COLUMNS = ("x", "y", "vx", "vy", "omega")
 _LEAST_KICK = 0.02  # m/s between two samples; the ice alone takes 0.004 m/s at 25 per second
 
 
+def moving_stones(
+    tracks: pd.DataFrame, collisions: Sequence[Collision] = (), radius: float = STONE.radius
+) -> tuple[str, ...]:
+    """Names of the stones that moved: in a hit, or by more than a third of the radius."""
+    hit = {name for collision in collisions for name in collision.stones}
+    moved = []
+    for name, group in tracks.groupby("stone", sort=True):
+        places = group[["x", "y"]].to_numpy(float)
+        window = min(5, len(places))
+        # Means of a few rows: one wild row is no motion.
+        kernel = np.ones(window) / window
+        calm = np.stack([np.convolve(places[:, k], kernel, "valid") for k in (0, 1)], axis=1)
+        if name in hit or np.ptp(calm, axis=0).max() > radius / 3:
+            moved.append(str(name))
+    return tuple(moved)
+
+
 def stone_table(tracks: pd.DataFrame) -> pd.DataFrame:
     """One row per stone: when and where it was seen, how fast it went, how far it turned.
 

@@ -122,13 +122,8 @@ def test_hit_gives_normal_and_tangential_parts(shot):
         assert f"{along:.3f}" in [t.get_text() for t in texts(figure)]
 
 
-def test_only_stones_that_moved_count_as_moving(shot):
-    assert figures.moving_stones(shot.tracks) == ("A", "B", "C")
-    still = shot.tracks[shot.tracks["stone"] == "D"].copy()
-    still["x"] += np.random.default_rng(1).normal(0, 0.01, len(still))
-    assert figures.moving_stones(still) == ()
+def test_plan_of_stones_that_were_seen_once(shot):
     one = shot.tracks[shot.tracks["frame"] == 0]
-    assert figures.moving_stones(one) == ()
     check_layout(figures.plan_figure(one, house=HOUSE))
     check_layout(figures.plan_figure(one, house=None))
 

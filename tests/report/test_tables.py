@@ -51,3 +51,11 @@ def test_scores_name_every_stone(shot):
     assert list(table.columns) == ["model", "rmse", "A", "B", "C", "note"]
     assert len(tables.glide_table(shot.results.glides)) == 3
     assert list(tables.hit_table(shot.results.collisions)["hit"]) == [1, 2]
+
+
+def test_only_stones_that_moved_count_as_moving(shot):
+    assert tables.moving_stones(shot.tracks) == ("A", "B", "C")
+    still = shot.tracks[shot.tracks["stone"] == "D"].copy()
+    still["x"] += np.random.default_rng(1).normal(0, 0.01, len(still))
+    assert tables.moving_stones(still) == ()
+    assert tables.moving_stones(shot.tracks[shot.tracks["frame"] == 0]) == ()
