@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import argparse
 import glob
+import io
 import json
+import os
 import re
 import shutil
 import sys
@@ -31,7 +33,15 @@ if TYPE_CHECKING:
     from vision.clip import Clip
 
 VERSION = "0.1.0"
-PICTURES = frozenset({".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp"})
+WRITTEN = (
+    "tracks.csv", "camera.csv", "results.json", "simulation.csv", "report.html", "overlay.mp4",
+    "figures",
+)  # fmt: skip
+"""All that a run may write into its folder."""
+
+MOST_SAMPLES = 1_000_000
+"""Of one simulated stone; more is a mistake in the rate."""
+
 TABLES = frozenset({".csv", ".txt", ".tsv", ".dat", ".trk", ".trz"})
 
 
@@ -123,7 +133,9 @@ def find_inputs(names: Sequence[str | Path]) -> tuple[Path, ...]:
     for name in names:
         path = Path(name)
         if path.is_dir():
-            pictures = [p for p in path.iterdir() if p.suffix.lower() in PICTURES]
+            from vision.clip import IMAGE_SUFFIXES
+
+            pictures = [p for p in path.iterdir() if p.suffix.lower() in IMAGE_SUFFIXES]
             if not pictures:
                 raise InputError(f"{path}: no pictures in this folder")
             found += sorted(pictures, key=_natural)
@@ -200,6 +212,7 @@ def _look_at_clip(files: tuple[Path, ...], settings: Settings, progress: Progres
         cameras, warnings = followed.cameras, followed.warnings
         house = House(*(float(radius) for radius in followed.radii))
         disc = replace(STONE, radius=settings.radius)
+    _check_size(settings.radius, cameras[0])
     stones = track_stones(clip, cameras, disc=disc, progress=progress)
     return Measured(
         files,
@@ -211,6 +224,16 @@ def _look_at_clip(files: tuple[Path, ...], settings: Settings, progress: Progres
         cameras,
         house,
     )
+
+
+def _check_size(radius: float, camera: Camera) -> None:
+    """Refuse discs that are no more than a dot, or more than the picture."""
+    pixels = radius * camera.scale_at((0.0, 0.0))
+    if not 1.5 < pixels < max(camera.size):
+        raise InputError(
+            f"discs of radius {radius:g} m would have {pixels:.2g} px in the picture; check"
+            " --radius, and --stick if given"
+        )
 
 
 def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
@@ -227,10 +250,11 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
     sightings, radius = measured.sightings, settings.radius
     if sightings.empty:
         raise SceneError(f"{measured.files[0]}: no stone in view; nothing to measure")
+    masses = _check_masses(settings.masses, list(sightings["stone"].unique())) or None
     contacts = find_contacts(sightings, radius)
     tracks = smooth(sightings, contacts, radius=radius)
-    estimates = estimate(sightings, contacts, radius=radius, masses=settings.masses or None)
-    sampled, scores, notes = simulate_measured(tracks, estimates, radius=radius)
+    estimates = estimate(sightings, contacts, radius=radius, masses=masses)
+    sampled, scores, notes = simulate_measured(tracks, estimates, radius=radius, masses=masses)
     times = sightings["t"]
     results = Results(
         input=Input(
@@ -255,6 +279,18 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
         results,
         pd.concat(simulations, ignore_index=True) if simulations else as_tracks(None, ""),
     )
+
+
+def _check_masses(masses: Mapping[str, float], stones: Sequence[str]) -> Mapping[str, float]:
+    """Refuse masses of some stones only, for the unit of the others would be open."""
+    names = ", ".join(sorted(stones))
+    unknown = sorted(set(masses) - set(stones))
+    if unknown:
+        raise InputError(f"mass of {', '.join(unknown)}: no such stone; there are {names}")
+    missing = sorted(set(stones) - set(masses)) if masses else []
+    if missing:
+        raise InputError(f"no mass of {', '.join(missing)}; give one for each of {names}, or none")
+    return masses
 
 
 def as_tracks(simulated: pd.DataFrame | None, model: str) -> pd.DataFrame:
@@ -302,7 +338,7 @@ def run(
     done = analyse(measured, settings)
     if folder is None:
         return done
-    with staged(folder) as stage:
+    with staged(folder, replaces=WRITTEN) as stage:
         _write_run(stage, measured, done, settings, progress)
     return replace(done, out=folder)
 
@@ -311,7 +347,6 @@ def _write_run(
     stage: Path, measured: Measured, done: Run, settings: Settings, progress: Progress
 ) -> None:
     from data.tracks import write_table, write_tracks
-    from report.overlay import write_overlay
     from report.page import write_report
 
     write_tracks(done.tracks, stage / "tracks.csv")
@@ -322,6 +357,8 @@ def _write_run(
     house = measured.house
     overlay: Path | None = None
     if measured.clip is not None and settings.overlay:
+        from report.overlay import write_overlay
+
         overlay = stage / "overlay.mp4"
         write_overlay(
             measured.clip,
@@ -353,32 +390,37 @@ def _check_out(out: str | Path | None) -> Path | None:
     if out is None:
         return None
     folder = Path(out)
-    for part in (folder, *folder.parents):
-        if part.exists():
-            if not part.is_dir():
-                raise InputError(f"{part}: is a file; name a folder for the results with -o")
-            break
+    there = next(part for part in (folder, *folder.parents) if part.exists())
+    if not there.is_dir():
+        raise InputError(f"{there}: is a file; name a folder for the results with -o")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise InputError(f"{there}: nothing can be written here; name another folder with -o")
     return folder
 
 
 @contextmanager
-def staged(folder: Path) -> Iterator[Path]:
+def staged(folder: Path, replaces: Sequence[str] = ()) -> Iterator[Path]:
     """Give a hidden folder beside `folder`; its content moves there if the block ends well.
 
-    Files that were there under the same names are replaced, others left alone.
+    Files that were there under the same names are replaced, those named in `replaces` are
+    removed, for they tell of an earlier run, and others are left alone.
     """
     folder.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(
         dir=folder.parent, prefix=f".{folder.name}-", ignore_cleanup_errors=True
-    ) as name:
-        stage = Path(name)
+    ) as hidden:
+        stage = Path(hidden)
         yield stage
         folder.mkdir(parents=True, exist_ok=True)
-        for item in sorted(stage.iterdir()):
-            target = folder / item.name
+        new = {item.name for item in stage.iterdir()}
+        for name in sorted(new.union(replaces)):
+            target = folder / name
             if target.is_dir() and not target.is_symlink():
                 shutil.rmtree(target)
-            item.replace(target)
+            elif name not in new:
+                target.unlink(missing_ok=True)
+            if name in new:
+                (stage / name).replace(target)
 
 
 # ---------------------------------------------------------------------------------------
@@ -420,6 +462,9 @@ class _Bars:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Entry point of the command; returns its exit code (0 well, 2 a person's mistake)."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a terminal without Greek letters gets "?"
     arguments = _parser().parse_args(argv)
     bars = _Bars(quiet=arguments.quiet)
     try:
@@ -432,6 +477,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         bars.close()
         where = f"{error.filename}: " if error.filename else ""
         print(f"curlshot: {where}{error.strerror or error}", file=sys.stderr)
+        return 2
+    except MemoryError:
+        bars.close()
+        print("curlshot: not enough memory; try fewer or smaller pictures", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         bars.close()
@@ -593,9 +642,12 @@ def _table_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _positive(text: str) -> float:
-    value = float(text)
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
     if not 0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"{text} is not a positive number")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a positive number")
     return value
 
 
@@ -671,7 +723,7 @@ def _do_track(arguments: argparse.Namespace, bars: _Bars) -> str:
         write_tracks(tracks, stage / "tracks.csv")
         write_table(camera_table(measured.cameras), stage / "camera.csv")
     lines = [
-        f"{tracks['stone'].nunique()} stones in {measured.frames} frames: "
+        f"{_count(tracks['stone'].nunique(), 'stone')} in {_count(measured.frames, 'frame')}: "
         f"{folder / 'tracks.csv'}, {folder / 'camera.csv'}"
     ]
     return "\n".join(lines + [f"warning: {text}" for text in measured.warnings])
@@ -701,6 +753,11 @@ def _do_simulate(arguments: argparse.Namespace, bars: _Bars) -> str:
     shot = read_shot(arguments.shot)
     simulation = simulate(shot)
     end = max((rest.t for rest in simulation.rest.values()), default=0.0)
+    if end * arguments.fps > MOST_SAMPLES:
+        raise InputError(
+            f"--fps {arguments.fps:g}: {end:.0f} s would be {end * arguments.fps:.1g} samples a"
+            f" stone; at most {MOST_SAMPLES:g}, please"
+        )
     times = np.append(np.arange(0.0, end, 1 / arguments.fps), end)
     table = as_tracks(simulation.sample(times), shot.impact.name)
     with staged(folder) as stage:
@@ -743,16 +800,16 @@ def _simulation_text(simulation: Simulation, path: Path) -> str:
 
 def summary(done: Run) -> str:
     """Put the outcome into a dozen lines that a person can read."""
+    from report.tables import moving_stones
+
     results = done.results
-    moved = {name for hit in results.collisions for name in hit.stones}
-    moved |= {glide.stone for glide in results.glides}
+    moved = moving_stones(done.tracks, results.collisions, results.radius)
     names = sorted(done.tracks["stone"].unique())
     lines = [
         f"input       {', '.join(results.input.files[:3])}"
         f"{' …' if len(results.input.files) > 3 else ''}: "
-        f"{results.input.frames} frames, {results.input.duration:.2f} s",
-        f"stones      {len(names)} ({', '.join(names)}); "
-        f"moved: {', '.join(sorted(moved)) or 'none'}",
+        f"{_count(results.input.frames, 'frame')}, {results.input.duration:.2f} s",
+        f"stones      {len(names)} ({', '.join(names)}); moved: {', '.join(moved) or 'none'}",
     ]
     for hit in results.collisions:
         lines.append(
@@ -765,13 +822,19 @@ def summary(done: Run) -> str:
         f" ({results.friction.law})",
     ]
     for model, score in results.simulations.items():
-        off = "—" if score.rmse is None else f"{score.rmse * 100:.1f} cm RMS off"
+        off = f"— ({score.note or 'nothing moves'})"
+        if score.rmse is not None:
+            off = f"{score.rmse * 100:.1f} cm RMS off"
         lines.append(f"simulated   {model}: {off}")
     lines += [f"warning     {text}" for text in results.warnings]
     if done.out is not None:
         report = done.out / "report.html"
         lines.append(f"written     {report if report.exists() else done.out}")
     return "\n".join(lines)
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}{'' if number == 1 else 's'}"
 
 
 def _plus_minus(value: float | None, stderr: float | None) -> str:

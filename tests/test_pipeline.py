@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -38,13 +39,16 @@ omega = 1.5707963267948966
 """
 
 
-def curlshot(*words: str | Path, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+def curlshot(
+    *words: str | Path, cwd: Path | None = None, env: dict[str, str] | None = None
+) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-W", "error", "-m", "pipeline", *map(str, words)],
         capture_output=True,
         text=True,
         check=False,
         cwd=cwd or Path(pipeline.__file__).parent,
+        env={**os.environ, **(env or {})},
     )
 
 
@@ -80,7 +84,7 @@ def test_run_writes_the_whole_contract(sample: pipeline.Run) -> None:
     simulation = pd.read_csv(sample.out / "simulation.csv")
     assert tuple(simulation.columns) == ("model", *TRACK_COLUMNS)
     assert set(simulation["model"]) == {"point-mass", "rigid-body", "frictional"}
-    assert Results.read(sample.out / "results.json") == Results.read(sample.out / "results.json")
+    assert Results.read(sample.out / "results.json") == sample.results
     raw = json.loads((sample.out / "results.json").read_text())
     assert raw["schema"] == 1
     assert raw["restitution"]["value"] == sample.results.restitution.value
@@ -184,6 +188,10 @@ def bad_inputs(folder: Path) -> dict[str, list[str | Path]]:
     (folder / "ice").mkdir()
     for index in range(3):
         cv2.imwrite(str(folder / "ice" / f"{index}.png"), grey)
+    (folder / "late.csv").write_text("stone,t,x,y\nA,0,0,0\nA,1e300,0,1\nA,2e300,0,2\n")
+    (folder / "good.csv").write_text("stone,t,x,y\nA,0,0,0\nB,0,1,1\nA,1,0,0\nB,1,1,1\n")
+    (folder / "good.toml").write_text(SHOT)
+    still = ["run", folder / "ice"]
     return {
         "missing": ["run", folder / "none.mp4"],
         "empty": ["run", folder / "empty.mp4"],
@@ -201,6 +209,12 @@ def bad_inputs(folder: Path) -> dict[str, list[str | Path]]:
         "bad stick": ["run", folder / "ice", "--stick", "1,2,3"],
         "bad frames": ["run", folder / "ice", "--frames", "x"],
         "no frames left": ["run", folder / "ice", "--frames", "9:"],
+        "time without end": ["run", folder / "late.csv"],
+        "mass of nobody": ["run", folder / "good.csv", "--mass", "Q=1"],
+        "mass of some": ["run", folder / "good.csv", "--mass", "A=1"],
+        "discs like dots": [*still, "--stick", "10,10,110,10,1", "--radius", "1e-9"],
+        "discs like moons": [*still, "--stick", "10,10,110,10,1", "--radius", "1e9"],
+        "endless samples": ["simulate", folder / "good.toml", "--fps", "1e12"],
         "no command": [],
         "unknown option": ["run", "--what"],
     }
@@ -271,3 +285,74 @@ def test_pucks_from_a_stick(shared: Path) -> None:
     assert 0.5 < hit.restitution < 1.05
     assert hit.momentum_residual is not None and hit.momentum_residual < 0.15
     assert done.tracks.groupby("stone")["omega"].count().min() > 20
+
+
+def test_masses_reach_estimate_and_simulation(tmp_path: Path) -> None:
+    (tmp_path / "hit.csv").write_text(central_hit(masses=(1.0, 2.0), restitution=0.8))
+    settings = pipeline.Settings(masses={"A": 1.0, "B": 2.0})
+    done = pipeline.run([tmp_path / "hit.csv"], settings=settings)
+    assert done.results.restitution.value == pytest.approx(0.8, abs=0.02)
+    (hit,) = done.results.collisions
+    assert hit.momentum_residual is not None and hit.momentum_residual < 0.02
+    score = done.results.simulations["point-mass"]
+    assert score.rmse is not None and score.rmse < 0.02
+
+
+def central_hit(masses: tuple[float, float], restitution: float) -> str:
+    """A at 1.5 m/s into B at rest, on ice without friction, as a table."""
+    (a, b), speed, gap = masses, 1.5, 0.6
+    after_b = a * (1 + restitution) * speed / (a + b)
+    after_a = after_b - restitution * speed
+    rows = ["stone,t,x,y"]
+    rng = np.random.default_rng(0)
+    for t in np.arange(60) / 30:
+        since = max(0.0, t - gap / speed)
+        y_a = -0.291 - gap + speed * min(t, gap / speed) + after_a * since
+        for name, y in (("A", y_a), ("B", after_b * since)):
+            x, y = rng.normal((0.0, y), 0.0005)
+            rows.append(f"{name},{t:.6f},{x:.6f},{y:.6f}")
+    return "\n".join(rows)
+
+
+def test_files_of_an_earlier_run_do_not_stay_beside_the_new(tmp_path: Path) -> None:
+    (tmp_path / "hit.csv").write_text(central_hit(masses=(1.0, 1.0), restitution=0.8))
+    out = tmp_path / "out"
+    (out / "figures").mkdir(parents=True)
+    for name in ("camera.csv", "overlay.mp4", "figures/motion_Z.png", "notes.txt"):
+        (out / name).write_text("earlier")
+    pipeline.run([tmp_path / "hit.csv"], out)
+    left = {item.name for item in out.iterdir()}
+    assert left == CONTRACT - {"camera.csv", "overlay.mp4"} | {"notes.txt"}
+    assert not (out / "figures" / "motion_Z.png").exists()
+
+
+def test_summary_tells_what_moved_without_a_hit(tmp_path: Path) -> None:
+    rows = [f"A,{t / 10:.1f},{np.cos(t / 5):.4f},{np.sin(t / 5):.4f}" for t in range(30)]
+    (tmp_path / "round.csv").write_text("\n".join(["stone,t,x,y", *rows]))
+    assert "moved: A" in pipeline.summary(pipeline.run([tmp_path / "round.csv"]))
+
+
+def test_a_terminal_without_greek_letters_gets_its_answer(tmp_path: Path) -> None:
+    (tmp_path / "hit.csv").write_text(central_hit(masses=(1.0, 1.0), restitution=0.8))
+    done = curlshot(
+        "estimate", tmp_path / "hit.csv", "-o", tmp_path / "out", env={"PYTHONIOENCODING": "ascii"}
+    )
+    assert done.returncode == 0, done.stderr
+    assert "restitution e = " in done.stdout
+
+
+def test_tracks_from_a_table_never_load_opencv(tmp_path: Path) -> None:
+    (tmp_path / "hit.csv").write_text(central_hit(masses=(1.0, 1.0), restitution=0.8))
+    code = (
+        "import sys, pipeline\n"
+        f"pipeline.run([{str(tmp_path / 'hit.csv')!r}], {str(tmp_path / 'out')!r})\n"
+        "print('cv2' in sys.modules)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=Path(pipeline.__file__).parent,
+    )
+    assert (done.stdout, done.stderr) == ("False\n", "")

@@ -63,7 +63,7 @@ def test_clean(command: list[str]) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_tracks_from_a_table_never_load_opencv_or_matplotlib() -> None:
+def test_data_and_physics_load_neither_opencv_nor_matplotlib() -> None:
     code = (
         "import sys, physics, data; print([m for m in ('cv2', 'matplotlib') if m in sys.modules])"
     )
