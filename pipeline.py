@@ -487,7 +487,11 @@ def main(argv: Sequence[str] | None = None) -> int:
         print("curlshot: stopped; nothing was written", file=sys.stderr)
         return 130
     bars.close()
-    print(text)
+    try:
+        print(text, flush=True)
+    except BrokenPipeError:
+        # The reader, such as head, has had enough; Python would complain again at its exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return 0
 
 
@@ -822,7 +826,7 @@ def summary(done: Run) -> str:
         f" ({results.friction.law})",
     ]
     for model, score in results.simulations.items():
-        off = f"— ({score.note or 'nothing moves'})"
+        off = f"— ({score.note or 'nothing to compare'})"
         if score.rmse is not None:
             off = f"{score.rmse * 100:.1f} cm RMS off"
         lines.append(f"simulated   {model}: {off}")
