@@ -66,7 +66,7 @@ class Search:
     radii: int = 60
     least_score: float = 0.45
     least_visible: float = 0.30
-    least_evidence: float = 1.6
+    least_evidence: float = 1.4
     least_rim: float = 0.6
     edge_reach: float = 0.035
     most_tilt: float = 0.15
@@ -181,6 +181,11 @@ class _Measured:
     granite_samples: Array
 
 
+def _mean_along(values: Array, use: NDArray[np.bool_]) -> Array:
+    """Mean over the chosen samples of each ray; 0 where there are none."""
+    return np.asarray((values * use).sum(1) / np.maximum(use.sum(1), 1))
+
+
 def _measure_stone(
     rays: Rays,
     index: int,
@@ -233,9 +238,14 @@ def _measure_stone(
     )
     if fit is None:
         return None
-    alike = float(np.median(np.abs(ring_pixels[:, 0] - granite[0])))
+    # All around, a stone's granite is of one lightness, and its cap is as large as any other's;
+    # caps and shoulders of people are neither.
+    light = _mean_along(lab[..., 0], inside & in_ring)[stony]
+    uneven = float(np.std(light)) / 40 if len(light) else 1.0
+    misfit = float((fit.radii[0] / cap_radius - 1) / (0.06 + appearance.slack)) ** 2
     visible = float(np.mean(stony & at_cap))
-    evidence = float(fit.shares.sum()) + 0.5 * visible / max(float(at_cap.mean()), 0.3) - alike / 40
+    clear = float(fit.shares.sum()) + 0.5 * visible / max(float(at_cap.mean()), 0.3)
+    evidence = clear - uneven - 0.5 * misfit
     return _Measured(fit, cap, visible, evidence, cap_pixels[::7], ring_pixels[::5])
 
 

@@ -79,7 +79,7 @@ def track_stones(
     appearance = None
     if not is_plain(disc):
         appearance = _learn(clip, by_frame, disc, search, progress)
-    gate = Gate(least_score=0.85 if is_plain(disc) else 1.8)
+    gate = Gate(least_score=0.85 if is_plain(disc) else 1.6)
     tracks = follow(
         _sightings(clip, by_frame, appearance, disc, search, progress), disc.radius, gate
     )
