@@ -97,6 +97,7 @@ class _Solver:
         self.radius, self.masses = radius, masses
         self.prior, self.momentum = deceleration, momentum
         self.still: list[tuple[Floats, int]] = []
+        self.inflation = 1.0
         self.size = 6 * len(self.pieces) + len(self.meetings)
         opened = {(p.opens, p.stone): i for i, p in enumerate(pieces) if p.opens is not None}
         self.sides = {
@@ -149,16 +150,16 @@ class _Solver:
             scale = np.sqrt(np.maximum(np.diag(cov), 1e-24))
             settled = bool(np.all(np.abs(step) < 0.02 * scale))
             self.theta = self.theta + step
+            self.inflation = self._excess(float(np.trace(cov @ data)))
             if settled:
                 break
-        inflation = self._inflation(float(np.trace(cov @ data)))
         return ShotFit(
             tuple(self.pieces),
             self.meetings,
             self.theta,
-            cov * inflation,
+            cov * self.inflation,
             self.origins,
-            inflation,
+            self.inflation,
             self.sides,
         )
 
@@ -215,11 +216,18 @@ class _Solver:
             trace = self.traces[piece.stone]
             basis = self._basis(i)
             weights = huber_weights(self._residuals(i, basis)) / trace.sd[piece.samples] ** 2
+            scale = float(np.median(trace.sd_scale[piece.samples]))
+            speed = float(np.hypot(*self.theta[[6 * i + 1, 6 * i + 4]]))
+            drift = (scale * speed) ** 2 / self.inflation
             for axis in range(2):
                 at = slice(6 * i + 3 * axis, 6 * i + 3 * axis + 3)
                 weighted = basis * weights[:, axis : axis + 1]
-                normal[at, at] += weighted.T @ basis
-                right[at] += weighted.T @ trace.xy[piece.samples, axis]
+                block, value = weighted.T @ basis, weighted.T @ trace.xy[piece.samples, axis]
+                # What the sightings say of the velocity is wrong by what they share: an unknown
+                # that is eliminated at once (Sherman and Morrison's formula).
+                less = drift * block[1] / (1 + drift * block[1, 1])
+                normal[at, at] += block - np.outer(less, block[1])
+                right[at] += value - less * value[1]
         return normal, right
 
     def _rules(self) -> tuple[Floats, Floats]:
@@ -312,7 +320,7 @@ class _Solver:
         doubt[: 1 + 2 * len(ranks)] = 0.0
         return np.array(rows), np.array(values), width * np.sqrt(1 + doubt**2)
 
-    def _inflation(self, parameters: float) -> float:
+    def _excess(self, parameters: float) -> float:
         """Factor for residuals larger than stated, and alike from frame to frame."""
         runs = []
         for i, piece in enumerate(self.pieces):

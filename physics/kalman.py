@@ -135,6 +135,8 @@ def _track(
         else:
             mean[at], spread[at] = _bridge(trace, t[at])
     spread[:, :2] = np.hypot(spread[:, :2], trace.sd_place[row][:, None])
+    size = np.hypot(mean[:, 2], mean[:, 3])
+    spread[:, 2:4] = np.hypot(spread[:, 2:4], (trace.sd_scale[row] * size)[:, None])
     if not np.isfinite(trace.theta).any():
         mean[:, 4:], spread[:, 4:] = np.nan, np.nan
     if len(trace.t) == 1:

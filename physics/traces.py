@@ -13,6 +13,9 @@ Floats = NDArray[np.float64]
 SMALLEST_SD = 1e-5
 """Smallest standard deviation of a place, m: what no track at hand surpasses."""
 
+PLACE_REACH = 0.5
+"""Distance over which the error that places share becomes another one, m."""
+
 
 @dataclass(frozen=True)
 class Trace:
@@ -44,6 +47,15 @@ class Trace:
     def step(self) -> float:
         """Usual time between two sightings, s."""
         return float(np.median(np.diff(self.t))) if len(self.t) > 1 else 0.04
+
+    @property
+    def sd_scale(self) -> Floats:
+        """Relative error of velocities by that of places, shape (n,).
+
+        What places share is alike for neighbours only: under way it changes, as if the stone
+        had moved faster or slower.
+        """
+        return self.sd_place / PLACE_REACH
 
     def between(self, start: float, end: float) -> NDArray[np.bool_]:
         """Which sightings lie in [start, end)."""
