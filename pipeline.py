@@ -142,7 +142,12 @@ def find_inputs(names: Sequence[str | Path]) -> tuple[Path, ...]:
         elif path.exists():
             found.append(path)
         else:
-            matches = [Path(m) for m in glob.glob(str(name))]  # noqa: PTH207 - absolute globs too
+            # The folder may have brackets in its name; only if it is none, it is a pattern too.
+            matches = (
+                list(path.parent.glob(path.name))
+                if path.parent.is_dir()
+                else [Path(match) for match in glob.glob(str(name))]  # noqa: PTH207 - absolute too
+            )
             if not matches:
                 raise InputError(f"{name}: no such file")
             found += sorted(matches, key=_natural)

@@ -167,7 +167,7 @@ def pictures(
             "Speed against time of stones " + ", ".join(moved) + ".",
             lambda: figures.speed_figure(tracks, collisions, radius),
         )
-    used: set[str] = {"plan", "speed"}
+    used: set[str] = set()
     for stone in moved:
         name = _file_name(stone, used)
         yield Picture(

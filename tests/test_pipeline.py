@@ -137,6 +137,15 @@ def test_folder_of_pictures_is_a_clip(tmp_path: Path) -> None:
     assert [p.name for p in measured.files[8:]] == ["f8.png", "f9.png", "f10.png", "f11.png"]
 
 
+def test_a_glob_inside_a_folder_with_brackets_in_its_name(tmp_path: Path) -> None:
+    folder = tmp_path / "shot [1]"
+    folder.mkdir()
+    for index in (10, 9):
+        (folder / f"{index}.png").touch()
+    found = pipeline.find_inputs([folder / "*.png"])
+    assert [path.name for path in found] == ["9.png", "10.png"]
+
+
 def test_simulate_prints_and_writes(tmp_path: Path) -> None:
     shot = tmp_path / "SHOT.toml"
     shot.write_text(SHOT)

@@ -176,22 +176,33 @@ def open_clip(
             raise InputError(f"{path}: no such file")
         if path.is_dir():
             raise InputError(f"{path}: a folder, not a clip; give the pictures in it")
-        if path.stat().st_size == 0:
+        if path.stat().st_size == 0 and len(paths) == 1:
             raise InputError(f"{path}: the file is empty")
     first, last = frames if frames is not None else (0, None)
     if first < 0 or (last is not None and last < first):
         raise InputError(f"frames {first}:{last}: the range is empty")
     if paths[0].suffix.lower() in IMAGE_SUFFIXES:
-        image = _read_image(paths[0])
-        if image is None:
-            raise InputError(f"{paths[0]}: not a readable picture")
-        size = (image.shape[1], image.shape[0])
-        rate = (fps or DEFAULT_IMAGE_FPS) if len(paths) > 1 else fps
-        clip = Clip(tuple(paths), size, rate, len(paths), first, last)
+        clip = _open_images(paths, fps, first, last)
     else:
         clip = _open_video(paths, first, last)
+        if fps is not None:
+            clip.warnings.append(f"{paths[0]}: a video carries its own times; the rate is ignored")
     if clip.expected == 0:
         raise InputError(f"{paths[0]}: has only {clip.frames} frames; none from {first} on")
+    return clip
+
+
+def _open_images(paths: Sequence[Path], fps: float | None, first: int, last: int | None) -> Clip:
+    image = next((i for i in map(_read_image, paths) if i is not None), None)
+    if image is None:
+        raise InputError(f"{paths[0]}: not a readable picture")
+    size = (image.shape[1], image.shape[0])
+    rate = (fps or DEFAULT_IMAGE_FPS) if len(paths) > 1 else fps
+    clip = Clip(tuple(paths), size, rate, len(paths), first, last)
+    if fps is None and len(paths) > 1:
+        clip.warnings.append(
+            f"pictures carry no times: {DEFAULT_IMAGE_FPS:g} a second assumed; say --fps"
+        )
     return clip
 
 

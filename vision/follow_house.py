@@ -144,7 +144,7 @@ def _read(clip: Clip, progress: Progress) -> list[_Piece]:
     waiting: deque[Frame] = deque(maxlen=LOOK_BACK)
     before: Image | None = None
     for count, frame in enumerate(clip):
-        progress("house", count, clip.expected)
+        progress("house", count + 1, clip.expected)
         if piece is not None:
             seen = _next(piece, frame, before)
             if seen is None:

@@ -184,14 +184,24 @@ def test_a_single_picture_has_no_rate(tmp_path: Path) -> None:
 
 def test_bad_pictures_are_left_out_with_a_warning(tmp_path: Path) -> None:
     paths = write_pictures(tmp_path, 6)
+    paths[0].write_bytes(b"")
     paths[2].write_bytes(b"no picture")
     cv2.imwrite(str(paths[4]), np.zeros((10, 10, 3), np.uint8))
     clip = open_clip(paths)
-    assert [frame.index for frame in clip] == [0, 1, 3, 5]
-    assert [frame.t for frame in clip] == pytest.approx([0, 0.04, 0.12, 0.2])
-    assert len(clip.warnings) == 2
-    assert "not a readable picture" in clip.warnings[0]
-    assert "not of the size" in clip.warnings[1]
+    assert [frame.index for frame in clip] == [1, 3, 5]
+    assert [frame.t for frame in clip] == pytest.approx([0.04, 0.12, 0.2])
+    assert "25 a second assumed" in clip.warnings[0]
+    assert "not a readable picture" in clip.warnings[1]
+    assert "not of the size" in clip.warnings[3]
+    for path in paths:
+        path.write_bytes(b"")
+    with pytest.raises(InputError, match="not a readable picture"):
+        open_clip(paths)
+
+
+def test_a_rate_for_a_video_is_ignored_aloud(shared: Path) -> None:
+    clip = open_clip([shared / "clips" / "collision-pucks.mp4"], fps=10)
+    assert "its own times" in clip.warnings[0]
 
 
 def test_real_clip_with_title_cards(shared: Path) -> None:
