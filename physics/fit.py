@@ -34,6 +34,10 @@ DOUBT = 2.5
 """Normalised violation beyond which distance and momentum are no longer believed."""
 
 
+SLOW, SLOWEST = 0.015, 0.06
+"""What the deceleration of a slow stone may differ from the others', m²/s³, and the speed (m/s)
+at which that grows no more: FCV1's (Uehara and Ito, 2021), whose friction has such a term."""
+
 STILL_SD = 1e-5
 """How still a stone at rest lies, m/s and m/s²."""
 
@@ -258,9 +262,10 @@ class _Solver:
             return np.eye(2) / (self.prior.along**2 + self.prior.mean**2), np.zeros(2)
         along = speed / size
         across = np.array([-along[1], along[0]])
+        # The slower a stone the more it is slowed, by all ice laws but the constant one.
+        width = max(self.prior.along, SLOW / (size + SLOWEST))
         precision = (
-            np.outer(along, along) / self.prior.along**2
-            + np.outer(across, across) / self.prior.across**2
+            np.outer(along, along) / width**2 + np.outer(across, across) / self.prior.across**2
         )
         return precision, -self.prior.mean * along
 

@@ -181,7 +181,7 @@ def _models(
         stone_friction = float(np.average(values, weights=errors**-2))
         notes["frictional"] = f"friction between the stones {stone_friction:.3f}, measured"
     elif estimates.collisions:
-        how = "at least" if stone_friction > STONE_FRICTION else "assumed to be"
+        how = "at least about" if stone_friction > STONE_FRICTION else "assumed to be"
         notes["frictional"] = f"friction between the stones {how} {stone_friction:.2g}"
     out: dict[str, Impact | None] = {
         "point-mass": PointMass(restitution),
