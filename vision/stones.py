@@ -381,7 +381,9 @@ def _measure(
     x, y = place + seen.fit.shift
     if not is_plain(disc) and abs(x) > search.x_max - 0.4 * disc.radius:
         return None
-    sd = np.sqrt(np.diag(seen.fit.covariance) + (0.1 * pixel) ** 2)
+    # What displaces the edges of one side is made good by the other side, if that is seen.
+    hidden = 0.0 if is_plain(disc) else 0.04 * disc.radius * (1 - seen.visible)
+    sd = np.sqrt(np.diag(seen.fit.covariance) + (0.1 * pixel) ** 2 + hidden**2)
     return Sighting(
         float(x),
         float(y),
