@@ -10,7 +10,7 @@ import pytest
 from physics.contacts import find_contacts
 from physics.estimate import Estimates, estimate
 from tests.physics.watch import RADIUS, airtable, discs, hit_motion, semireal, watch
-from tests.synthetic.physics import Start
+from tests.synthetic.physics import Ice, Impact, Start, simulate
 
 MASSES = {"a": 28.73, "b": 28.19}
 
@@ -219,3 +219,23 @@ def test_errors_that_places_share_are_in_that_of_restitution() -> None:
         assert alone.stderr < found.stderr < 0.04
         scores.append((found.value - 0.83) / found.stderr)
     assert np.sqrt(np.mean(np.square(scores))) < 1.6
+
+
+def test_ice_that_slows_slow_stones_more_does_not_bias_restitution() -> None:
+    errors = []
+    for seed in range(8):
+        rng = np.random.default_rng(400 + seed)
+        starts = [
+            Start(rng.uniform(0.03, 0.2), -1.2, 0, rng.uniform(0.7, 1.6), 0.3, 1.0),
+            Start(0, 0),
+        ]
+        fcv1 = Ice(a=0.00201, b=0.00626, v_c=0.0639)
+        motion = simulate(starts, 2.6, ice=fcv1, impact=Impact(0.83), step=5e-4, keep_every=4)
+        seen = watch(motion, rng, sd=0.003)
+        hit = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).collisions[0]
+        assert hit.restitution is not None
+        assert hit.stderr is not None
+        errors.append((hit.restitution - 0.83, hit.stderr))
+    off, stderr = np.array(errors).T
+    assert abs(off.mean()) < 0.003
+    assert np.sqrt(np.mean((off / stderr) ** 2)) < 1.5
