@@ -100,8 +100,15 @@ def estimate(
     glides, friction, prior = measure_glides(loose, known, radius)
     if friction.value is None and friction_expected:
         warnings.append("friction: no stone glides freely for long enough to tell it")
-    if friction.value is not None and prior.along > max(UNEVEN, 0.3 * prior.mean):
-        each = [glide.friction for glide in glides if glide.friction is not None]
+    value, stderr = friction.value, friction.stderr
+    each = [glide.friction for glide in glides if glide.friction is not None]
+    if value is not None and stderr is not None and value + 2 * stderr < 0:
+        warnings.append(
+            f"friction: the stones gain speed (μ = {value:.3f} ± {stderr:.3f}), so these are no"
+            " free glides on level ice; not reported"
+        )
+        friction = Friction()
+    elif value is not None and len(each) > 1 and prior.along > max(UNEVEN, 0.3 * prior.mean):
         warnings.append(
             f"friction differs from glide to glide ({min(each):.4f} to {max(each):.4f}):"
             " it depends on speed or place, the value is a mean"

@@ -252,5 +252,5 @@ def _score(
         if np.isinf(ends[str(name)]):
             rest[str(name)] = float(distance[-1])
     if not squares:
-        return SimulationScore(None, {}, note)
+        return SimulationScore(None, {}, note or "no motion that can be compared")
     return SimulationScore(float(np.sqrt(np.mean(np.concatenate(squares)))), rest, note)

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from data.tracks import check_sightings
 from physics.contacts import find_contacts
 from physics.estimate import Estimates, estimate
 from tests.physics.watch import RADIUS, airtable, discs, hit_motion, semireal, watch
@@ -239,3 +240,13 @@ def test_ice_that_slows_slow_stones_more_does_not_bias_restitution() -> None:
     off, stderr = np.array(errors).T
     assert abs(off.mean()) < 0.003
     assert np.sqrt(np.mean((off / stderr) ** 2)) < 1.5
+
+
+def test_stones_that_gain_speed_have_no_friction() -> None:
+    t = np.arange(60) / 30
+    table = pd.DataFrame({"stone": "A", "frame": np.arange(60), "t": t, "x": 0.0})
+    table["y"] = 0.5 * t + 0.5 * 0.8 * t**2
+    table = table.assign(sd_x=0.002, sd_y=0.002)
+    found = estimate(check_sightings(table), (), radius=0.1455)
+    assert found.friction.value is None
+    assert any("gain speed" in text for text in found.warnings)

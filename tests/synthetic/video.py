@@ -34,7 +34,8 @@ def write_video(
     crf : int
         Compression, 0 (none) to 51.
     """
-    with av.open(str(path), "w") as container:
+    # The index first: then a copy that breaks off can be read as far as it goes.
+    with av.open(str(path), "w", options={"movflags": "+faststart"}) as container:
         stream = container.add_stream("libx264", rate=Fraction(fps).limit_denominator(1001))
         stream.pix_fmt = "yuv420p"
         stream.options = {"crf": str(crf), "preset": "veryfast", "threads": "1"}
