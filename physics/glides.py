@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from data.results import Estimate, Friction, Glide
 from data.sheet import GRAVITY
 from physics.shot_fit import Deceleration, ShotFit
-from physics.traces import Trace
+from physics.traces import PLACE_REACH, Trace
 
 Floats = NDArray[np.float64]
 
@@ -81,12 +81,24 @@ def _each(
         along = speed / size
         slope = np.array([0.0, 0.0, -along[0], 0.0, 0.0, -along[1]])
         value = float(slope @ fit.theta[6 * i : 6 * i + 6])
-        sd = float(np.sqrt(slope @ cov @ slope))
+        bend = _bend(known[piece.stone].sd_place[piece.samples], size, end - float(t[0]))
+        sd = float(np.hypot(np.sqrt(slope @ cov @ slope), bend))
         if sd / GRAVITY > WORST:
             continue
         found.append(_Slowing(value, float(along[0] * x[1, 2] - along[1] * x[0, 2]), sd))
         glides.append(Glide(piece.stone, float(t[0]), end, value / GRAVITY, sd / GRAVITY))
     return tuple(glides), found
+
+
+def _bend(sd_place: Floats, speed: float, duration: float) -> float:
+    """Error of a deceleration, m/s², from the error that places share.
+
+    Places whose error is s at one end, the other or between bend the path in time like an
+    acceleration of which s is the sagitta, a T² / 8. Over less than `PLACE_REACH` either side
+    of the middle the error is much the same throughout and bends less.
+    """
+    share = min(1.0, speed * duration / (2 * PLACE_REACH))
+    return 8 * share * float(np.median(sd_place)) / duration**2
 
 
 def stop_time(x: Floats, origin: float, last: float) -> float:
