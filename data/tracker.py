@@ -54,13 +54,6 @@ class Imported:
     fps: float | None
 
 
-def read_tracker(
-    paths: Sequence[Path], *, length_unit: str = "m", angle_unit: str | None = None
-) -> Imported:
-    """Read text exports and table copies of Tracker; as `read_table`."""
-    return read_table(paths, length_unit=length_unit, angle_unit=angle_unit)
-
-
 def read_table(
     paths: Sequence[Path],
     *,

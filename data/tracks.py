@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -144,29 +143,6 @@ def write_table(table: pd.DataFrame, path: Path, columns: Sequence[str] | None =
 def write_tracks(tracks: pd.DataFrame, path: Path) -> None:
     """Write ``tracks.csv`` with `TRACK_COLUMNS` in their order."""
     write_table(tracks, path, TRACK_COLUMNS)
-
-
-def read_tracks(path: Path) -> pd.DataFrame:
-    """Read a ``tracks.csv`` that this program wrote, as sightings.
-
-    Rows that the filter carried (``seen`` = 0) are left out: they are no measurements.
-
-    Raises
-    ------
-    InputError
-        Where the file is no such table.
-    """
-    try:
-        with warnings.catch_warnings():
-            # Rows longer than the header would lose their last cells.
-            warnings.simplefilter("error", pd.errors.ParserWarning)
-            table = pd.read_csv(path, index_col=False, low_memory=False, dtype={"stone": str})
-    except (OSError, ValueError, pd.errors.ParserWarning) as error:
-        reason = " ".join(str(error).split())
-        raise InputError(f"{path}: not a table of tracks ({reason})") from None
-    if "seen" in table.columns:
-        table = table[table["seen"] != 0]
-    return check_sightings(table, str(path))
 
 
 def order_of_motion(first_moved: dict[str, float], others: Iterable[str]) -> dict[str, str]:

@@ -94,7 +94,6 @@ class _Seen:
     t: float
     view: View
     marks: Marks
-    quality: float
     found: bool
 
 
@@ -172,7 +171,7 @@ def _start(frame: Frame, waiting: deque[Frame]) -> _Piece | None:
     if fit is None:
         return None
     piece = _Piece(fit.rig, OVERHEAD if fit.overhead else ANYWHERE)
-    first = _Seen(frame.index, frame.t, fit.view, fit.evidence.marks, judge(fit.evidence), True)
+    first = _Seen(frame.index, frame.t, fit.view, fit.evidence.marks, True)
     piece.seen.append(first)
     after = frame.image
     for earlier in reversed(waiting):
@@ -223,7 +222,7 @@ def _next(piece: _Piece, frame: Frame, before: Image | None) -> _Seen | None:
     lines = measure(frame.image, moved.vector, piece.rig, reach=_reach(size)).marks
     marks = joined([ghosts, lines.pick(lines.line >= CIRCLES)])
     view = solve([marks], [moved], piece.rig, size, view_sd=(1, 1, 0.02, 0.1)).views[0]
-    return _Seen(frame.index, frame.t, view, marks, 0.0, False)
+    return _Seen(frame.index, frame.t, view, marks, False)
 
 
 def _reach(size: tuple[int, int]) -> float:
@@ -246,7 +245,7 @@ def _settle(piece: _Piece, frame: Frame, view: View) -> _Seen | None:
         if shift[:3].max() * view.focal < SETTLED_PX:
             break
     marks = evidence.marks.pick(fit.inliers[0])
-    return _Seen(frame.index, frame.t, view, marks, judge(evidence), True)
+    return _Seen(frame.index, frame.t, view, marks, True)
 
 
 def _finish(piece: _Piece, size: tuple[int, int], pieces: int) -> HouseTrack:
@@ -255,27 +254,30 @@ def _finish(piece: _Piece, size: tuple[int, int], pieces: int) -> HouseTrack:
     chosen = _spread(good)
     joint = solve(
         [s.marks for s in chosen], [s.view for s in chosen], piece.rig, size,
-        prior=piece.prior, iterations=25, sharing=SHARING * max(len(chosen) / 4, 1),
+        prior=piece.prior, iterations=25, sharing=SHARING * max(len(chosen) / FRAMES_ALIKE, 1),
     )  # fmt: skip
+    fits = {
+        s.index: solve([s.marks], [s.view], joint.rig, size, view_sd=(np.inf, np.inf, 0.05, np.inf))
+        for s in piece.seen
+    }
     few = chosen[:: max(len(chosen) // ERROR_FRAMES, 1)]
-    views = [solve([s.marks], [s.view], joint.rig, size).views[0] for s in few]
+    views = [fits[s.index].views[0] for s in few]
     error = place_error([s.marks for s in few], views, joint.rig, joint.rig_cov, size)
-    cameras, since = [], piece.seen[0].t
-    for s in piece.seen:
-        since = s.t if s.found else since
-        fit = solve([s.marks], [s.view], joint.rig, size, view_sd=(np.inf, np.inf, 0.05, np.inf))
-        cameras.append(
-            camera(
-                fit.views[0],
-                joint.rig,
-                size,
-                frame=s.index,
-                t=s.t,
-                rms_px=float(fit.rms[0]) if s.found else float("nan"),
-                found=s.found,
-                place_error=error.grown(CARRY_DRIFT * (s.t - since)),
-            )
+    found_at = np.array([s.t for s in good])
+    cameras = [
+        camera(
+            fits[s.index].views[0],
+            joint.rig,
+            size,
+            frame=s.index,
+            t=s.t,
+            rms_px=float(fits[s.index].rms[0]) if s.found else float("nan"),
+            found=s.found,
+            # Frames before the first find were carried too: backwards.
+            place_error=error.grown(CARRY_DRIFT * float(np.abs(found_at - s.t).min())),
         )
+        for s in piece.seen
+    ]
     sd = np.sqrt(np.diag(joint.rig_cov))
     return HouseTrack(
         tuple(cameras),

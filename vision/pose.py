@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.spatial.transform import Rotation
 
 from data.sheet import HOUSE
 from vision.camera import Camera, PlaceError
@@ -225,15 +226,20 @@ def aim(centre: ArrayLike, scale: float, position: ArrayLike, size: tuple[int, i
     axis = np.cross([0.0, 0.0, 1.0], ray)
     angle = float(np.arctan2(np.linalg.norm(axis), ray[2]))
     turn = cv2.Rodrigues(axis / max(float(np.linalg.norm(axis)), 1e-12) * angle)[0]
-    vector = cv2.Rodrigues(np.asarray(turn) @ look @ DOWN.T)[0].ravel()
+    vector = _rotation_vector(np.asarray(turn) @ look @ DOWN.T)
     return View(np.append(vector, np.log(f)))
+
+
+def _rotation_vector(matrix: Array) -> Array:
+    # Not by cv2.Rodrigues, which loses half the digits near the identity.
+    return np.asarray(Rotation.from_matrix(matrix).as_rotvec())
 
 
 def turned(view: View, rig: Array, angle: float) -> tuple[View, Array]:
     """Turn the ice's axes by `angle` (rad, ccw); a picture of circles stays the same."""
     c, s = np.cos(angle), np.sin(angle)
     spin = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])
-    vector = cv2.Rodrigues(view.rotation @ spin @ DOWN.T)[0].ravel()
+    vector = _rotation_vector(view.rotation @ spin @ DOWN.T)
     moved = rig.copy()
     moved[POSITION] = spin.T @ rig[POSITION]
     return View(np.append(vector, view.vector[3])), moved

@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from data.errors import InputError
-from data.tracker import Imported, read_table, read_tracker, uniform_steps
+from data.tracker import Imported, read_table, uniform_steps
 from data.tracks import SIGHTING_COLUMNS, write_tracks
 
 RED = "red stone"
@@ -189,7 +189,7 @@ def test_one_file_per_stone_on_one_clock(tmp_path: Path) -> None:
         for stone, rows in table.groupby("stone")
     ]
     assert_same(read_table(paths).sightings, table, 5.1e-4)
-    assert_same(read_tracker(paths).sightings, table, 5.1e-4)
+    assert_same(read_table(paths).sightings, table, 5.1e-4)
     with pytest.raises(InputError, match="two stones with one name, red stone"):
         read_table([paths[0], paths[0]])
 

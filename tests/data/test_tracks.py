@@ -9,13 +9,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from data.errors import InputError
+from data.tracker import read_table
 from data.tracks import (
     SIGHTING_COLUMNS,
     TRACK_COLUMNS,
     check_sightings,
     empty_tracks,
     order_of_motion,
-    read_tracks,
     stone_name,
     write_table,
     write_tracks,
@@ -111,7 +111,7 @@ def test_tracks_come_back_to_nine_digits(tmp_path: Path) -> None:
     text = (tmp_path / "out" / "tracks.csv").read_text()
     assert text.splitlines()[0] == ",".join(TRACK_COLUMNS)
     assert "\r" not in text
-    found = read_tracks(tmp_path / "out" / "tracks.csv")
+    found = read_table([tmp_path / "out" / "tracks.csv"]).sightings
     wanted = check_sightings(tracks)
     pd.testing.assert_frame_equal(found, wanted, rtol=1e-8)
 
@@ -120,13 +120,13 @@ def test_rows_that_the_filter_carried_are_no_measurements(tmp_path: Path) -> Non
     tracks = full_tracks()
     tracks.loc[3, "seen"] = 0
     write_tracks(tracks, tmp_path / "tracks.csv")
-    assert len(read_tracks(tmp_path / "tracks.csv")) == len(tracks) - 1
+    assert len(read_table([tmp_path / "tracks.csv"]).sightings) == len(tracks) - 1
 
 
 def test_names_that_look_like_numbers_stay_names(tmp_path: Path) -> None:
     write_tracks(full_tracks().assign(stone="007"), tmp_path / "tracks.csv")
     with pytest.raises(InputError, match="stone 007"):
-        read_tracks(tmp_path / "tracks.csv")
+        read_table([tmp_path / "tracks.csv"])
 
 
 def test_missing_numbers_are_written_as_nothing(tmp_path: Path) -> None:
@@ -142,13 +142,13 @@ def test_what_is_no_table_of_tracks_is_refused(tmp_path: Path, text: str) -> Non
     path = tmp_path / "tracks.csv"
     path.write_text(text)
     with pytest.raises(InputError) as refusal:
-        read_tracks(path)
+        read_table([path])
     assert "\n" not in str(refusal.value)
 
 
 def test_missing_tracks_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="No such file"):
-        read_tracks(tmp_path / "tracks.csv")
+    with pytest.raises(InputError, match="no such file"):
+        read_table([tmp_path / "tracks.csv"])
 
 
 @settings(
@@ -170,7 +170,7 @@ def test_any_text_is_read_or_refused(tmp_path: Path, cells: list[str]) -> None:
     path = tmp_path / "tracks.csv"
     path.write_text("".join(cells))
     try:
-        table = read_tracks(path)
+        table = read_table([path]).sightings
     except InputError:
         return
     assert np.isfinite(table[["t", "x", "y"]].to_numpy()).all()

@@ -217,9 +217,12 @@ def cached_clip(
     if not clip.exists():
         with tempfile.TemporaryDirectory(dir=folder) as scratch:
             fresh = Path(scratch) / clip.name
-            frames = pictures(scene, camera, moments, shutter=shutter, supersample=supersample)
-            write_video(fresh, frames, fps=fps, crf=crf)
+            truth = render_clip(
+                scene, camera, fresh, fps=fps, times=moments, shutter=shutter, crf=crf,
+                supersample=supersample,
+            )  # fmt: skip
             fresh.replace(clip)
+        return clip, truth
     return clip, describe(scene, camera, moments, fps=fps)
 
 

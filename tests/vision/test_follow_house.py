@@ -71,6 +71,8 @@ def test_a_house_that_comes_into_view_late_is_followed_back() -> None:
     found = [c.found for c in track.cameras]
     assert not found[0] and all(found[len(found) // 2 :])
     assert np.isnan(track.cameras[0].rms_px)
+    first = track.cameras[found.index(True)]
+    assert track.cameras[0].place_sd((0.0, 0.0)) > first.place_sd((0.0, 0.0))
     assert any("carried" in w for w in track.warnings)
 
 
