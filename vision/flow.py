@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.pose import CENTRE_LINE, Marks, View, ice_points, project
+from vision.pose import Marks, View, fixed, project
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
@@ -58,18 +58,10 @@ def similarity(before: Image, after: Image) -> Array | None:
 def carried(matrix: Array, view: View, rig: Array, size: tuple[int, int]) -> Marks:
     """Points of the centre line in the picture, where `matrix` moves them, as marks."""
     along = np.linspace(-6.0, 12.0, 73)
-    line = np.full(len(along), CENTRE_LINE)
-    place = project(ice_points(line, along, rig), view.vector, rig, size)
+    ice = np.stack([np.zeros(len(along)), along], axis=-1)
+    place = project(ice, view.vector, rig, size)
     margin = 0.2 * size[1]
     with np.errstate(invalid="ignore"):
         inside = ((place > -margin) & (place < np.array(size) + margin)).all(-1)
     moved = place[inside] @ matrix[:, :2].T + matrix[:, 2]
-    count = len(moved)
-    normal = np.repeat(np.eye(2), count, axis=0)
-    return Marks(
-        np.full(2 * count, CENTRE_LINE),
-        np.tile(along[inside], 2),
-        np.tile(moved, (2, 1)),
-        normal,
-        np.full(2 * count, FLOW_SD * np.sqrt(max(count, 1) / 4)),
-    )
+    return fixed(ice[inside], moved, FLOW_SD * np.sqrt(max(len(moved), 1) / 4))

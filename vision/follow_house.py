@@ -8,32 +8,25 @@ radii are fitted jointly to many frames, and every view again with these held.
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from data.errors import SceneError
 from data.progress import Progress, no_progress
-from data.sheet import HOUSE
-from vision.adjust import Solution, solve
-from vision.camera import Camera
+from vision.adjust import solve
 from vision.clip import Clip, Frame, Image
 from vision.flow import carried, similarity
-from vision.house import SHARING, find_house, judge
+from vision.house import find_house, judge
+from vision.joint import HouseTrack, Seen, fit_clip
 from vision.marks import measure
-from vision.place_error import place_error
 from vision.pose import (
     ANYWHERE,
     CIRCLES,
     OVERHEAD,
-    POSITION,
-    R4,
-    R8,
-    Marks,
     Prior,
     View,
-    camera,
     joined,
 )
 
@@ -45,56 +38,11 @@ FIND_EVERY = 5
 LOOK_BACK = 60
 """Frames kept while the house has not been found, to be followed backwards from the first find."""
 
-JOINT_FRAMES = 30
-
-FRAMES_ALIKE = 4
-"""Frames of the joint fit that see the house differently enough to err independently."""
-
 SETTLED_PX = 1.5
 """Correction below which the edges need not be measured anew from the corrected view, px."""
 
-ERROR_FRAMES = 4
-"""Frames from which the error of mapped points is worked out."""
-
-CARRY_DRIFT = 0.03
-"""How fast a carried view goes astray, m/s on the ice."""
-
 CARRY_MAX_S = 4.0
 """A view carried longer than this without rings is given up."""
-
-
-@dataclass(frozen=True)
-class HouseTrack:
-    """The cameras of a clip.
-
-    Attributes
-    ----------
-    cameras : tuple of Camera
-        One per frame in which the house is known, in order; found is False where carried.
-    radii : ndarray, shape (3,)
-        Radii of the painted 12-, 8- and 4-ft edges, m; the first is the yardstick.
-    radii_sd : ndarray, shape (3,)
-    position_sd : ndarray, shape (3,)
-        Standard deviation of the camera's place, m.
-    warnings : tuple of str
-    """
-
-    cameras: tuple[Camera, ...]
-    radii: Array
-    radii_sd: Array
-    position_sd: Array
-    warnings: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class _Seen:
-    """One followed frame."""
-
-    index: int
-    t: float
-    view: View
-    marks: Marks
-    found: bool
 
 
 @dataclass
@@ -103,7 +51,7 @@ class _Piece:
 
     rig: Array
     prior: Prior
-    seen: list[_Seen] = field(default_factory=list)
+    seen: list[Seen] = field(default_factory=list)
 
     @property
     def length(self) -> int:
@@ -132,7 +80,8 @@ def follow_house(clip: Clip, progress: Progress = no_progress) -> HouseTrack:
         )
     best = max(pieces, key=lambda p: p.length)
     progress("camera", 0, 1)
-    track = _finish(best, clip.size, len(pieces))
+    track = fit_clip(best.seen, best.rig, best.prior, clip.size)
+    track = replace(track, warnings=(*_left_out(best, len(pieces)), *track.warnings))
     progress("camera", 1, 1)
     return track
 
@@ -171,7 +120,7 @@ def _start(frame: Frame, waiting: deque[Frame]) -> _Piece | None:
     if fit is None:
         return None
     piece = _Piece(fit.rig, OVERHEAD if fit.overhead else ANYWHERE)
-    first = _Seen(frame.index, frame.t, fit.view, fit.evidence.marks, True)
+    first = Seen(frame.index, frame.t, fit.view, fit.evidence.marks, True)
     piece.seen.append(first)
     after = frame.image
     for earlier in reversed(waiting):
@@ -190,7 +139,7 @@ def _trim(piece: _Piece) -> None:
         piece.seen.pop()
 
 
-def _next(piece: _Piece, frame: Frame, before: Image | None) -> _Seen | None:
+def _next(piece: _Piece, frame: Frame, before: Image | None) -> Seen | None:
     """Follow into one more frame; None where the scene is another one."""
     last = piece.seen[-1]
     speed = np.zeros(4)
@@ -222,14 +171,14 @@ def _next(piece: _Piece, frame: Frame, before: Image | None) -> _Seen | None:
     lines = measure(frame.image, moved.vector, piece.rig, reach=_reach(size)).marks
     marks = joined([ghosts, lines.pick(lines.line >= CIRCLES)])
     view = solve([marks], [moved], piece.rig, size, view_sd=(1, 1, 0.02, 0.1)).views[0]
-    return _Seen(frame.index, frame.t, view, marks, False)
+    return Seen(frame.index, frame.t, view, marks, False)
 
 
 def _reach(size: tuple[int, int]) -> float:
     return max(7.0, 0.007 * size[0])
 
 
-def _settle(piece: _Piece, frame: Frame, view: View) -> _Seen | None:
+def _settle(piece: _Piece, frame: Frame, view: View) -> Seen | None:
     """Refine a predicted view on the rings; None where they are not there."""
     size = (frame.image.shape[1], frame.image.shape[0])
     reach = _reach(size)
@@ -245,76 +194,14 @@ def _settle(piece: _Piece, frame: Frame, view: View) -> _Seen | None:
         if shift[:3].max() * view.focal < SETTLED_PX:
             break
     marks = evidence.marks.pick(fit.inliers[0])
-    return _Seen(frame.index, frame.t, view, marks, True)
+    return Seen(frame.index, frame.t, view, marks, True)
 
 
-def _finish(piece: _Piece, size: tuple[int, int], pieces: int) -> HouseTrack:
-    """Joint fit, then every view with the shared part held."""
-    good = [s for s in piece.seen if s.found]
-    chosen = _spread(good)
-    joint = solve(
-        [s.marks for s in chosen], [s.view for s in chosen], piece.rig, size,
-        prior=piece.prior, iterations=25, sharing=SHARING * max(len(chosen) / FRAMES_ALIKE, 1),
-    )  # fmt: skip
-    fits = {
-        s.index: solve([s.marks], [s.view], joint.rig, size, view_sd=(np.inf, np.inf, 0.05, np.inf))
-        for s in piece.seen
-    }
-    few = chosen[:: max(len(chosen) // ERROR_FRAMES, 1)]
-    views = [fits[s.index].views[0] for s in few]
-    error = place_error([s.marks for s in few], views, joint.rig, joint.rig_cov, size)
-    found_at = np.array([s.t for s in good])
-    cameras = [
-        camera(
-            fits[s.index].views[0],
-            joint.rig,
-            size,
-            frame=s.index,
-            t=s.t,
-            rms_px=float(fits[s.index].rms[0]) if s.found else float("nan"),
-            found=s.found,
-            # Frames before the first find were carried too: backwards.
-            place_error=error.grown(CARRY_DRIFT * float(np.abs(found_at - s.t).min())),
-        )
-        for s in piece.seen
-    ]
-    sd = np.sqrt(np.diag(joint.rig_cov))
-    return HouseTrack(
-        tuple(cameras),
-        np.array([HOUSE.twelve_foot, joint.rig[R8], joint.rig[R4]]),
-        np.array([0.0, sd[R8], sd[R4]]),
-        sd[POSITION],
-        _warnings(piece, joint, pieces),
+def _left_out(piece: _Piece, pieces: int) -> tuple[str, ...]:
+    if pieces == 1:
+        return ()
+    first, last = piece.seen[0].index, piece.seen[-1].index
+    return (
+        f"the house is shown in {pieces} separate pieces; only the longest is used, frames"
+        f" {first} to {last}",
     )
-
-
-def _spread(seen: list[_Seen]) -> list[_Seen]:
-    """Frames for the joint fit, spread over the clip."""
-    at = np.unique(np.round(np.linspace(0, len(seen) - 1, JOINT_FRAMES)).astype(int))
-    return [seen[i] for i in at]
-
-
-def _warnings(piece: _Piece, joint: Solution, pieces: int) -> tuple[str, ...]:
-    found = []
-    if pieces > 1:
-        first, last = piece.seen[0].index, piece.seen[-1].index
-        found.append(
-            f"the house is shown in {pieces} separate pieces; only the longest is used, frames"
-            f" {first} to {last}"
-        )
-    lost = sum(not s.found for s in piece.seen)
-    if lost:
-        found.append(
-            f"{lost} of {len(piece.seen)} frames do not show the rings; there the camera is"
-            " carried by the motion of the picture"
-        )
-    height_sd = float(np.sqrt(joint.rig_cov[2, 2]))
-    if height_sd > 0.7 * piece.prior.sd[2]:
-        found.append(
-            f"the camera's height cannot be told from this view ({joint.rig[2]:.1f} ±"
-            f" {height_sd:.1f} m assumed); stones far from the picture's middle may be"
-            " centimetres off"
-        )
-    if not (np.concatenate([s.marks.line for s in piece.seen]) >= CIRCLES).any():
-        found.append("neither centre line nor tee line is seen; y is up in the picture")
-    return tuple(found)

@@ -6,6 +6,7 @@ the sheet. With a frame's `View` it says where every point of the ice appears in
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -14,21 +15,22 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
-from data.sheet import HOUSE
+from data.sheet import HOUSE, SHEET
 from vision.camera import Camera, PlaceError
 
 Array = NDArray[np.float64]
 
 CIRCLES = 3
-TWELVE, EIGHT, FOUR, CENTRE_LINE, TEE_LINE, LEFT, RIGHT = range(7)
-"""What a mark lies on: the three circles, the two lines through the tee, the sheet's sides."""
+TWELVE, EIGHT, FOUR, CENTRE_LINE, TEE_LINE, LEFT, RIGHT, BACK_LINE, HOG_LINE, FIXED = range(10)
+"""What a mark lies on: the three circles, the two lines through the tee, the sheet's sides, the
+lines across it behind and before the house; or a point of the ice whose place is known."""
 
 DOWN = np.diag([1.0, -1.0, -1.0])
 """Rotation of a camera that looks straight down with y up in the picture."""
 
 POSITION, K1, K1_ZOOM, K2, R8, R4, SIDE_L, SIDE_R = slice(0, 3), 3, 4, 5, 6, 7, 8, 9
-CENTRE_X, TEE_Y = 10, 11
-RIG_SIZE = 12
+CENTRE_X, TEE_Y, BACK_Y, HOG_Y = 10, 11, 12, 13
+RIG_SIZE = 14
 VIEW_SIZE = 4
 
 
@@ -39,13 +41,16 @@ class Marks:
     Attributes
     ----------
     line : ndarray of int, shape (n,)
-        What each point lies on (`TWELVE` … `RIGHT`).
+        What each point lies on (`TWELVE` … `FIXED`).
     along : ndarray, shape (n,)
-        Angle on a circle, rad; else the coordinate along the line, m.
+        Angle on a circle, rad; the coordinate along a line, m; x of a fixed point, m.
     pixel, normal : ndarray, shape (n, 2)
         Measured place and the unit normal along which it was measured, px.
     sd : ndarray, shape (n,)
         Standard deviation along the normal, px.
+    across : ndarray, shape (n,), optional
+        y of a fixed point, m; without meaning for the other kinds. None where there are no fixed
+        points.
     """
 
     line: NDArray[np.int64]
@@ -53,6 +58,7 @@ class Marks:
     pixel: Array
     normal: Array
     sd: Array
+    across: Array | None = None
 
     def __len__(self) -> int:
         return len(self.line)
@@ -65,6 +71,7 @@ class Marks:
             self.pixel[which],
             self.normal[which],
             self.sd[which],
+            None if self.across is None else self.across[which],
         )
 
 
@@ -79,16 +86,32 @@ def joined(parts: Sequence[Marks]) -> Marks:
         np.concatenate([p.pixel for p in parts]),
         np.concatenate([p.normal for p in parts]),
         np.concatenate([p.sd for p in parts]),
+        None
+        if all(p.across is None for p in parts)
+        else np.concatenate([np.zeros(len(p)) if p.across is None else p.across for p in parts]),
+    )
+
+
+def fixed(ice: Array, pixel: Array, sd: ArrayLike) -> Marks:
+    """Points of the ice at known places, shape (n, 2), m, seen at pixels: two marks for each."""
+    count = len(ice)
+    return Marks(
+        np.full(2 * count, FIXED),
+        np.tile(ice[:, 0], 2),
+        np.tile(pixel, (2, 1)),
+        np.repeat(np.eye(2), count, axis=0),
+        np.tile(np.broadcast_to(np.asarray(sd, float), count), 2),
+        np.tile(ice[:, 1], 2),
     )
 
 
 @dataclass(frozen=True)
 class Prior:
-    """Gaussian prior of the rig: mean and standard deviation, shape (12,) each.
+    """Gaussian prior of the rig: mean and standard deviation, shape (14,) each.
 
     Order: position x, y, z (m); k1, its change per unit of log focal length, k2; radii of the
-    8-ft and 4-ft edges (m); x of the left and the right side of the sheet, x of the centre line
-    and y of the tee line (m).
+    8-ft and 4-ft edges (m); x of the left and the right side of the sheet, x of the centre line,
+    y of the tee line, of the back line and of the hog line (m).
     """
 
     mean: Array
@@ -99,10 +122,11 @@ _LENS = ((-0.015, 0.05), (0.0, 0.05), (0.01, 0.02))  # k1, k1 by zoom, k2: broad
 _RADII = ((1.2135, 0.005), (0.619, 0.006))  # measured on fourteen painted houses
 _SIDES = ((-2.35, 0.1), (2.35, 0.1))
 _CROSS = ((0.0, 0.008), (0.0, 0.008))  # a line may be two stripes, of which one is measured
+_ACROSS = ((-SHEET.back_line, 0.015), (SHEET.hog_line, 0.06))  # of a wide line one edge may be
 
 
 def _prior(*position: tuple[float, float]) -> Prior:
-    rows = np.array([*position, *_LENS, *_RADII, *_SIDES, *_CROSS])
+    rows = np.array([*position, *_LENS, *_RADII, *_SIDES, *_CROSS, *_ACROSS])
     return Prior(rows[:, 0].copy(), rows[:, 1].copy())
 
 
@@ -122,7 +146,7 @@ class View:
     @property
     def rotation(self) -> Array:
         """Ice axes to camera axes (x right, y down, z forward), shape (3, 3)."""
-        return np.asarray(cv2.Rodrigues(self.vector[:3])[0], np.float64) @ DOWN
+        return rotation_matrix(self.vector)
 
     @property
     def focal(self) -> float:
@@ -130,25 +154,86 @@ class View:
         return float(np.exp(self.vector[3]))
 
 
-def ice_points(line: NDArray[np.int64], along: ArrayLike, rig: Array) -> Array:
+def rotation_matrix(vector: Array) -> Array:
+    """Ice axes to camera axes (x right, y down, z forward), shape (3, 3), from a view's vector.
+
+    Rodrigues' formula, followed by the camera that looks straight down.
+    """
+    x, y, z = float(vector[0]), float(vector[1]), float(vector[2])
+    square = x * x + y * y + z * z
+    a, b, _ = _series(square)
+    c = 1.0 - b * square
+    return np.array(
+        [
+            [c + b * x * x, a * z - b * x * y, -a * y - b * x * z],
+            [a * z + b * x * y, -c - b * y * y, a * x - b * y * z],
+            [b * x * z - a * y, -a * x - b * y * z, -c - b * z * z],
+        ]
+    )
+
+
+def turning(vector: Array) -> Array:
+    """Change of the rotation, as a turn about the camera's axes, by the view's first three.
+
+    Left Jacobian of the rotation group, shape (3, 3): Barfoot, State Estimation for Robotics,
+    2017, equation 7.77.
+    """
+    x, y, z = float(vector[0]), float(vector[1]), float(vector[2])
+    square = x * x + y * y + z * z
+    a, b, c = _series(square)
+    return np.array(
+        [
+            [a + c * x * x, c * x * y - b * z, c * x * z + b * y],
+            [c * x * y + b * z, a + c * y * y, c * y * z - b * x],
+            [c * x * z - b * y, c * y * z + b * x, a + c * z * z],
+        ]
+    )
+
+
+def _series(square: float) -> tuple[float, float, float]:
+    """Sin t / t, (1 − cos t) / t² and (t − sin t) / t³ for t² = `square`."""
+    if square < 1e-4:
+        return 1 - square / 6, 0.5 - square / 24, 1 / 6 - square / 120
+    t = math.sqrt(square)
+    return math.sin(t) / t, (1 - math.cos(t)) / square, (t - math.sin(t)) / (square * t)
+
+
+def ice_points(
+    line: NDArray[np.int64], along: ArrayLike, rig: Array, across: Array | None = None
+) -> Array:
     """Places of marks on the ice, shape (n, 2), m."""
-    place, way = ice_frame(line, np.asarray(along, float))
+    place, way = ice_frame(line, np.asarray(along, float), across)
     return np.asarray(place + way * measures(rig)[line][:, None])
+
+
+MEASURED = np.array([-1, R8, R4, CENTRE_X, TEE_Y, SIDE_L, SIDE_R, BACK_Y, HOG_Y, -1])
+"""Per kind of mark the unknown of the rig that is its measure; −1 where that is known."""
 
 
 def measures(rig: Array) -> Array:
     """List the measure of each kind of mark: radius of a circle or place of a line, m."""
-    return np.array([HOUSE.twelve_foot, *rig[[R8, R4, CENTRE_X, TEE_Y, SIDE_L, SIDE_R]]])
+    return np.array([HOUSE.twelve_foot, *rig[MEASURED[1:-1]], 0.0])
 
 
-def ice_frame(line: NDArray[np.int64], along: Array) -> tuple[Array, Array]:
+_FACTORS = np.zeros((4, 10))
+_FACTORS[0, :CIRCLES] = 1.0  # circles
+_FACTORS[1, [CENTRE_LINE, LEFT, RIGHT]] = 1.0  # lines along the sheet
+_FACTORS[2, [TEE_LINE, BACK_LINE, HOG_LINE]] = 1.0  # lines across it
+_FACTORS[3, FIXED] = 1.0
+
+
+def ice_frame(
+    line: NDArray[np.int64], along: Array, across: Array | None = None
+) -> tuple[Array, Array]:
     """Foot of each mark and the direction in which its line's measure moves it, (n, 2) each."""
-    place, way = np.zeros((len(line), 2)), np.zeros((len(line), 2))
-    circle, across = line < CIRCLES, line == TEE_LINE
-    way[:, 0] = np.where(circle, np.cos(along), ~across)
-    way[:, 1] = np.where(circle, np.sin(along), across)
-    place[:, 0] = np.where(across, along, 0.0)
-    place[:, 1] = np.where(circle | across, 0.0, along)
+    circle, lengthwise, crosswise, known = _FACTORS[:, line]
+    place, way = np.empty((len(line), 2)), np.empty((len(line), 2))
+    way[:, 0] = circle * np.cos(along) + lengthwise
+    way[:, 1] = circle * np.sin(along) + crosswise
+    place[:, 0] = (crosswise + known) * along
+    place[:, 1] = lengthwise * along
+    if across is not None:
+        place[:, 1] += known * across
     return place, way
 
 
@@ -164,7 +249,7 @@ def zoom(log_f: float, size: tuple[int, int]) -> float:
 
 def project(ice: Array, view: Array, rig: Array, size: tuple[int, int]) -> Array:
     """Ice points, shape (n, 2), to pixels; points behind the camera go to infinity."""
-    rotation = np.asarray(cv2.Rodrigues(view[:3])[0]) @ DOWN
+    rotation = rotation_matrix(view)
     p = ice @ rotation[:, :2].T - rotation @ rig[POSITION]
     z = np.where(p[:, 2] > 1e-3, p[:, 2], np.nan)
     w, h = size

@@ -1,10 +1,13 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from vision.adjust import _Design, _linearised, _residuals, solve
+from vision.adjust import Frame, by_rig, linearised, solve, solve_view
 from vision.pose import (
     CENTRE_LINE,
+    FIXED,
     OVERHEAD,
     POSITION,
     R4,
@@ -13,8 +16,9 @@ from vision.pose import (
     VIEW_SIZE,
     Marks,
     View,
-    ice_frame,
+    fixed,
     ice_points,
+    joined,
     project,
     start_rig,
 )
@@ -27,7 +31,7 @@ def true_rig() -> np.ndarray:
     rig = start_rig(OVERHEAD, (-0.1, 0.15, 9.4))
     rig[3:6] = -0.03, 0.02, 0.01
     rig[R8], rig[R4] = 1.2105, 0.6235
-    rig[8:] = -2.38, 2.36, 0.002, -0.001
+    rig[8:] = -2.38, 2.36, 0.002, -0.001, -1.822, 6.45
     return rig
 
 
@@ -35,15 +39,16 @@ def marks(rng: np.random.Generator, view: np.ndarray, rig: np.ndarray, noise: fl
     """Points of all lines in the picture, measured along random normals with noise."""
     angle = np.linspace(-np.pi, np.pi, 60, endpoint=False)
     straight = np.linspace(-2.0, 4.0, 60)
-    line = np.repeat(np.arange(7), 60)
-    along = np.concatenate([angle] * 3 + [straight] * 4)
-    place = project(ice_points(line, along, rig), view, rig, SIZE)
-    aside = project(ice_points(line, along + 1e-4, rig), view, rig, SIZE) - place
+    line = np.repeat(np.arange(10), 60)
+    along = np.concatenate([angle] * 3 + [straight] * 7)
+    across = np.where(line == FIXED, np.tile(straight[::-1], 10), 0.0)
+    place = project(ice_points(line, along, rig, across), view, rig, SIZE)
+    aside = project(ice_points(line, along + 1e-4, rig, across), view, rig, SIZE) - place
     normal = np.stack([aside[:, 1], -aside[:, 0]], axis=-1)
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-    seen = ((place > 0) & (place < SIZE)).all(1)
+    seen = np.asarray(((place > 0) & (place < SIZE)).all(1))
     measured = place + normal * rng.normal(0, noise, (len(line), 1))
-    every = Marks(line, along, measured, normal, np.full(len(line), SD))
+    every = Marks(line, along, measured, normal, np.full(len(line), SD), across)
     return every.pick(seen)
 
 
@@ -57,19 +62,21 @@ def views(count: int) -> list[View]:
 def test_derivatives_are_those_of_the_residuals() -> None:
     rng = np.random.default_rng(1)
     rig, view = true_rig(), views(1)[0].vector
-    m = marks(rng, view, rig, 1.0)
-    design = _Design(m, *ice_frame(m.line, m.along))
-    _, by_view, by_rig = _linearised(design, view, rig, SIZE, True)
+    frame = Frame(marks(rng, view, rig, 1.0), SIZE)
+
+    def residuals(v: np.ndarray, r: np.ndarray) -> np.ndarray:
+        return linearised(frame, frame.points(r), v, r).residual
+
+    at = linearised(frame, frame.points(rig), view, rig)
+    shared = by_rig(frame, at, view)
     for i in range(VIEW_SIZE):
         step = np.eye(VIEW_SIZE)[i] * 1e-6
-        ahead = _residuals(design, view + step, rig, SIZE)
-        behind = _residuals(design, view - step, rig, SIZE)
-        np.testing.assert_allclose(by_view[:, i], (ahead - behind) / 2e-6, rtol=1e-5, atol=1e-3)
+        change = (residuals(view + step, rig) - residuals(view - step, rig)) / 2e-6
+        np.testing.assert_allclose(at.by_view[i], change, rtol=1e-5, atol=1e-3)
     for i in range(RIG_SIZE):
         step = np.eye(RIG_SIZE)[i] * 1e-6
-        ahead = _residuals(design, view, rig + step, SIZE)
-        behind = _residuals(design, view, rig - step, SIZE)
-        np.testing.assert_allclose(by_rig[:, i], (ahead - behind) / 2e-6, rtol=1e-5, atol=1e-3)
+        change = (residuals(view, rig + step) - residuals(view, rig - step)) / 2e-6
+        np.testing.assert_allclose(shared[i], change, rtol=1e-5, atol=1e-3)
 
 
 def test_exact_marks_give_the_camera_back() -> None:
@@ -105,7 +112,7 @@ def test_wrong_points_do_not_pull() -> None:
         m = marks(rng, v.vector, rig, 0.1)
         wrong = rng.random(len(m)) < 0.15
         off = m.normal * (rng.uniform(3, 8, (len(m), 1)) * wrong[:, None])
-        frames.append(Marks(m.line, m.along, m.pixel + off, m.normal, m.sd))
+        frames.append(replace(m, pixel=m.pixel + off))
     solution = solve(frames, truth, rig, SIZE)
     for found, true in zip(solution.views, truth, strict=True):
         tee = project(np.zeros((1, 2)), found.vector, rig, SIZE)
@@ -132,3 +139,31 @@ def test_without_lines_the_roll_stays_where_it_was() -> None:
     assert abs(found.vector[2] - 0.05) < 0.01
     assert np.isfinite(found.vector).all()
     assert rig[POSITION][2] == 9.0
+
+
+def test_points_of_known_place_fix_a_view() -> None:
+    rig, view = true_rig(), views(1)[0]
+    ice = np.array([[0.3, -1.0], [1.5, 0.2], [-1.2, 2.4]])
+    seen = fixed(ice, project(ice, view.vector, rig, SIZE), 0.5)
+    found = solve_view(seen, View(view.vector + np.array([0.02, -0.01, 0.03, 0.04])), rig, SIZE)
+    np.testing.assert_allclose(found.view.vector, view.vector, atol=1e-3)
+    assert found.rms < 0.05
+    assert found.inliers.all()
+
+
+def test_stated_errors_of_a_view_are_the_scatter_of_its_fits() -> None:
+    rng = np.random.default_rng(7)
+    rig, view = true_rig(), views(1)[0]
+    fits = [solve_view(marks(rng, view.vector, rig, SD), view, rig, SIZE) for _ in range(300)]
+    scatter = np.cov(np.array([f.view.vector for f in fits]).T)
+    stated = np.mean([f.cov for f in fits], axis=0)
+    spread = np.sqrt(np.linalg.eigvalsh(np.linalg.solve(stated, scatter)))
+    assert 0.8 < spread.min() < spread.max() < 1.2
+
+
+def test_views_of_no_marks_are_not_known() -> None:
+    rig, view = true_rig(), views(1)[0]
+    found = solve_view(joined([]), view, rig, SIZE)
+    np.testing.assert_array_equal(found.view.vector, view.vector)
+    assert np.sqrt(found.cov[0, 0]) > 1.0
+    assert np.isnan(found.rms)
