@@ -109,12 +109,24 @@ class _Solver:
             for i, p in enumerate(pieces)
             if p.closes is not None
         }
+        self.blocks = self._blocks()
         self.origins = np.array([self._origin(piece) for piece in pieces])
         self.theta = np.zeros(self.size)
         for k, meeting in enumerate(self.meetings):
             self.theta[6 * len(self.pieces) + k] = meeting.t
         for i, piece in enumerate(self.pieces):
             self._guess(i, piece)
+
+    def _blocks(self) -> list[NDArray[np.int64]]:
+        """Unknowns that depend on each other: pieces are tied to others by meetings alone."""
+        count = len(self.pieces)
+        group = np.arange(count + len(self.meetings))
+        for (k, _), pair in self.sides.items():
+            for rank in pair:
+                group[group == group[rank]] = group[count + k]
+        unknowns = np.concatenate([np.repeat(group[:count], 6), group[count:]])
+        order = np.argsort(unknowns, kind="stable")
+        return np.split(order, np.flatnonzero(np.diff(unknowns[order])) + 1)
 
     def _origin(self, piece: Piece) -> float:
         if piece.opens is not None:
@@ -145,7 +157,7 @@ class _Solver:
             self._assign()
             data, right = self._data()
             rules, rules_right = self._rules()
-            cov = _inverse(data + rules)
+            cov = _inverse(data + rules, self.blocks)
             new = cov @ (right + rules_right)
             step = new - self.theta
             for k in range(len(self.meetings)):
@@ -154,7 +166,7 @@ class _Solver:
             scale = np.sqrt(np.maximum(np.diag(cov), 1e-24))
             settled = bool(np.all(np.abs(step) < 0.02 * scale))
             self.theta = self.theta + step
-            self.inflation = self._excess(float(np.trace(cov @ data)))
+            self.inflation = self._excess(float(np.sum(cov * data)))
             if settled:
                 break
         return ShotFit(
@@ -339,7 +351,16 @@ class _Solver:
         return max(1.0, square / (count - parameters)) * likeness([*runs, *self.still])
 
 
-def _inverse(normal: Floats) -> Floats:
+def _inverse(normal: Floats, blocks: Sequence[NDArray[np.int64]]) -> Floats:
+    """Inverse of a matrix made of blocks, block by block."""
+    out = np.zeros_like(normal)
+    for block in blocks:
+        at = np.ix_(block, block)
+        out[at] = _inverse_block(normal[at])
+    return out
+
+
+def _inverse_block(normal: Floats) -> Floats:
     """Inverse of a matrix that is positive but for rounding, its rows of very different size."""
     size = 1.0 / np.sqrt(np.diag(normal))
     scaled = normal * size[:, None] * size[None, :]
