@@ -141,23 +141,33 @@ def _paint_sheet(canvas: _Canvas, sheet: Sheet, paint: Paint, x: float) -> None:
     colours = (paint.twelve, paint.eight, paint.four, paint.button)
     for radius, colour in zip(paint.radii, colours, strict=True):
         canvas.disc(x, 0.0, radius, colour)
-    half = sheet.line_width / 2
     inner = paint.radii[3]
-    for y0, y1 in ((low, -inner), (inner, high)):
-        canvas.box(x - half, x + half, y0, y1, sheet.line)
-    canvas.box(left, x - inner, -half, half, sheet.line)
-    canvas.box(x + inner, right, -half, half, sheet.line)
-    canvas.box(left, right, -BACK_LINE - half, -BACK_LINE + half, sheet.line)
+    for low_side, high_side in _stripes(sheet):
+        for y0, y1 in ((low, -inner), (inner, high)):
+            canvas.box(x + low_side, x + high_side, y0, y1, sheet.line)
+        canvas.box(left, x - inner, low_side, high_side, sheet.line)
+        canvas.box(x + inner, right, low_side, high_side, sheet.line)
+        canvas.box(left, right, low_side - BACK_LINE, high_side - BACK_LINE, sheet.line)
     canvas.box(left, right, HOG_LINE, HOG_LINE + HOG_WIDTH, sheet.hog_line)
     if paint.outline is not None:
-        thin = paint.outline_width / 2
         for radius in paint.radii[:3]:
-            canvas.ring(x, 0.0, radius - thin, radius + thin, paint.outline)
+            inside, outside = (
+                radius + (paint.outline_at + side) * paint.outline_width for side in (-0.5, 0.5)
+            )
+            canvas.ring(x, 0.0, inside, outside, paint.outline)
     if paint.logo:
         canvas.word(Mark(paint.logo, x, 0.0, inner * 0.42, paint.logo_colour))
     for mark in sheet.marks:
         canvas.word(Mark(mark.text, mark.x + x, mark.y, mark.height, mark.colour, mark.ground,
                          mark.angle))  # fmt: skip
+
+
+def _stripes(sheet: Sheet) -> tuple[tuple[float, float], ...]:
+    """Sides of the stripes of which a line is made, m from its middle."""
+    half, gap = sheet.line_width / 2, sheet.line_gap / 2
+    if not gap:
+        return ((-half, half),)
+    return (-gap - 2 * half, -gap), (gap, gap + 2 * half)
 
 
 def _texture(canvas: _Canvas, light: Light, rng: np.random.Generator) -> None:

@@ -24,7 +24,10 @@ YELLOW_CAP: Colour = (38, 208, 226)
 class Paint:
     """Rings: colours from the outside in, painted radii, and the thin outline of each edge.
 
-    `logo` is a word in the button; empty for none.
+    The rules measure the 12-ft circle to its outer edge, 1.829 m. Where an edge is outlined, the
+    outline is part of the circle and its outer side lies on the radius (`outline_at` −0.5); some
+    painters lay it astride the edge (0). A button of radius 0 is none. `logo` is a word in the
+    button; empty for none.
     """
 
     twelve: Colour = TEAL
@@ -34,6 +37,7 @@ class Paint:
     radii: tuple[float, float, float, float] = (1.829, 1.212, 0.622, 0.19)
     outline: Colour | None = (92, 40, 150)
     outline_width: float = 0.007
+    outline_at: float = -0.5
     logo: str = "FJELL"
     logo_colour: Colour = (120, 90, 60)
 
@@ -53,7 +57,10 @@ class Mark:
 
 @dataclass(frozen=True)
 class Sheet:
-    """The sheet around the house; `pitch` is the distance to the neighbouring sheets."""
+    """The sheet around the house; `pitch` is the distance to the neighbouring sheets.
+
+    A line may be two stripes with a gap of `line_gap` between them, m.
+    """
 
     ice: Colour = WHITE
     half_width: tuple[float, float] = (2.375, 2.36)
@@ -62,6 +69,7 @@ class Sheet:
     carpet: Colour = (66, 30, 16)
     line: Colour = (150, 130, 208)
     line_width: float = 0.015
+    line_gap: float = 0.0
     hog_line: Colour = (60, 40, 190)
     pitch: float = 6.1
     marks: tuple[Mark, ...] = (

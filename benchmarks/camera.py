@@ -1,0 +1,285 @@
+"""How well the ice is measured, and at what cost: one table of all that the camera must do.
+
+    python -m benchmarks.camera [SHARED] [--kinds NAME ...] [--size 720 1080] [--random N]
+
+Rendered clips with truth (`benchmarks.views`): ice points of the house, seen at their true
+pixels, mapped to the ice by the camera found; in mm. Then real stills and real ice set in motion
+(`benchmarks.stills`), where SHARED is there. A figure with a ! misses its bar.
+
+Columns: `rms`, `95 %`, `max` of points in the house; `high` the rms of points 0.12 m above it;
+`guards` that of the ice 4 to 6 m before the tee; `carried` that of points in the house where the
+frame itself fixed no camera; `first` that of the first single frame; `lost` frames without a
+camera of those that show a third of the 12-ft circle, and + those of them only carried; `in 2 sd`
+the share of errors per axis within two stated standard errors, and their rms over the stated;
+`ms` CPU a frame beyond decoding and one find, `read` that of decoding, `find` CPU of one find.
+With --parts the rms of the error's parts: shift, turn and scale (at the rim), and the rest.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks import stills
+from benchmarks.views import HEIGHT, Clip, enlarged, named
+from data.errors import SceneError
+from data.sheet import HOUSE, STONE
+from tests.synthetic import View
+from tests.synthetic.people import hidden
+from vision.camera import Camera
+from vision.clip import open_clip
+from vision.follow_house import follow_house
+from vision.house import find_house
+
+Array = NDArray[np.float64]
+
+ROOT = Path(__file__).resolve().parents[1]
+SHARE = 1 / 3
+"""Part of the 12-ft circle that must do to keep the house."""
+
+FOLLOWING, FINDING = 4.0, 150.0
+"""Bars of CPU time, ms, at 1080p."""
+
+COVERED = 0.92, 0.98
+"""Bars of the share of errors within two standard errors."""
+
+_AXIS = np.arange(-1.8, 1.81, 0.15)
+GRID = np.stack(np.meshgrid(_AXIS, _AXIS), axis=-1).reshape(-1, 2)
+GRID = GRID[np.hypot(*GRID.T) <= HOUSE.twelve_foot]
+GUARDS = np.stack(np.meshgrid([-1.0, -0.5, 0, 0.5, 1.0], [4.0, 4.5, 5.0, 5.5, 6.0]), -1)
+GUARDS = GUARDS.reshape(-1, 2)
+_ANGLE = np.linspace(0, 2 * np.pi, 360, endpoint=False)
+RIM = HOUSE.twelve_foot * np.stack([np.cos(_ANGLE), np.sin(_ANGLE)], axis=-1)
+
+
+@dataclass
+class Score:
+    """Errors of one clip, m; `scaled` in stated standard errors."""
+
+    clip: Clip
+    frames: int
+    due: int = 0
+    lost: int = 0
+    only_carried: int = 0
+    false: int = 0
+    house: list[Array] = field(default_factory=list)
+    carried: list[Array] = field(default_factory=list)
+    high: list[Array] = field(default_factory=list)
+    guards: list[Array] = field(default_factory=list)
+    scaled: list[Array] = field(default_factory=list)
+    parts: list[Array] = field(default_factory=list)
+    first: float = float("nan")
+    following: float = float("nan")
+    finding: float = float("nan")
+    decoding: float = float("nan")
+
+
+def in_view(view: View, places: Array, height: float = 0.0) -> tuple[Array, Array]:
+    """Pick the places that the picture shows, and tell their pixels."""
+    points = np.column_stack([places, np.full(len(places), height)])
+    pixels, depth = view.pinhole(points)
+    near = (depth > 0.2) & (np.abs(pixels - view.lens.centre) < 2 * view.lens.size[0]).all(-1)
+    pixels = view.lens.distort(np.where(near[:, None], pixels, view.lens.centre))
+    seen = near & ((pixels >= 0) & (pixels <= np.array(view.lens.size) - 1)).all(-1)
+    return places[seen], pixels[seen]
+
+
+def shown_share(clip: Clip, view: View, t: float) -> float:
+    """Part of the 12-ft circle that is in the picture and under nobody."""
+    _, pixels = in_view(view, RIM)
+    return float((~hidden(view, clip.scene.people, t, pixels)).sum()) / len(RIM)
+
+
+def parts(places: Array, error: Array) -> Array:
+    """Shift, turn and scale of errors (the last two at the rim) and the rest, rms, m."""
+    one, none = np.ones(len(places)), np.zeros(len(places))
+    x, y = (places / HOUSE.twelve_foot).T
+    design = np.concatenate(
+        [np.stack([one, none, -y, x], axis=-1), np.stack([none, one, x, y], axis=-1)]
+    )
+    known, *_ = np.linalg.lstsq(design, error.T.ravel(), rcond=None)
+    rest = error.T.ravel() - design @ known
+    return np.array(
+        [np.hypot(*known[:2]), *np.abs(known[2:]), np.sqrt(2 * np.mean(rest**2))], float
+    )
+
+
+def stated_sd(camera: Camera, places: Array) -> Array:
+    """Stated standard error along x and y of each place, shape (n, 2), m."""
+    covariance = getattr(camera, "place_cov", None)
+    if covariance is None:
+        return np.repeat(camera.place_sd(places)[:, None], 2, axis=1)
+    return np.asarray(np.sqrt(np.diagonal(covariance(places), axis1=-2, axis2=-1)))
+
+
+def longest_shot(main: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Find the longest run of frames that show the scene itself."""
+    label = np.cumsum(np.diff(main.astype(int), prepend=0) != 0) * main
+    return np.asarray(main & (label == np.bincount(label[main]).argmax()))
+
+
+def measure(clip: Clip, height: int) -> Score:
+    """Follow the house through a clip and compare every frame's camera with the true one."""
+    path, truth = clip.render(height)
+    films = enlarged(clip.camera, height / HEIGHT)
+    score = Score(clip, len(truth.camera))
+    start = time.process_time()
+    pictures = [frame.image for frame in open_clip([path]) if frame.index == 0]
+    decoding = time.process_time() - start
+    main = truth.camera["main"].to_numpy() == 1
+    due = longest_shot(main)
+    times = truth.camera["t"].to_numpy()
+    shares = np.array([shown_share(clip, films.at(float(t)), float(t)) for t in times])
+    due &= shares >= SHARE
+    score.due = int(due.sum())
+    start = time.process_time()
+    fit = find_house(pictures[0])
+    score.finding = time.process_time() - start
+    if fit is not None:
+        places, pixels = in_view(films.at(0.0), GRID)
+        score.first = rms([fit.camera.ice(pixels) - places])
+    start = time.process_time()
+    try:
+        cameras = follow_house(open_clip([path])).cameras
+    except SceneError:
+        cameras = ()
+    spent = time.process_time() - start - decoding - score.finding
+    score.following, score.decoding = spent / score.frames, decoding / score.frames
+    known = {c.frame: c for c in cameras}
+    for frame in np.flatnonzero(due):
+        score.lost += frame not in known
+        score.only_carried += frame in known and not known[int(frame)].found
+    for camera in cameras:
+        if main[camera.frame]:
+            compare(score, camera, films.at(float(times[camera.frame])))
+        else:
+            score.false += 1
+    return score
+
+
+def compare(score: Score, camera: Camera, true: View) -> None:
+    """Add the errors of one frame's camera."""
+    places, pixels = in_view(true, GRID)
+    guards, seen = in_view(true, GUARDS)
+    if len(guards):
+        score.guards.append(camera.ice(seen) - guards)
+    if len(places) < 3:
+        return
+    error = camera.ice(pixels) - places
+    (score.house if camera.found else score.carried).append(error)
+    with np.errstate(divide="ignore"):
+        score.scaled.append(error / stated_sd(camera, places))
+    if camera.found:
+        score.parts.append(parts(places, error))
+        places, pixels = in_view(true, GRID, STONE.cap_height)
+        score.high.append(camera.ice(pixels, STONE.cap_height) - places)
+
+
+def rms(errors: Sequence[Array]) -> float:
+    """Root of the mean squared distance, NaN for none."""
+    if not errors:
+        return float("nan")
+    return float(np.sqrt((np.concatenate(errors) ** 2).sum(-1).mean()))
+
+
+def percentile(errors: Sequence[Array], q: float) -> float:
+    if not errors:
+        return float("nan")
+    return float(np.percentile(np.linalg.norm(np.concatenate(errors), axis=-1), q))
+
+
+HEAD = (
+    f"{'clip':<18} {'bar':>4} {'rms':>6} {'95 %':>5} {'max':>6}  {'high':>6} {'guards':>6}"
+    f" {'carried':>7} {'first':>6} {'lost':>12}  {'in 2 sd':>10}  {'ms':>5} {'read':>4} {'find':>5}"
+)
+
+
+def flag(value: float, bar: float) -> str:
+    return "!" if not value <= bar else " "
+
+
+def line(score: Score, with_parts: bool) -> str:
+    bar = score.clip.bar
+    house, high = 1e3 * rms(score.house), 1e3 * rms(score.high)
+    lost = f"{score.lost}+{score.only_carried}/{score.due}"
+    if score.false:
+        lost += f" false {score.false}"
+    within, ratio = coverage(score.scaled)
+    text = (
+        f"{score.clip.name:<18} {bar:>4.1f} {house:>5.1f}{flag(house, bar)}"
+        f" {1e3 * percentile(score.house, 95):>5.1f} {1e3 * percentile(score.house, 100):>6.1f} "
+        f" {high:>5.1f}{flag(high, 2 * bar)} {1e3 * rms(score.guards):>6.1f}"
+        f" {1e3 * rms(score.carried):>7.1f} {1e3 * score.first:>6.1f}"
+        f" {lost:>11}{flag(score.lost, 0)}  {within:>5.2f} {ratio:>4.1f}"
+        f"  {1e3 * score.following:>4.1f}{flag(1e3 * score.following, FOLLOWING)}"
+        f" {1e3 * score.decoding:>4.1f}"
+        f" {1e3 * score.finding:>4.0f}{flag(1e3 * score.finding, FINDING)}"
+    )
+    if with_parts and score.parts:
+        shift, turn, scale, rest = 1e3 * np.sqrt(np.mean(np.square(score.parts), axis=0))
+        text += f"  shift {shift:.1f} turn {turn:.1f} scale {scale:.1f} rest {rest:.1f}"
+    return text
+
+
+def coverage(scaled: Sequence[Array]) -> tuple[float, float]:
+    """Share of scaled errors within two, and their rms."""
+    if not scaled:
+        return float("nan"), float("nan")
+    every = np.concatenate(scaled)
+    return float((np.abs(every) < 2).mean()), float(np.sqrt((every**2).mean()))
+
+
+def summary(scores: Sequence[Score]) -> str:
+    """Bars met over all clips; every clip has the same say in the coverage."""
+    shares = [coverage(s.scaled)[0] for s in scores if s.scaled]
+    share = float(np.mean(shares)) if shares else float("nan")
+    met = sum(1e3 * rms(s.house) <= s.clip.bar for s in scores)
+    high = sum(1e3 * rms(s.high) <= 2 * s.clip.bar for s in scores)
+    lost, carried, due = (
+        sum(values)
+        for values in zip(*((s.lost, s.only_carried, s.due) for s in scores), strict=True)
+    )
+    ms = 1e3 * float(np.mean([s.following for s in scores]))
+    find = 1e3 * float(np.mean([s.finding for s in scores]))
+    covered = " " if COVERED[0] <= share <= COVERED[1] else "!"
+    return (
+        f"clips within the bar {met} of {len(scores)}, high points {high} of {len(scores)};"
+        f" frames lost {lost} and only carried {carried} of {due};"
+        f" within two sd {share:.3f}{covered}; following {ms:.1f} ms, finding {find:.0f} ms"
+    )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("shared", type=Path, nargs="?", default=ROOT.parent / "shared")
+    parser.add_argument("--kinds", nargs="+", default=[], help="only clips whose names begin so")
+    parser.add_argument("--size", nargs="+", type=int, default=[720, 1080], choices=[720, 1080])
+    parser.add_argument("--random", type=int, default=4, help="random clips of each sort")
+    parser.add_argument("--parts", action="store_true", help="split the errors")
+    parser.add_argument("--no-stills", action="store_true", help="rendered clips only")
+    options = parser.parse_args()
+    cv2.setNumThreads(1)
+    for height in options.size:
+        print(f"\nRendered at {height} lines; errors in mm\n{HEAD}", flush=True)
+        scores = []
+        for clip in named(options.kinds, options.random):
+            scores.append(measure(clip, height))
+            print(line(scores[-1], options.parts), flush=True)
+        if scores:
+            print(summary(scores), flush=True)
+    if options.shared.exists() and not options.no_stills and not options.kinds:
+        print()
+        stills.score(options.shared)
+
+
+if __name__ == "__main__":
+    main()
