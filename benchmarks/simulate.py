@@ -17,8 +17,11 @@ from collections.abc import Callable
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from physics.curl import FCV1Curl
+from physics.curve import CELLS, curve
+from physics.ice import FCV1
 from physics.impact import Frictional
-from physics.motion import FCV1, FCV1Curl, Motion, Path, curve
+from physics.motion import Motion, Path
 from physics.simulate import Shot, StoneStart, simulate
 
 
@@ -85,11 +88,9 @@ def error_against_ode(speed: float) -> float:
 
 def error_of_curve() -> float:
     """Largest difference of the distance to rest between two densities of cells, m."""
-    coarse = curve(FCV1(), FCV1Curl(), 4.0)
-    fine = curve(FCV1(), FCV1Curl(), 4.0, 2 * len(coarse.cells))
-    return max(
-        abs(coarse.cells[k].along[0] - fine.cells[2 * k].along[0]) for k in range(len(coarse.cells))
-    )
+    coarse, fine = curve(FCV1(), FCV1Curl()), curve(FCV1(), FCV1Curl(), cells=2 * CELLS)
+    apart = coarse.coefficients[:, 1, 0] - fine.coefficients[::2, 1, 0]
+    return float(np.abs(apart).max())
 
 
 def main(repeats: int) -> None:

@@ -10,9 +10,10 @@ import pandas as pd
 from data.errors import InputError
 from data.results import Collision, SimulationScore
 from data.sheet import STONE
+from physics.curl import NoCurl
 from physics.estimate import Estimates
+from physics.ice import Constant
 from physics.impact import Frictional, Impact, PointMass, RigidBody
-from physics.motion import Constant, NoCurl
 from physics.simulate import Shot, StoneStart, simulate
 
 STONE_FRICTION = 0.05

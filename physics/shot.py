@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import Field, dataclass
 from difflib import get_close_matches
 from itertools import combinations
 from pathlib import Path
 from typing import Any
 
 from data.errors import InputError
-from physics.impact import IMPACT_MODELS, Frictional, Impact, PointMass, RigidBody
-from physics.motion import CURL_LAWS, ICE_LAWS, Constant, curl_law, ice_law
+from physics.registry import models, parameters_of
 from physics.simulate import FARTHEST, FASTEST, Shot, StoneStart
 
 RADIUS = 0.145
@@ -22,12 +21,8 @@ RADIUS = 0.145
 LARGEST_OVERLAP = 0.2
 """How far two stones may overlap as placed, in radii: more is a mistake, less is measuring."""
 
-LEAST_FRICTION = 1e-4
-"""On smoother ice a shot would last for ever."""
-
-_PHYSICS_KEYS = (
-    "model", "restitution", "stone_friction", "ice", "friction", "curl", "radius", "inertia",
-)  # fmt: skip
+_FAMILIES = {"model": ("impact", "frictional"), "ice": ("ice", "fcv1"), "curl": ("curl", "fcv1")}
+"""Key in the file, the family of models that it chooses from, and the choice without it."""
 _STONE_KEYS = ("name", "x", "y", "vx", "vy", "omega", "theta", "omega_after", "mass")
 
 
@@ -87,9 +82,10 @@ class _Table:
 def read_shot(path: Path) -> Shot:
     """Read a shot from a ``SHOT.toml``.
 
-    A table ``[physics]``, all optional: model (point-mass, rigid-body, frictional),
-    restitution, stone_friction, ice (constant, fcv1, penner), friction (of the ice, for
-    constant and penner), curl (none, fcv1), radius (m), inertia (I / (m R²)). One table
+    A table ``[physics]``, all optional: model (point-mass, rigid-body, frictional) with
+    restitution, stone_friction and inertia (I / (m R²)); ice (constant and penner with
+    friction, fcv1 and fit with a, v_c and b), curl (none, fcv1 with turn, loss and slow),
+    radius (m): the models of `physics.registry` and their parameters. One table
     ``[[stone]]`` a stone: name, x, y (m); vx, vy (m/s), omega (rad/s), theta (rad), mass (kg)
     and omega_after (rad/s; a number, or a list with one a hit) where they matter.
 
@@ -132,34 +128,47 @@ def _shot(content: Mapping[str, Any], faults: list[str]) -> Shot:
     elif not tables:
         faults.append("no stone: add a table [[stone]] with name, x and y")
     physics = _Table("[physics]", laws, faults)
-    physics.only(_PHYSICS_KEYS)
-    impact = _impact(physics)
+    known = {item.name for family, _ in _FAMILIES.values() for item in _parameters(family)}
+    physics.only((*_FAMILIES, *sorted(known), "radius"))
     radius = physics.number("radius", RADIUS, 0.0, above=True)
-    ice = physics.choice("ice", "fcv1", ICE_LAWS)
-    friction = None
-    if "friction" in laws:
-        if ice == "fcv1":
-            faults.append('[physics]: friction is for ice = "constant" or "penner"')
-        else:
-            friction = physics.number("friction", Constant.friction, LEAST_FRICTION, 1.0)
-    curl = physics.choice("curl", "fcv1", CURL_LAWS)
+    impact, ice, curl = [_model(physics, key) for key in _FAMILIES]
     stones = tuple(_stone(k, item, faults) for k, item in enumerate(tables, start=1))
     _check_together(stones, radius, faults)
-    if ice == "fcv1":
-        friction = None
-    return Shot(stones, impact, ice_law(ice, friction), curl_law(curl), radius)
+    if faults:
+        return Shot(stones)
+    return Shot(stones, impact(), ice(), curl(), radius)
 
 
-def _impact(physics: _Table) -> Impact:
-    model = physics.choice("model", "frictional", IMPACT_MODELS)
-    restitution = physics.number("restitution", Frictional.restitution, 0.0, 1.0)
-    stone_friction = physics.number("stone_friction", Frictional.stone_friction, 0.0)
-    inertia = physics.number("inertia", Frictional.inertia, 0.0, above=True)
-    if model == "point-mass":
-        return PointMass(restitution)
-    if model == "rigid-body":
-        return RigidBody(restitution)
-    return Frictional(restitution, stone_friction, inertia)
+def _parameters(family: str) -> list[Field[Any]]:
+    """Return the parameters of all models of a family."""
+    return [item for kind in models(family).values() for item in parameters_of(kind)]
+
+
+def _model(physics: _Table, key: str) -> Callable[[], Any]:
+    """Read the model that `key` names with its parameters; made once all is known to be well.
+
+    Parameters of other models of impact may stay in the file, so that one word changes the
+    model; one that the ice or the curl does not have is a mistake.
+    """
+    family, default = _FAMILIES[key]
+    kinds = models(family)
+    kind = kinds[physics.choice(key, default, tuple(kinds))]
+    own = parameters_of(kind)
+    if key != "model":
+        for name in sorted({item.name for item in _parameters(family)} & set(physics.content)):
+            if name not in _names(kind):
+                has = [word for word, other in kinds.items() if name in _names(other)]
+                choices = " or ".join(f'"{word}"' for word in has)
+                physics.faults.append(f"[physics]: {name} is for {key} = {choices}")
+    defaults: dict[str, Any] = {item.name: item.default for item in own}
+    given = {
+        item.name: physics.number(item.name, defaults[item.name], **item.metadata) for item in own
+    }
+    return lambda: kind(**given)
+
+
+def _names(kind: type[Any]) -> set[str]:
+    return {item.name for item in parameters_of(kind)}
 
 
 def _stone(rank: int, content: Mapping[str, Any], faults: list[str]) -> StoneStart:

@@ -21,8 +21,10 @@ from numpy.typing import ArrayLike
 from data.errors import InputError
 from data.results import StoneState
 from data.sheet import STONE
+from physics.curl import Curl, FCV1Curl
+from physics.ice import FCV1, IceLaw
 from physics.impact import Frictional, Impact
-from physics.motion import FCV1, Curl, FCV1Curl, IceLaw, Motion, Path, Point
+from physics.motion import Motion, Path, Point
 
 SIMULATION_COLUMNS: tuple[str, ...] = (
     "stone", "frame", "t", "x", "y", "theta", "vx", "vy", "omega",

@@ -8,7 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from physics.impact import IMPACT_MODELS, After, Frictional, Impact, PointMass, RigidBody, tangent
+from physics.impact import After, Frictional, Impact, PointMass, RigidBody, tangent
 
 R = 0.1455
 
@@ -138,10 +138,6 @@ def test_rotation_mirror_and_exchange(case: Case, e: float, mu: float, angle: fl
     exchanged = resolve(model, (v2, v1, w2, w1, -n, m2, m1))
     assert exchanged.v1 == pytest.approx(after.v2, abs=1e-12)
     assert exchanged.w1 == pytest.approx(after.w2, abs=1e-10)
-
-
-def test_models_have_names() -> None:
-    assert tuple(model.name for model in (PointMass(), RigidBody(), Frictional())) == IMPACT_MODELS
 
 
 def test_many_hits_at_once() -> None:

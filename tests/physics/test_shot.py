@@ -8,8 +8,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from data.errors import InputError
+from physics.curl import FCV1Curl, NoCurl
+from physics.ice import FCV1, Constant, Penner
 from physics.impact import Frictional, PointMass, RigidBody
-from physics.motion import FCV1, Constant, FCV1Curl, NoCurl, Penner
 from physics.shot import read_shot
 from physics.simulate import Shot, StoneStart, simulate
 
@@ -101,7 +102,7 @@ def test_laws(tmp_path: Path, laws: str, field: str, value: object) -> None:
         ("[physics]\ninertia = 0\n" + ONE_STONE, "inertia = 0 must be above 0"),
         ("[physics]\nradius = -0.1\n" + ONE_STONE, "radius = -0.1 must be above 0"),
         ("[physics]\nmodel = 'friction'\n" + ONE_STONE, "did you mean frictional?"),
-        ("[physics]\nice = 'snow'\n" + ONE_STONE, "there are constant, fcv1, penner"),
+        ("[physics]\nice = 'snow'\n" + ONE_STONE, "there are constant, fcv1, fit, penner"),
         ("[physics]\nice = 3\n" + ONE_STONE, "no ice 3"),
         ("[physics]\ncurl = 'fcv2'\n" + ONE_STONE, "did you mean fcv1?"),
         ("[physics]\nfriction = 0.01\n" + ONE_STONE, 'friction is for ice = "constant"'),

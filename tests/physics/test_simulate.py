@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 from data.errors import InputError
 from data.results import StoneState
 from data.sheet import GRAVITY
+from physics.curl import FCV1Curl, NoCurl
+from physics.ice import FCV1, Constant, IceLaw, Penner
 from physics.impact import Frictional, Impact, PointMass, RigidBody
-from physics.motion import FCV1, Constant, FCV1Curl, IceLaw, NoCurl, Penner
 from physics.simulate import SIMULATION_COLUMNS, Hit, Shot, Simulation, StoneStart, simulate
 
 R = 0.145

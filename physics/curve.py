@@ -1,0 +1,197 @@
+"""The one curve of all glides on one ice, tabulated once and laid through any stone's state.
+
+Between two hits a stone's speed falls by the ice law alone, and the direction of its path
+turns at a rate that depends on the speed and on the sense of the spin alone. So every glide
+on one ice is a piece of one and the same curve, shifted, rotated and mirrored. `Curve` holds
+that curve by the time that is left until rest. (A law of curl that asks for the amount of the
+spin too would need a curve for every path.)
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physics.curl import Curl
+from physics.ice import IceLaw
+
+Array = NDArray[np.float64]
+Cubic = tuple[float, float, float, float]
+
+CELLS = 1024
+"""Cells of a curve: places are then good to 1e-8 m after 100 m on any ice known."""
+LOWEST_TOP = 4.0
+"""A curve reaches this speed at least, m/s, so that most shots share one."""
+
+
+class Cell(NamedTuple):
+    """Cubics over one cell of a curve, in s = τ - τ_k, lowest power first."""
+
+    speed: Cubic
+    along: Cubic
+    aside: Cubic
+    turn: Cubic
+    straight: Cubic
+    loss: Cubic
+    unwound: Cubic
+
+
+def cubic(c: Cubic, s: float) -> float:
+    """Value of a cubic."""
+    return c[0] + s * (c[1] + s * (c[2] + s * c[3]))
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Curve:
+    """The one curve of all glides, by the time τ that is left until rest.
+
+    Attributes
+    ----------
+    tau, speed, loss : ndarray, shape (cells + 1,)
+        Times of the nodes, s, from 0 upwards; speed (m/s) and spin lost from there to rest
+        (rad/s) at the nodes.
+    coefficients : ndarray, shape (cells, 7, 4)
+        Cubics of each cell in the order of `Cell`: speed; distance to rest along the last
+        direction and aside of it; turning to rest; distance to rest along a straight path;
+        spin lost; its integral over τ.
+    """
+
+    tau: Array
+    speed: Array
+    loss: Array
+    coefficients: Array
+
+    @cached_property
+    def _nodes(self) -> tuple[list[float], list[float], list[float]]:
+        return self.tau.tolist(), self.speed.tolist(), self.loss.tolist()
+
+    @cached_property
+    def _cells(self) -> list[Cell | None]:
+        """Cells as plain numbers, made when first asked for: a shot visits but a few."""
+        return [None] * len(self.coefficients)
+
+    def _cell(self, k: int) -> Cell:
+        cell = self._cells[k]
+        if cell is None:
+            cell = self._cells[k] = Cell(*map(tuple, self.coefficients[k].tolist()))
+        return cell
+
+    def cell(self, tau: float) -> tuple[Cell, float]:
+        """Return the cell that holds `tau` and the time since its first node."""
+        nodes = self._nodes[0]
+        k = min(max(bisect_right(nodes, tau) - 1, 0), len(nodes) - 2)
+        return self._cell(k), tau - nodes[k]
+
+    def tau_at_speed(self, speed: float) -> float:
+        """Time until rest of a stone with that speed, s."""
+        tau, speeds, _ = self._nodes
+        k = min(bisect_right(speeds, speed), len(tau) - 1) - 1
+        return tau[k] + _solve(self._cell(k).speed, speed, tau[k + 1] - tau[k])
+
+    def tau_at_loss(self, loss: float) -> float:
+        """Time until rest from which on a stone loses that much spin, s."""
+        tau, _, losses = self._nodes
+        k = min(bisect_right(losses, loss), len(tau) - 1) - 1
+        return tau[k] + _solve(self._cell(k).loss, loss, tau[k + 1] - tau[k])
+
+
+def _solve(c: Cubic, value: float, width: float) -> float:
+    """Where in 0..width the rising cubic has that value: Newton's method in a bracket."""
+    low, high = 0.0, width
+    s = min(max((value - c[0]) / c[1], low), high) if c[1] > 0 else width / 2
+    for _ in range(60):
+        f = cubic(c, s) - value
+        if f > 0:
+            high = s
+        else:
+            low = s
+        slope = c[1] + s * (2 * c[2] + 3 * s * c[3])
+        step = s - f / slope if slope > 0 else math.inf
+        new = step if low <= step <= high else (low + high) / 2
+        if abs(new - s) <= 1e-16 * width:
+            return new
+        s = new
+    return s
+
+
+@lru_cache(maxsize=256)
+def curve(ice: IceLaw, curl: Curl, top: float = LOWEST_TOP, cells: int = CELLS) -> Curve:
+    """Integrate the curve of all glides up to a speed.
+
+    Nodes lie evenly in v^(1/5), in which FCV1's curl, that grows as v^(-0.8) towards rest, is
+    smooth; the integrals over each cell are taken by Gauss and Legendre's rule of five points.
+
+    Parameters
+    ----------
+    ice, curl : IceLaw, Curl
+        The laws; must be hashable.
+    top : float
+        Highest speed, m/s.
+    cells : int
+        Number of cells; the error of a place falls with its fourth power.
+    """
+    u = np.linspace(0.0, top**0.2, cells + 1)
+    width = u[1]
+    x = (np.polynomial.legendre.leggauss(5)[0] + 1) / 2
+    powers = np.arange(1, len(x) + 1)
+    basis = np.linalg.inv(np.vander(x, increasing=True))
+    to_inner = (x[:, None] ** powers / powers) @ basis
+    to_end = (1 / powers) @ basis
+
+    def integral(rate: Array) -> tuple[Array, Array]:
+        inner = width * rate @ to_inner.T
+        nodes = np.concatenate([[0.0], np.cumsum(width * rate @ to_end)])
+        return nodes[:-1, None] + inner, nodes
+
+    inner_u = u[:-1, None] + width * x
+    inner_v = inner_u**5
+    dtau = 5 * inner_u**4 / ice.deceleration(inner_v)
+    _, tau = integral(dtau)
+    _, straight = integral(inner_v * dtau)
+    inner_turn, turn = integral(curl.turn_rate(inner_v) * dtau)
+    _, along = integral(inner_v * np.cos(inner_turn) * dtau)
+    _, aside = integral(inner_v * np.sin(inner_turn) * dtau)
+    inner_loss, loss = integral(curl.spin_loss(inner_v) * dtau)
+    _, unwound = integral(inner_loss * dtau)
+
+    v = u**5
+    moving = v[1:]
+    columns = (
+        (v, ice.deceleration(moving)),
+        (along, moving * np.cos(turn[1:])),
+        (aside, moving * np.sin(turn[1:])),
+        (turn, curl.turn_rate(moving)),
+        (straight, moving),
+        (loss, curl.spin_loss(moving)),
+        (unwound, loss[1:]),
+    )
+    return Curve(tau, v, loss, np.stack([_hermite(tau, *column) for column in columns], axis=1))
+
+
+def _hermite(tau: Array, value: Array, slope: Array) -> Array:
+    """Coefficients of the cubics with those values and slopes, shape (cells, 4).
+
+    The slope at rest, where laws may have a pole, is taken as that of the chord.
+    """
+    h = np.diff(tau)
+    chord = np.diff(value) / h
+    left = np.concatenate([chord[:1], slope[:-1]])
+    right = slope
+    return np.stack(
+        [value[:-1], left, (3 * chord - 2 * left - right) / h, (left + right - 2 * chord) / h**2],
+        axis=1,
+    )
+
+
+def curve_for(ice: IceLaw, curl: Curl, speed: float) -> Curve:
+    """Return a curve that reaches `speed`: one for all up to 4 m/s, others by doubling."""
+    top = LOWEST_TOP
+    while top < speed:
+        top *= 2
+    return curve(ice, curl, top)

@@ -1,0 +1,36 @@
+"""Friction of the simulator Digital Curling."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from physics.registry import parameter
+
+
+@dataclass(frozen=True)
+class FCV1:
+    """Friction of the FCV1 model, μ(v) = a / (v + v_c) + b.
+
+    Source: Uehara and Ito, 2021, the default of the simulator Digital Curling.
+
+    Attributes
+    ----------
+    a, v_c, b : float
+        Constants of the law: m/s, m/s and a pure number.
+    gravity : float
+        Free fall, m/s², as the simulator has it.
+    """
+
+    a: float = parameter(0.00200985, 0.0, 1.0)
+    v_c: float = parameter(0.06385782, 1e-3, 10.0)
+    b: float = parameter(0.00626286, 1e-4, 1.0)
+    gravity: float = parameter(9.807, 1.0, 30.0)
+    name = "fcv1"
+
+    def deceleration(self, speed: ArrayLike) -> NDArray[np.float64]:
+        """Deceleration μ(v) g, m/s²."""
+        friction = self.a / (np.asarray(speed, float) + self.v_c) + self.b
+        return np.asarray(friction * self.gravity)
