@@ -63,6 +63,8 @@ class Settings:
         Masses by stone, in any unit, where they are not all equal.
     length_unit, angle_unit : str, optional
         Units of tables.
+    tab : str, optional
+        Which tab of a Tracker project with several.
     overlay : bool
         Whether the annotated clip is written.
     """
@@ -74,6 +76,7 @@ class Settings:
     masses: Mapping[str, float] = field(default_factory=dict)
     length_unit: str = "m"
     angle_unit: str | None = None
+    tab: str | None = None
     overlay: bool = True
 
 
@@ -89,6 +92,7 @@ class Measured:
     clip: Clip | None = None
     cameras: tuple[Camera, ...] = ()
     house: House | None = None
+    masses: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -192,11 +196,18 @@ def _import_tables(files: tuple[Path, ...], settings: Settings) -> Measured:
         length_unit=settings.length_unit,
         angle_unit=settings.angle_unit,
         fps=settings.fps,
+        tab=settings.tab,
     )
     sightings = table.sightings
     house = HOUSE if settings.radius == STONE.radius else None
     return Measured(
-        files, sightings, table.fps, sightings["t"].nunique(), table.warnings, house=house
+        files,
+        sightings,
+        table.fps,
+        sightings["t"].nunique(),
+        table.warnings,
+        house=house,
+        masses=table.masses,
     )
 
 
@@ -255,7 +266,9 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
     sightings, radius = measured.sightings, settings.radius
     if sightings.empty:
         raise SceneError(f"{measured.files[0]}: no stone in view; nothing to measure")
-    masses = _check_masses(settings.masses, list(sightings["stone"].unique())) or None
+    masses = (
+        _check_masses(settings.masses, list(sightings["stone"].unique())) or measured.masses or None
+    )
     contacts = find_contacts(sightings, radius)
     tracks = smooth(sightings, contacts, radius=radius)
     estimates = estimate(sightings, contacts, radius=radius, masses=masses)
@@ -531,6 +544,7 @@ def _parser() -> argparse.ArgumentParser:
         "  curlshot run pucks.mp4 --stick 20,10,20,38,0.1 --radius 0.045 --frames 2:31\n"
         "                                                   no house: still camera, known length\n"
         "  curlshot run A.txt B.txt --length-unit cm        one Tracker export per stone\n"
+        "  curlshot run shot.trk                            a Tracker project, or a .trz\n"
         "  curlshot run old/tracks.csv                      earlier tracks\n",
         _do_run,
     )
@@ -648,6 +662,7 @@ def _table_options(parser: argparse.ArgumentParser) -> None:
         "--length-unit", choices=("m", "cm", "mm", "in", "ft"), default="m", help="of tables (m)"
     )
     parser.add_argument("--angle-unit", choices=("rad", "deg"), help="of tables")
+    parser.add_argument("--tab", metavar="NAME", help="of a Tracker project with several tabs")
 
 
 def _positive(text: str) -> float:
@@ -695,6 +710,7 @@ def _settings(arguments: argparse.Namespace) -> Settings:
         masses=dict(known["mass"]),
         length_unit=known.get("length_unit", "m"),
         angle_unit=known.get("angle_unit"),
+        tab=known.get("tab"),
         overlay=not known.get("no_overlay", False),
     )
 

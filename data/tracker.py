@@ -1,15 +1,15 @@
-"""Tracks from text tables: exports of Tracker (Open Source Physics), spreadsheets, our own.
+"""Tracks from files: projects and exports of Tracker (Open Source Physics), spreadsheets, our own.
 
 Tracker's layouts follow its source (versions 4 to 6.3): an optional line ``#multi:``, a
 line with the names of the tracks, a header whose first column is t, one block of columns
 per track. Its θ, ω and α belong to the place about the origin, not to the spin, and its
-velocities can be stale: both are left out.
+velocities can be stale: both are left out. Projects are read by `data.project`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from data.errors import InputError
 from data.layouts import ANGLE_UNITS, LENGTH_UNITS, TrackFile, read_layout
+from data.project import is_project, read_project
 from data.tracks import LATEST, check_sightings
 
 Array = NDArray[np.float64]
@@ -47,11 +48,14 @@ class Imported:
         What was decided on evidence, or left out.
     fps : float or None
         Rate of the rows, 1/s; None where there is only one time.
+    masses : mapping
+        Masses by stone, as a project has them; empty where none, or not all, were set.
     """
 
     sightings: pd.DataFrame
     warnings: tuple[str, ...]
     fps: float | None
+    masses: Mapping[str, float] = field(default_factory=dict)
 
 
 def read_table(
@@ -60,8 +64,9 @@ def read_table(
     length_unit: str = "m",
     angle_unit: str | None = None,
     fps: float | None = None,
+    tab: str | None = None,
 ) -> Imported:
-    """Read tracks from text tables of any layout and dialect.
+    """Read tracks from text tables of any layout and dialect, and from Tracker's projects.
 
     Parameters
     ----------
@@ -74,6 +79,8 @@ def read_table(
         would make a stone spin absurdly fast (a warning says so).
     fps : float, optional
         Rate of the rows of tables without a time column, 1/s.
+    tab : str, optional
+        Which tab of a project with several.
 
     Returns
     -------
@@ -95,7 +102,15 @@ def read_table(
     _check_units(length_unit, angle_unit, fps)
     if not paths:
         raise InputError("no table of tracks given")
-    files = [read_layout(path, fps) for path in paths]
+    masses: dict[str, float] = {}
+    files = []
+    for path in paths:
+        if is_project(path):
+            project = read_project(path, tab)
+            files.append(project.file())
+            masses |= {mass.name: mass.mass for mass in project.masses}
+        else:
+            files.append(read_layout(path, fps))
     warnings = [text for file in files for text in file.warnings]
     for path, file in zip(paths, files, strict=True):
         warnings += _to_si(path, file, length_unit, angle_unit)
@@ -105,7 +120,24 @@ def read_table(
     table, rate = _with_clock(table, [file.decimals for file in files])
     table = check_sightings(table, source)
     warnings += _check_scale(table, source)
-    return Imported(table, tuple(dict.fromkeys(warnings)), rate)
+    masses, notes = _set_masses(masses, set(table["stone"]), source)
+    return Imported(table, tuple(dict.fromkeys(warnings + notes)), rate, masses)
+
+
+def _set_masses(
+    masses: Mapping[str, float], stones: set[str], source: str
+) -> tuple[dict[str, float], list[str]]:
+    """Keep a project's masses only if someone set them all: Tracker gives 1 to each."""
+    known = {stone: mass for stone, mass in masses.items() if stone in stones}
+    if set(known) != stones or len(set(known.values())) == 1:
+        return {}, []
+    untouched = sorted(stone for stone, mass in known.items() if mass == 1)
+    if untouched:
+        return {}, [
+            f"{source}: the mass of {', '.join(untouched)} is Tracker's default, 1; all masses are"
+            " taken as equal (--mass to say otherwise)"
+        ]
+    return known, []
 
 
 def _check_units(length_unit: str, angle_unit: str | None, fps: float | None) -> None:

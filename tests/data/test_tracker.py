@@ -336,8 +336,8 @@ NONSENSE = {
     "stone,x,y\nA,0,1\n": "no column t",
     "stone,t,x,y,frame\nA,0,1,1,0.5\n": "no frames",
     "stone,t,x,y,sd_x\nA,0,1,1,-1\n": "negative",
-    "<?xml version='1.0'?><object/>": "XML",
-    "PK\x03\x04": "not text",
+    "<?xml version='1.0'?><object/>": "no Tracker project",
+    "PK\x03\x04": "damaged",
     "a\0b": "not text",
 }
 
@@ -498,12 +498,6 @@ def test_every_export_at_hand_is_read_or_refused(shared: Path) -> None:
     others = set(refused) - angles
     assert others == {"finnss_11.txt", "jake-bobowski_PHYS121_tracker.csv"}
     assert all("length unit" in refused[name] for name in others)
-
-
-def test_projects_are_refused_with_advice(shared: Path) -> None:
-    for path in [*shared.glob("tracker/*/*.trk"), *shared.glob("tracker/*/*.trz")]:
-        with pytest.raises(InputError, match="File > Export > Data"):
-            read_table([path])
 
 
 @pytest.mark.parametrize(

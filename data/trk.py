@@ -1,0 +1,402 @@
+"""Tracker's projects (``.trk``): marks in pixels, the moving coordinate system, the clip.
+
+Facts about the format are from the source of Tracker 6.3 and of versions 4 and 5. Pixels are
+Tracker's: the origin is the corner of the top left pixel, y points down, and they belong to
+the picture after the video's filters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike, NDArray
+
+from data.errors import InputError
+from data.layouts import LENGTH_UNITS, TrackFile
+from data.osp_xml import Thing, parse
+from data.tracks import LATEST
+
+Array = NDArray[np.float64]
+Frames = NDArray[np.int64]
+
+_MOVES_PIXELS = {
+    "PerspectiveFilter": "perspective",
+    "RadialDistortionFilter": "radial distortion",
+    "BarrelPincushionFilter": "radial distortion",
+    "ResizeFilter": "resize",
+    "RotateFilter": "rotate",
+}
+_UNEVEN = 0.02
+"""Share of a frame by which a clip's times may be off equal steps and count as equal."""
+
+
+@dataclass(frozen=True)
+class Coordinates:
+    """Tracker's coordinate system; each key holds until the next.
+
+    Attributes
+    ----------
+    keys : ndarray of int, shape (k,)
+        Video frames, increasing.
+    origin : ndarray, shape (k, 2)
+        Pixels.
+    angle : ndarray, shape (k,)
+        From the picture's horizontal to the x axis, radians, counter-clockwise.
+    scale : ndarray, shape (k, 2)
+        Pixels per length unit along the picture's horizontal and vertical.
+    """
+
+    keys: Frames
+    origin: Array
+    angle: Array
+    scale: Array
+
+    def at(self, frames: ArrayLike) -> Coordinates:
+        """Give the system at each of the frames, as keys."""
+        wanted = np.asarray(frames, np.int64)
+        key = np.maximum(np.searchsorted(self.keys, wanted, side="right") - 1, 0)
+        return Coordinates(wanted, self.origin[key], self.angle[key], self.scale[key])
+
+    def world(self, frames: ArrayLike, pixels: Array) -> Array:
+        """Map pixels, shape (n, 2), in frames, shape (n,), to places in length units."""
+        here = self.at(frames)
+        with np.errstate(over="ignore", invalid="ignore"):
+            u, v = ((pixels - here.origin) / here.scale * (1.0, -1.0)).T
+            cos, sin = np.cos(here.angle), np.sin(here.angle)
+            return np.column_stack([cos * u + sin * v, cos * v - sin * u])
+
+    def pixels(self, frames: ArrayLike, places: Array) -> Array:
+        """Map places to pixels; the inverse of `world`."""
+        here = self.at(frames)
+        x, y = places.T
+        cos, sin = np.cos(here.angle), np.sin(here.angle)
+        uv = np.column_stack([cos * x - sin * y, -sin * x - cos * y])
+        return np.asarray(here.origin + here.scale * uv)
+
+
+@dataclass(frozen=True)
+class PointMass:
+    """A track: its marks by video frame.
+
+    Attributes
+    ----------
+    name : str
+        As its user named it.
+    mass : float
+        In the project's unit; 1 where the user gave none.
+    frames : ndarray of int, shape (n,)
+        Video frames of the marks, increasing.
+    marks : ndarray, shape (n, 2)
+        Pixels.
+    filled : int
+        How many of the marks Tracker put between those of the user.
+    """
+
+    name: str
+    mass: float
+    frames: Frames
+    marks: Array
+    filled: int = 0
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Which frames of the video are steps of the clip, and when they were taken.
+
+    Attributes
+    ----------
+    start, step, count : int
+        First frame, frames per step, number of steps.
+    origin, duration : float
+        Time of the first frame, and of each frame, s.
+    clock : ndarray
+        Times of all frames of the video, s, where they are uneven; else empty.
+    """
+
+    start: int
+    step: int
+    count: int
+    origin: float
+    duration: float
+    clock: Array
+
+    def includes(self, frames: Frames) -> NDArray[np.bool_]:
+        """Which frames are steps of the clip."""
+        k, rest = np.divmod(frames - self.start, self.step)
+        return np.asarray((k >= 0) & (k < self.count) & (rest == 0))
+
+    def times(self, frames: Frames) -> Array:
+        """Give the times of frames, s."""
+        if len(self.clock) > max(self.start, int(frames.max(initial=0))):
+            return np.asarray(self.origin + self.clock[frames] - self.clock[self.start])
+        return np.asarray(self.origin + (frames - self.start) * self.duration)
+
+
+@dataclass(frozen=True)
+class Project:
+    """One tab of Tracker.
+
+    Attributes
+    ----------
+    source : str
+        The file, and the tab within it.
+    masses : tuple of PointMass
+        The tracks that have marks; models and derived tracks are not among them.
+    coordinates : Coordinates
+        With the origin of the reference frame, if the project has one.
+    timing : Timing
+        Of the clip.
+    length_unit : str
+        As the project says, or "".
+    video : tuple of str
+        Path of the video, or of its pictures, as written.
+    size : tuple of float
+        Width and height of the picture, px; NaN where unknown.
+    warnings : tuple of str
+        What its numbers do not tell.
+    """
+
+    source: str
+    masses: tuple[PointMass, ...]
+    coordinates: Coordinates
+    timing: Timing
+    length_unit: str
+    video: tuple[str, ...]
+    size: tuple[float, float]
+    warnings: tuple[str, ...] = ()
+
+    def file(self) -> TrackFile:
+        """Tracks in the project's length unit, at the steps of its clip.
+
+        Raises
+        ------
+        InputError
+            Where no track has a mark in the clip, or the project has no scale.
+        """
+        warnings = list(self.warnings)
+        parts = []
+        for track in self.masses:
+            part = self._rows(track)
+            if part.empty:
+                warnings.append(f"{self.source}: {track.name} has no mark in the clip; left out")
+                continue
+            if track.filled:
+                warnings.append(
+                    f"{self.source}: {track.filled} places of {track.name} were filled in by"
+                    " Tracker between marks; they are used as if they were measured"
+                )
+            parts.append(part)
+        if not parts:
+            raise InputError(f"{self.source}: no point mass with a mark in the clip")
+        if (self.coordinates.scale == 1).all():
+            raise InputError(
+                f"{self.source}: not calibrated, one pixel is one length unit; set a calibration"
+                " stick in Tracker"
+            )
+        unit = self.length_unit if self.length_unit in LENGTH_UNITS else None
+        if unit is None and self.length_unit:
+            warnings.append(
+                f"{self.source}: its length unit is “{self.length_unit[:20]}”, which is unknown"
+                " here (--length-unit)"
+            )
+        tracks = pd.concat(parts, ignore_index=True)
+        return TrackFile(tracks, None, unit, "rad", continuous=True, warnings=warnings)
+
+    def _rows(self, track: PointMass) -> pd.DataFrame:
+        used = self.timing.includes(track.frames)
+        frames = track.frames[used]
+        x, y = self.coordinates.world(frames, track.marks[used]).T
+        t = self.timing.times(frames)
+        return pd.DataFrame({"stone": track.name, "t": t, "frame": frames, "x": x, "y": y})
+
+
+def read_trk(raw: bytes, source: str) -> Project:
+    """Read a project with one tab.
+
+    Parameters
+    ----------
+    raw : bytes
+        Content of the ``.trk`` file.
+    source : str
+        What to call it in messages.
+
+    Raises
+    ------
+    InputError
+        One line: damaged XML, no project, or numbers that make no sense.
+    """
+    return project_of(parse(raw, source), source)
+
+
+def project_of(root: Thing, source: str) -> Project:
+    """Make a project of the root object of a ``.trk``; raises `InputError` as `read_trk`."""
+    if root.cls != "TrackerPanel":
+        raise InputError(f"{source}: no Tracker project ({root.cls or 'nothing'} instead)")
+    try:
+        return _project(root, source)
+    except InputError as error:
+        raise InputError(f"{source}: {error}") from None
+
+
+def _project(root: Thing, source: str) -> Project:
+    clip = root.thing("videoclip") or Thing("VideoClip")
+    video = clip.thing("video") or Thing("Video")
+    shift = clip.whole("frameshift", 0)
+    masses, warnings = _masses(root, shift)
+    coordinates = _coordinates(root.thing("coords"), shift)
+    reference = root.text("referenceframe")
+    giver = next((track for track in masses if track.name == reference), None)
+    if giver is not None:
+        coordinates = _relative_to(giver, coordinates)
+        masses = tuple(track for track in masses if track is not giver)
+        warnings.append(
+            f"places are relative to {reference}, the project's reference frame; {reference} itself"
+            " rests in it and is left out"
+        )
+    moving = [_MOVES_PIXELS[name] for name in _filters(video) if name in _MOVES_PIXELS]
+    if moving:
+        warnings.append(
+            f"marked on a video changed by filters ({', '.join(dict.fromkeys(moving))}); places are"
+            " as Tracker shows them, the picture itself is not changed here"
+        )
+    timing, note = _timing(clip, root.thing("clipcontrol") or Thing("ClipControl"), video, shift)
+    return Project(
+        source=source,
+        masses=masses,
+        coordinates=coordinates,
+        timing=timing,
+        length_unit=root.text("length_unit").strip(),
+        video=_video_files(video),
+        size=(_or_nan(root, "width"), _or_nan(root, "height")),
+        warnings=tuple(f"{source}: {text}" for text in (*warnings, *note)),
+    )
+
+
+def _masses(root: Thing, shift: int) -> tuple[tuple[PointMass, ...], list[str]]:
+    """Find the point masses that have marks; other kinds of tracks hold none."""
+    collection = root.thing("tracks")
+    masses: list[PointMass] = []
+    warnings: list[str] = []
+    for track in collection.objects() if collection is not None else ():
+        if track.cls == "PointMass":
+            name = " ".join(track.text("name").split()) or f"track {len(masses) + 1}"
+            mass = _point_mass(track, name, shift)
+            if len(mass.frames):
+                masses.append(mass)
+            else:
+                warnings.append(f"{name} has no marks; left out")
+    doubled = {track.name for track in masses if [m.name for m in masses].count(track.name) > 1}
+    if doubled:
+        raise InputError(f"two tracks with one name, {min(doubled)}; rename one in Tracker")
+    if not masses:
+        kinds = sorted({track.cls for track in collection.objects()}) if collection else []
+        raise InputError(
+            f"no point mass with marks (it has {', '.join(kinds)[:80] or 'no tracks'}); mark"
+            " stones as point masses in Tracker"
+        )
+    return tuple(masses), warnings
+
+
+def _point_mass(track: Thing, name: str, shift: int) -> PointMass:
+    data = track.thing("framedata")
+    entries = data.sparse() if data is not None else {}
+    marks = {
+        frame - shift: (entry.number("x"), entry.number("y"))
+        for frame, entry in sorted(entries.items())
+        if isinstance(entry, Thing) and frame >= shift
+    }
+    keys = track.thing("keyFrames")
+    by_hand = set(keys.floats() - shift) if keys is not None else set()
+    mass = track.number("mass", 1.0)
+    return PointMass(
+        name=name,
+        mass=mass if mass > 0 else 1.0,
+        frames=np.array(list(marks), np.int64),
+        marks=np.array(list(marks.values()), float).reshape(-1, 2),
+        filled=len(marks.keys() - by_hand) if by_hand else 0,
+    )
+
+
+def _coordinates(coords: Thing | None, shift: int) -> Coordinates:
+    data = coords.thing("framedata") if coords is not None else None
+    entries = data.sparse() if data is not None else {}
+    rows = {
+        max(frame - shift, 0): [
+            entry.number(name) for name in ("xorigin", "yorigin", "angle", "xscale", "yscale")
+        ]
+        for frame, entry in sorted(entries.items())
+        if isinstance(entry, Thing)
+    }
+    if not rows:
+        raise InputError("no coordinate system")
+    table = np.array(list(rows.values()))
+    scale = table[:, 3:]
+    if (scale == 0).any() or (np.abs(scale) > 1e9).any() or (np.abs(scale) < 1e-9).any():
+        raise InputError("a scale of its coordinate system makes no sense")
+    return Coordinates(np.array(list(rows), np.int64), table[:, :2], np.radians(table[:, 2]), scale)
+
+
+def _relative_to(giver: PointMass, coordinates: Coordinates) -> Coordinates:
+    """Put the origin where a track is, in gaps where it was last, before at its first mark."""
+    keys = np.union1d(coordinates.keys, giver.frames)
+    here = coordinates.at(keys)
+    last = np.maximum(np.searchsorted(giver.frames, keys, side="right") - 1, 0)
+    return replace(here, origin=giver.marks[last])
+
+
+def _timing(clip: Thing, control: Thing, video: Thing, shift: int) -> tuple[Timing, list[str]]:
+    start = max(clip.whole("startframe", 0) - shift, 0)
+    step = clip.whole("stepsize", 1)
+    count = clip.whole("stepcount", 10**9)
+    if step < 1 or count < 1:
+        raise InputError(f"a clip of {count} steps of {step} frames makes no sense")
+    duration = control.number("delta_t", video.number("delta_t", 0.0)) / 1000
+    if duration <= 0:
+        raise InputError("no duration of a frame (delta_t); save it again with Tracker")
+    origin = clip.number("starttime", 0.0) / 1000
+    if max(abs(origin), duration) > LATEST / 1e9:
+        raise InputError("the times of its clip make no sense")
+    times = video.thing("start_times")
+    clock, note = _clock(np.empty(0) if times is None else times.floats(), duration)
+    return Timing(start, step, count, origin, duration, clock), note
+
+
+def _clock(stamps: Array, duration: float) -> tuple[Array, list[str]]:
+    """Find times of uneven frames, s, at the pace the user gave the clip; none where even."""
+    if len(stamps) < 3 or not (np.diff(stamps) > 0).all() or not np.isfinite(stamps).all():
+        return np.empty(0), []
+    mean = (stamps[-1] - stamps[0]) / (len(stamps) - 1)
+    clock = (stamps - stamps[0]) / mean * duration
+    off = float(np.abs(clock - np.arange(len(clock)) * duration).max())
+    if off < _UNEVEN * duration:
+        return np.empty(0), []
+    return clock, [
+        f"the frames of its video are uneven; their own times are used, up to {1000 * off:.0f} ms"
+        " from those that Tracker exports"
+    ]
+
+
+def _filters(video: Thing) -> Sequence[str]:
+    filters = video.thing("filters")
+    if filters is None:
+        return []
+    return [item.cls for item in filters.objects() if not item.true("disabled")]
+
+
+def _video_files(video: Thing) -> tuple[str, ...]:
+    paths = video.thing("paths")
+    if paths is not None:
+        found = [path for _, path in sorted(paths.sparse().items()) if isinstance(path, str)]
+        if found:
+            return tuple(found)
+    return (video.text("path"),) if video.text("path") else ()
+
+
+def _or_nan(thing: Thing, name: str) -> float:
+    try:
+        return thing.number(name, np.nan)
+    except InputError:
+        return float("nan")

@@ -1,0 +1,308 @@
+from __future__ import annotations
+
+import io
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from data.errors import InputError
+from data.project import read_project
+from data.tracker import read_table
+
+KEYS = {0: (160.0, 120.0, 10.0, 50.0, 50.0), 3: (170.0, 110.0, -25.0, 40.0, 42.0)}
+MARKS = {"red": {n: (40.0 + 9 * n, 200.0 - 8 * n) for n in range(6)}, "blue": {2: (200.0, 50.0)}}
+
+
+def numbers(**values: float) -> str:
+    return "".join(f'<property name="{k}" type="double">{v}</property>' for k, v in values.items())
+
+
+def sparse(name: str, entries: Mapping[int, str]) -> str:
+    items = "".join(
+        f'<property name="[{n}]" type="object"><object class="a.b.C$D">{body}</object></property>'
+        for n, body in entries.items()
+    )
+    return f'<property name="{name}" type="array" class="[La.b;">{items}</property>'
+
+
+def project(
+    marks: Mapping[str, Mapping[int, tuple[float, float]]] = MARKS,
+    keys: Mapping[int, tuple[float, ...]] = KEYS,
+    clip: str = "",
+    root: str = "",
+    video: str = "",
+    mass: Mapping[str, float] | None = None,
+    duration: float = 40.0,
+) -> str:
+    names = ("xorigin", "yorigin", "angle", "xscale", "yscale")
+    coords = {n: numbers(**dict(zip(names, row, strict=True))) for n, row in keys.items()}
+    tracks = "".join(
+        '<property name="item" type="object"><object class="x.tracker.PointMass">'
+        + numbers(mass=(mass or {}).get(name, 1.0))
+        + f'<property name="name" type="string"><![CDATA[{name}]]></property>'
+        + sparse("framedata", {n: numbers(x=x, y=y) for n, (x, y) in rows.items()})
+        + "</object></property>"
+        for name, rows in marks.items()
+    )
+    return (
+        '<?xml version="1.0" encoding="UTF-8"?><object class="x.tracker.TrackerPanel">'
+        '<property name="videoclip" type="object"><object class="x.VideoClip">'
+        f'<property name="video" type="object"><object class="x.V">{video}</object></property>'
+        f'{clip}</object></property><property name="clipcontrol" type="object">'
+        f'<object class="x.StepperClipControl">{numbers(delta_t=duration)}</object></property>'
+        '<property name="coords" type="object"><object class="x.ImageCoordSystem">'
+        f"{sparse('framedata', coords)}</object></property>{root}"
+        f'<property name="tracks" type="collection" class="x">{tracks}</property></object>'
+    )
+
+
+def put(folder: Path, text: str | bytes, name: str = "shot.trk") -> Path:
+    path = folder / name
+    path.write_bytes(text.encode() if isinstance(text, str) else text)
+    return path
+
+
+def archive(entries: Mapping[str, str | bytes]) -> bytes:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as file:
+        for name, content in entries.items():
+            file.writestr(name, content)
+    return buffer.getvalue()
+
+
+def test_places_are_those_of_the_moving_coordinate_system(tmp_path: Path) -> None:
+    found = read_table([put(tmp_path, project())]).sightings.set_index(["stone", "frame"])
+    for (stone, frame), row in found.iterrows():
+        px, py = MARKS[stone][frame]
+        ox, oy, angle, sx, sy = KEYS[0 if frame < 3 else 3]
+        place = complex((px - ox) / sx, -(py - oy) / sy) * np.exp(-1j * np.radians(angle))
+        np.testing.assert_allclose([row["x"], row["y"]], [place.real, place.imag], atol=1e-12)
+        assert row["t"] == pytest.approx(frame * 0.04)
+
+
+def test_pixels_are_the_inverse_of_places(tmp_path: Path) -> None:
+    system = read_project(put(tmp_path, project())).coordinates
+    frames, marks = np.arange(6), np.array(list(MARKS["red"].values()))
+    np.testing.assert_allclose(system.pixels(frames, system.world(frames, marks)), marks)
+
+
+def test_only_steps_of_the_clip_count_and_time_starts_there(tmp_path: Path) -> None:
+    clip = numbers(startframe=1, stepsize=2, stepcount=2, starttime=500)
+    found = read_table([put(tmp_path, project(keys={0: KEYS[0]}, clip=clip))])
+    assert list(found.sightings["frame"]) == [1, 3]
+    np.testing.assert_allclose(found.sightings["t"], [0.5, 0.58])
+    assert any("blue has no mark in the clip" in text for text in found.warnings)
+
+
+def test_frames_before_a_shift_are_dropped(tmp_path: Path) -> None:
+    clip = numbers(startframe=2, frameshift=2)
+    found = read_table([put(tmp_path, project(clip=clip))]).sightings
+    assert list(found["frame"][found["stone"] == "red"]) == [0, 1, 2, 3]
+
+
+def test_reference_frame_gives_the_origin_and_is_left_out(tmp_path: Path) -> None:
+    marks = {
+        "base": {0: (10.0, 10.0), 2: (20.0, 10.0)},
+        "red": dict.fromkeys(range(4), (60.0, 10.0)),
+    }
+    root = '<property name="referenceframe" type="string">base</property>'
+    keys = {0: (0.0, 0.0, 0.0, 10.0, 10.0)}
+    found = read_table([put(tmp_path, project(marks, keys, root=root))])
+    assert list(found.sightings["stone"]) == ["red"] * 4
+    np.testing.assert_allclose(found.sightings["x"], [5, 5, 4, 4])
+    assert any("relative to base" in text for text in found.warnings)
+
+
+def test_length_unit_of_the_project(tmp_path: Path) -> None:
+    root = '<property name="length_unit" type="string">cm</property>'
+    plain = read_table([put(tmp_path, project())]).sightings
+    found = read_table([put(tmp_path, project(root=root))])
+    np.testing.assert_allclose(found.sightings["x"], plain["x"] / 100)
+    assert any("taken in cm" in text for text in found.warnings)
+    odd = read_table([put(tmp_path, project(root=root.replace("cm", "ell")))])
+    assert any("“ell”, which is unknown" in text for text in odd.warnings)
+
+
+def test_masses_count_only_if_all_were_set(tmp_path: Path) -> None:
+    both = read_table([put(tmp_path, project(mass={"red": 19.0, "blue": 20.0}))])
+    assert both.masses == {"red": 19.0, "blue": 20.0}
+    one = read_table([put(tmp_path, project(mass={"red": 19.0}))])
+    assert one.masses == {}
+    assert any("mass of blue is Tracker's default" in text for text in one.warnings)
+
+
+def test_uneven_frames_of_the_video_keep_their_times(tmp_path: Path) -> None:
+    stamps = '<property name="start_times" type="array" class="[D">' + (
+        '<property name="array" type="string">{0,40,80,160,200,240}</property></property>'
+    )
+    found = read_table([put(tmp_path, project(video=stamps, duration=48.0))])
+    red = found.sightings[found.sightings["stone"] == "red"]
+    np.testing.assert_allclose(red["t"], np.array([0, 40, 80, 160, 200, 240]) / 1000)
+    assert any("uneven" in text for text in found.warnings)
+
+
+def test_first_tab_with_marks_is_used_unless_another_is_named(tmp_path: Path) -> None:
+    other = project({"green": {0: (5.0, 5.0)}})
+    content = {"a.trk": project({}), "b.trk": project(), "x/c.trk": other, "x/._c.trk": b"\0"}
+    path = put(tmp_path, archive(content), "tabs.trz")
+    found = read_table([path])
+    assert set(found.sightings["stone"]) == {"red", "blue"}
+    assert any("a, b, c" in text and ": b (--tab)" in text for text in found.warnings)
+    assert set(read_table([path], tab="c").sightings["stone"]) == {"green"}
+    with pytest.raises(InputError, match="no tab d; there is a, b, c"):
+        read_table([path], tab="d")
+
+
+def test_a_set_of_tabs_leads_to_its_projects(tmp_path: Path) -> None:
+    put(tmp_path, project(), "one.trk")
+    entry = (
+        '<property name="[0]" type="array" class="s"><property name="[0]" type="string">/no/one.trk'
+        '</property><property name="[1]" type="string">one.trk</property></property>'
+    )
+    text = (
+        f'<object class="T.TFrame"><property name="tabs" type="array">{entry}</property></object>'
+    )
+    assert len(read_table([put(tmp_path, text, "tabs.trk")]).sightings) == 7
+
+
+LAUGHS = (
+    '<?xml version="1.0"?><!DOCTYPE o [<!ENTITY a "ha"><!ENTITY b "'
+    + "&a;" * 1000
+    + '">]><object class="x.TrackerPanel">&b;</object>'
+)
+OUTSIDE = '<!DOCTYPE o [<!ENTITY a SYSTEM "file:///etc/passwd">]><object>&a;</object>'
+NONSENSE = {
+    "<": "damaged",
+    project()[:700]: "damaged",
+    project().replace("200.0", "NaN", 1): "no number",
+    project().replace("200.0", "1_0", 1): "no number",
+    project().replace("50.0", "0.0"): "scale",
+    project().replace("[3]", "[99999999999]"): "too large",
+    project(keys={}): "no coordinate system",
+    project(keys={0: (0.0, 0.0, 0.0, 1.0, 1.0)}): "not calibrated",
+    project({}): "no point mass with marks",
+    project(duration=0): "no duration",
+    project(clip=numbers(stepsize=0)): "makes no sense",
+    project({"a": {0: (1.0, 1.0)}, " a ": {0: (2.0, 2.0)}}): "two tracks with one name, a",
+    '<object class="x.Other"/>': "Other instead",
+    "<html><body/></html>": "element “html”",
+    "<object>" * 100: "nested too deeply",
+    LAUGHS: "entities",
+    OUTSIDE: "entities",
+}
+
+
+@pytest.mark.parametrize("text", NONSENSE, ids=range(len(NONSENSE)))
+def test_nonsense_is_refused_in_one_line(tmp_path: Path, text: str) -> None:
+    with pytest.raises(InputError, match=NONSENSE[text]) as refusal:
+        read_table([put(tmp_path, text)])
+    assert "\n" not in str(refusal.value)
+    assert str(tmp_path) in str(refusal.value)
+
+
+def test_archives_do_no_harm(tmp_path: Path) -> None:
+    bomb = archive({"a.trk": b"<object>" + b" " * 80_000_000})
+    for raw, reason in [
+        (bomb, "too large"),
+        (archive({"readme.txt": "no"}), "without a Tracker project"),
+        (archive({"a.trk": project()})[:-40], "damaged"),
+        (archive({f"{k}.trk": "" for k in range(60)}), "too many"),
+    ]:
+        with pytest.raises(InputError, match=reason):
+            read_table([put(tmp_path, raw, "a.trz")])
+    outside = put(tmp_path, archive({"../../evil.trk": project()}), "b.trz")
+    assert len(read_table([outside]).sightings) == 7
+    assert sorted(item.name for item in tmp_path.iterdir()) == ["a.trz", "b.trz"]
+
+
+@settings(
+    deadline=None,
+    max_examples=600,
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
+)
+@given(data=st.data(), zipped=st.booleans())
+def test_damaged_projects_are_read_or_refused(
+    tmp_path: Path, data: st.DataObject, zipped: bool
+) -> None:
+    raw = bytearray(archive({"a.trk": project()}) if zipped else project().encode())
+    words = [
+        b"NaN",
+        b"1e308",
+        b"-1",
+        b"9" * 30,
+        b"",
+        b"null",
+        b"&a;",
+        b"[7]",
+        b"\xff",
+        b"</object>",
+    ]
+    for _ in range(data.draw(st.integers(1, 4))):
+        at = data.draw(st.integers(0, len(raw)))
+        until = at + data.draw(st.sampled_from([0, 1, 5, 30]))
+        raw[at:until] = data.draw(st.sampled_from(words) | st.binary(max_size=3))
+    try:
+        found = read_table([put(tmp_path, bytes(raw))])
+    except InputError as refusal:
+        assert "\n" not in str(refusal)
+        return
+    table = found.sightings
+    assert np.isfinite(table[["t", "x", "y"]].to_numpy()).all()
+    assert (table.groupby("stone")["t"].diff().dropna() > 0).all()
+
+
+# Files that Tracker and its users wrote.
+
+
+PAIRS = ("V1", "V2", "V3", "V5", "V8", "V11", "V17", "V23", "V28", "V30")
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_project_and_export_of_real_users_agree(shared: Path, name: str) -> None:
+    """V28's project was saved again after its export; its marks are still the same."""
+    folder = shared / "tracker" / "real"
+    marked = read_table([folder / f"pair_{name}.trk"]).sightings
+    exported = read_table([folder / f"pair_{name}_export.txt"]).sightings
+    assert len(marked) == len(exported) > 900
+    for column in ("t", "x", "y"):
+        np.testing.assert_allclose(marked[column], exported[column], rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "export"),
+    [
+        ("project.trk", "export_two_tracks_fullprecision_semicolon.txt"),
+        ("sample.trz", "export_two_tracks_fullprecision_semicolon.txt"),
+        ("moving_project.trk", "moving_export_after_reopening.txt"),
+    ],
+)
+def test_sample_projects_agree_with_their_exports(shared: Path, name: str, export: str) -> None:
+    folder = shared / "tracker" / "samples"
+    marked = read_table([folder / name]).sightings
+    printed = read_table([folder / export]).sightings
+    columns = ["stone", "frame", "t", "x", "y"]
+    pd.testing.assert_frame_equal(marked[columns], printed[columns], rtol=0, atol=5.1e-7)
+
+
+def test_project_with_a_reference_frame_agrees_with_its_export(shared: Path) -> None:
+    folder = shared / "tracker" / "samples"
+    marked = read_table([folder / "full_project.trk"]).sightings
+    printed = read_table([folder / "full_export_default_frame.txt"]).sightings
+    stones = [rows.reset_index() for _, rows in printed.groupby("stone")]
+    red, yellow = stones
+    np.testing.assert_allclose(marked["t"], yellow["t"], rtol=0, atol=1e-9)
+    for axis in "xy":
+        np.testing.assert_allclose(marked[axis], yellow[axis] - red[axis], rtol=0, atol=1.1e-6)
+
+
+def test_projects_of_real_users_are_read(shared: Path) -> None:
+    for path in sorted((shared / "tracker" / "real").glob("*.trz")):
+        assert len(read_table([path]).sightings) >= 10, path.name
+    with pytest.raises(InputError, match="not calibrated"):
+        read_table([shared / "tracker" / "real" / "26a2_protractor.trk"])
