@@ -1,9 +1,13 @@
-"""Circles about a place on the ice: rays sampled in the picture itself, edges, and their fit."""
+"""Circles about places on the ice: rays sampled in the picture itself, edges, and their fit.
+
+All places of a picture are treated at once: every array begins with the axis of the places.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import cv2
 import numpy as np
@@ -14,119 +18,202 @@ from vision.clip import Image
 from vision.ice_map import lifted
 
 Array = NDArray[np.float64]
+Floats = NDArray[np.float32]
+Bytes = NDArray[np.uint8]
+Bools = NDArray[np.bool_]
+
+_MOST_ROWS = 32000
+"""As many as cv2.remap takes at once."""
+
+_EDGE_WIDTH = 0.010
+"""Half the width of what is taken for one edge, m; at least two samples, at most four."""
 
 
 @dataclass(frozen=True)
 class Rays:
-    """Colours on rays around candidates, from the picture itself."""
+    """Colours on rays around n places, from the picture itself.
 
-    bgr: Image  # (n, rays, radii, 3)
-    lab: NDArray[np.uint8]  # the same in L*a*b*
-    inside: NDArray[np.bool_]  # (n, rays, radii)
-    radius: Array  # (radii,)
-    angle: Array  # (rays,)
+    Attributes
+    ----------
+    bgr, lab : ndarray, shape (n, rays, radii, 3)
+        As blue, green, red and as L*a*b*, 8 bits each.
+    inside : ndarray of bool, shape (n, rays, radii)
+        Where the picture shows the place.
+    radius, angle : ndarray, shapes (radii,) and (rays,)
+        Distances from the centre, m; counter-clockwise from the x axis of the ice, rad.
+    """
 
-    def at(self, index: int, radius: float) -> NDArray[np.bool_]:
-        """Which rays of a candidate show the place at this radius, shape (rays,)."""
-        return np.asarray(self.inside[index][:, np.searchsorted(self.radius, radius)])
+    bgr: Bytes
+    lab: Bytes
+    inside: Bools
+    radius: Array
+    angle: Array
+
+    def at(self, radius: float) -> Bools:
+        """Which rays show the place at this radius, shape (n, rays)."""
+        return np.asarray(self.inside[..., np.searchsorted(self.radius, radius)])
 
 
-def sample_rays(
-    image: Image, camera: Camera, places: Array, radius: Array, height: Array, rays: int
-) -> Rays:
+@lru_cache(maxsize=8)
+def _around(rays: int) -> tuple[Array, Array]:
+    angle = np.arange(rays, dtype=np.float64) * (2 * np.pi / rays)
+    return angle, np.stack([np.cos(angle), np.sin(angle)], -1)
+
+
+@dataclass(frozen=True)
+class Profile:
+    """What lies along a ray: nodes at which the camera is evaluated, and samples between them.
+
+    Between nodes less than a stone's radius apart every camera is straight to 0.01 px.
+
+    Attributes
+    ----------
+    node_radius, node_height : ndarray, shape (nodes,)
+        Distances from the centre, and how high above the ice what is seen there lies, m.
+    radius : ndarray, shape (radii,)
+        Of the samples, m.
+    mix : ndarray, shape (nodes, radii)
+        What each node has to say at each sample.
+    """
+
+    node_radius: Array
+    node_height: Array
+    radius: Array
+    mix: Floats
+
+
+def straight(nodes: Sequence[tuple[float, float]], radius: Array) -> Profile:
+    """Profile through nodes (radius, height) joined by straight lines."""
+    node_radius, node_height = np.array(nodes, float).T
+    mix = [np.interp(radius, node_radius, row) for row in np.eye(len(node_radius))]
+    return Profile(node_radius, node_height, radius, np.array(mix, np.float32))
+
+
+def joined(first: Profile, second: Profile) -> Profile:
+    """Profile that has the samples of one and then those of the other."""
+    mix = np.zeros((len(first.mix) + len(second.mix), len(first.radius) + len(second.radius)))
+    mix[: len(first.mix), : len(first.radius)] = first.mix
+    mix[len(first.mix) :, len(first.radius) :] = second.mix
+    return Profile(
+        np.append(first.node_radius, second.node_radius),
+        np.append(first.node_height, second.node_height),
+        np.append(first.radius, second.radius),
+        np.asarray(mix, np.float32),
+    )
+
+
+def sample_rays(image: Image, camera: Camera, places: Array, profile: Profile, rays: int) -> Rays:
     """Sample the picture on rays around places on the ice.
 
     Parameters
     ----------
     places : ndarray, shape (n, 2)
         Centres, m.
-    radius, height : ndarray, shape (radii,)
-        Distances from the centre, and how high above the ice what is seen there lies, m.
+    profile : Profile
+        Of every ray.
     rays : int
         How many, counter-clockwise from the x axis.
     """
-    angle = np.arange(rays) * (2 * np.pi / rays)
-    around = np.stack([np.cos(angle), np.sin(angle)], -1)[:, None] * radius[None, :, None]
-    ice = lifted(camera, places[:, None, None] + around, height)
-    pixels = camera.project(ice)
+    angle, around = _around(rays)
+    nodes = places[:, None, None] + around[:, None] * profile.node_radius[:, None]
+    ends = camera.project(lifted(camera, nodes, profile.node_height)).astype(np.float32)
+    across, down = ends[..., 0] @ profile.mix, ends[..., 1] @ profile.mix
     width, high = camera.size
-    inside = (pixels >= 0).all(-1) & (pixels[..., 0] <= width - 1) & (pixels[..., 1] <= high - 1)
-    flat = pixels.reshape(-1, len(radius), 2).astype(np.float32)
-    most = 32000  # as many as cv2.remap takes at once
+    if (ends.min((0, 1, 2)) >= 0).all() and (ends.max((0, 1, 2)) <= (width - 1, high - 1)).all():
+        inside = np.ones(across.shape, bool)
+    else:
+        inside = (across >= 0) & (down >= 0) & (across <= width - 1) & (down <= high - 1)
+    shape = (*across.shape, 3)
+    across, down = (a.reshape(-1, a.shape[-1]) for a in (across, down))
     parts = [
-        cv2.remap(image, part[..., 0], part[..., 1], cv2.INTER_LINEAR)
-        for part in np.split(flat, range(most, len(flat), most))
+        cv2.remap(image, across[k : k + _MOST_ROWS], down[k : k + _MOST_ROWS], cv2.INTER_LINEAR)
+        for k in range(0, len(across), _MOST_ROWS)
     ]
-    bgr = np.asarray(np.concatenate(parts), np.uint8)
+    bgr = np.asarray(parts[0] if len(parts) == 1 else np.concatenate(parts), np.uint8)
     lab = np.asarray(cv2.cvtColor(bgr, cv2.COLOR_BGR2LAB), np.uint8)
-    shape = (*inside.shape, 3)
-    return Rays(
-        bgr.reshape(shape),
-        lab.reshape(shape),
-        np.asarray(inside),
-        np.asarray(radius),
-        np.asarray(angle),
-    )
-
-
-def _edge(
-    fall: Array, seen: NDArray[np.bool_], radius: Array, expected: Array, width: float
-) -> tuple[Array, Array]:
-    """Place of the strongest fall near the expected radius on each ray, and its strength.
-
-    Parameters
-    ----------
-    fall : ndarray, shape (rays, radii)
-        How much the signal falls per step of the radius.
-    expected : ndarray, shape (rays,)
-        Where the edge should be, m; `width` is the standard deviation of that.
-    """
-    step = radius[1] - radius[0]
-    prior = np.exp(-0.5 * ((radius - expected[:, None]) / width) ** 2)
-    weighted = np.where(seen, np.maximum(fall, 0) * prior, 0)
-    best = weighted.argmax(1)
-    rows = np.arange(len(best))
-    near = np.clip(best[:, None] + np.arange(-4, 5), 0, len(radius) - 1)
-    strength = np.maximum(fall[rows[:, None], near], 0)
-    total = strength.sum(1)
-    place = (strength * near).sum(1) / np.maximum(total, 1e-9)
-    return radius[0] + step * place, np.where(seen[rows, best], total, 0)
+    return Rays(bgr.reshape(shape), lab.reshape(shape), inside, profile.radius, angle)
 
 
 @dataclass(frozen=True)
 class Rim:
-    """One of the concentric circles that are sought: what falls there, and where it may."""
+    """One of the concentric circles that are sought about each of n places.
 
-    fall: Array  # (rays, radii)
-    use: NDArray[np.bool_]  # (rays,): rays that may show it
-    inside: NDArray[np.bool_]  # (rays,): rays on which the picture shows that place
+    Attributes
+    ----------
+    fall : ndarray, shape (n, rays, radii)
+        How much what ends at the circle falls per step of the radius.
+    use, inside : ndarray of bool, shape (n, rays)
+        Rays that may show it; rays on which the picture shows that place.
+    radius, width : float
+        Where the edge is expected, and the standard deviation of that, m.
+    strength : float
+        Least that an edge falls by.
+    weight : ndarray, shape (n,)
+        What an edge counts.
+    """
+
+    fall: Floats
+    use: Bools
+    inside: Bools
     radius: float
     width: float
-    strength: float  # least that an edge falls by
-    weight: float = 1.0
+    strength: float
+    weight: Array
 
 
 @dataclass(frozen=True)
-class Fit:
-    """Concentric circles through edge points: shift of the centre, radii, and how well."""
+class Fits:
+    """Concentric circles through edge points about n places.
 
-    shift: Array  # (2,)
-    radii: Array  # one per circle
-    covariance: Array  # of the shift, (2, 2)
-    rms: float
-    shares: Array  # one per circle: rays that agree, of those in the picture
+    Attributes
+    ----------
+    ok : ndarray of bool, shape (n,)
+        Where there are edges enough; what is said of the others means nothing.
+    shift : ndarray, shape (n, 2)
+        From the place to the centre, m.
+    radii : ndarray, shape (n, circles)
+    covariance : ndarray, shape (n, 2, 2)
+        Of the shift, m².
+    shares : ndarray, shape (n, circles)
+        Rays that agree, of those in the picture.
+    """
+
+    ok: Bools
+    shift: Array
+    radii: Array
+    covariance: Array
+    shares: Array
+
+
+def _edges(rim: Rim, inside: Bools, radius: Array, expected: Array) -> tuple[Array, Array]:
+    """Place of the strongest fall near the expected radius (n, rays) on each ray; its strength."""
+    step = float(radius[1] - radius[0])
+    first, last = np.searchsorted(radius, rim.radius + 4 * rim.width * np.array([-1, 1])).tolist()
+    fall = np.maximum(rim.fall[..., first:last], 0)
+    if not inside.all():
+        fall *= inside[..., first:last]
+    away = (radius[first:last] - expected[..., None]).astype(np.float32) / np.float32(rim.width)
+    best = (fall * np.exp(-0.5 * away * away)).argmax(-1)
+    half = int(np.clip(round(_EDGE_WIDTH / step), 2, 4))
+    fall = np.pad(fall, ((0, 0), (0, 0), (half, half))).reshape(-1, last - first + 2 * half)
+    rows = np.arange(len(fall))[:, None] * fall.shape[1]
+    offsets = np.arange(2 * half + 1)
+    strength = fall.ravel().take(rows + best.reshape(-1, 1) + offsets)
+    total = strength @ np.ones(len(offsets), np.float32)
+    place = (strength @ (offsets - half).astype(np.float32)) / np.maximum(total, 1e-9)
+    place = place.reshape(best.shape) + best
+    return np.asarray(radius[first] + step * place, float), total.reshape(best.shape)
 
 
 def fit_circles(
     rays: Rays,
-    index: int,
     rims: Sequence[Rim],
     slack: float,
     reach: float,
-    noise: float,
+    noise: Array,
     rounds: int = 2,
-) -> Fit | None:
-    """Fit concentric circles to the edges on rays from a centre that is nearly right.
+) -> Fits:
+    """Fit concentric circles to the edges on rays from centres that are nearly right.
 
     Linear: edge ≈ R + dx cos φ + dy sin φ, robust by reweighting (Tukey's biweight), with
     the radii held near what is expected. The edges are chosen anew about each fit.
@@ -136,72 +223,83 @@ def fit_circles(
     slack, reach : float
         Standard deviation of the radii, and distance from the circle up to which an edge may
         count, as shares of the radius.
-    noise : float
+    noise : ndarray, shape (n,)
         Least standard error of one edge, m.
     rounds : int
         How often edges are chosen.
     """
-    circles = len(rims)
+    n, circles = len(rays.inside), len(rims)
     expected = np.array([rim.radius for rim in rims])
-    inside = np.stack([rim.inside for rim in rims])
-    around = np.stack([np.cos(rays.angle), np.sin(rays.angle)], 1)
+    around = _around(len(rays.angle))[1]
     design = np.concatenate(
         [np.hstack([around, np.tile(row, (len(around), 1))]) for row in np.eye(circles)]
     )
-    prior = np.zeros((2 + circles, 2 + circles))
-    prior[2:, 2:] = np.diag((noise / (slack * expected)) ** 2)
-    prior += 1e-9 * np.eye(2 + circles)
+    size = 2 + circles
+    squares = (design[:, :, None] * design[:, None, :]).reshape(len(design), size * size)
+    prior = np.zeros((n, size, size))
+    prior[:, range(size), range(size)] = 1e-9
+    for k, radius in enumerate(expected.tolist()):
+        prior[:, 2 + k, 2 + k] += (noise / (slack * radius)) ** 2
+    inside = np.concatenate([rim.inside for rim in rims], 1)
+    may = np.concatenate([(rim.use & rim.inside) * rim.weight[:, None] for rim in rims], 1)
     least = reach * float(expected[-1]) + 2 * noise
-    scale = 0.10 * float(expected[-1])
-    solution = np.zeros(2 + circles)
+    scale = np.full(n, 0.10 * float(expected[-1]))
+    solution = np.zeros((n, size))
     for _ in range(rounds):
-        shape = (design @ solution).reshape(circles, -1) + expected[:, None]
-        found = [
-            _edge(rim.fall, rays.inside[index], rays.radius, curve, rim.width)
-            for rim, curve in zip(rims, shape, strict=True)
-        ]
+        shape = (solution @ design.T).reshape(n, circles, -1) + expected[:, None]
+        found = [_edges(rim, rays.inside, rays.radius, shape[:, k]) for k, rim in enumerate(rims)]
         target = np.concatenate(
-            [edge - rim.radius for rim, (edge, _) in zip(rims, found, strict=True)]
+            [edge - rim.radius for rim, (edge, _) in zip(rims, found, strict=True)], 1
         )
-        base = np.concatenate(
-            [
-                rim.use & rim.inside & (strength > rim.strength)
-                for rim, (_, strength) in zip(rims, found, strict=True)
-            ]
-        ).astype(float)
-        base *= np.repeat([rim.weight for rim in rims], len(around))
+        base = may * np.concatenate(
+            [strength > rim.strength for rim, (_, strength) in zip(rims, found, strict=True)], 1
+        )
         for _ in range(3):
-            residual = target - design @ solution
-            w = base * np.clip(1 - (residual / scale) ** 2, 0, None) ** 2
-            if (w > 0).sum() < 8:
-                return None
-            scale = max(min(scale, 3.5 * 1.4826 * float(np.median(np.abs(residual[w > 0])))), least)
-            weighted = design.T * w
-            solution = np.linalg.solve(weighted @ design + prior, weighted @ target)
-    residual = target - design @ solution
-    fits = (base > 0) & (np.abs(residual) < 0.75 * scale)
-    if fits.sum() < 8:
-        return None
-    rms = float(np.sqrt(np.mean(residual[fits] ** 2)))
-    normal = (design[fits].T * base[fits]) @ design[fits] + prior
-    covariance = np.linalg.inv(normal)[:2, :2] * max(rms, noise) ** 2
-    shares = (fits.reshape(circles, -1) & inside).sum(1) / np.maximum(inside.sum(1), 1)
-    return Fit(solution[:2], expected + solution[2:], covariance, rms, shares)
+            residual = target - solution @ design.T
+            w = base * np.maximum(1 - (residual / scale[:, None]) ** 2, 0) ** 2
+            typical = 1.4826 * _median(np.abs(residual), w > 0)
+            scale = np.maximum(np.minimum(scale, 3.5 * typical), least)
+            normal = (w @ squares).reshape(n, size, size) + prior
+            solution = np.linalg.solve(normal, ((w * target) @ design)[..., None])[..., 0]
+    residual = target - solution @ design.T
+    fits = (base > 0) & (np.abs(residual) < 0.75 * scale[:, None])
+    count = fits.sum(1)
+    rms = np.sqrt((residual**2 * fits).sum(1) / np.maximum(count, 1))
+    normal = ((base * fits) @ squares).reshape(n, size, size) + prior
+    spread = np.maximum(rms, noise) ** 2
+    covariance = np.linalg.inv(normal)[:, :2, :2] * spread[:, None, None]
+    agree = (fits & inside).reshape(n, circles, -1).sum(-1)
+    shares = agree / np.maximum(inside.reshape(n, circles, -1).sum(-1), 1)
+    return Fits(count >= 8, solution[:, :2], expected + solution[:, 2:], covariance, shares)
 
 
-def falls_along(lab: NDArray[np.uint8]) -> Array:
-    """Negative derivative of colours along the rays, lightly smoothed, per step of the radius.
+def _median(values: Array, use: Bools) -> Array:
+    """Median of the chosen values of each row; 0 where there are none."""
+    ranked = np.sort(np.where(use, values, np.inf), axis=1)
+    count = use.sum(1)
+    middle = ranked[np.arange(len(ranked)), np.maximum(count - 1, 0) // 2]
+    return np.asarray(np.where(count > 0, middle, 0.0))
 
-    Shape (rays, radii, 3) as given; the derivative of a Gaussian of 1.6 steps.
+
+def falls_along(values: Floats | Bytes, width: float = 1.6) -> Floats:
+    """Negative derivative along the radius, lightly smoothed, per step of the radius.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n, rays, radii, channels)
+    width : float
+        Standard deviation of the Gaussian whose derivative is taken, steps.
     """
-    x = np.arange(-5, 6, dtype=np.float32)
-    gauss = np.exp(-0.5 * (x / 1.6) ** 2)
-    slope = gauss * x
+    half = int(np.ceil(3 * width))
+    x = np.arange(-half, half + 1, dtype=np.float32)
+    slope = np.exp(-0.5 * (x / np.float32(width)) ** 2) * x
     slope /= (slope * x).sum()
     across = np.exp(-0.5 * (np.arange(-2, 3, dtype=np.float32) / 0.6) ** 2)
-    return np.asarray(cv2.sepFilter2D(lab, cv2.CV_32F, -slope, across / across.sum()), float)
+    flat = values.reshape(-1, *values.shape[-2:])
+    filtered = cv2.sepFilter2D(flat, cv2.CV_32F, -slope, across / across.sum())
+    return np.asarray(filtered, np.float32).reshape(values.shape)
 
 
-def share_of_samples(hit: NDArray[np.bool_], inside: NDArray[np.bool_]) -> Array:
-    """Share of the samples of each ray that hit, of those inside the picture."""
-    return np.asarray((hit & inside).sum(1) / np.maximum(inside.sum(1), 1))
+def summed(values: Bools | Floats) -> Floats:
+    """Sum over the last axis; for many short rows faster than numpy's own."""
+    return np.asarray(values.astype(np.float32) @ np.ones(values.shape[-1], np.float32))

@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Sighting:
     """One stone seen in one picture.
 
     Attributes
     ----------
     x, y : float
-        Place on the ice under its centre, m.
+        Place on the ice under its centre by the camera at hand, m.
     sd_x, sd_y : float
         Standard error that is anew in each picture, m.
     sd_place : float
@@ -30,13 +30,15 @@ class Sighting:
         Evidence that it is a stone: 1.5 is little, 3 is much.
     outline : tuple of float
         Radii found for cap and granite (or the rim alone), as shares of the nominal ones.
-    patch : ndarray, shape (rays, radii, 3)
-        L*a*b* on rays from the centre, counter-clockwise from the x axis of the ice, out to
-        1.04 radii.
+    handle : ndarray, shape (rays, rings, 3)
+        L*a*b* around the centre, counter-clockwise from the x axis of the ice, at the
+        height of the handle.
+    pixel : tuple of float
+        Where the picture shows the middle of the cap, px.
     cap_samples, granite_samples : ndarray, shape (n, 3)
         Colours of the cap and of the granite, for learning.
     spectrum : ndarray or None
-        What is kept of the patch to measure the angle (`vision.handle.cap_spectrum`).
+        What is kept of the handle's picture to measure the angle (`vision.handle.cap_spectrum`).
     """
 
     x: float
@@ -48,7 +50,28 @@ class Sighting:
     visible: float
     score: float
     outline: tuple[float, ...] = field(repr=False)
-    patch: NDArray[np.uint8] = field(repr=False)
+    handle: NDArray[np.uint8] = field(repr=False)
+    pixel: tuple[float, float] = (float("nan"), float("nan"))
     cap_samples: Array = field(repr=False, default_factory=lambda: np.empty((0, 3)))
     granite_samples: Array = field(repr=False, default_factory=lambda: np.empty((0, 3)))
     spectrum: NDArray[np.complex64] | None = field(repr=False, default=None)
+
+
+@dataclass(frozen=True, slots=True)
+class Refusal:
+    """A place that looked like a stone at first and was refused.
+
+    Attributes
+    ----------
+    x, y : float
+        Place on the ice, m.
+    score : float
+        Evidence for a stone, as far as it went.
+    reason : str
+        Why it is none.
+    """
+
+    x: float
+    y: float
+    score: float
+    reason: str

@@ -16,8 +16,9 @@ from vision.camera import Camera
 from vision.clip import Clip, Frame
 from vision.follow import Gate, Track, follow, names_by_motion
 from vision.handle import Complex, cap_spectrum, handle_angles
+from vision.measure import is_plain
 from vision.sighting import Sighting
-from vision.stones import PLAIN_REACH, SEARCH, STONE_REACH, Search, find_stones, is_plain
+from vision.stones import SEARCH, Search, find_stones
 
 LEARNING_FRAMES = 24
 """Frames of a clip from which the look of its stones is learned."""
@@ -132,14 +133,11 @@ def _seen(
 ) -> list[Sighting]:
     """Sightings of one frame, the patch of each reduced to what the angle needs."""
     found = find_stones(frame.image, camera, appearance, disc, search)
-    outer = (
-        0.80 * disc.radius / PLAIN_REACH if is_plain(disc) else 0.86 * disc.cap_radius / STONE_REACH
-    )
     return [
         replace(
             item,
-            patch=np.empty((0, 0, 3), np.uint8),
-            spectrum=cap_spectrum(item.patch, 0.05, outer / disc.radius)
+            handle=np.empty((0, 0, 3), np.uint8),
+            spectrum=cap_spectrum(item.handle, 0.0, 1.0)
             if item.visible >= HANDLE_VISIBLE
             else None,
             cap_samples=np.empty((0, 3)),

@@ -1,0 +1,301 @@
+"""Discs measured where they are thought to be: all of one picture at once, on rays.
+
+Around each place the picture itself is sampled on rays. The edges of cap and granite (or the
+rim of a plain disc) give the centre, and what lies between them the evidence for a stone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.sheet import Stone
+from vision.appearance import Appearance, membership
+from vision.camera import Camera
+from vision.circles import (
+    Bools,
+    Floats,
+    Profile,
+    Rays,
+    Rim,
+    falls_along,
+    fit_circles,
+    joined,
+    sample_rays,
+    straight,
+    summed,
+)
+from vision.clip import Image
+
+Array = NDArray[np.float64]
+Bytes = NDArray[np.uint8]
+
+HANDLE_HEIGHT = 0.15
+"""How high above the ice the handle's grip is seen, m."""
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How a place is measured. Lengths are shares of the disc's radius.
+
+    Attributes
+    ----------
+    rays, radii : int
+        Samples of the polar patch around a place.
+    inner, stone_outer, plain_outer : float
+        Where the rays begin, and how far they reach: a stone's surroundings say nothing, a
+        plain rim's do.
+    handle_rings, handle_inner, handle_outer : int, float, float
+        Rings of the picture by which the angle is told; the radii as shares of the cap's (or,
+        of a plain disc, of its own).
+    edge_reach : float
+        Distance from the circle up to which an edge may count.
+    most_tilt : float
+        Tangent of the view's angle to the vertical at which the granite's outline counts half.
+    rounds : int
+        How often the edges are chosen about the circle that they gave.
+    """
+
+    rays: int = 48
+    radii: int = 44
+    inner: float = 0.20
+    stone_outer: float = 1.06
+    plain_outer: float = 1.3
+    handle_rings: int = 8
+    handle_inner: float = 0.12
+    handle_outer: float = 0.86
+    edge_reach: float = 0.035
+    most_tilt: float = 0.15
+    rounds: int = 2
+
+
+EFFORT = Effort()
+
+
+@dataclass(frozen=True)
+class Measures:
+    """What was seen at n places.
+
+    Attributes
+    ----------
+    ok : ndarray of bool, shape (n,)
+        Where circles could be fitted at all; the rest means nothing elsewhere.
+    centre : ndarray, shape (n, 2)
+        Places on the ice under the centres, m.
+    shift : ndarray, shape (n,)
+        How far they are from where they were looked for, m.
+    sd : ndarray, shape (n, 2)
+        Standard errors that are anew in each picture, m.
+    colour : ndarray, shape (n, 3)
+        Of cap or disc, L*a*b*.
+    visible : ndarray, shape (n,)
+        Share of the circle that was seen.
+    evidence : ndarray, shape (n,)
+        For a stone 0 to about 3.5, for a plain disc 0 to 1.
+    outline : ndarray, shape (n, circles)
+        Radii found, as shares of the nominal ones.
+    handle : ndarray, shape (n, rays, rings, 3)
+        What is around the centre at the height of the handle, L*a*b*.
+    worth : ndarray, shape (n, rays, radii)
+        What the samples of `rays` may be: 1 cap, −1 granite, 0 neither.
+    rays : Rays
+    """
+
+    ok: Bools
+    centre: Array
+    shift: Array
+    sd: Array
+    colour: Array
+    visible: Array
+    evidence: Array
+    outline: Array
+    handle: Bytes
+    worth: Floats
+    rays: Rays
+
+
+def is_plain(disc: Stone) -> bool:
+    """Say whether a disc has no cap that could be told from its rim."""
+    return disc.cap_radius <= 0
+
+
+@lru_cache(maxsize=8)
+def _profile(disc: Stone, effort: Effort) -> Profile:
+    """Give the samples of the stone's top, then two for each ring of the handle's picture."""
+    if is_plain(disc):
+        inner, outer, size = (
+            effort.inner * disc.radius,
+            effort.plain_outer * disc.radius,
+            disc.radius,
+        )
+        top, grip = [(inner, 0.0), (outer, 0.0)], 0.0
+    else:
+        inner, outer = effort.inner * disc.radius, effort.stone_outer * disc.radius
+        size, edge, height = disc.cap_radius, 1.03 * disc.cap_radius, disc.cap_height
+        # Outside the cap the visible surface falls off towards the striking band.
+        top = [(inner, height), (edge, height), (disc.radius, 0.5 * height), (outer, 0.5 * height)]
+        grip = HANDLE_HEIGHT
+    low, high = effort.handle_inner * size, effort.handle_outer * size
+    rings = straight([(low, grip), (high, grip)], np.linspace(low, high, 2 * effort.handle_rings))
+    return joined(straight(top, np.linspace(inner, outer, effort.radii)), rings)
+
+
+def measure(
+    image: Image,
+    camera: Camera,
+    places: Array,
+    appearance: Appearance | None,
+    disc: Stone,
+    effort: Effort = EFFORT,
+) -> Measures:
+    """Measure the discs at these places, shape (n, 2), m.
+
+    Parameters
+    ----------
+    appearance : Appearance or None
+        What stones look like here; not used for a plain disc.
+    """
+    sampled = sample_rays(image, camera, places, _profile(disc, effort), effort.rays)
+    count = effort.radii
+    rays = Rays(
+        sampled.bgr[:, :, :count],
+        sampled.lab[:, :, :count],
+        sampled.inside[:, :, :count],
+        sampled.radius[:count],
+        sampled.angle,
+    )
+    pairs = sampled.lab[:, :, count:]
+    handle = (pairs[:, :, ::2] >> 1) + (pairs[:, :, 1::2] >> 1)
+    scale, tilt = scales(camera, places), tilts(camera, places)
+    if is_plain(disc):
+        return _plain(rays, handle, places, scale, disc, effort)
+    assert appearance is not None
+    return _stones(rays, handle, places, scale, tilt, appearance, disc, effort)
+
+
+def scales(camera: Camera, places: Array) -> Array:
+    """Pixels per metre at places of the ice, shape (n, 2): root of the Jacobian's determinant."""
+    step = 1e-3 * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
+    p = camera.project(places[:, None] + step)
+    along, up = (p[:, 0] - p[:, 1]) / 2e-3, (p[:, 2] - p[:, 3]) / 2e-3
+    return np.asarray(np.sqrt(np.abs(along[:, 0] * up[:, 1] - along[:, 1] * up[:, 0])))
+
+
+def tilts(camera: Camera, places: Array) -> Array:
+    """Tangent of the angle between the view of places and the vertical; 0 where unknown."""
+    if camera.position is None or not np.isfinite(camera.position).all():
+        return np.zeros(len(places))
+    away = places - camera.position[:2]
+    return np.asarray(np.hypot(away[:, 0], away[:, 1]) / camera.position[2])
+
+
+def _mean_of(values: Floats, use: Floats) -> Array:
+    """Mean colours (n, 3) of samples (n, rays, radii, 3) by weights; 0 where there are none."""
+    total = use.reshape(len(use), 1, -1) @ values.reshape(len(values), -1, 3)
+    return np.asarray(total[:, 0] / np.maximum(use.sum((1, 2)), 1)[:, None], float)
+
+
+def _stones(
+    rays: Rays,
+    handle: Bytes,
+    places: Array,
+    scale: Array,
+    tilt: Array,
+    appearance: Appearance,
+    disc: Stone,
+    effort: Effort,
+) -> Measures:
+    radius = rays.radius
+    lab = rays.lab.astype(np.float32)
+    falls = falls_along(lab)
+    in_cap = slice(0, int(np.searchsorted(radius, 0.88 * disc.cap_radius)))
+    in_ring = slice(*np.searchsorted(radius, [1.10 * disc.cap_radius, 0.97 * disc.radius]).tolist())
+    worth = membership(rays.bgr, appearance)
+    if not rays.inside.all():
+        worth *= rays.inside
+    of_cap, of_ring = worth[..., in_cap] > 0.3, worth[..., in_ring] < -0.3
+    cap = _mean_of(lab[..., in_cap, :], of_cap.astype(np.float32))
+    granite = _mean_of(lab[..., in_ring, :], of_ring.astype(np.float32))
+    # Bolts and highlights are light and dark alike; the hue is what ends at the cap's edge.
+    apart = np.array([0.1, 1.0, 1.0]) * (cap - granite)
+    apart /= np.maximum(((cap - granite) * apart).sum(1), 1.0)[:, None]
+    along = apart.astype(np.float32)[:, None, :, None]
+    half = ((granite * apart).sum(1) + 0.5).astype(np.float32)[:, None, None]
+    signal = (lab[..., : in_ring.stop, :] @ along)[..., 0] - half
+    seen_cap, seen_ring = rays.inside[..., in_cap], rays.inside[..., in_ring]
+    capped = summed((signal[..., in_cap] > 0) & seen_cap) > 0.4 * np.maximum(summed(seen_cap), 1)
+    stone_like = (worth[..., in_ring] < 0.1) & (signal[..., in_ring] < 0.05) & seen_ring
+    in_view = np.maximum(summed(seen_ring), 1)
+    greyed = summed(stone_like) > 0.4 * in_view
+    cap_radius, rim_radius = np.array([disc.cap_radius, disc.radius]) * appearance.outline
+    stony = capped & greyed
+    at_cap, at_rim = rays.at(cap_radius), rays.at(rim_radius)
+    whole = np.ones(len(places))
+    cap_rim = Rim((falls @ along)[..., 0], stony, at_cap, cap_radius, 0.12 * cap_radius, 0.3, whole)
+    edges = np.sqrt((falls * falls) @ np.ones(3, np.float32))
+    # Seen aslant, the granite's outline is not a circle of one height.
+    trust = 1 / (1 + (tilt / effort.most_tilt) ** 2)
+    granite_rim = Rim(edges, greyed, at_rim, rim_radius, 0.05 * rim_radius, 12.0, trust)
+    pixel = 1 / scale
+    fit = fit_circles(
+        rays, (cap_rim, granite_rim), appearance.slack, effort.edge_reach, 0.25 * pixel,
+        effort.rounds,
+    )  # fmt: skip
+    # All around, a stone's granite is of one lightness, and its cap is as large as any other's;
+    # caps and shoulders of people are neither.
+    light = summed(lab[..., in_ring, 0] * seen_ring) / in_view
+    count = np.maximum(stony.sum(1), 1)
+    level = (light * stony).sum(1) / count
+    uneven = np.sqrt(((light - level[:, None]) ** 2 * stony).sum(1) / count) / 40
+    misfit = ((fit.radii[:, 0] / cap_radius - 1) / (0.06 + appearance.slack)) ** 2
+    visible = (stony & at_cap).mean(1)
+    clear = fit.shares.sum(1) + 0.5 * visible / np.maximum(at_cap.mean(1), 0.3)
+    enough = (of_cap.mean((1, 2)) > 0.03) & (of_ring.mean((1, 2)) > 0.03)
+    # What displaces the edges of one side is made good by the other side, if that is seen.
+    hidden = 0.04 * disc.radius * (1 - visible)
+    return Measures(
+        ok=enough & fit.ok,
+        centre=places + fit.shift,
+        shift=np.hypot(fit.shift[:, 0], fit.shift[:, 1]),
+        sd=_errors(fit.covariance, pixel, hidden),
+        colour=cap,
+        visible=visible,
+        evidence=clear - uneven - 0.5 * misfit,
+        outline=fit.radii / np.array([disc.cap_radius, disc.radius]),
+        handle=handle,
+        worth=worth,
+        rays=rays,
+    )
+
+
+def _plain(
+    rays: Rays, handle: Bytes, places: Array, scale: Array, disc: Stone, effort: Effort
+) -> Measures:
+    n, pixel = len(places), 1 / scale
+    falls = falls_along(rays.lab.astype(np.float32))
+    steps = np.sqrt((falls * falls) @ np.ones(3, np.float32))
+    at_rim = rays.at(disc.radius)
+    rim = Rim(steps, at_rim, at_rim, disc.radius, 0.06 * disc.radius, 12.0, np.ones(n))
+    fit = fit_circles(rays, (rim,), 0.03, effort.edge_reach, 0.25 * pixel, effort.rounds)
+    within = rays.inside & (rays.radius < 0.8 * disc.radius)
+    return Measures(
+        ok=fit.ok,
+        centre=places + fit.shift,
+        shift=np.hypot(fit.shift[:, 0], fit.shift[:, 1]),
+        sd=_errors(fit.covariance, pixel, np.zeros(n)),
+        colour=_mean_of(rays.lab.astype(np.float32), within.astype(np.float32)),
+        visible=fit.shares[:, 0] * at_rim.mean(1),
+        evidence=fit.shares[:, 0],
+        outline=fit.radii / disc.radius,
+        handle=handle,
+        worth=np.zeros(within.shape, np.float32),
+        rays=rays,
+    )
+
+
+def _errors(covariance: Array, pixel: Array, hidden: Array) -> Array:
+    own = np.diagonal(covariance, axis1=1, axis2=2)
+    return np.asarray(np.sqrt(own + ((0.1 * pixel) ** 2 + hidden**2)[:, None]))

@@ -1,0 +1,161 @@
+"""Where discs may lie: places on the rectified ice that answer to a template.
+
+A colour is worth +1 where it may be a cap, −1 where it may be granite and 0 elsewhere; the
+mean over the cap less the mean over the ring of granite around it is then 2 on a stone and 0
+on anything of one colour, be it of the colour of a cap.
+
+Discs of which only the radius is known are found by the share of the gradient that points
+along the radius (a structure tensor summed over the circle), of either sign.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from data.sheet import Stone
+from vision.appearance import Appearance, any_stone, membership
+from vision.camera import Camera
+from vision.clip import Image
+from vision.ice_map import IceMap, rectify
+
+Array = NDArray[np.float64]
+Floats = NDArray[np.float32]
+Bounds = tuple[float, float, float, float]
+
+MOST_PLACES = 60
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """Places that may be discs, strongest first: (n, 2) in m, and their responses, (n,)."""
+
+    places: Array
+    scores: Array
+    appearance: Appearance | None
+
+
+def seek(
+    image: Image,
+    camera: Camera,
+    appearance: Appearance | None,
+    disc: Stone,
+    bounds: Bounds,
+    *,
+    radius_px: float,
+    least: float,
+) -> Candidates:
+    """Look for discs on a part of the ice.
+
+    Parameters
+    ----------
+    appearance : Appearance, optional
+        What stones look like; without it, what any stone looks like (as returned).
+    disc : Stone
+        Sizes; a disc without a cap is sought by its rim.
+    bounds : (x0, x1, y0, y1)
+        The part of the ice, m.
+    radius_px : float
+        Radius of a disc on the rectified map, px: the finer, the dearer.
+    least : float
+        Response, 0 to 2, from which a place is given.
+    """
+    none = Candidates(np.empty((0, 2)), np.empty(0), appearance)
+    scale = radius_px / disc.radius
+    ice = rectify(image, camera, bounds, scale=scale, height=disc.cap_height)
+    if ice is None or not ice.valid.any():
+        return none
+    if disc.cap_radius <= 0:
+        response = _disc_response(ice, disc)
+    else:
+        if appearance is None:
+            light = cv2.cvtColor(ice.image, cv2.COLOR_BGR2LAB)[..., 0]
+            appearance = any_stone(max(float(np.percentile(light[ice.valid], 75)), 60.0))
+        response = _stone_response(ice, appearance, disc)
+    peaks = _peaks(response, least, 1.8 * radius_px)
+    return Candidates(ice.place(peaks[:, 1], peaks[:, 0]), peaks[:, 2], appearance)
+
+
+@lru_cache(maxsize=16)
+def _annulus(inner: float, outer: float, size: int) -> Floats:
+    """Weights of sum 1 over a ring, px, anti-aliased; shape (2 size + 1, 2 size + 1)."""
+    fine = 6
+    n = (2 * size + 1) * fine
+    offset = (np.arange(n) - (n - 1) / 2) / fine
+    r = np.hypot(*np.meshgrid(offset, offset))
+    ring = ((r >= inner) & (r < outer)).astype(float)
+    ring = ring.reshape(2 * size + 1, fine, 2 * size + 1, fine).mean((1, 3))
+    return np.asarray(ring / ring.sum(), np.float32)
+
+
+def _stone_response(ice: IceMap, appearance: Appearance, disc: Stone) -> Floats:
+    worth = membership(ice.image, appearance) * ice.valid
+    unit = ice.scale
+    size = int(np.ceil(disc.radius * unit))
+    kernel = _annulus(0.0, 0.94 * disc.cap_radius * unit, size) - _annulus(
+        1.05 * disc.cap_radius * unit, 0.96 * disc.radius * unit, size
+    )
+    return np.asarray(
+        cv2.filter2D(worth, cv2.CV_32F, kernel, borderType=cv2.BORDER_CONSTANT), np.float32
+    )
+
+
+def _disc_response(ice: IceMap, disc: Stone) -> Floats:
+    """Share of the gradient near a circle that points along its radius, 0 to 2."""
+    radius = disc.radius * ice.scale
+    grey = cv2.GaussianBlur(ice.image, (0, 0), 0.8).astype(np.float32)
+    gx = cv2.Sobel(grey, cv2.CV_32F, 1, 0, scale=1 / 8)
+    gy = cv2.Sobel(grey, cv2.CV_32F, 0, 1, scale=1 / 8)
+    inner = cv2.erode(ice.valid.astype(np.uint8), np.ones((5, 5), np.uint8))
+    # Strong edges shall not outvote long ones: each pixel counts at most as much as a clear edge.
+    energy = (gx**2 + gy**2).sum(2)
+    weight = inner / (energy + 6.0**2)
+    xx, xy, yy = ((u * v).sum(2) * weight for u, v in ((gx, gx), (gx, gy), (gy, gy)))
+    size = int(np.ceil(radius + 2))
+    ring = _annulus(radius - 1.3, radius + 1.3, size)
+    offset = np.arange(-size, size + 1, dtype=np.float32)
+    angle = np.arctan2(offset[:, None], offset[None, :])
+    c, s = np.cos(angle), np.sin(angle)
+    total = np.zeros(xx.shape, np.float32)
+    # Radial energy counts for a circle, energy along the circle against it.
+    for tensor, kernel in (
+        (xx, ring * (c * c - s * s)), (xy, ring * 4 * c * s), (yy, ring * (s * s - c * c)),
+    ):  # fmt: skip
+        total += cv2.filter2D(tensor, cv2.CV_32F, kernel, borderType=cv2.BORDER_CONSTANT)
+    return np.asarray(2 * total, np.float32)
+
+
+def _far_apart(
+    places: NDArray[np.intp], order: NDArray[np.intp], spacing: float
+) -> NDArray[np.intp]:
+    """Those of the places, in this order, that are not nearer to one before than `spacing`."""
+    kept: list[int] = []
+    for index in order.tolist():
+        if not kept or np.hypot(*(places[kept] - places[index]).T).min() >= spacing:
+            kept.append(index)
+    return np.array(kept, np.intp)
+
+
+def _peaks(response: Floats, least: float, spacing_px: float) -> Array:
+    """Local maxima, strongest first: row, column (to a fraction) and height, shape (n, 3)."""
+    reach = 2 * int(0.5 * spacing_px) + 1
+    shape = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (reach, reach))
+    smooth = cv2.GaussianBlur(response, (0, 0), 0.7)
+    top = (smooth >= cv2.dilate(smooth, shape)) & (smooth > least)
+    top[[0, -1]] = top[:, [0, -1]] = False
+    row, column = np.nonzero(top)
+    height = smooth[row, column].astype(float)
+    order = _far_apart(np.stack([row, column], 1), np.argsort(-height), spacing_px)[:MOST_PLACES]
+    row, column, height = row[order], column[order], height[order]
+    shifts = []
+    for before, after in (
+        (smooth[row - 1, column], smooth[row + 1, column]),
+        (smooth[row, column - 1], smooth[row, column + 1]),
+    ):
+        bend = 2 * height - before - after
+        shifts.append(np.where(bend > 1e-6, 0.5 * (after - before) / np.maximum(bend, 1e-6), 0.0))
+    return np.stack([row + shifts[0], column + shifts[1], height], 1)
