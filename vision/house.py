@@ -6,11 +6,12 @@ of the circles they explain; the best is refined at full resolution, with the li
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from data.sheet import HOUSE
 from vision.adjust import solve
@@ -19,6 +20,7 @@ from vision.lines import sides, upright
 from vision.marks import Evidence, Image, measure
 from vision.pose import (
     ANYWHERE,
+    DOWN,
     OVERHEAD,
     View,
     aim,
@@ -31,6 +33,10 @@ from vision.rings import Guess, guesses
 Array = NDArray[np.float64]
 
 WORK_WIDTH = 640
+"""Width of the picture in which hypotheses are fitted, px."""
+
+GUESS_WIDTH = 320
+"""Width of the picture in which they are made, px."""
 SHARING = 20.0
 """Edge points of one frame that share an error of the paint, about 30° of a circle."""
 
@@ -87,14 +93,18 @@ def find_house(image: Image, *, frame: int = 0, t: float = 0.0) -> HouseFit | No
     small = np.asarray(
         cv2.resize(image, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA), np.uint8
     )
-    best: _Fitted | None = None
-    for guess in guesses(small):
+    fits: list[_Fitted] = []
+    for guess in _guesses(small):
         fitted = _fit(small, guess)
-        if fitted is not None and (best is None or fitted.score > best.score):
-            best = fitted
-        if best is not None and best.score > ENOUGH:
-            break
-    return None if best is None else _refine(image, best, factor, frame, t)
+        if fitted is not None:
+            fits.append(fitted)
+            if fitted.score > ENOUGH:
+                break
+    for fitted in sorted(fits, key=lambda fit: -fit.score):
+        found = _refine(image, fitted, factor, frame, t)
+        if found is not None:
+            return found
+    return None
 
 
 @dataclass(frozen=True)
@@ -103,37 +113,51 @@ class _Fitted:
 
     view: View
     rig: Array
-    overhead: bool
     score: float
 
 
 def _fit(image: Image, guess: Guess) -> _Fitted | None:
-    """Fit a camera over the tee and, if circles look foreshortened, one anywhere."""
+    """Fit a camera over the tee or, if circles look foreshortened, one anywhere."""
     size = (image.shape[1], image.shape[0])
     down = guess.foreshortening
-    starts = [(True, 0.0, 1.0)] if down > 0.85 else []
-    starts += [(False, -float(np.sqrt(1 - down**2)), down)] if down < 1 else []
-    best: _Fitted | None = None
+    prior = OVERHEAD if down == 1 else ANYWHERE
+    position = prior.mean[2] * np.array([0.0, -np.sqrt(1 - down**2), down])
+    view, rig = _aimed(guess, position, size), start_rig(prior, position)
+    thickness = guess.scale * (HOUSE.twelve_foot - HOUSE.eight_foot)
+    rms = np.nan
+    for share in (0.3, 0.2, 0.15):
+        reach = max(share * thickness, 3.0)
+        evidence = measure(image, view.vector, rig, reach=reach, spacing=4, lines=False)
+        if len(evidence.marks) < 30:
+            return None
+        solution = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
+        view, rig, rms = solution.views[0], solution.rig, float(solution.rms[0])
+    worth = judge(measure(image, view.vector, rig, reach=5.0, spacing=4, lines=False))
     aside = ASIDE * abs(guess.centre[0] / size[0] - 0.5)
-    for overhead, y, z in starts:
-        prior = OVERHEAD if overhead else ANYWHERE
-        position = prior.mean[2] * np.array([0.0, y, z])
-        view, rig = aim(guess.centre, guess.scale, position, size), start_rig(prior, position)
-        thickness = guess.scale * (HOUSE.twelve_foot - HOUSE.eight_foot)
-        for share in (0.3, 0.2, 0.15):
-            reach = max(share * thickness, 3.0)
-            evidence = measure(image, view.vector, rig, reach=reach, spacing=4, lines=False)
-            if len(evidence.marks) < 30:
-                break
-            solution = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
-            view, rig = solution.views[0], solution.rig
-        else:
-            evidence = measure(image, view.vector, rig, reach=5.0, spacing=4, lines=False)
-            worth = judge(evidence)
-            score = worth - aside - ROUGH * float(np.nan_to_num(solution.rms[0], nan=9.0))
-            if worth > 0 and (best is None or score > best.score + 0.1):
-                best = _Fitted(view, rig, overhead, score)
-    return best
+    score = worth - aside - ROUGH * float(np.nan_to_num(rms, nan=9.0))
+    return _Fitted(view, rig, score) if worth > 0 else None
+
+
+def _guesses(image: Image) -> list[Guess]:
+    """Look for rings in a picture of half the size."""
+    factor = min(GUESS_WIDTH / image.shape[1], 1.0)
+    small = cv2.resize(image, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA)
+    return [
+        replace(g, centre=(g.centre + 0.5) / factor - 0.5, scale=g.scale / factor)
+        for g in guesses(np.asarray(small, np.uint8))
+    ]
+
+
+def _aimed(guess: Guess, position: Array, size: tuple[int, int]) -> View:
+    """View of a camera that has the tee where the guess has it, and leans as it says."""
+    middle = np.array([(size[0] - 1) / 2, (size[1] - 1) / 2])
+    c, s = np.cos(guess.lean), np.sin(guess.lean)
+    lean = np.array([[c, s], [-s, c]])
+    level = aim(middle + lean.T @ (guess.centre - middle), guess.scale, position, size)
+    turn = np.eye(3)
+    turn[:2, :2] = lean
+    vector = Rotation.from_matrix(turn @ level.rotation @ DOWN.T).as_rotvec()
+    return View(np.append(vector, level.vector[3]))
 
 
 def judge(evidence: Evidence) -> float:
@@ -152,7 +176,7 @@ def judge(evidence: Evidence) -> float:
 def _refine(image: Image, best: _Fitted, factor: float, frame: int, t: float) -> HouseFit | None:
     """Fit at full resolution: the circles, then with the lines."""
     size = (image.shape[1], image.shape[0])
-    view, rig, overhead = rescaled(best.view, 1 / factor), best.rig, best.overhead
+    view, rig = rescaled(best.view, 1 / factor), best.rig
     circles = measure(image, view.vector, rig, reach=max(4 / factor, 6.0), lines=False)
     if len(circles.marks) < 30:
         return None

@@ -1,9 +1,9 @@
 """Hypotheses of where concentric rings are, from edges alone.
 
 Edges of concentric circles point at one centre: their gradient lines vote for it, under several
-foreshortenings along the picture's height. About a centre, the radii at which edges face it all
-the way round must stand as 12 : 8 : 4 ft. Voting for circles along gradients: Kimme, Ballard and
-Sklansky, 1975, Communications of the ACM 18, 120.
+foreshortenings of the circles. About a centre, the radii at which edges face it all the way round
+must stand as 12 : 8 : 4 ft. Voting for circles along gradients: Kimme, Ballard and Sklansky, 1975,
+Communications of the ACM 18, 120.
 """
 
 from __future__ import annotations
@@ -20,7 +20,11 @@ from vision.pose import OVERHEAD, R4, R8
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
 
-FORESHORTENINGS = (1.0, 0.9, 0.78, 0.64, 0.5)
+SQUASHES = np.array(
+    [(1.0, 0.0), (0.88, 0.0), (0.75, 0.0), (0.62, 0.0), (0.5, 0.0), (0.4, 0.0)]
+    + [(squash, turn) for squash in (0.8, 0.6, 0.45) for turn in (-0.35, 0.35)]
+)
+"""Height over width of a circle's image, and how far its short axis leans from upright, rad."""
 
 RATIOS = np.array([1.0, *(OVERHEAD.mean[[R8, R4]] / HOUSE.twelve_foot)])
 
@@ -31,6 +35,21 @@ LARGEST = 0.85
 
 EDGE_LOW, EDGE_HIGH = 150, 300
 """Hysteresis of the edges, as gradients of the Scharr operator: steps of some 14 and 28 levels."""
+
+CELL = 4.0
+"""Side of a cell of the votes, px."""
+
+MARGIN = 0.35
+"""How far outside the picture a centre may lie, as a fraction of its sides."""
+
+VOTERS = 1500
+"""Edge points that vote."""
+
+CENTRES = 3
+"""Centres taken from the votes under each foreshortening."""
+
+TRIED = 10
+"""Centres about which radii are looked for."""
 
 ANGLES = 72
 """Sectors in which a circle's edges are counted."""
@@ -45,9 +64,11 @@ class Guess:
     centre : ndarray, shape (2,)
         Px.
     scale : float
-        Pixels per metre along the picture's width.
+        Pixels per metre along the long axis of the circles' images.
     foreshortening : float
-        Height over width of a circle.
+        Short over long axis of a circle's image.
+    lean : float
+        How far the short axis leans from upright, rad, clockwise in the picture.
     score : float
         Falls with the distance from the picture's middle: there is the house that is filmed.
     """
@@ -55,33 +76,50 @@ class Guess:
     centre: Array
     scale: float
     foreshortening: float
+    lean: float
     score: float
 
 
 def guesses(image: Image, count: int = 5) -> list[Guess]:
-    """Look for concentric rings in a small picture; the best first."""
+    """Look for concentric rings in a small picture, some 320 px wide; the best first."""
     points, gradients = _edges(image)
     h, w = image.shape[:2]
-    found: list[Guess] = []
     if len(points) < 60:
-        return found
-    for squash in FORESHORTENINGS:
-        p = points / [1.0, squash]
-        g = gradients * [1.0, squash]
-        g /= np.linalg.norm(g, axis=1, keepdims=True)
-        tall = h / squash
-        for centre in _centres(p, g, w, tall):
-            scale, score = _radii(p, g, centre, w, tall)
-            if score > 0:
-                score -= abs(centre[0] / w - 0.5)
-                found.append(Guess(centre * [1.0, squash], scale, squash, score))
+        return []
+    candidates: list[tuple[float, int, Array]] = []
+    for which, (squash, lean) in enumerate(SQUASHES):
+        stretch = _stretch(squash, lean)
+        votes = _votes(points @ stretch.T, _unit(gradients @ np.linalg.inv(stretch)), stretch, w, h)
+        candidates += [(height, which, place) for height, place in votes]
+    candidates.sort(key=lambda c: -c[0])
+    found: list[Guess] = []
+    for _, which, place in candidates[:TRIED]:
+        squash, lean = SQUASHES[which]
+        stretch = _stretch(squash, lean)
+        p, g = points @ stretch.T, _unit(gradients @ np.linalg.inv(stretch))
+        middle = _sharpened(p, g, place)
+        scale, score = _radii(p, g, middle, stretch, w, h)
+        if score > 0:
+            centre = np.asarray(np.linalg.solve(stretch, middle), np.float64)
+            score -= abs(float(centre[0]) / w - 0.5)
+            found.append(Guess(centre, scale, float(squash), float(lean), score))
     found.sort(key=lambda c: -c.score)
     return found[:count]
 
 
+def _stretch(squash: float, lean: float) -> Array:
+    """Matrix that makes circles of their squashed images: it stretches along the short axis."""
+    short = np.array([np.sin(lean), np.cos(lean)])
+    return np.asarray(np.eye(2) + (1 / squash - 1) * np.outer(short, short))
+
+
+def _unit(vectors: Array) -> Array:
+    return np.asarray(vectors / np.hypot(vectors[:, 0], vectors[:, 1])[:, None])
+
+
 def _edges(image: Image) -> tuple[Array, Array]:
     """Thinned edge points, shape (n, 2), and the unit gradients there."""
-    soft = cv2.GaussianBlur(image, (0, 0), 1.2)
+    soft = cv2.GaussianBlur(image, (0, 0), 1.0)
     gx = cv2.Scharr(soft, cv2.CV_16S, 1, 0)
     gy = cv2.Scharr(soft, cv2.CV_16S, 0, 1)
     size = np.abs(gx) + np.abs(gy)
@@ -93,58 +131,74 @@ def _edges(image: Image) -> tuple[Array, Array]:
     edges = cv2.Canny(dx, dy, EDGE_LOW, EDGE_HIGH, L2gradient=True)
     y, x = np.nonzero(edges)
     gradient = np.stack([dx[y, x], dy[y, x]], axis=-1).astype(float)
-    gradient /= np.linalg.norm(gradient, axis=1, keepdims=True)
-    return np.stack([x, y], axis=-1).astype(float), gradient
+    return np.stack([x, y], axis=-1).astype(float), _unit(gradient)
 
 
-def _centres(points: Array, gradients: Array, w: float, h: float, count: int = 3) -> list[Array]:
-    """Places, also outside the picture, where most gradient lines meet."""
-    cell, margin = 4.0, 0.35
-    left, top = -margin * w, -margin * h
-    across, down = int((1 + 2 * margin) * w / cell) + 1, int((1 + 2 * margin) * h / cell) + 1
-    reach = np.arange(16.0, 0.62 * w, cell)
-    reach = np.concatenate([-reach, reach]).astype(np.float32)
-    step = max(len(points) // 4000, 1)
-    p, g = points[::step].astype(np.float32), gradients[::step].astype(np.float32)
-    x = ((p[:, :1] + g[:, :1] * reach - left) * (1 / cell)).astype(np.int32)
-    y = ((p[:, 1:] + g[:, 1:] * reach - top) * (1 / cell)).astype(np.int32)
+def _votes(
+    points: Array, gradients: Array, stretch: Array, w: int, h: int
+) -> list[tuple[float, Array]]:
+    """Places, also outside the picture, where most gradient lines meet: votes and place."""
+    corners = np.array([[0, 0], [w, 0], [0, h], [w, h]]) @ stretch.T
+    size = np.ptp(corners, axis=0)
+    low = corners.min(0) - MARGIN * size
+    across, down = ((1 + 2 * MARGIN) * size / CELL).astype(int) + 1
+    reach = np.arange(2 * CELL, 0.62 * w, CELL)
+    reach = np.concatenate([-reach, reach]).astype(np.float32) / np.float32(CELL)
+    step = max(len(points) // VOTERS, 1)
+    start = ((points[::step] - low) / CELL).astype(np.float32)
+    way = gradients[::step].astype(np.float32)
+    x = (start[:, :1] + way[:, :1] * reach).astype(np.int32)
+    y = (start[:, 1:] + way[:, 1:] * reach).astype(np.int32)
     inside = (x >= 0) & (x < across) & (y >= 0) & (y < down)
     votes = np.bincount((y * across + x)[inside], minlength=across * down)
     heat = cv2.GaussianBlur(votes.reshape(down, across).astype(np.float32), (0, 0), 1.0)
     # Straight edges lay broad ridges: a centre stands out from its surroundings.
     heat = np.asarray(heat - cv2.blur(heat, (15, 15)))
-    centres = []
-    for _ in range(count):
-        _, top_value, _, (cx, cy) = cv2.minMaxLoc(heat)
-        if top_value <= 0:
+    found = []
+    for _ in range(CENTRES):
+        _, height, _, (cx, cy) = cv2.minMaxLoc(heat)
+        if height <= 0:
             break
-        centres.append(np.array([left + (cx + 0.5) * cell, top + (cy + 0.5) * cell]))
-        cv2.circle(heat, (cx, cy), 6, 0.0, -1)
-    return centres
+        found.append((float(height), low + (np.array([cx, cy]) + 0.5) * CELL))
+        cv2.circle(heat, (cx, cy), 5, 0.0, -1)
+    return found
+
+
+def _sharpened(points: Array, gradients: Array, centre: Array) -> Array:
+    """Where the gradient lines that pass close to a centre meet, by least squares."""
+    for near in (2.0 * CELL, 1.2 * CELL):
+        d = points - centre
+        aside = d[:, 0] * gradients[:, 1] - d[:, 1] * gradients[:, 0]
+        use = (np.abs(aside) < near) & ((d**2).sum(1) > (3 * CELL) ** 2)
+        if use.sum() < 20:
+            break
+        normal = np.stack([gradients[use, 1], -gradients[use, 0]], axis=-1)
+        matrix = normal.T @ normal + np.eye(2)
+        centre = centre + np.linalg.solve(matrix, normal.T @ aside[use])
+    return centre
 
 
 def _radii(
-    points: Array, gradients: Array, centre: Array, w: float, h: float
+    points: Array, gradients: Array, centre: Array, stretch: Array, w: int, h: int
 ) -> tuple[float, float]:
     """Pixels per metre that puts edges facing the centre at 12 : 8 : 4 ft, and its score."""
     d = points - centre
     r = np.hypot(d[:, 0], d[:, 1])
     facing = (d * gradients).sum(1) / np.maximum(r, 1e-9)
-    tolerance = np.maximum(0.97 - 4.0 / np.maximum(r, 8.0), 0.8)
+    tolerance = np.maximum(0.97 - 2.0 / np.maximum(r, 4.0), 0.8)
     largest = int((LARGEST + 0.02) * w)
     near = (np.abs(facing) > tolerance) & (r < largest - 1)
     sector = (np.arctan2(d[near, 1], d[near, 0]) * (ANGLES / (2 * np.pi))).astype(int) % ANGLES
     # Which sectors hold an edge, per polarity and radius: many edges in one count once.
     held = np.zeros((2, largest, ANGLES), np.uint8)
     held[(facing[near] > 0).astype(int), r[near].astype(int), sector] = 1
-    kernel = np.ones((5, 1), np.uint8)
+    kernel = np.ones((3, 1), np.uint8)
     arc = np.maximum(*(np.asarray(cv2.dilate(side, kernel)).mean(1) for side in held))
-    clutter = cv2.blur(arc.reshape(-1, 1), (1, 41)).ravel()
-    visible = _visible(centre, largest, w, h)
-    radius = np.arange(SMALLEST * w, LARGEST * w)
+    clutter = cv2.blur(arc.reshape(-1, 1), (1, 21)).ravel()
+    visible = _visible(centre, stretch, largest, w, h)
+    radius = np.arange(SMALLEST * w, LARGEST * w, 0.5)
     at = np.round(radius[:, None] * RATIOS).astype(int)
-    peak = cv2.dilate(arc.reshape(-1, 1), np.ones((3, 1), np.uint8)).ravel()
-    got = np.clip(peak[at] - 0.7 * clutter[at], 0, None)
+    got = np.clip(arc[at] - 0.7 * clutter[at], 0, None)
     share = np.where(visible[at] > 0.05, got / np.maximum(visible[at], 0.05), 0)
     # Full circles beat pieces of one; what should be seen and is not counts against.
     score = (got + 0.35 * share).sum(1)
@@ -153,9 +207,11 @@ def _radii(
     return float(radius[best] / HOUSE.twelve_foot), float(score[best])
 
 
-def _visible(centre: Array, largest: int, w: float, h: float) -> Array:
+def _visible(centre: Array, stretch: Array, largest: int, w: int, h: int) -> Array:
     """Fraction of the circle of each radius that lies in the picture."""
     angle = np.linspace(0, 2 * np.pi, ANGLES, endpoint=False)
+    back = np.linalg.inv(stretch)
+    (x0, y0), way = back @ centre, back @ np.stack([np.cos(angle), np.sin(angle)])
     ring = np.arange(largest)[:, None]
-    x, y = centre[0] + ring * np.cos(angle), centre[1] + ring * np.sin(angle)
+    x, y = x0 + ring * way[0], y0 + ring * way[1]
     return np.asarray(((x > 1) & (x < w - 2) & (y > 1) & (y < h - 2)).mean(1))

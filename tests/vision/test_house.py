@@ -59,7 +59,7 @@ def test_found_in_every_colour(name: str) -> None:
     assert rms(errors(fit, path, 0.12)) < 0.006 + outlined
 
 
-@pytest.mark.parametrize(("tilt", "bar"), [(15, 0.006), (30, 0.005), (50, 0.01)])
+@pytest.mark.parametrize(("tilt", "bar"), [(15, 0.006), (30, 0.005), (50, 0.01), (60, 0.01)])
 def test_found_from_a_tilted_camera(tilt: float, bar: float) -> None:
     path = tilted_camera(np.radians(tilt), roll=0.03, k1=-0.05)
     scene = replace(sample_scene(), paint=PAINTS["navy-orange"])
@@ -68,6 +68,16 @@ def test_found_from_a_tilted_camera(tilt: float, bar: float) -> None:
     if tilt >= 30:
         assert fit is not None and not fit.overhead
         np.testing.assert_allclose(fit.camera.position, path.position, atol=0.5)
+
+
+@pytest.mark.parametrize("roll", [-0.3, 0.3])
+def test_a_tilted_camera_may_lean(roll: float) -> None:
+    path = tilted_camera(np.radians(50), roll=roll)
+    fit = find_house(render_still(sample_scene(), path, 1.0))
+    assert fit is not None
+    # Whatever direction is up: the circles are where they should be.
+    seen = fit.camera.ice(path.at(1.0).project(np.c_[RINGS, np.zeros(len(RINGS))]))
+    np.testing.assert_allclose(np.hypot(*seen.T), np.hypot(*RINGS.T), atol=0.02)
 
 
 @pytest.mark.parametrize("y", [2.1, 2.6])
