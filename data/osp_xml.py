@@ -143,7 +143,7 @@ def parse(raw: bytes, source: str) -> Thing:
     if len(raw) > LARGEST:
         raise InputError(f"{source}: {len(raw) / 1e6:.0f} MB is too large for a Tracker project")
     builder = _Builder(source)
-    parser = expat.ParserCreate()
+    parser = expat.ParserCreate(_encoding(raw))
     parser.buffer_text = True
     parser.StartElementHandler = builder.start
     parser.EndElementHandler = builder.end
@@ -169,6 +169,17 @@ class _Open:
 
     name: str
     thing: Thing | None
+
+
+def _encoding(raw: bytes) -> str | None:
+    """Name the encoding where the file's own word for it cannot be true: Tracker Online's."""
+    if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return None
+    try:
+        raw.decode("utf-8")
+    except UnicodeDecodeError:
+        return "iso-8859-1"
+    return None
 
 
 class _Builder:

@@ -308,16 +308,30 @@ def _point_mass(track: Thing, name: str, shift: int) -> PointMass:
         for frame, entry in sorted(entries.items())
         if isinstance(entry, Thing) and frame >= shift
     }
-    keys = track.thing("keyFrames")
-    by_hand = set(keys.floats() - shift) if keys is not None else set()
     mass = track.number("mass", 1.0)
+    frames = np.array(list(marks), np.int64)
+    places = np.array(list(marks.values()), float).reshape(-1, 2)
+    keys = track.thing("keyFrames")
+    by_hand = np.isin(frames, keys.floats() - shift) if keys is not None else frames < 0
     return PointMass(
         name=name,
         mass=mass if mass > 0 else 1.0,
-        frames=np.array(list(marks), np.int64),
-        marks=np.array(list(marks.values()), float).reshape(-1, 2),
-        filled=len(marks.keys() - by_hand) if by_hand else 0,
+        frames=frames,
+        marks=places,
+        filled=_filled(frames, places, by_hand),
     )
+
+
+def _filled(frames: Frames, marks: Array, by_hand: NDArray[np.bool_]) -> int:
+    """Count the marks that stand exactly where a line between two marks by hand puts them.
+
+    The list of key frames alone does not tell: some versions left it stale.
+    """
+    if by_hand.sum() < 2 or by_hand.all():
+        return 0
+    line = np.column_stack([np.interp(frames, frames[by_hand], axis[by_hand]) for axis in marks.T])
+    within = (frames > frames[by_hand][0]) & (frames < frames[by_hand][-1]) & ~by_hand
+    return int((within & (np.abs(line - marks).max(axis=1) < 1e-6)).sum())
 
 
 def _coordinates(coords: Thing | None, shift: int) -> Coordinates:

@@ -147,6 +147,26 @@ def test_uneven_frames_of_the_video_keep_their_times(tmp_path: Path) -> None:
     assert any("uneven" in text for text in found.warnings)
 
 
+def test_marks_filled_in_between_marks_by_hand_are_told(tmp_path: Path) -> None:
+    keys = (
+        '<property name="keyFrames" type="array" class="[I"><property name="array" type="string">'
+    )
+    keys += "{%s}</property></property>"
+    curve = {n: (10.0 * n, 3.0 * n * n) for n in range(6)}
+    line = {n: (10.0 * n, 15.0 * n) for n in range(6)}
+    for rows, by_hand, told in [(line, "0,5", "4 places"), (line, "9", ""), (curve, "0,5", "")]:
+        text = project({"red": rows}, {0: (0.0, 0.0, 0.0, 100.0, 100.0)})
+        text = text.replace('<property name="name"', keys % by_hand + '<property name="name"')
+        warnings = read_table([put(tmp_path, text)]).warnings
+        assert any(told in text for text in warnings) if told else not warnings
+
+
+def test_a_project_in_latin_1_that_calls_itself_utf_8_is_read(tmp_path: Path) -> None:
+    text = project({"Jalón": {0: (1.0, 2.0)}})
+    found = read_table([put(tmp_path, text.encode("latin-1"))]).sightings
+    assert list(found["stone"]) == ["Jalón"]
+
+
 def test_first_tab_with_marks_is_used_unless_another_is_named(tmp_path: Path) -> None:
     other = project({"green": {0: (5.0, 5.0)}})
     content = {"a.trk": project({}), "b.trk": project(), "x/c.trk": other, "x/._c.trk": b"\0"}
