@@ -68,7 +68,7 @@ class Guess:
     foreshortening : float
         Short over long axis of a circle's image.
     lean : float
-        How far the short axis leans from upright, rad, clockwise in the picture.
+        How far the short axis leans from upright, rad, counter-clockwise in the picture.
     score : float
         Falls with the distance from the picture's middle: there is the house that is filmed.
     """
