@@ -102,15 +102,15 @@ class ViewSolution:
 class Frame:
     """One frame's marks in the form in which residuals are worked out, one column per mark."""
 
-    def __init__(self, marks: Marks, size: tuple[int, int]) -> None:
+    def __init__(self, marks: Marks, size: tuple[int, int], offset: Array | float = 0.0) -> None:
         self.size = size
         self.radius = float(np.hypot(*size)) / 2
         self.sd = marks.sd
         self.line = marks.line
         place, way = ice_frame(marks.line, marks.along, marks.across)
         self.foot = np.zeros((3, len(marks)))
-        self.foot[:2] = place.T
         self.way = np.ascontiguousarray(way.T)
+        self.foot[:2] = place.T + self.way * offset
         normal = marks.normal.T / marks.sd
         middle = np.array([(size[0] - 1) / 2, (size[1] - 1) / 2])
         self.target = ((marks.pixel - middle).T * normal).sum(0)
@@ -226,6 +226,7 @@ def solve_view(
     size: tuple[int, int],
     *,
     view_sd: ArrayLike = VIEW_SD,
+    offset: Array | float = 0.0,
     width: float = WIDTH,
     iterations: int = 12,
 ) -> ViewSolution:
@@ -241,10 +242,12 @@ def solve_view(
         Width and height of the picture, px.
     view_sd : array_like, shape (4,)
         Standard deviation of the view about its start.
+    offset : ndarray, shape (n,), optional
+        How far the paint under each mark lies off its line, m.
     width : float
         Width of the Cauchy loss in standard deviations.
     """
-    frame = Frame(marks, size)
+    frame = Frame(marks, size, offset)
     points = frame.points(rig)
     hold = 1 / np.asarray(view_sd, float) ** 2
     start = now = view.vector

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
@@ -17,36 +17,29 @@ CAMERA_COLUMNS: tuple[str, ...] = (
 )  # fmt: skip
 
 
-GRID_X = np.linspace(-2.4, 2.4, 7)
-GRID_Y = np.linspace(-4.0, 8.0, 13)
-"""Where the error is worked out, m; between is interpolated, beyond is as at the border."""
+PARAMETERS = 9
+"""Turn about the camera's own axes (3, rad), log focal length, place (3, m), k1, k2."""
 
 
 @dataclass(frozen=True)
-class PlaceError:
-    """Standard deviation per axis of a mapped ice point, m, shape (len(GRID_Y), len(GRID_X))."""
+class CameraError:
+    """How well a camera is known.
 
-    grid: Array
+    Attributes
+    ----------
+    shared, own : ndarray, shape (9, 9)
+        Covariance of the camera's parameters (see `PARAMETERS`): the part that a clip's frames
+        share and the part that each has for itself.
+    scale : float
+        Standard deviation of the logarithm of all lengths: how well the yardstick is known.
+    drift : float
+        Standard deviation per axis of what a carried view has gone astray, m on the ice.
+    """
 
-    def at(self, ice: ArrayLike) -> Array:
-        """Give the standard deviation per axis at ice points, shape (..., 2), m."""
-        p = np.asarray(ice, float)
-        i, u = _cell(GRID_Y, p[..., 1])
-        j, v = _cell(GRID_X, p[..., 0])
-        low = (1 - v) * self.grid[i, j] + v * self.grid[i, j + 1]
-        high = (1 - v) * self.grid[i + 1, j] + v * self.grid[i + 1, j + 1]
-        return np.asarray((1 - u) * low + u * high)
-
-    def grown(self, sd: float) -> PlaceError:
-        """Add an independent error of standard deviation `sd` (m) everywhere."""
-        return replace(self, grid=np.hypot(self.grid, sd))
-
-
-def _cell(grid: Array, value: Array) -> tuple[NDArray[np.int64], Array]:
-    """Index of the cell that holds each value and how far into it the value lies, 0..1."""
-    at = np.clip((value - grid[0]) / (grid[1] - grid[0]), 0, len(grid) - 1)
-    index = np.minimum(at.astype(np.int64), len(grid) - 2)
-    return index, at - index
+    shared: Array
+    own: Array
+    scale: float = 0.0
+    drift: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -72,8 +65,11 @@ class Camera:
         Residual of the edges that fixed it, px; NaN where there were none.
     found : bool
         True where the frame itself fixed it, False where it was carried.
-    place_error : PlaceError, optional
-        How well it knows the places of ice points; what neighbouring frames share.
+    error : CameraError, optional
+        How well it is known.
+    quality : float
+        From 0 to 1: the share of the circles in the picture that is explained, less where the
+        residual is large; 0 where carried, NaN where unknown.
     """
 
     frame: int
@@ -86,7 +82,8 @@ class Camera:
     position: Array | None = None
     rms_px: float = float("nan")
     found: bool = True
-    place_error: PlaceError | None = None
+    error: CameraError | None = None
+    quality: float = float("nan")
 
     @property
     def _centre_and_radius(self) -> tuple[Array, float]:
@@ -141,10 +138,78 @@ class Camera:
             xy = xy + (self.position[:2] - xy) * (height / self.position[2])
         return xy
 
-    def place_sd(self, ice: ArrayLike) -> Array:
-        """Give the standard deviation per axis, m, of mapped ice points; 0 where unknown."""
-        p = np.asarray(ice, float)
-        return np.zeros(p.shape[:-1]) if self.place_error is None else self.place_error.at(p)
+    @property
+    def rotation(self) -> Array:
+        """Ice axes to camera axes (x right, y down, z forward), shape (3, 3).
+
+        The homography is K [r1 r2 −R C] up to a factor.
+        """
+        c, _ = self._centre_and_radius
+        columns = self.homography[:, :2].copy()
+        columns[:2] = (columns[:2] - c[:, None] * columns[2]) / self.f_px
+        columns /= np.linalg.norm(columns[:, 0])
+        return np.column_stack([columns, np.cross(columns[:, 0], columns[:, 1])])
+
+    def place_cov(self, ice: ArrayLike, height: float = 0.0) -> Array:
+        """Covariance of mapped points, shape (..., 2, 2), m²; zero where nothing is known of it.
+
+        Parameters
+        ----------
+        ice : array_like, shape (..., 2)
+            Places (x, y), m.
+        height : float
+            Height of the points above the ice, m.
+        """
+        if self.error is None:
+            return np.zeros((*np.shape(ice), 2))
+        by_camera = self.place_jacobian(ice, height)
+        own = by_camera @ self.error.own @ np.swapaxes(by_camera, -1, -2)
+        return np.asarray(own + self.shared_place_cov(ice, height))
+
+    def shared_place_cov(self, ice: ArrayLike, height: float = 0.0) -> Array:
+        """Part of `place_cov` that neighbouring frames share, shape (..., 2, 2), m²."""
+        xy = np.asarray(ice, float)
+        if self.error is None:
+            return np.zeros((*xy.shape, 2))
+        by_camera = self.place_jacobian(xy, height)
+        found = by_camera @ self.error.shared @ np.swapaxes(by_camera, -1, -2)
+        found += self.error.scale**2 * xy[..., :, None] * xy[..., None, :]
+        return np.asarray(found + self.error.drift**2 * np.eye(2))
+
+    def place_sd(self, ice: ArrayLike, height: float = 0.0) -> Array:
+        """Give the standard deviation per axis, m, of mapped points: the part frames share.
+
+        Root mean square of the two axes; 0 where nothing is known of it.
+        """
+        cov = self.shared_place_cov(ice, height)
+        return np.asarray(np.sqrt(np.trace(cov, axis1=-2, axis2=-1) / 2))
+
+    def place_jacobian(self, ice: ArrayLike, height: float = 0.0) -> Array:
+        """Change of what a pixel is mapped to by the camera's parameters, shape (..., 2, 9).
+
+        The pixel stays: what the parameters move in the picture, the place must move back.
+        """
+        if self.position is None:
+            raise ValueError("the camera's place is not known")
+        xy = np.asarray(ice, float)
+        rotation = self.rotation
+        away = np.concatenate([xy, np.full((*xy.shape[:-1], 1), height)], axis=-1) - self.position
+        p = away @ rotation.T
+        _, radius = self._centre_and_radius
+        lens = self.f_px / radius / p[..., 2]
+        q = p[..., :2] * lens[..., None]
+        by_point = np.zeros((*xy.shape[:-1], 2, 3))
+        by_point[..., 0, 0] = by_point[..., 1, 1] = lens
+        by_point[..., 2] = -q / p[..., 2:]
+        moved = np.empty((*xy.shape[:-1], 2, PARAMETERS))
+        moved[..., :3] = np.cross(by_point, -p[..., None, :])
+        moved[..., 3] = q
+        moved[..., 4:7] = -by_point @ rotation
+        r2 = (q**2).sum(-1, keepdims=True)
+        slope = 1 + r2 * (3 * self.k1 + 5 * self.k2 * r2)
+        moved[..., 7] = q * r2 / slope
+        moved[..., 8] = q * r2**2 / slope
+        return np.asarray(-np.linalg.solve(by_point @ rotation[:, :2], moved))
 
     def scale_at(self, ice: ArrayLike) -> float:
         """Pixels per metre at an ice point: root of the determinant of the Jacobian."""

@@ -1,36 +1,66 @@
 """The cameras of a clip, from what its frames have measured.
 
-Place, distortion and painted radii are fitted jointly to many frames, and every view again with
-these held.
+What the frames share is fitted to some of them (`vision.bundle`), then every view with that held.
+Each camera says how well it is known: by its own marks, and by what all frames share.
+
+Assumed: the principal point is the middle of the picture, pixels are square, the camera stays
+where it is, and the 12-ft circle has its nominal radius.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import HOUSE
-from vision.adjust import Solution, solve
-from vision.camera import Camera
-from vision.house import SHARING
-from vision.place_error import place_error
-from vision.pose import CIRCLES, POSITION, R4, R8, Marks, Prior, View, camera
+from vision.adjust import WIDTH, Frame, linearised, solve_view
+from vision.bundle import ARC, LOST, NOISE_TRUST, Bundle, bundle, family, piece_of, sensitivity
+from vision.camera import PARAMETERS, Camera, CameraError
+from vision.pose import (
+    CIRCLES,
+    K1,
+    K1_ZOOM,
+    K2,
+    POSITION,
+    R4,
+    R8,
+    RIG_SIZE,
+    VIEW_SIZE,
+    Marks,
+    Prior,
+    View,
+    camera,
+    ice_points,
+    project,
+    turning,
+    zoom,
+)
 
 Array = NDArray[np.float64]
 
-JOINT_FRAMES = 30
+JOINT_FRAMES = 12
+"""Frames to which the shared part is fitted."""
 
-FRAMES_ALIKE = 4
-"""Frames of the joint fit that see the house differently enough to err independently."""
+VIEW_SD = (np.inf, np.inf, 0.05, np.inf)
 
-ERROR_FRAMES = 4
-"""Frames from which the error of mapped points is worked out."""
+LONG_RANGE = 2.3
+"""Errors of paint and outline are alike over longer stretches than single pieces and marks tell:
+so much larger than these say are the standard errors, as cameras known otherwise show."""
+
+YARDSTICK_SD = 0.0018
+"""How well the outer edge of the 12-ft circle is made out in a picture, m."""
 
 CARRY_DRIFT = 0.03
 """How fast a carried view goes astray, m/s on the ice."""
+
+UNTOLD = 0.7
+"""Share of its prior standard deviation above which the camera's height counts as assumed."""
+
+POOR_PX = 1.0
+"""Residual at which a fit is half as good as it might be, px."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +88,7 @@ class HouseTrack:
 
 @dataclass(frozen=True)
 class Seen:
-    """One followed frame."""
+    """One followed frame: what was measured in it, and whether that fixes its view."""
 
     index: int
     t: float
@@ -68,43 +98,92 @@ class Seen:
 
 
 def fit_clip(seen: Sequence[Seen], rig: Array, prior: Prior, size: tuple[int, int]) -> HouseTrack:
-    """Fit what the frames share, then every view with that held."""
+    """Fit the cameras of a clip.
+
+    Parameters
+    ----------
+    seen : sequence of Seen
+        The frames in order, at least one of them found.
+    rig : ndarray, shape (14,)
+        Start values of what they share.
+    prior : Prior
+    size : tuple of int
+        Width and height of the picture, px.
+    """
     good = [s for s in seen if s.found]
     chosen = _spread(good)
-    joint = solve(
-        [s.marks for s in chosen], [s.view for s in chosen], rig, size,
-        prior=prior, iterations=25, sharing=SHARING * max(len(chosen) / FRAMES_ALIKE, 1),
-    )  # fmt: skip
-    fits = {
-        s.index: solve([s.marks], [s.view], joint.rig, size, view_sd=(np.inf, np.inf, 0.05, np.inf))
-        for s in seen
-    }
-    few = chosen[:: max(len(chosen) // ERROR_FRAMES, 1)]
-    views = [fits[s.index].views[0] for s in few]
-    error = place_error([s.marks for s in few], views, joint.rig, joint.rig_cov, size)
+    shared, _ = bundle([s.marks for s in chosen], [s.view for s in chosen], rig, size, prior)
     found_at = np.array([s.t for s in good])
-    cameras = [
-        camera(
-            fits[s.index].views[0],
-            joint.rig,
-            size,
-            frame=s.index,
-            t=s.t,
-            rms_px=float(fits[s.index].rms[0]) if s.found else float("nan"),
-            found=s.found,
-            # Frames before the first find were carried too: backwards.
-            place_error=error.grown(CARRY_DRIFT * float(np.abs(found_at - s.t).min())),
-        )
-        for s in seen
-    ]
-    sd = np.sqrt(np.diag(joint.rig_cov))
+    cameras = []
+    for s in seen:
+        # Frames before the first find were carried too: backwards.
+        drift = 0.0 if s.found else CARRY_DRIFT * float(np.abs(found_at - s.t).min())
+        cameras.append(fit_frame(s, shared, size, drift))
+    sd = LONG_RANGE * np.sqrt(np.diag(shared.cov)[:RIG_SIZE])
     return HouseTrack(
         tuple(cameras),
-        np.array([HOUSE.twelve_foot, joint.rig[R8], joint.rig[R4]]),
-        np.array([0.0, sd[R8], sd[R4]]),
+        np.array([HOUSE.twelve_foot, *shared.rig[[R8, R4]]]),
+        np.array([YARDSTICK_SD, sd[R8], sd[R4]]),
         sd[POSITION],
-        _warnings(seen, prior, joint),
+        _warnings(seen, prior, shared.rig, sd),
     )
+
+
+def fit_frame(seen: Seen, shared: Bundle, size: tuple[int, int], drift: float = 0.0) -> Camera:
+    """Fit one frame's view with what it shares held; the camera, with its error."""
+    sd = seen.marks.sd * shared.noise[family(seen.marks.line)]
+    marks = replace(seen.marks, sd=sd)
+    offset, piece = shared.offsets(marks)
+    fit = solve_view(marks, seen.view, shared.rig, size, view_sd=VIEW_SD, offset=offset)
+    view = fit.view.vector
+    frame = Frame(marks, size, offset)
+    at = linearised(frame, frame.points(shared.rig), view, shared.rig)
+    w = 1 / (1 + (at.residual / WIDTH) ** 2)
+    # A frame may be noisier than most: fewer marks, people, blur.
+    square = float((w * at.residual**2).sum()) / LOST
+    free = max(float(w.sum()) - VIEW_SIZE, 0.0)
+    own = LONG_RANGE**2 * fit.cov * (NOISE_TRUST + square) / (NOISE_TRUST + free)
+    follows = sensitivity(frame, at, view, w, fit.cov, piece, len(shared.cov))
+    both = np.concatenate([follows, np.eye(RIG_SIZE, len(shared.cov))])
+    to_camera = _parameters(view, shared.rig, size)
+    common = to_camera @ both
+    error = CameraError(
+        LONG_RANGE**2 * common @ shared.cov @ common.T,
+        to_camera[:, :VIEW_SIZE] @ own @ to_camera[:, :VIEW_SIZE].T,
+        YARDSTICK_SD / HOUSE.twelve_foot,
+        drift,
+    )
+    rms = fit.rms if seen.found else float("nan")
+    quality = _explained(marks.pick(fit.inliers), fit.view, shared.rig, size)
+    quality *= 1 / (1 + (rms / POOR_PX) ** 2) if seen.found else 0.0
+    return camera(
+        fit.view, shared.rig, size, frame=seen.index, t=seen.t, rms_px=rms, found=seen.found,
+        error=error, quality=quality,
+    )  # fmt: skip
+
+
+def _parameters(view: Array, rig: Array, size: tuple[int, int]) -> Array:
+    """Change of a camera's parameters by view and rig, shape (9, 4 + 14)."""
+    found = np.zeros((PARAMETERS, VIEW_SIZE + RIG_SIZE))
+    found[:3, :3] = turning(view)
+    found[3, 3] = 1.0
+    found[4:7, VIEW_SIZE:][:, POSITION] = np.eye(3)
+    found[7, 3] = rig[K1_ZOOM]
+    found[7, VIEW_SIZE + K1] = 1.0
+    found[7, VIEW_SIZE + K1_ZOOM] = zoom(view[3], size)
+    found[8, VIEW_SIZE + K2] = 1.0
+    return found
+
+
+def _explained(marks: Marks, view: View, rig: Array, size: tuple[int, int]) -> float:
+    """Share of the pieces of the circles in the picture on which there are marks."""
+    angle = np.arange(-np.pi + ARC / 2, np.pi, ARC)
+    line = np.repeat(np.arange(CIRCLES), len(angle))
+    place = project(ice_points(line, np.tile(angle, CIRCLES), rig), view.vector, rig, size)
+    with np.errstate(invalid="ignore"):
+        shown = ((place > 0) & (place < np.array(size) - 1)).all(-1)
+    marked = np.unique(piece_of(marks.pick(marks.line < CIRCLES)))
+    return min(len(marked) / max(int(shown.sum()), 1), 1.0)
 
 
 def _spread(seen: Sequence[Seen]) -> list[Seen]:
@@ -113,7 +192,7 @@ def _spread(seen: Sequence[Seen]) -> list[Seen]:
     return [seen[i] for i in at]
 
 
-def _warnings(seen: Sequence[Seen], prior: Prior, joint: Solution) -> tuple[str, ...]:
+def _warnings(seen: Sequence[Seen], prior: Prior, rig: Array, sd: Array) -> tuple[str, ...]:
     found = []
     lost = sum(not s.found for s in seen)
     if lost:
@@ -121,11 +200,10 @@ def _warnings(seen: Sequence[Seen], prior: Prior, joint: Solution) -> tuple[str,
             f"{lost} of {len(seen)} frames do not show the rings; there the camera is"
             " carried by the motion of the picture"
         )
-    height_sd = float(np.sqrt(joint.rig_cov[2, 2]))
-    if height_sd > 0.7 * prior.sd[2]:
+    if sd[2] > UNTOLD * prior.sd[2]:
         found.append(
-            f"the camera's height cannot be told from this view ({joint.rig[2]:.1f} ±"
-            f" {height_sd:.1f} m assumed); stones far from the picture's middle may be"
+            f"the camera's height cannot be told from this view ({rig[2]:.1f} ±"
+            f" {sd[2]:.1f} m assumed); stones far from the picture's middle may be"
             " centimetres off"
         )
     if not (np.concatenate([s.marks.line for s in seen]) >= CIRCLES).any():

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from data.sheet import HOUSE, SHEET
-from vision.camera import Camera, PlaceError
+from vision.camera import Camera, CameraError
 
 Array = NDArray[np.float64]
 
@@ -63,8 +63,8 @@ class Marks:
     def __len__(self) -> int:
         return len(self.line)
 
-    def pick(self, which: NDArray[np.bool_]) -> Marks:
-        """Pick the marks for which `which` is True."""
+    def pick(self, which: NDArray[np.bool_] | NDArray[np.int64]) -> Marks:
+        """Pick the marks for which `which` is True, or those of these indices."""
         return Marks(
             self.line[which],
             self.along[which],
@@ -269,7 +269,8 @@ def camera(
     t: float = 0.0,
     rms_px: float = float("nan"),
     found: bool = True,
-    place_error: PlaceError | None = None,
+    error: CameraError | None = None,
+    quality: float = float("nan"),
 ) -> Camera:
     """Give the frame's `Camera`, with the homography K [r1 r2 −R C]."""
     w, h = size
@@ -289,7 +290,8 @@ def camera(
         rig[POSITION].copy(),
         rms_px,
         found,
-        place_error,
+        error,
+        quality,
     )
 
 
