@@ -5,11 +5,12 @@ Each varies what the camera does or what is seen; paint, lines and stones differ
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tests.synthetic import (
     PAINTS,
@@ -22,6 +23,8 @@ from tests.synthetic import (
     Scene,
     Truth,
     cached_clip,
+    pictures,
+    plain_pictures,
     random_scene,
     sweepers,
 )
@@ -45,13 +48,14 @@ class Clip:
     crf: int = 21
     shutter: float = 0.01
     supersample: int = 1
+    draw: Callable[..., Iterator[tuple[float, NDArray[np.uint8]]]] = pictures
 
     def render(self, height: int) -> tuple[Path, Truth]:
         """Render the clip at this height of the picture, px: 720 or 1080."""
         return cached_clip(
             self.scene, enlarged(self.camera, height / HEIGHT), fps=self.fps,
             duration=self.duration, shutter=self.shutter, crf=self.crf,
-            supersample=self.supersample,
+            supersample=self.supersample, draw=self.draw,
         )  # fmt: skip
 
 
@@ -202,6 +206,15 @@ def clips() -> tuple[Clip, ...]:
     )  # fmt: skip
 
 
+PLAIN = ("pan-zoom", "tilt-30", "oblique-50", "people", "k1 -0.1", "off-centre-8m")
+
+
+def plain_clips() -> tuple[Clip, ...]:
+    """List some of the fixed clips, shorter, by the second renderer."""
+    short = (replace(c, duration=0.8, supersample=1, draw=plain_pictures) for c in clips())
+    return tuple(replace(c, name=f"plain {c.name}") for c in short if c.name in PLAIN)
+
+
 def random_clip(seed: int) -> Clip:
     """Draw a broadcast camera anywhere above the house, over any paint, with any lens."""
     rng = np.random.default_rng([seed, 3])
@@ -261,5 +274,9 @@ def random_tilted_clip(seed: int) -> Clip:
 def named(kinds: Sequence[str], draws: int) -> list[Clip]:
     """Pick clips by the beginnings of their names (all for none), and add `draws` random ones."""
     drawing: tuple[Callable[[int], Clip], ...] = (random_clip, random_tilted_clip)
-    everything = [*clips(), *(draw(seed) for draw in drawing for seed in range(draws))]
+    everything = [
+        *clips(),
+        *plain_clips(),
+        *(draw(seed) for draw in drawing for seed in range(draws)),
+    ]
     return [c for c in everything if not kinds or c.name.startswith(tuple(kinds))]

@@ -1,8 +1,9 @@
 """Clips of curling shots whose truth is known, rendered from a scene and a camera.
 
 `render_clip` writes one, `cached_clip` keeps it between test runs, `render_still` gives one
-picture; `sample_scene`, `random_scene` and the cameras are good places to start, to be varied
-with `dataclasses.replace`. Shares no code with the library.
+picture; `plain_pictures` is a second renderer, as a check on the first; `sample_scene`,
+`random_scene` and the cameras are good places to start, to be varied with
+`dataclasses.replace`. Shares no code with the library.
 """
 
 from tests.synthetic.camera import (
@@ -24,6 +25,7 @@ from tests.synthetic.clip import (
     render_still,
 )
 from tests.synthetic.physics import Ice, Impact, Start, simulate
+from tests.synthetic.plain import plain_pictures
 from tests.synthetic.scene import Cut, Graphic, Light, Mark, Paint, Person, Scene, Sheet, Stone
 from tests.synthetic.scenes import (
     PAINTS,
@@ -39,7 +41,7 @@ from tests.synthetic.video import write_video
 __all__ = [
     "PAINTS", "CameraPath", "Cut", "Graphic", "Ice", "Impact", "Key", "Light", "Mark", "Paint",
     "Person", "Scene", "Sheet", "Start", "Stone", "TrueHit", "Truth", "View", "broadcast_camera",
-    "cached_clip", "describe", "frame_times", "pictures", "random_scene", "red_stone",
-    "render_clip", "render_still", "sample_camera", "sample_scene", "simulate", "still_camera",
-    "sweepers", "tilted_camera", "write_video", "yellow_stone",
+    "cached_clip", "describe", "frame_times", "pictures", "plain_pictures", "random_scene",
+    "red_stone", "render_clip", "render_still", "sample_camera", "sample_scene", "simulate",
+    "still_camera", "sweepers", "tilted_camera", "write_video", "yellow_stone",
 ]  # fmt: skip

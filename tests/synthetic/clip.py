@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -16,10 +16,11 @@ from numpy.typing import ArrayLike, NDArray
 from tests.synthetic.camera import CameraPath, View
 from tests.synthetic.ice import Picture
 from tests.synthetic.people import hidden
-from tests.synthetic.physics import Motion, simulate
-from tests.synthetic.render import Studio, expose, in_cut
+from tests.synthetic.render import Studio, expose, in_cut, motion_of
 from tests.synthetic.scene import Graphic, Scene, Stone
 from tests.synthetic.video import on_ticks, write_video
+
+Frames = Iterator[tuple[float, Picture]]
 
 STATE = ("x", "y", "theta", "vx", "vy", "omega")
 
@@ -96,10 +97,10 @@ def pictures(
     *,
     shutter: float = 0.01,
     supersample: int = 1,
-) -> Iterator[tuple[float, Picture]]:
+) -> Frames:
     """Render (t, BGR picture) at the times given, s; each exposed for `shutter` seconds."""
     moments = np.asarray(times, float)
-    studio = Studio(scene, _motion(scene, float(moments.max()) + 0.1), supersample)
+    studio = Studio(scene, motion_of(scene, float(moments.max()) + 0.1), supersample)
     rng = np.random.default_rng([scene.seed, 2])
     for t in moments:
         yield float(t), expose(studio, camera, float(t), shutter, rng)
@@ -120,7 +121,7 @@ def render_still(
 def describe(scene: Scene, camera: CameraPath, times: ArrayLike, *, fps: float = 25.0) -> Truth:
     """The truth of frames at these times, s, without rendering them."""
     moments = np.asarray(times, float)
-    motion = _motion(scene, float(moments.max()) + 0.1)
+    motion = motion_of(scene, float(moments.max()) + 0.1)
     rows, cameras = [], []
     for frame, t in enumerate(moments):
         cut = in_cut(scene, float(t))
@@ -167,6 +168,7 @@ def render_clip(
     shutter: float = 0.01,
     crf: int = 21,
     supersample: int = 1,
+    draw: Callable[..., Frames] = pictures,
 ) -> Truth:
     """Render a clip to `path` (MP4, H.264) and return its truth.
 
@@ -186,9 +188,11 @@ def render_clip(
         Compression of H.264, 0 to 51.
     supersample : int
         Render so many times larger: for tilts beyond some 30°.
+    draw : callable
+        The renderer: `pictures` or one of its form.
     """
     moments = frame_times(fps, duration) if times is None else on_ticks(times)
-    frames = pictures(scene, camera, moments, shutter=shutter, supersample=supersample)
+    frames = draw(scene, camera, moments, shutter=shutter, supersample=supersample)
     write_video(path, frames, fps=fps, crf=crf)
     return describe(scene, camera, moments, fps=fps)
 
@@ -203,13 +207,15 @@ def cached_clip(
     shutter: float = 0.01,
     crf: int = 21,
     supersample: int = 1,
+    draw: Callable[..., Frames] = pictures,
 ) -> tuple[Path, Truth]:
     """As `render_clip`, but rendered once per machine: kept in the folder for temporary files.
 
     The key is made of the parameters and of the renderer's own source.
     """
     moments = frame_times(fps, duration) if times is None else on_ticks(times)
-    what = (scene, camera, fps, moments.tolist(), shutter, crf, supersample, _source())
+    how = (shutter, crf, supersample, draw.__name__)
+    what = (scene, camera, fps, moments.tolist(), how, _source())
     key = hashlib.sha256(repr(what).encode()).hexdigest()[:24]
     folder = Path(tempfile.gettempdir()) / "curlshot-clips"
     folder.mkdir(exist_ok=True)
@@ -219,19 +225,11 @@ def cached_clip(
             fresh = Path(scratch) / clip.name
             truth = render_clip(
                 scene, camera, fresh, fps=fps, times=moments, shutter=shutter, crf=crf,
-                supersample=supersample,
+                supersample=supersample, draw=draw,
             )  # fmt: skip
             fresh.replace(clip)
         return clip, truth
     return clip, describe(scene, camera, moments, fps=fps)
-
-
-@cache
-def _motion(scene: Scene, until: float) -> Motion:
-    starts = [s.start for s in scene.stones]
-    if not starts:
-        return Motion(np.array([0.0, until]), np.zeros((2, 0, 6)), ())
-    return simulate(starts, until, ice=scene.ice, impact=scene.impact)
 
 
 @cache

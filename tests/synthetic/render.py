@@ -7,6 +7,7 @@ lie symmetrically about it.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cache
 
 import cv2
 import numpy as np
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 from tests.synthetic.camera import CameraPath, View
 from tests.synthetic.ice import Extent, Picture, Plate, paint_plate, warp
 from tests.synthetic.people import draw_people
-from tests.synthetic.physics import Motion
+from tests.synthetic.physics import Motion, simulate
 from tests.synthetic.scene import Cut, Graphic, Scene
 from tests.synthetic.stones import draw_stones
 
@@ -53,6 +54,15 @@ class Studio:
                 self.scene, extent, min(density * self.supersample, 260.0)
             )
         return self.plates[camera]
+
+
+@cache
+def motion_of(scene: Scene, until: float) -> Motion:
+    """How the scene's stones move from 0 to `until`, s."""
+    starts = [s.start for s in scene.stones]
+    if not starts:
+        return Motion(np.array([0.0, until]), np.zeros((2, 0, 6)), ())
+    return simulate(starts, until, ice=scene.ice, impact=scene.impact)
 
 
 def expose(

@@ -17,6 +17,8 @@ from tests.synthetic import (
     Start,
     broadcast_camera,
     describe,
+    pictures,
+    plain_pictures,
     random_scene,
     red_stone,
     render_still,
@@ -72,6 +74,32 @@ def test_ring_edges_lie_where_the_camera_says(
         errors = edge_errors(picture, camera.at(t), radius)
         assert abs(errors.mean()) < 0.02
         assert np.sqrt((errors**2).mean()) < 0.05
+
+
+@pytest.mark.parametrize(
+    ("camera", "supersample"),
+    [(broadcast_camera(size=(960, 540), px_per_m=(80, 80), k1=(-0.1, -0.1)), 2),
+     (tilted_camera(np.deg2rad(45), size=(960, 540), px_per_m=75), 3)],
+)  # fmt: skip
+def test_the_second_renderer_sees_the_same_rings(camera: CameraPath, supersample: int) -> None:
+    ((_, picture),) = plain_pictures(BARE, camera, [0.5], shutter=1e-4, supersample=supersample)
+    for radius in BARE.paint.radii[:3]:
+        errors = edge_errors(picture, camera.at(0.5), radius)
+        assert abs(errors.mean()) < 0.02
+        assert np.sqrt((errors**2).mean()) < 0.1
+
+
+@pytest.mark.parametrize("renderer", [pictures, plain_pictures])
+def test_an_outlined_ring_ends_at_its_radius(renderer) -> None:
+    camera = still_camera(px_per_m=300, target=(1.3, 1.3), size=(480, 480))
+    dark = Paint(*(BARE.sheet.ice,) * 4, outline=(20, 20, 20), outline_width=0.02, logo="")
+    scene = replace(BARE, paint=dark, sheet=replace(BARE.sheet, line=BARE.sheet.ice))
+    ((_, picture),) = renderer(scene, camera, [0.0], shutter=1e-4)
+    angle = np.linspace(0.75, 0.85, 40)
+    way = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=-1)
+    for radius, inside in ((1.827, True), (1.811, True), (1.831, False), (1.807, False)):
+        x, y = np.round(camera.at(0).project(radius * way)).astype(int).T
+        assert (np.median(picture[y, x, 0]) < 130) == inside
 
 
 def red_centre(picture) -> np.ndarray:
