@@ -56,6 +56,10 @@ class Search:
 
 
 SEARCH = Search()
+"""For a single picture, which has one chance."""
+
+FOLLOWING = Search(radius_px=8.0)
+"""For a clip: a coarser map, for what one picture hides the next ones show."""
 
 
 @dataclass(frozen=True)

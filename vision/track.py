@@ -18,7 +18,7 @@ from vision.follow import Gate, Track, follow, names_by_motion
 from vision.handle import Complex, cap_spectrum, handle_angles
 from vision.measure import is_plain
 from vision.sighting import Sighting
-from vision.stones import SEARCH, Search, find_stones
+from vision.stones import FOLLOWING, Search, find_stones
 
 LEARNING_FRAMES = 24
 """Frames of a clip from which the look of its stones is learned."""
@@ -56,7 +56,7 @@ def track_stones(
     *,
     disc: Stone = STONE,
     progress: Progress = no_progress,
-    search: Search = SEARCH,
+    search: Search = FOLLOWING,
 ) -> StoneTracks:
     """Find, follow and name the stones of a clip and measure how they are turned.
 
