@@ -25,9 +25,16 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Friction(Estimate):
-    """Coefficient of friction of the ice, with the law that it belongs to."""
+    """Coefficient of friction of the ice, with the law that it belongs to.
+
+    ``law`` is ``constant``, or ``fit`` for μ(v) = a / (v + v_c) + b; then the value is that at
+    1 m/s, and ``a``, ``v_c`` (m/s) and ``b`` are the law's constants.
+    """
 
     law: str = "constant"
+    a: float | None = None
+    v_c: float | None = None
+    b: float | None = None
 
 
 @dataclass(frozen=True)

@@ -13,22 +13,30 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from data.errors import InputError
 from data.results import Collision, Estimate, Friction, Glide, StoneState
 from data.sheet import STONE
 from physics.contacts import Contact, cut_all
 from physics.fit import fit_shot
 from physics.glides import FREE, measure_glides
+from physics.global_fit import GlobalFit
+from physics.law_choice import fit_with_chosen_laws
 from physics.residuals import huber_weights
 from physics.segments import Piece
 from physics.shot_fit import Encounter, Meeting, ShotFit
+from physics.shot_model import ice
 from physics.spins import spins_at, stone_friction
 from physics.traces import Trace, traces
+from physics.watched import loose_priors, watch
 
 Floats = NDArray[np.float64]
 
 UNEVEN, BESIDE = 0.025, 1.0
 """Where decelerations differ by more than UNEVEN (m/s²) from glide to glide, no glide is taken
 to be even either, and velocities at a hit come from BESIDE seconds on either side of it."""
+
+POOR_FIT = 30.0
+"""Factor on the variance of sightings from which a simulated shot is not the one seen."""
 
 WORST = 0.2
 """Standard error of a restitution beyond which a hit is said to tell nothing."""
@@ -50,6 +58,10 @@ class Estimates:
         In order of stone and time.
     warnings : tuple of str
         What could not be told and why; what does not agree.
+    local : Estimate
+        Restitution from either side of the hits alone, pooled.
+    whole : GlobalFit or None
+        The whole shot fitted through the simulator, where its stones move as it knows it.
     """
 
     restitution: Estimate = field(default_factory=Estimate)
@@ -57,6 +69,8 @@ class Estimates:
     collisions: tuple[Collision, ...] = ()
     glides: tuple[Glide, ...] = ()
     warnings: tuple[str, ...] = ()
+    local: Estimate = field(default_factory=Estimate)
+    whole: GlobalFit | None = field(default=None, compare=False)
 
 
 def estimate(
@@ -152,8 +166,60 @@ def estimate(
             )
     warnings += _distances(joint, radius)
     usable = [k for k, note in enumerate(notes) if note is None]
-    restitution = _pooled(values[usable], cov[np.ix_(usable, usable)])
-    return Estimates(restitution, friction, collisions, glides, tuple(warnings))
+    local = _pooled(values[usable], cov[np.ix_(usable, usable)])
+    whole, why_not = _whole(known, joint, radius, masses or {}, inertia, local)
+    warnings += why_not
+    restitution = local if whole is None or not whole.told("restitution") else whole["restitution"]
+    if local.value is None:
+        restitution = local
+    if whole is not None and friction.value is not None and whole.told("friction"):
+        friction = _friction(whole)
+        warnings = [text for text in warnings if not text.startswith("friction differs")]
+    return Estimates(restitution, friction, collisions, glides, tuple(warnings), local, whole)
+
+
+def _friction(whole: GlobalFit) -> Friction:
+    """Friction of the ice at 1 m/s with the law that the whole shot was fitted with."""
+    mu = whole["friction"]
+    if "slope" in whole.fixed:
+        return Friction(mu.value, mu.stderr)
+    law = ice(whole.state())
+    return Friction(mu.value, mu.stderr, "fit", law.a, law.v_c, law.b)
+
+
+def _whole(
+    known: Mapping[str, Trace],
+    fit: ShotFit,
+    radius: float,
+    masses: Mapping[str, float],
+    inertia: float,
+    local: Estimate,
+) -> tuple[GlobalFit | None, list[str]]:
+    """Fit the whole shot through the simulator, or say why what it gives is not used."""
+    watched = watch(known, fit, radius, priors=loose_priors(radius), masses=masses, inertia=inertia)
+    if watched is None or not watched.hits:
+        return None, []
+    try:
+        whole = fit_with_chosen_laws([watched])
+    except InputError as error:
+        return None, [f"whole shot: cannot be simulated ({error}); values beside the hits used"]
+    if not whole.settled or not whole.hits_as_seen:
+        return None, ["whole shot: the simulator does not follow it; values beside the hits used"]
+    e = whole["restitution"]
+    if whole.inflation > POOR_FIT:
+        return None, [
+            "whole shot: the simulated paths differ from the tracks by more than their errors"
+            f" (variance × {whole.inflation:.0f}); values beside the hits used"
+        ]
+    if None in (e.value, e.stderr, local.value, local.stderr):
+        return whole, []
+    off = abs(float(e.value or 0) - float(local.value or 0))
+    if off > 3 * float(np.hypot(e.stderr or 0, local.stderr or 0)):
+        return None, [
+            f"restitution: {local.value:.3f} ± {local.stderr:.3f} beside the hits,"
+            f" {e.value:.3f} ± {e.stderr:.3f} from the whole shot, which disagree; the first used"
+        ]
+    return whole, []
 
 
 def _alone(piece: Piece) -> bool:

@@ -12,8 +12,9 @@ from data.results import Collision, SimulationScore
 from data.sheet import STONE
 from physics.curl import NoCurl
 from physics.estimate import Estimates
-from physics.ice import Constant
+from physics.ice import Constant, IceLaw
 from physics.impact import Frictional, Impact, PointMass, RigidBody
+from physics.shot_model import ice as fitted_ice
 from physics.simulate import Shot, StoneStart, simulate
 
 STONE_FRICTION = 0.05
@@ -80,7 +81,9 @@ def simulate_measured(
         warnings.append(f"simulation: friction not measured, {FRICTION} assumed")
     elif friction < 0:
         warnings.append(f"simulation: friction came out as {friction:.4f}, 0 used")
-    ice = Constant(max(friction, 0.0) or 1e-6)
+    ice: IceLaw = Constant(max(friction, 0.0) or 1e-6)
+    if estimates.friction.law == "fit" and estimates.whole is not None:
+        ice = fitted_ice(estimates.whole.state())
     clock = tracks.groupby("frame", sort=True)["t"].first()
     clock = clock[clock >= start]
     ends = {

@@ -26,6 +26,23 @@ def huber_weights(residuals: Floats) -> Floats:
     return out
 
 
+def inflation(runs: Sequence[Floats], free: int, parameters: int) -> float:
+    """Factor for variances of residuals that are larger than stated, or alike in time.
+
+    Parameters
+    ----------
+    runs : sequence of (n, 2) array
+        Normalised residuals of each stone in order of time.
+    free : int
+        Residuals less parameters.
+    parameters : int
+        Fitted to each column of a run, about.
+    """
+    weighted = [run * huber_weights(run) for run in runs]
+    square = sum(float(np.sum(run * run)) for run in weighted)
+    return max(1.0, square / free) * likeness([(run, parameters) for run in weighted])
+
+
 def likeness(runs: Sequence[tuple[Floats, int]]) -> float:
     """Long-run variance of residuals over their variance: 1 for white noise, never less.
 

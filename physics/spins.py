@@ -43,7 +43,8 @@ def spins_at(
     stones = fit.meetings[k].stones
     t = fit.time(k)
     before, after = (
-        [_spin(fit, fit.sides[k, stone][side], known, t) for stone in stones] for side in (0, 1)
+        [spin_on(fit, fit.sides[k, stone][side], known, t)[0] for stone in stones]
+        for side in (0, 1)
     )
     for one, other in ((0, 1), (1, 0)):
         change = _change(before[other], after[other], mass[other] / mass[one])
@@ -77,18 +78,23 @@ def _joined(own: Estimate, start: Estimate, change: Estimate, sign: float) -> Es
     return Estimate(joined, float(np.sqrt(variance * (1 - share))))
 
 
-def _spin(fit: ShotFit, rank: int, known: Mapping[str, Trace], time: float) -> Estimate:
-    """Spin on one piece near a time, from a line through its angles."""
+def spin_on(
+    fit: ShotFit, rank: int, known: Mapping[str, Trace], time: float
+) -> tuple[Estimate, float]:
+    """Spin on one piece near a time, from a line through its angles, and the mean time of them.
+
+    Nothing where fewer than two angles are seen; zero for a stone at rest.
+    """
     piece = fit.pieces[rank]
     if piece.rest:
-        return Estimate(0.0, 0.0)
+        return Estimate(0.0, 0.0), time
     trace = known[piece.stone]
     t, theta, sd = (a[piece.samples] for a in (trace.t, trace.theta, trace.sd_theta))
     x = fit.theta[6 * rank : 6 * rank + 6].reshape(2, 3)
     stop = stop_time(x, fit.origins[rank], np.inf)
     ok = np.isfinite(theta) & (np.abs(t - time) < LONGEST) & (t <= stop)
     if ok.sum() < 2:
-        return Estimate()
+        return Estimate(), time
     weights = sd[ok] ** -2.0
     slope = 0.0
     for _ in range(5):
@@ -96,7 +102,8 @@ def _spin(fit: ShotFit, rank: int, known: Mapping[str, Trace], time: float) -> E
         slope = float(weights @ (tau * theta[ok])) / float(weights @ tau**2)
         off = theta[ok] - float(weights @ theta[ok]) / weights.sum() - slope * tau
         weights = sd[ok] ** -2.0 / np.maximum(np.abs(off) / (2.5 * sd[ok]), 1.0)
-    return Estimate(slope, float((weights @ tau**2) ** -0.5))
+    middle = float(weights @ t[ok]) / float(weights.sum())
+    return Estimate(slope, float((weights @ tau**2) ** -0.5)), middle
 
 
 def stone_friction(

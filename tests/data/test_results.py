@@ -78,7 +78,8 @@ def test_the_form_of_the_file() -> None:
         "frames": 150,
         "duration": 5.96,
     }
-    assert raw["friction"] == {"value": 0.0109, "stderr": 3e-4, "law": "constant"}
+    constants = {"a": None, "v_c": None, "b": None}
+    assert raw["friction"] == {"value": 0.0109, "stderr": 3e-4, "law": "constant", **constants}
     assert raw["collisions"][0]["stones"] == ["A", "B"]  # type: ignore[index]
     assert raw["collisions"][0]["before"]["B"]["omega"] is None  # type: ignore[index]
     assert raw["glides"][1]["friction"] is None  # type: ignore[index]

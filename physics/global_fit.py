@@ -1,0 +1,376 @@
+"""One least-squares fit of whole shots through the simulator.
+
+The unknowns are the states of the stones at the start, the laws of the ice and of the hits;
+where and when stones meet, and the normals, follow from the geometry. Several shots may share
+unknowns. Levenberg and Marquardt's method with differences of simulations for derivatives;
+sightings far off lose weight as Huber has it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from data.errors import InputError
+from data.results import Estimate
+from physics.residuals import HUBER, huber_weights, inflation
+from physics.shot_model import Unknown, Watched
+from physics.simulate import Simulation
+from physics.traces import PLACE_REACH
+
+Floats = NDArray[np.float64]
+
+STEP = 1e-5
+"""Difference of an unknown for a derivative, in its SI unit."""
+
+SPIN_STEP = 1e-3
+"""Difference of a spin for a derivative, rad/s."""
+
+SETTLED = 0.02
+"""Change in standard errors below which a fit has come to its end."""
+
+GROUPS = 400
+"""Most groups of neighbouring sightings per axis whose shared error is followed up."""
+
+
+@dataclass(frozen=True)
+class GlobalFit:
+    """Outcome of `fit_shots`.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Of the unknowns that were fitted; with several shots those that are not shared begin
+        with the rank of their shot, as in ``1:A.vx``.
+    values : (n,) array
+        Their values.
+    cov : (n, n) array
+        Their covariance, enlarged for residuals that are too big or alike from frame to frame
+        and for what places share.
+    shared_cov : (n, n) array
+        The part of `cov` that comes from what places share.
+    prior_sd : (n,) array
+        What was known of each beforehand; infinite where nothing.
+    fixed : mapping
+        Unknowns that were held, and at what.
+    shots : tuple of Watched
+        As given.
+    deviance : float
+        Huber's sum of squared residuals of the sightings.
+    sightings : int
+        Number of sightings.
+    inflation : float
+        Factor that the variances of the sightings were enlarged by.
+    settled : bool
+        Whether the fit came to its end.
+    """
+
+    names: tuple[str, ...]
+    values: Floats
+    cov: Floats
+    shared_cov: Floats
+    prior_sd: Floats
+    fixed: Mapping[str, float]
+    shots: tuple[Watched, ...]
+    deviance: float
+    sightings: int
+    inflation: float
+    settled: bool
+
+    def __getitem__(self, name: str) -> Estimate:
+        """Value and standard error of an unknown; 0 as error where it was held."""
+        if name in self.names:
+            k = self.names.index(name)
+            return Estimate(float(self.values[k]), float(np.sqrt(self.cov[k, k])))
+        return Estimate(self.fixed[name], 0.0)
+
+    def told(self, name: str) -> bool:
+        """Whether the sightings tell more of an unknown than was known beforehand."""
+        if name not in self.names:
+            return False
+        k = self.names.index(name)
+        return bool(self.cov[k, k] < 0.5 * self.prior_sd[k] ** 2)
+
+    def state(self, rank: int = 0, values: Floats | None = None) -> dict[str, float]:
+        """Every unknown of shot `rank` by its own name, fitted or held."""
+        numbers = self.values if values is None else values
+        return _own(rank, len(self.shots), self.names, numbers, self.fixed, self.shots[rank])
+
+    def simulation(self, rank: int = 0, until: float | None = None) -> Simulation:
+        """Return the fitted shot."""
+        return self.shots[rank].replay(self.state(rank), until)
+
+    @property
+    def hits_as_seen(self) -> bool:
+        """Whether the stones hit each other in the fitted shots as they did."""
+        return all(shot.hits_as_seen(self.simulation(rank)) for rank, shot in enumerate(self.shots))
+
+    def residuals(self) -> pd.DataFrame:
+        """Sighted less fitted places: ``shot, stone, t, dx, dy`` (m) ``sd_x, sd_y`` (m)."""
+        tables = []
+        for rank, shot in enumerate(self.shots):
+            runs = shot.residuals(self.simulation(rank))
+            for (stone, trace), run in zip(shot.traces.items(), runs, strict=True):
+                off = run * trace.sd
+                table = {"shot": rank, "stone": stone, "t": trace.t, "dx": off[:, 0]}
+                table |= {"dy": off[:, 1], "sd_x": trace.sd[:, 0], "sd_y": trace.sd[:, 1]}
+                tables.append(pd.DataFrame(table))
+        return pd.concat(tables, ignore_index=True)
+
+
+def fit_shots(
+    shots: Sequence[Watched],
+    *,
+    fixed: Mapping[str, float] | None = None,
+    shared: Sequence[str] = (),
+    start: Mapping[str, float] | None = None,
+    iterations: int = 40,
+) -> GlobalFit:
+    """Fit all unknowns of one or several shots to all their sightings at once.
+
+    Parameters
+    ----------
+    shots : sequence of Watched
+        As `physics.watched.watch` makes them.
+    fixed : mapping, optional
+        Unknowns to hold, and at what; a bare name holds it in every shot.
+    shared : sequence of str
+        Unknowns of which all shots have the same, such as ``restitution``.
+    start : mapping, optional
+        Where to set out from, where not from the shots' own guesses.
+    iterations : int
+        Most simulations of all shots along the way, derivatives not counted.
+
+    Raises
+    ------
+    InputError
+        Where there is no shot or a name is unknown.
+    """
+    return _Problem(shots, fixed or {}, shared, start or {}).solve(iterations)
+
+
+def _own(
+    rank: int,
+    count: int,
+    names: Sequence[str],
+    values: Floats,
+    fixed: Mapping[str, float],
+    shot: Watched,
+) -> dict[str, float]:
+    own = {unknown.name for unknown in shot.unknowns}
+    prefix = f"{rank}:"
+    out = {name: value for name, value in fixed.items() if ":" not in name}
+    out |= {n.removeprefix(prefix): v for n, v in fixed.items() if n.startswith(prefix)}
+    for name, value in zip(names, values.tolist(), strict=True):
+        plain = name.removeprefix(prefix) if count > 1 else name
+        if plain in own:
+            out[plain] = value
+    return out
+
+
+@dataclass
+class _Problem:
+    """Working state of one fit."""
+
+    shots: Sequence[Watched]
+    fixed: Mapping[str, float]
+    shared: Sequence[str]
+    start: Mapping[str, float]
+    noise: float = 1.0
+    unknowns: dict[str, Unknown] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if not self.shots:
+            raise InputError("no shot to fit")
+        several = len(self.shots) > 1
+        known: set[str] = set()
+        for rank, shot in enumerate(self.shots):
+            for unknown in shot.unknowns:
+                own = several and unknown.name not in self.shared
+                name = f"{rank}:{unknown.name}" if own else unknown.name
+                known |= {name, unknown.name}
+                if name not in self.fixed and unknown.name not in self.fixed:
+                    self.unknowns.setdefault(name, unknown)
+        wrong = sorted({*self.fixed, *self.shared, *self.start} - known)
+        if wrong:
+            raise InputError(f"no unknown {', '.join(wrong)}; there are {', '.join(sorted(known))}")
+        self.names = tuple(self.unknowns)
+        each = list(self.unknowns.values())
+        self.low = np.array([unknown.low for unknown in each])
+        self.high = np.array([unknown.high for unknown in each])
+        self.mean = np.array([_or(unknown.prior, "value", 0.0) for unknown in each])
+        self.sd = np.array([_or(unknown.prior, "stderr", np.inf) for unknown in each])
+        self.step = np.array([SPIN_STEP if n.endswith("omega") else STEP for n in self.names])
+        self.sightings = sum(len(t.t) for shot in self.shots for t in shot.traces.values())
+
+    def solve(self, iterations: int) -> GlobalFit:
+        guesses = [self.start.get(n, u.guess) for n, u in self.unknowns.items()]
+        at = np.clip(np.array(guesses, float), self.low, self.high)
+        at, settled = self._descend(at, iterations)
+        residuals = [self._residuals(rank, at) for rank in range(len(self.shots))]
+        runs = [run for places, _ in residuals for run in places]
+        free = 2 * self.sightings - len(at)
+        self.noise = inflation(runs, free, 3) if free > 0 else 1.0
+        if self.noise > 1.0:  # what is known beforehand has the more of a say
+            at, settled = self._descend(at, iterations)
+            residuals = [self._residuals(rank, at) for rank in range(len(self.shots))]
+        slopes = self._slopes(at, residuals)
+        normal, _ = self._normal(at, residuals, slopes)
+        cov = _inverse(normal)
+        common = self._shared_error(residuals, slopes, cov)
+        return GlobalFit(
+            self.names,
+            at,
+            cov + common,
+            common,
+            self.sd,
+            dict(self.fixed),
+            tuple(self.shots),
+            sum(_huber(run) for places, _ in residuals for run in places),
+            self.sightings,
+            self.noise,
+            settled,
+        )
+
+    def _descend(self, at: Floats, iterations: int) -> tuple[Floats, bool]:
+        """Levenberg and Marquardt's steps from a guess to the least cost."""
+        damping = 1e-3
+        residuals = [self._residuals(rank, at) for rank in range(len(self.shots))]
+        cost = self._cost(at, residuals)
+        slopes = self._slopes(at, residuals)
+        for _ in range(iterations):
+            normal, right = self._normal(at, residuals, slopes)
+            step = _inverse(normal + damping * np.diag(np.diag(normal))) @ right
+            new = np.clip(at + step, self.low, self.high)
+            there = [self._residuals(rank, new) for rank in range(len(self.shots))]
+            new_cost = self._cost(new, there)
+            small = float((new - at) @ normal @ (new - at)) < SETTLED**2 * len(at)
+            if new_cost < cost:
+                at, residuals, cost = new, there, new_cost
+                damping = max(damping / 10, 1e-9)
+                if small:
+                    return at, True
+                slopes = self._slopes(at, residuals)
+            elif small or damping > 1e8:
+                return at, small
+            else:
+                damping = max(damping * 10, 1e-3)
+        return at, False
+
+    def _values(self, rank: int, at: Floats) -> dict[str, float]:
+        shot = self.shots[rank]
+        return _own(rank, len(self.shots), self.names, at, self.fixed, shot)
+
+    def _residuals(self, rank: int, at: Floats) -> tuple[list[Floats], Floats]:
+        shot = self.shots[rank]
+        simulation = shot.replay(self._values(rank, at))
+        return shot.residuals(simulation), shot.spin_residuals(simulation)
+
+    def _cost(self, at: Floats, residuals: Sequence[tuple[list[Floats], Floats]]) -> float:
+        data = sum(_huber(run) for places, _ in residuals for run in places) / self.noise
+        spins = sum(_huber(spins[:, None]) for _, spins in residuals)
+        return float(data + spins + np.sum(((at - self.mean) / self.sd) ** 2))
+
+    def _slopes(
+        self, at: Floats, residuals: Sequence[tuple[list[Floats], Floats]]
+    ) -> list[tuple[Floats, Floats]]:
+        """Differentiate all residuals of each shot; shapes (count, unknowns)."""
+        out = []
+        for rank, (places, spins) in enumerate(residuals):
+            flat = _flat(places)
+            by_place = np.zeros((len(flat), len(at)))
+            by_spin = np.zeros((len(spins), len(at)))
+            own = set(self._values(rank, at))
+            for k, name in enumerate(self.names):
+                if name.removeprefix(f"{rank}:") not in own:
+                    continue
+                sign = 1.0 if at[k] + self.step[k] <= self.high[k] else -1.0
+                moved = at.copy()
+                moved[k] += sign * self.step[k]
+                there, turned = self._residuals(rank, moved)
+                by_place[:, k] = (_flat(there) - flat) / (sign * self.step[k])
+                by_spin[:, k] = (turned - spins) / (sign * self.step[k])
+            out.append((by_place, by_spin))
+        return out
+
+    def _normal(
+        self,
+        at: Floats,
+        residuals: Sequence[tuple[list[Floats], Floats]],
+        slopes: Sequence[tuple[Floats, Floats]],
+    ) -> tuple[Floats, Floats]:
+        """Set up the normal equations: matrix and right-hand side of a step."""
+        normal = np.diag(self.sd**-2.0)
+        right = (self.mean - at) * self.sd**-2.0
+        for (places, spins), (by_place, by_spin) in zip(residuals, slopes, strict=True):
+            weights = _weights(places) / self.noise
+            normal += by_place.T @ (weights[:, None] * by_place)
+            right -= by_place.T @ (weights * _flat(places))
+            turned = HUBER / np.maximum(np.abs(spins), HUBER)
+            normal += by_spin.T @ (turned[:, None] * by_spin)
+            right -= by_spin.T @ (turned * spins)
+        return normal, right
+
+    def _shared_error(
+        self,
+        residuals: Sequence[tuple[list[Floats], Floats]],
+        slopes: Sequence[tuple[Floats, Floats]],
+        cov: Floats,
+    ) -> Floats:
+        """Covariance of the unknowns that what places share gives them.
+
+        A map of the ice is wrong alike at places near each other: by a field of the size
+        `sd_place` whose correlation falls with the distance d as exp(-d² / 2 L²), L being
+        `PLACE_REACH`. The unknowns follow such an error as they follow the sightings.
+        """
+        out = np.zeros_like(cov)
+        for shot, (places, _), (by_place, _) in zip(self.shots, residuals, slopes, strict=True):
+            sd = np.concatenate([trace.sd for trace in shot.traces.values()])
+            size = np.concatenate([trace.sd_place for trace in shot.traces.values()])
+            if not size.any():
+                continue
+            xy = np.concatenate([trace.xy for trace in shot.traces.values()])
+            weights = _weights(places) / self.noise
+            gain = (-(cov @ by_place.T) * weights).reshape(len(cov), -1, 2) / sd * size[:, None]
+            edges = np.linspace(0, len(xy), min(GROUPS, len(xy)), endpoint=False).astype(int)
+            counts = np.diff(np.append(edges, len(xy)))
+            middle = np.add.reduceat(xy, edges) / counts[:, None]
+            apart = middle[:, None] - middle[None]
+            alike = np.exp(-np.sum(apart**2, axis=2) / (2 * PLACE_REACH**2))
+            for axis in range(2):
+                sums = np.add.reduceat(gain[:, :, axis], edges, axis=1)
+                out += sums @ alike @ sums.T
+        return out
+
+
+def _flat(places: Sequence[Floats]) -> Floats:
+    return np.concatenate(places).ravel()
+
+
+def _weights(places: Sequence[Floats]) -> Floats:
+    """Huber's weight of every coordinate, in the order of `_flat`."""
+    return np.repeat(huber_weights(np.concatenate(places))[:, 0], 2)
+
+
+def _huber(residuals: Floats) -> float:
+    """Huber's cost of residuals of shape (n, k)."""
+    size = np.sqrt(np.sum(residuals**2, axis=1))
+    return float(np.sum(np.where(size <= HUBER, size**2, 2 * HUBER * size - HUBER**2)))
+
+
+def _or(prior: Estimate | None, key: str, default: float) -> float:
+    value = None if prior is None else getattr(prior, key)
+    return default if value is None else float(value)
+
+
+def _inverse(normal: Floats) -> Floats:
+    """Inverse of a positive matrix, its rows of very different size; singular ones too."""
+    size = np.sqrt(np.maximum(np.diag(normal), 1e-30))
+    values, vectors = np.linalg.eigh(normal / size[:, None] / size[None, :])
+    inverse = (vectors / np.maximum(values, 1e-12)) @ vectors.T
+    out: Floats = inverse / size[:, None] / size[None, :]
+    return out

@@ -1,0 +1,168 @@
+"""A watched shot as a function of its unknowns: the simulator beside the sightings."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.results import Estimate
+from data.sheet import STONE
+from physics.curl import Curl, FCV1Curl, NoCurl
+from physics.ice import Fit
+from physics.impact import Frictional
+from physics.motion import Path
+from physics.simulate import Shot, Simulation, StoneStart, simulate
+from physics.traces import Trace
+
+Floats = NDArray[np.float64]
+
+V_C = 0.064
+"""v_c in μ(v) = a / (v + v_c) + b, m/s: no track tells it, so it is that of FCV1 (Uehara and
+Ito, 2021)."""
+
+STATE: tuple[str, ...] = ("x", "y", "vx", "vy", "omega")
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """A number that a fit may find.
+
+    Attributes
+    ----------
+    name : str
+        ``restitution``, ``stone_friction`` (μ_s between stones), ``friction`` (of the ice at
+        1 m/s), ``slope`` (a in μ(v) = a / (v + v_c) + b, m/s), ``turn`` (of the path at 1 m/s,
+        rad/s), ``size`` (distance at contact over two radii), or a state at the start such as
+        ``A.x``, ``A.y``, ``A.vx``, ``A.vy`` and ``A.omega``.
+    guess : float
+        Where a fit sets out from.
+    low, high : float
+        Bounds.
+    prior : Estimate, optional
+        What is known of it besides the sightings.
+    """
+
+    name: str
+    guess: float
+    low: float = -np.inf
+    high: float = np.inf
+    prior: Estimate | None = None
+
+
+@dataclass(frozen=True)
+class SpinSeen:
+    """Mean spin of a stone about a time, s, measured from its angles: rad/s."""
+
+    stone: str
+    t: float
+    omega: float
+    stderr: float
+
+
+@dataclass(frozen=True)
+class Watched:
+    """What one shot showed, and the unknowns that it depends on.
+
+    Attributes
+    ----------
+    traces : mapping
+        Sightings of each stone that took part.
+    start : float
+        Time at which the simulation begins, s.
+    unknowns : tuple of Unknown
+        Of the laws and of the stones' states at `start`; a state that is not among them is 0.
+    spins : tuple of SpinSeen
+        Spins that were seen.
+    hits : tuple of (str, str)
+        Pairs in the order in which they hit each other, names of a pair sorted.
+    radius : float
+        Of the discs, m.
+    masses : mapping
+        Stone to mass in any unit; equal where absent.
+    inertia : float
+        k in I = k m R².
+    """
+
+    traces: Mapping[str, Trace]
+    start: float
+    unknowns: tuple[Unknown, ...]
+    spins: tuple[SpinSeen, ...] = ()
+    hits: tuple[tuple[str, str], ...] = ()
+    radius: float = STONE.radius
+    masses: Mapping[str, float] = field(default_factory=dict)
+    inertia: float = STONE.inertia
+
+    @property
+    def end(self) -> float:
+        """Time of the last sighting, s."""
+        return max(float(trace.t[-1]) for trace in self.traces.values())
+
+    def shot(self, values: Mapping[str, float]) -> Shot:
+        """Return the shot with these values of the unknowns, from the time `start` on."""
+        stones = tuple(
+            StoneStart(
+                name,
+                **{key: values.get(f"{name}.{key}", 0.0) for key in STATE},
+                mass=self.masses.get(name, STONE.mass),
+            )
+            for name in self.traces
+        )
+        impact = Frictional(values["restitution"], values["stone_friction"], self.inertia)
+        radius = self.radius * values.get("size", 1.0)
+        return Shot(stones, impact, ice(values), curl(values), radius)
+
+    def replay(self, values: Mapping[str, float], until: float | None = None) -> Simulation:
+        """Simulate the shot up to a time of the clip; to the last sighting if None."""
+        end = (self.end if until is None else until) - self.start
+        return simulate(self.shot(values), until=end)
+
+    def residuals(self, simulation: Simulation) -> list[Floats]:
+        """Sighted less simulated places over their standard deviations, (n, 2) per stone."""
+        out = []
+        for name, trace in self.traces.items():
+            xy = places(simulation.paths[name], trace.t - self.start)
+            out.append((trace.xy - xy) / trace.sd)
+        return out
+
+    def spin_residuals(self, simulation: Simulation) -> Floats:
+        """Seen less simulated spins over their standard errors, one for each of `spins`."""
+        return np.array(
+            [
+                (s.omega - _path(simulation.paths[s.stone], s.t - self.start).omega) / s.stderr
+                for s in self.spins
+            ]
+        )
+
+    def hits_as_seen(self, simulation: Simulation) -> bool:
+        """Whether the simulated hits are those that were seen, in their order."""
+        found = [tuple(sorted(hit.stones)) for hit in simulation.hits]
+        return found == [tuple(pair) for pair in self.hits]
+
+
+def ice(values: Mapping[str, float]) -> Fit:
+    """Return the ice law μ(v) = a / (v + v_c) + b with the friction at 1 m/s and a as given."""
+    slope = values.get("slope", 0.0)
+    return Fit(a=slope, v_c=V_C, b=max(values["friction"] - slope / (1 + V_C), 1e-6))
+
+
+def curl(values: Mapping[str, float]) -> Curl:
+    """Return the law of curl with the turn at 1 m/s as given; spins are kept."""
+    turn = values.get("turn", 0.0)
+    return FCV1Curl(turn=turn, loss=0.0) if turn else NoCurl()
+
+
+def _path(paths: Sequence[Path], t: float):  # type: ignore[no-untyped-def]
+    k = bisect_right(paths, t, key=lambda path: path.start) - 1
+    return paths[max(k, 0)].at(t)
+
+
+def places(paths: Sequence[Path], times: Floats) -> Floats:
+    """Places at times (s, increasing) on a stone's paths from hit to hit, shape (n, 2)."""
+    edges = np.searchsorted(times, [path.start for path in paths[1:]])
+    runs = zip(paths, np.split(times, edges), strict=True)
+    rows = [path.point(t)[:2] for path, run in runs for t in run.tolist()]
+    return np.array(rows, float).reshape(-1, 2)

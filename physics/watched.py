@@ -1,0 +1,251 @@
+"""From sightings and the fit of their pieces to a shot that a whole fit can begin with."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.results import Estimate
+from data.sheet import STONE
+from physics.shot_fit import ShotFit
+from physics.shot_model import SpinSeen, Unknown, Watched
+from physics.spins import spin_on
+from physics.traces import Trace
+
+Floats = NDArray[np.float64]
+
+SUDDEN = 0.1
+"""Change of velocity (m/s) beyond its error that neither ice nor air can give a stone."""
+
+SPIN_DRIFT = 0.03
+"""How much a spin may change by itself from where it is seen to a hit, rad/s."""
+
+LEAST_GAP = 2.0
+"""Time between two hits of one stone from which on its spin is seen twice, s."""
+
+
+@dataclass(frozen=True)
+class Priors:
+    """What is known of the laws before any sighting.
+
+    Attributes
+    ----------
+    restitution : Estimate
+        0.83 ± 0.06 is what the study of the 2018 Olympic final quotes; simulators take 0.5
+        to 1.
+    stone_friction : Estimate
+        Between two stones; nobody seems to have measured it, simulators take 0 to 0.2.
+    friction : Estimate
+        Of the ice; 0.006 to 0.016 was measured by Li et al., 2022, Lubricants 10, 265.
+    size : Estimate
+        Distance at contact over two radii.
+    """
+
+    restitution: Estimate
+    stone_friction: Estimate
+    friction: Estimate
+    size: Estimate
+
+
+LITERATURE = Priors(
+    Estimate(0.83, 0.06), Estimate(0.05, 0.05), Estimate(0.0109, 0.003), Estimate(1.0, 0.01)
+)
+"""Priors of a shot of which nothing is known yet; sources at `Priors`."""
+
+
+def loose_priors(radius: float) -> Priors:
+    """Return priors that leave the say to the sightings.
+
+    Only the friction is that of curling ice where the discs have the size of curling stones:
+    half a second of a glide does not tell it, and velocities at a hit depend on it.
+    """
+    curling = abs(radius / STONE.radius - 1) < 0.1
+    return Priors(
+        restitution=Estimate(0.8, 1.0),
+        stone_friction=Estimate(0.1, 0.3),
+        friction=Estimate(0.0105, 0.004) if curling else Estimate(0.01, 0.1),
+        size=Estimate(1.0, 0.015 if curling else 0.05),
+    )
+
+
+def watch(
+    known: Mapping[str, Trace],
+    fit: ShotFit,
+    radius: float,
+    *,
+    priors: Priors,
+    masses: Mapping[str, float] | None = None,
+    inertia: float = STONE.inertia,
+    bystanders: Sequence[str] = (),
+) -> Watched | None:
+    """Gather what a whole fit needs: sightings, first guesses, spins and the order of hits.
+
+    A stone counts until something else than ice and hits moves it, and so do those that it
+    hits after that.
+
+    Parameters
+    ----------
+    known : mapping
+        Stone to its sightings.
+    fit : ShotFit
+        Of the pieces of all stones that move.
+    radius : float
+        Of the discs, m.
+    priors : Priors
+        What is known beforehand.
+    masses : mapping, optional
+        Stone to mass in any unit; equal where absent.
+    inertia : float
+        k in I = k m R².
+    bystanders : sequence of str
+        Stones that rest throughout and may be in the way.
+
+    Returns
+    -------
+    Watched or None
+        None where no stone moves.
+    """
+    runs = _runs(fit)
+    ends = _ends(fit, runs)
+    times = [fit.time(k) for k in range(len(fit.meetings))]
+    order = sorted(
+        (
+            k
+            for k, meeting in enumerate(fit.meetings)
+            if all(times[k] < ends[stone] for stone in meeting.stones)
+        ),
+        key=lambda k: times[k],
+    )
+    hit = {stone for k in order for stone in fit.meetings[k].stones}
+    traces = {}
+    for name, run in runs.items():
+        if name in hit or not fit.pieces[run[0]].rest:
+            shown = _until(known[name], ends[name])
+            if len(shown.t):
+                traces[name] = shown
+    if not traces:
+        return None
+    traces |= {name: known[name] for name in bystanders if len(known[name].t)}
+    start = min(float(trace.t[0]) for trace in traces.values())
+    laws = (
+        Unknown("restitution", _mean(priors.restitution), 0.0, 1.5, priors.restitution),
+        Unknown("stone_friction", _mean(priors.stone_friction), 0.0, 2.0, priors.stone_friction),
+        Unknown("friction", _mean(priors.friction), 1e-5, 1.0, priors.friction),
+        Unknown("slope", 0.0, 0.0, 0.02),
+        Unknown("turn", 0.0, -0.1, 0.1),
+        Unknown("size", 1.0, 0.7, 1.3, priors.size),
+    )
+    states: list[Unknown] = []
+    spins: list[SpinSeen] = []
+    for name in traces:
+        run = runs.get(name, [])
+        states += _state(name, known[name], fit, run, start)
+        own = [spin for rank in run for spin in _seen(fit, rank, known, ends[name])]
+        spins += own
+        if run and not fit.pieces[run[0]].rest:
+            first = own[0].omega if own else 0.0
+            states.append(Unknown(f"{name}.omega", first, prior=Estimate(0.0, 3.0)))
+    pairs = tuple(_pair(fit.meetings[k].stones) for k in order)
+    return Watched(
+        traces, start, (*laws, *states), tuple(spins), pairs, radius, masses or {}, inertia
+    )
+
+
+def _mean(estimate: Estimate) -> float:
+    return float(estimate.value or 0.0)
+
+
+def _pair(stones: tuple[str, str]) -> tuple[str, str]:
+    first, second = sorted(stones)
+    return first, second
+
+
+def _runs(fit: ShotFit) -> dict[str, list[int]]:
+    """Ranks of each stone's pieces in order of time."""
+    out: dict[str, list[int]] = {}
+    for rank, piece in enumerate(fit.pieces):
+        out.setdefault(piece.stone, []).append(rank)
+    return {name: sorted(run, key=lambda r: fit.pieces[r].start) for name, run in out.items()}
+
+
+def _ends(fit: ShotFit, runs: Mapping[str, Sequence[int]]) -> dict[str, float]:
+    """Find when something else than ice and hits moves each stone; infinity if never."""
+    ends = dict.fromkeys(runs, np.inf)
+    for name, run in runs.items():
+        for one, two in pairwise(run):
+            if fit.pieces[two].opens is None and _jumps(fit, one, two):
+                ends[name] = fit.pieces[two].start
+                break
+    order = sorted(range(len(fit.meetings)), key=fit.time)
+    for k in order:  # who is hit by such a stone is no longer told either
+        stones = fit.meetings[k].stones
+        if any(ends[stone] < fit.time(k) for stone in stones):
+            for stone in stones:
+                ends[stone] = min(ends[stone], fit.time(k))
+    return ends
+
+
+def _jumps(fit: ShotFit, one: int, two: int) -> bool:
+    """Whether the velocity changes from a piece to the next by more than it is uncertain."""
+    t = fit.pieces[two].start
+    speeds, variance = [], 0.0
+    for rank in (one, two):
+        piece = fit.pieces[rank]
+        tau = t - fit.origins[rank]
+        x = fit.theta[6 * rank : 6 * rank + 6].reshape(2, 3)
+        v = np.zeros(2) if piece.rest else x[:, 1] + tau * x[:, 2]
+        if not piece.rest and rank == one and float(v @ x[:, 1]) < 0:
+            v = np.zeros(2)  # it has stopped
+        speeds.append(v)
+        row = np.array([0.0, 1.0, tau])
+        for axis in range(2):
+            at = slice(6 * rank + 3 * axis, 6 * rank + 3 * axis + 3)
+            variance += float(row @ fit.cov[at, at] @ row)
+    change = float(np.hypot(*(speeds[1] - speeds[0])))
+    return bool(change > SUDDEN + 4 * np.sqrt(variance))
+
+
+def _until(trace: Trace, end: float) -> Trace:
+    keep = trace.t < end
+    names = ("t", "xy", "sd", "theta", "sd_theta", "sd_place")
+    return replace(trace, **{name: getattr(trace, name)[keep] for name in names})
+
+
+def _state(
+    name: str, trace: Trace, fit: ShotFit, run: Sequence[int], start: float
+) -> list[Unknown]:
+    """Unknowns of one stone's state at the start of the shot, guessed from its first piece."""
+    if not run or fit.pieces[run[0]].rest:
+        early = trace.xy if not run else trace.xy[trace.t < fit.pieces[run[0]].end]
+        place = np.median(early, axis=0) if len(early) else fit.theta[[6 * run[0], 6 * run[0] + 3]]
+        return [Unknown(f"{name}.{key}", float(v)) for key, v in zip("xy", place, strict=True)]
+    place, speed = fit.motion(run[0], start)
+    values = (*place.tolist(), *speed.tolist())
+    return [
+        Unknown(f"{name}.{key}", value)
+        for key, value in zip(("x", "y", "vx", "vy"), values, strict=True)
+    ]
+
+
+def _seen(fit: ShotFit, rank: int, known: Mapping[str, Trace], end: float) -> list[SpinSeen]:
+    """Spin on one piece beside the hits that bound it, each where it is seen by itself."""
+    piece = fit.pieces[rank]
+    if piece.rest or piece.start >= end:
+        return []
+    times = [fit.time(k) for k in (piece.opens, piece.closes) if k is not None]
+    if not times:
+        samples = known[piece.stone].t[piece.samples]
+        times = [float(samples[0])] if len(samples) else []
+    if len(times) == 2 and times[1] - times[0] < LEAST_GAP:
+        times = times[:1]
+    out = []
+    for t in times:
+        spin, middle = spin_on(fit, rank, known, t)
+        if spin.value is not None and spin.stderr is not None and middle < end:
+            error = float(np.hypot(spin.stderr, SPIN_DRIFT))
+            out.append(SpinSeen(piece.stone, middle, spin.value, error))
+    return out
