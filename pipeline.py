@@ -22,10 +22,11 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from data.errors import CurlshotError, InputError, SceneError
 from data.progress import Progress, no_progress
-from data.sheet import HOUSE, STONE, House
+from data.sheet import HOUSE, STONE, House, Stone
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.figure import Figure
 
     from data.results import Results
     from physics.simulate import Simulation
@@ -38,6 +39,8 @@ WRITTEN = (
     "figures",
 )  # fmt: skip
 """All that a run may write into its folder."""
+
+CHECK_DPI = 110
 
 MOST_SAMPLES = 1_000_000
 """Of one simulated stone; more is a mistake in the rate."""
@@ -93,6 +96,17 @@ class Measured:
     cameras: tuple[Camera, ...] = ()
     house: House | None = None
     masses: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Filmed:
+    """A clip with its cameras, and what is known of the scene."""
+
+    clip: Clip
+    cameras: tuple[Camera, ...]
+    disc: Stone
+    house: House | None = None
+    warnings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -212,34 +226,40 @@ def _import_tables(files: tuple[Path, ...], settings: Settings) -> Measured:
 
 
 def _look_at_clip(files: tuple[Path, ...], settings: Settings, progress: Progress) -> Measured:
+    from vision.track import track_stones
+
+    seen = _film(files, settings, progress)
+    stones = track_stones(seen.clip, seen.cameras, disc=seen.disc, progress=progress)
+    return Measured(
+        files,
+        stones.sightings,
+        seen.clip.fps,
+        seen.clip.read,
+        (*seen.clip.warnings, *seen.warnings, *stones.warnings),
+        seen.clip,
+        seen.cameras,
+        seen.house,
+    )
+
+
+def _film(files: tuple[Path, ...], settings: Settings, progress: Progress) -> Filmed:
+    """Open a clip and find its cameras."""
     from vision.clip import open_clip
     from vision.follow_house import follow_house
     from vision.stick import stick_cameras
     from vision.stones import plain_disc
-    from vision.track import track_stones
 
     clip = open_clip(files, settings.fps, settings.frames)
-    warnings: tuple[str, ...] = ()
-    house: House | None = None
     if settings.stick is not None:
         cameras, disc = stick_cameras(clip, settings.stick, progress), plain_disc(settings.radius)
+        filmed = Filmed(clip, cameras, disc)
     else:
         followed = follow_house(clip, progress)
-        cameras, warnings = followed.cameras, followed.warnings
         house = House(*(float(radius) for radius in followed.radii))
         disc = replace(STONE, radius=settings.radius)
-    _check_size(settings.radius, cameras[0])
-    stones = track_stones(clip, cameras, disc=disc, progress=progress)
-    return Measured(
-        files,
-        stones.sightings,
-        clip.fps,
-        clip.read,
-        (*clip.warnings, *warnings, *stones.warnings),
-        clip,
-        cameras,
-        house,
-    )
+        filmed = Filmed(clip, followed.cameras, disc, house, followed.warnings)
+    _check_size(settings.radius, filmed.cameras[0])
+    return filmed
 
 
 def _check_size(radius: float, camera: Camera) -> None:
@@ -250,6 +270,82 @@ def _check_size(radius: float, camera: Camera) -> None:
             f"discs of radius {radius:g} m would have {pixels:.2g} px in the picture; check"
             " --radius, and --stick if given"
         )
+
+
+def check(
+    inputs: Sequence[str | Path],
+    settings: Settings = Settings(),
+    progress: Progress = no_progress,
+) -> tuple[Figure, list[str]]:
+    """Follow the camera and look for stones in a few frames, for a person to judge.
+
+    Returns
+    -------
+    Figure
+        The contact sheet (see `report.check.check_figure`).
+    list of str
+        The same in a few lines.
+
+    Raises
+    ------
+    data.errors.CurlshotError
+        Where the input cannot be used; one line says why.
+    """
+    import numpy as np
+
+    from report.check import Look, check_figure, frames_to_show
+    from vision.camera import camera_table
+    from vision.glance import glance
+
+    files = find_inputs(inputs)
+    if any(path.suffix.lower() in TABLES for path in files):
+        raise InputError(f"{files[0]}: a table of tracks; only clips and pictures can be checked")
+    seen = _film(files, settings, progress)
+    clip, cameras = seen.clip, seen.cameras
+    radii = () if seen.house is None else _painted(seen.house)
+    table = camera_table(cameras)
+    rim = radii[0] if radii else 0.0
+    around = rim * np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
+    table["sd"] = [float(np.mean(camera.place_sd(around))) for camera in cameras]
+    by_frame = {camera.frame: camera for camera in cameras}
+    chosen = frozenset(frames_to_show(table))
+    frames = []
+    for done, frame in enumerate(clip, 1):
+        if frame.index in chosen:
+            frames.append(frame)
+        progress("frames to show", done, clip.expected)
+    stones = glance([(frame.image, by_frame[frame.index]) for frame in frames], seen.disc)
+    looks = [
+        Look(frame, by_frame[frame.index], found.stones, found.refused)
+        for frame, found in zip(frames, stones, strict=True)
+    ]
+    carried = int((table["found"] == 0).sum())
+    lines = [
+        f"input       {files[0].name}: {_count(clip.read, 'frame')}",
+        f"camera      known in {len(table)} frames, carried in {carried} of them; edges"
+        f" {table['rms_px'].median():.2f} px off, worst frame {table['rms_px'].max():.2f} px",
+    ]
+    if radii:
+        lines.append(
+            f"places      known to {1000 * table['sd'].median():.1f} mm at the 12-ft ring,"
+            f" worst frame {1000 * table['sd'].max():.1f} mm (one standard error)"
+        )
+    lines.append(
+        f"stones      {max(len(look.stones) for look in looks)} at most in one of"
+        f" {_count(len(looks), 'frame')} looked at"
+    )
+    lines += [f"warning: {text}" for text in (*clip.warnings, *seen.warnings)]
+    return check_figure(
+        looks,
+        table,
+        radii,
+        title=f"{files[0].name}: {' '.join(lines[1].split())}",
+        radius=settings.radius,
+    ), lines
+
+
+def _painted(house: House) -> tuple[float, ...]:
+    return house.twelve_foot, house.eight_foot, house.four_foot
 
 
 def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
@@ -565,6 +661,16 @@ def _parser() -> argparse.ArgumentParser:
     track_.add_argument("inputs", nargs="+", metavar="CLIP", help="a video or pictures")
     _clip_options(track_)
 
+    check_ = _command(
+        commands,
+        "check",
+        "a contact sheet: can the camera and the stones found in this clip be trusted?",
+        "  curlshot check shot.mp4                  shot-curlshot/check.png\n",
+        _do_check,
+    )
+    check_.add_argument("inputs", nargs="+", metavar="CLIP", help="a video or pictures")
+    _clip_options(check_)
+
     estimate_ = _command(
         commands,
         "estimate",
@@ -752,6 +858,17 @@ def _do_track(arguments: argparse.Namespace, bars: _Bars) -> str:
         f"{folder / 'tracks.csv'}, {folder / 'camera.csv'}"
     ]
     return "\n".join(lines + [f"warning: {text}" for text in measured.warnings])
+
+
+def _do_check(arguments: argparse.Namespace, bars: _Bars) -> str:
+    from data.files import whole_file
+
+    settings, folder = _settings(arguments), _out(arguments, arguments.inputs[0])
+    _check_out(folder)
+    figure, lines = check(arguments.inputs, settings, bars)
+    with staged(folder) as stage, whole_file(stage / "check.png") as part:
+        figure.savefig(part, format="png", dpi=CHECK_DPI)
+    return "\n".join([*lines, f"written     {folder / 'check.png'}"])
 
 
 def _do_estimate(arguments: argparse.Namespace, bars: _Bars) -> str:

@@ -136,23 +136,23 @@ def draw(frame: Frame, camera: Camera, scene: Scene) -> Image:
     unit = max(image.shape[0] / 720, 0.4)
     thin, thick = max(round(unit), 1), max(round(2 * unit), 1)
     for line in scene.lines:
-        _line(image, camera, line, _LINE_COLOUR, thin, edge=False)
+        draw_line(image, camera, line, _LINE_COLOUR, thin, edge=False)
     states = scene.states.get(frame.index, [])
     for name, (frames, places) in scene.paths.items():
         stop = int(np.searchsorted(frames, frame.index, side="right"))
         if stop > 1:
-            _line(image, camera, places[:stop], scene.colours[name], thick)
+            draw_line(image, camera, places[:stop], scene.colours[name], thick)
     boxes = []
     for state in states:
         outline = state.place + scene.radius * _CIRCLE
         pixels = camera.project(outline, scene.height)
         boxes.append((pixels.min(axis=0), pixels.max(axis=0)))
         colour = scene.colours[state.stone]
-        _line(image, camera, outline, colour, thick if state.seen else thin, scene.height)
+        draw_line(image, camera, outline, colour, thick if state.seen else thin, scene.height)
         if np.isfinite(state.theta):
             tip = np.array([np.cos(state.theta), np.sin(state.theta)])
             spoke = state.place + scene.radius * np.array([[0.4], [1.0]]) * tip
-            _line(image, camera, spoke, colour, thick, scene.height)
+            draw_line(image, camera, spoke, colour, thick, scene.height)
     _labels(image, states, unit, boxes)
     _flashes(image, camera, frame.t, scene, unit, thick)
     return image
@@ -161,19 +161,35 @@ def draw(frame: Frame, camera: Camera, scene: Scene) -> Image:
 # ---------------------------------------------------------------------------- the scene
 
 
+def ice_lines(rings: Sequence[float]) -> list[Array]:
+    """Give the rings and the lines near the house as they should be painted, m.
+
+    Parameters
+    ----------
+    rings : sequence of float
+        Painted radii, m; without any there are no lines either.
+
+    Returns
+    -------
+    list of ndarray, shape (n, 2)
+        Each ring, then tee line, back line, hog line and centre line.
+    """
+    if not len(rings):
+        return []
+    lines = [ring * _CIRCLE for ring in rings]
+    across = np.linspace(-1, 1, 41)[:, None] * [SHEET.half_width_min, 0]
+    lines += [np.add(across, [0, y]) for y in (0.0, -SHEET.back_line, SHEET.hog_line)]
+    along = np.linspace(-SHEET.back_line, SHEET.hog_line, 81)[:, None]
+    return [*lines, along * [0, 1]]
+
+
 def _scene(
     tracks: pd.DataFrame,
     collisions: Sequence[Collision],
     rings: Sequence[float] | None,
     radius: float,
 ) -> Scene:
-    lines: list[Array] = []
-    if rings is not None and len(rings):
-        lines = [ring * _CIRCLE for ring in rings]
-        outer = max(rings)
-        steps = np.linspace(-1, 1, 41)[:, None]
-        lines.append(steps * [SHEET.half_width_min, 0])
-        lines.append(steps * [0, outer])
+    lines = [] if rings is None else ice_lines(rings)
     states: dict[int, list[State]] = {}
     paths = {}
     for name, rows in tracks.sort_values("t").groupby("stone", sort=True):
@@ -210,7 +226,7 @@ def _bgr(colour: str) -> Colour:
 # ---------------------------------------------------------------------------- drawing
 
 
-def _line(
+def draw_line(
     image: Image,
     camera: Camera,
     ice: Array,
@@ -276,7 +292,7 @@ def _flashes(
         if 0 <= t - when < _FLASH:
             growth = 0.5 + 2.5 * (t - when) / _FLASH
             ring = place + growth * scene.radius * _CIRCLE
-            _line(image, camera, ring, _WHITE, thickness, scene.height)
+            draw_line(image, camera, ring, _WHITE, thickness, scene.height)
             lines.append(text)
     for row, text in enumerate(lines):
         _write(image, text, np.array([10, 10 + 25 * row]) * unit, unit)

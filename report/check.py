@@ -1,0 +1,221 @@
+"""The contact sheet of ``curlshot check``, by which to trust the camera and the sightings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import cv2
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from data.sheet import STONE
+from report.overlay import draw_line, ice_lines
+from report.style import BLUE, GREY, ORANGE, SKY, VERMILLION, new_figure, styled
+from vision.camera import Camera
+from vision.clip import Frame, Image
+from vision.ice_map import rectify
+from vision.sighting import Refusal, Sighting
+
+Array = NDArray[np.float64]
+
+COLUMNS = 4
+PICTURE_WIDTH = 640
+"""Width of a frame on the sheet, px."""
+
+AVERAGE_SCALE = 110.0
+"""Pixels per metre of the average ice."""
+
+REACH = 2.2
+"""Half width of the average ice, m."""
+
+_RINGS, _LINES = (255, 255, 0), (0, 255, 255)  # BGR: on no common paint
+_TAKEN, _REFUSED = (80, 255, 80), (60, 60, 255)
+_CIRCLE = np.stack([np.cos(a := np.linspace(0, 2 * np.pi, 61)), np.sin(a)], axis=1)
+
+
+@dataclass(frozen=True)
+class Look:
+    """One frame of the sheet.
+
+    Attributes
+    ----------
+    frame : Frame
+    camera : Camera
+    stones : sequence of Sighting
+        What was taken for a stone.
+    refused : sequence of Refusal
+        What looked like one and was refused, and why.
+    """
+
+    frame: Frame
+    camera: Camera
+    stones: Sequence[Sighting]
+    refused: Sequence[Refusal] = ()
+
+
+def check_figure(
+    looks: Sequence[Look],
+    cameras: pd.DataFrame,
+    rings: Sequence[float],
+    *,
+    title: str = "",
+    radius: float = STONE.radius,
+) -> Figure:
+    """Frames with the model drawn on them, their average from above, and the residuals.
+
+    Parameters
+    ----------
+    looks : sequence of Look
+        The frames to show.
+    cameras : DataFrame
+        ``t``, ``rms_px``, ``found`` and ``sd`` (m, of a point of the 12-ft ring, per axis), one
+        row per frame.
+    rings : sequence of float
+        Painted radii, m; none where there is no house.
+    title : str
+        Heads the sheet.
+    radius : float
+        Radius of the stones, m.
+
+    Returns
+    -------
+    Figure
+        The average is sharp, and the lines lie on the paint, where the camera was followed well.
+    """
+    rows = -(-len(looks) // COLUMNS)
+    reasons = sorted({place.reason for look in looks for place in look.refused})
+    with styled():
+        figure = new_figure(16, 2.45 * rows + 4.6)
+        parts: Any = figure.subfigures(2, 1, height_ratios=(2.45 * rows, 4.6))
+        upper, foot = parts
+        figure.suptitle(title, x=0.01, ha="left", weight="bold", fontsize=12)
+        axes = upper.subplots(rows, COLUMNS, squeeze=False).ravel()
+        for ax, look in zip(axes, looks, strict=False):
+            _show(ax, _drawn(look, rings, radius, reasons))
+            where = "" if look.camera.found else ", carried"
+            ax.set_title(f"frame {look.frame.index}, {look.frame.t:.2f} s{where}", fontsize=8)
+        for ax in axes[len(looks) :]:
+            ax.axis("off")
+        if reasons:
+            key = "; ".join(f"{number} {text}" for number, text in enumerate(reasons, 1))
+            upper.supxlabel(f"stones taken: green; refused: red, since {key}", fontsize=9)
+        left, right = foot.subfigures(1, 2, width_ratios=(1, 2.2))
+        _average(left.subplots(), looks, rings)
+        _residuals(right.subplots(2, 1, sharex=True), cameras)
+    return figure
+
+
+def _drawn(look: Look, rings: Sequence[float], radius: float, reasons: Sequence[str]) -> Image:
+    """Draw the model on a copy of the frame, reduced to the size of the sheet."""
+    image = look.frame.image.copy()
+    thickness = max(round(image.shape[1] / PICTURE_WIDTH), 1)
+    for rank, line in enumerate(ice_lines(rings)):
+        colour = _RINGS if rank < len(rings) else _LINES
+        draw_line(image, look.camera, line, colour, thickness, edge=False)
+    height = STONE.cap_height * radius / STONE.radius
+    for stone in look.stones:
+        outline = np.array([stone.x, stone.y]) + radius * _CIRCLE
+        draw_line(image, look.camera, outline, _TAKEN, 2 * thickness, height)
+    for place in look.refused:
+        outline = np.array([place.x, place.y]) + radius * _CIRCLE
+        draw_line(image, look.camera, outline, _REFUSED, thickness, height)
+        at = look.camera.project(np.array([place.x + radius, place.y]), height)
+        cv2.putText(
+            image, str(reasons.index(place.reason) + 1), (int(at[0]) + 4, int(at[1])),
+            cv2.FONT_HERSHEY_SIMPLEX, 0.5 * thickness, _REFUSED, thickness, cv2.LINE_AA,
+        )  # fmt: skip
+    factor = PICTURE_WIDTH / image.shape[1]
+    if factor >= 1:
+        return image
+    return np.asarray(
+        cv2.resize(image, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA), np.uint8
+    )
+
+
+def _show(ax: Axes, image: Image) -> None:
+    ax.imshow(image[..., ::-1])
+    ax.axis("off")
+
+
+def _average(ax: Axes, looks: Sequence[Look], rings: Sequence[float]) -> None:
+    """Show the median of the frames seen from above: sharp if the camera was followed well."""
+    shape = (round(2 * REACH * AVERAGE_SCALE),) * 2
+    layers = []
+    for look in looks:
+        ice = rectify(
+            look.frame.image, look.camera, (-REACH, REACH, -REACH, REACH), scale=AVERAGE_SCALE
+        )
+        if ice is None:
+            continue
+        layer = np.full((*shape, 3), np.nan, np.float32)
+        top = round((REACH - ice.top) * AVERAGE_SCALE)
+        left = round((ice.left + REACH) * AVERAGE_SCALE)
+        part = np.where(ice.valid[..., None], ice.image, np.nan)
+        part = part[max(-top, 0) : shape[0] - top, max(-left, 0) : shape[1] - left]
+        top, left = max(top, 0), max(left, 0)
+        layer[top : top + part.shape[0], left : left + part.shape[1]] = part
+        layers.append(layer)
+    ax.set_title("median from above: sharp if followed well")
+    if layers:
+        stack = np.stack(layers)
+        shown = np.isfinite(stack).any(0)
+        middle = np.nanmedian(np.where(shown, stack, 0.0), axis=0)
+        span = (-REACH, REACH, -REACH, REACH)
+        ax.imshow(np.clip(middle[..., ::-1], 0, 255).astype(np.uint8), extent=span)
+    for rank, line in enumerate(ice_lines(rings)):
+        ax.plot(*line.T, color=SKY if rank < len(rings) else ORANGE, lw=0.5)
+    ax.set(xlim=(-REACH, REACH), ylim=(-REACH, REACH), aspect="equal")
+    ax.set(xlabel="$x$ (m)", ylabel="$y$ (m)")
+    ax.grid(False)
+
+
+def _residuals(axes: NDArray[np.object_], cameras: pd.DataFrame) -> None:
+    """Plot the edges' residual and the stated error against time, carried frames shaded."""
+    t = cameras["t"].to_numpy(float)
+    step = float(np.median(np.diff(t))) if len(t) > 1 else 0.04
+    carried = cameras["found"].to_numpy() == 0
+    series = (
+        ("rms_px", 1.0, BLUE, "residual of the edges (px)"),
+        ("sd", 1000.0, VERMILLION, "stated error at the\n12-ft ring (mm, one sd)"),
+    )
+    for ax, (column, factor, colour, label) in zip(axes, series, strict=True):
+        value = factor * cameras[column].to_numpy(float)
+        ax.plot(t, value, ".-", color=colour, ms=3, lw=0.8)
+        for start in t[carried]:
+            ax.axvspan(start - step / 2, start + step / 2, color=GREY, alpha=0.25, lw=0)
+        ax.set_ylabel(label)
+        top = float(np.nanmax(value)) if np.isfinite(value).any() else 1.0
+        ax.set_ylim(0, max(1.2 * top, 0.1))
+    axes[0].set_title(
+        "shaded: carried without rings in view" if carried.any() else "rings seen in every frame"
+    )
+    axes[1].set_xlabel("time (s)")
+
+
+def frames_to_show(cameras: pd.DataFrame, count: int = 3 * COLUMNS) -> list[int]:
+    """Choose frames spread over the clip, the one with the largest residual among them.
+
+    Parameters
+    ----------
+    cameras : DataFrame
+        With ``frame`` and ``rms_px``.
+    count : int
+        How many, at most.
+
+    Returns
+    -------
+    list of int
+        Frame numbers in order.
+    """
+    at = np.unique(np.round(np.linspace(0, len(cameras) - 1, count)).astype(int))
+    residual = np.nan_to_num(cameras["rms_px"].to_numpy(float), nan=0.0)
+    worst = int(residual.argmax())
+    if worst not in at:
+        nearest = 1 + int(np.abs(at[1:-1] - worst).argmin()) if len(at) > 2 else 0
+        at[nearest] = worst
+    return [int(frame) for frame in cameras["frame"].iloc[np.sort(at)]]

@@ -1,0 +1,104 @@
+from __future__ import annotations
+
+import cv2
+import numpy as np
+import pandas as pd
+import pytest
+
+from pipeline import main, sample_clip
+from report.check import Look, check_figure, frames_to_show
+from vision.camera import Camera
+from vision.clip import Frame
+from vision.sighting import Refusal
+
+SIZE = (320, 240)
+
+
+def camera(frame: int, **kwargs) -> Camera:
+    homography = np.array([[50.0, 0, 160], [0, -50.0, 120], [0, 0, 1]])
+    return Camera(frame, frame / 25, homography, SIZE, **kwargs)
+
+
+def house_picture() -> np.ndarray:
+    image = np.full((SIZE[1], SIZE[0], 3), 230, np.uint8)
+    cv2.circle(image, (160, 120), round(50 * 1.829), (160, 60, 20), -1, cv2.LINE_AA)
+    return image
+
+
+def table(count: int, worst: int) -> pd.DataFrame:
+    rms = np.full(count, 0.2)
+    rms[worst] = 0.9
+    return pd.DataFrame(
+        {"frame": np.arange(count) + 5, "t": np.arange(count) / 25, "rms_px": rms,
+         "found": (np.arange(count) % 7 != 3).astype(int), "sd": 0.002}
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("worst", [0, 17, 59])
+def test_the_worst_frame_is_shown_and_no_frame_twice(worst: int) -> None:
+    shown = frames_to_show(table(60, worst))
+    assert worst + 5 in shown
+    assert shown == sorted(set(shown))
+    assert len(shown) == 12
+    assert {5, 64} <= {*shown}
+
+
+@pytest.mark.parametrize("count", [1, 2, 5])
+def test_a_short_clip_is_shown_whole(count: int) -> None:
+    assert frames_to_show(table(count, count - 1)) == list(range(5, 5 + count))
+
+
+def drawn_frame(figure, number: int) -> np.ndarray:
+    frames = [ax for part in figure.subfigs for ax in part.axes if ax.images]
+    return np.asarray(frames[number].images[0].get_array())
+
+
+def test_the_model_is_drawn_where_the_camera_puts_it() -> None:
+    look = Look(Frame(5, 0.2, house_picture()), camera(5), (), [Refusal(1.0, 0.5, 0.3, "a broom")])
+    figure = check_figure([look], table(1, 0), (1.829, 1.2, 0.6))
+    shown = drawn_frame(figure, 0)[..., ::-1].astype(int)
+    slant = round(50 * 1.2 / np.sqrt(2))
+    ring = shown[120 + slant, 160 + slant]
+    assert ring[1] > 150, "the paint has 60 of green, the ring drawn on it 255"
+    assert np.abs(shown[120 + 33, 160 + 33] - (160, 60, 20)).max() < 5, "nothing between rings"
+    refused = shown[120 - 25 - 15 : 120 - 25 + 15, 210 - 15 : 210 + 15]
+    assert ((refused[..., 2] > 150) & (refused[..., 0] < 120)).any()
+    words = " ".join(part.get_supxlabel() for part in figure.subfigs)
+    assert "a broom" in words
+
+
+def test_the_average_is_sharp_only_if_the_camera_was_followed() -> None:
+    def sharpness(cameras: list[Camera]) -> float:
+        looks = []
+        for k in range(6):
+            moved = np.roll(house_picture(), 4 * k, axis=1)
+            looks.append(Look(Frame(k, k / 25, moved), cameras[k], ()))
+        average = next(
+            ax for ax in check_figure(looks, table(6, 0), (1.829,)).subfigs[1].subfigs[0].axes
+        )
+        picture = np.asarray(average.images[0].get_array()).astype(float)
+        return float(np.abs(np.diff(picture[picture.shape[0] // 2], axis=0)).max())
+
+    shift = np.eye(3)
+    followed = []
+    for k in range(6):
+        shift[0, 2] = 4 * k
+        c = camera(k)
+        followed.append(Camera(k, c.t, shift @ c.homography, SIZE))
+    assert sharpness(followed) > 1.3 * sharpness([camera(k) for k in range(6)])
+
+
+def test_the_command_writes_the_sheet_whole(tmp_path, capsys) -> None:
+    out = tmp_path / "out"
+    assert main(["check", str(sample_clip()), "--frames", "0:30", "-o", str(out), "-q"]) == 0
+    said = capsys.readouterr().out
+    assert "carried in 0" in said
+    assert [item.name for item in out.iterdir()] == ["check.png"]
+    assert cv2.imread(str(out / "check.png")).shape[1] > 1500
+
+
+def test_a_table_of_tracks_is_no_clip(tmp_path, capsys) -> None:
+    path = tmp_path / "tracks.csv"
+    path.write_text("t,x,y\n0,0,0\n")
+    assert main(["check", str(path), "-o", str(tmp_path / "out")]) == 2
+    assert len(capsys.readouterr().err.strip().splitlines()) == 1
