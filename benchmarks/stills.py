@@ -34,6 +34,8 @@ Image = NDArray[np.uint8]
 
 IOU = 0.8
 HOUSE_CLASS = 3
+FOUND, REFUSED, MEDIAN, LARGEST, FINDING = 0.95, 0.98, 8.0, 20.0, 150.0
+"""Bars: shares of stills, errors in mm, CPU time in ms."""
 
 
 @dataclass(frozen=True)
@@ -90,13 +92,15 @@ def stills(shared: Path) -> Iterator[Still]:
 
 
 def against_hand(camera: Camera, hand: dict[str, Any]) -> Array:
-    """Errors, m, of ring points mapped to the ice, against the camera measured by hand."""
+    """Errors, m, of what the picture shows of the rings, against the camera measured by hand."""
     truth = Camera(
         0, 0.0, np.array(hand["homography"]), tuple(hand["size"]), hand["k1"], hand["k2"]
     )
     radii = (HOUSE.twelve_foot, HOUSE.eight_foot, HOUSE.four_foot)
     places = np.concatenate([np.zeros((1, 2)), *(circle(r, 8) for r in radii)])
-    return np.asarray(np.linalg.norm(camera.ice(truth.project(places)) - places, axis=1))
+    pixels = truth.project(places)
+    shown = ((pixels >= 0) & (pixels <= np.array(truth.size) - 1)).all(1)
+    return np.asarray(np.linalg.norm(camera.ice(pixels) - places, axis=1)[shown])
 
 
 def marked(image: Image, fit: HouseFit | None, text: str) -> Image:
@@ -121,8 +125,9 @@ def write_sheet(tiles: list[Image], path: Path, across: int = 4) -> None:
     cv2.imwrite(str(path), np.vstack(rows))
 
 
-def row(what: str, value: str) -> None:
-    print(f"{what:<74} {value}", flush=True)
+def row(what: str, value: str, met: bool = True) -> None:
+    """Print one figure, with a ! where it misses its bar."""
+    print(f"{what:<74} {value}{'' if met else ' !'}", flush=True)
 
 
 def score_stills(shared: Path, sheet: Path | None) -> None:
@@ -130,13 +135,15 @@ def score_stills(shared: Path, sheet: Path | None) -> None:
     hand = {f["file"].removesuffix(".jpg"): f for f in known["frames"]}
     refuse = {f["file"].removesuffix(".jpg") for f in known["negatives"]}
     labelled, whole, unlabelled, oblique = [], [], [], []
-    errors: list[Array] = []
+    errors: dict[str, Array] = {}
+    elsewhere = 0
     refused, tiles, seconds = 0, [], []
     for still in stills(shared):
         seconds.append(still.seconds)
         group = "labelled" if still.overhead and len(still.boxes) else "other"
         if group == "labelled":
             labelled.append(still.found)
+            elsewhere += still.fit is not None and not still.found
             if still.whole:
                 whole.append(still.found)
         elif not len(still.boxes):
@@ -145,7 +152,7 @@ def score_stills(shared: Path, sheet: Path | None) -> None:
             oblique.append(still.fit is not None)
         refused += still.name in refuse and still.fit is None
         if still.name in hand and still.fit is not None:
-            errors.append(against_hand(still.fit.camera, hand[still.name]))
+            errors[still.name] = against_hand(still.fit.camera, hand[still.name])
         if (group == "labelled" and not still.found) or (group == "other" and still.fit):
             kind = "missed" if group == "labelled" else "found, no label from overhead"
             tiles.append(marked(still.image, still.fit, f"{still.name} {kind}"))
@@ -153,14 +160,19 @@ def score_stills(shared: Path, sheet: Path | None) -> None:
     row("stills: any labelled house from overhead", f"{sum(labelled)} of {len(labelled)}")
     row("stills: house found in frames without a label", f"{sum(unlabelled)} of {len(unlabelled)}")
     row("stills: house found in frames not from overhead", f"{sum(oblique)} of {len(oblique)}")
-    row("stills: frames to refuse that are refused", f"{refused} of {len(refuse)}")
-    row("stills.json: found", f"{len(errors)} of {len(hand)}")
-    all_errors = np.concatenate(errors) * 1e3
-    worst = max(float(np.median(e)) for e in errors) * 1e3
-    row("stills.json: ring points against the hand-measured camera, median", _mm(all_errors, 50))
-    row("stills.json: the same, 95 % and largest", f"{_mm(all_errors, 95)}, {_mm(all_errors, 100)}")
-    row("stills.json: the same, median of the worst frame", f"{worst:.1f} mm")
-    row("finding: CPU time a frame at 1080p, mean", f"{1e3 * np.mean(seconds):.0f} ms")
+    row("stills: another house or place taken for the labelled one", str(elsewhere), not elsewhere)
+    row("stills: frames to refuse that are refused", f"{refused} of {len(refuse)}",
+        refused >= REFUSED * len(refuse))  # fmt: skip
+    row("stills.json: found", f"{len(errors)} of {len(hand)}", len(errors) >= FOUND * len(hand))
+    pooled = 1e3 * np.concatenate(list(errors.values()))
+    middle, most, largest = np.percentile(pooled, [50, 95, 100])
+    worst = max(errors, key=lambda name: float(errors[name].max()))
+    row("stills.json: ring points against the hand-measured camera, median",
+        f"{middle:.1f} mm", middle <= MEDIAN)  # fmt: skip
+    row("stills.json: the same, 95 %", f"{most:.1f} mm")
+    row(f"stills.json: the same, largest ({worst})", f"{largest:.1f} mm", largest <= LARGEST)
+    spent = 1e3 * float(np.mean(seconds))
+    row("finding: CPU time a frame at 1080p, mean", f"{spent:.0f} ms", spent <= FINDING)
     if sheet is not None and tiles:
         write_sheet(tiles, sheet)
 
@@ -171,20 +183,18 @@ def score(shared: Path, sheet: Path | None = None) -> None:
     score_clips(shared)
 
 
-def _mm(values: Array, percentile: float) -> str:
-    return f"{np.percentile(values, percentile):.1f} mm"
-
-
 def score_clips(shared: Path) -> None:
     radii = (HOUSE.twelve_foot, HOUSE.eight_foot, HOUSE.four_foot)
     rings = np.concatenate([np.zeros((1, 2)), *(circle(r, 16) for r in radii)])
     guards = np.array([[x, y] for x in (-1.0, 0.0, 1.0) for y in (3.0, 4.0, 5.0)])
     for truth_path in sorted((shared / "clips").glob("semireal_*.truth.json")):
         truth = json.loads(truth_path.read_text())
-        clip = open_clip([truth_path.with_name(truth_path.name.replace(".truth.json", ".mp4"))])
+        film = truth_path.with_name(truth_path.name.replace(".truth.json", ".mp4"))
         start = time.process_time()
-        track = follow_house(clip)
-        spent = (time.process_time() - start) / clip.frames
+        frames = sum(1 for _ in open_clip([film]))
+        decoding = time.process_time() - start
+        track = follow_house(open_clip([film]))
+        spent = (time.process_time() - start - 2 * decoding) / frames
         house: list[float] = []
         guard: list[float] = []
         for camera in track.cameras:
@@ -200,14 +210,15 @@ def score_clips(shared: Path) -> None:
         name = truth["name"]
         position = track.cameras[0].position
         assert position is not None
-        row(f"{name}: frames with a camera", f"{len(track.cameras)} of {clip.frames}")
+        row(f"{name}: frames with a camera", f"{len(track.cameras)} of {frames}")
         row(f"{name}: seen ring points, RMS of a frame, median and worst",
             f"{np.median(house):.1f} and {max(house):.1f} mm")  # fmt: skip
         row(f"{name}: guards' places, RMS of a frame, median and worst",
             f"{np.median(guard):.1f} and {max(guard):.1f} mm")  # fmt: skip
         row(f"{name}: height of the camera, true and found",
             f"{place[2]:.2f}, {position[2]:.2f} ± {track.position_sd[2]:.2f} m")  # fmt: skip
-        row(f"{name}: CPU time a frame, decoding included", f"{1e3 * spent:.1f} ms")
+        row(f"{name}: CPU time a frame, the find included, beyond decoding of"
+            f" {1e3 * decoding / frames:.1f} ms", f"{1e3 * spent:.1f} ms")  # fmt: skip
 
 
 def main() -> None:
