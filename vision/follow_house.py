@@ -18,7 +18,7 @@ from data.progress import Progress, no_progress
 from vision.adjust import solve
 from vision.clip import Clip, Frame, Image
 from vision.flow import carried, similarity
-from vision.house import find_house, judge
+from vision.house import HouseFit, find_house, judge
 from vision.joint import HouseTrack, Seen, fit_clip
 from vision.marks import measure
 from vision.pose import (
@@ -58,7 +58,9 @@ class _Piece:
         return sum(s.found for s in self.seen)
 
 
-def follow_house(clip: Clip, progress: Progress = no_progress) -> HouseTrack:
+def follow_house(
+    clip: Clip, progress: Progress = no_progress, first: HouseFit | None = None
+) -> HouseTrack:
     """Follow the house through a clip.
 
     Parameters
@@ -66,27 +68,31 @@ def follow_house(clip: Clip, progress: Progress = no_progress) -> HouseTrack:
     clip : Clip
         Read once, in order; a single picture is a clip of one frame.
     progress : Progress
+    first : HouseFit, optional
+        The house in the frame of its camera: the piece that shows it is used. Else it is looked
+        for, and the longest piece is used.
 
     Raises
     ------
     SceneError
         No house can be made out in any frame.
     """
-    pieces = _read(clip, progress)
+    pieces = _read(clip, progress, first)
     if not pieces:
         raise SceneError(
             f"{clip.files[0]}: no house in view; for another scene with a still camera use"
             " --stick X1,Y1,X2,Y2,METRES"
         )
-    best = max(pieces, key=lambda p: p.length)
+    best = max(pieces, key=lambda p: p.length) if first is None else pieces[0]
     progress("camera", 0, 1)
     track = fit_clip(best.seen, best.rig, best.prior, clip.size)
-    track = replace(track, warnings=(*_left_out(best, len(pieces)), *track.warnings))
+    which = "the longest" if first is None else "the one given"
+    track = replace(track, warnings=(*_left_out(best, len(pieces), which), *track.warnings))
     progress("camera", 1, 1)
     return track
 
 
-def _read(clip: Clip, progress: Progress) -> list[_Piece]:
+def _read(clip: Clip, progress: Progress, given: HouseFit | None) -> list[_Piece]:
     pieces: list[_Piece] = []
     piece: _Piece | None = None
     waiting: deque[Frame] = deque(maxlen=LOOK_BACK)
@@ -102,23 +108,25 @@ def _read(clip: Clip, progress: Progress) -> list[_Piece]:
             else:
                 piece.seen.append(seen)
         if piece is None:
-            if not waiting or count - last_try >= FIND_EVERY or clip.expected == count + 1:
+            if given is not None and not pieces:
+                fit = given if frame.index == given.camera.frame else None
+            elif not waiting or count - last_try >= FIND_EVERY or clip.expected == count + 1:
                 last_try = count
-                piece = _start(frame, waiting)
-                if piece is not None:
-                    pieces.append(piece)
-                    waiting.clear()
+                fit = find_house(frame.image)
+            else:
+                fit = None
+            if fit is not None:
+                piece = _start(fit, frame, waiting)
+                pieces.append(piece)
+                waiting.clear()
             if piece is None:
                 waiting.append(frame)
         before = frame.image
     return [p for p in pieces if p.length]
 
 
-def _start(frame: Frame, waiting: deque[Frame]) -> _Piece | None:
-    """Find the house, then follow it back through the frames before."""
-    fit = find_house(frame.image)
-    if fit is None:
-        return None
+def _start(fit: HouseFit, frame: Frame, waiting: deque[Frame]) -> _Piece:
+    """From the house in one frame, follow it back through the frames before."""
     piece = _Piece(fit.rig, OVERHEAD if fit.overhead else ANYWHERE)
     first = Seen(frame.index, frame.t, fit.view, fit.evidence.marks, True)
     piece.seen.append(first)
@@ -197,11 +205,11 @@ def _settle(piece: _Piece, frame: Frame, view: View) -> Seen | None:
     return Seen(frame.index, frame.t, view, marks, True)
 
 
-def _left_out(piece: _Piece, pieces: int) -> tuple[str, ...]:
+def _left_out(piece: _Piece, pieces: int, which: str) -> tuple[str, ...]:
     if pieces == 1:
         return ()
     first, last = piece.seen[0].index, piece.seen[-1].index
     return (
-        f"the house is shown in {pieces} separate pieces; only the longest is used, frames"
+        f"the house is shown in {pieces} separate pieces; only {which} is used, frames"
         f" {first} to {last}",
     )

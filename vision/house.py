@@ -6,6 +6,7 @@ of the circles they explain; the best is refined at full resolution, with the li
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import cv2
@@ -22,6 +23,7 @@ from vision.pose import (
     ANYWHERE,
     DOWN,
     OVERHEAD,
+    Prior,
     View,
     aim,
     camera,
@@ -90,12 +92,42 @@ def find_house(image: Image, *, frame: int = 0, t: float = 0.0) -> HouseFit | No
         The most complete house; None where no house can be made out.
     """
     factor = min(WORK_WIDTH / image.shape[1], 1.0)
-    small = np.asarray(
-        cv2.resize(image, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA), np.uint8
-    )
+    small = _reduced(image)
+    return _best(image, small, [_enlarged(g, 1 / factor) for g in _guesses(small)], frame, t)
+
+
+def fit_house(
+    image: Image, hypotheses: Sequence[Guess], *, frame: int = 0, t: float = 0.0
+) -> HouseFit | None:
+    """Fit a house to a picture from hypotheses of where it is, in px of that picture.
+
+    Returns
+    -------
+    HouseFit or None
+        From the hypothesis that explains most; None where the edges bear out none of them.
+    """
+    return _best(image, _reduced(image), hypotheses, frame, t)
+
+
+def _reduced(image: Image) -> Image:
+    """Make the picture in which hypotheses are fitted."""
+    factor = min(WORK_WIDTH / image.shape[1], 1.0)
+    small = cv2.resize(image, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA)
+    return np.asarray(small, np.uint8)
+
+
+def _enlarged(guess: Guess, factor: float) -> Guess:
+    """Give the same hypothesis in a picture `factor` times as large."""
+    return replace(guess, centre=(guess.centre + 0.5) * factor - 0.5, scale=guess.scale * factor)
+
+
+def _best(
+    image: Image, small: Image, hypotheses: Sequence[Guess], frame: int, t: float
+) -> HouseFit | None:
+    factor = min(WORK_WIDTH / image.shape[1], 1.0)
     fits: list[_Fitted] = []
-    for guess in _guesses(small):
-        fitted = _fit(small, guess)
+    for guess in hypotheses:
+        fitted = _fit(small, _enlarged(guess, factor))
         if fitted is not None:
             fits.append(fitted)
             if fitted.score > ENOUGH:
@@ -117,12 +149,9 @@ class _Fitted:
 
 
 def _fit(image: Image, guess: Guess) -> _Fitted | None:
-    """Fit a camera over the tee or, if circles look foreshortened, one anywhere."""
+    """Fit a camera to the circles of a small picture, starting from a hypothesis."""
     size = (image.shape[1], image.shape[0])
-    down = guess.foreshortening
-    prior = OVERHEAD if down == 1 else ANYWHERE
-    position = prior.mean[2] * np.array([0.0, -np.sqrt(1 - down**2), down])
-    view, rig = _aimed(guess, position, size), start_rig(prior, position)
+    view, rig, prior = start(guess, size)
     thickness = guess.scale * (HOUSE.twelve_foot - HOUSE.eight_foot)
     rms = np.nan
     for share in (0.3, 0.2, 0.15):
@@ -142,10 +171,15 @@ def _guesses(image: Image) -> list[Guess]:
     """Look for rings in a picture of half the size."""
     factor = min(GUESS_WIDTH / image.shape[1], 1.0)
     small = cv2.resize(image, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA)
-    return [
-        replace(g, centre=(g.centre + 0.5) / factor - 0.5, scale=g.scale / factor)
-        for g in guesses(np.asarray(small, np.uint8))
-    ]
+    return [_enlarged(guess, 1 / factor) for guess in guesses(np.asarray(small, np.uint8))]
+
+
+def start(guess: Guess, size: tuple[int, int]) -> tuple[View, Array, Prior]:
+    """Give the camera over the tee or, if circles look foreshortened, one anywhere: view, rig."""
+    down = guess.foreshortening
+    prior = OVERHEAD if down == 1 else ANYWHERE
+    position = prior.mean[2] * np.array([0.0, -np.sqrt(1 - down**2), down])
+    return _aimed(guess, position, size), start_rig(prior, position), prior
 
 
 def _aimed(guess: Guess, position: Array, size: tuple[int, int]) -> View:
