@@ -28,6 +28,8 @@ FULL_STEP = 400.0
 SURE_STEP = 150.0
 """Step of both sides together that is proof of the direction even if the cross is faint."""
 
+QUARTER = np.pi / 2
+
 RINGS = (HOUSE.four_foot, HOUSE.eight_foot, HOUSE.twelve_foot)
 
 
@@ -35,6 +37,8 @@ def upright(image: Image, view: View, rig: Array) -> tuple[View, Array]:
     """Turn the ice's axes onto the centre and tee lines, if these can be seen.
 
     Of several crosses that stand out, the sheet's sides tell the true one: they run along it.
+    They also tell the centre line from the tee line where the camera stands beside the sheet;
+    y then points to the end of the sheet that is higher in the picture.
     """
     coarse = np.radians(np.arange(-45.0, 45.0, 0.25))
     score = _cross_score(image, view, rig, coarse)
@@ -44,7 +48,7 @@ def upright(image: Image, view: View, rig: Array) -> tuple[View, Array]:
     best, best_worth, sure = 0.0, -np.inf, False
     for top in _peaks(score, CANDIDATES, apart=6):
         angle = float(coarse[top])
-        strength = sum(step for _, _, step in _side_steps(image, *turned(view, rig, angle)))
+        strength = _strength(image, *turned(view, rig, angle))
         worth = (score[top] - noise) / (score.max() - noise) + strength / FULL_STEP
         if worth > best_worth:
             best, best_worth = angle, worth
@@ -55,7 +59,24 @@ def upright(image: Image, view: View, rig: Array) -> tuple[View, Array]:
     # The middle of the plateau: a line is wider than a step of the angle.
     height = _cross_score(image, view, rig, fine)
     weight = np.clip(height - 0.8 * height.max(), 0, None)
-    return turned(view, rig, float((weight * fine).sum() / weight.sum()))
+    level = turned(view, rig, float((weight * fine).sum() / weight.sum()))
+    sideways = _upwards(image, *turned(*level, QUARTER))
+    if _strength(image, *sideways) > _strength(image, *level) + SURE_STEP:
+        return sideways
+    return level
+
+
+def _strength(image: Image, view: View, rig: Array) -> float:
+    """Add up the steps at both sides of the sheet, grey levels."""
+    return sum(step for _, _, step in _side_steps(image, view, rig))
+
+
+def _upwards(image: Image, view: View, rig: Array) -> tuple[View, Array]:
+    """Turn the ice's axes by half a turn if y points down in the picture."""
+    ends = project(
+        np.array([[0.0, -1.0], [0.0, 1.0]]), view.vector, rig, (image.shape[1], image.shape[0])
+    )
+    return turned(view, rig, np.pi) if ends[1, 1] > ends[0, 1] else (view, rig)
 
 
 def _peaks(score: Array, count: int, apart: int) -> list[int]:

@@ -269,9 +269,10 @@ def _ridges(line: int, seen: _Normals, profile: Array, group: int) -> Marks | No
     around = top[:, None] + np.arange(-3, 4)
     height = near[np.arange(count), top]
     weight = np.clip(near[np.arange(count)[:, None], around] - 0.4 * height[:, None], 0, None)
-    index = (weight * (around - 6)).sum(1) / weight.sum(1)
+    total = weight.sum(1)
+    index = (weight * (around - 6)).sum(1) / np.where(total > 0, total, 1.0)
     offset = STEP * (path[best] + index - (m - 1) / 2)
-    good = height > 0.4 * strength[best]
+    good = (height > 0.4 * strength[best]) & (total > 0)
     middle = rows[:, group // 2]
     picked = _Normals(seen.along[middle], seen.point[middle], seen.normal[middle])
     return _marks(line, picked, offset, good, LINE_SD) if good.sum() >= 3 else None

@@ -46,3 +46,12 @@ def test_sides_are_found_where_they_are() -> None:
     assert found[SIDE_R] == pytest.approx(2.36, abs=0.03)
     blank = np.full((SIZE[1], SIZE[0], 3), 220, np.uint8)
     np.testing.assert_array_equal(sides(blank, view, rig), rig)
+
+
+@pytest.mark.parametrize("turn", [1.35, -1.35, np.pi / 2 + 0.1])
+def test_the_sheets_sides_tell_centre_line_from_tee_line(turn: float) -> None:
+    view, rig = turned(*level(), turn)
+    found, _ = upright(picture("teal-red"), view, rig)
+    # What matters is the axis: which end is up, the picture says.
+    assert abs(np.sin(found.vector[2])) < np.sin(np.radians(0.4))
+    assert np.cos(found.vector[2]) > 0
