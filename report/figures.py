@@ -271,7 +271,7 @@ def plan_figure(
         figure = new_figure(WIDTH, scale * (high[1] - low[1]) + 0.85 + 0.2 * rows_below)
         ax = figure.subplots()
         if house is not None:
-            _draw_house(ax, house, low, high)
+            draw_house(ax, house, low, high)
         for model, table in simulations.items():
             for stone in moved:
                 path = _rows(table, stone)
@@ -550,7 +550,8 @@ def _extent(
     return low - margin, high + margin
 
 
-def _draw_house(ax: Axes, house: House, low: Array, high: Array) -> None:
+def draw_house(ax: Axes, house: House, low: Array, high: Array) -> None:
+    """Draw rings and lines where they lie between two corners, m."""
     radii = (house.twelve_foot, house.eight_foot, house.four_foot, house.button)
     for ring, fill in zip(radii, RING_FILLS, strict=True):
         ax.add_patch(Circle((0, 0), ring, facecolor=fill, edgecolor="#b8c4d0", lw=0.6, zorder=0))
