@@ -68,6 +68,10 @@ class Settings:
         Units of tables.
     tab : str, optional
         Which tab of a Tracker project with several.
+    names : mapping
+        Names of stones to names of tracks in tables; empty for all tracks by their own names.
+    angles : mapping
+        Tables of the angles of stones, by stone.
     overlay : bool
         Whether the annotated clip is written.
     """
@@ -80,6 +84,8 @@ class Settings:
     length_unit: str = "m"
     angle_unit: str | None = None
     tab: str | None = None
+    names: Mapping[str, str] = field(default_factory=dict)
+    angles: Mapping[str, Path] = field(default_factory=dict)
     overlay: bool = True
 
 
@@ -211,6 +217,8 @@ def _import_tables(files: tuple[Path, ...], settings: Settings) -> Measured:
         angle_unit=settings.angle_unit,
         fps=settings.fps,
         tab=settings.tab,
+        names=settings.names,
+        angles=settings.angles,
     )
     sightings = table.sightings
     house = HOUSE if settings.radius == STONE.radius else None
@@ -769,6 +777,22 @@ def _table_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--angle-unit", choices=("rad", "deg"), help="of tables")
     parser.add_argument("--tab", metavar="NAME", help="of a Tracker project with several tabs")
+    parser.add_argument(
+        "--names",
+        type=_pair,
+        action="append",
+        default=[],
+        metavar="STONE=TRACK",
+        help='which tracks are stones, e.g. --names A="mass A" --names B="mass B" (all)',
+    )
+    parser.add_argument(
+        "--angles",
+        type=_pair,
+        action="append",
+        default=[],
+        metavar="STONE=FILE",
+        help="how a stone is turned: an export of a point of its edge about its centre",
+    )
 
 
 def _positive(text: str) -> float:
@@ -806,6 +830,21 @@ def _mass(text: str) -> tuple[str, float]:
     return name, _positive(value)
 
 
+def _pair(text: str) -> tuple[str, str]:
+    name, _, value = text.partition("=")
+    if not name or not value:
+        raise argparse.ArgumentTypeError(f"{text!r} is not STONE=…, e.g. A=a.txt")
+    return name, value
+
+
+def _by_stone(option: str, pairs: Sequence[tuple[str, str]]) -> dict[str, str]:
+    stones = [stone for stone, _ in pairs]
+    doubled = [stone for stone in stones if stones.count(stone) > 1]
+    if doubled:
+        raise InputError(f"{option}: {doubled[0]} is given twice")
+    return dict(pairs)
+
+
 def _settings(arguments: argparse.Namespace) -> Settings:
     known = vars(arguments)
     return Settings(
@@ -817,6 +856,8 @@ def _settings(arguments: argparse.Namespace) -> Settings:
         length_unit=known.get("length_unit", "m"),
         angle_unit=known.get("angle_unit"),
         tab=known.get("tab"),
+        names=_by_stone("--names", known.get("names", [])),
+        angles={s: Path(p) for s, p in _by_stone("--angles", known.get("angles", [])).items()},
         overlay=not known.get("no_overlay", False),
     )
 

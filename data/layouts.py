@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -16,20 +16,23 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from data.delimited import TextTable, plain_decimals, read_text_table
+from data.columns import (
+    ANGLE_UNITS,
+    LENGTH_UNITS,
+    TIME_NAMES,
+    clock_column,
+    plain_name,
+    refuse_disorder,
+    times_of,
+    values_of,
+    written_unit,
+)
+from data.delimited import TextTable, read_text_table
 from data.errors import InputError
-from data.tracks import LATEST, stone_name
+from data.tracks import stone_name
 
 Array = NDArray[np.float64]
 
-LENGTH_UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
-"""Metres in one of each."""
-
-ANGLE_UNITS = {"rad": 1.0, "deg": np.pi / 180}
-"""Radians in one of each."""
-
-_TIME = {"t", "time"}
-_TIME_UNITS = {"s": 1.0, "sec": 1.0, "ms": 0.001}
 _CENTRE = {"c", "cm", "com", "centre", "center", "pos", "position"}
 _ANGLE = {"ang", "angle", "theta"}
 _DERIVED = {"v", "a", "p", "pixel", "px", "vel", "velocity", "acc", "acceleration", "sd"}
@@ -94,7 +97,7 @@ def read_layout(path: Path, fps: float | None) -> TrackFile:
         raise InputError(f"{path}: a header without rows of data")
     if table.width < 2:
         raise InputError(f"{path}: only one column; needs t, x and y")
-    names = None if table.names is None else [_plain(name) for name in table.names]
+    names = None if table.names is None else [plain_name(name) for name in table.names]
     if names is None:
         file = _without_header(table, fps)
     elif "stone" in names:
@@ -103,33 +106,15 @@ def read_layout(path: Path, fps: float | None) -> TrackFile:
         file = _wide(table, names, fps)
     file.warnings[:0] = table.warnings
     if table.names is not None and names is not None:
-        file.length_unit = _unit(table.names, names, ("x", "y"), LENGTH_UNITS)
-        written = _unit(table.names, names, tuple(_ANGLE), ANGLE_UNITS)
+        file.length_unit = written_unit(table.names, names, ("x", "y"), LENGTH_UNITS)
+        written = written_unit(table.names, names, tuple(_ANGLE), ANGLE_UNITS)
         file.angle_unit = written or file.angle_unit
     return file
 
 
-def _plain(name: str) -> str:
-    """Name of a column without unit, TeX and case: ``v_{x} (m/s)`` becomes ``vx``."""
-    bare = re.sub(r"\(.*?\)|\[.*?\]|°", "", name[:100])
-    return bare.replace("_{", "").replace("}", "").strip(" \"'").casefold()
-
-
-def _unit(
-    written: Sequence[str], plain: Sequence[str], wanted: Sequence[str], units: dict[str, float]
-) -> str | None:
-    """Find the unit in brackets behind one of the wanted columns."""
-    for full, name in zip(written, plain, strict=True):
-        bracket = re.search(r"[(\[]\s*([^)\]]*?)\s*[)\]]", full[:100])
-        words = set(re.split(r"[_ .\d]+", name))
-        if bracket and not words.isdisjoint(wanted) and bracket.group(1) in units:
-            return bracket.group(1)
-    return None
-
-
 def _is_header(cells: Sequence[str]) -> bool:
-    names = [_plain(cell) for cell in cells]
-    return names[0] in _TIME or ("x" in names and "y" in names) or bool(_pairs(names))
+    names = [plain_name(cell) for cell in cells]
+    return names[0] in TIME_NAMES or ("x" in names and "y" in names) or bool(_pairs(names))
 
 
 def _pairs(names: Sequence[str]) -> dict[str, tuple[int, int]]:
@@ -164,11 +149,11 @@ def _wide(table: TextTable, names: Sequence[str], fps: float | None) -> TrackFil
         raise InputError(
             f"{table.path}: two stones with one name, {doubled[0]}; rename one in the line of names"
         )
-    clock = _clock_column(table, names, fps)
+    clock = clock_column(table, names, fps)
     columns = {clock} | {k for p in places for k in (p.x, p.y, p.theta, p.frame)}
-    values = _values(table, columns)
-    times, decimals, warnings = _times(table, values, clock, fps)
-    others = [k for k, name in enumerate(names) if name in _TIME and k != clock]
+    values = values_of(table, columns)
+    times, decimals, warnings = times_of(table, values, clock, fps)
+    others = [k for k, name in enumerate(names) if name in TIME_NAMES and k != clock]
     if any(not np.array_equal(table.numbers([k])[:, 0], values[clock or 0]) for k in others):
         raise InputError(f"{table.path}: two columns of times that differ; one file per stone")
     unread = [stem for stem, (x, _) in _pairs(names).items() if x not in columns]
@@ -247,12 +232,6 @@ def _angle_of(name: str) -> str | None:
     return None
 
 
-def _values(table: TextTable, columns: Iterable[int | None]) -> dict[int, Array]:
-    """Numbers of some columns, by column; read at once, for one decimal sign."""
-    wanted = sorted(column for column in columns if column is not None)
-    return dict(zip(wanted, table.numbers(wanted).T, strict=True))
-
-
 def _side_by_side(
     table: TextTable,
     values: dict[int, Array],
@@ -261,7 +240,7 @@ def _side_by_side(
     decimals: int | None,
     warnings: list[str],
 ) -> TrackFile:
-    _refuse_disorder(table, times)
+    refuse_disorder(table, times)
     parts = []
     for place in places:
         columns = {"x": place.x, "y": place.y, "theta": place.theta, "frame": place.frame}
@@ -284,22 +263,6 @@ def _side_by_side(
     return TrackFile(tracks, decimals, warnings=warnings)
 
 
-def _refuse_disorder(table: TextTable, times: Array) -> None:
-    if not np.isfinite(times).all():
-        row = int(np.flatnonzero(~np.isfinite(times))[0])
-        raise InputError(f"{table.path}: line {table.line_numbers[row]}: no time")
-    if np.abs(times).max() > LATEST:
-        raise InputError(f"{table.path}: times up to {np.abs(times).max():g} s make no sense")
-    steps = np.diff(times)
-    if (steps <= 0).any():
-        row = int(np.flatnonzero(steps <= 0)[0])
-        how = "goes back" if steps[row] < 0 else "stands still"
-        raise InputError(
-            f"{table.path}: line {table.line_numbers[row + 1]}: time {how} (from {times[row]:g} s"
-            f" to {times[row + 1]:g} s); one row per time, please"
-        )
-
-
 def _about_origin(part: pd.DataFrame) -> bool:
     """Tell whether an angle is just the direction of the place, in degrees or radians."""
     place = np.arctan2(part["y"].to_numpy(), part["x"].to_numpy())
@@ -314,53 +277,6 @@ def _about_origin(part: pd.DataFrame) -> bool:
     return False
 
 
-def _clock_column(table: TextTable, names: Sequence[str], fps: float | None) -> int | None:
-    """Find the column that tells the time, or the frame; None where the rows' number does."""
-    for k, name in enumerate(names):
-        if name in _TIME:
-            return k
-    if fps is None:
-        raise InputError(
-            f"{table.path}: no time column (t); give the frame rate of the rows (--fps)"
-        )
-    return names.index("frame") if "frame" in names else None
-
-
-def _times(
-    table: TextTable, values: dict[int, Array], column: int | None, fps: float | None
-) -> tuple[Array, int | None, list[str]]:
-    """Find the times of the rows, s, to how many decimals they are printed, and warnings."""
-    if column is None:
-        return np.arange(len(table.rows)) / (fps or 1.0), None, []
-    times = values[column]
-    written = "" if table.names is None else table.names[column]
-    if fps is not None and _plain(written) == "frame":
-        return times / fps, None, []
-    bracket = re.search(r"[(\[]\s*(\w+)\s*[)\]]", written[:100])
-    unit = _TIME_UNITS.get(bracket.group(1), 1.0) if bracket else 1.0
-    different = np.unique(times)
-    whole = not bracket and len(different) > 2 and bool((different == np.floor(different)).all())
-    if whole and fps is not None:
-        return times / fps, None, [f"{table.path}: the times are whole numbers; taken as frames"]
-    warnings: list[str] = []
-    if whole:
-        warnings.append(
-            f"{table.path}: the times are whole numbers; taken as seconds (if they are frames,"
-            " give --fps)"
-        )
-    elif fps is not None:
-        warnings.append(f"{table.path}: has times of its own; the frame rate given is not used")
-    return times * unit, _decimals(table, column) if unit == 1.0 else None, warnings
-
-
-def _decimals(table: TextTable, column: int) -> int | None:
-    """How many decimals a column is printed to; None where an exponent leaves it open."""
-    (cells,) = plain_decimals(table.cells([column]), str(table.path))
-    if any("E" in cell or "e" in cell for cell in cells):
-        return None
-    return max((len(cell.partition(".")[2]) for cell in cells), default=None)
-
-
 def _tidy(table: TextTable, names: Sequence[str], fps: float | None) -> TrackFile:
     """Read one row per stone and time, columns in any order."""
     missing = [name for name in ("x", "y") if name not in names]
@@ -369,12 +285,12 @@ def _tidy(table: TextTable, names: Sequence[str], fps: float | None) -> TrackFil
     doubled = [name for name, n in Counter(names).items() if n > 1 and name]
     if doubled:
         raise InputError(f"{table.path}: two columns named {doubled[0]}")
-    if _TIME.isdisjoint(names) and "frame" not in names:
+    if TIME_NAMES.isdisjoint(names) and "frame" not in names:
         raise InputError(f"{table.path}: no column t; needs stone, t, x, y")
-    clock = _clock_column(table, names, fps)
+    clock = clock_column(table, names, fps)
     wanted = {n: names.index(n) for n in ("x", "y", "seen", *_COMPANIONS) if n in names}
-    values = _values(table, {clock, *wanted.values()})
-    times, decimals, warnings = _times(table, values, clock, fps)
+    values = values_of(table, {clock, *wanted.values()})
+    times, decimals, warnings = times_of(table, values, clock, fps)
     stones = [stone.strip("\"'") for stone in table.cells([names.index("stone")])[0]]
     tracks = pd.DataFrame({"stone": stones, "t": times} | {n: values[k] for n, k in wanted.items()})
     used = tracks["x"].notna() & tracks["y"].notna()
@@ -399,9 +315,9 @@ def _without_header(table: TextTable, fps: float | None) -> TrackFile:
             f"{table.path}: {width} columns without a header; needs t, x, y (and x, y of each"
             " further stone), or the frame rate (--fps) where there is no t"
         )
-    values = _values(table, range(width))
-    times, decimals, warnings = _times(table, values, None if timeless else 0, fps)
-    _refuse_disorder(table, times)
+    values = values_of(table, range(width))
+    times, decimals, warnings = times_of(table, values, None if timeless else 0, fps)
+    refuse_disorder(table, times)
     starts = range(0 if timeless else 1, width, 2)
     numbers = np.column_stack(list(values.values()))
     kept = [k for k in starts if k == starts[0] or not _is_velocity(times, numbers, k)]

@@ -9,15 +9,17 @@ velocities can be stale: both are left out. Projects are read by `data.project`.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from data.angles import FASTEST_SPIN, attach, read_angles, spin_rate
+from data.columns import ANGLE_UNITS, LENGTH_UNITS
 from data.errors import InputError
-from data.layouts import ANGLE_UNITS, LENGTH_UNITS, TrackFile, read_layout
+from data.layouts import TrackFile, read_layout
 from data.project import is_project, read_project
 from data.tracks import LATEST, check_sightings
 
@@ -31,9 +33,6 @@ FARTHEST = 100.0
 
 SMALLEST = 0.001
 """m; what moves less than this in the whole table does not move."""
-
-FASTEST_SPIN = 20.0
-"""rad/s; three turns a second. Faster angles without a unit are taken as degrees."""
 
 
 @dataclass(frozen=True)
@@ -65,6 +64,8 @@ def read_table(
     angle_unit: str | None = None,
     fps: float | None = None,
     tab: str | None = None,
+    names: Mapping[str, str] | None = None,
+    angles: Mapping[str, Path] | None = None,
 ) -> Imported:
     """Read tracks from text tables of any layout and dialect, and from Tracker's projects.
 
@@ -81,6 +82,11 @@ def read_table(
         Rate of the rows of tables without a time column, 1/s.
     tab : str, optional
         Which tab of a project with several.
+    names : mapping, optional
+        Names of stones to names of tracks in the files; tracks that are not named are left
+        out. If not given, every track is a stone of the same name.
+    angles : mapping, optional
+        Files with the angles of stones (see `data.angles.read_angles`).
 
     Returns
     -------
@@ -112,6 +118,9 @@ def read_table(
         else:
             files.append(read_layout(path, fps))
     warnings = [text for file in files for text in file.warnings]
+    if names:
+        paths, files = _named(paths, files, names)
+        masses = {stone: masses[track] for stone, track in names.items() if track in masses}
     for path, file in zip(paths, files, strict=True):
         warnings += _to_si(path, file, length_unit, angle_unit)
     source = ", ".join(str(path) for path in paths)
@@ -120,8 +129,36 @@ def read_table(
     table, rate = _with_clock(table, [file.decimals for file in files])
     table = check_sightings(table, source)
     warnings += _check_scale(table, source)
+    for stone, path in (angles or {}).items():
+        track = read_angles(path, angle_unit, fps)
+        table, notes = attach(table, stone, track, str(path))
+        warnings += [*track.warnings, *notes]
     masses, notes = _set_masses(masses, set(table["stone"]), source)
     return Imported(table, tuple(dict.fromkeys(warnings + notes)), rate, masses)
+
+
+def _named(
+    paths: Sequence[Path], files: Sequence[TrackFile], names: Mapping[str, str]
+) -> tuple[list[Path], list[TrackFile]]:
+    """Keep the tracks that are named, under the names of their stones."""
+    there = list(dict.fromkeys(t for file in files for t in file.tracks["stone"].unique()))
+    missing = [track for track in names.values() if track not in there]
+    if missing:
+        raise InputError(f"no track named {missing[0]}; there are {', '.join(there)}")
+    stones = {track: stone for stone, track in names.items()}
+    if len(stones) < len(names):
+        raise InputError("one track cannot be two stones; name each once (--names)")
+    kept = [
+        replace(
+            file,
+            tracks=file.tracks.assign(stone=file.tracks["stone"].map(stones)).dropna(
+                subset=["stone"], ignore_index=True
+            ),
+        )
+        for file in files
+    ]
+    used = [(path, file) for path, file in zip(paths, kept, strict=True) if len(file.tracks)]
+    return [path for path, _ in used], [file for _, file in used]
 
 
 def _set_masses(
@@ -201,9 +238,8 @@ def _spins_too_fast(tracks: pd.DataFrame) -> bool:
         with np.errstate(all="ignore"):
             if len(theta) and abs(theta[0]) > 2 * np.pi + 0.01:
                 return True
-            # The median lets the jumps of a wrapped angle pass.
-            if len(theta) > 2 and np.median(np.abs(np.diff(theta) / np.diff(t))) > FASTEST_SPIN:
-                return True
+        if spin_rate(t, theta) > FASTEST_SPIN:
+            return True
     return False
 
 

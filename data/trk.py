@@ -14,8 +14,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
+from data.columns import LENGTH_UNITS
 from data.errors import InputError
-from data.layouts import LENGTH_UNITS, TrackFile
+from data.layouts import TrackFile
 from data.osp_xml import Thing, parse
 from data.tracks import LATEST
 

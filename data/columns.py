@@ -1,0 +1,112 @@
+"""Columns of a text table: their names and units, their numbers, and the times of the rows."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.delimited import TextTable, plain_decimals
+from data.errors import InputError
+from data.tracks import LATEST
+
+Array = NDArray[np.float64]
+
+LENGTH_UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
+"""Metres in one of each."""
+
+ANGLE_UNITS = {"rad": 1.0, "deg": np.pi / 180}
+"""Radians in one of each."""
+
+TIME_NAMES = {"t", "time"}
+_TIME_UNITS = {"s": 1.0, "sec": 1.0, "ms": 0.001}
+
+
+def plain_name(name: str) -> str:
+    """Name of a column without unit, TeX and case: ``v_{x} (m/s)`` becomes ``vx``."""
+    bare = re.sub(r"\(.*?\)|\[.*?\]|°", "", name[:100])
+    return bare.replace("_{", "").replace("}", "").strip(" \"'").casefold()
+
+
+def written_unit(
+    written: Sequence[str], plain: Sequence[str], wanted: Sequence[str], units: dict[str, float]
+) -> str | None:
+    """Find the unit in brackets behind one of the wanted columns."""
+    for full, name in zip(written, plain, strict=True):
+        bracket = re.search(r"[(\[]\s*([^)\]]*?)\s*[)\]]", full[:100])
+        words = set(re.split(r"[_ .\d]+", name))
+        if bracket and not words.isdisjoint(wanted) and bracket.group(1) in units:
+            return bracket.group(1)
+    return None
+
+
+def clock_column(table: TextTable, names: Sequence[str], fps: float | None) -> int | None:
+    """Find the column that tells the time, or the frame; None where the rows' number does."""
+    for k, name in enumerate(names):
+        if name in TIME_NAMES:
+            return k
+    if fps is None:
+        raise InputError(
+            f"{table.path}: no time column (t); give the frame rate of the rows (--fps)"
+        )
+    return names.index("frame") if "frame" in names else None
+
+
+def times_of(
+    table: TextTable, values: dict[int, Array], column: int | None, fps: float | None
+) -> tuple[Array, int | None, list[str]]:
+    """Find the times of the rows, s, to how many decimals they are printed, and warnings."""
+    if column is None:
+        return np.arange(len(table.rows)) / (fps or 1.0), None, []
+    times = values[column]
+    written = "" if table.names is None else table.names[column]
+    if fps is not None and plain_name(written) == "frame":
+        return times / fps, None, []
+    bracket = re.search(r"[(\[]\s*(\w+)\s*[)\]]", written[:100])
+    unit = _TIME_UNITS.get(bracket.group(1), 1.0) if bracket else 1.0
+    different = np.unique(times)
+    whole = not bracket and len(different) > 2 and bool((different == np.floor(different)).all())
+    if whole and fps is not None:
+        return times / fps, None, [f"{table.path}: the times are whole numbers; taken as frames"]
+    warnings: list[str] = []
+    if whole:
+        warnings.append(
+            f"{table.path}: the times are whole numbers; taken as seconds (if they are frames,"
+            " give --fps)"
+        )
+    elif fps is not None:
+        warnings.append(f"{table.path}: has times of its own; the frame rate given is not used")
+    return times * unit, _decimals(table, column) if unit == 1.0 else None, warnings
+
+
+def _decimals(table: TextTable, column: int) -> int | None:
+    """How many decimals a column is printed to; None where an exponent leaves it open."""
+    (cells,) = plain_decimals(table.cells([column]), str(table.path))
+    if any("E" in cell or "e" in cell for cell in cells):
+        return None
+    return max((len(cell.partition(".")[2]) for cell in cells), default=None)
+
+
+def refuse_disorder(table: TextTable, times: Array) -> None:
+    """Raise `InputError` where times are missing, absurd, or do not increase from row to row."""
+    if not np.isfinite(times).all():
+        row = int(np.flatnonzero(~np.isfinite(times))[0])
+        raise InputError(f"{table.path}: line {table.line_numbers[row]}: no time")
+    if np.abs(times).max() > LATEST:
+        raise InputError(f"{table.path}: times up to {np.abs(times).max():g} s make no sense")
+    steps = np.diff(times)
+    if (steps <= 0).any():
+        row = int(np.flatnonzero(steps <= 0)[0])
+        how = "goes back" if steps[row] < 0 else "stands still"
+        raise InputError(
+            f"{table.path}: line {table.line_numbers[row + 1]}: time {how} (from {times[row]:g} s"
+            f" to {times[row + 1]:g} s); one row per time, please"
+        )
+
+
+def values_of(table: TextTable, columns: Iterable[int | None]) -> dict[int, Array]:
+    """Numbers of some columns, by column; read at once, for one decimal sign."""
+    wanted = sorted(column for column in columns if column is not None)
+    return dict(zip(wanted, table.numbers(wanted).T, strict=True))
