@@ -25,6 +25,8 @@ def fit_with_chosen_laws(shots: Sequence[Watched]) -> GlobalFit:
     for name in STRAIGHT:
         fewer = {key: value for key, value in held.items() if key != name}
         start = dict(zip(best.names, best.values.tolist(), strict=True))
+        # Under the wrong law stones may have come to stick, from where no slope leads back.
+        start = {key: value for key, value in start.items() if "stone_friction" not in key}
         more = fit_shots(shots, fixed=fewer, start=start)
         if more.settled and _criterion(more, more.inflation) < _criterion(best, more.inflation):
             best, held = more, fewer

@@ -24,6 +24,10 @@ SUDDEN = 0.1
 SPIN_DRIFT = 0.03
 """How much a spin may change by itself from where it is seen to a hit, rad/s."""
 
+SLIDING = 0.02
+"""Friction between two stones that a fit sets out from: low, so that they slide. Once they
+stick, more of it changes nothing and no slope leads back."""
+
 LEAST_GAP = 2.0
 """Time between two hits of one stone from which on its spin is seen twice, s."""
 
@@ -133,7 +137,7 @@ def watch(
     start = min(float(trace.t[0]) for trace in traces.values())
     laws = (
         Unknown("restitution", _mean(priors.restitution), 0.0, 1.5, priors.restitution),
-        Unknown("stone_friction", _mean(priors.stone_friction), 0.0, 2.0, priors.stone_friction),
+        Unknown("stone_friction", SLIDING, 0.0, 2.0, priors.stone_friction),
         Unknown("friction", _mean(priors.friction), 1e-5, 1.0, priors.friction),
         Unknown("slope", 0.0, 0.0, 0.02),
         Unknown("turn", 0.0, -0.1, 0.1),

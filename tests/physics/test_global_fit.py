@@ -56,3 +56,19 @@ def test_friction_that_depends_on_the_speed_is_found() -> None:
     assert found.friction.law == "fit"
     assert found.friction.value == pytest.approx(0.00815, rel=0.03)
     assert found.restitution.value == pytest.approx(0.83, abs=0.01)
+
+
+def test_stones_that_slide_are_not_taken_to_stick() -> None:
+    rng = np.random.default_rng(401)
+    starts = [Start(0.148, -1.2, 0, 1.046, 0.3, 1.0), Start(0, 0)]
+    fcv1 = Ice(a=0.00201, b=0.00626, v_c=0.0639)
+    for between in (0.05, 0.3):
+        impact = Impact(0.83, stone_friction=between)
+        motion = simulate(starts, 4, ice=fcv1, impact=impact, step=5e-4, keep_every=4)
+        seen = watch(motion, rng, sd=0.003)
+        found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+        assert found.whole is not None
+        assert found.whole.inflation < 1.5
+        assert found.restitution.value == pytest.approx(0.83, abs=0.01)
+        # 0.3 is more than it takes to stick: how much more, no track can tell.
+        assert found.whole.told("stone_friction") == (between == 0.05)
