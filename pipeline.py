@@ -30,8 +30,11 @@ if TYPE_CHECKING:
 
     from data.results import Results
     from physics.simulate import Simulation
+    from physics.start import Start
+    from physics.what_if import Amount, Changes
     from vision.camera import Camera
     from vision.clip import Clip
+    from vision.joint import HouseTrack
 
 VERSION = "0.1.0"
 WRITTEN = (
@@ -40,10 +43,16 @@ WRITTEN = (
 )  # fmt: skip
 """All that a run may write into its folder."""
 
+WHAT_IF = ("outcomes.csv", "whatif.json", "spread.png")
+"""All that samples of a simulation write beside it."""
+
 CHECK_DPI = 110
 
 MOST_SAMPLES = 1_000_000
 """Of one simulated stone; more is a mistake in the rate."""
+
+MEASURED_THROWS, MOST_THROWS = 1000, 100_000
+"""Samples of a measured shot where the person says nothing, and at most."""
 
 TABLES = frozenset({".csv", ".txt", ".tsv", ".dat", ".trk", ".trz"})
 
@@ -60,6 +69,12 @@ class Settings:
         First and last frame of a clip to use, both included.
     stick : (x1, y1, x2, y2, metres), optional
         Calibration stick: two pixels and their distance, for a still camera and no house.
+    house : (frame, xc, yc, x1, y1, x2, y2), optional
+        The tee and two points on the outer edge of the 12-ft ring, px, in one frame (None: the
+        first), for a house that is not found by itself.
+    camera : Path, optional
+        Table as ``camera.csv`` with a known camera: one row, or one per frame. With a radius
+        other than a curling stone's, the discs are looked for as plain ones on no house.
     radius : float
         Radius of the discs, m.
     masses : mapping
@@ -74,11 +89,18 @@ class Settings:
         Tables of the angles of stones, by stone.
     overlay : bool
         Whether the annotated clip is written.
+
+    Raises
+    ------
+    InputError
+        More than one of stick, house and camera.
     """
 
     fps: float | None = None
     frames: tuple[int, int | None] | None = None
     stick: tuple[float, float, float, float, float] | None = None
+    house: tuple[int | None, float, float, float, float, float, float] | None = None
+    camera: Path | None = None
     radius: float = STONE.radius
     masses: Mapping[str, float] = field(default_factory=dict)
     length_unit: str = "m"
@@ -87,6 +109,12 @@ class Settings:
     names: Mapping[str, str] = field(default_factory=dict)
     angles: Mapping[str, Path] = field(default_factory=dict)
     overlay: bool = True
+
+    def __post_init__(self) -> None:
+        ways = {"--stick": self.stick, "--house": self.house, "--camera": self.camera}
+        given = [name for name, value in ways.items() if value is not None]
+        if len(given) > 1:
+            raise InputError(f"{' and '.join(given)} exclude each other; give one of them")
 
 
 @dataclass(frozen=True)
@@ -253,21 +281,40 @@ def _look_at_clip(files: tuple[Path, ...], settings: Settings, progress: Progres
 def _film(files: tuple[Path, ...], settings: Settings, progress: Progress) -> Filmed:
     """Open a clip and find its cameras."""
     from vision.clip import open_clip
-    from vision.follow_house import follow_house
-    from vision.stick import stick_cameras
     from vision.stones import plain_disc
 
     clip = open_clip(files, settings.fps, settings.frames)
+    stone = replace(STONE, radius=settings.radius)
     if settings.stick is not None:
-        cameras, disc = stick_cameras(clip, settings.stick, progress), plain_disc(settings.radius)
-        filmed = Filmed(clip, cameras, disc)
+        from vision.stick import stick_cameras
+
+        cameras = stick_cameras(clip, settings.stick, progress)
+        filmed = Filmed(clip, cameras, plain_disc(settings.radius))
+    elif settings.camera is not None:
+        from vision.camera_file import given_cameras
+
+        cameras, notes = given_cameras(clip, settings.camera, progress)
+        if settings.radius == STONE.radius:
+            filmed = Filmed(clip, cameras, stone, HOUSE, notes)
+        else:
+            filmed = Filmed(clip, cameras, plain_disc(settings.radius), None, notes)
     else:
-        followed = follow_house(clip, progress)
+        followed = _follow(clip, settings, progress)
         house = House(*(float(radius) for radius in followed.radii))
-        disc = replace(STONE, radius=settings.radius)
-        filmed = Filmed(clip, followed.cameras, disc, house, followed.warnings)
+        filmed = Filmed(clip, followed.cameras, stone, house, followed.warnings)
     _check_size(settings.radius, filmed.cameras[0])
     return filmed
+
+
+def _follow(clip: Clip, settings: Settings, progress: Progress) -> HouseTrack:
+    """Follow the house, from where a person says that it is or from where it is found."""
+    from vision.follow_house import follow_house
+    from vision.given import GivenHouse, follow_given
+
+    if settings.house is None:
+        return follow_house(clip, progress)
+    frame, *points = settings.house
+    return follow_given(clip, GivenHouse.of(points, frame), progress)
 
 
 def _check_size(radius: float, camera: Camera) -> None:
@@ -276,7 +323,7 @@ def _check_size(radius: float, camera: Camera) -> None:
     if not 1.5 < pixels < max(camera.size):
         raise InputError(
             f"discs of radius {radius:g} m would have {pixels:.2g} px in the picture; check"
-            " --radius, and --stick if given"
+            " --radius, and --stick or --camera if given"
         )
 
 
@@ -333,7 +380,7 @@ def check(
         f"camera      known in {len(table)} frames, carried in {carried} of them; edges"
         f" {table['rms_px'].median():.2f} px off, worst frame {table['rms_px'].max():.2f} px",
     ]
-    if radii:
+    if radii and cameras[0].error is not None:
         lines.append(
             f"places      known to {1000 * table['sd'].median():.1f} mm at the 12-ft ring,"
             f" worst frame {1000 * table['sd'].max():.1f} mm (one standard error)"
@@ -630,7 +677,9 @@ def _parser() -> argparse.ArgumentParser:
         "  curlshot run                               the bundled sample clip\n"
         "  curlshot run shot.mp4 -o shot              a clip, into the folder shot\n"
         "  curlshot run A.txt B.txt C.txt             tracks exported from Tracker\n"
-        "  curlshot simulate SHOT.toml                a shot of your own\n",
+        "  curlshot simulate SHOT.toml                a shot of your own\n"
+        "  curlshot simulate shot/results.json --speed 1.1x\n"
+        "                                             what if it had been faster?\n",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action="version", version=f"curlshot {VERSION}")
@@ -647,6 +696,9 @@ def _parser() -> argparse.ArgumentParser:
         "  curlshot run still.jpg                           one picture: positions only\n"
         "  curlshot run pucks.mp4 --stick 20,10,20,38,0.1 --radius 0.045 --frames 2:31\n"
         "                                                   no house: still camera, known length\n"
+        "  curlshot run shot.mp4 --house 12:640,360,460,360,640,180\n"
+        "                                                   the tee, two points of the 12-ft ring\n"
+        "  curlshot run shot.mp4 --camera camera.csv        a known camera, still or per frame\n"
         "  curlshot run A.txt B.txt --length-unit cm        one Tracker export per stone\n"
         "  curlshot run shot.trk                            a Tracker project, or a .trz\n"
         "  curlshot run old/tracks.csv                      earlier tracks\n",
@@ -663,7 +715,8 @@ def _parser() -> argparse.ArgumentParser:
         commands,
         "track",
         "clip to tracks.csv and camera.csv only",
-        "  curlshot track shot.mp4 -o shot\n",
+        "  curlshot track shot.mp4 -o shot\n"
+        "  curlshot track shot.mp4 --camera earlier/camera.csv\n",
         _do_track,
     )
     track_.add_argument("inputs", nargs="+", metavar="CLIP", help="a video or pictures")
@@ -673,7 +726,8 @@ def _parser() -> argparse.ArgumentParser:
         commands,
         "check",
         "a contact sheet: can the camera and the stones found in this clip be trusted?",
-        "  curlshot check shot.mp4                  shot-curlshot/check.png\n",
+        "  curlshot check shot.mp4                  shot-curlshot/check.png\n"
+        "  curlshot check shot.mp4 --house 640,360,460,360,640,180\n",
         _do_check,
     )
     check_.add_argument("inputs", nargs="+", metavar="CLIP", help="a video or pictures")
@@ -695,16 +749,26 @@ def _parser() -> argparse.ArgumentParser:
     simulate_ = _command(
         commands,
         "simulate",
-        "a shot described in SHOT.toml to simulation.csv",
+        "a shot of your own, or a measured one with something changed, and where it ends",
         "  curlshot simulate SHOT.toml\n"
         "  curlshot simulate SHOT.toml --json --fps 50\n"
+        "  curlshot simulate SHOT.toml --samples 2000           thrown 2000 times as players do\n"
+        "  curlshot simulate shot/results.json                  the measured shot, thrown again\n"
+        "  curlshot simulate shot/results.json --aim-offset 0.05 --speed 1.1x -o wider\n"
+        "                                                       what if: 5 cm to the left, faster\n"
+        "  curlshot simulate shot/results.json --restitution 0.9 --friction 0.012 --spin -1.5\n"
+        "\n"
+        "A measured shot (results.json with tracks.csv beside it) starts from the states before\n"
+        "its first hit. Samples are drawn from the measured uncertainties and from what players\n"
+        "are off by. They give outcomes.csv (where each stone ends in each sample), whatif.json\n"
+        "and spread.png, a plan view.\n"
         "\n"
         "SHOT.toml:\n"
         "  [physics]                  # all optional\n"
         '  model = "frictional"       # point-mass | rigid-body | frictional\n'
         "  restitution = 1.0\n"
         "  stone_friction = 0.2\n"
-        '  ice = "fcv1"               # constant (with friction = 0.0109) | fcv1 | penner\n'
+        '  ice = "fcv1"               # constant (with friction = 0.0109) | fcv1 | penner | fit\n'
         '  curl = "fcv1"              # none | fcv1\n'
         "  radius = 0.145\n"
         "  inertia = 0.5              # I / (m R^2)\n"
@@ -717,9 +781,12 @@ def _parser() -> argparse.ArgumentParser:
         "  omega = 1.5708             # rigid-body also needs omega_after\n",
         _do_simulate,
     )
-    simulate_.add_argument("shot", metavar="SHOT.toml", type=Path)
+    simulate_.add_argument(
+        "shot", metavar="SHOT", type=Path, help="SHOT.toml, or the results.json of a run"
+    )
     simulate_.add_argument("--fps", type=_positive, default=25.0, help="samples per second (25)")
     simulate_.add_argument("--json", action="store_true", help="print the outcome as JSON")
+    _what_if_options(simulate_)
     return parser
 
 
@@ -769,6 +836,52 @@ def _clip_options(parser: argparse.ArgumentParser) -> None:
         metavar="X1,Y1,X2,Y2,METRES",
         help="calibration stick for a still camera without a house: two pixels, their distance",
     )
+    parser.add_argument(
+        "--house",
+        type=_house,
+        metavar="FRAME:XC,YC,X1,Y1,X2,Y2",
+        help="where the house is, if it is not found: the tee and two points on the outer edge of"
+        " the 12-ft ring, px, in that frame (FRAME: may be left out: the first)",
+    )
+    parser.add_argument(
+        "--camera",
+        type=Path,
+        metavar="CAMERA.csv",
+        help="a known camera, as a run's camera.csv: one row for a still camera, or one per frame",
+    )
+
+
+def _what_if_options(parser: argparse.ArgumentParser) -> None:
+    change = parser.add_argument_group("what if")
+    change.add_argument("--restitution", type=_fraction, metavar="E", help="e of the hits, 0 to 1")
+    change.add_argument(
+        "--friction", type=_friction, metavar="MU", help="μ of the ice at 1 m/s, 0.001 to 0.1"
+    )
+    change.add_argument(
+        "--aim-offset",
+        type=_offset,
+        default=0.0,
+        metavar="METRES",
+        help="move the way of the thrown stone to its left, or right if negative, m",
+    )
+    change.add_argument(
+        "--speed", type=_speed, metavar="V", help="of the thrown stone: m/s, or a factor as 1.1x"
+    )
+    change.add_argument(
+        "--spin", type=_amount, metavar="W", help="of the thrown stone: rad/s, or a factor as 0.5x"
+    )
+    change.add_argument(
+        "--samples",
+        type=_samples,
+        metavar="N",
+        help=f"throw it N times, at most {MOST_THROWS} (1000 for a results.json, else 0)",
+    )
+    change.add_argument(
+        "--throw-sd",
+        type=_throw_sd,
+        metavar="V,A",
+        help="what players are off by when they let go: m/s, rad (0.0076,0.0018)",
+    )
 
 
 def _table_options(parser: argparse.ArgumentParser) -> None:
@@ -805,6 +918,60 @@ def _positive(text: str) -> float:
     return value
 
 
+def _number(text: str, low: float, high: float, what: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = float("nan")
+    if not low <= value <= high:
+        raise argparse.ArgumentTypeError(f"{text!r} is not {what}")
+    return value
+
+
+def _fraction(text: str) -> float:
+    return _number(text, 0.0, 1.0, "a number from 0 to 1")
+
+
+def _friction(text: str) -> float:
+    return _number(text, 1e-3, 0.1, "a friction of ice, 0.001 to 0.1")
+
+
+def _offset(text: str) -> float:
+    return _number(text, -5.0, 5.0, "a distance in metres, -5 to 5")
+
+
+def _amount(text: str) -> Amount:
+    from physics.what_if import Amount
+
+    relative = text.endswith("x")
+    what = "a number, or a factor such as 1.1x"
+    return Amount(_number(text.removesuffix("x"), -20.0, 20.0, what), relative)
+
+
+def _speed(text: str) -> Amount:
+    amount = _amount(text)
+    if not 0 < amount.value <= 10:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a speed in m/s, nor a factor as 1.1x")
+    return amount
+
+
+def _samples(text: str) -> int:
+    if not text.isdecimal() or not int(text) <= MOST_THROWS:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of samples, 0 to {MOST_THROWS}")
+    return int(text)
+
+
+def _throw_sd(text: str) -> tuple[float, float]:
+    parts = text.split(",")
+    if len(parts) != 2:
+        raise argparse.ArgumentTypeError(f"{text!r} is not V,A, e.g. 0.0076,0.0018")
+    speed, angle = parts
+    return (
+        _number(speed, 0.0, 1.0, "a standard deviation in m/s, 0 to 1"),
+        _number(angle, 0.0, 1.0, "a standard deviation in rad, 0 to 1"),
+    )
+
+
 def _range(text: str) -> tuple[int, int | None]:
     match = re.fullmatch(r"(\d*):(\d*)", text)
     if match is None:
@@ -821,6 +988,18 @@ def _stick(text: str) -> tuple[float, float, float, float, float]:
     if (x1, y1) == (x2, y2) or not metres > 0:
         raise argparse.ArgumentTypeError(f"{text!r}: the stick has no length")
     return x1, y1, x2, y2, metres
+
+
+def _house(text: str) -> tuple[int | None, float, float, float, float, float, float]:
+    match = re.fullmatch(r"(?:(\d+):)?([^:]*)", text)
+    try:
+        frame, points = match.groups() if match else (None, "")
+        xc, yc, x1, y1, x2, y2 = (float(part) for part in points.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not FRAME:XC,YC,X1,Y1,X2,Y2, e.g. 0:640,360,460,360,640,180"
+        ) from None
+    return None if frame is None else int(frame), xc, yc, x1, y1, x2, y2
 
 
 def _mass(text: str) -> tuple[str, float]:
@@ -851,6 +1030,8 @@ def _settings(arguments: argparse.Namespace) -> Settings:
         fps=known.get("fps"),
         frames=known.get("frames"),
         stick=known.get("stick"),
+        house=known.get("house"),
+        camera=known.get("camera"),
         radius=known["radius"],
         masses=dict(known["mass"]),
         length_unit=known.get("length_unit", "m"),
@@ -928,13 +1109,21 @@ def _do_simulate(arguments: argparse.Namespace, bars: _Bars) -> str:
     import numpy as np
 
     from data.tracks import write_table
-    from physics.shot import read_shot
     from physics.simulate import simulate
+    from physics.what_if import Changes, changed
 
     folder = _out(arguments, arguments.shot)
     _check_out(folder)
-    shot = read_shot(arguments.shot)
-    simulation = simulate(shot)
+    start = _read_start(arguments.shot, folder)
+    changes = Changes(
+        arguments.restitution,
+        arguments.friction,
+        arguments.speed,
+        arguments.spin,
+        arguments.aim_offset,
+    )
+    start = changed(start, changes)
+    simulation = simulate(start.shot)
     end = max((rest.t for rest in simulation.rest.values()), default=0.0)
     if end * arguments.fps > MOST_SAMPLES:
         raise InputError(
@@ -942,12 +1131,92 @@ def _do_simulate(arguments: argparse.Namespace, bars: _Bars) -> str:
             f" stone; at most {MOST_SAMPLES:g}, please"
         )
     times = np.append(np.arange(0.0, end, 1 / arguments.fps), end)
-    table = as_tracks(simulation.sample(times), shot.impact.name)
-    with staged(folder) as stage:
+    table = as_tracks(simulation.sample(times), start.shot.impact.name)
+    count = arguments.samples
+    if count is None:
+        count = MEASURED_THROWS if arguments.shot.suffix.lower() == ".json" else 0
+    outcome = simulation_json(simulation)
+    lines = [_simulation_text(simulation, folder / "simulation.csv")]
+    with staged(folder, replaces=WHAT_IF) as stage:
         write_table(table, stage / "simulation.csv")
-    if arguments.json:
-        return json.dumps(simulation_json(simulation), indent=1)
-    return _simulation_text(simulation, folder / "simulation.csv")
+        if count:
+            odds = _write_odds(stage, start, changes, count, arguments)
+            outcome = {"nominal": outcome, **odds}
+            lines += _odds_text(odds, folder)
+    lines += [f"warning: {text}" for text in start.assumed]
+    return json.dumps(outcome, indent=1) if arguments.json else "\n".join(lines)
+
+
+def _read_start(path: Path, folder: Path) -> Start:
+    """Read the shot to simulate: written by hand, or measured."""
+    from data.results import Results
+    from data.tracks import read_tracks
+    from physics.shot import read_shot
+    from physics.start import measured_start, written_start
+
+    if path.suffix.lower() != ".json":
+        return written_start(read_shot(path))
+    results = Results.read(path)
+    tracks = path.parent / "tracks.csv"
+    if not tracks.exists():
+        raise InputError(f"{tracks}: no such file; it belongs beside {path.name}")
+    if folder.resolve() == path.parent.resolve():
+        raise InputError(f"{folder}: holds the run itself; name another folder with -o")
+    return measured_start(read_tracks(tracks), results)
+
+
+def _write_odds(
+    stage: Path, start: Start, changes: Changes, count: int, arguments: argparse.Namespace
+) -> dict[str, Any]:
+    """Throw a shot many times; write where it ends, and give the content of whatif.json."""
+    from dataclasses import asdict
+
+    from data.files import whole_file, write_text
+    from data.tracks import write_table
+    from physics.what_if import THROW_SD, odds, sample
+    from report.style import PNG_DPI
+    from report.whatif import spread_figure
+
+    throw_sd = arguments.throw_sd or THROW_SD
+    outcomes = sample(start, count, throw_sd)
+    stones = start.shot.stones
+    thrown = stones[start.thrown].name
+    content = {
+        "schema": 1,
+        "input": arguments.shot.name,
+        "thrown": thrown,
+        "changes": {key: value for key, value in asdict(changes).items() if value},
+        "samples": count,
+        "throw_sd": {"speed": throw_sd[0], "direction": throw_sd[1]},
+        "stones": {name: asdict(item) for name, item in odds(outcomes, start).items()},
+        "warnings": list(start.assumed),
+    }
+    write_table(outcomes, stage / "outcomes.csv")
+    write_text(stage / "whatif.json", json.dumps(content, indent=1, ensure_ascii=False) + "\n")
+    figure = spread_figure(
+        outcomes,
+        {stone.name: (stone.x, stone.y) for stone in stones},
+        thrown,
+        f"{thrown} thrown {count} times",
+        start.shot.radius,
+    )
+    with whole_file(stage / "spread.png") as part:
+        figure.savefig(part, format="png", dpi=PNG_DPI)
+    return content
+
+
+def _odds_text(odds: Mapping[str, Any], folder: Path) -> list[str]:
+    lines = [
+        f"{odds['thrown']} thrown {_count(odds['samples'], 'time')}, at rest (mean ± spread):",
+    ]
+    for name, item in odds["stones"].items():
+        lines.append(
+            f"  {name}  x {item['x']:+7.2f} ± {item['sd_x']:.2f} m"
+            f"   y {item['y']:+7.2f} ± {item['sd_y']:.2f} m   moved {item['moved']:4.0%}"
+            f"   in the house {item['in_house']:4.0%}   shot stone {item['shot_stone']:4.0%}"
+        )
+    names = ("outcomes.csv", "whatif.json", "spread.png")
+    return [*lines, f"written: {', '.join(str(folder / name) for name in names)}"]
 
 
 def simulation_json(simulation: Simulation) -> dict[str, Any]:

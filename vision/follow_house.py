@@ -80,8 +80,8 @@ def follow_house(
     pieces = _read(clip, progress, first)
     if not pieces:
         raise SceneError(
-            f"{clip.files[0]}: no house in view; for another scene with a still camera use"
-            " --stick X1,Y1,X2,Y2,METRES"
+            f"{clip.files[0]}: no house in view; point at it with --house, or for another scene"
+            " with a still camera use --stick X1,Y1,X2,Y2,METRES"
         )
     best = max(pieces, key=lambda p: p.length) if first is None else pieces[0]
     progress("camera", 0, 1)

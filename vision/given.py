@@ -9,6 +9,7 @@ picture.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -61,6 +62,12 @@ class GivenHouse:
     tee: Array
     ring: Array
     frame: int | None = None
+
+    @classmethod
+    def of(cls, points: Sequence[float], frame: int | None = None) -> GivenHouse:
+        """Make it of the coordinates of the tee and of the two points, px."""
+        tee, *ring = np.reshape(np.asarray(points, float), (3, 2))
+        return cls(tee, np.array(ring), frame)
 
     def __str__(self) -> str:
         """Write it as on the command line."""
