@@ -54,7 +54,7 @@ MOST_SAMPLES = 1_000_000
 MEASURED_THROWS, MOST_THROWS = 1000, 100_000
 """Samples of a measured shot where the person says nothing, and at most."""
 
-TABLES = frozenset({".csv", ".txt", ".tsv", ".dat", ".trk", ".trz"})
+TABLES = frozenset({".csv", ".txt", ".tsv", ".dat", ".trk", ".trz", ".parquet"})
 
 
 @dataclass(frozen=True)
@@ -567,6 +567,31 @@ def _check_out(out: str | Path | None) -> Path | None:
     return folder
 
 
+def convert(
+    inputs: Sequence[str | Path], out: str | Path, settings: Settings = Settings()
+) -> Measured:
+    """Write tracks in another form, by the ending of `out`: .txt, .csv or .parquet.
+
+    Raises
+    ------
+    data.errors.CurlshotError
+        Where the input cannot be used, or there is no such form; then nothing is written.
+    """
+    from data.export import WRITERS
+
+    path = Path(out)
+    if path.suffix.lower() not in WRITERS:
+        raise InputError(f"{path}: tracks are written as {', '.join(WRITERS)}; end the name so")
+    _check_out(path.parent)
+    files = find_inputs(inputs)
+    odd = [file for file in files if file.suffix.lower() not in TABLES]
+    if odd:
+        raise InputError(f"{odd[0]}: not a table of tracks; try curlshot track")
+    measured = _import_tables(files, settings)
+    WRITERS[path.suffix.lower()](measured.sightings, path)
+    return measured
+
+
 @contextmanager
 def staged(folder: Path, replaces: Sequence[str] = ()) -> Iterator[Path]:
     """Give a hidden folder beside `folder`; its content moves there if the block ends well.
@@ -746,6 +771,20 @@ def _parser() -> argparse.ArgumentParser:
     _table_options(estimate_)
     estimate_.add_argument("--fps", type=_positive, help="rate of a table without times, 1/s")
 
+    convert_ = _bare_command(
+        commands,
+        "convert",
+        "tracks into another form, by the ending of OUT",
+        "  curlshot convert shot.trk shot.csv               a Tracker project to a table\n"
+        "  curlshot convert shot-curlshot/tracks.csv a.txt  text for Tracker's import\n"
+        "  curlshot convert A.txt B.txt shot.parquet        needs pyarrow\n",
+        _do_convert,
+    )
+    convert_.add_argument("inputs", nargs="+", metavar="IN", help="tables of tracks, projects")
+    convert_.add_argument("out", metavar="OUT", help=".txt, .csv or .parquet")
+    _table_options(convert_)
+    convert_.add_argument("--fps", type=_positive, help="rate of a table without times, 1/s")
+
     simulate_ = _command(
         commands,
         "simulate",
@@ -793,6 +832,15 @@ def _parser() -> argparse.ArgumentParser:
 def _command(
     commands: Any, name: str, summary: str, examples: str, work: Any
 ) -> argparse.ArgumentParser:
+    """Add a command that writes a folder."""
+    parser = _bare_command(commands, name, summary, examples, work)
+    parser.add_argument("-o", "--out", metavar="OUT", help="folder for the files (NAME-curlshot)")
+    return parser
+
+
+def _bare_command(
+    commands: Any, name: str, summary: str, examples: str, work: Any
+) -> argparse.ArgumentParser:
     parser: argparse.ArgumentParser = commands.add_parser(
         name,
         help=summary,
@@ -801,7 +849,6 @@ def _command(
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.set_defaults(work=work)
-    parser.add_argument("-o", "--out", metavar="OUT", help="folder for the files (NAME-curlshot)")
     parser.add_argument("-q", "--quiet", action="store_true", help="no progress bars")
     return parser
 
@@ -1032,8 +1079,8 @@ def _settings(arguments: argparse.Namespace) -> Settings:
         stick=known.get("stick"),
         house=known.get("house"),
         camera=known.get("camera"),
-        radius=known["radius"],
-        masses=dict(known["mass"]),
+        radius=known.get("radius", STONE.radius),
+        masses=dict(known.get("mass", ())),
         length_unit=known.get("length_unit", "m"),
         angle_unit=known.get("angle_unit"),
         tab=known.get("tab"),
@@ -1103,6 +1150,13 @@ def _do_estimate(arguments: argparse.Namespace, bars: _Bars) -> str:
     with staged(folder) as stage:
         done.results.write(stage / "results.json")
     return summary(replace(done, out=folder))
+
+
+def _do_convert(arguments: argparse.Namespace, _: _Bars) -> str:
+    measured = convert(arguments.inputs, arguments.out, _settings(arguments))
+    stones = measured.sightings["stone"].nunique()
+    lines = [f"{_count(stones, 'stone')} in {_count(measured.frames, 'frame')}: {arguments.out}"]
+    return "\n".join(lines + [f"warning: {text}" for text in measured.warnings])
 
 
 def _do_simulate(arguments: argparse.Namespace, bars: _Bars) -> str:

@@ -212,14 +212,27 @@ def _title(table: TextTable) -> str:
 def _named_pairs(table: TextTable, names: Sequence[str]) -> list[_Place]:
     """Places whose columns carry the stone's name: ``x1, y1``; ``c_a_x, c_a_y, ang_a``."""
     places = []
-    for stem, (x, y) in _pairs(names).items():
+    pairs = _pairs(names)
+    frame = names.index("frame") if "frame" in names else None
+    for stem, (x, y) in pairs.items():
         words = re.split(r"[_ .]+", stem)
         stone = stem
-        if words[0] in _CENTRE:
-            stone = stem[len(words[0]) + 1 :] or _title(table)
+        if words[0] in _CENTRE and len(words) > 1:
+            stone = stem[len(words[0]) + 1 :]
+        elif words[0] in _CENTRE and len(pairs) == 1:
+            stone = _title(table)
         theta = next((k for k, name in enumerate(names) if _angle_of(name) in (stem, stone)), None)
-        places.append(_Place(stone, x, y, theta))
+        written = table.names[x] if table.names is not None else ""
+        places.append(_Place(_as_written(stone, written), x, y, theta, frame))
     return places
+
+
+def _as_written(stone: str, column: str) -> str:
+    """Give a name the capitals that it has in the name of a column."""
+    at = column.casefold().rfind(stone)
+    return (
+        column[at : at + len(stone)] if at >= 0 and len(column.casefold()) == len(column) else stone
+    )
 
 
 def _angle_of(name: str) -> str | None:

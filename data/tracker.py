@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from data.angles import FASTEST_SPIN, attach, read_angles, spin_rate
 from data.columns import ANGLE_UNITS, LENGTH_UNITS
 from data.errors import InputError
+from data.export import read_parquet
 from data.layouts import TrackFile, read_layout
 from data.project import is_project, read_project
 from data.tracks import LATEST, check_sightings
@@ -115,6 +116,8 @@ def read_table(
             project = read_project(path, tab)
             files.append(project.file())
             masses |= {mass.name: mass.mass for mass in project.masses}
+        elif path.suffix.lower() == ".parquet":
+            files.append(_checked_parquet(path))
         else:
             files.append(read_layout(path, fps))
     warnings = [text for file in files for text in file.warnings]
@@ -135,6 +138,11 @@ def read_table(
         warnings += [*track.warnings, *notes]
     masses, notes = _set_masses(masses, set(table["stone"]), source)
     return Imported(table, tuple(dict.fromkeys(warnings + notes)), rate, masses)
+
+
+def _checked_parquet(path: Path) -> TrackFile:
+    tracks = check_sightings(read_parquet(path), str(path))
+    return TrackFile(tracks, angle_unit="rad", continuous=True)
 
 
 def _named(

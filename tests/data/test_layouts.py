@@ -52,7 +52,7 @@ def test_one_name_for_two_tracks_is_refused(tmp_path: Path) -> None:
         ("x red,y red,x yellow,y yellow", ["red", "yellow"]),
         ("c_a_x,c_a_y,c_b_x,c_b_y", ["a", "b"]),
         ("ax,ay,bx,by", ["a", "b"]),
-        ("XA,YA,XB,YB", ["a", "b"]),
+        ("XA,YA,XB,YB", ["A", "B"]),
     ],
 )
 def test_pairs_of_columns_are_stones(tmp_path: Path, columns: str, names: list[str]) -> None:

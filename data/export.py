@@ -1,0 +1,119 @@
+"""Tracks into files by their ending: text for Tracker's import, CSV, Parquet."""
+
+from __future__ import annotations
+
+import importlib.util
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from data.errors import InputError
+from data.files import whole_file
+from data.tracks import SIGHTING_COLUMNS
+
+_CSV_COLUMNS = tuple(name for name in SIGHTING_COLUMNS if name != "sd_place")
+
+
+def write_text(sightings: pd.DataFrame, path: Path) -> None:
+    """Write what Tracker reads with File > Import > Text Data File, tabs between the cells.
+
+    Parameters
+    ----------
+    sightings : DataFrame
+        `data.tracks.SIGHTING_COLUMNS`.
+    path : Path
+        File to write, whole or not at all.
+
+    Raises
+    ------
+    InputError
+        Two stones whose names differ by blanks only, which Tracker does not allow in names.
+
+    Notes
+    -----
+    One stone: its name, then t, x, y. Several: pairs such as ``x_A, y_A``. All numbers have as
+    many digits as it takes to read the same number again. Frames and angles follow in columns
+    that Tracker does not need.
+    """
+    stones = list(dict.fromkeys(sightings["stone"]))
+    labels = {stone: "_".join(stone.split()) for stone in stones}
+    doubled = [label for label in labels.values() if list(labels.values()).count(label) > 1]
+    if doubled:
+        raise InputError(f"{path}: two stones named {doubled[0]} without blanks; rename one")
+    one = len(stones) == 1
+    by_frame = sightings.drop_duplicates("frame").set_index("frame")["t"].sort_index()
+    columns = {"t": [_time(t) for t in by_frame]}
+    angles: dict[str, list[str]] = {}
+    for stone in stones:
+        rows = sightings[sightings["stone"] == stone].set_index("frame").reindex(by_frame.index)
+        end = "" if one else f"_{labels[stone]}"
+        columns[f"x{end}"] = [_number(v) for v in rows["x"]]
+        columns[f"y{end}"] = [_number(v) for v in rows["y"]]
+        if rows["theta"].notna().any():
+            angles[f"theta{end}(rad)"] = [_number(v) for v in rows["theta"]]
+    columns |= angles
+    columns["frame"] = [str(frame) for frame in by_frame.index]
+    lines = [labels[stones[0]]] if one else []
+    lines.append("\t".join(columns))
+    lines += ["\t".join(row) for row in zip(*columns.values(), strict=True)]
+    with whole_file(path) as part:
+        part.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
+
+
+def write_csv(sightings: pd.DataFrame, path: Path) -> None:
+    """Write one row per stone and time, every number with all its digits."""
+    table = sightings[list(_CSV_COLUMNS)].assign(t=[_time(t) for t in sightings["t"]])
+    with whole_file(path) as part:
+        table.to_csv(part, index=False, lineterminator="\n")
+
+
+def write_parquet(sightings: pd.DataFrame, path: Path) -> None:
+    """Write one row per stone and time as Parquet; raises `InputError` without pyarrow."""
+    need_pyarrow(path)
+    with whole_file(path) as part:
+        sightings.to_parquet(part, engine="pyarrow", index=False)
+
+
+WRITERS: Mapping[str, Callable[[pd.DataFrame, Path], None]] = {
+    ".txt": write_text,
+    ".csv": write_csv,
+    ".parquet": write_parquet,
+}
+"""What writes tracks into a file, by its ending."""
+
+
+def read_parquet(path: Path) -> pd.DataFrame:
+    """Read a table of Parquet.
+
+    Raises
+    ------
+    InputError
+        One line: no pyarrow, no such file, or no Parquet.
+    """
+    need_pyarrow(path)
+    try:
+        return pd.read_parquet(path, engine="pyarrow")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from None
+    except ValueError as error:
+        raise InputError(f"{path}: no Parquet ({' '.join(str(error).split())[:80]})") from None
+
+
+def need_pyarrow(path: Path) -> None:
+    """Raise `InputError` where the library for Parquet is missing."""
+    if importlib.util.find_spec("pyarrow") is None:
+        raise InputError(
+            f"{path}: Parquet needs pyarrow, which is not installed: pip install pyarrow"
+        )
+
+
+def _time(t: float) -> str:
+    """Print a time so that it does not look rounded to fewer digits than it has."""
+    plain = f"{t:.6f}"
+    return plain if float(plain) == t else repr(float(t))
+
+
+def _number(value: float) -> str:
+    return "" if np.isnan(value) else repr(float(value))
