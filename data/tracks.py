@@ -145,6 +145,24 @@ def write_tracks(tracks: pd.DataFrame, path: Path) -> None:
     write_table(tracks, path, TRACK_COLUMNS)
 
 
+def read_tracks(path: Path) -> pd.DataFrame:
+    """Read a ``tracks.csv`` as `write_tracks` wrote it.
+
+    Raises
+    ------
+    InputError
+        Where the file is missing or no such thing.
+    """
+    numbers = {name: float for name in TRACK_COLUMNS if name not in ("stone", "frame", "seen")}
+    try:
+        table = pd.read_csv(path, dtype={"stone": str, **numbers})
+        return table[list(TRACK_COLUMNS)]
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}") from None
+    except (ValueError, KeyError):  # pandas' own mistakes are ValueErrors
+        raise InputError(f"{path}: not a tracks.csv of this program") from None
+
+
 def order_of_motion(first_moved: dict[str, float], others: Iterable[str]) -> dict[str, str]:
     """Names by the order in which stones first move: A the thrown one, then B, C and so on.
 

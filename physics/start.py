@@ -1,0 +1,196 @@
+"""The measured shot as it stood just before its first hit, with what is not known of it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from data.errors import InputError
+from data.results import Results
+from data.sheet import SHEET, STONE
+from physics.curl import NoCurl
+from physics.curve import Curve, curve_for
+from physics.ice import Constant, Fit, IceLaw
+from physics.impact import Frictional
+from physics.predict import FRICTION, RESTITUTION, STONE_FRICTION
+from physics.simulate import Shot, StoneStart
+
+Array = NDArray[np.float64]
+
+STATE = ("x", "y", "vx", "vy", "omega")
+BACK = 1.0
+"""How far the thrown stone is taken back from its first hit, m, to have room for changes."""
+HOG_TO_TEE = SHEET.far_tee - SHEET.hog_line
+"""From the hog line where the stone is let go to the tee, m."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """A shot before its first hit.
+
+    Attributes
+    ----------
+    shot : Shot
+        The stones and the laws.
+    thrown : int
+        Rank of the thrown stone.
+    sd : ndarray, shape (stones, 5)
+        Standard errors of x, y, vx, vy, omega of each stone.
+    sd_restitution, sd_friction : float
+        Standard errors of restitution and, relative to it, of the ice's friction.
+    release : float
+        Distance that the thrown stone has come since it was let go, m.
+    assumed : tuple of str
+        What had to be assumed.
+    """
+
+    shot: Shot
+    thrown: int
+    sd: Array
+    sd_restitution: float = 0.0
+    sd_friction: float = 0.0
+    release: float = 0.0
+    assumed: tuple[str, ...] = ()
+
+
+def written_start(shot: Shot) -> Start:
+    """Return a shot written by hand: known exactly, let go where it begins."""
+    return Start(shot, _fastest(shot.stones), np.zeros((len(shot.stones), len(STATE))))
+
+
+def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
+    """Return a measured shot as it stood just before its first hit.
+
+    Parameters
+    ----------
+    tracks : DataFrame
+        `data.tracks.TRACK_COLUMNS`, as written beside the results.
+    results : Results
+        Of the same shot.
+
+    Returns
+    -------
+    Start
+        The thrown stone, the fastest, is taken back by `BACK` on its way, or less where
+        another stone lies in it. It is let go at the hog line, if it is a curling stone.
+
+    Raises
+    ------
+    InputError
+        Where no stone moves.
+    """
+    first = min((hit.t for hit in results.collisions), default=-math.inf)
+    rows = [_row(group, first) for _, group in tracks.groupby("stone", sort=True)]
+    table = pd.DataFrame(rows).reset_index(drop=True)
+    for key in STATE:
+        table[key] = table[key].fillna(0.0)
+    stones = tuple(
+        StoneStart(str(row["stone"]), **{key: float(row[key]) for key in STATE})
+        for row in table.to_dict("records")
+    )
+    if not stones or max(math.hypot(stone.vx, stone.vy) for stone in stones) == 0:
+        raise InputError("tracks: no stone moves before the first hit; nothing to throw again")
+    sd = np.nan_to_num(table[[f"sd_{key}" for key in STATE]].to_numpy(float))
+    # A stone at rest is known to rest.
+    sd[[stone.vx == stone.vy == 0 for stone in stones], 2:] = 0.0
+    thrown = _fastest(stones)
+    ice, sd_friction, assumed = _ice(results)
+    e = results.restitution
+    if e.value is None:
+        assumed.append(f"restitution not measured, {RESTITUTION} assumed")
+    told = [hit.stone_friction for hit in results.collisions if hit.stone_friction is not None]
+    impact = Frictional(
+        min(max(RESTITUTION if e.value is None else e.value, 0.0), 1.0),
+        max(float(np.mean(told)), 0.0) if told else STONE_FRICTION,
+    )
+    stone = stones[thrown]
+    speed = math.hypot(stone.vx, stone.vy)
+    ahead = (stone.x * stone.vx + stone.y * stone.vy) / speed
+    way = _room(stones, thrown, results.radius) if results.collisions else 0.0
+    moved = list(stones)
+    moved[thrown] = _taken_back(stone, way, ice)
+    curling = abs(results.radius / STONE.radius - 1) < 0.1
+    release = max(HOG_TO_TEE + ahead - way, 0.0) if curling else 0.0
+    shot = Shot(tuple(moved), impact, ice, NoCurl(), results.radius)
+    return Start(shot, thrown, sd, e.stderr or 0.0, sd_friction, release, tuple(assumed))
+
+
+def speed_before(speed: Array, way: float, ice: IceLaw) -> Array:
+    """Speeds that stones had a distance `way` (m) before, or have after where it is negative.
+
+    Parameters
+    ----------
+    speed : ndarray
+        In m/s; the outcome is 0 where a stone does not come that far.
+    way : float
+        Distance along the path, m.
+    ice : IceLaw
+        The ice.
+    """
+    curve = curve_for(ice, NoCurl(), float(np.max(speed)))
+    while _reach(curve)[-1] < np.interp(np.max(speed), curve.speed, _reach(curve)) + way:
+        curve = curve_for(ice, NoCurl(), 2 * float(curve.speed[-1]))
+    # The square of the speed is nearly linear in the distance.
+    square = curve.speed**2
+    left = np.interp(speed**2, square, _reach(curve)) + way
+    return np.asarray(np.sqrt(np.interp(left, _reach(curve), square)))
+
+
+def _reach(curve: Curve) -> Array:
+    """Distance to rest at the nodes of a curve, m."""
+    last = curve.coefficients[-1, 4] @ (curve.tau[-1] - curve.tau[-2]) ** np.arange(4)
+    return np.append(curve.coefficients[:, 4, 0], last)
+
+
+def _row(group: pd.DataFrame, first: float) -> pd.Series:
+    """Last state of a stone before the first hit, or its first one."""
+    early = group[group["t"] < first]
+    if not early.empty:
+        return early.iloc[-1]
+    row = group.iloc[0].copy()
+    if np.isfinite(first):
+        # It comes into view later: its way there is not known.
+        row[["vx", "vy", "omega"]] = 0.0
+    return row
+
+
+def _fastest(stones: tuple[StoneStart, ...]) -> int:
+    return max(range(len(stones)), key=lambda k: math.hypot(stones[k].vx, stones[k].vy))
+
+
+def _ice(results: Results) -> tuple[IceLaw, float, list[str]]:
+    """Return the ice, the relative error of its friction, and what is assumed."""
+    friction = results.friction
+    if friction.value is None or friction.value <= 0:
+        return Constant(FRICTION), 0.0, [f"friction not measured, {FRICTION} assumed"]
+    sd = (friction.stderr or 0.0) / friction.value
+    a, v_c, b = friction.a, friction.v_c, friction.b
+    if friction.law == "fit" and a is not None and v_c is not None and b is not None:
+        return Fit(a, v_c, b), sd, []
+    return Constant(friction.value), sd, []
+
+
+def _taken_back(stone: StoneStart, way: float, ice: IceLaw) -> StoneStart:
+    """Return the stone a distance before, on its straight way."""
+    speed = math.hypot(stone.vx, stone.vy)
+    ux, uy = stone.vx / speed, stone.vy / speed
+    then = float(speed_before(np.array([speed]), way, ice)[0])
+    return replace(stone, x=stone.x - way * ux, y=stone.y - way * uy, vx=then * ux, vy=then * uy)
+
+
+def _room(stones: tuple[StoneStart, ...], thrown: int, radius: float) -> float:
+    """Return how far the thrown stone can be taken back without meeting another, m."""
+    stone = stones[thrown]
+    speed = math.hypot(stone.vx, stone.vy)
+    ways = np.linspace(0, BACK, 21)
+    way = np.array([[stone.x, stone.y]]) - ways[:, None] * [stone.vx / speed, stone.vy / speed]
+    clear = np.ones(len(ways), bool)
+    for k, other in enumerate(stones):
+        if k != thrown:
+            apart = np.hypot(*(way - [other.x, other.y]).T)
+            clear &= (apart > 2.2 * radius) | (np.diff(apart, prepend=apart[0]) >= 0)
+    return float(ways[-1] if clear.all() else ways[max(int(np.argmin(clear)) - 1, 0)])

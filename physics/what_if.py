@@ -1,0 +1,236 @@
+"""What if the stone had been thrown a little differently: changes, samples, odds."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike, NDArray
+from scipy.special import ndtri
+
+from data.errors import InputError
+from data.sheet import GRAVITY, HOUSE
+from physics.ice import IceLaw
+from physics.many import States, simulate_many
+from physics.simulate import StoneStart
+from physics.start import Start, speed_before
+
+Array = NDArray[np.float64]
+
+THROW_SD = (0.0076, 0.0018)
+"""What players are off by as they let go: speed (m/s) and direction (rad)."""
+LAWS = 64
+"""Equally likely values that stand for the friction's distribution: equal ices share work."""
+
+
+@dataclass(frozen=True)
+class Scaled:
+    """A law of the ice with all its friction multiplied by a factor."""
+
+    law: IceLaw
+    factor: float
+
+    @property
+    def name(self) -> str:
+        """Name of the law."""
+        return self.law.name
+
+    def deceleration(self, speed: ArrayLike) -> Array:
+        """Deceleration, m/s²."""
+        return np.asarray(self.factor * self.law.deceleration(speed))
+
+
+@dataclass(frozen=True)
+class Amount:
+    """A value to set, or where `relative` a factor to multiply by."""
+
+    value: float
+    relative: bool = False
+
+    def of(self, present: float) -> float:
+        """Return the new value in place of the present one."""
+        return self.value * present if self.relative else self.value
+
+
+@dataclass(frozen=True)
+class Changes:
+    """What is to be different; None leaves it as it was.
+
+    Attributes
+    ----------
+    restitution, friction : float, optional
+        Of the hits, and of the ice at 1 m/s.
+    speed, spin : Amount, optional
+        Of the thrown stone at the start, m/s and rad/s.
+    aim_offset : float
+        Distance by which the way of the thrown stone is moved to its left, m.
+    """
+
+    restitution: float | None = None
+    friction: float | None = None
+    speed: Amount | None = None
+    spin: Amount | None = None
+    aim_offset: float = 0.0
+
+
+@dataclass(frozen=True)
+class Odds:
+    """Where one stone comes to rest: mean and spread (m), and how often (0..1)."""
+
+    x: float
+    y: float
+    sd_x: float
+    sd_y: float
+    moved: float
+    in_house: float
+    shot_stone: float
+
+
+def changed(start: Start, changes: Changes) -> Start:
+    """Return the start with the changes made; what is set is known exactly.
+
+    Raises
+    ------
+    InputError
+        Where the thrown stone would begin on top of another.
+    """
+    shot = start.shot
+    if changes.restitution is not None:
+        impact: Any = replace(shot.impact, restitution=changes.restitution)  # type: ignore[type-var]
+        shot, start = replace(shot, impact=impact), replace(start, sd_restitution=0.0)
+    if changes.friction is not None:
+        present = float(shot.ice.deceleration(1.0)) / GRAVITY
+        ice = Scaled(shot.ice, changes.friction / present)
+        shot, start = replace(shot, ice=ice), replace(start, sd_friction=0.0)
+    stones = list(shot.stones)
+    stones[start.thrown] = stone = _thrown(stones[start.thrown], changes)
+    if changes.aim_offset:
+        for other in stones:
+            apart = math.dist((stone.x, stone.y), (other.x, other.y))
+            if other is not stone and apart < 2 * shot.radius:
+                raise InputError(
+                    f"aim offset {changes.aim_offset:g} m: {stone.name} would begin on top of"
+                    f" {other.name}; choose another"
+                )
+    return replace(start, shot=replace(shot, stones=tuple(stones)))
+
+
+def sample(
+    start: Start, count: int, throw_sd: tuple[float, float] = THROW_SD, seed: int = 0
+) -> pd.DataFrame:
+    """Simulate a shot many times, each a little off.
+
+    States, restitution and friction are drawn from their standard errors, speed and direction
+    of the throw from what players are off by; their errors grow on the way to the start.
+
+    Parameters
+    ----------
+    start : Start
+        The shot and what is not known of it.
+    count : int
+        Number of samples.
+    throw_sd : (float, float)
+        Standard deviations of speed (m/s) and direction (rad) of the stone as it is let go.
+    seed : int
+        Of the random numbers.
+
+    Returns
+    -------
+    DataFrame
+        ``sample, stone, x, y, hits``: places of rest, m, and hits of each stone.
+    """
+    rng = np.random.default_rng(seed)
+    shot = start.shot
+    places = States.of(shot, count)
+    for item, sd in zip(fields(places), start.sd.T, strict=True):
+        getattr(places, item.name)[:] += sd * rng.standard_normal((count, len(sd)))
+    # Each friction as often as the others, in random order.
+    steps = ndtri((np.arange(LAWS) + 0.5) / LAWS)
+    rank = rng.permutation(np.arange(count) % LAWS)
+    factors = np.maximum(1 + start.sd_friction * steps, 0.1)
+    laws = [Scaled(shot.ice, float(factor)) for factor in factors]
+    _throw(start, places, throw_sd, rng)
+    vary = {}
+    if start.sd_restitution > 0:
+        e = float(getattr(shot.impact, "restitution"))  # noqa: B009 - not every model has one
+        vary["restitution"] = np.clip(
+            e + start.sd_restitution * rng.standard_normal(count), 0.0, 1.0
+        )
+    ice = [laws[r] for r in rank.tolist()] if start.sd_friction > 0 else []
+    done = simulate_many(shot, places, ice=ice, vary=vary)
+    names = [stone.name for stone in shot.stones]
+    return pd.DataFrame(
+        {
+            "sample": np.repeat(np.arange(count), len(names)),
+            "stone": np.tile(np.array(names, object), count).astype(str),
+            "x": done.x.ravel(),
+            "y": done.y.ravel(),
+            "hits": done.hits.ravel(),
+        }
+    )
+
+
+def odds(outcomes: pd.DataFrame, start: Start) -> dict[str, Odds]:
+    """Sum up the outcomes of `sample` by stone.
+
+    A stone is in the house if it reaches over the 12-ft ring; shot stone is the one of them
+    that is nearest to the tee.
+    """
+    names = [stone.name for stone in start.shot.stones]
+    x = outcomes["x"].to_numpy(float).reshape(-1, len(names))
+    y = outcomes["y"].to_numpy(float).reshape(-1, len(names))
+    hits = outcomes["hits"].to_numpy().reshape(-1, len(names))
+    distance = np.hypot(x, y)
+    inside = distance < HOUSE.twelve_foot + start.shot.radius
+    nearest = np.where(inside, distance, np.inf).argmin(axis=1)
+    out = {}
+    for k, stone in enumerate(start.shot.stones):
+        moved = (hits[:, k] > 0) | (math.hypot(stone.vx, stone.vy) > 0)
+        out[stone.name] = Odds(
+            x=float(x[:, k].mean()),
+            y=float(y[:, k].mean()),
+            sd_x=float(x[:, k].std()),
+            sd_y=float(y[:, k].std()),
+            moved=float(moved.mean()),
+            in_house=float(inside[:, k].mean()),
+            shot_stone=float((inside[:, k] & (nearest == k)).mean()),
+        )
+    return out
+
+
+def _thrown(stone: StoneStart, changes: Changes) -> StoneStart:
+    """Return the thrown stone with the changes made."""
+    speed = math.hypot(stone.vx, stone.vy)
+    if speed == 0:
+        return stone
+    ux, uy = stone.vx / speed, stone.vy / speed
+    speed = changes.speed.of(speed) if changes.speed else speed
+    return replace(
+        stone,
+        x=stone.x - changes.aim_offset * uy,
+        y=stone.y + changes.aim_offset * ux,
+        vx=speed * ux,
+        vy=speed * uy,
+        omega=changes.spin.of(stone.omega) if changes.spin else stone.omega,
+    )
+
+
+def _throw(
+    start: Start, places: States, throw_sd: tuple[float, float], rng: np.random.Generator
+) -> None:
+    """Put the errors of the throw, grown on the way from the release, onto the thrown stone."""
+    k, count = start.thrown, len(places.x)
+    vx, vy = places.vx[:, k], places.vy[:, k]
+    speed, heading = np.hypot(vx, vy), np.arctan2(vy, vx)
+    if not speed.any():
+        return
+    faster, turned = (sd * rng.standard_normal(count) for sd in throw_sd)
+    let_go = speed_before(speed, start.release, start.shot.ice)
+    speed = speed_before(np.maximum(let_go + faster, 0.0), -start.release, start.shot.ice)
+    places.x[:, k] -= start.release * turned * np.sin(heading)
+    places.y[:, k] += start.release * turned * np.cos(heading)
+    places.vx[:, k] = speed * np.cos(heading + turned)
+    places.vy[:, k] = speed * np.sin(heading + turned)

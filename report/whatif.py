@@ -1,0 +1,130 @@
+"""Where a shot ends if it is thrown many times: the spread of the stones on the sheet."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+from matplotlib.artist import Artist
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle
+from numpy.typing import NDArray
+
+from data.sheet import HOUSE, STONE
+from report.figures import draw_house
+from report.style import BLACK, GREY, new_figure, plain_text, stone_colours, styled
+
+Array = NDArray[np.float64]
+
+CELL = 0.05
+"""Width of a cell of the heat map, m."""
+SHARE = 0.98
+"""Share of the outcomes that the picture shows at least, per axis and end, unless far off."""
+FARTHEST = 6.4
+"""Most that the picture shows along and across, m from the tee: the hog line."""
+MOST_DOTS = 1000
+"""Dots of one stone."""
+
+
+def spread_figure(
+    outcomes: pd.DataFrame,
+    before: Mapping[str, tuple[float, float]],
+    thrown: str,
+    title: str,
+    radius: float = STONE.radius,
+) -> Figure:
+    """Draw where the stones come to rest, the thrown one as a heat map, others as dots.
+
+    Parameters
+    ----------
+    outcomes : DataFrame
+        ``sample, stone, x, y, hits`` as `physics.what_if.sample` gives them.
+    before : mapping of str to (float, float)
+        Places of the stones before, m.
+    thrown : str
+        The thrown stone.
+    title : str
+        One line.
+    radius : float
+        Radius of the stones, m.
+    """
+    by_stone = {
+        str(name): group[["x", "y"]].to_numpy(float)
+        for name, group in outcomes.groupby("stone", sort=True)
+    }
+    hit = outcomes[outcomes["hits"] > 0].groupby("stone").size()
+    struck = [name for name in by_stone if name != thrown and hit.get(name, 0) > 0]
+    low, high = _corners([by_stone[name] for name in (thrown, *struck)], before, thrown, radius)
+    colours = stone_colours(by_stone)
+    wide, tall = high - low
+    width = 7.0
+    with styled():
+        figure = new_figure(width, min((width - 1.6) * tall / wide + 1.3, 10.0))
+        ax = figure.subplots()
+        draw_house(ax, HOUSE, low, high)
+        ends = by_stone[thrown]
+        share, across, along = _density(ends, low, high)
+        heat = ax.pcolormesh(
+            across, along, np.ma.masked_less(share, 0.01 * share.max()), cmap="viridis_r",
+            alpha=0.75, lw=0, rasterized=True, zorder=2,
+        )  # fmt: skip
+        bar = figure.colorbar(heat, ax=ax, shrink=0.6, pad=0.01)
+        bar.set_label(f"where {plain_text(thrown)} ends, % of throws on 10 cm × 10 cm")
+        for name in struck:
+            moved = outcomes[(outcomes["stone"] == name) & (outcomes["hits"] > 0)]
+            x, y = moved[["x", "y"]].to_numpy(float)[:MOST_DOTS].T
+            ax.plot(x, y, ".", color=colours[name], ms=2.5, alpha=0.6, mew=0, zorder=3)
+        for name, place in before.items():
+            if name != thrown:
+                ax.add_patch(Circle(place, radius, fc="white", ec=colours[name], lw=1.4, zorder=4))
+                ax.text(
+                    *place, plain_text(name), color=colours[name], weight="bold", fontsize=8,
+                    ha="center", va="center", zorder=5, clip_on=True,
+                )  # fmt: skip
+        middle = np.median(ends, axis=0)
+        ax.add_patch(Circle((middle[0], middle[1]), radius, fill=False, ec=BLACK, lw=1.4, zorder=6))
+        ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
+        ax.set(xlabel="$x$ (m)", ylabel="$y$ (m)")
+        ax.grid(False)
+        figure.suptitle(plain_text(title), x=0.01, ha="left", fontsize=10, fontweight="bold")
+        ring = {"marker": "o", "ls": "none", "mfc": "none"}
+        handles: list[Artist] = [
+            Line2D([], [], mec=BLACK, label=f"median of {plain_text(thrown)}", **ring),  # type: ignore[arg-type]
+            Line2D([], [], mec=GREY, label="as it lay before", **ring),  # type: ignore[arg-type]
+        ]
+        handles += [
+            Line2D(
+                [], [], color=colours[name], marker=".", ls="none",
+                label=f"{plain_text(name)} where hit",
+            )
+            for name in struck
+        ]  # fmt: skip
+        figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 4))
+    return figure
+
+
+def _corners(
+    ends: list[Array], before: Mapping[str, tuple[float, float]], thrown: str, radius: float
+) -> tuple[Array, Array]:
+    """Corners of what is shown, m: the house, the stones and nearly all of the outcomes."""
+    rim = HOUSE.twelve_foot + radius
+    lying = [place for name, place in before.items() if name != thrown]
+    parts = [np.array([[-rim, -rim], [rim, rim]]), np.array(lying).reshape(-1, 2)]
+    parts += [np.quantile(places, [1 - SHARE, SHARE], axis=0) for places in ends]
+    shown = np.clip(np.concatenate(parts), -FARTHEST, FARTHEST)
+    # Where the thrown stone ends is in the picture however far it goes.
+    shown = np.concatenate([shown, np.quantile(ends[0], [1 - SHARE, 0.5, SHARE], axis=0)])
+    return shown.min(axis=0) - 2 * radius, shown.max(axis=0) + 2 * radius
+
+
+def _density(ends: Array, low: Array, high: Array) -> tuple[Array, Array, Array]:
+    """Percentage of the places on 0.1 m × 0.1 m, smoothed, and the edges of its cells."""
+    from scipy.ndimage import gaussian_filter
+
+    across, along = (np.arange(low[k], high[k] + CELL, CELL) for k in range(2))
+    count = np.histogram2d(ends[:, 1], ends[:, 0], bins=(along, across))[0]
+    sharpness = np.clip(4 * len(ends) ** (-1 / 3), 0.5, 4)  # fewer samples, a smoother map
+    share = gaussian_filter(count, sharpness, mode="constant") / len(ends)
+    return np.asarray(100 * share * (0.1 / CELL) ** 2), across, along

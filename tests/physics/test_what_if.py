@@ -1,0 +1,170 @@
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from data.errors import InputError
+from data.results import Collision, Estimate, Friction, Input, Results, StoneState
+from data.sheet import GRAVITY
+from data.tracks import TRACK_COLUMNS
+from physics.curl import NoCurl
+from physics.ice import FCV1, Constant, Penner
+from physics.impact import Frictional, PointMass
+from physics.simulate import Shot, StoneStart, simulate
+from physics.start import HOG_TO_TEE, Start, measured_start, speed_before, written_start
+from physics.what_if import Amount, Changes, changed, odds, sample
+
+R = 0.1455
+MU = 0.0105
+HIT = Shot(
+    (StoneStart("A", 0.2, 3.0, 0.0, -1.6, 0.5), StoneStart("B", 0.1, 0.5), StoneStart("C", -1, -1)),
+    Frictional(0.8, 0.05),
+    Constant(MU),
+    NoCurl(),
+    R,
+)
+
+
+def measured() -> tuple[pd.DataFrame, Results]:
+    """Tracks and results of `HIT`, as a run would write them."""
+    done = simulate(HIT)
+    (hit,) = done.hits
+    tracks = done.sample(np.arange(0, 6, 0.04))
+    for key in ("x", "y", "theta", "vx", "vy", "omega"):
+        tracks[f"sd_{key}"] = 0.004
+    tracks["seen"] = 1
+    one = StoneState(0, 0, 0, 0)
+    collision = Collision(
+        hit.t, 0.001, hit.stones, hit.normal, 0.8, 0.02, {"A": one}, {"B": one}, stone_friction=0.05
+    )
+    results = Results(
+        Input(("clip.mp4",), 25.0, 150, 6.0),
+        Estimate(0.8, 0.02),
+        Friction(MU, 0.0002),
+        (collision,),
+        radius=R,
+    )
+    return tracks[list(TRACK_COLUMNS)], results
+
+
+def test_an_unchanged_shot_ends_as_it_did() -> None:
+    start = measured_start(*measured())
+    assert start.shot.stones[start.thrown].name == "A"
+    done, truth = simulate(start.shot), simulate(HIT)
+    assert [hit.stones for hit in done.hits] == [("A", "B")]
+    for name, rest in truth.rest.items():
+        # The states are taken from the last frame, from where on nothing is estimated anew.
+        assert (done.rest[name].x, done.rest[name].y) == pytest.approx((rest.x, rest.y), abs=1e-5)
+    assert start.release == pytest.approx(HOG_TO_TEE - start.shot.stones[0].y, abs=1e-6)
+    assert (start.sd[1:, 2:] == 0).all() and (start.sd[0] > 0).all()
+
+
+def test_the_stone_is_not_taken_back_through_another() -> None:
+    tracks, results = measured()
+    guard = tracks[tracks["stone"] == "C"].assign(stone="G", x=0.25, y=1.3)
+    start = measured_start(pd.concat([tracks, guard]), results)
+    a, g = start.shot.stones[0], start.shot.stones[-1]
+    assert math.dist((a.x, a.y), (g.x, g.y)) > 2 * R
+    assert a.y < 1.3
+
+
+def test_what_was_not_measured_is_assumed_aloud() -> None:
+    tracks, results = measured()
+    blind = replace(results, restitution=Estimate(), friction=Friction(), collisions=())
+    start = measured_start(tracks, blind)
+    assert len(start.assumed) == 2
+    still = tracks.assign(vx=0.0, vy=0.0)
+    with pytest.raises(InputError, match="no stone moves"):
+        measured_start(still, results)
+
+
+@pytest.mark.parametrize("way", [-2.0, 0.0, 5.0, 60.0])
+def test_speed_along_the_way_has_its_closed_form(way: float) -> None:
+    speed = np.array([0.9, 1.5, 2.6])
+    expected = np.sqrt(np.maximum(speed**2 + 2 * MU * GRAVITY * way, 0))
+    assert speed_before(speed, way, Constant(MU)) == pytest.approx(expected, abs=1e-9)
+    root = speed_before(speed, way, Penner())
+    expected = np.maximum(speed**2.5 + 2.5 * 0.008 * GRAVITY * way, 0) ** 0.4
+    assert root == pytest.approx(expected, abs=1e-5)
+
+
+def test_changes_are_made_to_the_thrown_stone_and_the_laws() -> None:
+    start = written_start(HIT)
+    after = changed(start, Changes(0.9, 0.012, Amount(1.1, True), Amount(-1.0), 0.05)).shot
+    a = after.stones[0]
+    # It moves towards -y: its left is +x.
+    assert (a.x, a.y) == pytest.approx((0.25, 3.0))
+    assert (a.vx, a.vy, a.omega) == pytest.approx((0, -1.76, -1.0))
+    assert after.stones[1:] == HIT.stones[1:]
+    assert after.impact == Frictional(0.9, 0.05)
+    assert float(after.ice.deceleration(1.0)) == pytest.approx(0.012 * GRAVITY)
+    law = replace(start, shot=replace(HIT, ice=FCV1()))
+    ratio = changed(law, Changes(friction=0.01)).shot.ice.deceleration([0.2, 1, 3.0])
+    ratio /= FCV1().deceleration([0.2, 1, 3.0])
+    assert ratio == pytest.approx(ratio[0])
+    with pytest.raises(InputError, match="on top of B"):
+        changed(
+            written_start(replace(HIT, stones=(HIT.stones[0], StoneStart("B", 0.6, 3.0)))),
+            Changes(aim_offset=0.3),
+        )
+
+
+def test_the_spread_of_a_lone_stone_is_that_of_its_throw() -> None:
+    """Thrown from the hog line: d(way) = v dv / (μ g), aside = way times the angle."""
+    speed, sd = 2.4, (0.0076, 0.0018)
+    shot = Shot((StoneStart("A", 0, 0, 0, speed),), PointMass(), Constant(MU), NoCurl(), R)
+    out = sample(written_start(shot), 4000, sd)
+    way = speed**2 / (2 * MU * GRAVITY)
+    assert out["y"].mean() == pytest.approx(way, rel=0.001)
+    assert out["y"].std() == pytest.approx(speed * sd[0] / (MU * GRAVITY), rel=0.05)
+    assert out["x"].std() == pytest.approx(way * sd[1], rel=0.05)
+    # The same throw, seen late on its way, spreads as much.
+    gone = 20.0
+    later = math.sqrt(speed**2 - 2 * MU * GRAVITY * gone)
+    stone = replace(shot.stones[0], y=gone, vy=later)
+    late = Start(replace(shot, stones=(stone,)), 0, np.zeros((1, 5)), release=gone)
+    again = sample(late, 4000, sd)
+    assert again["y"].std() == pytest.approx(out["y"].std(), rel=0.01)
+    assert again["x"].std() == pytest.approx(out["x"].std(), rel=0.01)
+
+
+def test_measured_uncertainties_spread_the_outcome() -> None:
+    shot = Shot((StoneStart("A", 0, 0, 0, 2.0),), PointMass(), Constant(MU), NoCurl(), R)
+    way = 2.0**2 / (2 * MU * GRAVITY)
+    start = Start(shot, 0, np.zeros((1, 5)), sd_friction=0.02)
+    out = sample(start, 4000, (0.0, 0.0))
+    assert out["y"].std() == pytest.approx(0.02 * way, rel=0.05)
+    assert out["x"].std() == pytest.approx(0.0, abs=1e-12)
+    speed = Start(shot, 0, np.array([[0, 0, 0, 0.01, 0]]))
+    out = sample(speed, 4000, (0.0, 0.0))
+    assert out["y"].std() == pytest.approx(2.0 * 0.01 / (MU * GRAVITY), rel=0.05)
+
+
+def test_restitution_is_drawn_where_it_is_not_known() -> None:
+    start = replace(written_start(HIT), sd_restitution=0.03)
+    out = sample(start, 600, (0.0, 0.0))
+    b = out[out["stone"] == "B"]
+    (hit,) = simulate(HIT).hits
+    # v' = (1 + e) u / 2 and way = v'² / (2 μ g), so d(way) / way = 2 de / (1 + e).
+    way = np.hypot(b["x"] - 0.1, b["y"] - 0.5)
+    assert way.std() / way.mean() == pytest.approx(2 * 0.03 / 1.8, rel=0.1)
+    assert hit.stones == ("A", "B")
+    assert sample(start, 5).equals(sample(start, 5))
+
+
+def test_odds_count() -> None:
+    start = written_start(HIT)
+    rows = [
+        # In the house and nearest to the tee, B, then C; outside; hit or not.
+        (0, "A", 5.0, 0.0, 1), (0, "B", 0.5, 0.0, 1), (0, "C", -1.0, -1.0, 0),
+        (1, "A", 0.0, 9.0, 1), (1, "B", 3.0, 0.0, 1), (1, "C", -1.0, -1.0, 0),
+    ]  # fmt: skip
+    told = odds(pd.DataFrame(rows, columns=["sample", "stone", "x", "y", "hits"]), start)
+    assert [told[name].in_house for name in "ABC"] == [0.0, 0.5, 1.0]
+    assert [told[name].shot_stone for name in "ABC"] == [0.0, 0.5, 0.5]
+    assert [told[name].moved for name in "ABC"] == [1.0, 1.0, 0.0]
+    assert (told["A"].x, told["A"].sd_x) == (2.5, 2.5)
