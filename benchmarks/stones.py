@@ -22,11 +22,11 @@ from tests.scoring import score_tracks
 from tests.synthetic.camera import broadcast_camera, tilted_camera
 from tests.synthetic.clip import cached_clip
 from tests.synthetic.scenes import random_scene, sweepers
-from vision.appearance import learn
+from vision.appearance import CONVINCING, learn
 from vision.camera import Camera
 from vision.clip import open_clip
 from vision.stones import SEARCH, find_stones
-from vision.track import CONVINCING, track_stones
+from vision.track import track_stones
 
 ROOT = Path(__file__).resolve().parents[1]
 SHARED = ROOT.parent / "shared"

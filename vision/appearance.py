@@ -16,6 +16,9 @@ from vision.sighting import Sighting
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
 
+CONVINCING = 1.9
+"""Evidence from which a sighting teaches what stones look like."""
+
 
 @dataclass(frozen=True)
 class Colour:
@@ -85,6 +88,11 @@ def any_stone(white: float = 210.0) -> Appearance:
     white : float
         Lightness L* of the white ice in the picture, 0 to 255.
     """
+    return _any_stone(round(white))
+
+
+@lru_cache(maxsize=32)
+def _any_stone(white: int) -> Appearance:
     lab = _lab_of_table()
     chroma = np.hypot(lab[..., 1] - 128, lab[..., 2] - 128)
     light = lab[..., 0] / white

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from data.sheet import STONE, Stone
-from vision.appearance import learn
+from vision.appearance import CONVINCING, learn
 from vision.camera import Camera
 from vision.clip import Image
 from vision.stones import Findings, search_picture
-from vision.track import CONVINCING
 
 
 def glance(pictures: Sequence[tuple[Image, Camera]], disc: Stone = STONE) -> list[Findings]:

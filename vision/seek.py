@@ -69,15 +69,59 @@ def seek(
     ice = rectify(image, camera, bounds, scale=scale, height=disc.cap_height)
     if ice is None or not ice.valid.any():
         return none
-    if disc.cap_radius <= 0:
-        response = _disc_response(ice, disc)
-    else:
-        if appearance is None:
-            light = cv2.cvtColor(ice.image, cv2.COLOR_BGR2LAB)[..., 0]
-            appearance = any_stone(max(float(np.percentile(light[ice.valid], 75)), 60.0))
-        response = _stone_response(ice, appearance, disc)
+    if appearance is None and disc.cap_radius > 0:
+        light = cv2.cvtColor(ice.image, cv2.COLOR_BGR2LAB)[..., 0]
+        appearance = any_stone(max(float(np.percentile(light[ice.valid], 75)), 60.0))
+    response = _response(ice, appearance, disc)
     peaks = _peaks(response, least, 1.8 * radius_px)
     return Candidates(ice.place(peaks[:, 1], peaks[:, 0]), peaks[:, 2], appearance)
+
+
+def seek_about(
+    image: Image,
+    camera: Camera,
+    places: Array,
+    appearance: Appearance | None,
+    disc: Stone,
+    *,
+    radius_px: float,
+    reach: float,
+) -> tuple[Array, Array]:
+    """Look for one disc about each of a few places, all at once.
+
+    Parameters
+    ----------
+    places : ndarray, shape (n, 2)
+        Where discs are expected, m.
+    reach : float
+        How far from there they may be along x and along y, in radii.
+
+    Returns
+    -------
+    places, scores : ndarray, shapes (n, 2) and (n,)
+        Where the response is strongest, and the response.
+    """
+    scale, span = radius_px / disc.radius, int(np.ceil(reach * radius_px))
+    half = span + int(np.ceil(radius_px)) + 3
+    size = 2 * half + 1
+    offset = np.arange(-half, half + 1) / scale
+    grid = np.stack(np.meshgrid(offset, -offset), -1)
+    pixels = camera.project(places[:, None, None] + grid, disc.cap_height)
+    pixels = np.asarray(pixels.reshape(-1, size, 2), np.float32)
+    limit = np.array([image.shape[1], image.shape[0]]) - 1
+    valid = np.all((pixels >= 0) & (pixels <= limit), axis=-1)
+    patches = cv2.remap(
+        image, pixels[..., 0], pixels[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT
+    )
+    ice = IceMap(np.asarray(patches, np.uint8), valid, 0.0, 0.0, scale)
+    # One above the other: at the places that may be chosen a patch's response is its own.
+    response = cv2.GaussianBlur(_response(ice, appearance, disc), (0, 0), 0.7)
+    response = np.asarray(response, np.float32).reshape(-1, size, size)
+    inner = response[:, half - span : half + span + 1, half - span : half + span + 1]
+    best = inner.reshape(len(places), -1).argmax(1)
+    row, column = (index + half - span for index in np.unravel_index(best, inner.shape[1:]))
+    shift, height = _summit(response, np.arange(len(places)), row, column)
+    return places + (np.stack([column, -row], 1) + shift * [1, -1] + [-half, half]) / scale, height
 
 
 @lru_cache(maxsize=16)
@@ -90,6 +134,13 @@ def _annulus(inner: float, outer: float, size: int) -> Floats:
     ring = ((r >= inner) & (r < outer)).astype(float)
     ring = ring.reshape(2 * size + 1, fine, 2 * size + 1, fine).mean((1, 3))
     return np.asarray(ring / ring.sum(), np.float32)
+
+
+def _response(ice: IceMap, appearance: Appearance | None, disc: Stone) -> Floats:
+    if disc.cap_radius <= 0:
+        return _disc_response(ice, disc)
+    assert appearance is not None
+    return _stone_response(ice, appearance, disc)
 
 
 def _stone_response(ice: IceMap, appearance: Appearance, disc: Stone) -> Floats:
@@ -150,12 +201,24 @@ def _peaks(response: Floats, least: float, spacing_px: float) -> Array:
     row, column = np.nonzero(top)
     height = smooth[row, column].astype(float)
     order = _far_apart(np.stack([row, column], 1), np.argsort(-height), spacing_px)[:MOST_PLACES]
-    row, column, height = row[order], column[order], height[order]
+    row, column = row[order], column[order]
+    shift, height = _summit(
+        np.asarray(smooth[None], np.float32), np.zeros(len(row), np.intp), row, column
+    )
+    return np.stack([row + shift[:, 1], column + shift[:, 0], height], 1)
+
+
+def _summit(
+    maps: Floats, index: NDArray[np.intp], row: NDArray[np.intp], column: NDArray[np.intp]
+) -> tuple[Array, Array]:
+    """Shift (n, 2), columns and rows, from pixels of maps to the summits there; the heights."""
+    height = maps[index, row, column].astype(float)
     shifts = []
     for before, after in (
-        (smooth[row - 1, column], smooth[row + 1, column]),
-        (smooth[row, column - 1], smooth[row, column + 1]),
+        (maps[index, row, column - 1], maps[index, row, column + 1]),
+        (maps[index, row - 1, column], maps[index, row + 1, column]),
     ):
         bend = 2 * height - before - after
-        shifts.append(np.where(bend > 1e-6, 0.5 * (after - before) / np.maximum(bend, 1e-6), 0.0))
-    return np.stack([row + shifts[0], column + shifts[1], height], 1)
+        shift = np.where(bend > 1e-6, 0.5 * (after - before) / np.maximum(bend, 1e-6), 0.0)
+        shifts.append(np.clip(shift, -0.5, 0.5))
+    return np.stack(shifts, 1), height

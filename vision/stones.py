@@ -18,7 +18,7 @@ from vision.appearance import Appearance
 from vision.camera import Camera
 from vision.clip import Image
 from vision.measure import EFFORT, Measures, is_plain, measure, scales, tilts
-from vision.seek import Bounds, seek
+from vision.seek import Bounds, seek, seek_about
 from vision.sighting import Refusal, Sighting
 
 Array = NDArray[np.float64]
@@ -60,6 +60,10 @@ SEARCH = Search()
 
 FOLLOWING = Search(radius_px=8.0)
 """For a clip: a coarser map, for what one picture hides the next ones show."""
+
+
+NEARBY = 0.35
+"""How far from where it is expected a stone is measured, in radii."""
 
 
 @dataclass(frozen=True)
@@ -155,6 +159,40 @@ def search_picture(
         scores = scores[good]
     kept = _apart(stones, disc)
     return Findings(kept, tuple(refused))
+
+
+def look_at(
+    image: Image,
+    camera: Camera,
+    places: Array,
+    appearance: Appearance | None,
+    disc: Stone = STONE,
+    search: Search = FOLLOWING,
+) -> list[Sighting | None]:
+    """Measure stones where they are expected, without a search of the ice.
+
+    Parameters
+    ----------
+    places : ndarray, shape (n, 2)
+        Where on the ice, m.
+    appearance : Appearance or None
+        What stones look like here; not used for a plain disc.
+
+    Returns
+    -------
+    list of Sighting or None
+        One per place; None where there is no stone.
+    """
+    about, scores = seek_about(
+        image, camera, places, appearance, disc, radius_px=search.radius_px, reach=NEARBY
+    )
+    seen = measure(image, camera, about, appearance, disc)
+    out: list[Sighting | None] = [None] * len(places)
+    chosen = [i for i, fault in enumerate(judge(seen, scores, disc, search)) if not fault]
+    found = sightings(seen, np.array(chosen, np.intp), camera, disc, scores)
+    for i, sighting in zip(chosen, found, strict=True):
+        out[i] = sighting
+    return out
 
 
 def whole_ice(camera: Camera, disc: Stone, search: Search) -> Bounds:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
@@ -11,23 +11,14 @@ import pandas as pd
 from data.progress import Progress, no_progress
 from data.sheet import STONE, Stone
 from data.tracks import SIGHTING_COLUMNS, check_sightings, order_of_motion
-from vision.appearance import Appearance, colour_difference, lab_to_bgr, learn
+from vision.appearance import Appearance, colour_difference, lab_to_bgr
 from vision.camera import Camera
-from vision.clip import Clip, Frame
+from vision.clip import Clip
 from vision.follow import Gate, Track, follow, names_by_motion
-from vision.handle import Complex, cap_spectrum, handle_angles
+from vision.handle import Complex, handle_angles
 from vision.measure import is_plain
-from vision.sighting import Sighting
-from vision.stones import FOLLOWING, Search, find_stones
-
-LEARNING_FRAMES = 24
-"""Frames of a clip from which the look of its stones is learned."""
-
-CONVINCING = 1.9
-"""Evidence from which a sighting teaches what stones look like."""
-
-HANDLE_VISIBLE = 0.75
-"""Share of a stone that must be seen for its angle to be measured."""
+from vision.stones import FOLLOWING, Search
+from vision.watch import Watch
 
 
 @dataclass(frozen=True)
@@ -63,7 +54,7 @@ def track_stones(
     Parameters
     ----------
     clip : Clip
-        Read twice: parts of it to learn what its stones look like, then all of it.
+        Read once.
     cameras : sequence of Camera
         One per frame; frames without one are left out.
     disc : Stone
@@ -77,13 +68,13 @@ def track_stones(
         Possibly without any stone; then a warning says so.
     """
     by_frame = {camera.frame: camera for camera in cameras}
-    appearance = None
-    if not is_plain(disc):
-        appearance = _learn(clip, by_frame, disc, search, progress)
+    watch = Watch(disc, search)
+    for done, frame in enumerate(clip):
+        if frame.index in by_frame:
+            watch.look(frame, by_frame[frame.index])
+        progress("following the stones", done + 1, clip.expected)
     gate = Gate(least_score=0.85 if is_plain(disc) else 1.6)
-    tracks = follow(
-        _sightings(clip, by_frame, appearance, disc, search, progress), disc.radius, gate
-    )
+    tracks = follow(watch.finish(), disc.radius, gate)
     moved, rest = names_by_motion(tracks, disc.radius)
     names = order_of_motion(dict(moved), rest)
     named = {names[str(number)]: track for number, track in enumerate(tracks)}
@@ -93,58 +84,7 @@ def track_stones(
         empty = empty.astype({"stone": str, "frame": int})
         return StoneTracks(empty, {}, ("no stones were found on the ice",))
     table = pd.concat([_rows(name, track) for name, track in named.items()], ignore_index=True)
-    return StoneTracks(check_sightings(table, "the stones found"), _teams(named, appearance))
-
-
-def _learn(
-    clip: Clip,
-    cameras: Mapping[int, Camera],
-    disc: Stone,
-    search: Search,
-    progress: Progress,
-) -> Appearance | None:
-    every = max(1, len(cameras) // LEARNING_FRAMES)
-    convincing: list[Sighting] = []
-    for done, frame in enumerate(clip):
-        if frame.index in cameras and done % every == 0:
-            camera = cameras[frame.index]
-            found = find_stones(frame.image, camera, None, disc, search)
-            convincing += [sighting for sighting in found if sighting.score > CONVINCING]
-        progress("learning the stones", done + 1, clip.expected)
-    return learn(convincing)
-
-
-def _sightings(
-    clip: Clip,
-    cameras: Mapping[int, Camera],
-    appearance: Appearance | None,
-    disc: Stone,
-    search: Search,
-    progress: Progress,
-) -> Iterator[tuple[int, float, list[Sighting]]]:
-    for done, frame in enumerate(clip):
-        if frame.index in cameras:
-            yield frame.index, frame.t, _seen(frame, cameras[frame.index], appearance, disc, search)
-        progress("following the stones", done + 1, clip.expected)
-
-
-def _seen(
-    frame: Frame, camera: Camera, appearance: Appearance | None, disc: Stone, search: Search
-) -> list[Sighting]:
-    """Sightings of one frame, the patch of each reduced to what the angle needs."""
-    found = find_stones(frame.image, camera, appearance, disc, search)
-    return [
-        replace(
-            item,
-            handle=np.empty((0, 0, 3), np.uint8),
-            spectrum=cap_spectrum(item.handle, 0.0, 1.0)
-            if item.visible >= HANDLE_VISIBLE
-            else None,
-            cap_samples=np.empty((0, 3)),
-            granite_samples=np.empty((0, 3)),
-        )
-        for item in found
-    ]
+    return StoneTracks(check_sightings(table, "the stones found"), _teams(named, watch.appearance))
 
 
 def _rows(name: str, track: Track) -> pd.DataFrame:

@@ -1,0 +1,256 @@
+"""The stones of a clip, frame by frame: known ones measured where expected, the rest sought.
+
+Searching a picture for stones costs ten times what measuring them does. So each stone that is
+known is measured where it is expected to be; where it is not, as after a hit, it is sought
+nearby; and now and then all of the ice is searched. What such a search finds anew is followed
+back through the last pictures, so that nothing is lost by searching rarely.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.sheet import STONE, Stone
+from vision.appearance import CONVINCING, Appearance, colour_difference, learn
+from vision.camera import Camera
+from vision.clip import Frame
+from vision.handle import cap_spectrum
+from vision.measure import is_plain
+from vision.seek import Bounds
+from vision.sighting import Sighting
+from vision.stones import FOLLOWING, Search, look_at, search_picture
+
+Array = NDArray[np.float64]
+
+HANDLE_VISIBLE = 0.75
+"""Share of a stone that must be seen for its angle to be measured."""
+
+UNLIKE = 30.0
+"""Difference of cap colours (L*a*b* units) from which a colour is a new one."""
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How often the ice is searched.
+
+    Attributes
+    ----------
+    memory : int
+        Pictures that are kept to learn from and to follow stones back through.
+    lesson : int
+        Each how manieth of them is looked at to learn what the stones look like.
+    every : float
+        Time from one search of all the ice to the next, s.
+    colours : float
+        Time from one search for stones of any colour to the next, s.
+    patience : float
+        Time for which a stone is still looked for where it is expected, s.
+    reach : float
+        How far, in radii, a stone may be from where it is expected or from where it was.
+    """
+
+    memory: int = 24
+    lesson: int = 3
+    every: float = 0.2
+    colours: float = 0.8
+    patience: float = 0.3
+    reach: float = 1.5
+
+
+@dataclass(frozen=True)
+class _View:
+    frame: Frame
+    camera: Camera
+    sightings: list[Sighting] = field(default_factory=list)
+
+    @property
+    def places(self) -> Array:
+        return _places(self.sightings)
+
+
+@dataclass(frozen=True)
+class _Lead:
+    """Where a stone was at the time t, how it moved, and whether it was missed since."""
+
+    place: Array
+    velocity: Array
+    t: float
+    missed: bool = False
+
+    def at(self, t: float) -> Array:
+        return np.asarray(self.place + self.velocity * (t - self.t))
+
+    def on(self, sighting: Sighting, t: float, near: float) -> _Lead:
+        """Go on from a sighting; it corrects what was expected, unless the course has changed."""
+        seen, expected, step = np.array([sighting.x, sighting.y]), self.at(t), t - self.t
+        if np.hypot(*(seen - expected)) > near:
+            return _Lead(seen, (seen - self.place) / step, t)
+        velocity = self.velocity + 0.3 * (seen - expected) / step
+        return _Lead(expected + 0.6 * (seen - expected), velocity, t)
+
+
+class Watch:
+    """Looks at the frames of a clip in their order.
+
+    Parameters
+    ----------
+    disc : Stone
+        Size of the stones, or `vision.stones.plain_disc`.
+    """
+
+    def __init__(self, disc: Stone = STONE, search: Search = FOLLOWING, pace: Pace = Pace()):
+        self.appearance: Appearance | None = None
+        self._disc, self._search, self._pace = disc, search, pace
+        self._lessons: list[Sighting] = []
+        self._waiting: list[_View] = []
+        self._recent: deque[_View] = deque(maxlen=pace.memory)
+        self._leads: list[_Lead] = []
+        self._searched = -np.inf
+        self._checked = -np.inf
+        self._seen: list[tuple[int, float, list[Sighting]]] = []
+
+    def look(self, frame: Frame, camera: Camera) -> None:
+        """Take in a frame; the first ones wait until the look of the stones is learned."""
+        view = _View(frame, camera)
+        self._waiting.append(view)
+        self._seen.append((frame.index, frame.t, view.sightings))
+        if self._knows or len(self._waiting) >= self._pace.memory:
+            self._catch_up()
+
+    def finish(self) -> list[tuple[int, float, list[Sighting]]]:
+        """Give the number, the time and the sightings of each frame."""
+        self._catch_up()
+        return self._seen
+
+    @property
+    def _knows(self) -> bool:
+        return self.appearance is not None or is_plain(self._disc)
+
+    def _catch_up(self) -> None:
+        if not self._knows:
+            self._recent.clear()
+            self._learn(self._waiting)
+        for view in self._waiting:
+            self._see(view)
+        self._waiting = []
+
+    def _learn(self, views: Iterable[_View]) -> None:
+        for view in list(views)[:: self._pace.lesson]:
+            self._lessons += self._convincing(view, np.empty((0, 2)))
+        self.appearance = learn(self._lessons)
+
+    def _convincing(self, view: _View, known: Array) -> list[Sighting]:
+        """Stones of any colour."""
+        found = search_picture(
+            view.frame.image, view.camera, None, self._disc, self._search, None, known
+        )
+        return [stone for stone in found.stones if stone.score > CONVINCING]
+
+    def _see(self, view: _View) -> None:
+        t = view.frame.t
+        self._leads = self._follow(view, self._leads)
+        if t - self._searched >= self._pace.every or not self._knows:
+            self._searched = t
+            self._look_for_colours(view)
+            fresh = self._sought(view, None, view.places)
+            leads = [_Lead(place, np.zeros(2), t) for place in _places(fresh)]
+            view.sightings.extend(map(_reduced, fresh))
+            self._leads += leads
+            for past in reversed(self._recent):
+                if not leads:
+                    break
+                leads = self._follow(past, leads)
+        self._recent.append(view)
+
+    def _look_for_colours(self, view: _View) -> None:
+        """See now and then whether there are stones of a colour that is not known yet."""
+        if self.appearance is None or view.frame.t - self._checked < self._pace.colours:
+            return
+        self._checked = view.frame.t
+        caps = [cap.mean for cap in self.appearance.caps]
+        if any(
+            min(colour_difference(cap, stone.colour) for cap in caps) > UNLIKE
+            for stone in self._convincing(view, view.places)
+        ):
+            self._learn([*self._recent, view])
+
+    def _sought(self, view: _View, bounds: Bounds | None, known: Array) -> tuple[Sighting, ...]:
+        return search_picture(
+            view.frame.image, view.camera, self.appearance, self._disc, self._search, bounds, known
+        ).stones
+
+    def _follow(self, view: _View, leads: Sequence[_Lead]) -> list[_Lead]:
+        """Add to a view the stones to which the leads point; return where these lead on to."""
+        t, image = view.frame.t, view.frame.image
+        if not leads or (self.appearance is None and not is_plain(self._disc)):
+            return []
+        known, apart = view.places, 1.6 * self._disc.radius
+        near = 0.15 * self._disc.radius
+        expected = np.array([lead.at(t) for lead in leads])
+        found = look_at(image, view.camera, expected, self.appearance, self._disc, self._search)
+        going: list[_Lead] = []
+        lost: list[_Lead] = []
+        # The best first: of two leads to one stone, the other is lost.
+        for index in sorted(range(len(leads)), key=lambda i: -_score(found[i])):
+            lead, sighting = leads[index], found[index]
+            if _distance(known, expected[index]) < 0.5 * self._disc.radius:
+                continue  # it leads to a stone that is followed already
+            if sighting is None or _distance(known, np.array([sighting.x, sighting.y])) < apart:
+                lost.append(lead)
+                continue
+            view.sightings.append(_reduced(sighting))
+            known = view.places
+            going.append(lead.on(sighting, t, near))
+        for lead in lost:
+            nearby = None if lead.missed else self._near(view, lead)
+            if nearby is not None:
+                view.sightings.append(_reduced(nearby))
+                going.append(lead.on(nearby, t, near))
+            elif abs(t - lead.t) < self._pace.patience:
+                going.append(replace(lead, missed=True))
+        return going
+
+    def _near(self, view: _View, lead: _Lead) -> Sighting | None:
+        """Seek a stone that is not where it is expected about there and about its last place."""
+        either = np.array([lead.at(view.frame.t), lead.place])
+        reach = self._pace.reach * self._disc.radius
+        low, high = either.min(0) - reach - self._disc.radius, either.max(0) + reach
+        high = high + self._disc.radius
+        bounds = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
+        found = self._sought(view, bounds, view.places)
+        away = [_distance(either, place) for place in _places(found)]
+        if not away or min(away) > reach:
+            return None
+        return found[int(np.argmin(away))]
+
+
+def _distance(places: Array, place: Array) -> float:
+    """From a place to the nearest of others, m."""
+    if not len(places):
+        return float("inf")
+    return float(np.hypot(*(places - place).T).min())
+
+
+def _score(sighting: Sighting | None) -> float:
+    return -1.0 if sighting is None else sighting.score
+
+
+def _places(sightings: Sequence[Sighting]) -> Array:
+    return np.array([(s.x, s.y) for s in sightings]).reshape(-1, 2)
+
+
+def _reduced(sighting: Sighting) -> Sighting:
+    """Reduce the pictures of a sighting to what the angle needs."""
+    seen_well = sighting.visible >= HANDLE_VISIBLE
+    return replace(
+        sighting,
+        handle=np.empty((0, 0, 3), np.uint8),
+        spectrum=cap_spectrum(sighting.handle, 0.0, 1.0) if seen_well else None,
+        cap_samples=np.empty((0, 3)),
+        granite_samples=np.empty((0, 3)),
+    )
