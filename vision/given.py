@@ -185,7 +185,10 @@ def _as_given(clip: Clip, frame: Frame, house: GivenHouse, progress: Progress) -
         elif _same(frame.image, other.image):
             cameras.append(replace(given, frame=other.index, t=other.t, found=False))
         progress("camera", done, clip.expected)
-    note = f"house {house}: no rings are seen there; the camera rests on the three points alone"
+    note = (
+        f"house {house}: no rings are seen there; the camera rests on the three points alone, y up"
+        " in the picture"
+    )
     if len(cameras) < clip.read:
         note += f", and only the {len(cameras)} frames with the same picture are used"
     return replace(track, cameras=tuple(cameras), warnings=(note, *track.warnings))
