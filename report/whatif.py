@@ -23,7 +23,7 @@ CELL = 0.05
 SHARE = 0.98
 """Share of the outcomes that the picture shows at least, per axis and end, unless far off."""
 FARTHEST = 6.4
-"""Most that the picture shows along and across, m from the tee: the hog line."""
+"""Most that the picture shows along and across, m from its centre."""
 MOST_DOTS = 1000
 """Dots of one stone."""
 
@@ -108,14 +108,18 @@ def spread_figure(
 def _corners(
     ends: list[Array], before: Mapping[str, tuple[float, float]], thrown: str, radius: float
 ) -> tuple[Array, Array]:
-    """Corners of what is shown, m: the house, the stones and nearly all of the outcomes."""
+    """Corners of what is shown, m: the house, the stones and nearly all of the outcomes.
+
+    Where the thrown stone ends far from the house, what is about its end instead.
+    """
+    middle = np.median(ends[0], axis=0)
+    at_home = bool((np.abs(middle) < FARTHEST).all())
+    centre = np.zeros(2) if at_home else middle
     rim = HOUSE.twelve_foot + radius
     lying = [place for name, place in before.items() if name != thrown]
-    parts = [np.array([[-rim, -rim], [rim, rim]]), np.array(lying).reshape(-1, 2)]
+    parts = [np.array([[-rim, -rim], [rim, rim]]) + centre, np.array(lying).reshape(-1, 2)]
     parts += [np.quantile(places, [1 - SHARE, SHARE], axis=0) for places in ends]
-    shown = np.clip(np.concatenate(parts), -FARTHEST, FARTHEST)
-    # Where the thrown stone ends is in the picture however far it goes.
-    shown = np.concatenate([shown, np.quantile(ends[0], [1 - SHARE, 0.5, SHARE], axis=0)])
+    shown = np.clip(np.concatenate(parts), centre - FARTHEST, centre + FARTHEST)
     return shown.min(axis=0) - 2 * radius, shown.max(axis=0) + 2 * radius
 
 

@@ -161,6 +161,47 @@ def test_simulate_prints_and_writes(tmp_path: Path) -> None:
     assert table["y"].iloc[-1] == pytest.approx(rest["y"], abs=1e-6)
 
 
+def test_what_if_of_a_measured_shot(
+    sample: pipeline.Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert sample.out is not None
+    measured, out = str(sample.out / "results.json"), tmp_path / "out"
+    words = ["simulate", measured, "-q", "-o", str(out)]
+    assert pipeline.main([*words, "--samples", "60"]) == 0
+    text = capsys.readouterr().out
+    for word in ("A on B", "A thrown 60 times", "in the house", "shot stone", "outcomes.csv"):
+        assert word in text
+    names = {"simulation.csv", "outcomes.csv", "whatif.json", "spread.png"}
+    assert {item.name for item in out.iterdir()} == names
+    outcomes = pd.read_csv(out / "outcomes.csv")
+    assert outcomes["sample"].nunique() == 60
+    assert set(outcomes["stone"]) == set("ABCDEF")
+    as_it_was = json.loads((out / "whatif.json").read_text())
+    assert as_it_was["thrown"] == "A" and as_it_was["samples"] == 60
+    # Half a metre to its right it passes B and hits D; all is told as JSON.
+    changes = ["--aim-offset", "-0.5", "--speed", "0.9x", "--restitution", "0.9"]
+    changes += ["--friction", "0.012", "--spin=-0.5x", "--samples", "20", "--throw-sd", "0,0"]
+    assert pipeline.main([*words, *changes, "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert [hit["stones"] for hit in told["nominal"]["hits"]] == [["A", "D"]]
+    assert told["stones"]["B"]["moved"] == 0
+    assert told["changes"]["speed"] == {"value": 0.9, "relative": True}
+    # What an earlier call left does not stay beside a shot without samples.
+    assert pipeline.main([*words, "--samples", "0"]) == 0
+    assert {item.name for item in out.iterdir()} == {"simulation.csv"}
+    assert pipeline.main(["simulate", measured, "-o", str(sample.out)]) == 2
+    assert "holds the run itself" in capsys.readouterr().err
+
+
+def test_what_if_of_a_written_shot(tmp_path: Path) -> None:
+    shot, out = tmp_path / "SHOT.toml", tmp_path / "out"
+    shot.write_text(SHOT)
+    assert pipeline.main(["simulate", str(shot), "-o", str(out), "--samples", "200"]) == 0
+    outcomes = pd.read_csv(out / "outcomes.csv")
+    assert outcomes["y"].mean() == pytest.approx(38.232, abs=0.1)
+    assert 0.1 < outcomes["y"].std() < 0.5
+
+
 def test_help_has_examples_everywhere() -> None:
     for words in (
         ["--help"],
@@ -200,6 +241,7 @@ def bad_inputs(folder: Path) -> dict[str, list[str | Path]]:
     (folder / "late.csv").write_text("stone,t,x,y\nA,0,0,0\nA,1e300,0,1\nA,2e300,0,2\n")
     (folder / "good.csv").write_text("stone,t,x,y\nA,0,0,0\nB,0,1,1\nA,1,0,0\nB,1,1,1\n")
     (folder / "good.toml").write_text(SHOT)
+    (folder / "alone.json").write_text("{}")
     still = ["run", folder / "ice"]
     return {
         "missing": ["run", folder / "none.mp4"],
@@ -223,6 +265,15 @@ def bad_inputs(folder: Path) -> dict[str, list[str | Path]]:
         "mass of some": ["run", folder / "good.csv", "--mass", "A=1"],
         "discs like dots": [*still, "--stick", "10,10,110,10,1", "--radius", "1e-9"],
         "discs like moons": [*still, "--stick", "10,10,110,10,1", "--radius", "1e9"],
+        "half a run": ["simulate", folder / "alone.json"],
+        "no number": ["simulate", folder / "good.toml", "--speed", "fast"],
+        "no speed": ["simulate", folder / "good.toml", "--speed", "0"],
+        "no restitution": ["simulate", folder / "good.toml", "--restitution", "1.2"],
+        "no friction": ["simulate", folder / "good.toml", "--friction", "nan"],
+        "no aim": ["simulate", folder / "good.toml", "--aim-offset", "left"],
+        "no spin": ["simulate", folder / "good.toml", "--spin", "1y"],
+        "no samples": ["simulate", folder / "good.toml", "--samples", "1e9"],
+        "no throw": ["simulate", folder / "good.toml", "--throw-sd", "0.1"],
         "endless samples": ["simulate", folder / "good.toml", "--fps", "1e12"],
         "no command": [],
         "unknown option": ["run", "--what"],

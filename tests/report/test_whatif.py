@@ -1,0 +1,46 @@
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import pytest
+from matplotlib.patches import Circle
+
+from report.style import render
+from report.whatif import spread_figure
+
+
+def outcomes(centre: tuple[float, float], count: int = 300) -> pd.DataFrame:
+    rng = np.random.default_rng(0)
+    a = pd.DataFrame(rng.normal(centre, 0.2, (count, 2)), columns=["x", "y"]).assign(stone="A")
+    b = pd.DataFrame({"x": 0.5, "y": 0.5, "stone": "B"}, index=range(count))
+    c = pd.DataFrame({"x": rng.normal(0, 9, count), "y": 1.0, "stone": "$C"})
+    a, b, c = (
+        table.assign(sample=np.arange(count), hits=hits) for table, hits in ((a, 1), (b, 0), (c, 1))
+    )
+    return pd.concat([a, b, c], ignore_index=True)
+
+
+@pytest.mark.parametrize("centre", [(0.0, 0.5), (1.0, 30.0)])
+def test_the_heat_map_shows_where_the_thrown_stone_ends(centre: tuple[float, float]) -> None:
+    before = {"A": (0.0, -5.0), "B": (0.5, 0.5), "$C": (0.0, 1.0)}
+    figure = spread_figure(outcomes(centre), before, "A", "A thrown 300 times")
+    render(figure)
+    ax = figure.axes[0]
+    (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
+    assert left < centre[0] < right and bottom < centre[1] < top
+    assert right - left < 14 and top - bottom < 14
+    heat = ax.collections[0].get_array()
+    assert heat is not None
+    # The map's cells of 5 cm × 5 cm, as shares on 10 cm × 10 cm, make up the whole.
+    assert float(heat.sum()) / 4 == pytest.approx(100, abs=10)
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    # B is never hit.
+    assert labels == ["median of A", "as it lay before", r"\$C where hit"]
+    drawn = [patch.center for patch in ax.patches if isinstance(patch, Circle)]
+    assert (0.5, 0.5) in drawn and (0.0, -5.0) not in drawn
+
+
+def test_one_sample_is_enough() -> None:
+    render(
+        spread_figure(outcomes((0, 0), 1), {"A": (0, -5), "B": (0.5, 0.5), "$C": (0, 1)}, "A", "t")
+    )
