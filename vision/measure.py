@@ -134,8 +134,10 @@ def _profile(disc: Stone, effort: Effort) -> Profile:
         top, grip = [(inner, 0.0), (outer, 0.0)], 0.0
     else:
         inner, outer = effort.inner * disc.radius, effort.stone_outer * disc.radius
-        size, edge, height = disc.cap_radius, 1.03 * disc.cap_radius, disc.cap_height
-        # Outside the cap the visible surface falls off towards the striking band.
+        size, edge, height = disc.cap_radius, 1.15 * disc.cap_radius, disc.cap_height
+        # The visible surface falls off towards the striking band, but not at the cap's edge:
+        # away from a slanting view the rays would draw that edge out, and the circle fitted
+        # to it would lie too near the camera.
         top = [(inner, height), (edge, height), (disc.radius, 0.5 * height), (outer, 0.5 * height)]
         grip = HANDLE_HEIGHT
     low, high = effort.handle_inner * size, effort.handle_outer * size
