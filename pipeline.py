@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from data.results import Results
+    from data.trk import Array
+    from data.trk_write import View
     from physics.simulate import Simulation
     from physics.start import Start
     from physics.what_if import Amount, Changes
@@ -375,10 +377,14 @@ def check(
         for frame, found in zip(frames, stones, strict=True)
     ]
     carried = int((table["found"] == 0).sum())
+    rms = table["rms_px"]
+    edges = f"edges {rms.median():.2f} px off, worst frame {rms.max():.2f} px"
+    if rms.isna().all():
+        edges = "edges not measured"
     lines = [
         f"input       {files[0].name}: {_count(clip.read, 'frame')}",
-        f"camera      known in {len(table)} frames, carried in {carried} of them; edges"
-        f" {table['rms_px'].median():.2f} px off, worst frame {table['rms_px'].max():.2f} px",
+        f"camera      known in {_count(len(table), 'frame')}, carried in {carried} of them;"
+        f" {edges}",
     ]
     if radii and cameras[0].error is not None:
         lines.append(
@@ -568,9 +574,29 @@ def _check_out(out: str | Path | None) -> Path | None:
 
 
 def convert(
-    inputs: Sequence[str | Path], out: str | Path, settings: Settings = Settings()
+    inputs: Sequence[str | Path],
+    out: str | Path,
+    settings: Settings = Settings(),
+    over: str | Path | None = None,
 ) -> Measured:
-    """Write tracks in another form, by the ending of `out`: .txt, .csv or .parquet.
+    """Write tracks in another form, by the ending of `out`: .txt, .csv, .parquet or .trk.
+
+    Parameters
+    ----------
+    inputs : sequence of str or Path
+        Tables of tracks and projects. Of a run's ``tracks.csv`` a .trk also takes the
+        ``simulation.csv`` and, with `over`, the ``camera.csv`` beside it.
+    out : str or Path
+        File to write.
+    settings : Settings
+        Units, names and so on of the tables.
+    over : str or Path, optional
+        The clip that a .trk shows the tracks over.
+
+    Returns
+    -------
+    Measured
+        What was written, with warnings.
 
     Raises
     ------
@@ -580,16 +606,72 @@ def convert(
     from data.export import WRITERS
 
     path = Path(out)
-    if path.suffix.lower() not in WRITERS:
-        raise InputError(f"{path}: tracks are written as {', '.join(WRITERS)}; end the name so")
+    endings = (*WRITERS, ".trk")
+    ending = path.suffix.lower()
+    if ending not in endings:
+        raise InputError(f"{path}: tracks are written as {', '.join(endings)}; end the name so")
+    if over is not None and ending != ".trk":
+        raise InputError(f"{path}: only a .trk shows tracks over a clip (--over)")
     _check_out(path.parent)
     files = find_inputs(inputs)
     odd = [file for file in files if file.suffix.lower() not in TABLES]
     if odd:
         raise InputError(f"{odd[0]}: not a table of tracks; try curlshot track")
     measured = _import_tables(files, settings)
-    WRITERS[path.suffix.lower()](measured.sightings, path)
+    if ending == ".trk":
+        return _write_project(measured, path, None if over is None else Path(over))
+    WRITERS[ending](measured.sightings, path)
     return measured
+
+
+def _write_project(measured: Measured, path: Path, over: Path | None) -> Measured:
+    """Write a .trk with what a run has left beside its tracks."""
+    import pandas as pd
+
+    from data.trk_write import plain_view, write_trk
+
+    sightings, beside = measured.sightings, measured.files[0].parent
+    simulated = beside / "simulation.csv"
+    simulations = {}
+    if measured.files[0].name == "tracks.csv" and simulated.is_file():
+        simulations = {str(m): table for m, table in pd.read_csv(simulated).groupby("model")}
+    if over is None:
+        view = plain_view(sightings)
+        marks = view.coordinates.pixels(sightings["frame"], sightings[["x", "y"]].to_numpy(float))
+        write_trk(sightings, path, view, marks, simulations)
+        return measured
+    view, marks, note = _view_over(measured, beside / "camera.csv", path, over)
+    write_trk(sightings, path, view, marks, simulations)
+    return replace(measured, warnings=(*measured.warnings, note))
+
+
+def _view_over(
+    measured: Measured, camera_csv: Path, path: Path, over: Path
+) -> tuple[View, Array, str]:
+    """Place tracks in the pictures of a clip by the cameras of a run."""
+    import pandas as pd
+
+    from data.trk_write import View
+    from vision.clip import open_clip
+    from vision.tracker_view import cameras_of, closest_similarity, marks_of, off_at
+
+    if not camera_csv.is_file():
+        raise InputError(f"{camera_csv}: no such file; --over needs tracks.csv and camera.csv")
+    clip = open_clip(find_inputs([over]))
+    cameras = cameras_of(pd.read_csv(camera_csv), clip.size, str(camera_csv))
+    sightings = measured.sightings
+    unknown = sorted(set(sightings["frame"]) - set(cameras))
+    if unknown:
+        raise InputError(f"{camera_csv}: no camera of frame {unknown[0]}; not of the same run")
+    system = closest_similarity(list(cameras.values()))
+    marks = marks_of(cameras, sightings["frame"], sightings[["x", "y"]].to_numpy(float))
+    off = off_at(system, list(cameras.values()), HOUSE.twelve_foot)
+    note = (
+        f"{path}: Tracker knows no perspective; at the 12-ft ring it shows places up to"
+        f" {100 * off:.1f} cm off (exact ones are in the file, and read back from it)"
+    )
+    video = Path(os.path.relpath(over, path.parent)).as_posix()
+    return View(system, clip.size, video, clip.expected or 0), marks, note
 
 
 @contextmanager
@@ -777,11 +859,14 @@ def _parser() -> argparse.ArgumentParser:
         "tracks into another form, by the ending of OUT",
         "  curlshot convert shot.trk shot.csv               a Tracker project to a table\n"
         "  curlshot convert shot-curlshot/tracks.csv a.txt  text for Tracker's import\n"
-        "  curlshot convert A.txt B.txt shot.parquet        needs pyarrow\n",
+        "  curlshot convert A.txt B.txt shot.parquet        needs pyarrow\n"
+        "  curlshot convert shot-curlshot/tracks.csv shot.trk --over shot.mp4\n"
+        "                                                   a Tracker project over the clip\n",
         _do_convert,
     )
     convert_.add_argument("inputs", nargs="+", metavar="IN", help="tables of tracks, projects")
-    convert_.add_argument("out", metavar="OUT", help=".txt, .csv or .parquet")
+    convert_.add_argument("out", metavar="OUT", help=".txt, .csv, .parquet or .trk")
+    convert_.add_argument("--over", metavar="CLIP", help="the clip that a .trk shows")
     _table_options(convert_)
     convert_.add_argument("--fps", type=_positive, help="rate of a table without times, 1/s")
 
@@ -1153,7 +1238,7 @@ def _do_estimate(arguments: argparse.Namespace, bars: _Bars) -> str:
 
 
 def _do_convert(arguments: argparse.Namespace, _: _Bars) -> str:
-    measured = convert(arguments.inputs, arguments.out, _settings(arguments))
+    measured = convert(arguments.inputs, arguments.out, _settings(arguments), arguments.over)
     stones = measured.sightings["stone"].nunique()
     lines = [f"{_count(stones, 'stone')} in {_count(measured.frames, 'frame')}: {arguments.out}"]
     return "\n".join(lines + [f"warning: {text}" for text in measured.warnings])

@@ -8,7 +8,7 @@ the picture after the video's filters.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pandas as pd
@@ -94,6 +94,9 @@ class PointMass:
         Pixels.
     filled : int
         How many of the marks Tracker put between those of the user.
+    measured : ndarray, shape (n, 4)
+        Exact t, x, y and angle of each mark (s, m, rad), where this program wrote the project;
+        else without rows.
     """
 
     name: str
@@ -101,6 +104,7 @@ class PointMass:
     frames: Frames
     marks: Array
     filled: int = 0
+    measured: Array = field(default_factory=lambda: np.empty((0, 4)))
 
 
 @dataclass(frozen=True)
@@ -209,6 +213,10 @@ class Project:
     def _rows(self, track: PointMass) -> pd.DataFrame:
         used = self.timing.includes(track.frames)
         frames = track.frames[used]
+        if len(track.measured):
+            t, x, y, theta = track.measured[used].T
+            known = {"t": t, "frame": frames, "x": x, "y": y, "theta": theta}
+            return pd.DataFrame({"stone": track.name, **known})
         x, y = self.coordinates.world(frames, track.marks[used]).T
         t = self.timing.times(frames)
         return pd.DataFrame({"stone": track.name, "t": t, "frame": frames, "x": x, "y": y})
@@ -320,7 +328,17 @@ def _point_mass(track: Thing, name: str, shift: int) -> PointMass:
         frames=frames,
         marks=places,
         filled=_filled(frames, places, by_hand),
+        measured=_measured(track, len(frames)),
     )
+
+
+def _measured(track: Thing, count: int) -> Array:
+    """Read the exact places that this program adds; Tracker drops them when it saves."""
+    written = track.thing("measured")
+    numbers = np.empty(0) if written is None else written.floats()
+    rows = numbers.reshape(-1, 4) if len(numbers) == 4 * count else np.empty((0, 4))
+    sound = np.isfinite(rows[:, :3]).all() and not np.isinf(rows).any()
+    return rows if sound and (np.diff(rows[:, 0]) > 0).all() else np.empty((0, 4))
 
 
 def _filled(frames: Frames, marks: Array, by_hand: NDArray[np.bool_]) -> int:

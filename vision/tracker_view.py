@@ -1,0 +1,86 @@
+"""Cameras as Tracker has them: one similarity per frame, closest at the tee."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike, NDArray
+
+from data.errors import InputError
+from data.trk import Coordinates
+from vision.camera import CAMERA_COLUMNS, Camera
+
+Array = NDArray[np.float64]
+
+CORNER = 0.5
+"""Tracker counts pixels from the corner of the first, OpenCV from its middle, px."""
+
+
+def cameras_of(table: pd.DataFrame, size: tuple[int, int], source: str) -> dict[int, Camera]:
+    """Make cameras, by frame, of the table ``camera.csv`` and the size of the picture.
+
+    Raises
+    ------
+    InputError
+        A column is missing.
+    """
+    missing = [name for name in CAMERA_COLUMNS if name not in table]
+    if missing:
+        raise InputError(f"{source}: no column {', '.join(missing)}; not a camera.csv of a run")
+    cells = [f"h{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3)]
+    homographies = table[cells].to_numpy(float).reshape(-1, 3, 3)
+    numbers = table[["frame", "t", "k1", "k2"]].to_numpy(float)
+    return {
+        int(frame): Camera(int(frame), t, homography, size, k1, k2)
+        for (frame, t, k1, k2), homography in zip(numbers, homographies, strict=True)
+    }
+
+
+def closest_similarity(cameras: Sequence[Camera], step: float = 1e-4) -> Coordinates:
+    """Tracker's coordinate systems that agree with cameras at the tee.
+
+    Origin, and, of all rotations with one scale, the one closest (least squares) to the
+    derivative of the projection there.
+
+    Parameters
+    ----------
+    cameras : sequence of Camera
+        In the order of their frames.
+    step : float
+        For the derivative, m.
+    """
+    around = step * np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]], float)
+    pixels = np.array([camera.project(around) for camera in cameras])
+    along_x = (pixels[:, 1] - pixels[:, 2]) / (2 * step)
+    along_y = (pixels[:, 3] - pixels[:, 4]) / (2 * step)
+    cos = (along_x[:, 0] - along_y[:, 1]) / 2
+    sin = -(along_x[:, 1] + along_y[:, 0]) / 2
+    scale = np.hypot(cos, sin)
+    return Coordinates(
+        np.array([camera.frame for camera in cameras], np.int64),
+        pixels[:, 0] + CORNER,
+        np.arctan2(sin, cos),
+        np.column_stack([scale, scale]),
+    )
+
+
+def off_at(system: Coordinates, cameras: Sequence[Camera], radius: float) -> float:
+    """How far Tracker shows places on a circle about the tee from where they are, m, at worst."""
+    angle = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+    ring = radius * np.column_stack([np.cos(angle), np.sin(angle)])
+    worst = [
+        np.hypot(*(system.world(np.full(len(ring), c.frame), c.project(ring) + CORNER) - ring).T)
+        for c in cameras
+    ]
+    return float(np.max(worst))
+
+
+def marks_of(cameras: dict[int, Camera], frames: ArrayLike, places: Array) -> Array:
+    """Where places on the ice are in the pictures, Tracker's pixels, shape (n, 2)."""
+    marks = [
+        cameras[int(frame)].project(place)
+        for frame, place in zip(np.asarray(frames), places, strict=True)
+    ]
+    return np.array(marks) + CORNER
