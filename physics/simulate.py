@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from itertools import combinations
 
@@ -254,20 +254,20 @@ class _Run:
             (i, j): min(2 * shot.radius, math.dist((a.x, a.y), (b.x, b.y)))
             for (i, a), (j, b) in combinations(enumerate(shot.stones), 2)
         }
-        self.contacts = {pair: self._next_contact(*pair) for pair in self.reach}
+        # Times of the next contacts; earliest ones that can be, unless in `exact`.
+        self.contacts: dict[tuple[int, int], float] = {}
+        self.exact: set[tuple[int, int]] = set()
+        self._look_ahead(self.reach)
 
     def run(self, until: float) -> Simulation:
         """Go from contact to contact."""
         for _ in range(MAX_IMPULSES):
-            first = min(self.contacts.values(), default=math.inf)
-            if first > until or first == math.inf:
+            pair = self._next_pair(until)
+            if pair is None:
                 break
-            pair = min(p for p, t in self.contacts.items() if t <= first + SIMULTANEOUS)
             self.t = max(self.t, self.contacts[pair])
             self._hit(*pair)
-            for other in self.reach:
-                if not set(pair).isdisjoint(other):
-                    self.contacts[other] = self._next_contact(*other)
+            self._look_ahead(p for p in self.reach if not set(pair).isdisjoint(p))
         else:
             raise InputError(f"shot: more than {MAX_IMPULSES} impulses: set fewer stones to touch")
         names = [stone.name for stone in self.shot.stones]
@@ -284,6 +284,31 @@ class _Run:
         if paths and paths[-1].start >= self.t:
             paths.pop()  # it never came into effect
         paths.append(path)
+
+    def _look_ahead(self, pairs: Iterable[tuple[int, int]]) -> None:
+        """Bound the next contacts of pairs: the stones only get slower until they meet."""
+        points = [paths[-1].point(self.t) for paths in self.paths]
+        for i, j in pairs:
+            a, b = points[i], points[j]
+            gap = math.dist(a[:2], b[:2]) - self.reach[i, j]
+            speed = a.speed + b.speed
+            far = speed == 0 or gap > self.paths[i][-1].length + self.paths[j][-1].length
+            self.contacts[i, j] = math.inf if far else self.t + max(gap, 0.0) / speed
+            self.exact.discard((i, j))
+
+    def _next_pair(self, until: float) -> tuple[int, int] | None:
+        """Return the pair that meets next; None where none does by then."""
+        while True:
+            first = min(self.contacts.values(), default=math.inf)
+            if first > until or first == math.inf:
+                return None
+            due = [pair for pair, t in self.contacts.items() if t <= first + SIMULTANEOUS]
+            unknown = [pair for pair in due if pair not in self.exact]
+            if not unknown:
+                return min(due)
+            for pair in unknown:
+                self.contacts[pair] = self._next_contact(*pair)
+                self.exact.add(pair)
 
     def _next_contact(self, i: int, j: int) -> float:
         """Time of the next contact of two stones, inf where there is none."""
