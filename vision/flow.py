@@ -1,4 +1,4 @@
-"""Motion of the picture from one frame to the next, for when the rings are not to be seen."""
+"""Motion of the picture from one frame to the next."""
 
 from __future__ import annotations
 
@@ -6,14 +6,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.pose import Marks, View, fixed, project
-
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
 
 FLOW_WIDTH = 480
-FLOW_SD = 1.0
-"""Standard deviation of a carried point, px."""
 
 
 def _thumbnail(image: Image) -> Image:
@@ -53,15 +49,3 @@ def similarity(before: Image, after: Image) -> Array | None:
     shift = (scale - 1) / 2
     matrix[:, 2] = scale * matrix[:, 2] + shift - matrix[:, :2] @ np.full(2, shift)
     return matrix
-
-
-def carried(matrix: Array, view: View, rig: Array, size: tuple[int, int]) -> Marks:
-    """Points of the centre line in the picture, where `matrix` moves them, as marks."""
-    along = np.linspace(-6.0, 12.0, 73)
-    ice = np.stack([np.zeros(len(along)), along], axis=-1)
-    place = project(ice, view.vector, rig, size)
-    margin = 0.2 * size[1]
-    with np.errstate(invalid="ignore"):
-        inside = ((place > -margin) & (place < np.array(size) + margin)).all(-1)
-    moved = place[inside] @ matrix[:, :2].T + matrix[:, 2]
-    return fixed(ice[inside], moved, FLOW_SD * np.sqrt(max(len(moved), 1) / 4))

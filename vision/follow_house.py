@@ -1,13 +1,14 @@
 """Follow the house through a clip: one camera place, pan, tilt, roll and zoom per frame.
 
 The house is found once. From then on each frame is predicted, its edges are measured along
-their normals and the view is refined. When the clip has been read, place, distortion and painted
-radii are fitted jointly to many frames, and every view again with these held.
+their normals and the view is refined. Where that fails, the picture before is recognised in it,
+and last the house is found anew. What all frames share is fitted when the clip has been read.
 """
 
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -15,47 +16,198 @@ from numpy.typing import NDArray
 
 from data.errors import SceneError
 from data.progress import Progress, no_progress
-from vision.adjust import solve
+from data.sheet import HOUSE
+from vision.adjust import ViewSolution, solve, solve_view
+from vision.camera import Camera
 from vision.clip import Clip, Frame, Image
-from vision.flow import carried, similarity
-from vision.house import HouseFit, find_house, judge
+from vision.house import SHARING, HouseFit, find_house
 from vision.joint import HouseTrack, Seen, fit_clip
-from vision.marks import measure
-from vision.pose import (
-    ANYWHERE,
-    CIRCLES,
-    OVERHEAD,
-    Prior,
-    View,
-    joined,
-)
+from vision.landmarks import Keyframe, keyframe, recognise
+from vision.marks import Evidence, measure
+from vision.pose import ANYWHERE, CIRCLES, OVERHEAD, R4, R8, Prior, View, camera, joined
 
 Array = NDArray[np.float64]
 
 FIND_EVERY = 5
 """Frames from one attempt to find the house to the next."""
 
-LOOK_BACK = 60
+LOOK_BACK = 30
 """Frames kept while the house has not been found, to be followed backwards from the first find."""
+
+PATIENCE = 12
+"""Frames in a row that may fail before following gives up and only finding is left."""
+
+MOST_NORMALS = 60
+"""Normals on each circle."""
+
+REACH = 0.007
+"""Half length of the normals in widths of the picture."""
+
+MARK_SD = 0.2
+"""Least standard deviation of a mark, px."""
+
+WIDTH = 6.0
+"""Width of the robust loss, in standard deviations, while the shared part is provisional."""
 
 SETTLED_PX = 1.5
 """Correction below which the edges need not be measured anew from the corrected view, px."""
 
-CARRY_MAX_S = 4.0
-"""A view carried longer than this without rings is given up."""
+LEAST_ARC = 1.2
+"""Length of circle that must be seen to fix a view, m."""
+
+LEAST_SUPPORT = 0.3
+"""Of the circles that are in the picture, this part must be seen."""
+
+LEARNING = 0.1
+"""How fast the colours of the edges are learned anew."""
+
+REFINE_AT = (8, 40, 160)
+"""Numbers of frames at which what they share is fitted anew on the way."""
+
+REFINE_FRAMES = 6
+
+FREE = (np.inf, np.inf, 0.02, np.inf)
+"""How far a view may be turned from its prediction: the roll is free where no line is seen."""
+
+MOST_DRIFT = 0.25
+"""A view carried so far astray is given up, m."""
+
+SAME_RMS_PX = 0.3
+"""How much worse another piece's camera may explain a house that it shows as well, px."""
 
 
 @dataclass
 class _Piece:
-    """Frames without a cut in between, and what was found first."""
+    """Frames of one camera, and what was found of it first."""
 
     rig: Array
     prior: Prior
+    palette: Array
     seen: list[Seen] = field(default_factory=list)
+    image: Image | None = None
+    cov: Array = field(default_factory=lambda: np.zeros((4, 4)))
+    key: Keyframe | None = None
+    lost: int = 0
 
     @property
-    def length(self) -> int:
+    def found(self) -> int:
+        """Number of frames that fixed their camera themselves."""
         return sum(s.found for s in self.seen)
+
+
+class HouseFollower:
+    """Follows the house frame by frame, in one pass.
+
+    Parameters
+    ----------
+    size : tuple of int
+        Width and height of the pictures, px.
+    first : HouseFit, optional
+        The house in the frame of its camera: what shows that one is the shot. Else it is looked
+        for, and the longest piece is the shot.
+    """
+
+    def __init__(self, size: tuple[int, int], first: HouseFit | None = None) -> None:
+        self._size = size
+        self._first = first
+        self._pieces: list[_Piece] = []
+        self._piece: _Piece | None = None
+        self._waiting: deque[Frame] = deque(maxlen=LOOK_BACK)
+        self._since_find = FIND_EVERY
+
+    def look(self, frame: Frame) -> Sequence[tuple[Frame, Camera]]:
+        """Place one more frame.
+
+        Returns
+        -------
+        sequence of (Frame, Camera)
+            Frames placed thereby, in order, with provisional cameras: as a rule this one;
+            after a find also those before it; none where no house is seen.
+        """
+        piece = self._piece
+        if piece is not None:
+            seen = _next(piece, frame)
+            if seen is not None:
+                _add(piece, seen, frame.image)
+                _refine(piece, self._size)
+                self._waiting.clear()
+                return [(frame, self._provisional(piece, seen))]
+            piece.lost += 1
+            if piece.lost == 1:
+                self._since_find = FIND_EVERY
+            if piece.lost > PATIENCE:
+                self._piece = None
+        house = self._find(frame)
+        if house is not None:
+            return self._start(frame, house)
+        self._waiting.append(frame)
+        return []
+
+    def _find(self, frame: Frame) -> HouseFit | None:
+        """Look for the house, now and then; the first is the one given, if one is."""
+        if self._first is not None and not self._pieces:
+            return self._first if frame.index == self._first.camera.frame else None
+        self._since_find += 1
+        if self._since_find < FIND_EVERY:
+            return None
+        self._since_find = 0
+        return find_house(frame.image, frame=frame.index, t=frame.t)
+
+    def finish(self) -> HouseTrack | None:
+        """Fit what all frames of the shot share; None where no house was seen."""
+        pieces = [p for p in self._pieces if p.found]
+        if not pieces:
+            return None
+        if self._first is None:
+            best, which = max(pieces, key=lambda p: p.found), "the longest"
+        else:
+            best, which = pieces[0], "the one given"
+        track = fit_clip(best.seen, best.rig, best.prior, self._size)
+        return replace(track, warnings=(*_left_out(best, pieces, which), *track.warnings))
+
+    def _provisional(self, piece: _Piece, seen: Seen) -> Camera:
+        return camera(
+            seen.view, piece.rig, self._size, frame=seen.index, t=seen.t, found=seen.found
+        )
+
+    def _start(self, frame: Frame, house: HouseFit) -> list[tuple[Frame, Camera]]:
+        """Begin a piece, or go on with one that shows the same; then follow it back."""
+        piece, view = self._same(house)
+        if piece is None:
+            prior = OVERHEAD if house.overhead else ANYWHERE
+            piece, view = _Piece(house.rig, prior, house.evidence.palette), house.view
+            self._pieces.append(piece)
+        self._piece, piece.lost, piece.key = piece, 0, None
+        before, piece.seen = piece.seen, []
+        first = _settle(piece, frame, view)
+        if first is None:
+            first = Seen(frame.index, frame.t, view, house.evidence.marks, True)
+        _add(piece, first, frame.image)
+        placed = [(frame, first)]
+        for earlier in reversed(self._waiting):
+            seen = _next(piece, earlier)
+            if seen is None:
+                break
+            _add(piece, seen, earlier.image)
+            placed.append((earlier, seen))
+        self._waiting.clear()
+        placed.reverse()
+        piece.seen = [*before, *(seen for _, seen in placed)]
+        piece.image, piece.key = frame.image, None
+        return [(f, self._provisional(piece, s)) for f, s in placed]
+
+    def _same(self, house: HouseFit) -> tuple[_Piece | None, View]:
+        """Find the piece whose camera explains a house as well, and its view in this frame."""
+        marks = house.evidence.marks
+        for piece in reversed(self._pieces):
+            if not _alike(piece.palette, house.evidence.palette):
+                continue
+            view = solve_view(marks, house.view, piece.rig, self._size, width=1e3, iterations=30)
+            fit = solve_view(marks, view.view, piece.rig, self._size)
+            enough = fit.inliers.sum() > 0.8 * len(marks)
+            if enough and fit.rms < 1.3 * house.rms_px + SAME_RMS_PX:
+                return piece, fit.view
+        return None, house.view
 
 
 def follow_house(
@@ -69,147 +221,158 @@ def follow_house(
         Read once, in order; a single picture is a clip of one frame.
     progress : Progress
     first : HouseFit, optional
-        The house in the frame of its camera: the piece that shows it is used. Else it is looked
-        for, and the longest piece is used.
+        As for `HouseFollower`.
 
     Raises
     ------
     SceneError
         No house can be made out in any frame.
     """
-    pieces = _read(clip, progress, first)
-    if not pieces:
+    follower = HouseFollower(clip.size, first)
+    for count, frame in enumerate(clip):
+        progress("house", count + 1, clip.expected)
+        follower.look(frame)
+    progress("camera", 0, 1)
+    track = follower.finish()
+    progress("camera", 1, 1)
+    if track is None:
         raise SceneError(
             f"{clip.files[0]}: no house in view; point at it with --house, or for another scene"
             " with a still camera use --stick X1,Y1,X2,Y2,METRES"
         )
-    best = max(pieces, key=lambda p: p.length) if first is None else pieces[0]
-    progress("camera", 0, 1)
-    track = fit_clip(best.seen, best.rig, best.prior, clip.size)
-    which = "the longest" if first is None else "the one given"
-    track = replace(track, warnings=(*_left_out(best, len(pieces), which), *track.warnings))
-    progress("camera", 1, 1)
     return track
 
 
-def _read(clip: Clip, progress: Progress, given: HouseFit | None) -> list[_Piece]:
-    pieces: list[_Piece] = []
-    piece: _Piece | None = None
-    waiting: deque[Frame] = deque(maxlen=LOOK_BACK)
-    before: Image | None = None
-    for count, frame in enumerate(clip):
-        progress("house", count + 1, clip.expected)
-        if piece is not None:
-            seen = _next(piece, frame, before)
-            if seen is None:
-                _trim(piece)
-                piece, last_try = None, -FIND_EVERY
-                waiting.clear()
-            else:
-                piece.seen.append(seen)
-        if piece is None:
-            if given is not None and not pieces:
-                fit = given if frame.index == given.camera.frame else None
-            elif not waiting or count - last_try >= FIND_EVERY or clip.expected == count + 1:
-                last_try = count
-                fit = find_house(frame.image)
-            else:
-                fit = None
-            if fit is not None:
-                piece = _start(fit, frame, waiting)
-                pieces.append(piece)
-                waiting.clear()
-            if piece is None:
-                waiting.append(frame)
-        before = frame.image
-    return [p for p in pieces if p.length]
+def _add(piece: _Piece, seen: Seen, image: Image) -> None:
+    piece.seen.append(seen)
+    piece.image, piece.lost = image, 0
 
 
-def _start(fit: HouseFit, frame: Frame, waiting: deque[Frame]) -> _Piece:
-    """From the house in one frame, follow it back through the frames before."""
-    piece = _Piece(fit.rig, OVERHEAD if fit.overhead else ANYWHERE)
-    first = Seen(frame.index, frame.t, fit.view, fit.evidence.marks, True)
-    piece.seen.append(first)
-    after = frame.image
-    for earlier in reversed(waiting):
-        seen = _next(piece, earlier, after)
-        if seen is None:
-            break
-        piece.seen.append(seen)
-        after = earlier.image
-    piece.seen.reverse()
-    return piece
-
-
-def _trim(piece: _Piece) -> None:
-    """Take carried frames off the end: a cut may have come among them."""
-    while piece.seen and not piece.seen[-1].found:
-        piece.seen.pop()
-
-
-def _next(piece: _Piece, frame: Frame, before: Image | None) -> Seen | None:
-    """Follow into one more frame; None where the scene is another one."""
+def _next(piece: _Piece, frame: Frame) -> Seen | None:
+    """Follow into one more frame; None where the house is not to be seen, nor its ice."""
     last = piece.seen[-1]
-    speed = np.zeros(4)
-    if len(piece.seen) > 1 and piece.seen[-2].found and last.found:
-        speed = last.view.vector - piece.seen[-2].view.vector
-    seen = _settle(piece, frame, View(last.view.vector + speed))
+    seen = _settle(piece, frame, _predicted(piece, frame))
     if seen is not None:
+        piece.key = None
         return seen
+    if piece.key is None and piece.image is not None:
+        piece.key = keyframe(piece.image, last.view, piece.rig, piece.cov)
+    if piece.key is None or piece.key.drift > MOST_DRIFT:
+        return None
+    landmarks = recognise(piece.key, frame.image, last.view, piece.rig)
+    if landmarks is None:
+        return None
     size = (frame.image.shape[1], frame.image.shape[0])
-    matrix = None if before is None else similarity(before, frame.image)
-    if matrix is None:
-        return None
-    ghosts = carried(matrix, last.view, piece.rig, size)
-    if len(ghosts) < 8:
-        return None
-    moved = solve([ghosts], [last.view], piece.rig, size, view_sd=(1, 1, 0.02, 0.1)).views[0]
-    seen = _settle(piece, frame, moved)
+    view = solve_view(
+        landmarks, last.view, piece.rig, size, width=10.0, view_sd=np.full(4, np.inf)
+    ).view
+    seen = _settle(piece, frame, view)
     if seen is not None:
+        piece.key = None
         return seen
-    since = next((s.t for s in reversed(piece.seen) if s.found), frame.t)
-    if abs(frame.t - since) > CARRY_MAX_S:
-        return None
-    if (frame.index - piece.seen[0].index) % FIND_EVERY == 0:
-        fit = find_house(frame.image)
-        if fit is not None:
-            seen = _settle(piece, frame, fit.view)
-            if seen is not None:
-                return seen
-    lines = measure(frame.image, moved.vector, piece.rig, reach=_reach(size)).marks
-    marks = joined([ghosts, lines.pick(lines.line >= CIRCLES)])
-    view = solve([marks], [moved], piece.rig, size, view_sd=(1, 1, 0.02, 0.1)).views[0]
-    return Seen(frame.index, frame.t, view, marks, False)
+    lines = _look(piece, frame.image, view, REACH).marks
+    marks = joined([landmarks, lines.pick(lines.line >= CIRCLES)])
+    fit = solve_view(marks, view, piece.rig, size, view_sd=(1, 1, 0.02, 0.1))
+    drift = piece.key.drift
+    if len(landmarks) < len(piece.key.ice):  # half of its corners are gone: two marks each
+        piece.key = keyframe(frame.image, fit.view, piece.rig, fit.cov, drift)
+    return Seen(frame.index, frame.t, fit.view, marks, False, drift)
 
 
-def _reach(size: tuple[int, int]) -> float:
-    return max(7.0, 0.007 * size[0])
+def _predicted(piece: _Piece, frame: Frame) -> View:
+    """View at constant velocity."""
+    last = piece.seen[-1]
+    if len(piece.seen) < 2 or not (last.found and piece.seen[-2].found):
+        return last.view
+    before = piece.seen[-2]
+    if abs(last.index - before.index) > 2:
+        return last.view
+    ahead = (frame.t - last.t) / (last.t - before.t)
+    if not 0 < ahead < 3:
+        return last.view
+    return View(last.view.vector + ahead * (last.view.vector - before.view.vector))
+
+
+def _look(piece: _Piece, image: Image, view: View, reach: float) -> Evidence:
+    return measure(
+        image, view.vector, piece.rig, reach=max(reach * image.shape[1], 6.0),
+        most=MOST_NORMALS, least_sd=MARK_SD, palette=piece.palette,
+    )  # fmt: skip
 
 
 def _settle(piece: _Piece, frame: Frame, view: View) -> Seen | None:
     """Refine a predicted view on the rings; None where they are not there."""
     size = (frame.image.shape[1], frame.image.shape[0])
-    reach = _reach(size)
     for _ in range(3):
-        evidence = measure(frame.image, view.vector, piece.rig, reach=reach)
-        if judge(evidence) == 0:
+        evidence = _look(piece, frame.image, view, REACH)
+        if not _enough(evidence, piece.rig, evidence.covered):
             return None
-        fit = solve(
-            [evidence.marks], [view], piece.rig, size, view_sd=(np.inf, np.inf, 0.02, np.inf)
+        fit = solve_view(
+            evidence.marks, view, piece.rig, size, view_sd=FREE, width=WIDTH, iterations=6
         )
-        shift = np.abs(fit.views[0].vector - view.vector)
-        view = fit.views[0]
+        shift = np.abs(fit.view.vector - view.vector)
+        view = fit.view
         if shift[:3].max() * view.focal < SETTLED_PX:
             break
-    marks = evidence.marks.pick(fit.inliers[0])
-    return Seen(frame.index, frame.t, view, marks, True)
+    if not _enough(evidence, piece.rig, _explained(evidence, fit)):
+        return None
+    known = np.isfinite(piece.palette)
+    new = np.isfinite(evidence.palette)
+    mixed = (1 - LEARNING) * piece.palette + LEARNING * evidence.palette
+    piece.palette = np.where(known & new, mixed, np.where(known, piece.palette, evidence.palette))
+    piece.cov = fit.cov
+    return Seen(frame.index, frame.t, view, evidence.marks.pick(fit.inliers), True)
 
 
-def _left_out(piece: _Piece, pieces: int, which: str) -> tuple[str, ...]:
-    if pieces == 1:
+def _explained(evidence: Evidence, fit: ViewSolution) -> Array:
+    """Part of each circle that is covered by edges which the view explains."""
+    line = evidence.marks.line
+    share = [
+        float(fit.inliers[line == kind].mean()) if (line == kind).any() else 0.0
+        for kind in range(CIRCLES)
+    ]
+    return evidence.covered * share
+
+
+def _enough(evidence: Evidence, rig: Array, covered: Array) -> bool:
+    """Whether so much of the circles is covered that they fix a view."""
+    around = 2 * np.pi * np.array([HOUSE.twelve_foot, rig[R8], rig[R4]])
+    arc, whole = float(covered @ around), float(evidence.visible @ around)
+    return arc > LEAST_ARC and arc > LEAST_SUPPORT * whole
+
+
+def _alike(one: Array, other: Array) -> bool:
+    """Whether the circles have the same colours in two palettes, as far as both know them."""
+    contrast = np.linalg.norm(one[:CIRCLES, 0] - one[:CIRCLES, 1], axis=1)
+    away = np.linalg.norm(one[:CIRCLES] - other[:CIRCLES], axis=2).max(1)
+    known = np.isfinite(contrast) & np.isfinite(away)
+    return bool((away[known] < 0.5 * contrast[known]).all())
+
+
+def _refine(piece: _Piece, size: tuple[int, int]) -> None:
+    """Fit anew what the frames share, at first often, so that the way on is more precise."""
+    if not piece.seen[-1].found or piece.found not in REFINE_AT:
+        return
+    good = [s for s in piece.seen if s.found]
+    at = np.unique(np.round(np.linspace(0, len(good) - 1, REFINE_FRAMES)).astype(int))
+    chosen = [good[i] for i in at]
+    joint = solve(
+        [s.marks for s in chosen], [s.view for s in chosen], piece.rig, size, prior=piece.prior,
+        iterations=10, sharing=SHARING,
+    )  # fmt: skip
+    piece.rig = joint.rig
+    for i in (-2, -1):
+        seen = piece.seen[i]
+        view = solve_view(seen.marks, seen.view, piece.rig, size).view
+        piece.seen[i] = replace(seen, view=view)
+
+
+def _left_out(best: _Piece, pieces: Sequence[_Piece], which: str) -> tuple[str, ...]:
+    if len(pieces) == 1:
         return ()
-    first, last = piece.seen[0].index, piece.seen[-1].index
+    first, last = best.seen[0].index, best.seen[-1].index
+    others = ", ".join(f"{p.seen[0].index} to {p.seen[-1].index}" for p in pieces if p is not best)
     return (
-        f"the house is shown in {pieces} separate pieces; only {which} is used, frames"
-        f" {first} to {last}",
+        f"the house is shown in {len(pieces)} separate pieces; only {which} is used, frames"
+        f" {first} to {last}; left out: {others}",
     )

@@ -53,9 +53,6 @@ so much larger than these say are the standard errors, as cameras known otherwis
 YARDSTICK_SD = 0.0018
 """How well the outer edge of the 12-ft circle is made out in a picture, m."""
 
-CARRY_DRIFT = 0.03
-"""How fast a carried view goes astray, m/s on the ice."""
-
 UNTOLD = 0.7
 """Share of its prior standard deviation above which the camera's height counts as assumed."""
 
@@ -88,13 +85,28 @@ class HouseTrack:
 
 @dataclass(frozen=True)
 class Seen:
-    """One followed frame: what was measured in it, and whether that fixes its view."""
+    """One followed frame.
+
+    Attributes
+    ----------
+    index, t : int, float
+        Index in the clip and time, s.
+    view : View
+        Provisional.
+    marks : Marks
+        What was measured in it.
+    found : bool
+        Whether its circles fix its view; else it is carried by fixed points of the ice.
+    drift : float
+        Standard deviation that the places of its fixed points share, m.
+    """
 
     index: int
     t: float
     view: View
     marks: Marks
     found: bool
+    drift: float = 0.0
 
 
 def fit_clip(seen: Sequence[Seen], rig: Array, prior: Prior, size: tuple[int, int]) -> HouseTrack:
@@ -113,12 +125,7 @@ def fit_clip(seen: Sequence[Seen], rig: Array, prior: Prior, size: tuple[int, in
     good = [s for s in seen if s.found]
     chosen = _spread(good)
     shared, _ = bundle([s.marks for s in chosen], [s.view for s in chosen], rig, size, prior)
-    found_at = np.array([s.t for s in good])
-    cameras = []
-    for s in seen:
-        # Frames before the first find were carried too: backwards.
-        drift = 0.0 if s.found else CARRY_DRIFT * float(np.abs(found_at - s.t).min())
-        cameras.append(fit_frame(s, shared, size, drift))
+    cameras = [fit_frame(s, shared, size) for s in seen]
     sd = LONG_RANGE * np.sqrt(np.diag(shared.cov)[:RIG_SIZE])
     return HouseTrack(
         tuple(cameras),
@@ -129,7 +136,7 @@ def fit_clip(seen: Sequence[Seen], rig: Array, prior: Prior, size: tuple[int, in
     )
 
 
-def fit_frame(seen: Seen, shared: Bundle, size: tuple[int, int], drift: float = 0.0) -> Camera:
+def fit_frame(seen: Seen, shared: Bundle, size: tuple[int, int]) -> Camera:
     """Fit one frame's view with what it shares held; the camera, with its error."""
     sd = seen.marks.sd * shared.noise[family(seen.marks.line)]
     marks = replace(seen.marks, sd=sd)
@@ -151,7 +158,7 @@ def fit_frame(seen: Seen, shared: Bundle, size: tuple[int, int], drift: float = 
         LONG_RANGE**2 * common @ shared.cov @ common.T,
         to_camera[:, :VIEW_SIZE] @ own @ to_camera[:, :VIEW_SIZE].T,
         YARDSTICK_SD / HOUSE.twelve_foot,
-        drift,
+        seen.drift,
     )
     rms = fit.rms if seen.found else float("nan")
     quality = _explained(marks.pick(fit.inliers), fit.view, shared.rig, size)
@@ -198,7 +205,7 @@ def _warnings(seen: Sequence[Seen], prior: Prior, rig: Array, sd: Array) -> tupl
     if lost:
         found.append(
             f"{lost} of {len(seen)} frames do not show the rings; there the camera is"
-            " carried by the motion of the picture"
+            " carried by what is fixed to the ice"
         )
     if sd[2] > UNTOLD * prior.sd[2]:
         found.append(

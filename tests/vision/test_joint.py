@@ -119,7 +119,7 @@ def test_fixed_points_may_join() -> None:
     pixel = true.project(np.stack([along, across, np.zeros(4)], axis=-1))
     normal = np.repeat(np.eye(2), 2, axis=0)
     fixed = Marks(line, along, pixel, normal, np.full(4, 0.3), across)
-    frames.append(Seen(8, 8 / 25, frames[0].view, fixed, False))
+    frames.append(Seen(8, 8 / 25, frames[0].view, fixed, False, drift=0.003))
     camera = fit_clip(frames, start_rig(OVERHEAD), OVERHEAD, SIZE).cameras[-1]
     assert not camera.found and camera.quality == 0
     assert np.isfinite(camera.place_cov((0.0, 0.0))).all()

@@ -1,0 +1,189 @@
+"""Points of the ice recognised again: what carries the camera where no rings are to be seen.
+
+A keyframe is a small grey picture with corners whose places on the ice are known from its
+camera. It is warped to where the next camera is expected and compared with what is seen there,
+so that errors do not add up from frame to frame but only from keyframe to keyframe. People,
+moving stones and graphics do not move as the ice does and are left out.
+Lucas and Kanade, 1981, An iterative image registration technique, IJCAI 81, pages 674 to 679.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from vision.pose import Marks, View, camera, fixed, project
+
+Array = NDArray[np.float64]
+Image = NDArray[np.uint8]
+
+WIDTH = 640
+"""Width of the small pictures, px."""
+
+MOST_CORNERS = 150
+APART = 10
+"""Corners of a keyframe, and their least distance, px of the small picture."""
+
+CORNER_SD = 0.3
+"""Standard deviation of a recognised corner per axis, px of the small picture."""
+
+WINDOW, LEVELS = (15, 15), 3
+"""Window and levels of the pyramid in which a corner is followed."""
+
+LEAST_CORNERS = 12
+LEAST_SHARE = 0.35
+"""Of the corners that should be in view, so many must be recognised and move as one."""
+
+CELLS = (6, 4)
+LEAST_CELLS = 5
+"""Recognised corners must lie in so many cells of the picture: a graphic fills one or two."""
+
+ICE = np.array([[-7.0, -6.0], [7.0, -6.0], [7.0, 12.0], [-7.0, 12.0]])
+"""Where landmarks are looked for: this sheet and its neighbours, m."""
+
+
+@dataclass(frozen=True)
+class Keyframe:
+    """A small picture of known camera.
+
+    Attributes
+    ----------
+    grey : ndarray of uint8
+    ice : ndarray, shape (n, 2)
+        Places of its corners on the ice, m.
+    corners : ndarray, shape (n, 2)
+        The corners in the small picture, px.
+    drift : float
+        Standard deviation that the places share, m.
+    """
+
+    grey: Image
+    ice: Array
+    corners: Array
+    drift: float
+
+
+def keyframe(image: Image, view: View, rig: Array, cov: Array, drift: float = 0.0) -> Keyframe:
+    """Make a keyframe of a picture.
+
+    Parameters
+    ----------
+    view, cov : View, ndarray of shape (4, 4)
+        Its view and that view's covariance.
+    rig : ndarray
+        As in `vision.pose`.
+    drift : float
+        Standard deviation of the places that the view itself rests on, m.
+    """
+    h, w = image.shape[:2]
+    grey = _small(image)
+    factor = w / grey.shape[1]
+    found = cv2.goodFeaturesToTrack(
+        grey, MOST_CORNERS, 0.01, APART, mask=_on_ice(view, rig, (w, h), grey)
+    )
+    corners = np.zeros((0, 2)) if found is None else found.reshape(-1, 2).astype(np.float64)
+    ice = camera(view, rig, (w, h)).ice(_large(corners, factor))
+    spread = _spread(ice, view, rig, cov, (w, h))
+    return Keyframe(grey, ice, corners, float(np.hypot(drift, spread)))
+
+
+def _on_ice(view: View, rig: Array, size: tuple[int, int], grey: Image) -> Image:
+    """Mask of a small picture: where there is ice, 255."""
+    edge = np.linspace(0, 1, 20)[:, None]
+    sides = zip(ICE, np.roll(ICE, -1, axis=0), strict=True)
+    rim = np.concatenate([one + edge * (two - one) for one, two in sides])
+    outline = project(rim, view.vector, rig, size)
+    with np.errstate(invalid="ignore"):
+        outline = outline[(np.abs(outline) < 10 * size[0]).all(1)]
+    mask = np.zeros(grey.shape, np.uint8)
+    if len(outline) > 2:
+        hull = cv2.convexHull(_shrunk(outline, size[0] / grey.shape[1]).astype(np.float32))
+        cv2.fillConvexPoly(mask, np.round(hull).astype(np.int32), 255)
+    return mask
+
+
+def recognise(key: Keyframe, image: Image, view: View, rig: Array) -> Marks | None:
+    """Find the landmarks of a keyframe in a picture, as marks.
+
+    Parameters
+    ----------
+    view : View
+        The picture's, as far as it is known: within a tenth of the picture.
+
+    Returns
+    -------
+    Marks or None
+        None where the picture does not show the same scene.
+    """
+    h, w = image.shape[:2]
+    grey = _small(image)
+    factor = w / grey.shape[1]
+    size = np.array([grey.shape[1], grey.shape[0]])
+    expected = _shrunk(project(key.ice, view.vector, rig, (w, h)), factor)
+    with np.errstate(invalid="ignore"):
+        near = np.flatnonzero(((expected > -0.2 * size) & (expected < 1.2 * size)).all(1))
+    if len(near) < LEAST_CORNERS:
+        return None
+    start, there = key.corners[near].astype(np.float32), expected[near].astype(np.float32)
+    warp, _ = cv2.findHomography(start, there)
+    if warp is None:
+        return None
+    shown = (grey.shape[1], grey.shape[0])
+    warped = cv2.warpPerspective(key.grey, warp, shown, borderMode=cv2.BORDER_REPLICATE)
+    before = cv2.perspectiveTransform(start[:, None], warp)
+    after, ok, _ = cv2.calcOpticalFlowPyrLK(
+        warped, grey, before, before.copy(), winSize=WINDOW, maxLevel=LEVELS
+    )
+    back, ok_back, _ = cv2.calcOpticalFlowPyrLK(
+        grey, warped, after, before.copy(), winSize=WINDOW, maxLevel=LEVELS
+    )
+    one, two = before[:, 0].astype(np.float64), after[:, 0].astype(np.float64)
+    good = np.flatnonzero(
+        ((ok == 1) & (ok_back == 1)).ravel()
+        & ((two > 3) & (two < size - 4)).all(1)
+        & (np.linalg.norm(back[:, 0] - one, axis=1) < 1.0)
+    )
+    if len(good) < LEAST_CORNERS:
+        return None
+    motion, together = cv2.estimateAffinePartial2D(one[good], two[good], ransacReprojThreshold=1.5)
+    if motion is None:
+        return None
+    kept = good[together.ravel() == 1]
+    due = one @ motion[:, :2].T + motion[:, 2]
+    count = int(((due > 3) & (due < size - 4)).all(1).sum())
+    cells = np.unique((two[kept] / size * CELLS).astype(int), axis=0)
+    if len(kept) < max(LEAST_CORNERS, LEAST_SHARE * count) or len(cells) < LEAST_CELLS:
+        return None
+    return fixed(key.ice[near[kept]], _large(two[kept], factor), CORNER_SD * factor)
+
+
+def _small(image: Image) -> Image:
+    factor = WIDTH / image.shape[1]
+    small = cv2.resize(image, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA)
+    return np.asarray(cv2.cvtColor(small, cv2.COLOR_BGR2GRAY), np.uint8)
+
+
+def _large(small: Array, factor: float) -> Array:
+    """Pixels of the small picture to those of the picture: X = (x + 1/2) f − 1/2."""
+    return (small + 0.5) * factor - 0.5
+
+
+def _shrunk(large: Array, factor: float) -> Array:
+    return (large + 0.5) / factor - 0.5
+
+
+def _spread(ice: Array, view: View, rig: Array, cov: Array, size: tuple[int, int]) -> float:
+    """Tell how well, m, a view of covariance `cov` places these points of the ice, rms."""
+    if not len(ice):
+        return 0.0
+    pixel = project(ice, view.vector, rig, size)
+    total = 0.0
+    values, axes = np.linalg.eigh(cov)
+    for value, axis in zip(values, axes.T, strict=True):
+        moved = View(view.vector + np.sqrt(max(value, 0.0)) * axis)
+        off = camera(moved, rig, size).ice(pixel) - ice
+        total += float((off**2).sum(1).mean()) / 2
+    return float(np.sqrt(total))
