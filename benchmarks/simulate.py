@@ -1,9 +1,10 @@
 """How fast and how exact the simulator is, on one core.
 
 Run ``python -m benchmarks.simulate [REPEATS]``. It prints, for shots of one to sixteen stones,
-the median time of one simulation with its number of hits, the time that a new ice law costs,
-and the difference of the places of rest from an ODE solver at its tightest and from a curve
-of twice as many cells.
+the least processor time of one simulation with its number of hits, and of one of many variants
+that go forward together; the time that a new ice law costs; and the difference of the places of
+rest from an ODE solver at its tightest and from a curve of twice as many cells. Where the
+package pooltool-billiards is installed, two balls and a break by it stand beside these.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import statistics
 import sys
 import time
 from collections.abc import Callable
+from importlib import import_module
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -21,6 +23,7 @@ from physics.curl import FCV1Curl
 from physics.curve import CELLS, curve
 from physics.ice import FCV1
 from physics.impact import Frictional
+from physics.many import States, simulate_many
 from physics.motion import Motion, Path
 from physics.simulate import Shot, StoneStart, simulate
 
@@ -59,13 +62,46 @@ def rack() -> Shot:
 
 
 def seconds(call: Callable[[], object], repeats: int) -> float:
-    """Median time of one call, s."""
+    """Least processor time of one call, s."""
     times = []
     for _ in range(repeats):
-        begin = time.perf_counter()
+        begin = time.process_time()
         call()
-        times.append(time.perf_counter() - begin)
-    return statistics.median(times)
+        times.append(time.process_time() - begin)
+    return min(times)
+
+
+def thrown_often(shot: Shot, variants: int) -> States:
+    """Variants of a shot: the first stone off by what players are off by."""
+    rng = np.random.default_rng(0)
+    states = States.of(shot, variants)
+    speed = states.vy[:, 0].copy()
+    states.vy[:, 0] += 0.0076 * rng.standard_normal(variants)
+    states.vx[:, 0] += 0.0018 * speed * rng.standard_normal(variants)
+    return states
+
+
+def peer(repeats: int) -> None:
+    """Print the time of two balls and of a break in pooltool, if it is there."""
+    try:
+        pooltool = import_module("pooltool")
+    except ImportError:
+        print("pooltool-billiards is not installed: no peer")
+        return
+    two = {
+        "cue": pooltool.Ball.create("cue", xy=(0.5, 0.5)),
+        "1": pooltool.Ball.create("1", xy=(0.5, 1.2)),
+    }
+    table = pooltool.Table.default()
+    rack = pooltool.get_rack(pooltool.GameType.NINEBALL, table)
+    for name, balls in (("pooltool, 2 balls", two), ("pooltool, break of 9", rack)):
+        system = pooltool.System(
+            cue=pooltool.Cue(cue_ball_id="cue"), table=pooltool.Table.default(), balls=balls
+        )
+        system.cue.set_state(V0=3.0, phi=pooltool.aim.at_ball(system, "1"))
+        pooltool.simulate(system)
+        spent = seconds(lambda s=system: pooltool.simulate(s), repeats)  # type: ignore[misc]
+        print(f"{name:24} {1e3 * spent:8.3f} ms {1 / spent:8.0f} shots/s")
 
 
 def error_against_ode(speed: float) -> float:
@@ -104,6 +140,17 @@ def main(repeats: int) -> None:
         hits = statistics.mean(len(simulate(shot).hits) for shot in group)
         spent = statistics.mean(seconds(lambda s=shot: simulate(s), repeats) for shot in group)  # type: ignore[misc]
         print(f"{name:24} {1e3 * spent:8.3f} ms {1 / spent:8.0f} shots/s {hits:6.1f} hits")
+    for name, shot, variants in (
+        ("many, 1 stone", single(), 10_000),
+        ("many, 3 stones", two_hits(), 4000),
+        ("many, 16 in the house", house(0), 2000),
+        ("many, 16 stones, rack", rack(), 1000),
+    ):
+        states = thrown_often(shot, variants)
+        hits = simulate_many(shot, states).hits.sum() / 2 / variants
+        spent = seconds(lambda a=shot, b=states: simulate_many(a, b), 3) / variants  # type: ignore[misc]
+        print(f"{name:24} {1e3 * spent:8.3f} ms {1 / spent:8.0f} shots/s {hits:6.1f} hits")
+    peer(min(repeats, 3))
     build = seconds(lambda: curve.__wrapped__(FCV1(), FCV1Curl(), 4.0), repeats)
     print(f"{'a new ice law':24} {1e3 * build:8.3f} ms")
     for speed in (0.5, 2.0, 3.5):
