@@ -24,10 +24,13 @@ from vision.flow import similarity
 from vision.follow_house import follow_house
 from vision.house import HouseFit, fit_house, start
 from vision.joint import HouseTrack, Seen, fit_clip
-from vision.pose import TWELVE, Marks, View, camera, fixed, joined
+from vision.pose import TWELVE, Marks, View, camera, fixed, joined, turned
 from vision.rings import SQUASHES, Guess
 
 Array = NDArray[np.float64]
+
+FROM_BESIDE = [(squash, turn) for squash in (0.85, 0.7, 0.5) for turn in (-np.pi / 2, np.pi / 2)]
+"""Foreshortenings, as `SQUASHES`, of a house that the camera sees from across the sheet."""
 
 CLICK_SD = 0.002
 """How well a hand points at a place, as a fraction of the picture's width."""
@@ -120,7 +123,7 @@ def hypotheses(house: GivenHouse, size: tuple[int, int]) -> list[Guess]:
             f" {SMALLEST * size[0]:.0f} px from the tee"
         )
     found = []
-    for squash, lean in SQUASHES:
+    for squash, lean in (*SQUASHES, *FROM_BESIDE):
         guess = Guess(house.tee, float(reach.mean()) / HOUSE.twelve_foot, squash, lean, 0.0)
         for _ in range(3):  # its scale follows from the distance of the two points from the tee
             away = np.linalg.norm(_camera(guess, size).ice(house.ring), axis=1)
@@ -175,6 +178,7 @@ def _as_given(clip: Clip, frame: Frame, house: GivenHouse, progress: Progress) -
     """Take the three points for what they are, in all frames that show the same picture."""
     guess = hypotheses(house, clip.size)[0]
     view, rig, prior = start(guess, clip.size)
+    view, rig = _y_up(view, rig, clip.size)
     marks = _marks(house, view, rig, clip.size)
     track = fit_clip([Seen(frame.index, frame.t, view, marks, True)], rig, prior, clip.size)
     given = replace(track.cameras[0], rms_px=float("nan"), quality=0.0)
@@ -192,6 +196,13 @@ def _as_given(clip: Clip, frame: Frame, house: GivenHouse, progress: Progress) -
     if len(cameras) < clip.read:
         note += f", and only the {len(cameras)} frames with the same picture are used"
     return replace(track, cameras=tuple(cameras), warnings=(note, *track.warnings))
+
+
+def _y_up(view: View, rig: Array, size: tuple[int, int]) -> tuple[View, Array]:
+    """Turn the axes so that y points up in the picture at the tee."""
+    tee, ahead = camera(view, rig, size).project([[0.0, 0.0], [0.0, 0.1]])
+    right, down = ahead - tee
+    return turned(view, rig, float(np.arctan2(right, -down)))
 
 
 def _marks(house: GivenHouse, view: View, rig: Array, size: tuple[int, int]) -> Marks:
