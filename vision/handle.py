@@ -22,6 +22,8 @@ Complex = NDArray[np.complex64]
 HARMONICS = np.arange(2, 17)
 _RINGS = 8
 _GRID = 1440
+_LEAST_SCALE = 4.0
+"""How much larger errors are at least than if every ring and harmonic erred for itself."""
 
 
 @dataclass(frozen=True)
@@ -84,36 +86,55 @@ def turned(spectrum: Complex, angle: float) -> Complex:
 def angle_between(
     reference: Complex, spectrum: Complex, expected: float, reach: float
 ) -> tuple[float, float, float]:
-    """Angle by which a cap is turned against a reference.
+    """Angle by which one cap is turned against a reference: `angles_between` of one."""
+    found = angles_between(reference, spectrum[None], np.array([expected]), reach)
+    angle, sd, likeness = (float(values[0]) for values in found)
+    return angle, sd, likeness
+
+
+def angles_between(
+    reference: Complex, spectra: Complex, expected: Array, reach: float
+) -> tuple[Array, Array, Array]:
+    """Angles by which caps are turned against a reference.
+
+    Parameters
+    ----------
+    reference : ndarray, shape (harmonics, rings * channels)
+    spectra : ndarray, shape (n, harmonics, rings * channels)
+    expected : ndarray, shape (n,)
+        About where the angles are sought, rad.
+    reach : float
+        How far from there, rad.
 
     Returns
     -------
-    angle, sd, likeness : float
-        Angle nearest to what was expected, rad; its standard error from what the two
-        pictures do not share; correlation of the two pictures, 0 to 1.
+    angle, sd, likeness : ndarray, shape (n,)
+        Angles nearest to what was expected, rad; their standard errors from what the two
+        pictures do not share; correlations of the two pictures, 0 to 1.
     """
-    cross = (np.conj(reference) * spectrum).sum(1).astype(complex)
-    energy = float(np.linalg.norm(reference) * np.linalg.norm(spectrum))
-    if energy <= 0:
-        return float("nan"), float("nan"), 0.0
-    trial = expected + np.linspace(-reach, reach, max(int(_GRID * reach / np.pi), 9))
-    value = (np.exp(1j * HARMONICS * trial[:, None]) @ cross).real
-    angle = float(trial[value.argmax()])
+    cross = (np.conj(reference) * spectra).sum(2).astype(complex)
+    size = np.linalg.norm(reference)
+    sizes = np.linalg.norm(spectra, axis=(1, 2))
+    blank = size * sizes <= 0
+    energy = np.where(blank, 1.0, size * sizes)
+    offset = np.linspace(-reach, reach, max(int(_GRID * reach / np.pi), 9))
+    near = cross * np.exp(1j * HARMONICS * expected[:, None])
+    value = (near @ np.exp(1j * HARMONICS[:, None] * offset)).real
+    angle = expected + offset[value.argmax(1)]
     for _ in range(4):  # Newton's method on a sum of cosines
-        phase = cross * np.exp(1j * HARMONICS * angle)
-        slope = -(HARMONICS * phase.imag).sum()
-        bend = -(HARMONICS**2 * phase.real).sum()
-        if bend >= 0:
-            break
-        angle += float(np.clip(-slope / bend, -0.05, 0.05))
-    likeness = float((cross * np.exp(1j * HARMONICS * angle)).real.sum() / energy)
-    aligned = turned(reference, angle)
-    gain = max(likeness, 0.0) * float(np.linalg.norm(spectrum) / np.linalg.norm(reference))
-    rest = float((np.abs(spectrum - gain * aligned) ** 2).sum())
+        phase = cross * np.exp(1j * HARMONICS * angle[:, None])
+        slope, bend = -phase.imag @ HARMONICS, -phase.real @ HARMONICS**2
+        step = -slope / np.where(bend < 0, bend, -np.inf)
+        angle = angle + np.clip(step, -0.05, 0.05)
+    aligned = np.exp(-1j * HARMONICS * angle[:, None])
+    likeness = (cross / aligned).real.sum(1) / energy
+    gain = np.maximum(likeness, 0.0) * sizes / max(size, 1e-12)
+    model = (gain[:, None] * aligned).astype(np.complex64)[..., None] * reference
+    rest = (np.abs(spectra - model) ** 2).sum((1, 2))
     sharpness = gain**2 * float((HARMONICS[:, None] ** 2 * np.abs(reference) ** 2).sum())
-    free = 2 * spectrum.size
-    sd = np.sqrt(rest / free / max(sharpness, 1e-12))
-    return angle, float(sd), likeness
+    sd = np.sqrt(rest / (2 * reference.size) / np.maximum(sharpness, 1e-12))
+    nothing = np.where(blank, np.nan, 0.0)
+    return angle + nothing, sd + nothing, np.where(blank, 0.0, likeness)
 
 
 def handle_angles(
@@ -158,12 +179,10 @@ def handle_angles(
     for _ in range(turning.rounds):
         known = np.flatnonzero(np.isfinite(theta))
         picture = _mean_picture(spectra, theta, known)
-        for index in known.tolist():
-            spectrum = spectra[index]
-            assert spectrum is not None
-            theta[index], sd[index], likeness[index] = angle_between(
-                picture, spectrum, theta[index], 0.2
-            )
+        seen_then = np.array([spectra[index] for index in known.tolist()])
+        theta[known], sd[known], likeness[known] = angles_between(
+            picture, seen_then, theta[known], 0.2
+        )
     told = np.isfinite(theta) & (likeness > turning.least_likeness)
     if told.sum() < 0.5 * len(seen):
         # Most frames do not look like the mean: there is nothing on the cap to go by.
@@ -180,7 +199,8 @@ def _jitter(times: Array, theta: Array, sd: Array) -> float:
 
     The errors of rings and colours hang together, by how much depends on the clip: so the
     scale is that of the angles about a steady turning in three frames in a row. Errors that
-    last for longer (light, the handle's height) make it about twice that.
+    last for longer (light, the handle's height) make it about twice that. What of the pictures
+    does not turn with a slowly turning stone lasts longest and scatters least: hence a floor.
     """
     step = np.diff(times)
     bend = theta[2:] - 2 * theta[1:-1] + theta[:-2]
@@ -188,7 +208,7 @@ def _jitter(times: Array, theta: Array, sd: Array) -> float:
     if steady.sum() < 5:
         return 5.0
     scatter = 1.4826 * float(np.median(np.abs(bend[steady]))) / np.sqrt(6)
-    return float(max(2 * scatter / max(float(np.nanmedian(sd)), 1e-6), 1.0))
+    return float(max(2 * scatter / max(float(np.nanmedian(sd)), 1e-6), _LEAST_SCALE))
 
 
 def _mean_picture(

@@ -51,6 +51,8 @@ class Effort:
     handle_rings, handle_inner, handle_outer : int, float, float
         Rings of the picture by which the angle is told; the radii as shares of the cap's (or,
         of a plain disc, of its own).
+    handle_edge : float
+        Share of the cap's radius up to which it shows nothing of its edge.
     edge_reach : float
         Distance from the circle up to which an edge may count.
     most_tilt : float
@@ -67,6 +69,7 @@ class Effort:
     handle_rings: int = 8
     handle_inner: float = 0.12
     handle_outer: float = 0.86
+    handle_edge: float = 0.94
     edge_reach: float = 0.035
     most_tilt: float = 0.15
     rounds: int = 2
@@ -98,7 +101,8 @@ class Measures:
     outline : ndarray, shape (n, circles)
         Radii found, as shares of the nominal ones.
     handle : ndarray, shape (n, rays, rings, 3)
-        What is around the centre at the height of the handle, L*a*b*.
+        What is around the centre at the height of the handle, L*a*b*; 0 where it shows more
+        than the cap.
     worth : ndarray, shape (n, rays, radii)
         What the samples of `rays` may be: 1 cap, −1 granite, 0 neither.
     rays : Rays
@@ -175,6 +179,10 @@ def measure(
     if is_plain(disc):
         return _plain(rays, handle, places, scale, disc, effort)
     assert appearance is not None
+    # Behind the plane of the handle a slanting view shows the cap displaced. Rings that leave
+    # it show its edge, which stays while the stone turns: they are blanked.
+    within = effort.handle_edge * disc.cap_radius - (HANDLE_HEIGHT - disc.cap_height) * tilt
+    handle *= (sampled.radius[count + 1 :: 2] < within[:, None])[:, None, :, None]
     return _stones(rays, handle, places, scale, tilt, appearance, disc, effort)
 
 

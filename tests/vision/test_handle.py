@@ -47,7 +47,8 @@ def test_many_turns_are_counted_without_drift() -> None:
     error = theta - theta[0] - (true - true[0])
     assert np.abs(error).max() < 0.03
     assert abs(np.polyfit(times, error, 1)[0]) < 2e-4
-    assert 0.3 < np.std(error) / np.median(sd) < 2.0
+    # Noise is all there is here; what real pictures add is allowed for.
+    assert 0.15 < np.std(error) / np.median(sd) < 2.0
 
 
 def test_two_seconds_out_of_sight_are_bridged() -> None:

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from data.sheet import STONE
-from tests.synthetic.camera import CameraPath, still_camera
+from tests.synthetic.camera import CameraPath, still_camera, tilted_camera
 from tests.synthetic.clip import describe, render_still
 from tests.synthetic.physics import Start
 from tests.synthetic.scene import Colour, Graphic, Person, Scene, Stone
@@ -81,6 +81,20 @@ def test_errors_are_within_what_is_claimed(caps: tuple[Colour, Colour]) -> None:
     claimed = np.median([np.hypot(np.hypot(s.sd_x, s.sd_y), 2**0.5 * s.sd_place) for s in found])
     assert np.sqrt((error**2).mean()) < 2 * claimed
     assert claimed < 0.006
+
+
+def test_a_slanting_view_does_not_draw_stones_towards_the_camera() -> None:
+    places = [(0.3, 0.2, RED), (-0.45, 0.3, YELLOW), (0.9, 1.0, RED), (-1.0, -0.6, YELLOW)]
+    scene = scene_of([*places, (0.1, 1.3, RED), (-0.8, 1.1, RED)])
+    path = tilted_camera(np.radians(30))
+    seen = look(scene, path)
+    assert len(seen) == len(scene.stones)
+    true = np.array([(stone.start.x, stone.start.y) for stone in scene.stones])
+    found = np.array([(s.x, s.y) for s in seen])
+    nearest = np.hypot(*(true[:, None] - found[None]).transpose(2, 0, 1)).argmin(1)
+    off = found[nearest] - true
+    assert np.abs(off.mean(0)).max() < 0.004
+    assert np.sqrt((off**2).sum(1).mean()) < 0.008
 
 
 def test_people_logos_and_empty_ice_are_no_stones() -> None:
