@@ -1,0 +1,42 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.synthetic.clip import render_still
+from tests.vision.test_stones import BLUE, CAMERA, RED, YELLOW, camera_of, scene_of
+from vision.clip import Frame, Image
+from vision.watch import Watch
+
+AT_REST = [(0.3, 0.2, RED), (-0.8, 1.0, YELLOW), (0.9, -0.6, RED)]
+LATE = (-0.2, -0.5)
+
+
+def picture(places: list[tuple[float, float, tuple[int, int, int]]]) -> Image:
+    return np.asarray(render_still(scene_of(places), CAMERA), np.uint8)
+
+
+@pytest.mark.parametrize("cap", [YELLOW, BLUE])
+def test_a_stone_found_late_is_followed_back_also_one_of_a_new_colour(
+    cap: tuple[int, int, int],
+) -> None:
+    reds = [(x, y, RED) for x, y, _ in AT_REST]
+    before, after = picture(reds), picture([*reds, (*LATE, cap)])
+    camera, since = camera_of(CAMERA, scene_of(reds)), 27
+    watch = Watch()
+    for index in range(50):
+        watch.look(Frame(index, index / 25, after if index >= since else before), camera)
+    counts = [len(sightings) for _, _, sightings in watch.finish()]
+    assert counts == [3] * since + [4] * (50 - since)
+
+
+def test_a_stone_that_jumps_is_found_again_at_once() -> None:
+    here, there = picture(AT_REST), picture([(0.3, 0.07, RED), *AT_REST[1:]])
+    watch, camera = Watch(), camera_of(CAMERA, scene_of(AT_REST))
+    for index in range(12):
+        watch.look(Frame(index, index / 25, there if index >= 7 else here), camera)
+    for index, _, sightings in watch.finish():
+        places = np.array([(s.x, s.y) for s in sightings])
+        assert len(places) == 3
+        true = (0.3, 0.07 if index >= 7 else 0.2)
+        assert np.hypot(*(places - true).T).min() < 0.006
