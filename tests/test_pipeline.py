@@ -242,7 +242,7 @@ def bad_inputs(folder: Path) -> dict[str, list[str | Path]]:
     (folder / "good.csv").write_text("stone,t,x,y\nA,0,0,0\nB,0,1,1\nA,1,0,0\nB,1,1,1\n")
     (folder / "good.toml").write_text(SHOT)
     (folder / "alone.json").write_text("{}")
-    still = ["run", folder / "ice"]
+    still: list[str | Path] = ["run", folder / "ice"]
     return {
         "missing": ["run", folder / "none.mp4"],
         "empty": ["run", folder / "empty.mp4"],
@@ -258,6 +258,18 @@ def bad_inputs(folder: Path) -> dict[str, list[str | Path]]:
         "track a table": ["track", folder / "back.csv"],
         "bad shot": ["simulate", folder / "bad.toml"],
         "bad stick": ["run", folder / "ice", "--stick", "1,2,3"],
+        "bad house": [*still, "--house", "160,120,200"],
+        "house of no frame": [*still, "--house", "7:160,120,200,120,160,80"],
+        "house like a line": [*still, "--house", "160,120,200,120,160,119"],
+        "no camera": [*still, "--camera", folder / "none.csv"],
+        "camera of a table": [*still, "--camera", folder / "good.csv"],
+        "two cameras": [
+            *still,
+            "--stick",
+            "1,2,3,4,5",
+            "--house",
+            "160,120,200,120,160,80",
+        ],
         "bad frames": ["run", folder / "ice", "--frames", "x"],
         "no frames left": ["run", folder / "ice", "--frames", "9:"],
         "time without end": ["run", folder / "late.csv"],
@@ -299,6 +311,23 @@ def test_mistakes_end_in_one_line_and_exit_code_2(
         assert "Traceback" not in said.err, name
         assert not out.exists(), name
         assert [item.name for item in tmp_path.iterdir()] == ["in"], name
+
+
+def test_a_house_or_a_camera_may_be_given(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    common = [str(SAMPLE), "--frames", "0:8", "-q", "-o"]
+    # The tee and two points of the 12-ft ring, some pixels beside their true places.
+    house = "4:631,529,902,536,632,263"
+    assert pipeline.main(["track", *common, str(tmp_path / "one"), "--house", house]) == 0
+    table = tmp_path / "one" / "camera.csv"
+    assert pipeline.main(["track", *common, str(tmp_path / "two"), "--camera", str(table)]) == 0
+    assert "not part of the errors" in capsys.readouterr().out
+    one, two = (pd.read_csv(tmp_path / name / "tracks.csv") for name in ("one", "two"))
+    assert len(one) == len(two) and one["frame"].nunique() == 9
+    np.testing.assert_allclose(one[["x", "y"]], two[["x", "y"]], atol=1e-4)
+    assert pipeline.main(["check", *common, str(tmp_path / "see"), "--camera", str(table)]) == 0
+    assert (tmp_path / "see" / "check.png").exists()
 
 
 def test_out_that_is_a_file_is_refused_before_the_work(tmp_path: Path) -> None:
