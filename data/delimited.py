@@ -16,8 +16,17 @@ from data.errors import InputError
 
 Array = NDArray[np.float64]
 
-LARGEST = 200_000_000
+LARGEST = 64_000_000
 """Bytes; a larger file is no table of tracks."""
+
+MOST_LINES = 1_000_000
+"""A clip of ten minutes with sixteen stones, one row each, has half as many."""
+
+LONGEST_LINE = 1_000_000
+"""Characters; a row of numbers has a few hundred."""
+
+MOST_CELLS = 3_500_000
+"""Read at once; as text they take some hundred bytes each."""
 
 _PREFACE = 10
 """How many lines may stand above the header or the first row of numbers."""
@@ -73,8 +82,13 @@ class TextTable:
         Raises
         ------
         InputError
-            Where a row has more cells than there are columns.
+            Where a row has more cells than there are columns, or there are too many.
         """
+        if len(self.rows) * len(columns) > MOST_CELLS:
+            raise InputError(
+                f"{self.path}: {len(self.rows)} rows of {len(columns)} numbers are too many; split"
+                " the table"
+            )
         picked: list[list[str]] = [[] for _ in columns]
         for fields, line in self._split_rows():
             if len(fields) > self.width and any(cell.strip() for cell in fields[self.width :]):
@@ -207,7 +221,12 @@ def _text(path: Path) -> str:
             text = raw.decode("latin-1")
     if text.lstrip()[:1] == "<":
         raise InputError(f"{path}: XML, not a table of tracks; {_EXPORT}")
-    return text.replace("\r\n", "\n").replace("\r", "\n").replace("\0", "\ufffd")
+    text = text.replace("\r\n", "\n").replace("\r", "\n").replace("\0", "\ufffd")
+    if (lines := text.count("\n")) > MOST_LINES:
+        raise InputError(f"{path}: {lines} lines are too many for a table of tracks")
+    if len(text) > LONGEST_LINE and max(map(len, text.split("\n"))) > LONGEST_LINE:
+        raise InputError(f"{path}: a line of over {LONGEST_LINE} characters is no row of a table")
+    return text
 
 
 def _header(

@@ -133,3 +133,22 @@ def test_a_giant_file_is_not_even_opened(tmp_path: Path) -> None:
         file.truncate(300_000_000)  # sparse
     with pytest.raises(InputError, match="300 MB is too large"):
         read_text_table(path, is_header)
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("t\tx\ty\n" + "0\n" * 1_000_001, "lines are too many"),
+        ("t\tx\ty\n" + "1\t" * 600_000 + "\n", "is no row of a table"),
+    ],
+    ids=["lines", "line"],
+)
+def test_tables_beyond_all_measure_are_refused(tmp_path: Path, text: str, reason: str) -> None:
+    with pytest.raises(InputError, match=reason):
+        read(tmp_path, text)
+
+
+def test_more_cells_than_memory_should_hold_are_refused(tmp_path: Path) -> None:
+    table = read(tmp_path, "t,x\n" + "0,1\n" * 1000)
+    with pytest.raises(InputError, match="1000 rows of 4000 numbers are too many"):
+        table.numbers([1] * 4000)
