@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-    from data.results import Results
+    from data.results import Estimate, Results
     from data.trk import Array
     from data.trk_write import View
     from physics.simulate import Simulation
@@ -91,6 +91,8 @@ class Settings:
         Tables of the angles of stones, by stone.
     overlay : bool
         Whether the annotated clip is written.
+    restitution, friction : float, optional
+        What predictions assume beforehand; values of the literature by default.
 
     Raises
     ------
@@ -111,6 +113,8 @@ class Settings:
     names: Mapping[str, str] = field(default_factory=dict)
     angles: Mapping[str, Path] = field(default_factory=dict)
     overlay: bool = True
+    restitution: float | None = None
+    friction: float | None = None
 
     def __post_init__(self) -> None:
         ways = {"--stick": self.stick, "--house": self.house, "--camera": self.camera}
@@ -416,8 +420,10 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
     from data.results import Input, Results
     from physics.contacts import find_contacts
     from physics.estimate import estimate
+    from physics.forecast import predict
     from physics.kalman import smooth
     from physics.predict import simulate_measured
+    from physics.watched import LITERATURE
     from vision.camera import camera_table
 
     sightings, radius = measured.sightings, settings.radius
@@ -430,6 +436,15 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
     tracks = smooth(sightings, contacts, radius=radius)
     estimates = estimate(sightings, contacts, radius=radius, masses=masses)
     sampled, scores, notes = simulate_measured(tracks, estimates, radius=radius, masses=masses)
+    predictions = predict(
+        sightings,
+        tracks,
+        estimates,
+        radius=radius,
+        masses=masses,
+        restitution=_assumed(settings.restitution, LITERATURE.restitution),
+        friction=_assumed(settings.friction, LITERATURE.friction),
+    )
     times = sightings["t"]
     results = Results(
         input=Input(
@@ -445,6 +460,7 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
         simulations=scores,
         warnings=tuple(dict.fromkeys((*measured.warnings, *estimates.warnings, *notes))),
         radius=radius,
+        predictions=predictions,
     )
     cameras = camera_table(measured.cameras) if measured.cameras else None
     simulations = [as_tracks(table, model) for model, table in sampled.items()]
@@ -454,6 +470,13 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
         results,
         pd.concat(simulations, ignore_index=True) if simulations else as_tracks(None, ""),
     )
+
+
+def _assumed(given: float | None, default: Estimate) -> Estimate:
+    """Return a law's number as given, then without doubt, or as the literature has it."""
+    from data.results import Estimate
+
+    return default if given is None else Estimate(given, 0.0)
 
 
 def _check_masses(masses: Mapping[str, float], stones: Sequence[str]) -> Mapping[str, float]:
@@ -814,6 +837,7 @@ def _parser() -> argparse.ArgumentParser:
     run_.add_argument("inputs", nargs="*", metavar="INPUT", help="clip, pictures or tables")
     _clip_options(run_)
     _table_options(run_)
+    _assumption_options(run_)
     run_.add_argument(
         "--no-overlay", action="store_true", help="do not write the annotated clip overlay.mp4"
     )
@@ -851,6 +875,7 @@ def _parser() -> argparse.ArgumentParser:
     estimate_.add_argument("inputs", nargs="+", metavar="TRACKS", help="tables of tracks")
     _disc_options(estimate_)
     _table_options(estimate_)
+    _assumption_options(estimate_)
     estimate_.add_argument("--fps", type=_positive, help="rate of a table without times, 1/s")
 
     convert_ = _bare_command(
@@ -1016,6 +1041,18 @@ def _what_if_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def _assumption_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--restitution", type=_fraction, metavar="E", help="e that predictions assume (0.83 ± 0.06)"
+    )
+    parser.add_argument(
+        "--friction",
+        type=_friction,
+        metavar="MU",
+        help="μ that predictions assume (0.0109 ± 0.003)",
+    )
+
+
 def _table_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--length-unit", choices=("m", "cm", "mm", "in", "ft"), default="m", help="of tables (m)"
@@ -1172,6 +1209,8 @@ def _settings(arguments: argparse.Namespace) -> Settings:
         names=_by_stone("--names", known.get("names", [])),
         angles={s: Path(p) for s, p in _by_stone("--angles", known.get("angles", [])).items()},
         overlay=not known.get("no_overlay", False),
+        restitution=known.get("restitution"),
+        friction=known.get("friction"),
     )
 
 
@@ -1324,7 +1363,7 @@ def _write_odds(
         "schema": 1,
         "input": arguments.shot.name,
         "thrown": thrown,
-        "changes": {key: value for key, value in asdict(changes).items() if value},
+        "changes": {key: value for key, value in asdict(changes).items() if value is not None},
         "samples": count,
         "throw_sd": {"speed": throw_sd[0], "direction": throw_sd[1]},
         "stones": {name: asdict(item) for name, item in odds(outcomes, start).items()},
@@ -1354,8 +1393,7 @@ def _odds_text(odds: Mapping[str, Any], folder: Path) -> list[str]:
             f"   y {item['y']:+7.2f} ± {item['sd_y']:.2f} m   moved {item['moved']:4.0%}"
             f"   in the house {item['in_house']:4.0%}   shot stone {item['shot_stone']:4.0%}"
         )
-    names = ("outcomes.csv", "whatif.json", "spread.png")
-    return [*lines, f"written: {', '.join(str(folder / name) for name in names)}"]
+    return [*lines, f"written: {', '.join(str(folder / name) for name in WHAT_IF)}"]
 
 
 def simulation_json(simulation: Simulation) -> dict[str, Any]:
@@ -1417,6 +1455,12 @@ def summary(done: Run) -> str:
         if score.rmse is not None:
             off = f"{score.rmse * 100:.1f} cm RMS off"
         lines.append(f"simulated   {model}: {off}")
+    for model, guess in results.predictions.items():
+        if guess.rmse is not None:
+            lines.append(
+                f"predicted   {model}, from before the first hit, e and μ assumed:"
+                f" {guess.rmse * 100:.1f} cm RMS off"
+            )
     lines += [f"warning     {text}" for text in results.warnings]
     if done.out is not None:
         report = done.out / "report.html"

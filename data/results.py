@@ -7,12 +7,14 @@ import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar, get_type_hints
 
 from data.errors import InputError
 from data.files import write_text
 
 SCHEMA = 1
+
+_Made = TypeVar("_Made")
 
 
 @dataclass(frozen=True)
@@ -99,6 +101,23 @@ class SimulationScore:
 
 
 @dataclass(frozen=True)
+class Prediction:
+    """How far a shot predicted from before its first hit was from the measured one.
+
+    ``rmse`` and ``rest_error`` as in `SimulationScore`; ``rest_sd`` per stone the standard
+    deviation (m, both axes together) of its predicted last place, from the errors of the states
+    before the hit and of the ``restitution`` and ``friction`` assumed, each with its own.
+    """
+
+    rmse: float | None
+    rest_error: Mapping[str, float | None] = field(default_factory=dict)
+    rest_sd: Mapping[str, float | None] = field(default_factory=dict)
+    restitution: Estimate = field(default_factory=Estimate)
+    friction: Estimate = field(default_factory=Estimate)
+    note: str | None = None
+
+
+@dataclass(frozen=True)
 class Input:
     """What was read."""
 
@@ -120,6 +139,7 @@ class Results:
     simulations: Mapping[str, SimulationScore] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
     radius: float = 0.1455
+    predictions: Mapping[str, Prediction] = field(default_factory=dict)
 
     def to_json(self) -> str:
         """Text of ``results.json``: strict JSON, values that are not finite as null."""
@@ -148,16 +168,19 @@ class Results:
             if raw.pop("schema") != SCHEMA:
                 raise InputError(f"{path}: results of another version; run again")
             return cls(
-                input=Input(**{**raw["input"], "files": tuple(raw["input"]["files"])}),
-                restitution=Estimate(**raw["restitution"]),
-                friction=Friction(**raw["friction"]),
+                input=_made(Input, {**raw["input"], "files": tuple(raw["input"]["files"])}),
+                restitution=_made(Estimate, raw["restitution"]),
+                friction=_made(Friction, raw["friction"]),
                 collisions=tuple(_collision(item) for item in raw["collisions"]),
-                glides=tuple(Glide(**item) for item in raw["glides"]),
+                glides=tuple(_made(Glide, item) for item in raw["glides"]),
                 simulations={
-                    name: SimulationScore(**item) for name, item in raw["simulations"].items()
+                    name: _made(SimulationScore, item) for name, item in raw["simulations"].items()
                 },
                 warnings=tuple(raw["warnings"]),
-                radius=raw["radius"],
+                radius=_length(raw["radius"]),
+                predictions={
+                    name: _prediction(item) for name, item in raw.get("predictions", {}).items()
+                },
             )
         except OSError as error:
             raise InputError(f"{path}: {error.strerror}") from None
@@ -167,12 +190,34 @@ class Results:
 
 def _collision(item: dict[str, Any]) -> Collision:
     states = {
-        when: {name: StoneState(**state) for name, state in item[when].items()}
+        when: {name: _made(StoneState, state) for name, state in item[when].items()}
         for when in ("before", "after")
     }
     first, second = item["stones"]
     nx, ny = item["normal"]
-    return Collision(**{**item, **states, "stones": (first, second), "normal": (nx, ny)})
+    return _made(Collision, {**item, **states, "stones": (first, second), "normal": (nx, ny)})
+
+
+def _made(kind: type[_Made], item: Mapping[str, Any]) -> _Made:
+    """Make a value of what JSON gave; TypeError where a number is none."""
+    made = kind(**item)
+    for name, hint in get_type_hints(kind).items():
+        value = getattr(made, name)
+        absent = value is None and hint == float | None
+        if hint in (float, float | None) and not (absent or type(value) in (int, float)):
+            raise TypeError(f"{name} is no number")
+    return made
+
+
+def _length(value: Any) -> float:
+    if type(value) not in (int, float) or not 0 < value < math.inf:
+        raise TypeError("no length")
+    return float(value)
+
+
+def _prediction(item: dict[str, Any]) -> Prediction:
+    laws = {name: Estimate(**item[name]) for name in ("restitution", "friction")}
+    return Prediction(**{**item, **laws})
 
 
 def _plain(value: Any) -> Any:

@@ -86,10 +86,7 @@ def simulate_measured(
         ice = fitted_ice(estimates.whole.state())
     clock = tracks.groupby("frame", sort=True)["t"].first()
     clock = clock[clock >= start]
-    ends = {
-        str(name): _end(group, [hit.t for hit in estimates.collisions if name in hit.stones], start)
-        for name, group in tracks.groupby("stone", sort=True)
-    }
+    ends = explained_until(tracks, estimates, start)
     warnings += [
         f"simulation: {name} is compared until {end:.2f} s; neither ice nor a hit in view"
         " explains how it moves then"
@@ -111,7 +108,7 @@ def simulate_measured(
         table["frame"] = clock.index.to_numpy()[table["frame"].to_numpy()]
         table["t"] = table["t"] + start
         samples[name] = table
-        scores[name] = _score(tracks, table, start, ends, notes.get(name))
+        scores[name] = score(tracks, table, start, ends, notes.get(name))
     return samples, scores, tuple(warnings)
 
 
@@ -213,6 +210,14 @@ def _rub(hit: Collision) -> float:
     return abs(rub / push) if hit.note is None and push > 0 else 0.0
 
 
+def explained_until(tracks: pd.DataFrame, estimates: Estimates, start: float) -> dict[str, float]:
+    """Time until which ice and known hits explain how each stone moves; infinity if to the end."""
+    return {
+        str(name): _end(group, [hit.t for hit in estimates.collisions if name in hit.stones], start)
+        for name, group in tracks.groupby("stone", sort=True)
+    }
+
+
 def _end(track: pd.DataFrame, hits: Sequence[float], start: float) -> float:
     """Time at which something else than ice and known hits moves a stone; infinity if never."""
     seen = track[(track["seen"] != 0) & (track["t"] >= start)]
@@ -229,7 +234,7 @@ def _end(track: pd.DataFrame, hits: Sequence[float], start: float) -> float:
     return float(t[now[sudden][0]]) if sudden.any() else np.inf
 
 
-def _score(
+def score(
     tracks: pd.DataFrame,
     simulated: pd.DataFrame,
     start: float,
