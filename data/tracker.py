@@ -311,7 +311,8 @@ def uniform_steps(times: Array) -> tuple[Array, float, float]:
     short = float(np.median(steps[steps < 1.5 * steps.min()]))
     count = np.concatenate([[0.0], np.cumsum(np.maximum(np.round(steps / short), 1))])
     centred = count - count.mean()
-    step = float((centred * (times - times.mean())).sum() / (centred**2).sum())
+    with np.errstate(over="ignore"):  # times a hair apart among others: no equal steps
+        step = float((centred * (times - times.mean())).sum() / (centred**2).sum())
     return count, float(times.mean() - step * count.mean()), step
 
 

@@ -115,6 +115,9 @@ def _table(path: Path) -> pd.DataFrame:
         why = " ".join(str(error).split())
         raise InputError(f"{path}: not a table of cameras ({why})") from None
     text.columns = text.columns.str.strip()
+    doubled = text.columns[text.columns.duplicated()]
+    if len(doubled):
+        raise InputError(f"{path}: column {doubled[0]} is there twice")
     needed = HOMOGRAPHY if len(text) == 1 else ("frame", *HOMOGRAPHY)
     missing = [name for name in needed if name not in text]
     if missing:

@@ -119,6 +119,7 @@ def test_a_mirrored_homography_is_refused(tmp_path: Path) -> None:
         ("", "not a table of cameras"),
         ("frame,h11,h12\n0,1,2\n1,1,2\n", "no column h13, h21"),
         ("stone,t,x,y\nA,0,0,0\n", "no column h11"),
+        ("frame,h11,h11 \n0,1,1\n", "column h11 is there twice"),
         ("a,b\n1,2,3\n1,2,3,4\n", "not a table of cameras|no column"),
         ("\x00\x01\x02", "not a table of cameras|no column"),
         (
