@@ -216,8 +216,8 @@ def _length(value: Any) -> float:
 
 
 def _prediction(item: dict[str, Any]) -> Prediction:
-    laws = {name: Estimate(**item[name]) for name in ("restitution", "friction")}
-    return Prediction(**{**item, **laws})
+    laws = {name: _made(Estimate, item[name]) for name in ("restitution", "friction")}
+    return _made(Prediction, {**item, **laws})
 
 
 def _plain(value: Any) -> Any:

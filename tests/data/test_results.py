@@ -70,7 +70,7 @@ def test_the_form_of_the_file() -> None:
     assert raw["schema"] == SCHEMA == 1
     assert set(raw) == {
         *("schema", "input", "restitution", "friction", "collisions", "glides"),
-        *("simulations", "warnings", "radius"),
+        *("simulations", "warnings", "radius", "predictions"),
     }
     assert raw["input"] == {
         "files": ["clip Ä.mp4"],
@@ -161,3 +161,31 @@ def test_damaged_results_are_read_or_refused(tmp_path: Path, key: str, value: ob
         Results.read(path)
     except InputError as refusal:
         assert str(path) in str(refusal)
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        (("collisions", 0, "t"), {}),
+        (("collisions", 0, "t"), None),
+        (("collisions", 0, "stone_friction"), "1.5"),
+        (("collisions", 0, "before", "A", "vx"), "fast"),
+        (("friction", "stderr"), "x"),
+        (("restitution", "value"), True),
+        (("glides", 0, "t0"), []),
+        (("radius",), 0),
+        (("radius",), "0.1455"),
+    ],
+)
+def test_what_is_no_number_is_refused(
+    path: tuple[str | int, ...], value: object, tmp_path: Path
+) -> None:
+    content = json.loads(RESULTS.to_json())
+    place = content
+    for key in path[:-1]:
+        place = place[key]
+    place[path[-1]] = value
+    file = tmp_path / "results.json"
+    file.write_text(json.dumps(content))
+    with pytest.raises(InputError, match="not a results"):
+        Results.read(file)
