@@ -1351,7 +1351,7 @@ def _write_odds(
 
     from data.files import whole_file, write_text
     from data.tracks import write_table
-    from physics.what_if import THROW_SD, odds, sample
+    from physics.what_if import THROW_SD, Changes, odds, sample
     from report.style import PNG_DPI
     from report.whatif import spread_figure
 
@@ -1363,7 +1363,9 @@ def _write_odds(
         "schema": 1,
         "input": arguments.shot.name,
         "thrown": thrown,
-        "changes": {key: value for key, value in asdict(changes).items() if value is not None},
+        "changes": {
+            key: value for key, value in asdict(changes).items() if value != getattr(Changes, key)
+        },
         "samples": count,
         "throw_sd": {"speed": throw_sd[0], "direction": throw_sd[1]},
         "stones": {name: asdict(item) for name, item in odds(outcomes, start).items()},

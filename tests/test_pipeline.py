@@ -445,3 +445,13 @@ def test_tracks_from_a_table_never_load_opencv(tmp_path: Path) -> None:
         cwd=Path(pipeline.__file__).parent,
     )
     assert (done.stdout, done.stderr) == ("False\n", "")
+
+
+def test_a_restitution_of_nothing_is_told_as_a_change(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shot, out = tmp_path / "shot.toml", tmp_path / "out"
+    shot.write_text('[[stone]]\nname = "A"\nx = 0\ny = -3\nvy = 2\n')
+    words = ["simulate", str(shot), "-o", str(out), "--samples", "3", "--json", "--restitution"]
+    assert pipeline.main([*words, "0"]) == 0
+    assert json.loads(capsys.readouterr().out)["changes"] == {"restitution": 0.0}
