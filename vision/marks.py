@@ -108,58 +108,70 @@ def measure(
     parts: list[Marks] = []
     if normals.kinds:
         colours = profiles(image, normals)
+        wide = {kind: part for kind, part in normals.kinds.items() if kind not in THIN}
         known = found if palette is None else palette
-        for kind, part in normals.kinds.items():
-            if kind in THIN:
-                parts.extend(_thin_line(kind, normals, part, colours[part], least_sd))
-                continue
-            offset, good, found[kind] = _steps(colours[part], known[kind])
-            offset *= 2 * normals.reach[part] / (SAMPLES - 1)
+        offsets, shown, found = _steps(
+            colours[: sum(p.stop - p.start for p in wide.values())], wide, known
+        )
+        for kind, part in wide.items():
+            offset, good = offsets[part] * normals.reach[part], shown[part]
             if kind < CIRCLES:
                 covered[kind] = normals.visible[kind] * good.mean()
                 sd = max(_scatter(offset[good]), least_sd)
-            else:
-                if good.sum() < max(8, 0.3 * len(good)):
-                    continue
+            elif good.sum() >= max(8, 0.3 * len(good)):
                 good, sd = _straight(normals.along[part], offset, good, least_sd)
+            else:
+                continue
             pixel = normals.point[part] + normals.normal[part] * offset[:, None]
             parts.append(_marks(kind, normals.along[part], pixel, normals.normal[part], good, sd))
+        for kind in THIN:
+            if kind in normals.kinds:
+                part = normals.kinds[kind]
+                parts.extend(_thin_line(kind, normals, part, colours[part], least_sd))
     return Evidence(joined(parts), normals.visible, covered, found)
 
 
-def _steps(profile: Profiles, known: Array) -> tuple[Array, Flags, Array]:
-    """Find where profiles cross from one side to the other, in samples from the middle.
+def _steps(profile: Profiles, kinds: dict[int, slice], known: Array) -> tuple[Array, Flags, Array]:
+    """Find where profiles cross from one side to the other.
 
-    With them, which of the profiles show the edge, and the colours of its sides, shape (2, 3).
+    Returns
+    -------
+    offset : ndarray, shape (n,)
+        From the middle, in half lengths of the profile.
+    good : ndarray of bool, shape (n,)
+        Whether the profile shows the edge.
+    palette : ndarray, shape (9, 2, 3)
+        Colours on either side of each kind of edge.
     """
-    n = len(profile)
     third = SAMPLES // 3
     ends = np.stack([profile[:, :third].mean(1), profile[:, -third:].mean(1)], axis=1)
-    sides = known if np.isfinite(known[0, 0]) else np.sort(ends, axis=0)[n // 2]
-    difference = sides[1] - sides[0]
-    contrast = float(np.sqrt(difference @ difference))
-    if contrast < MIN_CONTRAST:
-        return np.zeros(n), np.zeros(n, bool), np.full((2, 3), np.nan)
-    axis = (difference / contrast**2).astype(np.float32)  # from 0 on the one side to 1
-    away = ends - sides.astype(np.float32)
-    tolerance = max(0.5 * contrast, 12.0)
+    sides = np.empty_like(ends)
+    for kind, part in kinds.items():
+        learned = np.isfinite(known[kind, 0, 0])
+        sides[part] = known[kind] if learned else np.sort(ends[part], axis=0)[len(ends[part]) // 2]
+    difference = sides[:, 1] - sides[:, 0]
+    square = np.maximum((difference**2).sum(1), 1.0)
+    axis = difference / square[:, None]  # from 0 on the one side to 1 on the other
     # Each side looks like the line's own two colours; light may vary, hue may not.
-    good = ((away**2).sum(2) < tolerance**2).all(1)
-    height = ends @ axis
+    tolerance = np.maximum(0.25 * square, 12.0**2)
+    good = (((ends - sides) ** 2).sum(2) < tolerance[:, None]).all(1)
+    height = np.einsum("nsc,nc->ns", ends, axis)
     strength = height[:, 1] - height[:, 0]
-    good &= (strength > 0.5) & (strength < 1.6)
-    value = profile @ axis - height.mean(1)[:, None]
-    rising = (value[:, :-1] < 0) & (value[:, 1:] >= 0)
+    good &= (strength > 0.5) & (strength < 1.6) & (square > MIN_CONTRAST**2)
+    value = np.einsum("nmc,nc->nm", profile, axis) - height.mean(1)[:, None]
+    rising = (value[:, 1:-2] < 0) & (value[:, 2:-1] >= 0)
     # Of several crossings the steepest is the edge, the others are noise or print.
-    slope = np.where(rising[:, 1:-1], value[:, 3:] - value[:, :-3], 0.0)
+    slope = np.where(rising, value[:, 3:] - value[:, :-3], 0.0)
     best = slope.argmax(1) + 1
-    row = np.arange(n)
+    row = np.arange(len(profile))
     good &= slope[row, best - 1] > 0
     low, high = value[row, best], value[row, best + 1]
-    offset = best + low / np.where(good, low - high, 1.0) - (SAMPLES - 1) / 2
-    if good.any():
-        sides = ends[good].mean(0)
-    return offset.astype(np.float64), good, sides.astype(np.float64)
+    sample = best + low / np.where(good, low - high, 1.0)
+    palette = np.full((FIXED, 2, 3), np.nan)
+    for kind, part in kinds.items():
+        if good[part].any():
+            palette[kind] = ends[part][good[part]].mean(0)
+    return sample.astype(np.float64) / (SAMPLES // 2) - 1, good, palette
 
 
 def _scatter(offset: Array) -> float:

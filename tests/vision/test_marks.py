@@ -1,11 +1,13 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from tests.synthetic import PAINTS, Paint, render_still, sample_scene, still_camera
 from tests.synthetic.scene import Scene
-from vision.marks import measure
+from vision.marks import NOISE_SD, measure
 from vision.pose import CENTRE_LINE, LEFT, OVERHEAD, RIGHT, TEE_LINE, View, start_rig
 
 SIZE = (960, 540)
@@ -68,3 +70,33 @@ def test_bare_ice_gives_no_edges() -> None:
     evidence = measure(noise.astype(np.uint8), view.vector, rig, reach=7)
     assert (evidence.visible > 0.9).all()
     assert (evidence.covered == 0).all()
+
+
+@pytest.mark.parametrize("name", ["navy-orange", "gold-purple"])
+@pytest.mark.parametrize(("softness", "noise"), [(0.55, 2.0), (1.5, 2.0), (0.55, 5.0)])
+def test_edges_are_unbiased_under_blur_and_noise(name: str, softness: float, noise: float) -> None:
+    base = scene(PAINTS[name])
+    path = still_camera(size=SIZE, position=(0, 0, 9.0), target=(0, 0), px_per_m=90)
+    view, rig = truth(PAINTS[name])
+    image = render_still(
+        replace(base, light=replace(base.light, softness=softness, noise=noise)), path
+    )
+    marks = measure(image, view.vector, rig, reach=7, most=60, least_sd=NOISE_SD).marks
+    middle = (np.array(SIZE) - 1) / 2
+    for kind, radius in enumerate((1.829, rig[6], rig[7])):
+        on = marks.pick(marks.line == kind)
+        off = np.linalg.norm(on.pixel - middle, axis=1) - radius * 90
+        assert abs(np.median(off)) < 0.1
+        # The stated standard deviation is that of a single mark, give or take.
+        spread = 1.48 * np.median(np.abs(off - np.median(off)))
+        assert 0.4 * spread < np.median(on.sd) < 2.5 * max(spread, NOISE_SD)
+
+
+def test_known_colours_are_told_from_those_of_something_else() -> None:
+    paint = PAINTS["navy-orange"]
+    view, rig = truth(paint)
+    seen = measure(still(paint), view.vector, rig, reach=7)
+    again = measure(still(paint), view.vector, rig, reach=7, palette=seen.palette)
+    assert (again.support > 0.85).all()
+    other = measure(still(PAINTS["gold-purple"]), view.vector, rig, reach=7, palette=seen.palette)
+    assert other.support[0] < 0.1

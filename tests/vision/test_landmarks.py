@@ -1,0 +1,70 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from tests.synthetic import Graphic, broadcast_camera, render_still, sample_scene
+from tests.synthetic.camera import CameraPath
+from vision.adjust import solve_view
+from vision.landmarks import keyframe, recognise
+from vision.pose import OVERHEAD, View, fixed, project, start_rig
+
+SIZE = (1280, 720)
+PATH = broadcast_camera(start=0.0, end=6.0, target=((0.0, 4.2), (0.3, 3.4)), shake=0.0)
+SCENE = replace(sample_scene(), graphics=(Graphic(40, 30, row=34),))
+
+
+def truth(path: CameraPath, t: float) -> tuple[View, np.ndarray]:
+    """The library's parameters of the camera that renders."""
+    true = path.at(t)
+    rig = start_rig(OVERHEAD, true.position)
+    rig[3:6] = 0
+    start = View(np.array([0.0, 0.0, 0.0, np.log(true.focal)]))
+    ice = np.stack(np.meshgrid([-1.5, 0, 1.5], [3.0, 4.0, 5.0]), axis=-1).reshape(-1, 2)
+    pixels = true.project(np.c_[ice, np.zeros(len(ice))])
+    view = solve_view(
+        fixed(ice, pixels, 0.1), start, rig, SIZE, view_sd=np.full(4, np.inf), width=1e4,
+        iterations=50,
+    ).view  # fmt: skip
+    assert np.abs(project(ice, view.vector, rig, SIZE) - pixels).max() < 0.01
+    return view, rig
+
+
+def test_landmarks_are_recognised_where_the_camera_has_moved() -> None:
+    (before, rig), (after, _) = truth(PATH, 0.0), truth(PATH, 4.0)
+    one, two = (render_still(SCENE, PATH, t) for t in (0.0, 4.0))
+    key = keyframe(one, before, rig, np.diag([1e-5, 1e-5, 1e-5, 1e-6]) ** 2)
+    guess = View(after.vector + np.array([0.004, -0.004, 0.002, 0.005]))
+    marks = recognise(key, two, guess, rig)
+    assert marks is not None
+    found = solve_view(marks, guess, rig, SIZE, view_sd=np.full(4, np.inf)).view
+    ice = np.array([[-1.0, 3.0], [0.0, 4.0], [1.0, 5.0]])
+    there = [project(ice, v.vector, rig, SIZE) for v in (found, after)]
+    assert np.linalg.norm(there[0] - there[1], axis=1).max() < 0.7
+
+
+def test_another_scene_is_not_recognised() -> None:
+    view, rig = truth(PATH, 0.0)
+    key = keyframe(render_still(SCENE, PATH, 0.0), view, rig, np.zeros((4, 4)))
+    noise = np.random.default_rng(0).integers(0, 256, (90, 160, 3)).astype(np.uint8)
+    other = np.repeat(np.repeat(noise, 8, axis=0), 8, axis=1)
+    assert recognise(key, other, view, rig) is None
+
+
+def test_a_graphic_alone_is_no_scene() -> None:
+    view, rig = truth(PATH, 0.0)
+    key = keyframe(render_still(SCENE, PATH, 0.0), view, rig, np.zeros((4, 4)))
+    blank = np.full((SIZE[1], SIZE[0], 3), 90, np.uint8)
+    shown = render_still(SCENE, PATH, 0.0)[20:120, 30:300]
+    blank[20:120, 30:300] = shown
+    assert recognise(key, blank, view, rig) is None
+
+
+def test_uncertainty_grows_from_keyframe_to_keyframe() -> None:
+    view, rig = truth(PATH, 0.0)
+    image = render_still(SCENE, PATH, 0.0)
+    cov = np.diag([1e-4, 1e-4, 1e-4, 1e-4]) ** 2
+    first = keyframe(image, view, rig, cov)
+    assert 0.0005 < first.drift < 0.005
+    assert keyframe(image, view, rig, cov, 0.01).drift > 0.01
