@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from data.columns import LENGTH_UNITS
 from data.errors import InputError
 from data.layouts import TrackFile
-from data.osp_xml import Thing, parse
+from data.osp_xml import Thing
 from data.tracks import LATEST
 
 Array = NDArray[np.float64]
@@ -222,26 +222,14 @@ class Project:
         return pd.DataFrame({"stone": track.name, "t": t, "frame": frames, "x": x, "y": y})
 
 
-def read_trk(raw: bytes, source: str) -> Project:
-    """Read a project with one tab.
-
-    Parameters
-    ----------
-    raw : bytes
-        Content of the ``.trk`` file.
-    source : str
-        What to call it in messages.
+def project_of(root: Thing, source: str) -> Project:
+    """Make a project of the root object of a ``.trk``.
 
     Raises
     ------
     InputError
-        One line: damaged XML, no project, or numbers that make no sense.
+        One line: no project, or numbers that make no sense.
     """
-    return project_of(parse(raw, source), source)
-
-
-def project_of(root: Thing, source: str) -> Project:
-    """Make a project of the root object of a ``.trk``; raises `InputError` as `read_trk`."""
     if root.cls != "TrackerPanel":
         raise InputError(f"{source}: no Tracker project ({root.cls or 'nothing'} instead)")
     try:
