@@ -640,6 +640,9 @@ def convert(
     odd = [file for file in files if file.suffix.lower() not in TABLES]
     if odd:
         raise InputError(f"{odd[0]}: not a table of tracks; try curlshot track")
+    if path.is_dir() or path.resolve() in {file.resolve() for file in files}:
+        what = "a folder" if path.is_dir() else "what is to be converted"
+        raise InputError(f"{path}: is {what}; name another file to write")
     measured = _import_tables(files, settings)
     if ending == ".trk":
         return _write_project(measured, path, None if over is None else Path(over))

@@ -455,3 +455,16 @@ def test_a_restitution_of_nothing_is_told_as_a_change(
     words = ["simulate", str(shot), "-o", str(out), "--samples", "3", "--json", "--restitution"]
     assert pipeline.main([*words, "0"]) == 0
     assert json.loads(capsys.readouterr().out)["changes"] == {"restitution": 0.0}
+
+
+def test_convert_does_not_write_over_its_input(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table, folder = tmp_path / "a.csv", tmp_path / "b.csv"
+    table.write_text("stone,t,x,y\nA,0,0,0\nA,0.04,0.1,0\n")
+    before = table.read_bytes()
+    folder.mkdir()
+    for out, why in ((table, "is what is to be converted"), (folder, "is a folder")):
+        assert pipeline.main(["convert", str(table), str(out)]) == 2
+        assert f"{out}: {why}" in capsys.readouterr().err
+    assert table.read_bytes() == before
