@@ -26,6 +26,9 @@ SIGHTING_COLUMNS: tuple[str, ...] = (
 what the sightings of a stone share and no filter averages out: the camera, the scale.
 """
 
+FARTHEST = 1e6
+"""No time (s), place (m) or velocity (m/s) of a written track is as large."""
+
 LATEST = 1e12
 """s; more is no time."""
 
@@ -155,12 +158,17 @@ def read_tracks(path: Path) -> pd.DataFrame:
     """
     numbers = {name: float for name in TRACK_COLUMNS if name not in ("stone", "frame", "seen")}
     try:
-        table = pd.read_csv(path, dtype={"stone": str, **numbers})
-        return table[list(TRACK_COLUMNS)]
+        table = pd.read_csv(path, dtype={"stone": str, **numbers})[list(TRACK_COLUMNS)]
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}") from None
     except (ValueError, KeyError):  # pandas' own mistakes are ValueErrors
         raise InputError(f"{path}: not a tracks.csv of this program") from None
+    if table.empty:
+        raise InputError(f"{path}: a table without any row")
+    states = table[["t", "x", "y", "vx", "vy"]].to_numpy()
+    if not (np.abs(states) < FARTHEST).all():  # NaN is refused too
+        raise InputError(f"{path}: times, places or velocities that are none")
+    return table
 
 
 def order_of_motion(first_moved: dict[str, float], others: Iterable[str]) -> dict[str, str]:

@@ -16,6 +16,7 @@ from data.tracks import (
     check_sightings,
     empty_tracks,
     order_of_motion,
+    read_tracks,
     stone_name,
     write_table,
     write_tracks,
@@ -190,3 +191,13 @@ def test_the_thrown_stone_is_a() -> None:
 def test_no_tracks_have_the_columns_of_tracks() -> None:
     assert tuple(empty_tracks().columns) == TRACK_COLUMNS
     assert len(empty_tracks()) == 0
+
+
+@pytest.mark.parametrize(
+    "wrong", ["", "A,0,0,nan,0,0,1,1,0,1,1,1,1,1,1,1", "A,0,0,1e300,0" + ",0" * 10 + ",1"]
+)
+def test_written_tracks_without_sense_are_refused(tmp_path: Path, wrong: str) -> None:
+    path = tmp_path / "tracks.csv"
+    path.write_text(",".join(TRACK_COLUMNS) + "\n" + wrong + "\n")
+    with pytest.raises(InputError, match=r"without any row|that are none"):
+        read_tracks(path)
