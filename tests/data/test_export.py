@@ -61,7 +61,7 @@ def test_what_is_written_is_read_again(
     ending=st.sampled_from([".txt", ".csv"]),
 )
 def test_every_digit_survives(tmp_path: Path, values: list[float], ending: str) -> None:
-    t = 10.0 * np.arange(len(values)) + 0.1
+    t = 30.0 * np.arange(len(values)) + 0.1
     table = check_sightings(pd.DataFrame({"stone": "A", "t": t, "x": values, "y": values[::-1]}))
     path = tmp_path / f"a{ending}"
     (write_text if ending == ".txt" else write_csv)(table, path)
