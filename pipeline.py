@@ -564,7 +564,7 @@ def _write_run(
             done.tracks,
             done.results.collisions,
             overlay,
-            rings=None if house is None else (house.twelve_foot, house.eight_foot, house.four_foot),
+            rings=None if house is None else _painted(house),
             radius=settings.radius,
             progress=progress,
         )
@@ -675,16 +675,15 @@ def _view_over(
     measured: Measured, camera_csv: Path, path: Path, over: Path
 ) -> tuple[View, Array, str]:
     """Place tracks in the pictures of a clip by the cameras of a run."""
-    import pandas as pd
-
     from data.trk_write import View
+    from vision.camera_file import cameras_of
     from vision.clip import open_clip
-    from vision.tracker_view import cameras_of, closest_similarity, marks_of, off_at
+    from vision.tracker_view import closest_similarity, marks_of, off_at
 
     if not camera_csv.is_file():
         raise InputError(f"{camera_csv}: no such file; --over needs tracks.csv and camera.csv")
     clip = open_clip(find_inputs([over]))
-    cameras = cameras_of(pd.read_csv(camera_csv), clip.size, str(camera_csv))
+    cameras = cameras_of(camera_csv, clip.size)
     sightings = measured.sightings
     unknown = sorted(set(sightings["frame"]) - set(cameras))
     if unknown:

@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.residuals import huber_weights, likeness
+from physics.residuals import huber_weights, inflation
 from physics.segments import Piece
 from physics.shot_fit import Deceleration, Meeting, ShotFit
 from physics.traces import Trace
@@ -339,16 +339,12 @@ class _Solver:
 
     def _excess(self, parameters: float) -> float:
         """Factor for residuals larger than stated, and alike from frame to frame."""
-        runs = []
-        for i, piece in enumerate(self.pieces):
-            if len(piece.samples):
-                r = self._residuals(i, self._basis(i))
-                runs.append((r * huber_weights(r), 1 if piece.rest else 3))
-        count = sum(r.size for r, _ in runs)
-        if count - parameters < 1:
-            return 1.0
-        square = sum(float(np.sum(r * r)) for r, _ in runs)
-        return max(1.0, square / (count - parameters)) * likeness([*runs, *self.still])
+        runs = [
+            (self._residuals(i, self._basis(i)), 1 if piece.rest else 3)
+            for i, piece in enumerate(self.pieces)
+            if len(piece.samples)
+        ]
+        return inflation(runs, sum(run.size for run, _ in runs) - parameters, self.still)
 
 
 def _inverse(normal: Floats, blocks: Sequence[NDArray[np.int64]]) -> Floats:

@@ -51,8 +51,6 @@ class GlobalFit:
     cov : (n, n) array
         Their covariance, enlarged for residuals that are too big or alike from frame to frame
         and for what places share.
-    shared_cov : (n, n) array
-        The part of `cov` that comes from what places share.
     prior_sd : (n,) array
         What was known of each beforehand; infinite where nothing.
     fixed : mapping
@@ -72,7 +70,6 @@ class GlobalFit:
     names: tuple[str, ...]
     values: Floats
     cov: Floats
-    shared_cov: Floats
     prior_sd: Floats
     fixed: Mapping[str, float]
     shots: tuple[Watched, ...]
@@ -212,21 +209,19 @@ class _Problem:
         at = np.clip(np.array(guesses, float), self.low, self.high)
         at, settled = self._descend(at, iterations)
         residuals = [self._residuals(rank, at) for rank in range(len(self.shots))]
-        runs = [run for places, _ in residuals for run in places]
+        runs = [(run, 3) for places, _ in residuals for run in places]
         free = 2 * self.sightings - len(at)
-        self.noise = inflation(runs, free, 3) if free > 0 else 1.0
+        self.noise = inflation(runs, free)
         if self.noise > 1.0:  # what is known beforehand has the more of a say
             at, settled = self._descend(at, iterations)
             residuals = [self._residuals(rank, at) for rank in range(len(self.shots))]
         slopes = self._slopes(at, residuals)
         normal, _ = self._normal(at, residuals, slopes)
         cov = _inverse(normal)
-        common = self._shared_error(residuals, slopes, cov)
         return GlobalFit(
             self.names,
             at,
-            cov + common,
-            common,
+            cov + self._shared_error(residuals, slopes, cov),
             self.sd,
             dict(self.fixed),
             tuple(self.shots),

@@ -26,21 +26,28 @@ def huber_weights(residuals: Floats) -> Floats:
     return out
 
 
-def inflation(runs: Sequence[Floats], free: int, parameters: int) -> float:
+def inflation(
+    runs: Sequence[tuple[Floats, int]],
+    free: float,
+    alike: Sequence[tuple[Floats, int]] = (),
+) -> float:
     """Factor for variances of residuals that are larger than stated, or alike in time.
 
     Parameters
     ----------
-    runs : sequence of (n, 2) array
-        Normalised residuals of each stone in order of time.
-    free : int
-        Residuals less parameters.
-    parameters : int
-        Fitted to each column of a run, about.
+    runs : sequence of ((n, 2) array, int)
+        Normalised residuals of each stone in order of time, and the number of parameters
+        fitted to each column, about.
+    free : float
+        Residuals less parameters; below 1 nothing can be told.
+    alike : sequence of ((n, k) array, int)
+        Further residuals that only say how alike they are in time.
     """
-    weighted = [run * huber_weights(run) for run in runs]
-    square = sum(float(np.sum(run * run)) for run in weighted)
-    return max(1.0, square / free) * likeness([(run, parameters) for run in weighted])
+    if free < 1:
+        return 1.0
+    weighted = [(run * huber_weights(run), parameters) for run, parameters in runs]
+    square = sum(float(np.sum(run * run)) for run, _ in weighted)
+    return max(1.0, square / free) * likeness([*weighted, *alike])
 
 
 def likeness(runs: Sequence[tuple[Floats, int]]) -> float:

@@ -62,8 +62,6 @@ class Bundle:
         How far each lies off its line, m.
     cov : ndarray, shape (14 + c, 14 + c)
         Covariance of rig and offsets.
-    paint_sd : ndarray, shape (3,)
-        Standard deviation of the offsets of circles and of lines, m.
     noise : ndarray, shape (3,)
         Standard deviation of a single mark on a circle, on a line, of a fixed point, in stated
         ones.
@@ -73,7 +71,6 @@ class Bundle:
     pieces: Ints
     offset: Array
     cov: Array
-    paint_sd: Array
     noise: Array
 
     def offsets(self, marks: Marks) -> tuple[Array, Ints]:
@@ -139,7 +136,7 @@ def bundle(
         paint, noise = problem.spread(state, cov, paint, noise)
     state, cov = problem.fit(state, paint, noise, 4)
     shared = RIG_SIZE + len(problem.pieces)
-    found = Bundle(state.rig, problem.pieces, state.offset, cov[:shared, :shared], paint, noise)
+    found = Bundle(state.rig, problem.pieces, state.offset, cov[:shared, :shared], noise)
     return found, tuple(View(v) for v in state.views)
 
 

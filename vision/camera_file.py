@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -70,15 +71,36 @@ def given_cameras(
     return tuple(cameras), tuple(notes)
 
 
-def read_cameras(path: Path) -> pd.DataFrame:
+def cameras_of(path: Path, size: tuple[int, int]) -> dict[int, Camera]:
+    """Read the cameras of a run by their frames, for pictures of a size.
+
+    Raises
+    ------
+    InputError
+        As `read_cameras`, and where a column of ``camera.csv`` is missing.
+    """
+    table = read_cameras(path, CAMERA_COLUMNS)
+    return {
+        int(row["frame"]): _camera(row, int(row["frame"]), float(row["t"]), size)
+        for _, row in table.iterrows()
+    }
+
+
+def read_cameras(path: Path, columns: Sequence[str] = ()) -> pd.DataFrame:
     """Read a table of cameras, with `CAMERA_COLUMNS`; NaN where something is not known.
+
+    Parameters
+    ----------
+    path : Path
+    columns : sequence of str
+        What must be there beyond what is needed, though cells may be empty.
 
     Raises
     ------
     InputError
         Where it makes no sense: one line says what, and in which line of the file.
     """
-    table = _table(path)
+    table = _table(path, columns)
     # The picture's scale of a homography is free: h33 = 1 as elsewhere.
     with np.errstate(all="ignore"):
         matrices = table[list(HOMOGRAPHY)].to_numpy() / table[["h33"]].to_numpy()
@@ -103,7 +125,7 @@ def read_cameras(path: Path) -> pd.DataFrame:
     return table
 
 
-def _table(path: Path) -> pd.DataFrame:
+def _table(path: Path, columns: Sequence[str]) -> pd.DataFrame:
     """Read the columns as numbers."""
     try:
         text = pd.read_csv(path, dtype=str, skipinitialspace=True, encoding_errors="replace")
@@ -119,11 +141,11 @@ def _table(path: Path) -> pd.DataFrame:
     if len(doubled):
         raise InputError(f"{path}: column {doubled[0]} is there twice")
     needed = HOMOGRAPHY if len(text) == 1 else ("frame", *HOMOGRAPHY)
-    missing = [name for name in needed if name not in text]
+    missing = [name for name in dict.fromkeys((*needed, *columns)) if name not in text]
     if missing:
         raise InputError(
-            f"{path}: not a table of cameras: no column {', '.join(missing)}; it needs those of"
-            " a camera.csv"
+            f"{path}: no column {', '.join(missing)}; not a table of cameras, which needs those"
+            " of a camera.csv"
         )
     if text.empty:
         raise InputError(f"{path}: has no row")

@@ -5,37 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
-from data.errors import InputError
 from data.trk import Coordinates
-from vision.camera import CAMERA_COLUMNS, Camera
+from vision.camera import Camera
 
 Array = NDArray[np.float64]
 
 CORNER = 0.5
 """Tracker counts pixels from the corner of the first, OpenCV from its middle, px."""
-
-
-def cameras_of(table: pd.DataFrame, size: tuple[int, int], source: str) -> dict[int, Camera]:
-    """Make cameras, by frame, of the table ``camera.csv`` and the size of the picture.
-
-    Raises
-    ------
-    InputError
-        A column is missing.
-    """
-    missing = [name for name in CAMERA_COLUMNS if name not in table]
-    if missing:
-        raise InputError(f"{source}: no column {', '.join(missing)}; not a camera.csv of a run")
-    cells = [f"h{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3)]
-    homographies = table[cells].to_numpy(float).reshape(-1, 3, 3)
-    numbers = table[["frame", "t", "k1", "k2"]].to_numpy(float)
-    return {
-        int(frame): Camera(int(frame), t, homography, size, k1, k2)
-        for (frame, t, k1, k2), homography in zip(numbers, homographies, strict=True)
-    }
 
 
 def closest_similarity(cameras: Sequence[Camera], step: float = 1e-4) -> Coordinates:

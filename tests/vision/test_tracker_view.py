@@ -1,11 +1,14 @@
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from data.errors import InputError
 from vision.camera import Camera, camera_table
-from vision.tracker_view import CORNER, cameras_of, closest_similarity, marks_of, off_at
+from vision.camera_file import cameras_of
+from vision.tracker_view import CORNER, closest_similarity, marks_of, off_at
 
 SIZE = (1280, 720)
 
@@ -39,11 +42,14 @@ def test_perspective_is_off_at_the_ring_but_not_at_the_tee() -> None:
     assert off_at(system, tilted, 1.829) == pytest.approx(0.05 * 1.829**2, rel=0.15)
 
 
-def test_cameras_come_back_from_their_table() -> None:
+def test_cameras_come_back_from_their_table(tmp_path: Path) -> None:
     made = [camera(5, 0.02, -0.03), camera(6, 0.01)]
-    found = cameras_of(camera_table(made), SIZE, "camera.csv")
+    path = tmp_path / "camera.csv"
+    camera_table(made).to_csv(path, index=False)
+    found = cameras_of(path, SIZE)
     places = np.array([[0.3, -1.0], [1.0, 1.5]])
     for one in made:
         np.testing.assert_allclose(found[one.frame].project(places), one.project(places))
+    camera_table(made).drop(columns="k1").to_csv(path, index=False)
     with pytest.raises(InputError, match=r"camera\.csv: no column k1"):
-        cameras_of(camera_table(made).drop(columns="k1"), SIZE, "camera.csv")
+        cameras_of(path, SIZE)
