@@ -1,0 +1,37 @@
+"""Numbers as the page writes them: rounded for people, with all their digits for machines."""
+
+from __future__ import annotations
+
+from markupsafe import Markup
+
+from report.numbers import DASH, fixed, parts, significant
+
+
+def data(value: float | None, decimals: int = 3, factor: float = 1.0) -> Markup:
+    """Write a number rounded, with all its digits kept in the element for machines."""
+    if value is None:
+        return Markup(DASH)
+    return _element(value, fixed(value * factor, decimals))
+
+
+def data_significant(value: float | None, digits: int = 3, factor: float = 1.0) -> Markup:
+    """Write a number with so many significant digits, all of them kept for machines."""
+    if value is None:
+        return Markup(DASH)
+    return _element(value, significant(value * factor, digits))
+
+
+def data_pair(value: float | None, stderr: float | None) -> Markup:
+    """Write "value ± standard error", rounded together, with all digits kept for machines."""
+    first, second = parts(value, stderr)
+    if value is None:
+        return Markup(DASH)
+    text = _element(value, first)
+    if second is None or stderr is None:
+        return text
+    return Markup('<span class="pm">{} ± {}</span>').format(text, _element(stderr, second))
+
+
+def _element(value: float, text: str) -> Markup:
+    exact = int(value) if float(value).is_integer() and abs(value) < 1e15 else float(value)
+    return Markup('<data value="{}">{}</data>').format(repr(exact), text)
