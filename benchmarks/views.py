@@ -53,8 +53,8 @@ class Clip:
     def render(self, height: int) -> tuple[Path, Truth]:
         """Render the clip at this height of the picture, px: 720 or 1080."""
         return cached_clip(
-            self.scene, enlarged(self.camera, height / HEIGHT), fps=self.fps,
-            duration=self.duration, shutter=self.shutter, crf=self.crf,
+            enlarged_cuts(self.scene, height / HEIGHT), enlarged(self.camera, height / HEIGHT),
+            fps=self.fps, duration=self.duration, shutter=self.shutter, crf=self.crf,
             supersample=self.supersample, draw=self.draw,
         )  # fmt: skip
 
@@ -67,6 +67,13 @@ def enlarged(camera: CameraPath, factor: float) -> CameraPath:
         keys=tuple(replace(k, px_per_m=k.px_per_m * factor) for k in camera.keys),
         shake=camera.shake * factor,
     )
+
+
+def enlarged_cuts(scene: Scene, factor: float) -> Scene:
+    """Give the other cameras that a scene is cut to as many more pixels."""
+    cuts = (c if c.camera is None else replace(c, camera=enlarged(c.camera, factor))
+            for c in scene.cuts)  # fmt: skip
+    return replace(scene, cuts=tuple(cuts))
 
 
 def painted(
