@@ -1,0 +1,321 @@
+"""How true the tracks of rendered clips are: ``python -m benchmarks.tracks`` from the root.
+
+Each kind of shot that occurs, rendered with a known truth and followed from the picture to the
+filter. One row per kind, pooled over its clips: stone-frames found of those in view, switched
+stones, false tracks, errors of place, speed and spin, and how many true values lie within two
+stated standard errors. A star marks what misses its bar.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+
+from benchmarks.stones import cameras_of_table
+from data.sheet import STONE
+from physics.contacts import find_contacts
+from physics.kalman import smooth
+from tests.scoring import score_tracks
+from tests.synthetic import (
+    CameraPath,
+    Scene,
+    Start,
+    Stone,
+    Truth,
+    broadcast_camera,
+    cached_clip,
+    frame_times,
+    pictures,
+    plain_pictures,
+    random_scene,
+    sweepers,
+    tilted_camera,
+)
+from vision.camera import Camera
+from vision.clip import Clip, open_clip
+from vision.follow_house import follow_house
+from vision.track import track_stones
+
+SECONDS = 2.6
+SLOW, IDLE = 0.05, 0.05
+"""Below these a stone does not count as moving (m/s) or turning (rad/s)."""
+
+BESIDE = 0.01
+"""Rows nearer to a hit, s, may lie on its other side."""
+
+RED, YELLOW, BLUE = (44, 26, 178), (38, 208, 226), (150, 70, 20)
+
+Rng = np.random.Generator
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of clip: its scene and camera drawn by chance, its rate, and the bar for places."""
+
+    name: str
+    scene: Callable[[Rng], Scene]
+    camera: Callable[[Rng], CameraPath]
+    rmse: float = 0.005
+    fps: float = 25.0
+    uneven: bool = False
+    supersample: int = 1
+    plain: bool = False
+
+
+@dataclass(frozen=True)
+class Bar:
+    """What a column must reach: at least `low`, at most `high`."""
+
+    low: float = -np.inf
+    high: float = np.inf
+
+
+COVERED = Bar(0.90, 0.98)
+BARS = {
+    "recall": Bar(low=0.99), "switches": Bar(high=0), "false": Bar(high=0),
+    "speed m/s": Bar(high=0.01), "spin rad/s": Bar(high=0.05),
+    "in 2 sd: x": COVERED, "v": COVERED, "omega": COVERED,
+}  # fmt: skip
+
+
+def overhead(rng: Rng, size: tuple[int, int] = (1280, 720)) -> CameraPath:
+    """Broadcast camera near plumb over the tee that pans, zooms, rolls and shakes."""
+    wide = size[0] / 1280
+    return broadcast_camera(
+        size=size,
+        position=(*rng.uniform(-0.4, 0.4, 2).tolist(), float(rng.uniform(7.5, 10.5))),
+        end=SECONDS,
+        target=((0.05, float(rng.uniform(1.0, 1.6))), (0.1, float(rng.uniform(-0.1, 0.5)))),
+        px_per_m=(wide * float(rng.uniform(115, 140)), wide * float(rng.uniform(95, 110))),
+        k1=(float(rng.uniform(-0.08, 0.03)), float(rng.uniform(-0.05, 0.03))),
+        shake=0.3,
+        shake_phase=float(rng.uniform(0, 6)),
+    )
+
+
+def aslant(degrees: float) -> Callable[[Rng], CameraPath]:
+    """Still camera that looks at the tee from so far off plumb."""
+
+    def camera(rng: Rng) -> CameraPath:
+        return tilted_camera(
+            np.radians(degrees + rng.uniform(-2, 2)),
+            height=float(rng.uniform(6.5, 9.5)) * float(np.cos(np.radians(degrees))) ** 0.5,
+            px_per_m=float(rng.uniform(92, 108)),
+            k1=float(rng.uniform(-0.04, 0.02)),
+        )
+
+    return camera
+
+
+def shot(**more: object) -> Callable[[Rng], Scene]:
+    """Give a thrown stone that hits one of several."""
+    return lambda rng: random_scene(rng, **more)  # type: ignore[arg-type]
+
+
+def swept(rng: Rng) -> Scene:
+    scene = random_scene(rng, resting=6)
+    return replace(scene, people=sweepers(scene, SECONDS))
+
+
+def three_hits(rng: Rng) -> Scene:
+    """Give three hits in a row down the sheet."""
+    scene = random_scene(rng, resting=2, speed=2.2)
+    x, y, fall = float(rng.uniform(-0.3, 0.3)), float(rng.uniform(1.5, 1.8)), []
+    for _ in range(3):
+        x, y = x + float(rng.uniform(-0.06, 0.06)), y - float(rng.uniform(0.45, 0.65))
+        fall.append((x, y))
+    start = Start(float(fall[0][0] + rng.uniform(-0.05, 0.05)), 2.6, 0.0, -2.2, 1.0, 1.4)
+    stones = [Stone("A", start, RED)]
+    for name, (px, py), cap in zip("BCD", fall, (YELLOW, RED, YELLOW), strict=True):
+        stones.append(Stone(name, Start(px, py, theta=float(rng.uniform(0, 6))), cap))
+    stones.append(Stone("E", Start(1.2, 0.9, theta=2.0), YELLOW))
+    return replace(scene, stones=tuple(stones))
+
+
+def freeze(rng: Rng) -> Scene:
+    """Give a stone that comes to rest against another, and two that touch all the time."""
+    scene = random_scene(rng, resting=2)
+    slowing = 9.81 * scene.ice.friction(1.0)
+    lasts = 0.75 * SECONDS
+    speed, way = slowing * lasts, 0.5 * slowing * lasts**2
+    away = 2 * STONE.radius + 0.001
+    start = Start(0.2, 0.4 + away + way, 0.0, -speed, 0.5, float(rng.uniform(0.4, 1.0)))
+    stones = (
+        Stone("A", start, RED),
+        Stone("B", Start(0.2, 0.4, theta=2.0), YELLOW),
+        Stone("C", Start(-0.8, 0.1, theta=4.0), RED),
+        Stone("D", Start(-0.8 + 2 * STONE.radius + 2e-4, 0.1, theta=1.0), RED),
+    )
+    return replace(scene, stones=stones)
+
+
+KINDS: tuple[Kind, ...] = (
+    Kind("overhead", shot(), overhead),
+    Kind("ten stones", shot(resting=9), overhead),
+    Kind("three hits", three_hits, overhead),
+    Kind("equal colours", shot(caps=(BLUE, BLUE)), overhead),
+    Kind("sweepers", swept, overhead),
+    Kind("freeze", freeze, overhead),
+    Kind("30 fps", shot(), overhead, fps=30.0),
+    Kind("50 fps", shot(resting=4), overhead, fps=50.0),
+    Kind("60 fps", shot(resting=4), overhead, fps=60.0),
+    Kind("variable rate", shot(), overhead, fps=30.0, uneven=True),
+    Kind("30 deg", shot(), aslant(30), rmse=0.010),
+    Kind("50 deg", shot(), aslant(50), rmse=0.020, supersample=2),
+    Kind("1080p", shot(), lambda rng: overhead(rng, (1920, 1080))),
+    Kind("plain", shot(), overhead, plain=True),
+    Kind("plain, 30 deg", shot(), aslant(30), rmse=0.010, plain=True),
+)
+
+
+def clip_of(kind: Kind, seed: int) -> tuple[Clip, Truth]:
+    """One clip of a kind, rendered once per machine."""
+    rng = np.random.default_rng([seed, *kind.name.encode()])
+    scene, camera = kind.scene(rng), kind.camera(rng)
+    times = frame_times(kind.fps, SECONDS)
+    if kind.uneven:
+        dropped = rng.choice(np.arange(2, len(times)), len(times) // 6, replace=False)
+        times = frame_times(kind.fps, SECONDS, dropped=dropped.tolist(), jitter=0.3, rng=rng)
+    path, truth = cached_clip(
+        scene, camera, fps=kind.fps, times=times, supersample=kind.supersample,
+        draw=plain_pictures if kind.plain else pictures,
+    )  # fmt: skip
+    return open_clip([path]), truth
+
+
+def tracks_of(clip: Clip, cameras: Sequence[Camera]) -> pd.DataFrame:
+    """Give what ``tracks.csv`` of a clip holds."""
+    sightings = track_stones(clip, cameras).sightings
+    hits = find_contacts(sightings, STONE.radius)
+    return smooth(sightings, hits, radius=STONE.radius)
+
+
+def errors_of(tracks: pd.DataFrame, truth: Truth, names: dict[str, str]) -> pd.DataFrame:
+    """Errors and stated errors of all rows that belong to a true stone.
+
+    Returns
+    -------
+    DataFrame
+        ``stone, t, moving, turning``, and per state its error ``d_`` and ``sd_``.
+    """
+    parts = []
+    for true_name, name in names.items():
+        ours = tracks[tracks["stone"] == name].set_index("frame")
+        true = truth.tracks[truth.tracks["stone"] == true_name].set_index("frame").loc[ours.index]
+        hits = np.array([hit.t for hit in truth.hits if true_name in hit.stones])
+        beside = np.zeros(len(ours), bool)
+        if len(hits):
+            beside = np.abs(ours["t"].to_numpy()[:, None] - hits).min(1) < BESIDE
+        part = pd.DataFrame({"stone": true_name, "t": ours["t"], "seen": ours["seen"] == 1})
+        part["moving"] = (np.hypot(true["vx"], true["vy"]) > SLOW) & ~beside
+        part["turning"] = (true["omega"].abs() > IDLE) & ~beside
+        for state in ("x", "y", "vx", "vy", "theta", "omega"):
+            part[f"d_{state}"] = ours[state] - true[state]
+            part[f"sd_{state}"] = ours[f"sd_{state}"]
+        part["d_theta"] -= np.round(np.nanmedian(part["d_theta"]), 9)
+        parts.append(part.reset_index())
+    return pd.concat(parts, ignore_index=True)
+
+
+def within(errors: pd.DataFrame, *states: str) -> float:
+    """Share of errors of these states within two stated standard errors."""
+    told = [errors[errors[f"d_{state}"].notna()] for state in states]
+    inside = [
+        (rows[f"d_{s}"].abs() < 2 * rows[f"sd_{s}"]) for rows, s in zip(told, states, strict=True)
+    ]
+    return float(np.concatenate(inside).mean()) if any(map(len, inside)) else float("nan")
+
+
+def rms(*values: pd.Series) -> float:
+    """Root mean square of the sum of squares."""
+    square = np.sum([np.square(v.to_numpy(float)) for v in values], axis=0)
+    told = square[np.isfinite(square)]
+    return float(np.sqrt(told.mean())) if len(told) else float("nan")
+
+
+def score(kind: Kind, seeds: Sequence[int], found: bool) -> tuple[dict[str, object], pd.DataFrame]:
+    """One row of the table, and the errors behind it."""
+    scores, errors = [], []
+    for seed in seeds:
+        clip, truth = clip_of(kind, seed)
+        cameras = (
+            follow_house(clip).cameras if found else cameras_of_table(truth.camera, truth.size)
+        )
+        tracks = tracks_of(clip, cameras)
+        result = score_tracks(tracks, truth.tracks)
+        scores.append(result)
+        errors.append(errors_of(tracks, truth, result.names).assign(seed=seed))
+    table = pd.concat(errors, ignore_index=True)
+    moving, turning = table[table["moving"]], table[table["turning"]]
+    return {
+        "kind": kind.name,
+        "recall": float(np.mean([s.recall for s in scores])),
+        "switches": sum(s.switches for s in scores),
+        "false": sum(len(s.false_tracks) for s in scores),
+        "RMSE mm": 1e3 * rms(table["d_x"], table["d_y"]),
+        "bias x": 1e3 * float(table["d_x"].mean()),
+        "bias y": 1e3 * float(table["d_y"].mean()),
+        "speed m/s": rms(moving["d_vx"], moving["d_vy"]),
+        "spin rad/s": rms(turning["d_omega"]),
+        "spin told": float(turning["d_omega"].notna().mean()),
+        "theta rad": rms(table["d_theta"]),
+        "in 2 sd: x": within(table, "x", "y"),
+        "v": within(moving, "vx", "vy"),
+        "omega": within(turning, "omega"),
+    }, table  # fmt: skip
+
+
+def marked(kind: Kind, row: dict[str, object]) -> dict[str, str]:
+    """Numbers as text, with a star where the bar is missed."""
+    bars = {**BARS, "RMSE mm": Bar(high=1e3 * kind.rmse)}
+    out = {}
+    for name, value in row.items():
+        if not isinstance(value, int | float):
+            out[name] = str(value)
+            continue
+        bar = bars.get(name, Bar())
+        text = str(value) if isinstance(value, int) else f"{value:.3f}"
+        out[name] = text + ("*" if value < bar.low or value > bar.high else " ")
+    return out
+
+
+def rows(
+    kinds: Sequence[Kind], seeds: Sequence[int], found: bool
+) -> Iterator[tuple[dict[str, str], pd.DataFrame]]:
+    """One row per kind, and the errors behind it."""
+    for kind in kinds:
+        row, errors = score(kind, seeds, found)
+        yield marked(kind, row), errors.assign(kind=kind.name)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--kinds", nargs="+", help="only those whose names begin so")
+    parser.add_argument("--seeds", nargs="+", type=int, default=[101, 102])
+    parser.add_argument("--found", action="store_true", help="cameras as found, not as true")
+    parser.add_argument("--errors", help="write all errors to this CSV file")
+    said = parser.parse_args()
+    starts = tuple(said.kinds or [""])
+    kinds = [kind for kind in KINDS if kind.name.startswith(starts)]
+    tables = []
+    for index, (row, errors) in enumerate(rows(kinds, said.seeds, said.found)):
+        if not index:
+            print(f"{'kind':15}", *(f"{name:>10}" for name in list(row)[1:]))
+        print(f"{row['kind']:15}", *(f"{text:>10}" for text in list(row.values())[1:]), flush=True)
+        tables.append(errors)
+    everything = pd.concat(tables, ignore_index=True)
+    moving, turning = everything[everything["moving"]], everything[everything["turning"]]
+    print(
+        f"within two standard errors, all: places {within(everything, 'x', 'y'):.3f}, velocities"
+        f" {within(moving, 'vx', 'vy'):.3f}, spins {within(turning, 'omega'):.3f}"
+    )
+    if said.errors:
+        everything.to_csv(said.errors, index=False)
+
+
+if __name__ == "__main__":
+    main()
