@@ -51,6 +51,17 @@ class StoneState:
 
 
 @dataclass(frozen=True)
+class MeasuredState(StoneState):
+    """The state of a stone as measured, with standard errors; None where unknown."""
+
+    sd_x: float | None = None
+    sd_y: float | None = None
+    sd_vx: float | None = None
+    sd_vy: float | None = None
+    sd_omega: float | None = None
+
+
+@dataclass(frozen=True)
 class Collision:
     """One hit of two stones.
 
@@ -66,8 +77,8 @@ class Collision:
     normal: tuple[float, float]
     restitution: float | None
     stderr: float | None
-    before: Mapping[str, StoneState]
-    after: Mapping[str, StoneState]
+    before: Mapping[str, MeasuredState]
+    after: Mapping[str, MeasuredState]
     momentum_residual: float | None = None
     stderr_momentum: float | None = None
     energy_lost: float | None = None
@@ -190,7 +201,7 @@ class Results:
 
 def _collision(item: dict[str, Any]) -> Collision:
     states = {
-        when: {name: _made(StoneState, state) for name, state in item[when].items()}
+        when: {name: _made(MeasuredState, state) for name, state in item[when].items()}
         for when in ("before", "after")
     }
     first, second = item["stones"]

@@ -14,7 +14,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from data.errors import InputError
-from data.results import Collision, Estimate, Friction, Glide, StoneState
+from data.results import Collision, Estimate, Friction, Glide, MeasuredState
 from data.sheet import STONE
 from physics.contacts import Contact, cut_all
 from physics.fit import fit_shot
@@ -291,13 +291,7 @@ def _collision(
     state = joint.encounter(k)
     mass = np.array([masses.get(first, 1.0), masses.get(second, 1.0)])
     spins = spins_at(joint, k, known, mass)
-    before, after = (
-        {
-            stone: _state(state.places[i], speeds[i], spins[i][when].value)
-            for i, stone in enumerate((first, second))
-        }
-        for when, speeds in ((0, state.before), (1, state.after))
-    )
+    before, after = _states(joint, k, known, spins)
     energy = [float(mass @ np.sum(speeds**2, axis=1)) for speeds in (state.before, state.after)]
     residual, stderr_residual = _momentum(apart, k, mass)
     rubbing = stone_friction(joint, k, spins, radius, inertia) if note is None else None
@@ -321,8 +315,34 @@ def _collision(
     )
 
 
-def _state(place: Floats, speed: Floats, spin: float | None) -> StoneState:
-    return StoneState(float(place[0]), float(place[1]), float(speed[0]), float(speed[1]), spin)
+def _states(
+    fit: ShotFit, k: int, known: Mapping[str, Trace], spins: Sequence[tuple[Estimate, Estimate]]
+) -> tuple[dict[str, MeasuredState], dict[str, MeasuredState]]:
+    """States of the two stones before and after hit k, by stone, with their errors."""
+
+    def flat(states: Sequence[Encounter]) -> Floats:
+        state = states[0]
+        return np.array([state.places, state.before, state.after]).ravel()
+
+    values, cov = fit.propagate([k], flat)
+    xy, *speeds = values.reshape(3, 2, 2)
+    spread, *errors = np.sqrt(np.diag(cov)).reshape(3, 2, 2)
+    out: tuple[dict[str, MeasuredState], dict[str, MeasuredState]] = ({}, {})
+    for i, stone in enumerate(fit.meetings[k].stones):
+        trace = known[stone]
+        # What all places near each other share is no scatter that the fit could see.
+        shared = float(trace.sd_place[np.argmin(np.abs(trace.t - fit.time(k)))])
+        place = (*xy[i].tolist(), *np.hypot(spread[i], shared).tolist())
+        for when, side in enumerate(out):
+            side[stone] = _state(place, speeds[when][i], errors[when][i], spins[i][when])
+    return out
+
+
+def _state(
+    place: tuple[float, float, float, float], speed: Floats, sd: Floats, spin: Estimate
+) -> MeasuredState:
+    (x, y, sd_x, sd_y), (vx, vy), (sd_vx, sd_vy) = place, speed.tolist(), sd.tolist()
+    return MeasuredState(x, y, vx, vy, spin.value, sd_x, sd_y, sd_vx, sd_vy, spin.stderr)
 
 
 def _momentum(fit: ShotFit, k: int, mass: Floats) -> tuple[float | None, float | None]:

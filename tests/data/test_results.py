@@ -18,9 +18,9 @@ from data.results import (
     Friction,
     Glide,
     Input,
+    MeasuredState,
     Results,
     SimulationScore,
-    StoneState,
 )
 
 RESULTS = Results(
@@ -35,8 +35,11 @@ RESULTS = Results(
             normal=(0.6, -0.8),
             restitution=0.81,
             stderr=0.03,
-            before={"A": StoneState(0, 1, 0.05, -1.36, 0.66), "B": StoneState(0, 0, 0, 0)},
-            after={"A": StoneState(0, 1, -0.4, -0.3, 2.0), "B": StoneState(0, 0, 0.4, -1.0, 1.5)},
+            before={"A": MeasuredState(0, 1, 0.05, -1.36, 0.66), "B": MeasuredState(0, 0, 0, 0)},
+            after={
+                "A": MeasuredState(0, 1, -0.4, -0.3, 2.0),
+                "B": MeasuredState(0, 0, 0.4, -1.0, 1.5),
+            },
             momentum_residual=0.05,
             energy_lost=0.2,
             note="seen for four frames only",

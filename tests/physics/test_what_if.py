@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from data.errors import InputError
-from data.results import Collision, Estimate, Friction, Input, Results, StoneState
+from data.results import Collision, Estimate, Friction, Input, MeasuredState, Results
 from data.sheet import GRAVITY
 from data.tracks import TRACK_COLUMNS
 from physics.curl import NoCurl
@@ -37,7 +37,7 @@ def measured() -> tuple[pd.DataFrame, Results]:
     for key in ("x", "y", "theta", "vx", "vy", "omega"):
         tracks[f"sd_{key}"] = 0.004
     tracks["seen"] = 1
-    one = StoneState(0, 0, 0, 0)
+    one = MeasuredState(0, 0, 0, 0)
     collision = Collision(
         hit.t, 0.001, hit.stones, hit.normal, 0.8, 0.02, {"A": one}, {"B": one}, stone_friction=0.05
     )

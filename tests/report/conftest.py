@@ -15,9 +15,9 @@ from data.results import (
     Friction,
     Glide,
     Input,
+    MeasuredState,
     Results,
     SimulationScore,
-    StoneState,
 )
 from data.tracks import TRACK_COLUMNS
 
@@ -132,8 +132,8 @@ def collision(hit: tuple[float, str, str, Vector], pieces: dict[str, list[Piece]
         late = next(p for p in pieces[name] if p.t == t)
         early = pieces[name][pieces[name].index(late) - 1]
         place, velocity = early.at(t)
-        before[name] = StoneState(*map(float, (*place, *velocity)), early.omega)
-        after[name] = StoneState(*map(float, (*place, *late.velocity)), late.omega)
+        before[name] = MeasuredState(*map(float, (*place, *velocity)), early.omega)
+        after[name] = MeasuredState(*map(float, (*place, *late.velocity)), late.omega)
     return Collision(
         t=t, stderr_t=0.0021, stones=(first, second), normal=(float(n[0]), float(n[1])),
         restitution=0.83, stderr=0.02, before=before, after=after, momentum_residual=0.013,

@@ -10,7 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from data.results import StoneState
+from data.results import MeasuredState
 from data.sheet import HOUSE
 from report import figures
 from report.style import render, styled
@@ -133,7 +133,7 @@ def test_long_and_strange_names_and_close_hits_fit(shot):
     tracks = shot.tracks.replace({"stone": new})
     first = shot.results.collisions[0]
 
-    def renamed(side: dict[str, StoneState]) -> dict[str, StoneState]:
+    def renamed(side: dict[str, MeasuredState]) -> dict[str, MeasuredState]:
         return {new[name]: state for name, state in side.items()}
 
     hits = [
