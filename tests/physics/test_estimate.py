@@ -93,6 +93,23 @@ def test_states_and_spins_beside_the_hit() -> None:
     assert hit.energy_lost == pytest.approx(lost, abs=0.02)
 
 
+def test_errors_of_the_states_mean_what_they_say() -> None:
+    motion = hit_motion(1.5, 0.1, before=0.7, after=1.0, stone_friction=0.1)
+    rng = np.random.default_rng(17)
+    true, pulls = motion.hits[0], []
+    for _ in range(12):
+        (hit,) = measure(watch(motion, rng, sd=0.004)).collisions
+        for name, before, after in zip("AB", true.before, true.after, strict=True):
+            for state, values in ((hit.before[name], before), (hit.after[name], after)):
+                if np.hypot(*values[:2]) > 0:
+                    off = np.array([state.vx, state.vy, state.omega], float) - values
+                    pulls.append(off / [state.sd_vx, state.sd_vy, state.sd_omega])
+                assert state.sd_x is not None
+                assert 0.0002 < state.sd_x < 0.004
+    assert 0.4 < np.std(pulls) < 1.3
+    assert np.mean(np.abs(pulls) < 2) > 0.9
+
+
 def test_three_stones_in_a_row() -> None:
     # Two that touch, hit by a third: two hits within 2 ms.
     motion = hit_motion(1.5, 0.02, others=(Start(0.0, 2 * RADIUS + 0.002),), restitution=0.8)
