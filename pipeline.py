@@ -6,21 +6,21 @@ Everything heavy is imported where it is used, so that ``curlshot --help`` answe
 from __future__ import annotations
 
 import argparse
-import glob
 import io
 import json
 import os
 import re
-import shutil
 import sys
-import tempfile
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
+from command.bars import Bars
+from command.parser import command_line
 from data.errors import CurlshotError, InputError, SceneError
+from data.files import check_folder, staged
+from data.inputs import find_inputs
 from data.progress import Progress, no_progress
 from data.sheet import HOUSE, STONE, House, Stone
 
@@ -31,9 +31,8 @@ if TYPE_CHECKING:
     from data.results import Estimate, Results
     from data.trk import Array
     from data.trk_write import View
-    from physics.simulate import Simulation
     from physics.start import Start
-    from physics.what_if import Amount, Changes
+    from physics.what_if import Changes
     from vision.camera import Camera
     from vision.clip import Clip
     from vision.joint import HouseTrack
@@ -53,8 +52,8 @@ CHECK_DPI = 110
 MOST_SAMPLES = 1_000_000
 """Of one simulated stone; more is a mistake in the rate."""
 
-MEASURED_THROWS, MOST_THROWS = 1000, 100_000
-"""Samples of a measured shot where the person says nothing, and at most."""
+MEASURED_THROWS = 1000
+"""Samples of a measured shot where the person says nothing."""
 
 TABLES = frozenset({".csv", ".txt", ".tsv", ".dat", ".trk", ".trz", ".parquet"})
 
@@ -177,47 +176,6 @@ class Run:
 def sample_clip() -> Path:
     """Path of the bundled, rendered clip of the paper's shot."""
     return Path(__file__).resolve().parent / "data" / "sample.mp4"
-
-
-def find_inputs(names: Sequence[str | Path]) -> tuple[Path, ...]:
-    """Files behind what a person names: files, globs, folders of pictures in natural order.
-
-    Raises
-    ------
-    InputError
-        Something that is not there, or a folder without pictures.
-    """
-    found: list[Path] = []
-    for name in names:
-        path = Path(name)
-        if path.is_dir():
-            from vision.clip import IMAGE_SUFFIXES
-
-            pictures = [p for p in path.iterdir() if p.suffix.lower() in IMAGE_SUFFIXES]
-            if not pictures:
-                raise InputError(f"{path}: no pictures in this folder")
-            found += sorted(pictures, key=_natural)
-        elif path.exists():
-            found.append(path)
-        else:
-            # The folder may have brackets in its name; only if it is none, it is a pattern too.
-            matches = (
-                list(path.parent.glob(path.name))
-                if path.parent.is_dir()
-                else [Path(match) for match in glob.glob(str(name))]  # noqa: PTH207 - absolute too
-            )
-            if not matches:
-                raise InputError(f"{name}: no such file")
-            found += sorted(matches, key=_natural)
-    if not found:
-        raise InputError("no input; name a clip, pictures or a table of tracks")
-    return tuple(found)
-
-
-def _natural(path: Path) -> list[tuple[int, str]]:
-    """Sort key by which picture 9 comes before picture 10."""
-    parts = re.findall(r"\d+|\D+", path.name)
-    return [(int(p), "") if p.isdecimal() else (-1, p) for p in parts]
 
 
 def measure(
@@ -354,7 +312,7 @@ def check(
     """
     import numpy as np
 
-    from report.check import Look, check_figure, frames_to_show
+    from report.check import Look, check_figure, check_lines, frames_to_show
     from vision.camera import camera_table
     from vision.glance import glance
 
@@ -380,33 +338,9 @@ def check(
         Look(frame, by_frame[frame.index], found.stones, found.refused)
         for frame, found in zip(frames, stones, strict=True)
     ]
-    carried = int((table["found"] == 0).sum())
-    rms = table["rms_px"]
-    edges = f"edges {rms.median():.2f} px off, worst frame {rms.max():.2f} px"
-    if rms.isna().all():
-        edges = "edges not measured"
-    lines = [
-        f"input       {files[0].name}: {_count(clip.read, 'frame')}",
-        f"camera      known in {_count(len(table), 'frame')}, carried in {carried} of them;"
-        f" {edges}",
-    ]
-    if radii and cameras[0].error is not None:
-        lines.append(
-            f"places      known to {1000 * table['sd'].median():.1f} mm at the 12-ft ring,"
-            f" worst frame {1000 * table['sd'].max():.1f} mm (one standard error)"
-        )
-    lines.append(
-        f"stones      {max(len(look.stones) for look in looks)} at most in one of"
-        f" {_count(len(looks), 'frame')} looked at"
-    )
-    lines += [f"warning: {text}" for text in (*clip.warnings, *seen.warnings)]
-    return check_figure(
-        looks,
-        table,
-        radii,
-        title=f"{files[0].name}: {' '.join(lines[1].split())}",
-        radius=settings.radius,
-    ), lines
+    lines = check_lines(files[0].name, clip.read, table, looks, (*clip.warnings, *seen.warnings))
+    title = f"{files[0].name}: {' '.join(lines[1].split())}"
+    return check_figure(looks, table, radii, title=title, radius=settings.radius), lines
 
 
 def _painted(house: House) -> tuple[float, ...]:
@@ -531,7 +465,7 @@ def run(
     data.errors.CurlshotError
         Where the input cannot be used; then nothing is written.
     """
-    folder = _check_out(out)
+    folder = check_folder(out)
     measured = measure(inputs or (sample_clip(),), settings, progress)
     done = analyse(measured, settings)
     if folder is None:
@@ -583,19 +517,6 @@ def _write_run(
     progress("report", 1, 1)
 
 
-def _check_out(out: str | Path | None) -> Path | None:
-    """Refuse a bad place for results before an hour of work, not after."""
-    if out is None:
-        return None
-    folder = Path(out)
-    there = next(part for part in (folder, *folder.parents) if part.exists())
-    if not there.is_dir():
-        raise InputError(f"{there}: is a file; name a folder for the results with -o")
-    if not os.access(there, os.W_OK | os.X_OK):
-        raise InputError(f"{there}: nothing can be written here; name another folder with -o")
-    return folder
-
-
 def convert(
     inputs: Sequence[str | Path],
     out: str | Path,
@@ -635,7 +556,7 @@ def convert(
         raise InputError(f"{path}: tracks are written as {', '.join(endings)}; end the name so")
     if over is not None and ending != ".trk":
         raise InputError(f"{path}: only a .trk shows tracks over a clip (--over)")
-    _check_out(path.parent)
+    check_folder(path.parent)
     files = find_inputs(inputs)
     odd = [file for file in files if file.suffix.lower() not in TABLES]
     if odd:
@@ -699,66 +620,9 @@ def _view_over(
     return View(system, clip.size, video, clip.expected or 0), marks, note
 
 
-@contextmanager
-def staged(folder: Path, replaces: Sequence[str] = ()) -> Iterator[Path]:
-    """Give a hidden folder beside `folder`; its content moves there if the block ends well.
-
-    Files that were there under the same names are replaced, those named in `replaces` are
-    removed, for they tell of an earlier run, and others are left alone.
-    """
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(
-        dir=folder.parent, prefix=f".{folder.name}-", ignore_cleanup_errors=True
-    ) as hidden:
-        stage = Path(hidden)
-        yield stage
-        folder.mkdir(parents=True, exist_ok=True)
-        new = {item.name for item in stage.iterdir()}
-        for name in sorted(new.union(replaces)):
-            target = folder / name
-            if target.is_dir() and not target.is_symlink():
-                shutil.rmtree(target)
-            elif name not in new:
-                target.unlink(missing_ok=True)
-            if name in new:
-                (stage / name).replace(target)
-
-
 # ---------------------------------------------------------------------------------------
 # The command line
 # ---------------------------------------------------------------------------------------
-
-
-class _Parser(argparse.ArgumentParser):
-    """Says what is wrong in one line, exit code 2."""
-
-    def error(self, message: str) -> NoReturn:
-        self.exit(2, f"{self.prog}: {message} (see {self.prog} --help)\n")
-
-
-class _Bars:
-    """Progress bars on stderr, one for each kind of work."""
-
-    def __init__(self, quiet: bool) -> None:
-        self.quiet = quiet
-        self.bars: dict[str, Any] = {}
-
-    def __call__(self, what: str, done: int, total: int | None) -> None:
-        from tqdm import tqdm
-
-        if self.quiet:
-            return
-        if what not in self.bars:
-            self.close()
-            self.bars[what] = tqdm(total=total, desc=what.ljust(16), file=sys.stderr, leave=True)
-        bar = self.bars[what]
-        if total is not None and bar.total != total:
-            bar.total = total
-        bar.update(done - bar.n)
-
-    def close(self) -> None:
-        for bar in self.bars.values():
-            bar.close()
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -766,10 +630,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without Greek letters gets "?"
-    arguments = _parser().parse_args(argv)
-    bars = _Bars(quiet=arguments.quiet)
+    arguments = command_line(VERSION).parse_args(argv)
+    bars = Bars(quiet=arguments.quiet)
     try:
-        text = arguments.work(arguments, bars)
+        text = WORK[arguments.command](arguments, bars)
     except CurlshotError as error:
         bars.close()
         print(f"curlshot: {_one_line(str(error))}", file=sys.stderr)
@@ -798,393 +662,6 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _one_line(text: str) -> str:
     return " ".join(text.split())
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(
-        prog="curlshot",
-        description="From a clip of a curling shot to its physics: tracks, restitution, friction, "
-        "and the shot simulated again.",
-        epilog="examples:\n"
-        "  curlshot run                               the bundled sample clip\n"
-        "  curlshot run shot.mp4 -o shot              a clip, into the folder shot\n"
-        "  curlshot run A.txt B.txt C.txt             tracks exported from Tracker\n"
-        "  curlshot simulate SHOT.toml                a shot of your own\n"
-        "  curlshot simulate shot/results.json --speed 1.1x\n"
-        "                                             what if it had been faster?\n",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.add_argument("--version", action="version", version=f"curlshot {VERSION}")
-    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-
-    run_ = _command(
-        commands,
-        "run",
-        "the whole road: clip or tracks to e, μ, simulation and report",
-        "  curlshot run                                     the bundled sample\n"
-        "  curlshot run shot.mp4                            a clip that shows the house\n"
-        "  curlshot run frames/ --fps 25                    a folder of pictures\n"
-        "  curlshot run 'frames/*.png' --fps 25             or a glob\n"
-        "  curlshot run still.jpg                           one picture: positions only\n"
-        "  curlshot run pucks.mp4 --stick 20,10,20,38,0.1 --radius 0.045 --frames 2:31\n"
-        "                                                   no house: still camera, known length\n"
-        "  curlshot run shot.mp4 --house 12:640,360,460,360,640,180\n"
-        "                                                   the tee, two points of the 12-ft ring\n"
-        "  curlshot run shot.mp4 --camera camera.csv        a known camera, still or per frame\n"
-        "  curlshot run A.txt B.txt --length-unit cm        one Tracker export per stone\n"
-        "  curlshot run shot.trk                            a Tracker project, or a .trz\n"
-        "  curlshot run old/tracks.csv                      earlier tracks\n",
-        _do_run,
-    )
-    run_.add_argument("inputs", nargs="*", metavar="INPUT", help="clip, pictures or tables")
-    _clip_options(run_)
-    _table_options(run_)
-    _assumption_options(run_)
-    run_.add_argument(
-        "--no-overlay", action="store_true", help="do not write the annotated clip overlay.mp4"
-    )
-
-    track_ = _command(
-        commands,
-        "track",
-        "clip to tracks.csv and camera.csv only",
-        "  curlshot track shot.mp4 -o shot\n"
-        "  curlshot track shot.mp4 --camera earlier/camera.csv\n",
-        _do_track,
-    )
-    track_.add_argument("inputs", nargs="+", metavar="CLIP", help="a video or pictures")
-    _clip_options(track_)
-
-    check_ = _command(
-        commands,
-        "check",
-        "a contact sheet: can the camera and the stones found in this clip be trusted?",
-        "  curlshot check shot.mp4                  shot-curlshot/check.png\n"
-        "  curlshot check shot.mp4 --house 640,360,460,360,640,180\n",
-        _do_check,
-    )
-    check_.add_argument("inputs", nargs="+", metavar="CLIP", help="a video or pictures")
-    _clip_options(check_)
-
-    estimate_ = _command(
-        commands,
-        "estimate",
-        "tracks to results.json",
-        "  curlshot estimate shot/tracks.csv\n"
-        "  curlshot estimate pucks.csv --length-unit cm --radius 0.035 --mass 1=32 --mass 2=30\n",
-        _do_estimate,
-    )
-    estimate_.add_argument("inputs", nargs="+", metavar="TRACKS", help="tables of tracks")
-    _disc_options(estimate_)
-    _table_options(estimate_)
-    _assumption_options(estimate_)
-    estimate_.add_argument("--fps", type=_positive, help="rate of a table without times, 1/s")
-
-    convert_ = _bare_command(
-        commands,
-        "convert",
-        "tracks into another form, by the ending of OUT",
-        "  curlshot convert shot.trk shot.csv               a Tracker project to a table\n"
-        "  curlshot convert shot-curlshot/tracks.csv a.txt  text for Tracker's import\n"
-        "  curlshot convert A.txt B.txt shot.parquet        needs pyarrow\n"
-        "  curlshot convert shot-curlshot/tracks.csv shot.trk --over shot.mp4\n"
-        "                                                   a Tracker project over the clip\n",
-        _do_convert,
-    )
-    convert_.add_argument("inputs", nargs="+", metavar="IN", help="tables of tracks, projects")
-    convert_.add_argument("out", metavar="OUT", help=".txt, .csv, .parquet or .trk")
-    convert_.add_argument("--over", metavar="CLIP", help="the clip that a .trk shows")
-    _table_options(convert_)
-    convert_.add_argument("--fps", type=_positive, help="rate of a table without times, 1/s")
-
-    simulate_ = _command(
-        commands,
-        "simulate",
-        "a shot of your own, or a measured one with something changed, and where it ends",
-        "  curlshot simulate SHOT.toml\n"
-        "  curlshot simulate SHOT.toml --json --fps 50\n"
-        "  curlshot simulate SHOT.toml --samples 2000           thrown 2000 times as players do\n"
-        "  curlshot simulate shot/results.json                  the measured shot, thrown again\n"
-        "  curlshot simulate shot/results.json --aim-offset 0.05 --speed 1.1x -o wider\n"
-        "                                                       what if: 5 cm to the left, faster\n"
-        "  curlshot simulate shot/results.json --restitution 0.9 --friction 0.012 --spin -1.5\n"
-        "\n"
-        "A measured shot (results.json with tracks.csv beside it) starts from the states before\n"
-        "its first hit. Samples are drawn from the measured uncertainties and from what players\n"
-        "are off by. They give outcomes.csv (where each stone ends in each sample), whatif.json\n"
-        "and spread.png, a plan view.\n"
-        "\n"
-        "SHOT.toml:\n"
-        "  [physics]                  # all optional\n"
-        '  model = "frictional"       # point-mass | rigid-body | frictional\n'
-        "  restitution = 1.0\n"
-        "  stone_friction = 0.2\n"
-        '  ice = "fcv1"               # constant (with friction = 0.0109) | fcv1 | penner | fit\n'
-        '  curl = "fcv1"              # none | fcv1\n'
-        "  radius = 0.145\n"
-        "  inertia = 0.5              # I / (m R^2)\n"
-        "  [[stone]]                  # one for each stone\n"
-        '  name = "A"\n'
-        "  x = 0.0\n"
-        "  y = 0.0\n"
-        "  vx = 0.0\n"
-        "  vy = 2.4\n"
-        "  omega = 1.5708             # rigid-body also needs omega_after\n",
-        _do_simulate,
-    )
-    simulate_.add_argument(
-        "shot", metavar="SHOT", type=Path, help="SHOT.toml, or the results.json of a run"
-    )
-    simulate_.add_argument("--fps", type=_positive, default=25.0, help="samples per second (25)")
-    simulate_.add_argument("--json", action="store_true", help="print the outcome as JSON")
-    _what_if_options(simulate_)
-    return parser
-
-
-def _command(
-    commands: Any, name: str, summary: str, examples: str, work: Any
-) -> argparse.ArgumentParser:
-    """Add a command that writes a folder."""
-    parser = _bare_command(commands, name, summary, examples, work)
-    parser.add_argument("-o", "--out", metavar="OUT", help="folder for the files (NAME-curlshot)")
-    return parser
-
-
-def _bare_command(
-    commands: Any, name: str, summary: str, examples: str, work: Any
-) -> argparse.ArgumentParser:
-    parser: argparse.ArgumentParser = commands.add_parser(
-        name,
-        help=summary,
-        description=summary[0].upper() + summary[1:] + ".",
-        epilog=f"examples:\n{examples}",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.set_defaults(work=work)
-    parser.add_argument("-q", "--quiet", action="store_true", help="no progress bars")
-    return parser
-
-
-def _disc_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--radius",
-        type=_positive,
-        default=STONE.radius,
-        metavar="METRES",
-        help=f"radius of the discs ({STONE.radius}: a curling stone)",
-    )
-    parser.add_argument(
-        "--mass",
-        type=_mass,
-        action="append",
-        default=[],
-        metavar="STONE=MASS",
-        help="mass of a disc, where they are not all equal (any unit)",
-    )
-
-
-def _clip_options(parser: argparse.ArgumentParser) -> None:
-    _disc_options(parser)
-    parser.add_argument("--fps", type=_positive, help="rate of pictures, 1/s (25)")
-    parser.add_argument(
-        "--frames", type=_range, metavar="FIRST:LAST", help="frames to use, both included"
-    )
-    parser.add_argument(
-        "--stick",
-        type=_stick,
-        metavar="X1,Y1,X2,Y2,METRES",
-        help="calibration stick for a still camera without a house: two pixels, their distance",
-    )
-    parser.add_argument(
-        "--house",
-        type=_house,
-        metavar="FRAME:XC,YC,X1,Y1,X2,Y2",
-        help="where the house is, if it is not found: the tee and two points on the outer edge of"
-        " the 12-ft ring, px, in that frame (FRAME: may be left out: the first)",
-    )
-    parser.add_argument(
-        "--camera",
-        type=Path,
-        metavar="CAMERA.csv",
-        help="a known camera, as a run's camera.csv: one row for a still camera, or one per frame",
-    )
-
-
-def _what_if_options(parser: argparse.ArgumentParser) -> None:
-    change = parser.add_argument_group("what if")
-    change.add_argument("--restitution", type=_fraction, metavar="E", help="e of the hits, 0 to 1")
-    change.add_argument(
-        "--friction", type=_friction, metavar="MU", help="μ of the ice at 1 m/s, 0.001 to 0.1"
-    )
-    change.add_argument(
-        "--aim-offset",
-        type=_offset,
-        default=0.0,
-        metavar="METRES",
-        help="move the way of the thrown stone to its left, or right if negative, m",
-    )
-    change.add_argument(
-        "--speed", type=_speed, metavar="V", help="of the thrown stone: m/s, or a factor as 1.1x"
-    )
-    change.add_argument(
-        "--spin", type=_amount, metavar="W", help="of the thrown stone: rad/s, or a factor as 0.5x"
-    )
-    change.add_argument(
-        "--samples",
-        type=_samples,
-        metavar="N",
-        help=f"throw it N times, at most {MOST_THROWS} (1000 for a results.json, else 0)",
-    )
-    change.add_argument(
-        "--throw-sd",
-        type=_throw_sd,
-        metavar="V,A",
-        help="what players are off by when they let go: m/s, rad (0.0076,0.0018)",
-    )
-
-
-def _assumption_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--restitution", type=_fraction, metavar="E", help="e that predictions assume (0.83 ± 0.06)"
-    )
-    parser.add_argument(
-        "--friction",
-        type=_friction,
-        metavar="MU",
-        help="μ that predictions assume (0.0109 ± 0.003)",
-    )
-
-
-def _table_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--length-unit", choices=("m", "cm", "mm", "in", "ft"), default="m", help="of tables (m)"
-    )
-    parser.add_argument("--angle-unit", choices=("rad", "deg"), help="of tables")
-    parser.add_argument("--tab", metavar="NAME", help="of a Tracker project with several tabs")
-    parser.add_argument(
-        "--names",
-        type=_pair,
-        action="append",
-        default=[],
-        metavar="STONE=TRACK",
-        help='which tracks are stones, e.g. --names A="mass A" --names B="mass B" (all)',
-    )
-    parser.add_argument(
-        "--angles",
-        type=_pair,
-        action="append",
-        default=[],
-        metavar="STONE=FILE",
-        help="how a stone is turned: an export of a point of its edge about its centre",
-    )
-
-
-def _positive(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not 0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a positive number")
-    return value
-
-
-def _number(text: str, low: float, high: float, what: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = float("nan")
-    if not low <= value <= high:
-        raise argparse.ArgumentTypeError(f"{text!r} is not {what}")
-    return value
-
-
-def _fraction(text: str) -> float:
-    return _number(text, 0.0, 1.0, "a number from 0 to 1")
-
-
-def _friction(text: str) -> float:
-    return _number(text, 1e-3, 0.1, "a friction of ice, 0.001 to 0.1")
-
-
-def _offset(text: str) -> float:
-    return _number(text, -5.0, 5.0, "a distance in metres, -5 to 5")
-
-
-def _amount(text: str) -> Amount:
-    from physics.what_if import Amount
-
-    relative = text.endswith("x")
-    what = "a number, or a factor such as 1.1x"
-    return Amount(_number(text.removesuffix("x"), -20.0, 20.0, what), relative)
-
-
-def _speed(text: str) -> Amount:
-    amount = _amount(text)
-    if not 0 < amount.value <= 10:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a speed in m/s, nor a factor as 1.1x")
-    return amount
-
-
-def _samples(text: str) -> int:
-    if not text.isdecimal() or not int(text) <= MOST_THROWS:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number of samples, 0 to {MOST_THROWS}")
-    return int(text)
-
-
-def _throw_sd(text: str) -> tuple[float, float]:
-    parts = text.split(",")
-    if len(parts) != 2:
-        raise argparse.ArgumentTypeError(f"{text!r} is not V,A, e.g. 0.0076,0.0018")
-    speed, angle = parts
-    return (
-        _number(speed, 0.0, 1.0, "a standard deviation in m/s, 0 to 1"),
-        _number(angle, 0.0, 1.0, "a standard deviation in rad, 0 to 1"),
-    )
-
-
-def _range(text: str) -> tuple[int, int | None]:
-    match = re.fullmatch(r"(\d*):(\d*)", text)
-    if match is None:
-        raise argparse.ArgumentTypeError(f"{text!r} is not FIRST:LAST, e.g. 2:31 or 10:")
-    first, last = match.groups()
-    return int(first or 0), int(last) if last else None
-
-
-def _stick(text: str) -> tuple[float, float, float, float, float]:
-    try:
-        x1, y1, x2, y2, metres = (float(part) for part in text.split(","))
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not X1,Y1,X2,Y2,METRES") from None
-    if (x1, y1) == (x2, y2) or not metres > 0:
-        raise argparse.ArgumentTypeError(f"{text!r}: the stick has no length")
-    return x1, y1, x2, y2, metres
-
-
-def _house(text: str) -> tuple[int | None, float, float, float, float, float, float]:
-    match = re.fullmatch(r"(?:(\d+):)?([^:]*)", text)
-    try:
-        frame, points = match.groups() if match else (None, "")
-        xc, yc, x1, y1, x2, y2 = (float(part) for part in points.split(","))
-    except ValueError:
-        raise argparse.ArgumentTypeError(
-            f"{text!r} is not FRAME:XC,YC,X1,Y1,X2,Y2, e.g. 0:640,360,460,360,640,180"
-        ) from None
-    return None if frame is None else int(frame), xc, yc, x1, y1, x2, y2
-
-
-def _mass(text: str) -> tuple[str, float]:
-    name, _, value = text.rpartition("=")
-    if not name:
-        raise argparse.ArgumentTypeError(f"{text!r} is not STONE=MASS, e.g. A=19.1")
-    return name, _positive(value)
-
-
-def _pair(text: str) -> tuple[str, str]:
-    name, _, value = text.partition("=")
-    if not name or not value:
-        raise argparse.ArgumentTypeError(f"{text!r} is not STONE=…, e.g. A=a.txt")
-    return name, value
 
 
 def _by_stone(option: str, pairs: Sequence[tuple[str, str]]) -> dict[str, str]:
@@ -1226,20 +703,24 @@ def _out(arguments: argparse.Namespace, first: str | Path) -> Path:
     return Path(f"{plain or 'out'}-curlshot")
 
 
-def _do_run(arguments: argparse.Namespace, bars: _Bars) -> str:
+def _do_run(arguments: argparse.Namespace, bars: Bars) -> str:
+    from report.summary import summary
+
     inputs = arguments.inputs or [sample_clip()]
-    done = run(inputs, _out(arguments, inputs[0]), _settings(arguments), bars)
-    return summary(done)
+    folder = _out(arguments, inputs[0])
+    done = run(inputs, folder, _settings(arguments), bars)
+    return summary(done.results, done.tracks, folder)
 
 
-def _do_track(arguments: argparse.Namespace, bars: _Bars) -> str:
+def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:
     from data.tracks import write_table, write_tracks
     from physics.contacts import find_contacts
     from physics.kalman import smooth
+    from report.numbers import count
     from vision.camera import camera_table
 
     settings, folder = _settings(arguments), _out(arguments, arguments.inputs[0])
-    _check_out(folder)
+    check_folder(folder)
     measured = measure(arguments.inputs, settings, bars)
     if measured.clip is None:
         raise InputError(f"{measured.files[0]}: already a table of tracks; try curlshot estimate")
@@ -1249,51 +730,56 @@ def _do_track(arguments: argparse.Namespace, bars: _Bars) -> str:
         write_tracks(tracks, stage / "tracks.csv")
         write_table(camera_table(measured.cameras), stage / "camera.csv")
     lines = [
-        f"{_count(tracks['stone'].nunique(), 'stone')} in {_count(measured.frames, 'frame')}: "
+        f"{count(tracks['stone'].nunique(), 'stone')} in {count(measured.frames, 'frame')}: "
         f"{folder / 'tracks.csv'}, {folder / 'camera.csv'}"
     ]
     return "\n".join(lines + [f"warning: {text}" for text in measured.warnings])
 
 
-def _do_check(arguments: argparse.Namespace, bars: _Bars) -> str:
+def _do_check(arguments: argparse.Namespace, bars: Bars) -> str:
     from data.files import whole_file
 
     settings, folder = _settings(arguments), _out(arguments, arguments.inputs[0])
-    _check_out(folder)
+    check_folder(folder)
     figure, lines = check(arguments.inputs, settings, bars)
     with staged(folder) as stage, whole_file(stage / "check.png") as part:
         figure.savefig(part, format="png", dpi=CHECK_DPI)
     return "\n".join([*lines, f"written     {folder / 'check.png'}"])
 
 
-def _do_estimate(arguments: argparse.Namespace, bars: _Bars) -> str:
+def _do_estimate(arguments: argparse.Namespace, bars: Bars) -> str:
+    from report.summary import summary
+
     settings, folder = _settings(arguments), _out(arguments, arguments.inputs[0])
-    _check_out(folder)
+    check_folder(folder)
     measured = measure(arguments.inputs, settings, bars)
     if measured.clip is not None:
         raise InputError(f"{measured.files[0]}: not a table of tracks; try curlshot run")
     done = analyse(measured, settings)
     with staged(folder) as stage:
         done.results.write(stage / "results.json")
-    return summary(replace(done, out=folder))
+    return summary(done.results, done.tracks, folder)
 
 
-def _do_convert(arguments: argparse.Namespace, _: _Bars) -> str:
+def _do_convert(arguments: argparse.Namespace, _: Bars) -> str:
+    from report.numbers import count
+
     measured = convert(arguments.inputs, arguments.out, _settings(arguments), arguments.over)
     stones = measured.sightings["stone"].nunique()
-    lines = [f"{_count(stones, 'stone')} in {_count(measured.frames, 'frame')}: {arguments.out}"]
+    lines = [f"{count(stones, 'stone')} in {count(measured.frames, 'frame')}: {arguments.out}"]
     return "\n".join(lines + [f"warning: {text}" for text in measured.warnings])
 
 
-def _do_simulate(arguments: argparse.Namespace, bars: _Bars) -> str:
+def _do_simulate(arguments: argparse.Namespace, bars: Bars) -> str:
     import numpy as np
 
     from data.tracks import write_table
     from physics.simulate import simulate
     from physics.what_if import Changes, changed
+    from report.summary import odds_text, simulation_json, simulation_text
 
     folder = _out(arguments, arguments.shot)
-    _check_out(folder)
+    check_folder(folder)
     start = _read_start(arguments.shot, folder)
     changes = Changes(
         arguments.restitution,
@@ -1312,17 +798,17 @@ def _do_simulate(arguments: argparse.Namespace, bars: _Bars) -> str:
         )
     times = np.append(np.arange(0.0, end, 1 / arguments.fps), end)
     table = as_tracks(simulation.sample(times), start.shot.impact.name)
-    count = arguments.samples
-    if count is None:
-        count = MEASURED_THROWS if arguments.shot.suffix.lower() == ".json" else 0
+    throws = arguments.samples
+    if throws is None:
+        throws = MEASURED_THROWS if arguments.shot.suffix.lower() == ".json" else 0
     outcome = simulation_json(simulation)
-    lines = [_simulation_text(simulation, folder / "simulation.csv")]
+    lines = [simulation_text(simulation, folder / "simulation.csv")]
     with staged(folder, replaces=WHAT_IF) as stage:
         write_table(table, stage / "simulation.csv")
-        if count:
-            odds = _write_odds(stage, start, changes, count, arguments)
+        if throws:
+            odds = _write_odds(stage, start, changes, throws, arguments)
             outcome = {"nominal": outcome, **odds}
-            lines += _odds_text(odds, folder)
+            lines += odds_text(odds, [folder / name for name in WHAT_IF])
     lines += [f"warning: {text}" for text in start.assumed]
     return json.dumps(outcome, indent=1) if arguments.json else "\n".join(lines)
 
@@ -1387,99 +873,14 @@ def _write_odds(
     return content
 
 
-def _odds_text(odds: Mapping[str, Any], folder: Path) -> list[str]:
-    lines = [
-        f"{odds['thrown']} thrown {_count(odds['samples'], 'time')}, at rest (mean ± spread):",
-    ]
-    for name, item in odds["stones"].items():
-        lines.append(
-            f"  {name}  x {item['x']:+7.2f} ± {item['sd_x']:.2f} m"
-            f"   y {item['y']:+7.2f} ± {item['sd_y']:.2f} m   moved {item['moved']:4.0%}"
-            f"   in the house {item['in_house']:4.0%}   shot stone {item['shot_stone']:4.0%}"
-        )
-    return [*lines, f"written: {', '.join(str(folder / name) for name in WHAT_IF)}"]
-
-
-def simulation_json(simulation: Simulation) -> dict[str, Any]:
-    """Rest positions and hits of a simulation as plain values, for ``--json``."""
-    return {
-        "stones": {
-            name: {"x": rest.x, "y": rest.y, "theta": rest.theta, "t": rest.t}
-            for name, rest in simulation.rest.items()
-        },
-        "hits": [
-            {
-                "t": hit.t,
-                "stones": list(hit.stones),
-                "normal": list(hit.normal),
-                "before": {name: vars(state) for name, state in hit.before.items()},
-                "after": {name: vars(state) for name, state in hit.after.items()},
-            }
-            for hit in simulation.hits
-        ],
-    }
-
-
-def _simulation_text(simulation: Simulation, path: Path) -> str:
-    lines = ["at rest:"]
-    lines += [
-        f"  {name}  x {rest.x:+8.3f} m   y {rest.y:+8.3f} m   after {rest.t:6.2f} s"
-        for name, rest in simulation.rest.items()
-    ]
-    lines.append("hits:" if simulation.hits else "no hits")
-    lines += [f"  {hit.t:6.3f} s  {hit.stones[0]} on {hit.stones[1]}" for hit in simulation.hits]
-    return "\n".join([*lines, f"written: {path}"])
-
-
-def summary(done: Run) -> str:
-    """Put the outcome into a dozen lines that a person can read."""
-    from report.tables import moving_stones
-
-    results = done.results
-    moved = moving_stones(done.tracks, results.collisions, results.radius)
-    names = sorted(done.tracks["stone"].unique())
-    lines = [
-        f"input       {', '.join(results.input.files[:3])}"
-        f"{' …' if len(results.input.files) > 3 else ''}: "
-        f"{_count(results.input.frames, 'frame')}, {results.input.duration:.2f} s",
-        f"stones      {len(names)} ({', '.join(names)}); moved: {', '.join(moved) or 'none'}",
-    ]
-    for hit in results.collisions:
-        lines.append(
-            f"hit         {hit.stones[0]} on {hit.stones[1]} at {hit.t:.3f} s: "
-            f"e = {_plus_minus(hit.restitution, hit.stderr)}"
-        )
-    lines += [
-        f"restitution e = {_plus_minus(results.restitution.value, results.restitution.stderr)}",
-        f"friction    μ = {_plus_minus(results.friction.value, results.friction.stderr)}"
-        f" ({results.friction.law})",
-    ]
-    for model, score in results.simulations.items():
-        off = f"— ({score.note or 'nothing to compare'})"
-        if score.rmse is not None:
-            off = f"{score.rmse * 100:.1f} cm RMS off"
-        lines.append(f"simulated   {model}: {off}")
-    for model, guess in results.predictions.items():
-        if guess.rmse is not None:
-            lines.append(
-                f"predicted   {model}, from before the first hit, e and μ assumed:"
-                f" {guess.rmse * 100:.1f} cm RMS off"
-            )
-    lines += [f"warning     {text}" for text in results.warnings]
-    if done.out is not None:
-        report = done.out / "report.html"
-        lines.append(f"written     {report if report.exists() else done.out}")
-    return "\n".join(lines)
-
-
-def _count(number: int, what: str) -> str:
-    return f"{number} {what}{'' if number == 1 else 's'}"
-
-
-def _plus_minus(value: float | None, stderr: float | None) -> str:
-    from report.numbers import plus_minus
-
-    return plus_minus(value, stderr)
+WORK = {
+    "run": _do_run,
+    "track": _do_track,
+    "check": _do_check,
+    "estimate": _do_estimate,
+    "convert": _do_convert,
+    "simulate": _do_simulate,
+}
 
 
 if __name__ == "__main__":

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import os
+import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+
+from data.errors import InputError
 
 
 @contextmanager
@@ -42,3 +45,41 @@ def write_text(path: Path, text: str) -> None:
     """Write UTF-8 text whole or not at all, with Unix line ends."""
     with whole_file(path) as part:
         part.write_text(text, encoding="utf-8", newline="\n")
+
+
+def check_folder(out: str | Path | None) -> Path | None:
+    """Refuse a bad place for results before an hour of work, not after."""
+    if out is None:
+        return None
+    folder = Path(out)
+    there = next(part for part in (folder, *folder.parents) if part.exists())
+    if not there.is_dir():
+        raise InputError(f"{there}: is a file; name a folder for the results with -o")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise InputError(f"{there}: nothing can be written here; name another folder with -o")
+    return folder
+
+
+@contextmanager
+def staged(folder: Path, replaces: Sequence[str] = ()) -> Iterator[Path]:
+    """Give a hidden folder beside `folder`; its content moves there if the block ends well.
+
+    Files that were there under the same names are replaced, those named in `replaces` are
+    removed, for they tell of an earlier run, and others are left alone.
+    """
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(
+        dir=folder.parent, prefix=f".{folder.name}-", ignore_cleanup_errors=True
+    ) as hidden:
+        stage = Path(hidden)
+        yield stage
+        folder.mkdir(parents=True, exist_ok=True)
+        new = {item.name for item in stage.iterdir()}
+        for name in sorted(new.union(replaces)):
+            target = folder / name
+            if target.is_dir() and not target.is_symlink():
+                shutil.rmtree(target)
+            elif name not in new:
+                target.unlink(missing_ok=True)
+            if name in new:
+                (stage / name).replace(target)

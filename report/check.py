@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from data.sheet import STONE
+from report.numbers import count
 from report.overlay import draw_line, ice_lines
 from report.style import BLUE, GREY, ORANGE, SKY, VERMILLION, new_figure, styled
 from vision.camera import Camera
@@ -56,6 +57,51 @@ class Look:
     camera: Camera
     stones: Sequence[Sighting]
     refused: Sequence[Refusal] = ()
+
+
+def check_lines(
+    name: str,
+    read: int,
+    cameras: pd.DataFrame,
+    looks: Sequence[Look],
+    warnings: Sequence[str] = (),
+) -> list[str]:
+    """Say in a few lines how far a clip can be trusted.
+
+    Parameters
+    ----------
+    name : str
+        Of the clip.
+    read : int
+        Frames read.
+    cameras : DataFrame
+        As for `check_figure`.
+    looks : sequence of Look
+    warnings : sequence of str
+
+    Returns
+    -------
+    list of str
+        Input, camera, places where known, stones, warnings.
+    """
+    carried = int((cameras["found"] == 0).sum())
+    rms, sd = cameras["rms_px"], 1000 * cameras["sd"]
+    edges = f"edges {rms.median():.2f} px off, worst frame {rms.max():.2f} px"
+    if rms.isna().all():
+        edges = "edges not measured"
+    lines = [
+        f"input       {name}: {count(read, 'frame')}",
+        f"camera      known in {count(len(cameras), 'frame')}, carried in {carried} of them;"
+        f" {edges}",
+    ]
+    if sd.max() > 0:
+        lines.append(
+            f"places      known to {sd.median():.1f} mm at the 12-ft ring,"
+            f" worst frame {sd.max():.1f} mm (one standard error)"
+        )
+    most = max(len(look.stones) for look in looks)
+    lines.append(f"stones      {most} at most in one of {count(len(looks), 'frame')} looked at")
+    return lines + [f"warning: {text}" for text in warnings]
 
 
 def check_figure(

@@ -59,3 +59,8 @@ def plus_minus(value: float | None, stderr: float | None) -> str:
     """Write "value ± standard error", rounded by `parts`."""
     first, second = parts(value, stderr)
     return first if second is None else f"{first} ± {second}"
+
+
+def count(number: int, what: str) -> str:
+    """Write number and noun, in the plural where it is not one."""
+    return f"{number} {what}{'' if number == 1 else 's'}"

@@ -14,8 +14,11 @@ import pytest
 
 import pipeline
 from data.errors import CurlshotError, InputError
+from data.files import staged
+from data.inputs import find_inputs
 from data.results import Results
 from data.tracks import TRACK_COLUMNS
+from report.summary import summary
 from tests.scoring import read_truth, score_tracks
 
 SAMPLE = pipeline.sample_clip()
@@ -101,7 +104,7 @@ def test_tracks_come_back_to_the_same_physics(sample: pipeline.Run) -> None:
 
 
 def test_summary_says_what_a_person_asks(sample: pipeline.Run) -> None:
-    text = pipeline.summary(sample)
+    text = summary(sample.results, sample.tracks, sample.out)
     for word in ("stones", "A on B", "B on C", "e = ", "μ = ", "±", "report.html"):
         assert word in text
 
@@ -142,7 +145,7 @@ def test_a_glob_inside_a_folder_with_brackets_in_its_name(tmp_path: Path) -> Non
     folder.mkdir()
     for index in (10, 9):
         (folder / f"{index}.png").touch()
-    found = pipeline.find_inputs([folder / "*.png"])
+    found = find_inputs([folder / "*.png"])
     assert [path.name for path in found] == ["9.png", "10.png"]
 
 
@@ -213,7 +216,9 @@ def test_help_has_examples_everywhere() -> None:
 
 
 def test_help_loads_nothing_heavy() -> None:
-    code = "import sys, pipeline\npipeline._parser().format_help()\nprint(sorted(sys.modules))"
+    code = (
+        "import sys, pipeline\npipeline.command_line('').format_help()\nprint(sorted(sys.modules))"
+    )
     done = subprocess.run(
         [sys.executable, "-c", code],
         capture_output=True,
@@ -346,7 +351,7 @@ def test_failed_run_leaves_earlier_results_alone(tmp_path: Path) -> None:
         (stage / "results.json").write_text("half")
         raise CurlshotError("the disc is full")
 
-    with pytest.raises(CurlshotError), pipeline.staged(folder) as stage:
+    with pytest.raises(CurlshotError), staged(folder) as stage:
         fail(stage)
     assert (folder / "results.json").read_text() == "earlier"
     assert [item.name for item in tmp_path.iterdir()] == ["out"]
@@ -418,7 +423,8 @@ def test_files_of_an_earlier_run_do_not_stay_beside_the_new(tmp_path: Path) -> N
 def test_summary_tells_what_moved_without_a_hit(tmp_path: Path) -> None:
     rows = [f"A,{t / 10:.1f},{np.cos(t / 5):.4f},{np.sin(t / 5):.4f}" for t in range(30)]
     (tmp_path / "round.csv").write_text("\n".join(["stone,t,x,y", *rows]))
-    assert "moved: A" in pipeline.summary(pipeline.run([tmp_path / "round.csv"]))
+    done = pipeline.run([tmp_path / "round.csv"])
+    assert "moved: A" in summary(done.results, done.tracks)
 
 
 def test_a_terminal_without_greek_letters_gets_its_answer(tmp_path: Path) -> None:

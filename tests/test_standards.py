@@ -12,10 +12,11 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 MAY_IMPORT = {
     "data": set(),
+    "command": {"data", "physics"},
     "physics": {"data"},
     "vision": {"data", "physics"},
     "report": {"data", "physics", "vision"},
-    "pipeline": {"data", "physics", "vision", "report"},
+    "pipeline": {"command", "data", "physics", "vision", "report"},
 }
 
 

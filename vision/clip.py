@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.errors import InputError
+from data.inputs import IMAGE_SUFFIXES
 
 Image = NDArray[np.uint8]
 
-IMAGE_SUFFIXES = frozenset({".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp"})
 DEFAULT_IMAGE_FPS = 25.0
 
 

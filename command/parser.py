@@ -1,0 +1,302 @@
+"""Commands and options, with help and examples."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any, NoReturn
+
+from command import values
+from data.sheet import STONE
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong in one line, exit code 2."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"{self.prog}: {message} (see {self.prog} --help)\n")
+
+
+def command_line(version: str) -> argparse.ArgumentParser:
+    """Build the parser of the whole command line; ``command`` in its answer names the work."""
+    parser = _Parser(
+        prog="curlshot",
+        description="From a clip of a curling shot to its physics: tracks, restitution, friction, "
+        "and the shot simulated again.",
+        epilog="examples:\n"
+        "  curlshot run                               the bundled sample clip\n"
+        "  curlshot run shot.mp4 -o shot              a clip, into the folder shot\n"
+        "  curlshot run A.txt B.txt C.txt             tracks exported from Tracker\n"
+        "  curlshot simulate SHOT.toml                a shot of your own\n"
+        "  curlshot simulate shot/results.json --speed 1.1x\n"
+        "                                             what if it had been faster?\n",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action="version", version=f"curlshot {version}")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+
+    run_ = _command(
+        commands,
+        "run",
+        "the whole road: clip or tracks to e, μ, simulation and report",
+        "  curlshot run                                     the bundled sample\n"
+        "  curlshot run shot.mp4                            a clip that shows the house\n"
+        "  curlshot run frames/ --fps 25                    a folder of pictures\n"
+        "  curlshot run 'frames/*.png' --fps 25             or a glob\n"
+        "  curlshot run still.jpg                           one picture: positions only\n"
+        "  curlshot run pucks.mp4 --stick 20,10,20,38,0.1 --radius 0.045 --frames 2:31\n"
+        "                                                   no house: still camera, known length\n"
+        "  curlshot run shot.mp4 --house 12:640,360,460,360,640,180\n"
+        "                                                   the tee, two points of the 12-ft ring\n"
+        "  curlshot run shot.mp4 --camera camera.csv        a known camera, still or per frame\n"
+        "  curlshot run A.txt B.txt --length-unit cm        one Tracker export per stone\n"
+        "  curlshot run shot.trk                            a Tracker project, or a .trz\n"
+        "  curlshot run old/tracks.csv                      earlier tracks\n",
+    )
+    run_.add_argument("inputs", nargs="*", metavar="INPUT", help="clip, pictures or tables")
+    _clip_options(run_)
+    _table_options(run_)
+    _assumption_options(run_)
+    run_.add_argument(
+        "--no-overlay", action="store_true", help="do not write the annotated clip overlay.mp4"
+    )
+
+    track_ = _command(
+        commands,
+        "track",
+        "clip to tracks.csv and camera.csv only",
+        "  curlshot track shot.mp4 -o shot\n"
+        "  curlshot track shot.mp4 --camera earlier/camera.csv\n",
+    )
+    track_.add_argument("inputs", nargs="+", metavar="CLIP", help="a video or pictures")
+    _clip_options(track_)
+
+    check_ = _command(
+        commands,
+        "check",
+        "a contact sheet: can the camera and the stones found in this clip be trusted?",
+        "  curlshot check shot.mp4                  shot-curlshot/check.png\n"
+        "  curlshot check shot.mp4 --house 640,360,460,360,640,180\n",
+    )
+    check_.add_argument("inputs", nargs="+", metavar="CLIP", help="a video or pictures")
+    _clip_options(check_)
+
+    estimate_ = _command(
+        commands,
+        "estimate",
+        "tracks to results.json",
+        "  curlshot estimate shot/tracks.csv\n"
+        "  curlshot estimate pucks.csv --length-unit cm --radius 0.035 --mass 1=32 --mass 2=30\n",
+    )
+    estimate_.add_argument("inputs", nargs="+", metavar="TRACKS", help="tables of tracks")
+    _disc_options(estimate_)
+    _table_options(estimate_)
+    _assumption_options(estimate_)
+    estimate_.add_argument("--fps", type=values.positive, help="rate of a table without times, 1/s")
+
+    convert_ = _bare_command(
+        commands,
+        "convert",
+        "tracks into another form, by the ending of OUT",
+        "  curlshot convert shot.trk shot.csv               a Tracker project to a table\n"
+        "  curlshot convert shot-curlshot/tracks.csv a.txt  text for Tracker's import\n"
+        "  curlshot convert A.txt B.txt shot.parquet        needs pyarrow\n"
+        "  curlshot convert shot-curlshot/tracks.csv shot.trk --over shot.mp4\n"
+        "                                                   a Tracker project over the clip\n",
+    )
+    convert_.add_argument("inputs", nargs="+", metavar="IN", help="tables of tracks, projects")
+    convert_.add_argument("out", metavar="OUT", help=".txt, .csv, .parquet or .trk")
+    convert_.add_argument("--over", metavar="CLIP", help="the clip that a .trk shows")
+    _table_options(convert_)
+    convert_.add_argument("--fps", type=values.positive, help="rate of a table without times, 1/s")
+
+    simulate_ = _command(
+        commands,
+        "simulate",
+        "a shot of your own, or a measured one with something changed, and where it ends",
+        "  curlshot simulate SHOT.toml\n"
+        "  curlshot simulate SHOT.toml --json --fps 50\n"
+        "  curlshot simulate SHOT.toml --samples 2000           thrown 2000 times as players do\n"
+        "  curlshot simulate shot/results.json                  the measured shot, thrown again\n"
+        "  curlshot simulate shot/results.json --aim-offset 0.05 --speed 1.1x -o wider\n"
+        "                                                       what if: 5 cm to the left, faster\n"
+        "  curlshot simulate shot/results.json --restitution 0.9 --friction 0.012 --spin -1.5\n"
+        "\n"
+        "A measured shot (results.json with tracks.csv beside it) starts from the states before\n"
+        "its first hit. Samples are drawn from the measured uncertainties and from what players\n"
+        "are off by. They give outcomes.csv (where each stone ends in each sample), whatif.json\n"
+        "and spread.png, a plan view.\n"
+        "\n"
+        "SHOT.toml:\n"
+        "  [physics]                  # all optional\n"
+        '  model = "frictional"       # point-mass | rigid-body | frictional\n'
+        "  restitution = 1.0\n"
+        "  stone_friction = 0.2\n"
+        '  ice = "fcv1"               # constant (with friction = 0.0109) | fcv1 | penner | fit\n'
+        '  curl = "fcv1"              # none | fcv1\n'
+        "  radius = 0.145\n"
+        "  inertia = 0.5              # I / (m R^2)\n"
+        "  [[stone]]                  # one for each stone\n"
+        '  name = "A"\n'
+        "  x = 0.0\n"
+        "  y = 0.0\n"
+        "  vx = 0.0\n"
+        "  vy = 2.4\n"
+        "  omega = 1.5708             # rigid-body also needs omega_after\n",
+    )
+    simulate_.add_argument(
+        "shot", metavar="SHOT", type=Path, help="SHOT.toml, or the results.json of a run"
+    )
+    simulate_.add_argument(
+        "--fps", type=values.positive, default=25.0, help="samples per second (25)"
+    )
+    simulate_.add_argument("--json", action="store_true", help="print the outcome as JSON")
+    _what_if_options(simulate_)
+    return parser
+
+
+def _command(commands: Any, name: str, summary: str, examples: str) -> argparse.ArgumentParser:
+    """Add a command that writes a folder."""
+    parser = _bare_command(commands, name, summary, examples)
+    parser.add_argument("-o", "--out", metavar="OUT", help="folder for the files (NAME-curlshot)")
+    return parser
+
+
+def _bare_command(commands: Any, name: str, summary: str, examples: str) -> argparse.ArgumentParser:
+    parser: argparse.ArgumentParser = commands.add_parser(
+        name,
+        help=summary,
+        description=summary[0].upper() + summary[1:] + ".",
+        epilog=f"examples:\n{examples}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("-q", "--quiet", action="store_true", help="no progress bars")
+    return parser
+
+
+def _disc_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--radius",
+        type=values.positive,
+        default=STONE.radius,
+        metavar="METRES",
+        help=f"radius of the discs ({STONE.radius}: a curling stone)",
+    )
+    parser.add_argument(
+        "--mass",
+        type=values.mass,
+        action="append",
+        default=[],
+        metavar="STONE=MASS",
+        help="mass of a disc, where they are not all equal (any unit)",
+    )
+
+
+def _clip_options(parser: argparse.ArgumentParser) -> None:
+    _disc_options(parser)
+    parser.add_argument("--fps", type=values.positive, help="rate of pictures, 1/s (25)")
+    parser.add_argument(
+        "--frames",
+        type=values.frame_range,
+        metavar="FIRST:LAST",
+        help="frames to use, both included",
+    )
+    parser.add_argument(
+        "--stick",
+        type=values.stick,
+        metavar="X1,Y1,X2,Y2,METRES",
+        help="calibration stick for a still camera without a house: two pixels, their distance",
+    )
+    parser.add_argument(
+        "--house",
+        type=values.house,
+        metavar="FRAME:XC,YC,X1,Y1,X2,Y2",
+        help="where the house is, if it is not found: the tee and two points on the outer edge of"
+        " the 12-ft ring, px, in that frame (FRAME: may be left out: the first)",
+    )
+    parser.add_argument(
+        "--camera",
+        type=Path,
+        metavar="CAMERA.csv",
+        help="a known camera, as a run's camera.csv: one row for a still camera, or one per frame",
+    )
+
+
+def _what_if_options(parser: argparse.ArgumentParser) -> None:
+    change = parser.add_argument_group("what if")
+    change.add_argument(
+        "--restitution", type=values.fraction, metavar="E", help="e of the hits, 0 to 1"
+    )
+    change.add_argument(
+        "--friction", type=values.friction, metavar="MU", help="μ of the ice at 1 m/s, 0.001 to 0.1"
+    )
+    change.add_argument(
+        "--aim-offset",
+        type=values.offset,
+        default=0.0,
+        metavar="METRES",
+        help="move the way of the thrown stone to its left, or right if negative, m",
+    )
+    change.add_argument(
+        "--speed",
+        type=values.speed,
+        metavar="V",
+        help="of the thrown stone: m/s, or a factor as 1.1x",
+    )
+    change.add_argument(
+        "--spin",
+        type=values.amount,
+        metavar="W",
+        help="of the thrown stone: rad/s, or a factor as 0.5x",
+    )
+    change.add_argument(
+        "--samples",
+        type=values.samples,
+        metavar="N",
+        help=f"throw it N times, at most {values.MOST_THROWS} (1000 for a results.json, else 0)",
+    )
+    change.add_argument(
+        "--throw-sd",
+        type=values.throw_sd,
+        metavar="V,A",
+        help="what players are off by when they let go: m/s, rad (0.0076,0.0018)",
+    )
+
+
+def _assumption_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--restitution",
+        type=values.fraction,
+        metavar="E",
+        help="e that predictions assume (0.83 ± 0.06)",
+    )
+    parser.add_argument(
+        "--friction",
+        type=values.friction,
+        metavar="MU",
+        help="μ that predictions assume (0.0109 ± 0.003)",
+    )
+
+
+def _table_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--length-unit", choices=("m", "cm", "mm", "in", "ft"), default="m", help="of tables (m)"
+    )
+    parser.add_argument("--angle-unit", choices=("rad", "deg"), help="of tables")
+    parser.add_argument("--tab", metavar="NAME", help="of a Tracker project with several tabs")
+    parser.add_argument(
+        "--names",
+        type=values.pair,
+        action="append",
+        default=[],
+        metavar="STONE=TRACK",
+        help='which tracks are stones, e.g. --names A="mass A" --names B="mass B" (all)',
+    )
+    parser.add_argument(
+        "--angles",
+        type=values.pair,
+        action="append",
+        default=[],
+        metavar="STONE=FILE",
+        help="how a stone is turned: an export of a point of its edge about its centre",
+    )

@@ -1,0 +1,135 @@
+"""Values of options: text to numbers, or one line that says what was expected."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from physics.what_if import Amount
+
+MOST_THROWS = 100_000
+"""Samples of a shot at most."""
+
+
+def positive(text: str) -> float:
+    """Read a positive number."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a positive number")
+    return value
+
+
+def number(text: str, low: float, high: float, what: str) -> float:
+    """Read a number between two bounds; `what` says what was expected."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = float("nan")
+    if not low <= value <= high:
+        raise argparse.ArgumentTypeError(f"{text!r} is not {what}")
+    return value
+
+
+def fraction(text: str) -> float:
+    """Read a number from 0 to 1."""
+    return number(text, 0.0, 1.0, "a number from 0 to 1")
+
+
+def friction(text: str) -> float:
+    """Read a coefficient of friction of ice."""
+    return number(text, 1e-3, 0.1, "a friction of ice, 0.001 to 0.1")
+
+
+def offset(text: str) -> float:
+    """Read a distance, m, of either sign."""
+    return number(text, -5.0, 5.0, "a distance in metres, -5 to 5")
+
+
+def amount(text: str) -> Amount:
+    """Read a number, or a factor such as ``1.1x``."""
+    from physics.what_if import Amount
+
+    relative = text.endswith("x")
+    what = "a number, or a factor such as 1.1x"
+    return Amount(number(text.removesuffix("x"), -20.0, 20.0, what), relative)
+
+
+def speed(text: str) -> Amount:
+    """Read a speed, m/s, or a factor such as ``1.1x``."""
+    read = amount(text)
+    if not 0 < read.value <= 10:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a speed in m/s, nor a factor as 1.1x")
+    return read
+
+
+def samples(text: str) -> int:
+    """Read a number of samples."""
+    if not text.isdecimal() or not int(text) <= MOST_THROWS:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of samples, 0 to {MOST_THROWS}")
+    return int(text)
+
+
+def throw_sd(text: str) -> tuple[float, float]:
+    """Read ``V,A``: standard deviations of speed, m/s, and direction, rad."""
+    parts = text.split(",")
+    if len(parts) != 2:
+        raise argparse.ArgumentTypeError(f"{text!r} is not V,A, e.g. 0.0076,0.0018")
+    speed, angle = parts
+    return (
+        number(speed, 0.0, 1.0, "a standard deviation in m/s, 0 to 1"),
+        number(angle, 0.0, 1.0, "a standard deviation in rad, 0 to 1"),
+    )
+
+
+def frame_range(text: str) -> tuple[int, int | None]:
+    """Read ``FIRST:LAST``, either of which may be left out."""
+    match = re.fullmatch(r"(\d*):(\d*)", text)
+    if match is None:
+        raise argparse.ArgumentTypeError(f"{text!r} is not FIRST:LAST, e.g. 2:31 or 10:")
+    first, last = match.groups()
+    return int(first or 0), int(last) if last else None
+
+
+def stick(text: str) -> tuple[float, float, float, float, float]:
+    """Read ``X1,Y1,X2,Y2,METRES``."""
+    try:
+        x1, y1, x2, y2, metres = (float(part) for part in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not X1,Y1,X2,Y2,METRES") from None
+    if (x1, y1) == (x2, y2) or not metres > 0:
+        raise argparse.ArgumentTypeError(f"{text!r}: the stick has no length")
+    return x1, y1, x2, y2, metres
+
+
+def house(text: str) -> tuple[int | None, float, float, float, float, float, float]:
+    """Read ``FRAME:XC,YC,X1,Y1,X2,Y2``; the frame is None where left out."""
+    match = re.fullmatch(r"(?:(\d+):)?([^:]*)", text)
+    try:
+        frame, points = match.groups() if match else (None, "")
+        xc, yc, x1, y1, x2, y2 = (float(part) for part in points.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not FRAME:XC,YC,X1,Y1,X2,Y2, e.g. 0:640,360,460,360,640,180"
+        ) from None
+    return None if frame is None else int(frame), xc, yc, x1, y1, x2, y2
+
+
+def mass(text: str) -> tuple[str, float]:
+    """Read ``STONE=MASS``."""
+    name, _, value = text.rpartition("=")
+    if not name:
+        raise argparse.ArgumentTypeError(f"{text!r} is not STONE=MASS, e.g. A=19.1")
+    return name, positive(value)
+
+
+def pair(text: str) -> tuple[str, str]:
+    """Read ``STONE=…``."""
+    name, _, value = text.partition("=")
+    if not name or not value:
+        raise argparse.ArgumentTypeError(f"{text!r} is not STONE=…, e.g. A=a.txt")
+    return name, value

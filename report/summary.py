@@ -1,0 +1,98 @@
+"""The outcome of a command in a few lines of text, or as plain values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from data.results import Results
+from physics.simulate import Simulation
+from report.numbers import count, plus_minus
+from report.tables import moving_stones
+
+
+def odds_text(odds: Mapping[str, Any], written: Sequence[Path]) -> list[str]:
+    """Where a shot thrown many times ends; `odds` as in ``whatif.json``."""
+    lines = [
+        f"{odds['thrown']} thrown {count(odds['samples'], 'time')}, at rest (mean ± spread):",
+    ]
+    for name, item in odds["stones"].items():
+        lines.append(
+            f"  {name}  x {item['x']:+7.2f} ± {item['sd_x']:.2f} m"
+            f"   y {item['y']:+7.2f} ± {item['sd_y']:.2f} m   moved {item['moved']:4.0%}"
+            f"   in the house {item['in_house']:4.0%}   shot stone {item['shot_stone']:4.0%}"
+        )
+    return [*lines, f"written: {', '.join(map(str, written))}"]
+
+
+def simulation_json(simulation: Simulation) -> dict[str, Any]:
+    """Rest positions and hits of a simulation as plain values, for ``--json``."""
+    return {
+        "stones": {
+            name: {"x": rest.x, "y": rest.y, "theta": rest.theta, "t": rest.t}
+            for name, rest in simulation.rest.items()
+        },
+        "hits": [
+            {
+                "t": hit.t,
+                "stones": list(hit.stones),
+                "normal": list(hit.normal),
+                "before": {name: vars(state) for name, state in hit.before.items()},
+                "after": {name: vars(state) for name, state in hit.after.items()},
+            }
+            for hit in simulation.hits
+        ],
+    }
+
+
+def simulation_text(simulation: Simulation, path: Path) -> str:
+    """Rest positions and hits of a simulation whose samples were written to `path`."""
+    lines = ["at rest:"]
+    lines += [
+        f"  {name}  x {rest.x:+8.3f} m   y {rest.y:+8.3f} m   after {rest.t:6.2f} s"
+        for name, rest in simulation.rest.items()
+    ]
+    lines.append("hits:" if simulation.hits else "no hits")
+    lines += [f"  {hit.t:6.3f} s  {hit.stones[0]} on {hit.stones[1]}" for hit in simulation.hits]
+    return "\n".join([*lines, f"written: {path}"])
+
+
+def summary(results: Results, tracks: pd.DataFrame, out: Path | None = None) -> str:
+    """Put the outcome into a dozen lines that a person can read."""
+    moved = moving_stones(tracks, results.collisions, results.radius)
+    names = sorted(tracks["stone"].unique())
+    lines = [
+        f"input       {', '.join(results.input.files[:3])}"
+        f"{' …' if len(results.input.files) > 3 else ''}: "
+        f"{count(results.input.frames, 'frame')}, {results.input.duration:.2f} s",
+        f"stones      {len(names)} ({', '.join(names)}); moved: {', '.join(moved) or 'none'}",
+    ]
+    for hit in results.collisions:
+        lines.append(
+            f"hit         {hit.stones[0]} on {hit.stones[1]} at {hit.t:.3f} s: "
+            f"e = {plus_minus(hit.restitution, hit.stderr)}"
+        )
+    lines += [
+        f"restitution e = {plus_minus(results.restitution.value, results.restitution.stderr)}",
+        f"friction    μ = {plus_minus(results.friction.value, results.friction.stderr)}"
+        f" ({results.friction.law})",
+    ]
+    for model, score in results.simulations.items():
+        off = f"— ({score.note or 'nothing to compare'})"
+        if score.rmse is not None:
+            off = f"{score.rmse * 100:.1f} cm RMS off"
+        lines.append(f"simulated   {model}: {off}")
+    for model, guess in results.predictions.items():
+        if guess.rmse is not None:
+            lines.append(
+                f"predicted   {model}, from before the first hit, e and μ assumed:"
+                f" {guess.rmse * 100:.1f} cm RMS off"
+            )
+    lines += [f"warning     {text}" for text in results.warnings]
+    if out is not None:
+        report = out / "report.html"
+        lines.append(f"written     {report if report.exists() else out}")
+    return "\n".join(lines)
