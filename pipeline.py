@@ -395,6 +395,7 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
         warnings=tuple(dict.fromkeys((*measured.warnings, *estimates.warnings, *notes))),
         radius=radius,
         predictions=predictions,
+        laws=estimates.laws,
     )
     cameras = camera_table(measured.cameras) if measured.cameras else None
     simulations = [as_tracks(table, model) for model, table in sampled.items()]

@@ -40,6 +40,15 @@ class Friction(Estimate):
 
 
 @dataclass(frozen=True)
+class Joint:
+    """Values that were estimated together: their names, numbers and covariance."""
+
+    names: tuple[str, ...]
+    values: tuple[float, ...]
+    cov: tuple[tuple[float, ...], ...]
+
+
+@dataclass(frozen=True)
 class StoneState:
     """Place (m), velocity (m/s) and spin (rad/s) of one stone; None where unknown."""
 
@@ -151,6 +160,7 @@ class Results:
     warnings: tuple[str, ...] = ()
     radius: float = 0.1455
     predictions: Mapping[str, Prediction] = field(default_factory=dict)
+    laws: Joint | None = None
 
     def to_json(self) -> str:
         """Text of ``results.json``: strict JSON, values that are not finite as null."""
@@ -192,6 +202,7 @@ class Results:
                 predictions={
                     name: _prediction(item) for name, item in raw.get("predictions", {}).items()
                 },
+                laws=_joint(raw.get("laws")),
             )
         except OSError as error:
             raise InputError(f"{path}: {error.strerror}") from None
@@ -229,6 +240,15 @@ def _length(value: Any) -> float:
 def _prediction(item: dict[str, Any]) -> Prediction:
     laws = {name: _made(Estimate, item[name]) for name in ("restitution", "friction")}
     return _made(Prediction, {**item, **laws})
+
+
+def _joint(item: dict[str, Any] | None) -> Joint | None:
+    if item is None:
+        return None
+    names, cov = tuple(item["names"]), tuple(tuple(map(float, row)) for row in item["cov"])
+    if {len(names)} != {len(item["values"]), len(cov), *map(len, cov)}:
+        raise ValueError("names, values and covariance do not fit")
+    return Joint(names, tuple(map(float, item["values"])), cov)
 
 
 def _plain(value: Any) -> Any:

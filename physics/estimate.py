@@ -14,7 +14,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from data.errors import InputError
-from data.results import Collision, Estimate, Friction, Glide, MeasuredState
+from data.results import Collision, Estimate, Friction, Glide, Joint, MeasuredState
 from data.sheet import STONE
 from physics.contacts import Contact, cut_all
 from physics.fit import fit_shot
@@ -37,6 +37,9 @@ to be even either, and velocities at a hit come from BESIDE seconds on either si
 
 POOR_FIT = 30.0
 """Factor on the variance of sightings from which a simulated shot is not the one seen."""
+
+LAWS = ("restitution", "friction", "stone_friction")
+"""Unknowns of a shot that are not of one stone alone."""
 
 WORST = 0.2
 """Standard error of a restitution beyond which a hit is said to tell nothing."""
@@ -71,6 +74,11 @@ class Estimates:
     warnings: tuple[str, ...] = ()
     local: Estimate = field(default_factory=Estimate)
     whole: GlobalFit | None = field(default=None, compare=False)
+
+    @property
+    def laws(self) -> Joint | None:
+        """Restitution and frictions as the whole shot tells them, with their covariance."""
+        return None if self.whole is None else self.whole.joint(LAWS)
 
 
 def estimate(

@@ -16,7 +16,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from data.errors import InputError
-from data.results import Estimate
+from data.results import Estimate, Joint
 from physics.residuals import HUBER, huber_weights, inflation
 from physics.shot_model import Unknown, Watched
 from physics.simulate import Simulation
@@ -91,6 +91,15 @@ class GlobalFit:
             return False
         k = self.names.index(name)
         return bool(self.cov[k, k] < 0.5 * self.prior_sd[k] ** 2)
+
+    def joint(self, names: Sequence[str]) -> Joint | None:
+        """Return those of some unknowns that the sightings tell of, None where it is none."""
+        told = [name for name in names if self.told(name)]
+        at = [self.names.index(name) for name in told]
+        cov = self.cov[np.ix_(at, at)].tolist()
+        if not told:
+            return None
+        return Joint(tuple(told), tuple(self.values[at].tolist()), tuple(map(tuple, cov)))
 
     def state(self, rank: int = 0, values: Floats | None = None) -> dict[str, float]:
         """Every unknown of shot `rank` by its own name, fitted or held."""

@@ -18,6 +18,7 @@ from data.results import (
     Friction,
     Glide,
     Input,
+    Joint,
     MeasuredState,
     Results,
     SimulationScore,
@@ -51,6 +52,7 @@ RESULTS = Results(
         "rigid-body": SimulationScore(None, note="no spins"),
     },
     warnings=("two frames are missing",),
+    laws=Joint(("restitution", "friction"), (0.83, 0.0109), ((4e-4, 1e-7), (1e-7, 9e-8))),
 )
 
 
@@ -73,7 +75,7 @@ def test_the_form_of_the_file() -> None:
     assert raw["schema"] == SCHEMA == 1
     assert set(raw) == {
         *("schema", "input", "restitution", "friction", "collisions", "glides"),
-        *("simulations", "warnings", "radius", "predictions"),
+        *("simulations", "warnings", "radius", "predictions", "laws"),
     }
     assert raw["input"] == {
         "files": ["clip Ä.mp4"],
