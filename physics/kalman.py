@@ -10,8 +10,7 @@ AIAA J. 3, 1445) exact. A filter never runs across a hit.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -21,47 +20,21 @@ from data.tracks import TRACK_COLUMNS, empty_tracks
 from physics.contacts import Contact, cut_all
 from physics.fit import fit_shot
 from physics.glides import FREE, measure_glides, stop_time
+from physics.rate_filter import filtered
 from physics.shot_fit import ShotFit
+from physics.stretch import START_SD, Filter, Model, Stretch
 from physics.traces import Trace, traces
 
 Floats = NDArray[np.float64]
 
-START_SD = np.array([3.0, 10.0])
-"""What is known of speed (m/s) and spin (rad/s) before the first sighting."""
 
-JUMP_SD = np.array([1.0, 5.0])
-"""How much speed (m/s) and spin (rad/s) may change where a motion changes of itself."""
-
-STILL_SD = np.array([1e-3, 1e-3])
-"""How still a stone at rest lies, m/s and rad/s."""
-
-STOPPED_SD = 0.01
-"""How well a stone is known to have stopped, m/s: the moment of it is not exactly known."""
-
-MEMORY = 0.5
-"""Time over which a deceleration keeps its deviation from the mean, s."""
-
-SPIN_LOSS_SD, SPIN_LOSS_STOPPED_SD = 0.05, 0.5
-"""How much the loss of spin differs from none, rad/s²: moving, and spinning on the spot."""
-
-GATE = 25.0
-"""Squared normalised innovation beyond which a sighting is refused."""
-
-
-@dataclass(frozen=True)
-class _Model:
-    """How one stone's speed is expected to change.
-
-    ``a`` is the deceleration (m/s²), ``spread`` its deviation, ``noise`` the factor on the
-    variance of the sightings.
-    """
-
-    a: float
-    spread: float
-    noise: float
-
-
-def smooth(sightings: pd.DataFrame, contacts: Sequence[Contact], *, radius: float) -> pd.DataFrame:
+def smooth(
+    sightings: pd.DataFrame,
+    contacts: Sequence[Contact],
+    *,
+    radius: float,
+    run: Filter = filtered,
+) -> pd.DataFrame:
     """Turn sightings into tracks: one row per stone and time from its first to its last.
 
     Parameters
@@ -72,6 +45,9 @@ def smooth(sightings: pd.DataFrame, contacts: Sequence[Contact], *, radius: floa
         The hits; nothing on one side of a hit has a say on its other side.
     radius : float
         Of the discs, m.
+    run : Filter
+        Filters one stone from hit to hit; `physics.reference_filter.filtered` does it with
+        matrices.
 
     Returns
     -------
@@ -91,13 +67,13 @@ def smooth(sightings: pd.DataFrame, contacts: Sequence[Contact], *, radius: floa
     for name, trace in known.items():
         inside = (times >= trace.t[0]) & (times <= trace.t[-1])
         hits = sorted(c.t for c in contacts if name in c.stones)
-        tables.append(_track(trace, times[inside], frames[inside], hits, fit, model))
+        tables.append(_track(trace, times[inside], frames[inside], hits, fit, model, run))
     return pd.concat(tables, ignore_index=True)[list(TRACK_COLUMNS)]
 
 
 def _survey(
     known: dict[str, Trace], contacts: Sequence[Contact], radius: float
-) -> tuple[ShotFit, _Model]:
+) -> tuple[ShotFit, Model]:
     """Fit each stretch between hits by itself: where stones rest, and how the ice slows them."""
     by_hits, _ = cut_all(known, contacts, radius)
     pieces = [replace(piece, opens=None, closes=None) for piece in by_hits]
@@ -105,7 +81,7 @@ def _survey(
     _, friction, prior = measure_glides(loose, known, radius)
     fit = fit_shot(known, pieces, (), radius, deceleration=prior)
     a = prior.mean if friction.value is not None else 0.0
-    return fit, _Model(max(a, 0.0), prior.along, fit.inflation)
+    return fit, Model(max(a, 0.0), prior.along, fit.inflation)
 
 
 def _track(
@@ -114,7 +90,8 @@ def _track(
     frames: NDArray[np.int64],
     hits: Sequence[float],
     fit: ShotFit,
-    model: _Model,
+    model: Model,
+    run: Filter,
 ) -> pd.DataFrame:
     """Run the filter over one stone, hit to hit."""
     row = np.clip(np.searchsorted(trace.t, t), 0, len(trace.t) - 1)
@@ -129,8 +106,8 @@ def _track(
     for k in np.unique(part):
         at = np.flatnonzero(part == k)
         if np.isfinite(z[at, 0]).any():
-            mean[at], spread[at], seen[at] = _run(
-                t[at], z[at], sd[at], place[at], rest[at], idle[at], speed[at], model
+            mean[at], spread[at], seen[at] = run(
+                Stretch(t[at], z[at], sd[at], place[at], rest[at], idle[at], speed[at], model)
             )
         else:
             mean[at], spread[at] = _bridge(trace, t[at])
@@ -184,118 +161,3 @@ def _bridge(trace: Trace, t: Floats) -> tuple[Floats, Floats]:
     spread[:, :2] = gap
     spread[:, 2:4] = START_SD[0]
     return mean, spread
-
-
-def _run(
-    t: Floats,
-    z: Floats,
-    sd: Floats,
-    place: NDArray[np.int64],
-    rest: NDArray[np.bool_],
-    idle: NDArray[np.bool_],
-    speed: Floats,
-    model: _Model,
-) -> tuple[Floats, Floats, NDArray[np.int64]]:
-    """Filter and smooth one stretch between two hits.
-
-    Returns
-    -------
-    mean, spread : (n, 6) array
-        x, y, vx, vy, θ, ω and their standard deviations.
-    seen : (n,) int array
-        Whether the sighting at each time was used.
-    """
-    from filterpy.kalman import KalmanFilter
-
-    n = len(t)
-    first = int(np.flatnonzero(np.isfinite(z[:, 0]))[0])
-    angles = np.isfinite(z[:, 2])
-    theta = float(z[np.flatnonzero(angles)[0], 2]) if angles.any() else 0.0
-    start = np.where([rest[0], idle[0]], STILL_SD, START_SD)
-    filter_ = KalmanFilter(dim_x=6, dim_z=3)
-    filter_.x = np.array([z[first, 0], z[first, 1], 0.0, 0.0, theta, 0.0])
-    filter_.P = np.diag([100.0, 100.0, start[0] ** 2, start[0] ** 2, 1e4, start[1] ** 2])
-    rows = np.zeros((3, 6))
-    rows[[0, 1, 2], [0, 1, 4]] = 1.0
-    drift = np.zeros((n, 6))
-    means, covs = np.empty((n, 6)), np.empty((n, 6, 6))
-    steps, noises = np.empty((n, 6, 6)), np.empty((n, 6, 6))
-    steps[0], noises[0] = np.eye(6), np.zeros((6, 6))
-    seen = np.zeros(n, dtype=int)
-    refused = wrong = 0
-    for k in range(n):
-        if k:
-            dt = t[k] - t[k - 1]
-            steps[k], noises[k] = _step(
-                dt, rest[k - 1 : k + 1], idle[k - 1 : k + 1], place[k] != place[k - 1], model
-            )
-            drift[k] = steps[k] @ drift[k - 1]
-            if not rest[k]:
-                drift[k, :4] += _slowing(dt, speed[k - 1], model.a)
-            filter_.predict(F=steps[k], Q=noises[k])
-        if np.isfinite(z[k, 0]):
-            near = _distance(filter_, rows[:2], z[k, :2] - drift[k, :2], sd[k, :2]) < GATE
-            # Three refusals in a row mean that the filter is wrong and the sightings right.
-            if near or refused >= 2:
-                seen[k], refused = 1, 0
-                filter_.update(z[k, :2] - drift[k, :2], R=np.diag(sd[k, :2] ** 2), H=rows[:2])
-            else:
-                refused += 1
-        if np.isfinite(z[k, 2]):
-            turn, error = z[k, 2:] - drift[k, 4:5], sd[k, 2:]
-            near = _distance(filter_, rows[2:], turn, error) < GATE
-            if near or wrong >= 2:
-                wrong = 0
-                filter_.update(turn, R=np.diag(error**2), H=rows[2:])
-            else:
-                wrong += 1
-        means[k], covs[k] = filter_.x, filter_.P
-    # The method reads Fs[k + 1] on the way from k + 1 to k, as uneven steps need.
-    mean, cov, _, _ = filter_.rts_smoother(means, covs, list(steps), list(noises))
-    spread = np.sqrt(np.maximum(np.diagonal(cov, axis1=1, axis2=2), 0.0))
-    mean = mean + drift
-    mean[rest, 2:4], mean[idle, 5] = 0.0, 0.0
-    return mean, spread, seen
-
-
-def _slowing(dt: float, speed: Floats, a: float) -> Floats:
-    """Change of place and velocity by the ice in one step."""
-    size = float(np.hypot(*speed))
-    if size < 1e-6:
-        return np.zeros(4)
-    loss = min(a, size / dt)
-    along = -loss * speed / size
-    return np.concatenate([0.5 * dt * dt * along, dt * along])
-
-
-def _distance(filter_: Any, rows: Floats, value: Floats, sd: Floats) -> float:
-    """Squared normalised innovation of a measurement."""
-    error = value - rows @ filter_.x
-    spread = rows @ filter_.P @ rows.T + np.diag(sd**2)
-    return float(error @ np.linalg.solve(spread, error))
-
-
-def _step(
-    dt: float, rest: NDArray[np.bool_], idle: NDArray[np.bool_], changed: bool, model: _Model
-) -> tuple[Floats, Floats]:
-    """Transition matrix and process noise of one step; `rest`, `idle` at its two ends."""
-    step, noise = np.eye(6), np.zeros((6, 6))
-    loss = SPIN_LOSS_STOPPED_SD if rest[1] else SPIN_LOSS_SD
-    pairs = ((0, 2, model.spread, rest), (1, 3, model.spread, rest), (4, 5, loss, idle))
-    for place, rate, deviation, still in pairs:
-        at = np.ix_([place, rate], [place, rate])
-        kind = int(still is idle)
-        if still[1]:
-            # What was left of the motion ends somewhere in the step.
-            step[place, rate] = 0.0 if still[0] else 0.5 * dt
-            step[rate, rate] = 0.0
-            noise[rate, rate] = (STILL_SD[kind] if idle[1] else STOPPED_SD) ** 2
-            continue
-        step[place, rate] = dt
-        density = deviation**2 * MEMORY
-        noise[at] = density * np.array([[dt**3 / 3, dt**2 / 2], [dt**2 / 2, dt]])
-        if still[0] or changed:
-            jump = START_SD[kind] if still[0] else JUMP_SD[kind]
-            # At any moment of the step.
-            noise[at] += jump**2 * np.array([[dt * dt / 3, dt / 2], [dt / 2, 1.0]])
-    return step, noise

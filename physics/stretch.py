@@ -1,0 +1,166 @@
+"""One stone between two hits, as the filter takes it, and how its motion goes on in each step.
+
+Place and rate make a pair on each axis: x with vx, y with vy, θ with ω. No pair has a say in
+another's motion, and x and y move on alike.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+START_SD = (3.0, 10.0)
+"""What is known of speed (m/s) and spin (rad/s) before the first sighting."""
+
+JUMP_SD = (1.0, 5.0)
+"""How much speed (m/s) and spin (rad/s) may change where a motion changes of itself."""
+
+STILL_SD = (1e-3, 1e-3)
+"""How still a stone at rest lies, m/s and rad/s."""
+
+STOPPED_SD = 0.01
+"""How well a stone is known to have stopped, m/s: the moment of it is not exactly known."""
+
+ANYWHERE_SD = (10.0, 100.0)
+"""What is known of place (m) and angle (rad) before the first sighting."""
+
+MEMORY = 0.5
+"""Time over which a deceleration keeps its deviation from the mean, s."""
+
+SPIN_LOSS_SD, SPIN_LOSS_STOPPED_SD = 0.05, 0.5
+"""How much the loss of spin differs from none, rad/s²: moving, and spinning on the spot."""
+
+GATE = 25.0
+"""Squared normalised innovation beyond which a sighting is refused."""
+
+PATIENCE = 2
+"""After so many refusals in a row the filter is wrong and the sightings are right."""
+
+
+@dataclass(frozen=True)
+class Model:
+    """How one stone's speed is expected to change.
+
+    ``a`` is the deceleration (m/s²), ``spread`` its deviation, ``noise`` the factor on the
+    variance of the sightings.
+    """
+
+    a: float
+    spread: float
+    noise: float
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """One stone between two hits, at n times; it is seen at one of them at least.
+
+    Attributes
+    ----------
+    t : (n,) array
+        Times, s, increasing.
+    z, sd : (n, 3) array
+        x, y (m) and θ (rad) and their standard deviations; NaN where not seen.
+    piece : (n,) array
+        Number of the piece of its path: where it changes, the motion changed of itself.
+    rest, idle : (n,) array of bool
+        Whether the stone rests, and whether it also does not spin.
+    speed : (n, 2) array
+        About how fast it moves, m/s: only for the direction in which the ice slows it.
+    model : Model
+    """
+
+    t: Floats
+    z: Floats
+    sd: Floats
+    piece: NDArray[np.int64]
+    rest: Bools
+    idle: Bools
+    speed: Floats
+    model: Model
+
+    @property
+    def start(self) -> tuple[Floats, Floats]:
+        """Places and angle to start from, and the standard deviations of the rates."""
+        first = int(np.isfinite(self.z[:, 0]).argmax())
+        angles = self.z[np.isfinite(self.z[:, 2]), 2]
+        theta = float(angles[0]) if len(angles) else 0.0
+        rates = np.where([self.rest[0], self.idle[0]], STILL_SD, START_SD)
+        return np.array([*self.z[first, :2], theta]), rates[[0, 0, 1]]
+
+
+Estimates = tuple[Floats, Floats, NDArray[np.int64]]
+"""x, y, vx, vy, θ, ω, shape (n, 6); their standard deviations; whether each sighting was used."""
+
+Filter = Callable[[Stretch], Estimates]
+"""Filters a stretch and smooths it backwards."""
+
+
+@dataclass(frozen=True)
+class Steps:
+    """How place and rate of a pair go on from each time to the next, n − 1 steps.
+
+    place' = place + ``reach`` rate and rate' = ``keep`` rate, with noise of variance ``q00`` of
+    the place and ``q11`` of the rate and covariance ``q01``; all of shape (n − 1,).
+    """
+
+    reach: Floats
+    keep: Floats
+    q00: Floats
+    q01: Floats
+    q11: Floats
+
+
+def steps(stretch: Stretch) -> tuple[Steps, Steps]:
+    """Give the steps of either place, and those of the angle."""
+    rest, idle = stretch.rest, stretch.idle
+    stopped = np.where(idle[1:], STILL_SD[0], STOPPED_SD)
+    along = _steps(stretch, rest, np.full(len(rest) - 1, stretch.model.spread), stopped, 0)
+    stopped = np.where(idle[1:], STILL_SD[1], STOPPED_SD)
+    loss = np.where(rest[1:], SPIN_LOSS_STOPPED_SD, SPIN_LOSS_SD)
+    return along, _steps(stretch, idle, loss, stopped, 1)
+
+
+def _steps(stretch: Stretch, still: Bools, deviation: Floats, stopped: Floats, kind: int) -> Steps:
+    """Give the steps of a pair by what its acceleration deviates by and how still it ends."""
+    dt = np.diff(stretch.t)
+    was, ends = still[:-1], still[1:]
+    density = deviation**2 * MEMORY
+    jump = np.where(np.diff(stretch.piece) != 0, JUMP_SD[kind], 0.0)
+    jump = np.where(was, START_SD[kind], jump) ** 2  # at any moment of the step
+    # What was left of a motion that ends does so somewhere in the step.
+    return Steps(
+        reach=np.where(ends, np.where(was, 0.0, 0.5 * dt), dt),
+        keep=np.where(ends, 0.0, 1.0),
+        q00=np.where(ends, 0.0, density * dt**3 / 3 + jump * dt**2 / 3),
+        q01=np.where(ends, 0.0, density * dt**2 / 2 + jump * dt / 2),
+        q11=np.where(ends, stopped**2, density * dt + jump),
+    )
+
+
+def drift(stretch: Stretch, along: Steps) -> Floats:
+    """Tell what the ice is known to have done to the pairs since the first time, shape (n, 6).
+
+    It is taken out of the sightings before the filter and put back afterwards.
+    """
+    dt = np.diff(stretch.t)[:, None]
+    speed = stretch.speed[:-1]
+    size = np.hypot(speed[:, 0], speed[:, 1])[:, None]
+    loss = np.minimum(stretch.model.a, size / dt)
+    slowing = np.where(size < 1e-6, 0.0, -loss * speed / np.maximum(size, 1e-6))
+    slowing[stretch.rest[1:]] = 0.0
+    out = np.zeros((len(stretch.t), 6))
+    x, y, vx, vy = 0.0, 0.0, 0.0, 0.0
+    each = (stretch.t[1:] - stretch.t[:-1], along.reach, along.keep, *slowing.T)
+    for k, (step, reach, keep, ax, ay) in enumerate(
+        zip(*(values.tolist() for values in each), strict=True), 1
+    ):
+        x, y = x + reach * vx + 0.5 * step * step * ax, y + reach * vy + 0.5 * step * step * ay
+        vx, vy = keep * vx + step * ax, keep * vy + step * ay
+        out[k, :4] = x, y, vx, vy
+    return out
