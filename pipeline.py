@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 from command.bars import Bars
 from command.parser import command_line
 from data.errors import CurlshotError, InputError, SceneError
-from data.files import check_folder, staged
+from data.files import check_folder, relative_path, staged
 from data.inputs import find_inputs
 from data.progress import Progress, no_progress
 from data.sheet import HOUSE, STONE, House, Stone
@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from data.results import Estimate, Results
-    from data.trk import Array
-    from data.trk_write import View
     from physics.start import Start
     from physics.what_if import Changes
     from vision.camera import Camera
@@ -524,19 +522,19 @@ def convert(
     settings: Settings = Settings(),
     over: str | Path | None = None,
 ) -> Measured:
-    """Write tracks in another form, by the ending of `out`: .txt, .csv, .parquet or .trk.
+    """Write tracks in another form, by the ending of `out`: .txt, .csv, .parquet, .trk or .trz.
 
     Parameters
     ----------
     inputs : sequence of str or Path
-        Tables of tracks and projects. Of a run's ``tracks.csv`` a .trk also takes the
+        Tables of tracks and projects. Of a run's ``tracks.csv`` a project also takes the
         ``simulation.csv`` and, with `over`, the ``camera.csv`` beside it.
     out : str or Path
         File to write.
     settings : Settings
         Units, names and so on of the tables.
     over : str or Path, optional
-        The clip that a .trk shows the tracks over.
+        The clip that a project shows the tracks over; a .trz holds it.
 
     Returns
     -------
@@ -548,77 +546,100 @@ def convert(
     data.errors.CurlshotError
         Where the input cannot be used, or there is no such form; then nothing is written.
     """
-    from data.export import WRITERS
+    from data.export import PROJECTS, WRITERS, check_target
 
     path = Path(out)
-    endings = (*WRITERS, ".trk")
-    ending = path.suffix.lower()
-    if ending not in endings:
-        raise InputError(f"{path}: tracks are written as {', '.join(endings)}; end the name so")
-    if over is not None and ending != ".trk":
-        raise InputError(f"{path}: only a .trk shows tracks over a clip (--over)")
-    check_folder(path.parent)
     files = find_inputs(inputs)
+    check_target(path, files)
     odd = [file for file in files if file.suffix.lower() not in TABLES]
     if odd:
         raise InputError(f"{odd[0]}: not a table of tracks; try curlshot track")
-    if path.is_dir() or path.resolve() in {file.resolve() for file in files}:
-        what = "a folder" if path.is_dir() else "what is to be converted"
-        raise InputError(f"{path}: is {what}; name another file to write")
+    ending = path.suffix.lower()
+    if over is not None and ending not in PROJECTS:
+        raise InputError(f"{path}: only a .trk or .trz shows tracks over a clip (--over)")
     measured = _import_tables(files, settings)
-    if ending == ".trk":
-        return _write_project(measured, path, None if over is None else Path(over))
+    if ending in PROJECTS:
+        return _write_project(measured, path, over)
     WRITERS[ending](measured.sightings, path)
     return measured
 
 
-def _write_project(measured: Measured, path: Path, over: Path | None) -> Measured:
-    """Write a .trk with what a run has left beside its tracks."""
+def convert_each(
+    inputs: Sequence[str | Path], out: str | Path, settings: Settings = Settings()
+) -> dict[Path, Measured | CurlshotError]:
+    """Write each of many tables into a file of its own, of the same name with another ending.
+
+    Parameters
+    ----------
+    inputs : sequence of str or Path
+        Tables of tracks and projects.
+    out : str or Path
+        An ending such as ``.csv``, for files beside the inputs, or ``FOLDER/.csv``.
+    settings : Settings
+        Units, names and so on of the tables.
+
+    Returns
+    -------
+    dict
+        By the file to be written: what was written, or why it could not be.
+
+    Raises
+    ------
+    data.errors.CurlshotError
+        No input, or two that would be written into one file; then nothing is written.
+    """
+    target = Path(out)
+    files = find_inputs(inputs)
+    folder = None if target.parent == Path() else target.parent
+    targets = [(folder or file.parent) / f"{file.stem}{target.name}" for file in files]
+    doubled = [path for path in targets if targets.count(path) > 1]
+    if doubled:
+        raise InputError(f"{doubled[0]}: two of the inputs would be written into this one file")
+    done: dict[Path, Measured | CurlshotError] = {}
+    for file, path in zip(files, targets, strict=True):
+        try:
+            done[path] = convert([file], path, settings)
+        except CurlshotError as refusal:
+            done[path] = refusal
+    return done
+
+
+def _write_project(measured: Measured, path: Path, over: str | Path | None) -> Measured:
+    """Write a project with what a run has left beside its tracks."""
     import pandas as pd
 
-    from data.trk_write import plain_view, write_trk
+    from data.trk_write import plain_view, project_xml, write_trk, write_trz
 
     sightings, beside = measured.sightings, measured.files[0].parent
     simulated = beside / "simulation.csv"
     simulations = {}
     if measured.files[0].name == "tracks.csv" and simulated.is_file():
         simulations = {str(m): table for m, table in pd.read_csv(simulated).groupby("model")}
+    packed = path.suffix.lower() == ".trz"
+    inside: dict[str, Path] = {}
     if over is None:
         view = plain_view(sightings)
         marks = view.coordinates.pixels(sightings["frame"], sightings[["x", "y"]].to_numpy(float))
-        write_trk(sightings, path, view, marks, simulations)
-        return measured
-    view, marks, note = _view_over(measured, beside / "camera.csv", path, over)
-    write_trk(sightings, path, view, marks, simulations)
-    return replace(measured, warnings=(*measured.warnings, note))
+    else:
+        from vision.clip import open_clip
+        from vision.tracker_view import view_over
 
-
-def _view_over(
-    measured: Measured, camera_csv: Path, path: Path, over: Path
-) -> tuple[View, Array, str]:
-    """Place tracks in the pictures of a clip by the cameras of a run."""
-    from data.trk_write import View
-    from vision.camera_file import cameras_of
-    from vision.clip import open_clip
-    from vision.tracker_view import closest_similarity, marks_of, off_at
-
-    if not camera_csv.is_file():
-        raise InputError(f"{camera_csv}: no such file; --over needs tracks.csv and camera.csv")
-    clip = open_clip(find_inputs([over]))
-    cameras = cameras_of(camera_csv, clip.size)
-    sightings = measured.sightings
-    unknown = sorted(set(sightings["frame"]) - set(cameras))
-    if unknown:
-        raise InputError(f"{camera_csv}: no camera of frame {unknown[0]}; not of the same run")
-    system = closest_similarity(list(cameras.values()))
-    marks = marks_of(cameras, sightings["frame"], sightings[["x", "y"]].to_numpy(float))
-    off = off_at(system, list(cameras.values()), HOUSE.twelve_foot)
-    note = (
-        f"{path}: Tracker knows no perspective; at the 12-ft ring it shows places up to"
-        f" {100 * off:.1f} cm off (exact ones are in the file, and read back from it)"
-    )
-    video = Path(os.path.relpath(over, path.parent)).as_posix()
-    return View(system, clip.size, video, clip.expected or 0), marks, note
+        clip = open_clip(find_inputs([over]))
+        if packed:
+            inside = {f"videos/{file.name}": file for file in clip.files}
+        video = tuple(inside) or tuple(relative_path(file, path.parent) for file in clip.files)
+        view, marks, off = view_over(clip, beside / "camera.csv", sightings, video)
+        note = (
+            f"{path}: Tracker knows no perspective; at the 12-ft ring it shows places up to"
+            f" {100 * off:.1f} cm off (exact ones are in the file, and read back from it)"
+        )
+        measured = replace(measured, warnings=(*measured.warnings, note))
+    project = project_xml(sightings, view, marks, simulations)
+    if packed:
+        write_trz(project, path, inside)
+    else:
+        write_trk(project, path)
+    return measured
 
 
 # ---------------------------------------------------------------------------------------
@@ -765,10 +786,30 @@ def _do_estimate(arguments: argparse.Namespace, bars: Bars) -> str:
 def _do_convert(arguments: argparse.Namespace, _: Bars) -> str:
     from report.numbers import count
 
+    if Path(arguments.out).suffix == "" and Path(arguments.out).name.startswith("."):
+        return _convert_each(arguments)
     measured = convert(arguments.inputs, arguments.out, _settings(arguments), arguments.over)
     stones = measured.sightings["stone"].nunique()
     lines = [f"{count(stones, 'stone')} in {count(measured.frames, 'frame')}: {arguments.out}"]
     return "\n".join(lines + [f"warning: {text}" for text in measured.warnings])
+
+
+def _convert_each(arguments: argparse.Namespace) -> str:
+    from report.numbers import count
+
+    if arguments.over is not None:
+        raise InputError("--over: one clip cannot be behind many projects; convert one at a time")
+    done = convert_each(arguments.inputs, arguments.out, _settings(arguments))
+    refused = [refusal for refusal in done.values() if isinstance(refusal, CurlshotError)]
+    lines = [f"{count(len(done) - len(refused), 'file')} written"]
+    for path, outcome in done.items():
+        if not isinstance(outcome, CurlshotError):
+            lines += [str(path), *(f"warning: {text}" for text in outcome.warnings)]
+    if refused:
+        reasons = "; ".join(str(refusal) for refusal in refused)
+        rest = ", the others were" if len(refused) < len(done) else ""
+        raise InputError(f"{len(refused)} of {len(done)} not converted{rest}: {reasons}")
+    return "\n".join(lines)
 
 
 def _do_simulate(arguments: argparse.Namespace, bars: Bars) -> str:

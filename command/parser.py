@@ -102,11 +102,20 @@ def command_line(version: str) -> argparse.ArgumentParser:
         "  curlshot convert shot-curlshot/tracks.csv a.txt  text for Tracker's import\n"
         "  curlshot convert A.txt B.txt shot.parquet        needs pyarrow\n"
         "  curlshot convert shot-curlshot/tracks.csv shot.trk --over shot.mp4\n"
-        "                                                   a Tracker project over the clip\n",
+        "                                                   a Tracker project over the clip\n"
+        "  curlshot convert shot-curlshot/tracks.csv shot.trz --over shot.mp4\n"
+        "                                                   the same, with the clip in the file\n"
+        "  curlshot convert season/*.trk .csv               each to a table beside it\n"
+        "  curlshot convert season/*.trz tables/.csv        or in another folder\n",
     )
     convert_.add_argument("inputs", nargs="+", metavar="IN", help="tables of tracks, projects")
-    convert_.add_argument("out", metavar="OUT", help=".txt, .csv, .parquet or .trk")
-    convert_.add_argument("--over", metavar="CLIP", help="the clip that a .trk shows")
+    convert_.add_argument(
+        "out",
+        metavar="OUT",
+        help="a name that ends with .txt, .csv, .parquet, .trk or .trz; or only the ending, for a"
+        " file of its own for each IN",
+    )
+    convert_.add_argument("--over", metavar="CLIP", help="the clip that a project shows")
     _table_options(convert_)
     convert_.add_argument("--fps", type=values.positive, help="rate of a table without times, 1/s")
 

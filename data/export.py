@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import importlib.util
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
 from data.errors import InputError
-from data.files import whole_file
+from data.files import check_folder, whole_file
 from data.tracks import SIGHTING_COLUMNS
 
 _CSV_COLUMNS = tuple(name for name in SIGHTING_COLUMNS if name != "sd_place")
@@ -82,6 +82,27 @@ WRITERS: Mapping[str, Callable[[pd.DataFrame, Path], None]] = {
     ".parquet": write_parquet,
 }
 """What writes tracks into a file, by its ending."""
+
+PROJECTS = (".trk", ".trz")
+"""Endings of Tracker's projects; a .trz is an archive that holds the clip too."""
+
+
+def check_target(path: Path, inputs: Sequence[Path]) -> None:
+    """Refuse to write what there is no form for, where nothing can be, or onto an input.
+
+    Raises
+    ------
+    InputError
+        One line that says why.
+    """
+    endings = (*WRITERS, *PROJECTS)
+    if path.suffix.lower() not in endings:
+        raise InputError(f"{path}: tracks are written as {', '.join(endings)}; end the name so")
+    check_folder(path.parent)
+    if path.is_dir():
+        raise InputError(f"{path}: is a folder; name another file to write")
+    if path.resolve() in {file.resolve() for file in inputs}:
+        raise InputError(f"{path}: is what is to be converted; name another file to write")
 
 
 def read_parquet(path: Path) -> pd.DataFrame:

@@ -47,6 +47,14 @@ def write_text(path: Path, text: str) -> None:
         part.write_text(text, encoding="utf-8", newline="\n")
 
 
+def relative_path(path: Path, folder: Path) -> str:
+    """Path from a folder, with slashes; the whole path where there is none, as on two drives."""
+    try:
+        return Path(os.path.relpath(path, folder)).as_posix()
+    except ValueError:
+        return path.resolve().as_posix()
+
+
 def check_folder(out: str | Path | None) -> Path | None:
     """Refuse a bad place for results before an hour of work, not after."""
     if out is None:

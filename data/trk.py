@@ -30,6 +30,12 @@ _MOVES_PIXELS = {
     "ResizeFilter": "resize",
     "RotateFilter": "rotate",
 }
+PICTURES = frozenset({".bmp", ".gif", ".jpeg", ".jpg", ".png", ".tif", ".tiff", ".webp"})
+"""Endings by which a path is that of a picture, not of a video."""
+
+ANGLE_COLUMN = "theta(rad)"
+"""Column of text in which this program gives Tracker the angles of a stone."""
+
 _UNEVEN = 0.02
 """Share of a frame by which a clip's times may be off equal steps and count as equal."""
 
@@ -94,6 +100,8 @@ class PointMass:
         Pixels.
     filled : int
         How many of the marks Tracker put between those of the user.
+    theta : ndarray, shape (n,)
+        How it is turned, rad, where a column of text of that name says so; else NaN or empty.
     measured : ndarray, shape (n, 4)
         Exact t, x, y and angle of each mark (s, m, rad), where this program wrote the project;
         else without rows.
@@ -104,6 +112,7 @@ class PointMass:
     frames: Frames
     marks: Array
     filled: int = 0
+    theta: Array = field(default_factory=lambda: np.empty(0))
     measured: Array = field(default_factory=lambda: np.empty((0, 4)))
 
 
@@ -218,8 +227,10 @@ class Project:
             known = {"t": t, "frame": frames, "x": x, "y": y, "theta": theta}
             return pd.DataFrame({"stone": track.name, **known})
         x, y = self.coordinates.world(frames, track.marks[used]).T
-        t = self.timing.times(frames)
-        return pd.DataFrame({"stone": track.name, "t": t, "frame": frames, "x": x, "y": y})
+        known = {"t": self.timing.times(frames), "frame": frames, "x": x, "y": y}
+        if len(track.theta):
+            known["theta"] = track.theta[used]
+        return pd.DataFrame({"stone": track.name, **known})
 
 
 def project_of(root: Thing, source: str) -> Project:
@@ -316,8 +327,31 @@ def _point_mass(track: Thing, name: str, shift: int) -> PointMass:
         frames=frames,
         marks=places,
         filled=_filled(frames, places, by_hand),
+        theta=_angles(track, frames + shift),
         measured=_measured(track, len(frames)),
     )
+
+
+def _angles(track: Thing, frames: Frames) -> Array:
+    """Read the angles of a stone in frames from the column of text that holds them."""
+    names, columns = track.thing("text_column_names"), track.thing("text_column_entries")
+    if names is None or columns is None:
+        return np.empty(0)
+    found = [n for n, name in names.sparse().items() if name == ANGLE_COLUMN]
+    column = columns.sparse().get(found[0]) if found else None
+    if not isinstance(column, Thing):
+        return np.empty(0)
+    cells = column.sparse()
+    return np.array([_number_or_nan(cells.get(frame)) for frame in frames.tolist()])
+
+
+def _number_or_nan(cell: str | Thing | None) -> float:
+    """Read a number that a person may have written over."""
+    try:
+        value = float(cell) if isinstance(cell, str) else np.nan
+    except ValueError:
+        return np.nan
+    return value if np.isfinite(value) else np.nan
 
 
 def _measured(track: Thing, count: int) -> Array:

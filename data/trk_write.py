@@ -7,6 +7,7 @@ places and angles in a property `measured`, which Tracker passes over and `data.
 
 from __future__ import annotations
 
+import zipfile
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,14 +16,17 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from data.files import write_text
+from data.files import whole_file, write_text
 from data.sheet import STONE
-from data.trk import Coordinates
+from data.trk import ANGLE_COLUMN, PICTURES, Coordinates
 
 Array = NDArray[np.float64]
 
 _TRACKER = "org.opensourcephysics.cabrillo.tracker."
 _MEDIA = "org.opensourcephysics.media."
+_STRINGS = "[Ljava.lang.String;"
+_MARK, _MODEL = "Footprint.Diamond", "CircleFootprint.Circle#7 "
+"""How Tracker draws places: those that were measured, and the larger ones of simulations."""
 _COLOURS = ((255, 0, 0), (255, 200, 0), (0, 120, 255), (0, 160, 80), (200, 0, 200), (0, 200, 200))
 
 
@@ -36,15 +40,15 @@ class View:
         In Tracker's pixels.
     size : tuple of int
         Width and height of the picture, px.
-    video : str
-        Path of the video from the project's folder, or "" for none.
+    video : tuple of str
+        Path of the video from the project's folder, or of its pictures; empty for none.
     frames : int
         How many the video has.
     """
 
     coordinates: Coordinates
     size: tuple[int, int] = (1280, 720)
-    video: str = ""
+    video: tuple[str, ...] = ()
     frames: int = 0
 
 
@@ -59,21 +63,32 @@ def plain_view(sightings: pd.DataFrame, size: tuple[int, int] = (1280, 720)) -> 
     return View(Coordinates(keys, origin[None], np.zeros(1), np.full((1, 2), scale)), size)
 
 
-def write_trk(
+def write_trk(project: str, path: Path) -> None:
+    """Write a project as a ``.trk``, whole or not at all."""
+    write_text(path, project)
+
+
+def write_trz(project: str, path: Path, clip: Mapping[str, Path]) -> None:
+    """Write a project as a ``.trz``: an archive with the clip's files by their names in it."""
+    with whole_file(path) as part, zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr(f"{path.stem}.trk", project)
+        for name, file in clip.items():
+            # What codecs have packed gets no smaller.
+            archive.write(file, name, zipfile.ZIP_STORED)
+
+
+def project_xml(
     sightings: pd.DataFrame,
-    path: Path,
     view: View,
     marks: Array,
     simulations: Mapping[str, pd.DataFrame] | None = None,
-) -> None:
-    """Write a project with one tab.
+) -> str:
+    """Make a project with one tab.
 
     Parameters
     ----------
     sightings : DataFrame
         `data.tracks.SIGHTING_COLUMNS`.
-    path : Path
-        File to write, whole or not at all.
     view : View
         What the tracks are shown over.
     marks : ndarray, shape (n, 2)
@@ -119,7 +134,7 @@ def write_trk(
             _collection("tracks", tracks),
         ],
     )
-    write_text(path, '<?xml version="1.0" encoding="UTF-8"?>\n' + "\n".join(root) + "\n")
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + "\n".join(root) + "\n"
 
 
 @dataclass(frozen=True)
@@ -143,20 +158,10 @@ class _Clock:
 
 
 def _clip(view: View, clock: _Clock) -> list[str]:
-    video = (
-        [
-            _nested(
-                "video",
-                _object(f"{_MEDIA}xuggle.XuggleVideo", [_value("path", view.video)]),
-            )
-        ]
-        if view.video
-        else []
-    )
     return _object(
         f"{_MEDIA}core.VideoClip",
         [
-            *video,
+            *([_nested("video", _video(view, clock))] if view.video else []),
             _value("video_framecount", max(view.frames, clock.last + 1)),
             _value("startframe", clock.first),
             _value("stepsize", 1),
@@ -164,6 +169,15 @@ def _clip(view: View, clock: _Clock) -> list[str]:
             _value("starttime", 1000 * clock.start),
         ],
     )
+
+
+def _video(view: View, clock: _Clock) -> list[str]:
+    path = _value("path", view.video[0])
+    if Path(view.video[0]).suffix.lower() not in PICTURES:
+        return _object(f"{_MEDIA}xuggle.XuggleVideo", [path])
+    pictures = _strings("paths", dict(enumerate(view.video)))
+    step = _value("delta_t", 1000 * clock.duration)
+    return _object(f"{_MEDIA}core.ImageVideo", [pictures, path, step])
 
 
 def _coordinates(system: Coordinates) -> list[str]:
@@ -205,35 +219,63 @@ def _point_mass(
         [
             _value("mass", STONE.mass),
             _value("name", stone),
-            _colour(colour),
+            *_look(colour, _MARK),
+            *_angles(rows),
             _sparse("framedata", f"{cls}$FrameData", data),
             _numbers("measured", "[[D", measured),
         ],
     )
 
 
+def _angles(rows: pd.DataFrame) -> list[list[str]]:
+    """Put angles into a column of text, which Tracker shows, exports and saves again."""
+    known = rows[rows["theta"].notna()]
+    if known.empty:
+        return []
+    entries = {int(n): repr(float(v)) for n, v in zip(known["frame"], known["theta"], strict=True)}
+    column = _strings("[0]", entries)
+    return [
+        _strings("text_column_names", {0: ANGLE_COLUMN}),
+        [*_array("text_column_entries", f"[{_STRINGS}"), *column, "</property>"],
+    ]
+
+
 def _external_model(
     model: str, table: pd.DataFrame, clock: _Clock, colour: tuple[int, int, int]
 ) -> list[str]:
     """Give all stones of a simulation at the steps of the clip, resting where it ends."""
-    properties = [_value("name", model), _colour(colour), _numbers("t", "[D", clock.times)]
+    properties = [_value("name", model), *_look(colour, _MODEL), _numbers("t", "[D", clock.times)]
     for k, (stone, rows) in enumerate(table.groupby("stone")):
+        # The first point is the model's own, the others are numbered.
         end = "" if k == 0 else str(k - 1)
         for axis in ("x", "y"):
             at = np.interp(clock.times, rows["t"], rows[axis])
             properties.append(_numbers(f"{axis}{end}", "[D", at))
         properties.append(_value(f"pointname{end}", str(stone)))
+        properties.append(_value(f"mass{end}", STONE.mass))
+        if end:
+            properties += [_colour(colour, f"color{end}"), _value(f"footprint{end}", _MODEL)]
     properties.append(_value("start_frame", clock.first))
     return _object(f"{_TRACKER}ParticleDataTrack", properties)
+
+
+def _look(colour: tuple[int, int, int], footprint: str) -> list[list[str]]:
+    """Make a track visible: Tracker takes what is not said for a no."""
+    return [
+        _colour(colour),
+        _value("footprint", footprint),
+        _value("visible", True),
+        _value("trail", True),
+    ]
 
 
 def _cycle(count: int, start: int = 0) -> list[tuple[int, int, int]]:
     return [_COLOURS[(start + k) % len(_COLOURS)] for k in range(count)]
 
 
-def _colour(colour: tuple[int, int, int]) -> list[str]:
+def _colour(colour: tuple[int, int, int], name: str = "color") -> list[str]:
     parts = zip(("red", "green", "blue", "alpha"), (*colour, 255), strict=True)
-    return _nested("color", _object("java.awt.Color", [_value(name, v) for name, v in parts]))
+    return _nested(name, _object("java.awt.Color", [_value(part, v) for part, v in parts]))
 
 
 # The grammar: Tracker reads it line by line, one property each.
@@ -257,9 +299,18 @@ def _value(name: str, value: str | float | bool) -> list[str]:
     return [f'<property name="{name}" type="{kind}">{text}</property>']
 
 
+def _array(name: str, cls: str) -> list[str]:
+    return [f'<property name="{name}" type="array" class="{cls}">']
+
+
 def _sparse(name: str, cls: str, entries: Mapping[int, Sequence[str]]) -> list[str]:
     body = [line for n, entry in entries.items() for line in _nested(f"[{n}]", entry)]
-    return [f'<property name="{name}" type="array" class="[L{cls};">', *body, "</property>"]
+    return [*_array(name, f"[L{cls};"), *body, "</property>"]
+
+
+def _strings(name: str, entries: Mapping[int, str]) -> list[str]:
+    body = [line for n, text in entries.items() for line in _value(f"[{n}]", text)]
+    return [*_array(name, _STRINGS), *body, "</property>"]
 
 
 def _collection(name: str, things: Iterable[Sequence[str]]) -> list[str]:
@@ -274,8 +325,4 @@ def _numbers(name: str, cls: str, values: Array) -> list[str]:
         return "{" + ",".join(cells) + "}"
 
     text = row(values) if values.ndim == 1 else "{" + ",".join(row(r) for r in values) + "}"
-    return [
-        f'<property name="{name}" type="array" class="{cls}">',
-        f'<property name="array" type="string">{text}</property>',
-        "</property>",
-    ]
+    return [*_array(name, cls), *_value("array", text), "</property>"]

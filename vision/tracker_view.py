@@ -3,17 +3,66 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
+import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
+from data.errors import InputError
+from data.sheet import HOUSE
 from data.trk import Coordinates
+from data.trk_write import View
 from vision.camera import Camera
+from vision.camera_file import cameras_of
+from vision.clip import Clip
 
 Array = NDArray[np.float64]
 
 CORNER = 0.5
 """Tracker counts pixels from the corner of the first, OpenCV from its middle, px."""
+
+
+def view_over(
+    clip: Clip, camera_csv: Path, sightings: pd.DataFrame, video: tuple[str, ...]
+) -> tuple[View, Array, float]:
+    """Place tracks in the pictures of a clip by the cameras of a run.
+
+    Parameters
+    ----------
+    clip : Clip
+        What Tracker shall show.
+    camera_csv : Path
+        Of the run that measured the tracks.
+    sightings : DataFrame
+        `data.tracks.SIGHTING_COLUMNS`.
+    video : tuple of str
+        Where Tracker finds the clip's files, from the project's folder.
+
+    Returns
+    -------
+    View
+        The clip, with the camera as Tracker's coordinate system.
+    ndarray, shape (n, 2)
+        Where each sighting is in the picture, Tracker's pixels.
+    float
+        How far off Tracker shows places at the 12-ft ring, m, at worst.
+
+    Raises
+    ------
+    InputError
+        No such table of cameras, or not of these tracks.
+    """
+    if not camera_csv.is_file():
+        raise InputError(f"{camera_csv}: no such file; --over needs tracks.csv and camera.csv")
+    cameras = cameras_of(camera_csv, clip.size)
+    unknown = sorted(set(sightings["frame"]) - set(cameras))
+    if unknown:
+        raise InputError(f"{camera_csv}: no camera of frame {unknown[0]}; not of the same run")
+    system = closest_similarity(list(cameras.values()))
+    marks = marks_of(cameras, sightings["frame"], sightings[["x", "y"]].to_numpy(float))
+    off = off_at(system, list(cameras.values()), HOUSE.twelve_foot)
+    return View(system, clip.size, video, clip.expected), marks, off
 
 
 def closest_similarity(cameras: Sequence[Camera], step: float = 1e-4) -> Coordinates:

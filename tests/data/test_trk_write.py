@@ -10,7 +10,7 @@ from data.project import read_project
 from data.tracker import read_table
 from data.tracks import check_sightings
 from data.trk import Coordinates
-from data.trk_write import View, plain_view, write_trk
+from data.trk_write import View, plain_view, project_xml, write_trk
 
 SAME = ["stone", "frame", "t", "x", "y", "theta"]
 
@@ -38,7 +38,7 @@ def test_a_written_project_reads_back(tmp_path: Path, even: bool) -> None:
     view = moving_view(np.arange(7, 27))
     # As a perspective would have it: not where the similarity puts the places.
     marks = view.coordinates.pixels(table["frame"], table[["x", "y"]].to_numpy()) + 3.0
-    write_trk(table, path, view, marks)
+    write_trk(project_xml(table, view, marks), path)
     found = read_table([path])
     pd.testing.assert_frame_equal(found.sightings[SAME], table[SAME], check_exact=True)
     assert found.masses == {}
@@ -51,7 +51,7 @@ def test_what_tracker_saves_again_reads_by_its_marks(tmp_path: Path) -> None:
     table, path = shot(), tmp_path / "shot.trk"
     view = moving_view(np.arange(7, 27))
     marks = view.coordinates.pixels(table["frame"], table[["x", "y"]].to_numpy())
-    write_trk(table, path, view, marks)
+    write_trk(project_xml(table, view, marks), path)
     path.write_text(path.read_text("utf-8").replace('"measured"', '"unknown"'), "utf-8")
     found = read_table([path]).sightings
     np.testing.assert_allclose(found[["t", "x", "y"]], table[["t", "x", "y"]], rtol=0, atol=1e-9)
@@ -63,7 +63,7 @@ def test_damaged_exact_places_are_not_used(tmp_path: Path, damage: str) -> None:
     table, path = shot(), tmp_path / "shot.trk"
     view = plain_view(table)
     marks = view.coordinates.pixels(table["frame"], table[["x", "y"]].to_numpy())
-    write_trk(table, path, view, marks)
+    write_trk(project_xml(table, view, marks), path)
     text = path.read_text("utf-8").replace("{{", "{{" + damage + ",", 1)
     path.write_text(text, "utf-8")
     if damage == "x":
@@ -88,7 +88,7 @@ def test_simulations_are_external_models_at_the_steps_of_the_clip(tmp_path: Path
     marks = view.coordinates.pixels(table["frame"], table[["x", "y"]].to_numpy())
     model = table[table["stone"] == "A"].iloc[5:]
     both = pd.concat([model, model.assign(stone="B", y=1.0)])
-    write_trk(table, path, view, marks, {"frictional": both})
+    write_trk(project_xml(table, view, marks, {"frictional": both}), path)
     text = path.read_text("utf-8")
     part = text[text.index("ParticleDataTrack") :]
     for name in ("x", "y", "t", "pointname", "x0", "y0", "pointname0", "start_frame"):
