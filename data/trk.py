@@ -161,14 +161,18 @@ class Project:
         The tracks that have marks; models and derived tracks are not among them.
     coordinates : Coordinates
         With the origin of the reference frame, if the project has one.
+    axes : Coordinates
+        Without that: where the coordinate system lies in the picture.
     timing : Timing
         Of the clip.
     length_unit : str
         As the project says, or "".
     video : tuple of str
         Path of the video, or of its pictures, as written.
-    size : tuple of float
-        Width and height of the picture, px; NaN where unknown.
+    filters : tuple of str
+        What has moved the pixels before they were marked.
+    others : tuple of str
+        Kinds of its other tracks.
     warnings : tuple of str
         What its numbers do not tell.
     """
@@ -176,10 +180,12 @@ class Project:
     source: str
     masses: tuple[PointMass, ...]
     coordinates: Coordinates
+    axes: Coordinates
     timing: Timing
     length_unit: str
     video: tuple[str, ...]
-    size: tuple[float, float]
+    filters: tuple[str, ...] = ()
+    others: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
 
     def file(self) -> TrackFile:
@@ -188,9 +194,27 @@ class Project:
         Raises
         ------
         InputError
-            Where no track has a mark in the clip, or the project has no scale.
+            Where no track has a mark in the clip, two have one name, or there is no scale.
         """
+        if not self.masses:
+            clip = "; what its clip shows can be measured (--clip)" if self.video else ""
+            raise InputError(
+                f"{self.source}: no point mass with marks (it has"
+                f" {', '.join(self.others)[:80] or 'no tracks'}); mark stones as point masses in"
+                f" Tracker{clip}"
+            )
+        names = [track.name for track in self.masses]
+        doubled = [name for name in names if names.count(name) > 1]
+        if doubled:
+            raise InputError(
+                f"{self.source}: two tracks with one name, {min(doubled)}; rename one in Tracker"
+            )
         warnings = list(self.warnings)
+        if self.filters:
+            warnings.append(
+                f"{self.source}: marked on a video changed by filters ({', '.join(self.filters)});"
+                " places are as Tracker shows them, the picture itself is not changed here"
+            )
         parts = []
         for track in self.masses:
             part = self._rows(track)
@@ -205,11 +229,7 @@ class Project:
             parts.append(part)
         if not parts:
             raise InputError(f"{self.source}: no point mass with a mark in the clip")
-        if (self.coordinates.scale == 1).all():
-            raise InputError(
-                f"{self.source}: not calibrated, one pixel is one length unit; set a calibration"
-                " stick in Tracker"
-            )
+        self.refuse_uncalibrated()
         unit = self.length_unit if self.length_unit in LENGTH_UNITS else None
         if unit is None and self.length_unit:
             warnings.append(
@@ -218,6 +238,14 @@ class Project:
             )
         tracks = pd.concat(parts, ignore_index=True)
         return TrackFile(tracks, None, unit, "rad", continuous=True, warnings=warnings)
+
+    def refuse_uncalibrated(self) -> None:
+        """Raise `InputError` where nobody has told Tracker how long something is."""
+        if (self.axes.scale == 1).all():
+            raise InputError(
+                f"{self.source}: not calibrated, one pixel is one length unit; set a calibration"
+                " stick in Tracker"
+            )
 
     def _rows(self, track: PointMass) -> pd.DataFrame:
         used = self.timing.includes(track.frames)
@@ -253,8 +281,8 @@ def _project(root: Thing, source: str) -> Project:
     clip = root.thing("videoclip") or Thing("VideoClip")
     video = clip.thing("video") or Thing("Video")
     shift = clip.whole("frameshift", 0)
-    masses, warnings = _masses(root, shift)
-    coordinates = _coordinates(root.thing("coords"), shift)
+    masses, others, warnings = _tracks(root, shift)
+    axes = coordinates = _coordinates(root.thing("coords"), shift)
     reference = root.text("referenceframe")
     giver = next((track for track in masses if track.name == reference), None)
     if giver is not None:
@@ -265,30 +293,28 @@ def _project(root: Thing, source: str) -> Project:
             " rests in it and is left out"
         )
     moving = [_MOVES_PIXELS[name] for name in _filters(video) if name in _MOVES_PIXELS]
-    if moving:
-        warnings.append(
-            f"marked on a video changed by filters ({', '.join(dict.fromkeys(moving))}); places are"
-            " as Tracker shows them, the picture itself is not changed here"
-        )
     timing, note = _timing(clip, root.thing("clipcontrol") or Thing("ClipControl"), video, shift)
     return Project(
         source=source,
         masses=masses,
         coordinates=coordinates,
+        axes=axes,
         timing=timing,
         length_unit=root.text("length_unit").strip(),
         video=_video_files(video),
-        size=(_or_nan(root, "width"), _or_nan(root, "height")),
+        filters=tuple(dict.fromkeys(moving)),
+        others=others,
         warnings=tuple(f"{source}: {text}" for text in (*warnings, *note)),
     )
 
 
-def _masses(root: Thing, shift: int) -> tuple[tuple[PointMass, ...], list[str]]:
-    """Find the point masses that have marks; other kinds of tracks hold none."""
+def _tracks(root: Thing, shift: int) -> tuple[tuple[PointMass, ...], tuple[str, ...], list[str]]:
+    """Find the point masses that have marks, the kinds of the other tracks, and warnings."""
     collection = root.thing("tracks")
+    tracks = [] if collection is None else list(collection.objects())
     masses: list[PointMass] = []
     warnings: list[str] = []
-    for track in collection.objects() if collection is not None else ():
+    for track in tracks:
         if track.cls == "PointMass":
             name = " ".join(track.text("name").split()) or f"track {len(masses) + 1}"
             mass = _point_mass(track, name, shift)
@@ -296,16 +322,7 @@ def _masses(root: Thing, shift: int) -> tuple[tuple[PointMass, ...], list[str]]:
                 masses.append(mass)
             else:
                 warnings.append(f"{name} has no marks; left out")
-    doubled = {track.name for track in masses if [m.name for m in masses].count(track.name) > 1}
-    if doubled:
-        raise InputError(f"two tracks with one name, {min(doubled)}; rename one in Tracker")
-    if not masses:
-        kinds = sorted({track.cls for track in collection.objects()}) if collection else []
-        raise InputError(
-            f"no point mass with marks (it has {', '.join(kinds)[:80] or 'no tracks'}); mark"
-            " stones as point masses in Tracker"
-        )
-    return tuple(masses), warnings
+    return tuple(masses), tuple(sorted({track.cls for track in tracks})), warnings
 
 
 def _point_mass(track: Thing, name: str, shift: int) -> PointMass:
@@ -448,10 +465,3 @@ def _video_files(video: Thing) -> tuple[str, ...]:
         if found:
             return tuple(found)
     return (video.text("path"),) if video.text("path") else ()
-
-
-def _or_nan(thing: Thing, name: str) -> float:
-    try:
-        return thing.number(name, np.nan)
-    except InputError:
-        return float("nan")

@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 _TRACKER = "org.opensourcephysics.cabrillo.tracker."
 _MEDIA = "org.opensourcephysics.media."
 _STRINGS = "[Ljava.lang.String;"
-_MARK, _MODEL = "Footprint.Diamond", "CircleFootprint.Circle#7 "
+_MARK, _MODEL = "Footprint.Diamond", "CircleFootprint.Circle#7 outline"
 """How Tracker draws places: those that were measured, and the larger ones of simulations."""
 _COLOURS = ((255, 0, 0), (255, 200, 0), (0, 120, 255), (0, 160, 80), (200, 0, 200), (0, 200, 200))
 
@@ -260,13 +260,11 @@ def _external_model(
 
 
 def _look(colour: tuple[int, int, int], footprint: str) -> list[list[str]]:
-    """Make a track visible: Tracker takes what is not said for a no."""
-    return [
-        _colour(colour),
-        _value("footprint", footprint),
-        _value("visible", True),
-        _value("trail", True),
-    ]
+    """Make a track visible, which Tracker does not unless told.
+
+    Without the trail of past places: they lie elsewhere once the camera has moved.
+    """
+    return [_colour(colour), _value("footprint", footprint), _value("visible", True)]
 
 
 def _cycle(count: int, start: int = 0) -> list[tuple[int, int, int]]:
