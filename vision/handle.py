@@ -5,7 +5,8 @@ A cap is described by its angular harmonics on rings about the centre. Turning t
 is the maximum of their circular cross-correlation, found to a fraction of a sample. Every
 frame is measured against the mean of all frames, so errors do not add up along the clip.
 The mean over the angle (k = 0) says nothing; k = 1 is left out because a centre that is
-slightly off and light from one side look like it.
+slightly off and light from one side look like it. The handle stands above the cap, so its
+picture may also be shifted: `vision.align` finds the shift with the last bit of the angle.
 """
 
 from __future__ import annotations
@@ -16,14 +17,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex64]
+from vision.align import HARMONICS, ORDERS, Array, Complex, align, turned
 
-HARMONICS = np.arange(2, 17)
-_RINGS = 8
 _GRID = 1440
-_LEAST_SCALE = 4.0
-"""How much larger errors are at least than if every ring and harmonic erred for itself."""
+_LASTING = 0.05
+"""Pictures nearer in time err alike, s."""
 
 
 @dataclass(frozen=True)
@@ -40,67 +38,57 @@ class Turning:
         Correlation (0 to 1) with the stone's own picture below which nothing is said.
     rounds : int
         How often the mean picture is built anew.
+    shift : float
+        How far from where it is expected the handle's picture lies, a standard deviation, m:
+        by the height of the handle and the error of the centre.
     """
 
     reach: float = 0.30
     most_spin: float = 3.0
     least_likeness: float = 0.45
     rounds: int = 3
+    shift: float = 0.003
 
 
 TURNING = Turning()
 
 
-def cap_spectrum(patch: NDArray[np.uint8], inner: float, outer: float) -> Complex:
+def cap_spectrum(patch: NDArray[np.uint8], radii: Array) -> Complex:
     """Angular harmonics of a cap.
 
     Parameters
     ----------
-    patch : ndarray, shape (rays, radii, channels)
+    patch : ndarray, shape (rays, rings, channels)
         Colours on rays counter-clockwise from the x axis.
-    inner, outer : float
-        Range of radii to use, as shares of the patch's radii, 0 to 1.
+    radii : ndarray, shape (rings,)
+        Radii of the rings, m.
 
     Returns
     -------
-    ndarray, shape (harmonics, rings * channels)
-        Rings weigh as their length does.
+    ndarray, shape (orders, rings, channels)
+        Of the orders `vision.align.ORDERS`. Rings weigh as their length does.
     """
-    radii = patch.shape[1]
-    first, last = round(inner * radii), round(outer * radii)
-    edges = np.linspace(first, last, min(_RINGS, last - first) + 1).astype(int)
-    counts = np.diff(edges)
-    sums = np.add.reduceat(patch[:, : edges[-1]].astype(np.float32), edges[:-1], axis=1)
-    rings = sums / counts[None, :, None]
-    spectrum = np.fft.rfft(rings, axis=0)[HARMONICS] / patch.shape[0]
-    weight = np.sqrt((edges[:-1] + edges[1:]) / 2 / edges[-1])
-    weighted = spectrum * weight[None, :, None]
-    return np.asarray(weighted.reshape(len(HARMONICS), -1), np.complex64)
-
-
-def turned(spectrum: Complex, angle: float) -> Complex:
-    """Spectrum of the same cap turned counter-clockwise by `angle`."""
-    return np.asarray(spectrum * np.exp(-1j * HARMONICS * angle)[:, None], np.complex64)
+    spectrum = np.fft.rfft(patch.astype(np.float32), axis=0)[ORDERS] / patch.shape[0]
+    return np.asarray(spectrum * np.sqrt(radii / radii[-1])[:, None], np.complex64)
 
 
 def angle_between(
     reference: Complex, spectrum: Complex, expected: float, reach: float
-) -> tuple[float, float, float]:
+) -> tuple[float, float]:
     """Angle by which one cap is turned against a reference: `angles_between` of one."""
-    found = angles_between(reference, spectrum[None], np.array([expected]), reach)
-    angle, sd, likeness = (float(values[0]) for values in found)
-    return angle, sd, likeness
+    angle, likeness = angles_between(reference, spectrum[None], np.array([expected]), reach)
+    return float(angle[0]), float(likeness[0])
 
 
 def angles_between(
     reference: Complex, spectra: Complex, expected: Array, reach: float
-) -> tuple[Array, Array, Array]:
-    """Angles by which caps are turned against a reference.
+) -> tuple[Array, Array]:
+    """Angles by which caps are turned against a reference, if they are not shifted.
 
     Parameters
     ----------
-    reference : ndarray, shape (harmonics, rings * channels)
-    spectra : ndarray, shape (n, harmonics, rings * channels)
+    reference : ndarray, shape (orders, rings, channels)
+    spectra : ndarray, shape (n, orders, rings, channels)
     expected : ndarray, shape (n,)
         About where the angles are sought, rad.
     reach : float
@@ -108,15 +96,13 @@ def angles_between(
 
     Returns
     -------
-    angle, sd, likeness : ndarray, shape (n,)
-        Angles nearest to what was expected, rad; their standard errors from what the two
-        pictures do not share; correlations of the two pictures, 0 to 1.
+    angle, likeness : ndarray, shape (n,)
+        Angles nearest to what was expected, rad; correlations of the two pictures, 0 to 1.
     """
-    cross = (np.conj(reference) * spectra).sum(2).astype(complex)
-    size = np.linalg.norm(reference)
-    sizes = np.linalg.norm(spectra, axis=(1, 2))
-    blank = size * sizes <= 0
-    energy = np.where(blank, 1.0, size * sizes)
+    model, seen = reference[1:-1], spectra[:, 1:-1]
+    cross = (np.conj(model) * seen).sum((2, 3)).astype(complex)
+    energy = np.linalg.norm(model) * np.sqrt((np.abs(seen) ** 2).sum((1, 2, 3)))
+    blank = energy <= 0
     offset = np.linspace(-reach, reach, max(int(_GRID * reach / np.pi), 9))
     near = cross * np.exp(1j * HARMONICS * expected[:, None])
     value = (near @ np.exp(1j * HARMONICS[:, None] * offset)).real
@@ -126,19 +112,16 @@ def angles_between(
         slope, bend = -phase.imag @ HARMONICS, -phase.real @ HARMONICS**2
         step = -slope / np.where(bend < 0, bend, -np.inf)
         angle = angle + np.clip(step, -0.05, 0.05)
-    aligned = np.exp(-1j * HARMONICS * angle[:, None])
-    likeness = (cross / aligned).real.sum(1) / energy
-    gain = np.maximum(likeness, 0.0) * sizes / max(size, 1e-12)
-    model = (gain[:, None] * aligned).astype(np.complex64)[..., None] * reference
-    rest = (np.abs(spectra - model) ** 2).sum((1, 2))
-    sharpness = gain**2 * float((HARMONICS[:, None] ** 2 * np.abs(reference) ** 2).sum())
-    sd = np.sqrt(rest / (2 * reference.size) / np.maximum(sharpness, 1e-12))
-    nothing = np.where(blank, np.nan, 0.0)
-    return angle + nothing, sd + nothing, np.where(blank, 0.0, likeness)
+    likeness = (cross * np.exp(1j * HARMONICS * angle[:, None])).real.sum(1)
+    likeness = np.where(blank, 0.0, likeness / np.where(blank, 1.0, energy))
+    return np.where(blank, np.nan, angle), likeness
 
 
 def handle_angles(
-    times: Array, spectra: Sequence[Complex | None], turning: Turning = TURNING
+    times: Array,
+    spectra: Sequence[Complex | None],
+    radii: Array,
+    turning: Turning = TURNING,
 ) -> tuple[Array, Array]:
     """Angle of one stone in every frame, continuous, its zero in the first frame seen.
 
@@ -148,75 +131,70 @@ def handle_angles(
         s, increasing.
     spectra : sequence of ndarray or None
         From `cap_spectrum`; None where the cap is not seen well.
+    radii : ndarray, shape (rings,)
+        Of the rings of the spectra, m.
 
     Returns
     -------
     theta, sd : ndarray, shape (n,)
         rad; NaN where it cannot be told.
     """
-    n = len(times)
-    theta, sd = np.full(n, np.nan), np.full(n, np.nan)
-    seen: list[int] = [index for index in range(n) if spectra[index] is not None]
+    theta, sd = np.full(len(times), np.nan), np.full(len(times), np.nan)
+    seen = [index for index in range(len(times)) if spectra[index] is not None]
     if len(seen) < 2:  # an angle is against another picture of the same stone
         return theta, sd
-    likeness = np.zeros(n)
-    picture = np.array(spectra[seen[0]], np.complex64)
-    theta[seen[0]], likeness[seen[0]] = 0.0, 1.0
-    before, spin, weight = seen[0], 0.0, 1.0
-    for index in seen[1:]:
-        spectrum = spectra[index]
-        assert spectrum is not None
+    pictures = np.array([spectra[index] for index in seen])
+    angles = _followed(times[seen], pictures, turning)
+    known = np.isfinite(angles)
+    for _ in range(turning.rounds):
+        reference = turned(pictures[known], -angles[known]).mean(0)
+        angles[known], likeness = angles_between(reference, pictures[known], angles[known], 0.2)
+    fit = align(pictures[known], angles[known], radii, turning.shift)
+    told = np.flatnonzero(known)[likeness > turning.least_likeness]
+    if len(told) < 0.5 * len(seen):
+        # Most frames do not look like the mean: there is nothing on the cap to go by.
+        return theta, sd
+    rows = np.array(seen)[told]
+    good = likeness > turning.least_likeness
+    theta[rows], sd[rows] = fit.angle[good], fit.sd[good]
+    sd *= _jitter(times, theta, sd)
+    return theta - theta[rows[0]], sd
+
+
+def _followed(times: Array, pictures: Complex, turning: Turning) -> Array:
+    """Angles from picture to picture, each against the running mean; NaN where unlike it."""
+    angles = np.full(len(times), np.nan)
+    angles[0] = 0.0
+    mean = pictures[0].copy()
+    before, spin, weight = 0, 0.0, 1.0
+    for index in range(1, len(times)):
         wait = times[index] - times[before]
         reach = min(turning.reach + turning.most_spin * wait, 1.5)
-        angle, _, like = angle_between(picture, spectrum, theta[before] + spin * wait, reach)
-        likeness[index] = like
-        if not like > turning.least_likeness:
+        expected = float(angles[before] + spin * wait)
+        angle, likeness = angle_between(mean, pictures[index], expected, reach)
+        if not likeness > turning.least_likeness:
             continue
-        spin += 0.3 * ((angle - theta[before]) / wait - spin)
-        theta[index], before = angle, index
+        spin += 0.3 * ((angle - angles[before]) / wait - spin)
+        angles[index], before = angle, index
         weight += 1.0
-        picture += (turned(spectrum, -angle) - picture) / min(weight, 30.0)
-    for _ in range(turning.rounds):
-        known = np.flatnonzero(np.isfinite(theta))
-        picture = _mean_picture(spectra, theta, known)
-        seen_then = np.array([spectra[index] for index in known.tolist()])
-        theta[known], sd[known], likeness[known] = angles_between(
-            picture, seen_then, theta[known], 0.2
+        mean += (turned(pictures[index : index + 1], np.array([-angle]))[0] - mean) / min(
+            weight, 30.0
         )
-    told = np.isfinite(theta) & (likeness > turning.least_likeness)
-    if told.sum() < 0.5 * len(seen):
-        # Most frames do not look like the mean: there is nothing on the cap to go by.
-        told[:] = False
-    theta[~told], sd[~told] = np.nan, np.nan
-    sd *= _jitter(times, theta, sd)
-    if told.any():
-        theta -= theta[told][0]
-    return theta, sd
+    return angles
 
 
 def _jitter(times: Array, theta: Array, sd: Array) -> float:
-    """How many times larger than claimed the errors are.
+    """How many times larger than claimed the errors are, at least 1.
 
-    The errors of rings and colours hang together, by how much depends on the clip: so the
-    scale is that of the angles about a steady turning in three frames in a row. Errors that
-    last for longer (light, the handle's height) make it about twice that. What of the pictures
-    does not turn with a slowly turning stone lasts longest and scatters least: hence a floor.
+    By the scatter of angles about a steady turning in three frames in a row. Errors that last
+    for longer (light, the handle's shadow) make it about twice that, and pictures in quick
+    succession share them.
     """
     step = np.diff(times)
     bend = theta[2:] - 2 * theta[1:-1] + theta[:-2]
     steady = np.isfinite(bend) & (np.abs(step[1:] - step[:-1]) < 0.2 * step[:-1])
+    alike = float(np.sqrt(max(_LASTING / np.median(step), 1.0)))
     if steady.sum() < 5:
-        return 5.0
+        return alike
     scatter = 1.4826 * float(np.median(np.abs(bend[steady]))) / np.sqrt(6)
-    return float(max(2 * scatter / max(float(np.nanmedian(sd)), 1e-6), _LEAST_SCALE))
-
-
-def _mean_picture(
-    spectra: Sequence[Complex | None], theta: Array, known: NDArray[np.intp]
-) -> Complex:
-    total = np.zeros_like(np.asarray(spectra[known[0]]))
-    for index in known.tolist():
-        spectrum = spectra[index]
-        assert spectrum is not None
-        total += turned(spectrum, -theta[index])
-    return np.asarray(total / len(known), np.complex64)
+    return alike * max(2 * scatter / max(float(np.nanmedian(sd)), 1e-6), 1.0)

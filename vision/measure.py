@@ -149,6 +149,14 @@ def _profile(disc: Stone, effort: Effort) -> Profile:
     return joined(straight(top, np.linspace(inner, outer, effort.radii)), rings)
 
 
+def handle_radii(disc: Stone, effort: Effort = EFFORT) -> Array:
+    """Radii of the rings of the handle's picture, m, shape (rings,)."""
+    size = disc.radius if is_plain(disc) else disc.cap_radius
+    low, high = effort.handle_inner * size, effort.handle_outer * size
+    rings = np.linspace(low, high, 2 * effort.handle_rings)
+    return np.asarray(rings.reshape(-1, 2).mean(1))
+
+
 def measure(
     image: Image,
     camera: Camera,

@@ -11,12 +11,13 @@ import pandas as pd
 from data.progress import Progress, no_progress
 from data.sheet import STONE, Stone
 from data.tracks import SIGHTING_COLUMNS, check_sightings, order_of_motion
+from vision.align import Complex
 from vision.appearance import Appearance, colour_difference, lab_to_bgr
 from vision.camera import Camera
 from vision.clip import Clip
 from vision.follow import Gate, Track, follow, names_by_motion
-from vision.handle import Complex, handle_angles
-from vision.measure import is_plain
+from vision.handle import handle_angles
+from vision.measure import handle_radii, is_plain
 from vision.stones import FOLLOWING, Search
 from vision.watch import Watch
 
@@ -83,13 +84,15 @@ def track_stones(
         empty = pd.DataFrame({name: pd.Series(dtype=float) for name in SIGHTING_COLUMNS})
         empty = empty.astype({"stone": str, "frame": int})
         return StoneTracks(empty, {}, ("no stones were found on the ice",))
-    table = pd.concat([_rows(name, track) for name, track in named.items()], ignore_index=True)
+    table = pd.concat(
+        [_rows(name, track, disc) for name, track in named.items()], ignore_index=True
+    )
     return StoneTracks(check_sightings(table, "the stones found"), _teams(named, watch.appearance))
 
 
-def _rows(name: str, track: Track) -> pd.DataFrame:
+def _rows(name: str, track: Track, disc: Stone) -> pd.DataFrame:
     spectra: list[Complex | None] = [sighting.spectrum for sighting in track.sightings]
-    theta, sd_theta = handle_angles(np.array(track.times), spectra)
+    theta, sd_theta = handle_angles(np.array(track.times), spectra, handle_radii(disc))
     seen = track.sightings
     return pd.DataFrame(
         {

@@ -20,7 +20,7 @@ from vision.appearance import CONVINCING, Appearance, colour_difference, learn
 from vision.camera import Camera
 from vision.clip import Frame
 from vision.handle import cap_spectrum
-from vision.measure import is_plain
+from vision.measure import handle_radii, is_plain
 from vision.seek import Bounds
 from vision.sighting import Sighting
 from vision.stones import FOLLOWING, Search, look_at, search_picture
@@ -106,6 +106,7 @@ class Watch:
     def __init__(self, disc: Stone = STONE, search: Search = FOLLOWING, pace: Pace = Pace()):
         self.appearance: Appearance | None = None
         self._disc, self._search, self._pace = disc, search, pace
+        self._radii = handle_radii(disc)
         self._lessons: list[Sighting] = []
         self._waiting: list[_View] = []
         self._recent: deque[_View] = deque(maxlen=pace.memory)
@@ -159,7 +160,7 @@ class Watch:
             self._look_for_colours(view)
             fresh = self._sought(view, None, view.places)
             leads = [_Lead(place, np.zeros(2), t) for place in _places(fresh)]
-            view.sightings.extend(map(_reduced, fresh))
+            view.sightings.extend(map(self._reduced, fresh))
             self._leads += leads
             for past in reversed(self._recent):
                 if not leads:
@@ -203,13 +204,13 @@ class Watch:
             if sighting is None or _distance(known, np.array([sighting.x, sighting.y])) < apart:
                 lost.append(lead)
                 continue
-            view.sightings.append(_reduced(sighting))
+            view.sightings.append(self._reduced(sighting))
             known = view.places
             going.append(lead.on(sighting, t, near))
         for lead in lost:
             nearby = None if lead.missed else self._near(view, lead)
             if nearby is not None:
-                view.sightings.append(_reduced(nearby))
+                view.sightings.append(self._reduced(nearby))
                 going.append(lead.on(nearby, t, near))
             elif abs(t - lead.t) < self._pace.patience:
                 going.append(replace(lead, missed=True))
@@ -228,6 +229,17 @@ class Watch:
             return None
         return found[int(np.argmin(away))]
 
+    def _reduced(self, sighting: Sighting) -> Sighting:
+        """Reduce the pictures of a sighting to what the angle needs."""
+        seen_well = sighting.visible >= HANDLE_VISIBLE
+        return replace(
+            sighting,
+            handle=np.empty((0, 0, 3), np.uint8),
+            spectrum=cap_spectrum(sighting.handle, self._radii) if seen_well else None,
+            cap_samples=np.empty((0, 3)),
+            granite_samples=np.empty((0, 3)),
+        )
+
 
 def _distance(places: Array, place: Array) -> float:
     """From a place to the nearest of others, m."""
@@ -242,15 +254,3 @@ def _score(sighting: Sighting | None) -> float:
 
 def _places(sightings: Sequence[Sighting]) -> Array:
     return np.array([(s.x, s.y) for s in sightings]).reshape(-1, 2)
-
-
-def _reduced(sighting: Sighting) -> Sighting:
-    """Reduce the pictures of a sighting to what the angle needs."""
-    seen_well = sighting.visible >= HANDLE_VISIBLE
-    return replace(
-        sighting,
-        handle=np.empty((0, 0, 3), np.uint8),
-        spectrum=cap_spectrum(sighting.handle, 0.0, 1.0) if seen_well else None,
-        cap_samples=np.empty((0, 3)),
-        granite_samples=np.empty((0, 3)),
-    )

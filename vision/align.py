@@ -1,0 +1,104 @@
+"""Pictures of one cap brought together: turned and shifted onto their mean.
+
+What stands above the cap moves over it as the camera sees it from elsewhere, and a centre has
+its error. A bar that is seen on one side of the centre only looks turned where it is shifted,
+so the shift is found with the angle (Gauss and Newton's method on the angular harmonics).
+
+A picture f shifted by d is f − d·∇f, and with F_k(r) the harmonic k on the ring r
+(∂x ± i ∂y) f has the harmonic k ± 1 of F_k' ∓ k F_k / r.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex64]
+
+ORDERS = np.arange(1, 18)
+"""Harmonics that are kept of a picture: one more at each end, for its gradient."""
+
+HARMONICS = ORDERS[1:-1]
+"""Those that are compared."""
+
+_ROUNDS = 6
+_LEAST_SCALE = 4.0
+"""How much larger errors are at least than if every ring and harmonic erred for itself."""
+
+
+@dataclass(frozen=True)
+class Alignment:
+    """Angles (n,), rad, their standard errors, and shifts (n, 2) in the frame of the cap, m."""
+
+    angle: Array
+    sd: Array
+    shift: Array
+
+
+def turned(spectra: Complex, angles: Array) -> Complex:
+    """Spectra (n, orders, rings, channels) of the caps turned counter-clockwise by `angles`."""
+    phase = np.exp(-1j * ORDERS * angles[:, None])
+    return np.asarray(spectra * phase[:, :, None, None], np.complex64)
+
+
+def align(spectra: Complex, angles: Array, radii: Array, sd_shift: float) -> Alignment:
+    """Turn and shift pictures of a cap onto their mean.
+
+    Parameters
+    ----------
+    spectra : ndarray, shape (n, orders, rings, channels)
+        From `vision.handle.cap_spectrum`; a ring that is not seen is 0.
+    angles : ndarray, shape (n,)
+        Where to begin, rad; within a few tenths of the truth.
+    radii : ndarray, shape (rings,)
+        m.
+    sd_shift : float
+        Standard deviation of the shifts, m, per axis.
+    """
+    seen = np.abs(spectra).max((1, 3)) > 0
+    weight = np.sqrt(radii / radii[-1])
+    often = np.maximum(seen.sum(0), 1)[:, None]
+    angle, shift = angles.astype(float), np.zeros((len(angles), 2))
+    sd = np.full(len(angles), np.nan)
+    for _ in range(_ROUNDS):
+        upright = turned(spectra, -angle)
+        mean = upright.sum(0) / often
+        slopes = _slopes(mean, radii, weight)
+        moved = np.concatenate([np.zeros((len(angle), 1)), shift], axis=1)
+        model = mean[1:-1] + np.einsum("np,pkrc->nkrc", moved, slopes)
+        model *= seen[:, None, :, None]
+        here = upright[:, 1:-1]
+        size = (np.abs(model) ** 2).sum((1, 2, 3))
+        gain = (here * model.conj()).real.sum((1, 2, 3)) / np.maximum(size, 1e-12)
+        rest = here / np.maximum(gain, 0.1)[:, None, None, None] - model
+        count = 2 * rest[0, :, 0].size * np.maximum(seen.sum(1), 1)
+        noise = _LEAST_SCALE**2 * (np.abs(rest) ** 2).sum((1, 2, 3)) / count
+        by_ring = np.einsum("pkrc,qkrc->rpq", slopes.conj(), slopes).real
+        normal = np.einsum("nr,rpq->npq", seen.astype(float), by_ring)
+        prior = np.diag([0.0, 1.0, 1.0]) * (noise / sd_shift**2)[:, None, None]
+        normal += prior + 1e-12 * np.eye(3)
+        pull = np.einsum("pkrc,nkrc->np", slopes.conj(), rest).real
+        pull -= np.einsum("npq,nq->np", prior, moved)
+        inverse = np.linalg.inv(normal)
+        step = np.einsum("npq,nq->np", inverse, pull)
+        angle = angle + np.clip(step[:, 0], -0.1, 0.1)
+        shift = shift + step[:, 1:]
+        sd = np.sqrt(inverse[:, 0, 0] * noise)
+    return Alignment(angle, sd, shift)
+
+
+def _slopes(mean: Complex, radii: Array, weight: Array) -> NDArray[np.complex128]:
+    """Change of a picture's compared harmonics with angle and shift: (3, harmonics, rings, …)."""
+    plain = mean / weight[:, None]
+    outwards = np.gradient(plain, radii, axis=1)
+    around = ORDERS[:, None, None] / radii[:, None] * plain
+    raised, lowered = (outwards - around)[:-2], (outwards + around)[2:]
+    slopes = [
+        -1j * HARMONICS[:, None, None] * plain[1:-1],
+        -0.5 * (raised + lowered),
+        0.5j * (raised - lowered),
+    ]
+    return np.asarray(np.array(slopes) * weight[:, None])
