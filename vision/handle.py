@@ -197,4 +197,4 @@ def _jitter(times: Array, theta: Array, sd: Array) -> float:
     if steady.sum() < 5:
         return alike
     scatter = 1.4826 * float(np.median(np.abs(bend[steady]))) / np.sqrt(6)
-    return alike * max(2 * scatter / max(float(np.nanmedian(sd)), 1e-6), 1.0)
+    return float(alike * max(2 * scatter / max(float(np.nanmedian(sd)), 1e-6), 1.0))
