@@ -72,7 +72,8 @@ class Settings:
         The tee and two points on the outer edge of the 12-ft ring, px, in one frame (None: the
         first), for a house that is not found by itself.
     camera : Path, optional
-        Table as ``camera.csv`` with a known camera: one row, or one per frame. With a radius
+        Table as ``camera.csv`` with a known camera: one row, or one per frame; or a Tracker
+        project, whose coordinate system is the camera. With a radius
         other than a curling stone's, the discs are looked for as plain ones on no house.
     radius : float
         Radius of the discs, m.
@@ -80,6 +81,8 @@ class Settings:
         Masses by stone, in any unit, where they are not all equal.
     length_unit, angle_unit : str, optional
         Units of tables.
+    clip : bool
+        Whether what a Tracker project's clip shows is measured, not what is marked in it.
     tab : str, optional
         Which tab of a Tracker project with several.
     names : mapping
@@ -106,6 +109,7 @@ class Settings:
     masses: Mapping[str, float] = field(default_factory=dict)
     length_unit: str = "m"
     angle_unit: str | None = None
+    clip: bool = False
     tab: str | None = None
     names: Mapping[str, str] = field(default_factory=dict)
     angles: Mapping[str, Path] = field(default_factory=dict)
@@ -190,7 +194,7 @@ def measure(
     """
     files = find_inputs(inputs)
     tables = [path.suffix.lower() in TABLES for path in files]
-    if any(tables):
+    if any(tables) and not settings.clip:
         if not all(tables):
             odd = files[tables.index(False)]
             raise InputError(f"{odd}: tables of tracks and pictures do not mix; give one kind")
@@ -242,10 +246,9 @@ def _look_at_clip(files: tuple[Path, ...], settings: Settings, progress: Progres
 
 def _film(files: tuple[Path, ...], settings: Settings, progress: Progress) -> Filmed:
     """Open a clip and find its cameras."""
-    from vision.clip import open_clip
     from vision.stones import plain_disc
 
-    clip = open_clip(files, settings.fps, settings.frames)
+    clip = _open_clip(files, settings)
     stone = replace(STONE, radius=settings.radius)
     if settings.stick is not None:
         from vision.stick import stick_cameras
@@ -253,9 +256,7 @@ def _film(files: tuple[Path, ...], settings: Settings, progress: Progress) -> Fi
         cameras = stick_cameras(clip, settings.stick, progress)
         filmed = Filmed(clip, cameras, plain_disc(settings.radius))
     elif settings.camera is not None:
-        from vision.camera_file import given_cameras
-
-        cameras, notes = given_cameras(clip, settings.camera, progress)
+        cameras, notes = _given_cameras(clip, settings.camera, settings, progress)
         if settings.radius == STONE.radius:
             filmed = Filmed(clip, cameras, stone, HOUSE, notes)
         else:
@@ -266,6 +267,39 @@ def _film(files: tuple[Path, ...], settings: Settings, progress: Progress) -> Fi
         filmed = Filmed(clip, followed.cameras, stone, house, followed.warnings)
     _check_size(settings.radius, filmed.cameras[0])
     return filmed
+
+
+def _open_clip(files: tuple[Path, ...], settings: Settings) -> Clip:
+    """Open a video, pictures, or the clip of a Tracker project."""
+    from data.export import PROJECTS
+    from vision.clip import open_clip
+
+    kinds = [path.suffix.lower() for path in files]
+    if not TABLES.intersection(kinds):
+        return open_clip(files, settings.fps, settings.frames)
+    if len(files) > 1 or kinds[0] not in PROJECTS:
+        odd = files[0] if kinds[0] not in PROJECTS else files[1]
+        raise InputError(f"{odd}: not a clip; name a video, pictures, or one Tracker project")
+    from vision.project_clip import open_project_clip
+
+    return open_project_clip(files[0], settings.tab, settings.frames)
+
+
+def _given_cameras(
+    clip: Clip, path: Path, settings: Settings, progress: Progress
+) -> tuple[tuple[Camera, ...], tuple[str, ...]]:
+    """Read the cameras of a table, or of a Tracker project."""
+    from data.export import PROJECTS
+
+    if path.suffix.lower() not in PROJECTS:
+        from vision.camera_file import given_cameras
+
+        return given_cameras(clip, path, progress)
+    from data.project import read_project
+    from vision.project_clip import project_cameras
+
+    project = read_project(path, settings.tab)
+    return project_cameras(clip, project, settings.length_unit, progress)
 
 
 def _follow(clip: Clip, settings: Settings, progress: Progress) -> HouseTrack:
@@ -315,8 +349,6 @@ def check(
     from vision.glance import glance
 
     files = find_inputs(inputs)
-    if any(path.suffix.lower() in TABLES for path in files):
-        raise InputError(f"{files[0]}: a table of tracks; only clips and pictures can be checked")
     seen = _film(files, settings, progress)
     clip, cameras = seen.clip, seen.cameras
     radii = () if seen.house is None else _painted(seen.house)
@@ -706,6 +738,7 @@ def _settings(arguments: argparse.Namespace) -> Settings:
         masses=dict(known.get("mass", ())),
         length_unit=known.get("length_unit", "m"),
         angle_unit=known.get("angle_unit"),
+        clip=known.get("clip", False),
         tab=known.get("tab"),
         names=_by_stone("--names", known.get("names", [])),
         angles={s: Path(p) for s, p in _by_stone("--angles", known.get("angles", [])).items()},
@@ -743,9 +776,7 @@ def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:
 
     settings, folder = _settings(arguments), _out(arguments, arguments.inputs[0])
     check_folder(folder)
-    measured = measure(arguments.inputs, settings, bars)
-    if measured.clip is None:
-        raise InputError(f"{measured.files[0]}: already a table of tracks; try curlshot estimate")
+    measured = measure(arguments.inputs, replace(settings, clip=True), bars)
     contacts = find_contacts(measured.sightings, settings.radius)
     tracks = smooth(measured.sightings, contacts, radius=settings.radius)
     with staged(folder) as stage:

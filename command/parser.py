@@ -50,12 +50,20 @@ def command_line(version: str) -> argparse.ArgumentParser:
         "                                                   the tee, two points of the 12-ft ring\n"
         "  curlshot run shot.mp4 --camera camera.csv        a known camera, still or per frame\n"
         "  curlshot run A.txt B.txt --length-unit cm        one Tracker export per stone\n"
-        "  curlshot run shot.trk                            a Tracker project, or a .trz\n"
+        "  curlshot run shot.trk                            what is marked in a Tracker project\n"
+        "  curlshot run shot.trz --clip                     what the clip in it shows\n"
+        "  curlshot run shot.trz --clip --camera shot.trz   the same, by its own calibration\n"
         "  curlshot run old/tracks.csv                      earlier tracks\n",
     )
     run_.add_argument("inputs", nargs="*", metavar="INPUT", help="clip, pictures or tables")
     _clip_options(run_)
     _table_options(run_)
+    _tab_option(run_)
+    run_.add_argument(
+        "--clip",
+        action="store_true",
+        help="measure the clip of a Tracker project, not what is marked in it",
+    )
     _assumption_options(run_)
     run_.add_argument(
         "--no-overlay", action="store_true", help="do not write the annotated clip overlay.mp4"
@@ -70,6 +78,7 @@ def command_line(version: str) -> argparse.ArgumentParser:
     )
     track_.add_argument("inputs", nargs="+", metavar="CLIP", help="a video or pictures")
     _clip_options(track_)
+    _tab_option(track_)
 
     check_ = _command(
         commands,
@@ -80,6 +89,7 @@ def command_line(version: str) -> argparse.ArgumentParser:
     )
     check_.add_argument("inputs", nargs="+", metavar="CLIP", help="a video or pictures")
     _clip_options(check_)
+    _tab_option(check_)
 
     estimate_ = _command(
         commands,
@@ -91,6 +101,7 @@ def command_line(version: str) -> argparse.ArgumentParser:
     estimate_.add_argument("inputs", nargs="+", metavar="TRACKS", help="tables of tracks")
     _disc_options(estimate_)
     _table_options(estimate_)
+    _tab_option(estimate_)
     _assumption_options(estimate_)
     estimate_.add_argument("--fps", type=values.positive, help="rate of a table without times, 1/s")
 
@@ -117,6 +128,7 @@ def command_line(version: str) -> argparse.ArgumentParser:
     )
     convert_.add_argument("--over", metavar="CLIP", help="the clip that a project shows")
     _table_options(convert_)
+    _tab_option(convert_)
     convert_.add_argument("--fps", type=values.positive, help="rate of a table without times, 1/s")
 
     simulate_ = _command(
@@ -226,8 +238,9 @@ def _clip_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--camera",
         type=Path,
-        metavar="CAMERA.csv",
-        help="a known camera, as a run's camera.csv: one row for a still camera, or one per frame",
+        metavar="CAMERA",
+        help="a known camera, as a run's camera.csv: one row for a still camera, or one per frame;"
+        " or a Tracker project, for its calibration",
     )
 
 
@@ -287,12 +300,15 @@ def _assumption_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def _tab_option(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--tab", metavar="NAME", help="of a Tracker project with several tabs")
+
+
 def _table_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--length-unit", choices=("m", "cm", "mm", "in", "ft"), default="m", help="of tables (m)"
     )
     parser.add_argument("--angle-unit", choices=("rad", "deg"), help="of tables")
-    parser.add_argument("--tab", metavar="NAME", help="of a Tracker project with several tabs")
     parser.add_argument(
         "--names",
         type=values.pair,

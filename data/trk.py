@@ -30,9 +30,6 @@ _MOVES_PIXELS = {
     "ResizeFilter": "resize",
     "RotateFilter": "rotate",
 }
-PICTURES = frozenset({".bmp", ".gif", ".jpeg", ".jpg", ".png", ".tif", ".tiff", ".webp"})
-"""Endings by which a path is that of a picture, not of a video."""
-
 ANGLE_COLUMN = "theta(rad)"
 """Column of text in which this program gives Tracker the angles of a stone."""
 

@@ -17,8 +17,9 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from data.files import whole_file, write_text
+from data.inputs import IMAGE_SUFFIXES
 from data.sheet import STONE
-from data.trk import ANGLE_COLUMN, PICTURES, Coordinates
+from data.trk import ANGLE_COLUMN, Coordinates
 
 Array = NDArray[np.float64]
 
@@ -173,7 +174,7 @@ def _clip(view: View, clock: _Clock) -> list[str]:
 
 def _video(view: View, clock: _Clock) -> list[str]:
     path = _value("path", view.video[0])
-    if Path(view.video[0]).suffix.lower() not in PICTURES:
+    if Path(view.video[0]).suffix.lower() not in IMAGE_SUFFIXES:
         return _object(f"{_MEDIA}xuggle.XuggleVideo", [path])
     pictures = _strings("paths", dict(enumerate(view.video)))
     step = _value("delta_t", 1000 * clock.duration)
