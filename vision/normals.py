@@ -17,12 +17,14 @@ from vision.pose import (
     LEFT,
     RIGHT,
     TEE_LINE,
-    ice_points,
+    ice_frame,
+    measures,
     project,
 )
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 Image = NDArray[np.uint8]
 Profiles = NDArray[np.float32]
 
@@ -31,6 +33,8 @@ THIN = (CENTRE_LINE, TEE_LINE, BACK_LINE)
 
 SAMPLES = 33
 """Samples along a normal; odd, the middle one at the point itself."""
+
+_SHARES = np.linspace(-1.0, 1.0, SAMPLES, dtype=np.float32)
 
 LINE_REACH = 0.05
 """Half width looked at across a thin line, m: some are painted as two stripes 3 cm apart."""
@@ -53,32 +57,47 @@ def _candidates() -> list[tuple[int, Array]]:
     angle = np.linspace(-np.pi, np.pi, 360, endpoint=False)
     lengthwise = np.arange(-4.0, SHEET.hog_line + 3, 0.04)
     across = np.arange(-SHEET.half_width_min, SHEET.half_width_min, 0.03)
-    beside = across[np.abs(across) > 0.75]  # between, the 12-ft circle touches the back line
+    # Between, the 12-ft circle touches the back line.
+    beside = _blocks(np.arange(0.76, SHEET.half_width_min, 0.03))
     return [
         *((kind, angle) for kind in range(CIRCLES)),
         (LEFT, lengthwise[::3]),
         (RIGHT, lengthwise[::3]),
         (HOG_LINE, across[::2]),
-        (CENTRE_LINE, lengthwise),
-        (TEE_LINE, across),
-        (BACK_LINE, beside),
+        (CENTRE_LINE, _blocks(lengthwise)),
+        (TEE_LINE, _blocks(across)),
+        (BACK_LINE, np.concatenate([-beside[::-1], beside])),
     ]
 
 
+def _blocks(along: Array) -> Array:
+    """Leave out what is no whole block."""
+    return along[: len(along) // BLOCK * BLOCK]
+
+
 _CANDIDATES = _candidates()
-_COUNTS = [len(places) for _, places in _CANDIDATES]
-_STARTS = np.concatenate([[0], np.cumsum(_COUNTS)])
-_LINE = np.repeat([kind for kind, _ in _CANDIDATES], _COUNTS)
-_ALONG = np.concatenate([places for _, places in _CANDIDATES])
+_KINDS = np.array([kind for kind, _ in _CANDIDATES])
+_SPACING = np.array([along[1] - along[0] for _, along in _CANDIDATES])
+_COUNTS = np.array([len(along) for _, along in _CANDIDATES])
+_STARTS = np.cumsum(_COUNTS) - _COUNTS
+_ALONG = np.concatenate([along for _, along in _CANDIDATES])
+_FOOT, _WAY = (np.ascontiguousarray(v.T) for v in ice_frame(np.repeat(_KINDS, _COUNTS), _ALONG))
+
+# Candidates are kept by groups: on a thin line a block, else one alone.
+_GROUP = np.where(np.isin(_KINDS, THIN), BLOCK, 1)
+_GROUPS = _COUNTS // _GROUP
+_FIRST_GROUP = np.cumsum(_GROUPS) - _GROUPS
+_GROUP_SIZE = np.repeat(_GROUP, _GROUPS)
+_GROUP_START = np.cumsum(_GROUP_SIZE) - _GROUP_SIZE
 
 
 def _neighbours() -> tuple[Index, Index]:
     """Index of the candidate after and before each one on the same line."""
-    ahead, behind = np.arange(len(_LINE)) + 1, np.arange(len(_LINE)) - 1
-    for (kind, _), first, last in zip(_CANDIDATES, _STARTS[:-1], _STARTS[1:], strict=True):
-        closed = kind < CIRCLES
-        ahead[last - 1] = first if closed else last - 1
-        behind[first] = last - 1 if closed else first
+    ahead, behind = np.arange(len(_ALONG)) + 1, np.arange(len(_ALONG)) - 1
+    for kind, first, count in zip(_KINDS, _STARTS, _COUNTS, strict=True):
+        last, closed = first + count - 1, kind < CIRCLES
+        ahead[last] = first if closed else last
+        behind[first] = last if closed else first
     return ahead, behind
 
 
@@ -122,57 +141,62 @@ def lay_out(
     lines: bool,
 ) -> Normals:
     """Places to measure: on the circles every `spacing` px, at most `most`; and on the lines."""
-    count = len(_CANDIDATES) if lines else CIRCLES
-    upto = _STARTS[count]
-    place = project(ice_points(_LINE[:upto], _ALONG[:upto], rig), view, rig, size)
-    step = place[_AHEAD[:upto]] - place[_BEHIND[:upto]]
-    length = np.hypot(step[:, 0], step[:, 1])
+    upto = len(_KINDS) if lines else CIRCLES
+    count, groups = int(_COUNTS[:upto].sum()), int(_GROUPS[:upto].sum())
+    measure = np.repeat(measures(rig)[_KINDS[:upto]], _COUNTS[:upto])
+    place = project((_FOOT[:, :count] + _WAY[:, :count] * measure).T, view, rig, size)
     x, y = place.T
+    across, down = (v[_AHEAD[:count]] - v[_BEHIND[:count]] for v in (x, y))
+    length = np.sqrt(across * across + down * down)
     w, h = size
     inside = (x > reach) & (y > reach) & (x < w - 1 - reach) & (y < h - 1 - reach)
-    kinds: dict[int, slice] = {}
-    visible = np.zeros(CIRCLES)
-    picked, reaches, total = [np.zeros(0, np.int64)], [np.zeros(0)], 0
-    for (kind, along), first in zip(_CANDIDATES[:count], _STARTS[:count], strict=True):
-        at = np.flatnonzero(inside[first : first + len(along)]) + first
-        if kind < CIRCLES:
-            visible[kind] = len(at) / len(along)
-        if len(at) < LEAST:
-            continue
-        span = float(length[at].sum()) / 2
-        scale = span / (len(at) * (along[1] - along[0]))
-        at = _thinned(at, kind, span / spacing, most)
-        kinds[kind] = slice(total, total + len(at))
-        total += len(at)
-        picked.append(at)
-        reaches.append(np.full(len(at), _reach(kind, reach, scale)))
-    at = np.concatenate(picked)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        normal = np.column_stack([step[at, 1], -step[at, 0]]) / length[at, None]
-    return Normals(kinds, _ALONG[at], place[at], normal, np.concatenate(reaches), visible)
+    shown = np.add.reduceat(inside, _STARTS[:upto], dtype=np.int64)
+    span = np.add.reduceat(np.where(inside, length, 0.0), _STARTS[:upto]) / 2
+    scale = span / np.maximum(shown * _SPACING[:upto], 1e-9)
+    wanted = np.where(_GROUP[:upto] > 1, MOST_BLOCKS, MOST_STEPS)
+    wanted[:CIRCLES] = np.clip(span[:CIRCLES] / spacing, 12, most)
+    wanted[shown < LEAST] = 0
+    kept = _thinned(inside, wanted, groups)
+    at = np.flatnonzero(np.repeat(kept, _GROUP_SIZE[:groups]))
+    counts = _GROUP[:upto] * np.add.reduceat(kept, _FIRST_GROUP[:upto], dtype=np.int64)
+    ends = np.cumsum(counts)
+    kinds = {
+        int(kind): slice(int(end - n), int(end))
+        for kind, n, end in zip(_KINDS[:upto], counts, ends, strict=True)
+        if n
+    }
+    reaches = np.full(upto, reach)
+    thin, hog = _GROUP[:upto] > 1, _KINDS[:upto] == HOG_LINE
+    reaches[thin] = np.maximum(reach, LINE_REACH * scale[thin])
+    reaches[hog] = np.minimum(reach, BAND * scale[hog])
+    normal = np.stack([down[at], -across[at]]) / length[at]
+    return Normals(
+        kinds,
+        _ALONG[at],
+        place[at],
+        normal.T,
+        np.repeat(reaches, counts),
+        shown[:CIRCLES] / _COUNTS[:CIRCLES],
+    )
 
 
-def _thinned(at: Index, kind: int, wanted: float, most: int) -> Index:
-    """Keep as many as are wanted, evenly; of a thin line whole blocks."""
-    if kind in THIN:
-        blocks = at[: len(at) // BLOCK * BLOCK].reshape(-1, BLOCK)
-        return blocks[:: -(-len(blocks) // MOST_BLOCKS)].ravel()
-    count = int(np.clip(wanted, 12, most)) if kind < CIRCLES else MOST_STEPS
-    return at if len(at) <= count else at[np.arange(count) * len(at) // count]
-
-
-def _reach(kind: int, reach: float, scale: float) -> float:
-    if kind in THIN:
-        return max(reach, LINE_REACH * scale)
-    return min(reach, BAND * scale) if kind == HOG_LINE else reach
+def _thinned(inside: Flags, wanted: Index, groups: int) -> Flags:
+    """Keep so many groups of each kind as are wanted, evenly, of those that lie inside."""
+    whole = np.logical_and.reduceat(inside, _GROUP_START[:groups])
+    first, sizes = _FIRST_GROUP[: len(wanted)], _GROUPS[: len(wanted)]
+    total = np.cumsum(whole)
+    number = total - whole - np.repeat(total[first] - whole[first], sizes)
+    have = np.add.reduceat(whole, first, dtype=np.int64)
+    ratio = np.repeat(np.minimum(wanted / np.maximum(have, 1), 1.0), sizes)
+    return np.asarray(
+        whole & (np.floor((number + 1) * ratio + 1e-9) > np.floor(number * ratio + 1e-9))
+    )
 
 
 def profiles(image: Image, normals: Normals) -> Profiles:
     """Colours along the normals, shape (n, SAMPLES, 3)."""
-    s = np.linspace(-1.0, 1.0, SAMPLES, dtype=np.float32) * normals.reach[:, None]
-    x, y = (
-        (normals.point[:, axis, None] + normals.normal[:, axis, None] * s).astype(np.float32)
-        for axis in (0, 1)
-    )
+    along = (normals.normal * normals.reach[:, None]).astype(np.float32)
+    start = normals.point.astype(np.float32)
+    x, y = (start[:, axis, None] + along[:, axis, None] * _SHARES for axis in (0, 1))
     found = cv2.remap(image, x, y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
     return np.asarray(found, np.float32)

@@ -244,20 +244,22 @@ def distortion(rig: Array, log_f: float, size: tuple[int, int]) -> tuple[float, 
 
 def zoom(log_f: float, size: tuple[int, int]) -> float:
     """Log focal length over twice the picture's width: 0 in the midst of what is usual."""
-    return float(log_f - np.log(2.0 * size[0]))
+    return float(log_f) - math.log(2.0 * size[0])
 
 
 def project(ice: Array, view: Array, rig: Array, size: tuple[int, int]) -> Array:
     """Ice points, shape (n, 2), to pixels; points behind the camera go to infinity."""
     rotation = rotation_matrix(view)
-    p = ice @ rotation[:, :2].T - rotation @ rig[POSITION]
-    z = np.where(p[:, 2] > 1e-3, p[:, 2], np.nan)
+    p = rotation[:, :2] @ ice.T - (rotation @ rig[POSITION])[:, None]  # rows: fast for many points
+    z = np.where(p[2] > 1e-3, p[2], np.nan)
     w, h = size
-    diagonal = np.hypot(w, h) / 2
-    q = p[:, :2] * (np.exp(view[3]) / diagonal / z)[:, None]
+    diagonal = math.hypot(w, h) / 2
+    q = p[:2] * (math.exp(view[3]) / diagonal / z)
     k1, k2 = distortion(rig, view[3], size)
-    r2 = (q**2).sum(-1, keepdims=True)
-    return np.asarray([(w - 1) / 2, (h - 1) / 2] + diagonal * q * (1 + r2 * (k1 + k2 * r2)))
+    r2 = q[0] * q[0] + q[1] * q[1]
+    q *= diagonal * (1 + r2 * (k1 + k2 * r2))
+    q += [[(w - 1) / 2], [(h - 1) / 2]]
+    return np.asarray(q.T)
 
 
 def camera(
