@@ -24,6 +24,7 @@ from vision.house import SHARING, HouseFit, find_house
 from vision.joint import HouseTrack, Seen, fit_clip
 from vision.landmarks import Keyframe, keyframe, recognise
 from vision.marks import Evidence, measure
+from vision.outline import Rim
 from vision.pose import ANYWHERE, CIRCLES, OVERHEAD, R4, R8, Prior, View, camera, joined
 
 Array = NDArray[np.float64]
@@ -83,6 +84,7 @@ class _Piece:
     rig: Array
     prior: Prior
     palette: Array
+    edge: Rim
     seen: list[Seen] = field(default_factory=list)
     image: Image | None = None
     cov: Array = field(default_factory=lambda: np.zeros((4, 4)))
@@ -175,7 +177,7 @@ class HouseFollower:
         piece, view = self._same(house)
         if piece is None:
             prior = OVERHEAD if house.overhead else ANYWHERE
-            piece, view = _Piece(house.rig, prior, house.evidence.palette), house.view
+            piece, view = _Piece(house.rig, prior, house.evidence.palette, house.edge), house.view
             self._pieces.append(piece)
         self._piece, piece.lost, piece.key = piece, 0, None
         before, piece.seen = piece.seen, []
@@ -256,7 +258,7 @@ def _next(piece: _Piece, frame: Frame) -> Seen | None:
         piece.key = None
         return seen
     if piece.key is None and piece.image is not None:
-        piece.key = keyframe(piece.image, last.view, piece.rig, piece.cov)
+        piece.key = keyframe(last.index, piece.image, last.view, piece.rig, piece.cov)
     if piece.key is None or piece.key.drift > MOST_DRIFT:
         return None
     landmarks = recognise(piece.key, frame.image, last.view, piece.rig)
@@ -273,10 +275,10 @@ def _next(piece: _Piece, frame: Frame) -> Seen | None:
     lines = _look(piece, frame.image, view, REACH).marks
     marks = joined([landmarks, lines.pick(lines.line >= CIRCLES)])
     fit = solve_view(marks, view, piece.rig, size, view_sd=(1, 1, 0.02, 0.1))
-    drift = piece.key.drift
-    if len(landmarks) < len(piece.key.ice):  # half of its corners are gone: two marks each
-        piece.key = keyframe(frame.image, fit.view, piece.rig, fit.cov, drift)
-    return Seen(frame.index, frame.t, fit.view, marks, False, drift)
+    key = piece.key
+    if len(landmarks) < len(key.ice):  # half of its corners are gone: two marks each
+        piece.key = keyframe(frame.index, frame.image, fit.view, piece.rig, fit.cov, key.drift)
+    return Seen(frame.index, frame.t, fit.view, marks, False, key)
 
 
 def _predicted(piece: _Piece, frame: Frame) -> View:
@@ -297,6 +299,7 @@ def _look(piece: _Piece, image: Image, view: View, reach: float) -> Evidence:
     return measure(
         image, view.vector, piece.rig, reach=max(reach * image.shape[1], 6.0),
         most=MOST_NORMALS, least_sd=MARK_SD, palette=piece.palette,
+        level=piece.edge.level,
     )  # fmt: skip
 
 

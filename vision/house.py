@@ -19,6 +19,7 @@ from vision.adjust import solve
 from vision.camera import Camera
 from vision.lines import sides, upright
 from vision.marks import Evidence, Image, measure
+from vision.outline import Rim, find_rim
 from vision.pose import (
     ANYWHERE,
     DOWN,
@@ -69,6 +70,8 @@ class HouseFit:
     rms_px : float
     overhead : bool
         Whether it looks like a camera that hangs over the tee.
+    edge : Rim
+        Where the 12-ft circle ends in the profiles across it.
     """
 
     camera: Camera
@@ -77,6 +80,7 @@ class HouseFit:
     evidence: Evidence
     rms_px: float
     overhead: bool
+    edge: Rim
 
 
 def find_house(image: Image, *, frame: int = 0, t: float = 0.0) -> HouseFit | None:
@@ -223,14 +227,16 @@ def _refine(image: Image, best: _Fitted, factor: float, frame: int, t: float) ->
     view, rig = upright(image, view, rig)
     rig = sides(image, view, rig)
     prior = OVERHEAD if overhead else ANYWHERE
+    edge = Rim()
     for reach in (8.0, 6.0):
-        evidence = measure(image, view.vector, rig, reach=reach)
+        evidence = measure(image, view.vector, rig, reach=reach, level=edge.level)
         if len(evidence.marks) < 30:
             return None
         fit = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
         view, rig = fit.views[0], fit.rig
+        edge = find_rim(evidence.profile, evidence.step)
     if judge(evidence) == 0:
         return None
     rms = float(fit.rms[0])
     found = camera(view, rig, size, frame=frame, t=t, rms_px=rms)
-    return HouseFit(found, view, rig, evidence, rms, overhead)
+    return HouseFit(found, view, rig, evidence, rms, overhead, edge)

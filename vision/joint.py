@@ -19,6 +19,7 @@ from data.sheet import HOUSE
 from vision.adjust import WIDTH, Frame, linearised, solve_view
 from vision.bundle import ARC, LOST, NOISE_TRUST, Bundle, bundle, family, piece_of, sensitivity
 from vision.camera import PARAMETERS, Camera, CameraError
+from vision.landmarks import Keyframe, replaced
 from vision.pose import (
     CIRCLES,
     K1,
@@ -97,8 +98,8 @@ class Seen:
         What was measured in it.
     found : bool
         Whether its circles fix its view; else it is carried by fixed points of the ice.
-    drift : float
-        Standard deviation that the places of its fixed points share, m.
+    key : Keyframe, optional
+        Where its fixed points are known from, if there are any.
     """
 
     index: int
@@ -106,7 +107,7 @@ class Seen:
     view: View
     marks: Marks
     found: bool
-    drift: float = 0.0
+    key: Keyframe | None = None
 
 
 def fit_clip(seen: Sequence[Seen], rig: Array, prior: Prior, size: tuple[int, int]) -> HouseTrack:
@@ -125,7 +126,7 @@ def fit_clip(seen: Sequence[Seen], rig: Array, prior: Prior, size: tuple[int, in
     good = [s for s in seen if s.found]
     chosen = _spread(good)
     shared, _ = bundle([s.marks for s in chosen], [s.view for s in chosen], rig, size, prior)
-    cameras = [fit_frame(s, shared, size) for s in seen]
+    cameras = _fit_frames(seen, shared, size)
     sd = LONG_RANGE * np.sqrt(np.diag(shared.cov)[:RIG_SIZE])
     return HouseTrack(
         tuple(cameras),
@@ -134,6 +135,24 @@ def fit_clip(seen: Sequence[Seen], rig: Array, prior: Prior, size: tuple[int, in
         sd[POSITION],
         _warnings(seen, prior, shared.rig, sd),
     )
+
+
+def _fit_frames(seen: Sequence[Seen], shared: Bundle, size: tuple[int, int]) -> list[Camera]:
+    """Fit all frames; what is known from a keyframe is placed by that one's final camera."""
+    done = {s.index: fit_frame(s, shared, size) for s in seen if s.key is None}
+    waiting = [s for s in seen if s.key is not None]
+    while waiting:
+        left = []
+        for s in waiting:
+            if s.key is not None and s.key.frame in done:
+                marks = replaced(s.marks, s.key, done[s.key.frame])
+                done[s.index] = fit_frame(replace(s, marks=marks), shared, size)
+            else:
+                left.append(s)
+        if len(left) == len(waiting):
+            break
+        waiting = left
+    return [done[s.index] for s in seen if s.index in done]
 
 
 def fit_frame(seen: Seen, shared: Bundle, size: tuple[int, int]) -> Camera:
@@ -158,7 +177,7 @@ def fit_frame(seen: Seen, shared: Bundle, size: tuple[int, int]) -> Camera:
         LONG_RANGE**2 * common @ shared.cov @ common.T,
         to_camera[:, :VIEW_SIZE] @ own @ to_camera[:, :VIEW_SIZE].T,
         YARDSTICK_SD / HOUSE.twelve_foot,
-        seen.drift,
+        0.0 if seen.key is None else seen.key.drift,
     )
     rms = fit.rms if seen.found else float("nan")
     quality = _explained(marks.pick(fit.inliers), fit.view, shared.rig, size)

@@ -9,13 +9,14 @@ Lucas and Kanade, 1981, An iterative image registration technique, IJCAI 81, pag
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.pose import Marks, View, camera, fixed, project
+from vision.camera import Camera
+from vision.pose import FIXED, Marks, View, camera, fixed, project
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
@@ -51,6 +52,10 @@ class Keyframe:
 
     Attributes
     ----------
+    frame : int
+        Index of its frame in the clip.
+    view, rig : View, ndarray
+        Its camera when the places were worked out.
     grey : ndarray of uint8
     ice : ndarray, shape (n, 2)
         Places of its corners on the ice, m.
@@ -60,17 +65,24 @@ class Keyframe:
         Standard deviation that the places share, m.
     """
 
+    frame: int
+    view: View
+    rig: Array
     grey: Image
     ice: Array
     corners: Array
     drift: float
 
 
-def keyframe(image: Image, view: View, rig: Array, cov: Array, drift: float = 0.0) -> Keyframe:
+def keyframe(
+    frame: int, image: Image, view: View, rig: Array, cov: Array, drift: float = 0.0
+) -> Keyframe:
     """Make a keyframe of a picture.
 
     Parameters
     ----------
+    frame : int
+        Index of the picture's frame.
     view, cov : View, ndarray of shape (4, 4)
         Its view and that view's covariance.
     rig : ndarray
@@ -87,7 +99,7 @@ def keyframe(image: Image, view: View, rig: Array, cov: Array, drift: float = 0.
     corners = np.zeros((0, 2)) if found is None else found.reshape(-1, 2).astype(np.float64)
     ice = camera(view, rig, (w, h)).ice(_large(corners, factor))
     spread = _spread(ice, view, rig, cov, (w, h))
-    return Keyframe(grey, ice, corners, float(np.hypot(drift, spread)))
+    return Keyframe(frame, view, rig, grey, ice, corners, float(np.hypot(drift, spread)))
 
 
 def _on_ice(view: View, rig: Array, size: tuple[int, int], grey: Image) -> Image:
@@ -158,6 +170,16 @@ def recognise(key: Keyframe, image: Image, view: View, rig: Array) -> Marks | No
     if len(kept) < max(LEAST_CORNERS, LEAST_SHARE * count) or len(cells) < LEAST_CELLS:
         return None
     return fixed(key.ice[near[kept]], _large(two[kept], factor), CORNER_SD * factor)
+
+
+def replaced(marks: Marks, key: Keyframe, now: Camera) -> Marks:
+    """Put the points of a keyframe where a better camera of its frame has them."""
+    which = marks.line == FIXED
+    if marks.across is None or not which.any():
+        return marks
+    ice = np.stack([marks.along, marks.across], axis=-1)
+    ice[which] = now.ice(project(ice[which], key.view.vector, key.rig, now.size))
+    return replace(marks, along=ice[:, 0], across=ice[:, 1])
 
 
 def _small(image: Image) -> Image:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vision.normals import BLOCK, SAMPLES, THIN, Normals, Profiles, lay_out, profiles
-from vision.pose import CIRCLES, FIXED, Marks, joined
+from vision.pose import CIRCLES, FIXED, TWELVE, Marks, joined
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
@@ -42,6 +42,13 @@ CALM, LOUD = 12.0, 80.0
 """Where the sides of a thin line differ by more, or it stands out by more, it is something else,
 grey levels."""
 
+_TO_CHROMA = np.array([[0.114, 0.587, 0.299], [0.5, -0.331, -0.169], [-0.081, -0.419, 0.5]])
+_WORTH = np.array([1.0, 0.25, 0.25])
+
+SHARPNESS = np.asarray(_TO_CHROMA.T * _WORTH @ _TO_CHROMA, np.float32)
+"""How much colours (blue, green, red) tell of where an edge is: most cameras and films keep what
+is not brightness (ITU-R BT.601) at half the resolution."""
+
 _SLANT = ((np.arange(SAMPLES, dtype=np.float32) - SAMPLES // 2) / (SAMPLES - SAMPLES // 5))[:, None]
 
 
@@ -58,12 +65,18 @@ class Evidence:
         Fraction of each circle that has an edge of the circle's own two colours.
     palette : ndarray, shape (9, 2, 3)
         Colours on either side of each kind of edge; NaN where none was made out.
+    profile : ndarray, shape (33,)
+        Mean profile across the 12-ft edge, from ice (−0.5) to paint (0.5), about the marks.
+    step : float
+        Distance of its samples, px.
     """
 
     marks: Marks
     visible: Array
     covered: Array
     palette: Array
+    profile: Array
+    step: float
 
     @property
     def support(self) -> Array:
@@ -83,6 +96,7 @@ def measure(
     most: int = 360,
     least_sd: float = EDGE_SD,
     palette: Array | None = None,
+    level: float = 0.0,
     lines: bool = True,
 ) -> Evidence:
     """Measure the circles, and the lines if asked, near where the camera puts them.
@@ -100,19 +114,27 @@ def measure(
         Least standard deviation of a mark, px.
     palette : ndarray, shape (9, 2, 3), optional
         Colours of the edges in the frames before; NaN where not known.
+    level : float
+        Where the 12-ft edge is between ice (−0.5) and paint (0.5), as `vision.outline` tells.
     """
     h, w = image.shape[:2]
     normals = lay_out(view, rig, (w, h), reach=reach, spacing=spacing, most=most, lines=lines)
-    found = np.full((FIXED, 2, 3), np.nan)
+    found, mean = np.full((FIXED, 2, 3), np.nan), np.full(SAMPLES, np.nan)
     covered = np.zeros(CIRCLES)
     parts: list[Marks] = []
     if normals.kinds:
         colours = profiles(image, normals)
         wide = {kind: part for kind, part in normals.kinds.items() if kind not in THIN}
         known = found if palette is None else palette
-        offsets, shown, found = _steps(
+        values, shown, found = _steps(
             colours[: sum(p.stop - p.start for p in wide.values())], wide, known
         )
+        rim = wide.get(TWELVE, slice(0))
+        values[rim] -= level
+        samples, crossed = _crossings(values)
+        shown &= crossed
+        mean = _mean_profile(values[rim][shown[rim]], samples[rim][shown[rim]]) + level
+        offsets = samples / (SAMPLES // 2) - 1
         for kind, part in wide.items():
             offset, good = offsets[part] * normals.reach[part], shown[part]
             if kind < CIRCLES:
@@ -128,16 +150,18 @@ def measure(
             if kind in normals.kinds:
                 part = normals.kinds[kind]
                 parts.extend(_thin_line(kind, normals, part, colours[part], least_sd))
-    return Evidence(joined(parts), normals.visible, covered, found)
+    step = 2 * reach / (SAMPLES - 1)
+    return Evidence(joined(parts), normals.visible, covered, found, mean, step)
 
 
-def _steps(profile: Profiles, kinds: dict[int, slice], known: Array) -> tuple[Array, Flags, Array]:
-    """Find where profiles cross from one side to the other.
+def _steps(
+    profile: Profiles, kinds: dict[int, slice], known: Array
+) -> tuple[Profiles, Flags, Array]:
+    """Put profiles on the scale from the one side (−0.5) to the other (0.5).
 
     Returns
     -------
-    offset : ndarray, shape (n,)
-        From the middle, in half lengths of the profile.
+    value : ndarray, shape (n, SAMPLES)
     good : ndarray of bool, shape (n,)
         Whether the profile shows the edge.
     palette : ndarray, shape (9, 2, 3)
@@ -150,28 +174,47 @@ def _steps(profile: Profiles, kinds: dict[int, slice], known: Array) -> tuple[Ar
         learned = np.isfinite(known[kind, 0, 0])
         sides[part] = known[kind] if learned else np.sort(ends[part], axis=0)[len(ends[part]) // 2]
     difference = sides[:, 1] - sides[:, 0]
-    square = np.maximum((difference**2).sum(1), 1.0)
-    axis = difference / square[:, None]  # from 0 on the one side to 1 on the other
+    square = (difference**2).sum(1)
     # Each side looks like the line's own two colours; light may vary, hue may not.
     tolerance = np.maximum(0.25 * square, 12.0**2)
     good = (((ends - sides) ** 2).sum(2) < tolerance[:, None]).all(1)
+    axis = difference @ SHARPNESS
+    axis /= np.maximum((axis * difference).sum(1), 1.0)[:, None]
     height = np.einsum("nsc,nc->ns", ends, axis)
     strength = height[:, 1] - height[:, 0]
     good &= (strength > 0.5) & (strength < 1.6) & (square > MIN_CONTRAST**2)
     value = np.einsum("nmc,nc->nm", profile, axis) - height.mean(1)[:, None]
-    rising = (value[:, 1:-2] < 0) & (value[:, 2:-1] >= 0)
-    # Of several crossings the steepest is the edge, the others are noise or print.
-    slope = np.where(rising, value[:, 3:] - value[:, :-3], 0.0)
-    best = slope.argmax(1) + 1
-    row = np.arange(len(profile))
-    good &= slope[row, best - 1] > 0
-    low, high = value[row, best], value[row, best + 1]
-    sample = best + low / np.where(good, low - high, 1.0)
     palette = np.full((FIXED, 2, 3), np.nan)
     for kind, part in kinds.items():
         if good[part].any():
             palette[kind] = ends[part][good[part]].mean(0)
-    return sample.astype(np.float64) / (SAMPLES // 2) - 1, good, palette
+    return value, good, palette
+
+
+def _crossings(value: Profiles) -> tuple[Array, Flags]:
+    """Find where profiles rise through 0, in samples, and whether they do."""
+    rising = (value[:, 1:-2] < 0) & (value[:, 2:-1] >= 0)
+    # Of several crossings the steepest is the edge, the others are noise or print.
+    slope = np.where(rising, value[:, 3:] - value[:, :-3], 0.0)
+    best = slope.argmax(1) + 1
+    row = np.arange(len(value))
+    good = slope[row, best - 1] > 0
+    low, high = value[row, best], value[row, best + 1]
+    return best + (low / np.where(good, low - high, 1.0)).astype(np.float64), good
+
+
+def _mean_profile(value: Profiles, middle: Array) -> Array:
+    """Average profiles about their middles; NaN where fewer than half of them reach."""
+    at = middle[:, None] + np.arange(SAMPLES) - SAMPLES // 2
+    low = np.floor(at).astype(np.int64)
+    known = (low >= 0) & (low < SAMPLES - 1)
+    low = np.clip(low, 0, SAMPLES - 2)
+    row = np.arange(len(value))[:, None]
+    between = value[row, low] + (at - low) * (value[row, low + 1] - value[row, low])
+    count = known.sum(0)
+    enough = count > max(len(value) // 2, 5)
+    total = (between * known).sum(0)
+    return np.asarray(np.divide(total, count, out=np.full(SAMPLES, np.nan), where=enough))
 
 
 def _scatter(offset: Array) -> float:

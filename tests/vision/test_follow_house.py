@@ -128,7 +128,8 @@ def test_what_is_fixed_to_the_ice_carries_the_camera() -> None:
         seen = ((pixels > 0) & (pixels < np.array(c.size) - 1)).all(1)
         error = c.ice(pixels[seen]) - grid[seen]
         assert np.linalg.norm(error, axis=1).max() < 0.03
-        ratio.append((error / c.place_sd(grid[seen])[:, None]).ravel())
+        stated = np.diagonal(c.place_cov(grid[seen]), axis1=-2, axis2=-1)
+        ratio.append((error / np.sqrt(stated)).ravel())
     assert (np.abs(np.concatenate(ratio)) < 2).mean() > 0.9
 
 

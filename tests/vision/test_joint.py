@@ -13,6 +13,7 @@ from vision.camera import Camera
 from vision.clip import open_clip
 from vision.follow_house import follow_house
 from vision.joint import Seen, fit_clip
+from vision.landmarks import Keyframe
 from vision.pose import FIXED, OVERHEAD, TEE_LINE, TWELVE, Marks, View, start_rig
 
 SIZE = (1280, 720)
@@ -119,7 +120,12 @@ def test_fixed_points_may_join() -> None:
     pixel = true.project(np.stack([along, across, np.zeros(4)], axis=-1))
     normal = np.repeat(np.eye(2), 2, axis=0)
     fixed = Marks(line, along, pixel, normal, np.full(4, 0.3), across)
-    frames.append(Seen(8, 8 / 25, frames[0].view, fixed, False, drift=0.003))
+    first = frames[0]
+    none = np.zeros((0, 2))
+    key = Keyframe(
+        0, first.view, start_rig(OVERHEAD), np.zeros((9, 16), np.uint8), none, none, 0.003
+    )
+    frames.append(Seen(8, 8 / 25, first.view, fixed, False, key))
     camera = fit_clip(frames, start_rig(OVERHEAD), OVERHEAD, SIZE).cameras[-1]
     assert not camera.found and camera.quality == 0
     assert np.isfinite(camera.place_cov((0.0, 0.0))).all()

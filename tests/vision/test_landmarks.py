@@ -7,8 +7,8 @@ import numpy as np
 from tests.synthetic import Graphic, broadcast_camera, render_still, sample_scene
 from tests.synthetic.camera import CameraPath
 from vision.adjust import solve_view
-from vision.landmarks import keyframe, recognise
-from vision.pose import OVERHEAD, View, fixed, project, start_rig
+from vision.landmarks import keyframe, recognise, replaced
+from vision.pose import OVERHEAD, View, camera, fixed, project, start_rig
 
 SIZE = (1280, 720)
 PATH = broadcast_camera(start=0.0, end=6.0, target=((0.0, 4.2), (0.3, 3.4)), shake=0.0)
@@ -34,7 +34,7 @@ def truth(path: CameraPath, t: float) -> tuple[View, np.ndarray]:
 def test_landmarks_are_recognised_where_the_camera_has_moved() -> None:
     (before, rig), (after, _) = truth(PATH, 0.0), truth(PATH, 4.0)
     one, two = (render_still(SCENE, PATH, t) for t in (0.0, 4.0))
-    key = keyframe(one, before, rig, np.diag([1e-5, 1e-5, 1e-5, 1e-6]) ** 2)
+    key = keyframe(0, one, before, rig, np.diag([1e-5, 1e-5, 1e-5, 1e-6]) ** 2)
     guess = View(after.vector + np.array([0.004, -0.004, 0.002, 0.005]))
     marks = recognise(key, two, guess, rig)
     assert marks is not None
@@ -46,7 +46,7 @@ def test_landmarks_are_recognised_where_the_camera_has_moved() -> None:
 
 def test_another_scene_is_not_recognised() -> None:
     view, rig = truth(PATH, 0.0)
-    key = keyframe(render_still(SCENE, PATH, 0.0), view, rig, np.zeros((4, 4)))
+    key = keyframe(0, render_still(SCENE, PATH, 0.0), view, rig, np.zeros((4, 4)))
     noise = np.random.default_rng(0).integers(0, 256, (90, 160, 3)).astype(np.uint8)
     other = np.repeat(np.repeat(noise, 8, axis=0), 8, axis=1)
     assert recognise(key, other, view, rig) is None
@@ -54,7 +54,7 @@ def test_another_scene_is_not_recognised() -> None:
 
 def test_a_graphic_alone_is_no_scene() -> None:
     view, rig = truth(PATH, 0.0)
-    key = keyframe(render_still(SCENE, PATH, 0.0), view, rig, np.zeros((4, 4)))
+    key = keyframe(0, render_still(SCENE, PATH, 0.0), view, rig, np.zeros((4, 4)))
     blank = np.full((SIZE[1], SIZE[0], 3), 90, np.uint8)
     shown = render_still(SCENE, PATH, 0.0)[20:120, 30:300]
     blank[20:120, 30:300] = shown
@@ -65,6 +65,17 @@ def test_uncertainty_grows_from_keyframe_to_keyframe() -> None:
     view, rig = truth(PATH, 0.0)
     image = render_still(SCENE, PATH, 0.0)
     cov = np.diag([1e-4, 1e-4, 1e-4, 1e-4]) ** 2
-    first = keyframe(image, view, rig, cov)
+    first = keyframe(0, image, view, rig, cov)
     assert 0.0005 < first.drift < 0.005
-    assert keyframe(image, view, rig, cov, 0.01).drift > 0.01
+    assert keyframe(0, image, view, rig, cov, 0.01).drift > 0.01
+
+
+def test_points_of_a_keyframe_move_with_its_camera() -> None:
+    view, rig = truth(PATH, 0.0)
+    key = keyframe(3, render_still(SCENE, PATH, 0.0), view, rig, np.zeros((4, 4)))
+    marks = fixed(key.ice, np.zeros_like(key.ice), 1.0)
+    moved = View(view.vector + np.array([0.001, -0.002, 0.003, 0.002]))
+    again = replaced(marks, key, camera(moved, rig, SIZE))
+    there = np.stack([again.along, again.across], axis=-1)[: len(key.ice)]
+    pixels = project(there, moved.vector, rig, SIZE)
+    np.testing.assert_allclose(pixels, project(key.ice, view.vector, rig, SIZE), atol=1e-4)

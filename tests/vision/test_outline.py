@@ -1,0 +1,39 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.special import ndtr
+
+from vision.outline import find_rim
+
+STEP = 0.375
+X = STEP * (np.arange(33) - 16)
+
+
+def profile(edge: float, width: float, depth: float, blur: float) -> np.ndarray:
+    """Ice, a line of this width and so much darker than the paint, and paint."""
+    rise = (1 + depth) * ndtr((X - edge) / blur) - depth * ndtr((X - edge - width) / blur)
+    return np.asarray(rise - 0.5)
+
+
+@pytest.mark.parametrize("blur", [0.6, 0.9, 1.4])
+@pytest.mark.parametrize("edge", [-0.2, 0.0, 0.15])
+def test_a_bare_edge_is_crossed_half_way(edge: float, blur: float) -> None:
+    found = find_rim(profile(edge, 1.0, 0.0, blur), STEP)
+    assert found.level == pytest.approx(0.0, abs=0.02)
+    assert found.sd < 0.3
+
+
+@pytest.mark.parametrize(("width", "depth"), [(1.0, 0.6), (2.0, 0.3), (2.5, 0.8)])
+def test_an_outline_belongs_to_the_paint(width: float, depth: float) -> None:
+    rng = np.random.default_rng(3)
+    edge = 0.4
+    noisy = profile(edge, width, depth, 0.9) + rng.normal(0, 0.005, len(X))
+    half_way = np.interp(0.0, noisy[12:19], X[12:19])
+    found = np.interp(find_rim(noisy, STEP).level, noisy[12:19], X[12:19])
+    assert abs(found - edge) < 0.15
+    assert abs(found - edge) < 0.5 * abs(half_way - edge)
+
+
+def test_too_little_of_a_profile_tells_nothing() -> None:
+    assert find_rim(np.full(33, np.nan), STEP).level == 0.0

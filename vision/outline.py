@@ -1,0 +1,108 @@
+"""Where the paint ends if a thin dark line is drawn along its edge.
+
+The rules measure the 12-ft circle to its outer edge, and an outline is part of it. Half way from
+paint to ice lies beyond that edge, for the line draws the profile down. So the mean profile is
+explained by paint, a line and ice under one blur: that tells at which level a profile crosses
+the edge.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtr
+
+Array = NDArray[np.float64]
+
+WIDTH, WIDTH_SPREAD = 1.4, 0.7
+"""Usual width of a line, px, and the standard deviation of its logarithm."""
+
+BLUR, BLUR_SPREAD = 0.85, 0.7
+"""Usual standard deviation of the blur, px, and that of its logarithm."""
+
+DEPTH_SD = 0.5
+"""How far a line may be from the paint's colour, in steps from paint to ice."""
+
+MISFIT = 0.01
+"""What is left of a mean profile by the model, in steps from paint to ice."""
+
+ROUNDS = 15
+"""Steps of the fit (Levenberg, 1944)."""
+
+
+@dataclass(frozen=True)
+class Rim:
+    """The edge of the paint in the profiles across it.
+
+    Attributes
+    ----------
+    level : float
+        Level of a profile there: −0.5 in the ice, 0.5 in the paint.
+    sd : float
+        Standard deviation of the edge's place, px.
+    """
+
+    level: float = 0.0
+    sd: float = 0.0
+
+
+def find_rim(profile: Array, step: float) -> Rim:
+    """Find the edge of the paint in a mean profile.
+
+    Parameters
+    ----------
+    profile : ndarray, shape (n,)
+        From the ice (about −0.5) to the paint (about 0.5), 0 near the middle; NaN where unknown.
+    step : float
+        From one sample to the next, px.
+    """
+    known = np.isfinite(profile)
+    x = np.asarray(step * (np.arange(len(profile)) - len(profile) // 2)[known], np.float64)
+    y = profile[known]
+    if len(y) < 12:
+        return Rim()
+    mean: Array = np.array([0.0, np.log(WIDTH), np.log(BLUR), y[-3:].mean(), 0.0, y[:3].mean()])
+    weight = np.array([1.0, WIDTH_SPREAD, BLUR_SPREAD, 0.3, DEPTH_SD, 0.3]) ** -2.0
+    now: Array = mean.copy()
+    damping = 1e-3
+    value, slope = _model(x, now)
+    cost = _cost(y - value, now - mean, weight)
+    normal = np.diag(weight)
+    for _ in range(ROUNDS):
+        normal = slope.T @ slope / MISFIT**2 + np.diag(weight)
+        right = slope.T @ (y - value) / MISFIT**2 - weight * (now - mean)
+        change = np.linalg.solve(normal + damping * np.diag(normal.diagonal()), right)
+        tried = np.asarray(now + change, np.float64)
+        ahead, ahead_slope = _model(x, tried)
+        new = _cost(y - ahead, tried - mean, weight)
+        if new < cost:
+            now, value, slope, cost, damping = tried, ahead, ahead_slope, new, damping / 5
+        else:
+            damping *= 10
+    sd = float(np.sqrt(np.linalg.inv(normal)[0, 0]))
+    return Rim(float(np.interp(now[0], x, y)), sd)
+
+
+def _cost(residual: Array, off: Array, weight: Array) -> float:
+    return float((residual**2).sum()) / MISFIT**2 + float(weight @ off**2)
+
+
+def _model(x: Array, unknown: Array) -> tuple[Array, Array]:
+    """Profile of ice, line and paint, and its derivatives, shape (n, 6).
+
+    Unknowns: place of the edge, logarithms of the line's width and of the blur, levels of the
+    paint, of the line below the paint, and of the ice.
+    """
+    edge, log_width, log_blur, paint, depth, ice = unknown
+    width, blur = np.exp(log_width), np.exp(log_blur)
+    u, v = (x - edge) / blur, (x - edge - width) / blur
+    within, beyond = ndtr(u), ndtr(v)
+    bell = np.exp(-0.5 * np.stack([u, v]) ** 2) / (np.sqrt(2 * np.pi) * blur)
+    line = paint + depth
+    value = ice + (line - ice) * within - depth * beyond
+    by_edge = -(line - ice) * bell[0] + depth * bell[1]
+    by_blur = -(line - ice) * bell[0] * u * blur + depth * bell[1] * v * blur
+    columns = [by_edge, depth * bell[1] * width, by_blur, within, within - beyond, 1 - within]
+    return value, np.stack(columns, axis=-1)
