@@ -15,6 +15,9 @@ HUBER = 3.0
 LAGS = 0.25
 """Longest lag, relative to sightings per parameter, at which residuals are compared."""
 
+LONGEST = 60
+"""No lag as long as this is looked at."""
+
 
 def huber_weights(residuals: Floats) -> Floats:
     """Weights of Huber's estimator for residuals of shape (n, 2); shape (n, 1).
@@ -68,21 +71,41 @@ def likeness(runs: Sequence[tuple[Floats, int]]) -> float:
     level = sum(float(np.sum(r * r)) for r, _ in runs) / sum(r.size for r, _ in runs)
     if level <= 0:
         return 1.0
+    alike: list[tuple[float, float, int]] = []
     ratio = 1.0
     for _ in range(4):
         total = 1.0
-        for lag in range(1, 60):
-            usable = [(r, p) for r, p in runs if lag <= LAGS * len(r) / p]
-            if not usable:
+        for lag in range(1, LONGEST):
+            if lag > len(alike):
+                further = _alike(runs, lag, level)
+                if further is None:
+                    break
+                alike.append(further)
+            seen, lost, size = alike[lag - 1]
+            correlation = seen + ratio * lost
+            if correlation < 2 / np.sqrt(size):
                 break
-            size = sum(r[lag:].size for r, _ in usable)
-            sums = (
-                float(np.sum(r[lag:] * r[:-lag])) / level + ratio * p / len(r) * r[lag:].size
-                for r, p in usable
-            )
-            alike = sum(sums) / size
-            if alike < 2 / np.sqrt(size):
-                break
-            total += 2 * alike
+            total += 2 * correlation
         ratio = max(1.0, total)
     return ratio
+
+
+def _alike(
+    runs: Sequence[tuple[Floats, int]], lag: int, level: float
+) -> tuple[float, float, int] | None:
+    """Correlation of residuals a lag apart, as seen and as lost to the fit; None if no longer told.
+
+    Returns
+    -------
+    seen, lost : float
+        The second in units of the long-run variance over the variance.
+    size : int
+        How many products it is the mean of.
+    """
+    usable = [(r, p) for r, p in runs if lag <= LAGS * len(r) / p]
+    if not usable:
+        return None
+    size = sum(r[lag:].size for r, _ in usable)
+    seen = sum(float(np.vdot(r[lag:], r[:-lag])) for r, _ in usable) / level
+    lost = sum(p / len(r) * r[lag:].size for r, p in usable)
+    return seen / size, lost / size, size
