@@ -25,11 +25,16 @@ class House:
 
 @dataclass(frozen=True)
 class Sheet:
-    """Lines of the sheet, m, measured from the tee along y or across along x."""
+    """Lines of the sheet, m, measured from the tee along y or across along x.
+
+    Sheets are 4.42 to 5.00 m wide; ``half_width`` is that of one of 4.75 m, and borders were
+    seen from ``half_width_min`` to ``half_width_max``.
+    """
 
     back_line: float = 1.829
     hog_line: float = 6.401
     far_tee: float = 34.747
+    half_width: float = 2.375
     half_width_min: float = 2.16
     half_width_max: float = 2.50
 

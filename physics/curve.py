@@ -31,7 +31,7 @@ LOWEST_TOP = 4.0
 
 
 class Cell(NamedTuple):
-    """Cubics over one cell of a curve, in s = τ - τ_k, lowest power first."""
+    """Cubics over one cell of a curve, in s = τ - τ_k, lowest power first; τ_k is its node."""
 
     speed: Cubic
     along: Cubic
@@ -40,6 +40,7 @@ class Cell(NamedTuple):
     straight: Cubic
     loss: Cubic
     unwound: Cubic
+    node: float
 
 
 def cubic(c: Cubic, s: float) -> float:
@@ -79,14 +80,20 @@ class Curve:
     def _cell(self, k: int) -> Cell:
         cell = self._cells[k]
         if cell is None:
-            cell = self._cells[k] = Cell(*map(tuple, self.coefficients[k].tolist()))
+            cubics = map(tuple, self.coefficients[k].tolist())
+            cell = self._cells[k] = Cell(*cubics, node=self._nodes[0][k])
         return cell
+
+    def cell_at(self, tau: float) -> Cell:
+        """Return the cell that holds `tau` >= 0."""
+        nodes = self._nodes[0]
+        k = bisect_right(nodes, tau, 1, len(nodes) - 1) - 1
+        return self._cells[k] or self._cell(k)
 
     def cell(self, tau: float) -> tuple[Cell, float]:
         """Return the cell that holds `tau` and the time since its first node."""
-        nodes = self._nodes[0]
-        k = min(max(bisect_right(nodes, tau) - 1, 0), len(nodes) - 2)
-        return self._cell(k), tau - nodes[k]
+        cell = self.cell_at(tau)
+        return cell, tau - cell.node
 
     def tau_at_speed(self, speed: float) -> float:
         """Time until rest of a stone with that speed, s."""

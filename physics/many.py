@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from data.errors import InputError
+from physics.bounds import all_leave_at
 from physics.ice import IceLaw
 from physics.paths import CurveTable, Index, Paths
 from physics.simulate import PRESSED, SIMULTANEOUS, SLOW, TOUCHING, Shot, check_shot, simulate
@@ -70,11 +71,14 @@ class Outcomes:
         Places of rest, m, in the order of the shot's stones.
     hits : ndarray of int, shape (variants, stones)
         Hits that each stone took part in.
+    in_play : ndarray of bool, shape (variants, stones)
+        Where a stone has left the shot's bounds: False, and its place is where it left them.
     """
 
     x: Array
     y: Array
     hits: NDArray[np.int64]
+    in_play: Mask
 
 
 def simulate_many(
@@ -125,7 +129,9 @@ def simulate_many(
     rank = {law: k for k, law in enumerate(laws)}
     law = np.array([rank[item] for item in ice] if ice else [0] * variants, np.intp)
     size = variants, stones
-    out = Outcomes(np.zeros(size), np.zeros(size), np.zeros(size, np.int64))
+    out = Outcomes(
+        np.zeros(size), np.zeros(size), np.zeros(size, np.int64), np.zeros(size, np.bool_)
+    )
     for first in range(0, variants, BATCH):
         part = slice(first, first + BATCH)
         batch = _Batch(
@@ -137,7 +143,7 @@ def simulate_many(
         )
         batch.run()
         out.x[part], out.y[part] = batch.now[..., 0], batch.now[..., 1]
-        out.hits[part] = batch.hits
+        out.hits[part], out.in_play[part] = batch.hits, batch.in_play
     return out
 
 
@@ -160,8 +166,15 @@ class _Batch:
         self.paths = Paths(table, np.repeat(law, self.stones))
         place = np.stack([states.x, states.y], axis=-1)
         velocity = np.stack([states.vx, states.vy], axis=-1)
+        self.hits = np.zeros((count, self.stones), int)
+        self.in_play = np.ones((count, self.stones), bool)
+        # When stones stop or leave the play.
+        self.ends, self.leaves = (
+            np.zeros((count, self.stones)),
+            np.full((count, self.stones), np.inf),
+        )
         every = np.arange(count * self.stones)
-        self.paths.lay(
+        self._lay(
             every,
             np.zeros(len(every)),
             place.reshape(-1, 2),
@@ -169,8 +182,7 @@ class _Batch:
             states.omega.ravel(),
         )
         self.t, self.step = np.zeros(count), np.full(count, LONGEST)
-        self.now = self.paths.points(every, np.zeros(len(every))).reshape(count, self.stones, 4)
-        self.hits = np.zeros((count, self.stones), int)
+        self.now = self._points(every, np.zeros(len(every))).reshape(count, self.stones, 4)
         apart = np.linalg.norm(place[:, :, None] - place[:, None], axis=-1)
         # Stones that were placed too close keep the distance that they had.
         self.base = np.minimum(2 * shot.radius, apart)
@@ -197,13 +209,15 @@ class _Batch:
         """Take one step in each variant; False where all stones rest after it."""
         count, stones = len(shots), self.stones
         t0, now = self.t[shots], self.now[shots]
-        stop = self.paths.stop.reshape(-1, stones)[shots]
+        stop, leaves = self.ends[shots], self.leaves[shots]
         end = stop.max(axis=1)
+        # No step goes past the moment at which a stone leaves the play.
         t1 = np.minimum(t0 + self.step[shots], np.maximum(end, t0))
+        t1 = np.minimum(t1, np.where(self.in_play[shots], leaves, np.inf).min(axis=1))
         moving = stop > t0[:, None]
         s, i = np.nonzero(moving)
         then = now.copy()
-        then[s, i] = self.paths.points(shots[s] * stones + i, t1[s])
+        then[s, i] = self._points(shots[s] * stones + i, t1[s])
         s, i, j = self._near(shots, now, moving, s, i, t1 - t0)
         a0, b0, a1, b1 = now[s, i], now[s, j], then[s, i], then[s, j]
         step, reach = (t1 - t0)[s], self.reach[shots[s], i, j]
@@ -230,7 +244,32 @@ class _Batch:
             order = np.lexsort((j, i, when > first[s] + SIMULTANEOUS, s))
             chosen = order[np.unique(s[order], return_index=True)[1]]
             self._hit(shots[s[chosen]], i[chosen], j[chosen], when[chosen])
+        s, i = np.nonzero(clear[:, None] & (leaves <= t1[:, None]))
+        self._take_away(shots[s], i)
         return np.asarray(~clear | (t1 < end))
+
+    def _lay(self, which: Index, t: Array, place: Array, velocity: Array, omega: Array) -> None:
+        """Give stones new paths from the times t on, and see when these leave the play."""
+        self.paths.lay(which, t, place, velocity, omega)
+        ends = self.paths.stop[which]
+        if self.shot.bounds is not None:
+            hit = self.hits.ravel()[which] > 0
+            leaves = all_leave_at(
+                self.paths.points, which, t, ends, self.shot.bounds, self.shot.radius, hit
+            )
+            self.leaves.ravel()[which] = leaves
+            ends = np.minimum(ends, leaves)
+        self.ends.ravel()[which] = ends
+
+    def _points(self, which: Index, t: Array) -> Array:
+        """Place, speed and direction of stones; of those that are gone, as they left."""
+        return self.paths.points(which, np.minimum(t, self.leaves.ravel()[which]))
+
+    def _take_away(self, shots: Index, i: Index) -> None:
+        """Take stones that have left the play off the sheet: nothing reaches them any more."""
+        self.in_play[shots, i] = False
+        for reach in (self.reach, self.base):
+            reach[shots, i] = reach[shots, :, i] = -np.inf
 
     def _near(
         self, shots: Index, now: Array, moving: Mask, s: Index, i: Index, step: Array
@@ -240,7 +279,7 @@ class _Batch:
         dy = now[s, :, 1] - now[s, i, 1, None]
         speed = now[..., 2]
         far = self.reach[shots[s], i] + step[s, None] * (speed[s] + speed[s, i, None])
-        near = dx * dx + dy * dy <= far * far
+        near = dx * dx + dy * dy <= np.maximum(far, 0.0) ** 2
         # Of two that move one is enough.
         near &= ~(moving[s] & (np.arange(self.stones) <= i[:, None]))
         k, j = np.nonzero(near)
@@ -267,8 +306,8 @@ class _Batch:
 
     def _relative(self, shots: Index, i: Index, j: Index, t: Array) -> tuple[Array, Array, Array]:
         """From stone i to j: offset, and its product with the relative velocity."""
-        a = self.paths.points(shots * self.stones + i, t)
-        b = self.paths.points(shots * self.stones + j, t)
+        a = self._points(shots * self.stones + i, t)
+        b = self._points(shots * self.stones + j, t)
         dx, dy = b[:, 0] - a[:, 0], b[:, 1] - a[:, 1]
         va, vb = _velocity(a), _velocity(b)
         return dx, dy, (vb[:, 0] - va[:, 0]) * dx + (vb[:, 1] - va[:, 1]) * dy
@@ -281,9 +320,7 @@ class _Batch:
     def _hit(self, shots: Index, i: Index, j: Index, t: Array) -> None:
         """Resolve the contact of stones i and j at the times t; see `physics.simulate`."""
         every = (shots[:, None] * self.stones + np.arange(self.stones)).ravel()
-        self.now[shots] = self.paths.points(every, np.repeat(t, self.stones)).reshape(
-            -1, self.stones, 4
-        )
+        self.now[shots] = self._points(every, np.repeat(t, self.stones)).reshape(-1, self.stones, 4)
         self.t[shots], self.step[shots] = t, AFTER_HIT
         swap = self.now[shots, j, 2] > self.now[shots, i, 2]
         i, j = np.where(swap, j, i), np.where(swap, i, j)
@@ -310,10 +347,10 @@ class _Batch:
         overlap = np.where(overlap > TOUCHING, overlap, 0.0)[:, None] * normal
         # Set apart about their centre of mass.
         share = (m1 / (m1 + m2))[:, None]
-        self.paths.lay(path1, t, a[:, :2] - overlap * (1 - share), v1, w1)
-        self.paths.lay(path2, t, b[:, :2] + overlap * share, v2, w2)
-        self.now[shots, i] = self.paths.points(path1, t)
-        self.now[shots, j] = self.paths.points(path2, t)
+        self._lay(path1, t, a[:, :2] - overlap * (1 - share), v1, w1)
+        self._lay(path2, t, b[:, :2] + overlap * share, v2, w2)
+        self.now[shots, i] = self._points(path1, t)
+        self.now[shots, j] = self._points(path2, t)
         self._touch(shots, i)
         self._touch(shots, j)
 
@@ -368,7 +405,7 @@ class _Batch:
         )
         for k, stone in enumerate(stones):
             rest = done.rest[stone.name]
-            self.now[s, k, :2] = rest.x, rest.y
+            self.now[s, k, :2], self.in_play[s, k] = (rest.x, rest.y), rest.in_play
             self.hits[s, k] = sum(stone.name in hit.stones for hit in done.hits)
 
 

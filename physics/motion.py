@@ -85,11 +85,13 @@ class Path:
         has ended too, s.
     length : float
         Distance along the path from start to stop, m.
+    end : Point
+        Where it stops.
     """
 
     __slots__ = (
         "_arc", "_curve", "_loss", "_motion", "_pivot", "_sense", "_spin", "_straight", "_tau",
-        "_tau_spin", "_theta", "_unwound", "length", "rest", "start", "stop",
+        "_tau_spin", "_theta", "_unwound", "end", "length", "rest", "start", "stop",
     )  # fmt: skip
 
     def __init__(self, start: float, motion: Motion, ice: IceLaw, curl: Curl) -> None:
@@ -116,6 +118,7 @@ class Path:
             cell, s = self._curve.cell(self._tau_spin)
             x, y = self._arc.place(cell, s)
             self._straight = _arc(x, y, self._arc.direction(cell, s), 0, cell, s)
+        self.end = Point(self._straight.x, self._straight.y, 0.0, self._straight.heading)
         self._theta = self._turned(self._tau_spin)
         # A law that takes no spin leaves it to the stone until it stops.
         self._pivot = float(curl.spin_loss(0.0))
@@ -154,11 +157,27 @@ class Path:
         """Place, speed and direction at the time `t` >= start; at rest the last direction."""
         tau = self.stop - t
         if tau <= 0:
-            return Point(self._straight.x, self._straight.y, 0.0, self._straight.heading)
-        cell, s = self._curve.cell(tau)
-        arc = self._arc if tau > self._tau_spin else self._straight
-        x, y = arc.place(cell, s)
-        return Point(x, y, cubic(cell.speed, s), arc.direction(cell, s))
+            return self.end
+        # The search for contacts asks for nothing else: what `_Arc` does, without its calls.
+        (v0, v1, v2, v3), along, aside, turn, straight, _, _, node = self._curve.cell_at(tau)
+        s = tau - node
+        speed = v0 + s * (v1 + s * (v2 + s * v3))
+        x, y, heading, cos, sin, sense = self._arc if tau > self._tau_spin else self._straight
+        if not sense:
+            c0, c1, c2, c3 = straight
+            way = c0 + s * (c1 + s * (c2 + s * c3))
+            return Point(x - cos * way, y - sin * way, speed, heading)
+        c0, c1, c2, c3 = along
+        d0, d1, d2, d3 = aside
+        e0, e1, e2, e3 = turn
+        way = c0 + s * (c1 + s * (c2 + s * c3))
+        off = sense * (d0 + s * (d1 + s * (d2 + s * d3)))
+        return Point(
+            x - cos * way - sin * off,
+            y - sin * way + cos * off,
+            speed,
+            heading - sense * (e0 + s * (e1 + s * (e2 + s * e3))),
+        )
 
     def _turned(self, tau: float) -> float:
         """Angle of the stone while it spins, `tau` before rest."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import combinations
 
@@ -21,10 +21,12 @@ from numpy.typing import ArrayLike
 from data.errors import InputError
 from data.results import StoneState
 from data.sheet import STONE
+from physics.approach import first_contact
+from physics.bounds import Bounds, leaves_at
 from physics.curl import Curl, FCV1Curl
 from physics.ice import FCV1, IceLaw
 from physics.impact import Frictional, Impact
-from physics.motion import Motion, Path, Point
+from physics.motion import Motion, Path
 
 SIMULATION_COLUMNS: tuple[str, ...] = (
     "stone", "frame", "t", "x", "y", "theta", "vx", "vy", "omega",
@@ -77,13 +79,18 @@ class StoneStart:
 
 @dataclass(frozen=True)
 class Shot:
-    """The stones at the time 0 and the laws that they follow; `radius` in m."""
+    """The stones at the time 0 and the laws that they follow.
+
+    ``radius`` in m. Where there are ``bounds``, stones that leave them are taken away; without,
+    the ice goes on for ever.
+    """
 
     stones: tuple[StoneStart, ...]
     impact: Impact = field(default_factory=Frictional)
     ice: IceLaw = field(default_factory=FCV1)
     curl: Curl = field(default_factory=FCV1Curl)
     radius: float = STONE.radius
+    bounds: Bounds | None = None
 
 
 @dataclass(frozen=True)
@@ -103,12 +110,13 @@ class Hit:
 
 @dataclass(frozen=True)
 class Rest:
-    """Where (m, rad) and when (s) a stone came to rest; t = 0 where it never moved."""
+    """Where (m, rad) and when (s) a stone came to rest or left the play; t = 0 if never moved."""
 
     x: float
     y: float
     theta: float
     t: float
+    in_play: bool = True
 
 
 @dataclass(frozen=True)
@@ -121,14 +129,17 @@ class Simulation:
         In the order in which they happened.
     rest : dict
         Per stone its place of rest, or its place at the end where the simulation was ended
-        sooner.
+        sooner, or where it left the play.
     paths : dict
         Per stone its paths from hit to hit.
+    gone : dict
+        Time at which stones left the play, s, of those that did.
     """
 
     hits: tuple[Hit, ...]
     rest: Mapping[str, Rest]
     paths: Mapping[str, tuple[Path, ...]]
+    gone: Mapping[str, float] = field(default_factory=dict)
 
     def sample(self, times: ArrayLike) -> pd.DataFrame:
         """States of all stones at given times.
@@ -142,7 +153,7 @@ class Simulation:
         -------
         DataFrame
             `SIMULATION_COLUMNS`, sorted by stone, then in the order of `times`, whose index
-            is `frame`.
+            is `frame`. A stone that has left the play has no more rows.
 
         Raises
         ------
@@ -162,7 +173,8 @@ class Simulation:
         table.insert(
             0, "stone", pd.Series(np.repeat(np.array(names, object), moments.size), dtype=str)
         )
-        return table[list(SIMULATION_COLUMNS)]
+        there = table["t"] <= table["stone"].map(self.gone).fillna(np.inf)
+        return table.loc[there, list(SIMULATION_COLUMNS)].reset_index(drop=True)
 
 
 def simulate(shot: Shot, *, until: float | None = None) -> Simulation:
@@ -172,8 +184,8 @@ def simulate(shot: Shot, *, until: float | None = None) -> Simulation:
     pairs meet at one moment, until none of them closes. Stones that lean on each other
     without hitting (they touch and close by less than `SLOW`) push each other by small
     impulses, which are not listed as hits. Stones placed closer than two radii are taken
-    to touch where they are, which gives no energy to either. A stone that leaves the sheet
-    goes on as if there were ice.
+    to touch where they are, which gives no energy to either. A stone that leaves the shot's
+    bounds is in nobody's way from then on.
 
     Parameters
     ----------
@@ -246,6 +258,8 @@ class _Run:
         self.hits: list[Hit] = []
         self.hit_count = [0] * len(shot.stones)
         self.paths: list[list[Path]] = [[] for _ in shot.stones]
+        self.leaves = [math.inf] * len(shot.stones)
+        self.gone: dict[int, float] = {}
         for k, stone in enumerate(shot.stones):
             motion = Motion(stone.x, stone.y, stone.theta, stone.vx, stone.vy, stone.omega)
             self._set_off(k, motion)
@@ -254,10 +268,12 @@ class _Run:
             (i, j): min(2 * shot.radius, math.dist((a.x, a.y), (b.x, b.y)))
             for (i, a), (j, b) in combinations(enumerate(shot.stones), 2)
         }
-        # Times of the next contacts; earliest ones that can be, unless in `exact`.
+        # Times of the contacts to come; earliest ones that can be, unless in `exact`.
         self.contacts: dict[tuple[int, int], float] = {}
         self.exact: set[tuple[int, int]] = set()
-        self._look_ahead(self.reach)
+        for k, stone in enumerate(shot.stones):
+            if stone.vx or stone.vy:
+                self._look_ahead(k)
 
     def run(self, until: float) -> Simulation:
         """Go from contact to contact."""
@@ -267,39 +283,55 @@ class _Run:
                 break
             self.t = max(self.t, self.contacts[pair])
             self._hit(*pair)
-            self._look_ahead(p for p in self.reach if not set(pair).isdisjoint(p))
+            for k in pair:
+                self._look_ahead(k)
         else:
             raise InputError(f"shot: more than {MAX_IMPULSES} impulses: set fewer stones to touch")
         names = [stone.name for stone in self.shot.stones]
         return Simulation(
             tuple(self.hits),
-            {name: _rest(paths[-1], until) for name, paths in zip(names, self.paths, strict=True)},
+            {name: self._rest(k, until) for k, name in enumerate(names)},
             {name: tuple(paths) for name, paths in zip(names, self.paths, strict=True)},
+            {names[k]: t for k, t in self.gone.items()},
         )
 
     def _set_off(self, k: int, motion: Motion) -> None:
         """Give stone `k` a new path from now on."""
-        path = Path(self.t, motion, self.shot.ice, self.shot.curl)
+        shot = self.shot
+        path = Path(self.t, motion, shot.ice, shot.curl)
         paths = self.paths[k]
         if paths and paths[-1].start >= self.t:
             paths.pop()  # it never came into effect
         paths.append(path)
+        if shot.bounds is not None:
+            hit = self.hit_count[k] > 0
+            self.leaves[k] = leaves_at(path, shot.bounds, shot.radius, hit=hit)
 
-    def _look_ahead(self, pairs: Iterable[tuple[int, int]]) -> None:
-        """Bound the next contacts of pairs: the stones only get slower until they meet."""
-        points = [paths[-1].point(self.t) for paths in self.paths]
-        for i, j in pairs:
-            a, b = points[i], points[j]
-            gap = math.dist(a[:2], b[:2]) - self.reach[i, j]
+    def _look_ahead(self, k: int) -> None:
+        """Bound the next contacts of stone `k`: stones only get slower until they meet."""
+        path = self.paths[k][-1]
+        a = path.point(self.t)
+        for other, paths in enumerate(self.paths):
+            if other == k or other in self.gone:
+                continue
+            pair = (k, other) if k < other else (other, k)
+            self.exact.discard(pair)
+            b = paths[-1].point(self.t)
+            gap = math.hypot(b.x - a.x, b.y - a.y) - self.reach[pair]
             speed = a.speed + b.speed
-            far = speed == 0 or gap > self.paths[i][-1].length + self.paths[j][-1].length
-            self.contacts[i, j] = math.inf if far else self.t + max(gap, 0.0) / speed
-            self.exact.discard((i, j))
+            if speed == 0 or gap > path.length + paths[-1].length:
+                self.contacts.pop(pair, None)
+            else:
+                self.contacts[pair] = self.t + max(gap, 0.0) / speed
 
     def _next_pair(self, until: float) -> tuple[int, int] | None:
         """Return the pair that meets next; None where none does by then."""
         while True:
             first = min(self.contacts.values(), default=math.inf)
+            leaving = min(self.leaves)
+            if leaving < math.inf and leaving <= min(first, until):
+                self._take_away(self.leaves.index(leaving))
+                continue
             if first > until or first == math.inf:
                 return None
             due = [pair for pair, t in self.contacts.items() if t <= first + SIMULTANEOUS]
@@ -309,6 +341,19 @@ class _Run:
             for pair in unknown:
                 self.contacts[pair] = self._next_contact(*pair)
                 self.exact.add(pair)
+
+    def _take_away(self, k: int) -> None:
+        """Take a stone that leaves the play off the sheet."""
+        self.gone[k], self.leaves[k] = self.leaves[k], math.inf
+        self.contacts = {pair: t for pair, t in self.contacts.items() if k not in pair}
+
+    def _rest(self, k: int, until: float) -> Rest:
+        """Place at which stone `k` came to rest, left the play or was at the end."""
+        path = self.paths[k][-1]
+        rest = max(path.rest, path.start) if path.rest > 0 else 0.0
+        t = min(self.gone.get(k, rest), until)
+        motion = path.at(t)
+        return Rest(motion.x, motion.y, motion.theta, t, in_play=k not in self.gone)
 
     def _next_contact(self, i: int, j: int) -> float:
         """Time of the next contact of two stones, inf where there is none."""
@@ -382,88 +427,6 @@ class _Run:
         return given
 
 
-def first_contact(a: Path, b: Path, start: float, reach: float) -> float:
-    """First time after `start` at which two paths are within `reach`, inf where never.
-
-    Over an interval of time both paths are bounded by their ends (see `_slack`). An interval
-    over which they stay apart for certain is passed over as a whole; others are halved, the
-    earlier half first, so that no contact is missed however short it is.
-    """
-    end = max(a.stop, b.stop)
-    if end <= start:
-        return math.inf
-    later = [(end, a.point(end), b.point(end))]
-    t0, a0, b0 = start, a.point(start), b.point(start)
-    while later:
-        t1, a1, b1 = later[-1]
-        step = t1 - t0
-        slack = _slack(a0, a1, b0, b1, step)
-        x0, y0, x1, y1 = b0.x - a0.x, b0.y - a0.y, b1.x - a1.x, b1.y - a1.y
-        if _nearest(x0, y0, x1, y1) - slack > reach:
-            t0, a0, b0 = later.pop()
-            continue
-        if math.hypot(x1, y1) <= reach and slack < 1e-3 * reach:
-            return _crossing(a, b, t0, t1, reach)
-        middle = t0 + step / 2
-        if step < 1e-9 or not t0 < middle < t1:
-            # They graze, closer than numbers can tell.
-            t0, a0, b0 = later.pop()
-            continue
-        later.append((middle, a.point(middle), b.point(middle)))
-    return math.inf
-
-
-def _slack(a0: Point, a1: Point, b0: Point, b1: Point, step: float) -> float:
-    """Bound on how far two stones can be from where their chords say, m.
-
-    A path turns one way by |Δφ|, so it leaves its chord of length c by c/2 tan(|Δφ|/2) at
-    most: that is all that counts if the other stone rests. If both move their places along
-    the chords count too: the velocity stays within a set of the diameter
-    D = v0 - v1 + v0 |Δφ|, as the speed only falls, and so the place within h D / 4 of a point
-    that runs along the chord evenly in the time h.
-    """
-    if a0.speed == 0 or b0.speed == 0:
-        p0, p1 = (b0, b1) if a0.speed == 0 else (a0, a1)
-        turn = abs(p1.heading - p0.heading)
-        if turn < 1:
-            return math.hypot(p1.x - p0.x, p1.y - p0.y) / 2 * math.tan(turn / 2)
-    return step / 4 * (_spread(a0, a1) + _spread(b0, b1))
-
-
-def _spread(p0: Point, p1: Point) -> float:
-    """Bound on the diameter of the set of velocities between two points of a path."""
-    return p0.speed - p1.speed + p0.speed * abs(p1.heading - p0.heading)
-
-
-def _nearest(x0: float, y0: float, x1: float, y1: float) -> float:
-    """Distance of the origin from a segment."""
-    dx, dy = x1 - x0, y1 - y0
-    square = dx * dx + dy * dy
-    s = min(max(-(x0 * dx + y0 * dy) / square, 0.0), 1.0) if square else 0.0
-    return math.hypot(x0 + s * dx, y0 + s * dy)
-
-
-def _crossing(a: Path, b: Path, low: float, high: float, reach: float) -> float:
-    """Time between `low` (apart) and `high` (within reach) at which the distance is `reach`."""
-    t = (low + high) / 2
-    for _ in range(100):
-        pa, pb = a.at(t), b.at(t)
-        dx, dy = pb.x - pa.x, pb.y - pa.y
-        distance = math.hypot(dx, dy)
-        if distance > reach:
-            low = t
-        else:
-            high = t
-        rate = ((pb.vx - pa.vx) * dx + (pb.vy - pa.vy) * dy) / distance
-        new = t - (distance - reach) / rate if rate < 0 else low
-        if not low < new < high:
-            new = (low + high) / 2
-        if abs(new - t) <= 1e-15 * max(1.0, t):
-            return new
-        t = new
-    return t
-
-
 def _closing(one: Motion, two: Motion) -> float:
     """Speed at which two stones close, m/s."""
     dx, dy = two.x - one.x, two.y - one.y
@@ -481,9 +444,3 @@ def _moved(motion: Motion, n: tuple[float, float], by: float) -> Motion:
 
 def _state(motion: Motion) -> StoneState:
     return StoneState(motion.x, motion.y, motion.vx, motion.vy, motion.omega)
-
-
-def _rest(path: Path, until: float) -> Rest:
-    t = min(max(path.rest, path.start), until) if path.rest > 0 else 0.0
-    motion = path.at(t)
-    return Rest(motion.x, motion.y, motion.theta, t)
