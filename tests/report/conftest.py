@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +21,7 @@ from data.results import (
     SimulationScore,
 )
 from data.tracks import TRACK_COLUMNS
+from tests.report.browser import Browser
 
 RADIUS = 0.1455
 SLOWING = 0.0109 * 9.81
@@ -145,3 +147,9 @@ def collision(hit: tuple[float, str, str, Vector], pieces: dict[str, list[Piece]
 @pytest.fixture(scope="session")
 def shot() -> Shot:
     return make_shot()
+
+
+@pytest.fixture(scope="session")
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    with Browser(tmp_path_factory.mktemp("profile")) as browser:
+        yield browser
