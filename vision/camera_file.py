@@ -14,6 +14,7 @@ from data.progress import Progress, no_progress
 from data.sheet import STONE
 from vision.camera import CAMERA_COLUMNS, Camera
 from vision.clip import Clip
+from vision.placed import Placed, nobody
 
 Array = NDArray[np.float64]
 
@@ -27,7 +28,7 @@ LEAST_AREA = 1e-3
 
 
 def given_cameras(
-    clip: Clip, path: Path, progress: Progress = no_progress
+    clip: Clip, path: Path, progress: Progress = no_progress, placed: Placed = nobody
 ) -> tuple[tuple[Camera, ...], tuple[str, ...]]:
     """Give the frames of a clip the cameras of a table, and what a person should know.
 
@@ -39,6 +40,9 @@ def given_cameras(
         A table as ``camera.csv``: of one row, for all frames, or of one row per frame; frames
         without one are left out. Only the homography is needed, and with several rows `frame`;
         further columns are ignored.
+    progress : Progress
+    placed : Placed
+        Told of each frame that has a camera.
 
     Raises
     ------
@@ -53,6 +57,7 @@ def given_cameras(
         if len(row) == 1 or frame.index in row:
             given = table.iloc[row.get(frame.index, 0)]
             cameras.append(_camera(given, frame.index, frame.t, clip.size))
+            placed(frame, cameras[-1])
         progress("camera", done, clip.expected)
     if not cameras:
         raise InputError(

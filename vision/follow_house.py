@@ -25,6 +25,7 @@ from vision.joint import HouseTrack, Seen, fit_clip
 from vision.landmarks import Keyframe, keyframe, recognise
 from vision.marks import Evidence, measure
 from vision.outline import Rim
+from vision.placed import Placed, nobody
 from vision.pose import ANYWHERE, CIRCLES, OVERHEAD, R4, R8, Prior, View, camera, joined
 
 Array = NDArray[np.float64]
@@ -213,7 +214,10 @@ class HouseFollower:
 
 
 def follow_house(
-    clip: Clip, progress: Progress = no_progress, first: HouseFit | None = None
+    clip: Clip,
+    progress: Progress = no_progress,
+    first: HouseFit | None = None,
+    placed: Placed = nobody,
 ) -> HouseTrack:
     """Follow the house through a clip.
 
@@ -224,6 +228,8 @@ def follow_house(
     progress : Progress
     first : HouseFit, optional
         As for `HouseFollower`.
+    placed : Placed
+        Told of each frame that has a camera, and of the camera as it is known by then.
 
     Raises
     ------
@@ -233,7 +239,8 @@ def follow_house(
     follower = HouseFollower(clip.size, first)
     for count, frame in enumerate(clip):
         progress("house", count + 1, clip.expected)
-        follower.look(frame)
+        for seen, provisional in follower.look(frame):
+            placed(seen, provisional)
     progress("camera", 0, 1)
     track = follower.finish()
     progress("camera", 1, 1)

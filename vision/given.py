@@ -24,6 +24,7 @@ from vision.flow import similarity
 from vision.follow_house import follow_house
 from vision.house import HouseFit, fit_house, start
 from vision.joint import HouseTrack, Seen, fit_clip
+from vision.placed import Placed, nobody
 from vision.pose import TWELVE, Marks, View, camera, fixed, joined, turned
 from vision.rings import SQUASHES, Guess
 
@@ -78,8 +79,12 @@ class GivenHouse:
         return numbers if self.frame is None else f"{self.frame}:{numbers}"
 
 
-def follow_given(clip: Clip, house: GivenHouse, progress: Progress = no_progress) -> HouseTrack:
+def follow_given(
+    clip: Clip, house: GivenHouse, progress: Progress = no_progress, placed: Placed = nobody
+) -> HouseTrack:
     """Follow the house through a clip from where a person says that it is.
+
+    `placed` is told of each frame and its camera, which may be provisional.
 
     Raises
     ------
@@ -89,8 +94,8 @@ def follow_given(clip: Clip, house: GivenHouse, progress: Progress = no_progress
     frame = _frame(clip, house)
     fit = fit_given(frame.image, house, frame=frame.index, t=frame.t)
     if fit is None:
-        return _as_given(clip, frame, house, progress)
-    track = follow_house(clip, progress, first=fit)
+        return _as_given(clip, frame, house, progress, placed)
+    track = follow_house(clip, progress, fit, placed)
     before = track.cameras[0].frame - clip.first
     if before <= 0:
         return track
@@ -174,7 +179,9 @@ def _camera(guess: Guess, size: tuple[int, int]) -> Camera:
     return camera(view, rig, size)
 
 
-def _as_given(clip: Clip, frame: Frame, house: GivenHouse, progress: Progress) -> HouseTrack:
+def _as_given(
+    clip: Clip, frame: Frame, house: GivenHouse, progress: Progress, placed: Placed
+) -> HouseTrack:
     """Take the three points for what they are, in all frames that show the same picture."""
     guess = hypotheses(house, clip.size)[0]
     view, rig, prior = start(guess, clip.size)
@@ -186,8 +193,10 @@ def _as_given(clip: Clip, frame: Frame, house: GivenHouse, progress: Progress) -
     for done, other in enumerate(clip, 1):
         if other.index == frame.index:
             cameras.append(given)
+            placed(other, cameras[-1])
         elif _same(frame.image, other.image):
             cameras.append(replace(given, frame=other.index, t=other.t, found=False))
+            placed(other, cameras[-1])
         progress("camera", done, clip.expected)
     note = (
         f"house {house}: no rings are seen there; the camera rests on the three points alone, y up"

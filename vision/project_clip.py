@@ -21,6 +21,7 @@ from data.project import unpack_clip
 from data.trk import Project
 from vision.camera import Camera
 from vision.clip import Clip, Frame, open_clip
+from vision.placed import Placed, nobody
 from vision.tracker_view import CORNER
 
 
@@ -162,6 +163,7 @@ def project_cameras(
     project: Project,
     length_unit: str = "m",
     progress: Progress = no_progress,
+    placed: Placed = nobody,
 ) -> tuple[tuple[Camera, ...], tuple[str, ...]]:
     """Give the frames of a clip Tracker's coordinate system for a camera, and what to know of it.
 
@@ -173,6 +175,9 @@ def project_cameras(
         Whose calibration it is.
     length_unit : str
         Unit of its lengths where the project does not say.
+    progress : Progress
+    placed : Placed
+        Told of each frame and its camera.
 
     Raises
     ------
@@ -197,6 +202,7 @@ def project_cameras(
             raise InputError(f"{source}: one of its axes is mirrored; calibrate it again")
         similarity = np.array([[sx * cos, -sx * sin, ox], [-sy * sin, -sy * cos, oy], [0, 0, 1.0]])
         cameras.append(Camera(frame.index, frame.t, similarity, clip.size))
+        placed(frame, cameras[-1])
         progress("camera", done, clip.expected)
     return tuple(cameras), (
         f"{source}: its calibration is a plain scale: neither perspective nor the height of what"

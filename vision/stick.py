@@ -10,6 +10,7 @@ from data.errors import InputError
 from data.progress import Progress, no_progress
 from vision.camera import Camera
 from vision.clip import Clip, Frame
+from vision.placed import Placed, nobody
 
 Stick = tuple[float, float, float, float, float]
 
@@ -42,13 +43,17 @@ def stick_camera(stick: Stick, size: tuple[int, int], frame: int = 0, t: float =
 
 
 def stick_cameras(
-    clip: Clip | Iterable[Frame], stick: Stick, progress: Progress = no_progress
+    clip: Clip | Iterable[Frame],
+    stick: Stick,
+    progress: Progress = no_progress,
+    placed: Placed = nobody,
 ) -> tuple[Camera, ...]:
-    """Give every frame of a clip the camera of the stick."""
+    """Give every frame of a clip the camera of the stick; `placed` is told of each."""
     cameras: list[Camera] = []
     total = clip.expected if isinstance(clip, Clip) else None
     for done, frame in enumerate(clip):
         height, width = frame.image.shape[:2]
         cameras.append(stick_camera(stick, (width, height), frame.index, frame.t))
+        placed(frame, cameras[-1])
         progress("camera", done + 1, total)
     return tuple(cameras)
