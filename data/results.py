@@ -108,16 +108,28 @@ class Glide:
 
 
 @dataclass(frozen=True)
+class SimulatedHit:
+    """One hit of a simulated shot, its states with the errors that the shot's start gives them."""
+
+    t: float
+    stderr_t: float | None
+    stones: tuple[str, str]
+    before: Mapping[str, MeasuredState]
+    after: Mapping[str, MeasuredState]
+
+
+@dataclass(frozen=True)
 class SimulationScore:
     """How far a simulated shot was from the measured one.
 
     ``rmse`` over all stones and times after the first hit, m; ``rest_error`` per stone the
-    distance between simulated and measured last place, m.
+    distance between simulated and measured last place, m; ``hits`` in their order.
     """
 
     rmse: float | None
     rest_error: Mapping[str, float | None] = field(default_factory=dict)
     note: str | None = None
+    hits: tuple[SimulatedHit, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -194,9 +206,7 @@ class Results:
                 friction=_made(Friction, raw["friction"]),
                 collisions=tuple(_collision(item) for item in raw["collisions"]),
                 glides=tuple(_made(Glide, item) for item in raw["glides"]),
-                simulations={
-                    name: _made(SimulationScore, item) for name, item in raw["simulations"].items()
-                },
+                simulations={name: _simulated(item) for name, item in raw["simulations"].items()},
                 warnings=tuple(raw["warnings"]),
                 radius=_length(raw["radius"]),
                 predictions={
@@ -211,13 +221,23 @@ class Results:
 
 
 def _collision(item: dict[str, Any]) -> Collision:
+    nx, ny = item["normal"]
+    return _made(Collision, {**item, **_sides(item), "normal": (nx, ny)})
+
+
+def _simulated(item: dict[str, Any]) -> SimulationScore:
+    hits = tuple(_made(SimulatedHit, {**hit, **_sides(hit)}) for hit in item.get("hits", ()))
+    return _made(SimulationScore, {**item, "hits": hits})
+
+
+def _sides(hit: dict[str, Any]) -> dict[str, Any]:
+    """Read who hit whom, and their states before and after."""
+    first, second = hit["stones"]
     states = {
-        when: {name: _made(MeasuredState, state) for name, state in item[when].items()}
+        when: {name: _made(MeasuredState, state) for name, state in hit[when].items()}
         for when in ("before", "after")
     }
-    first, second = item["stones"]
-    nx, ny = item["normal"]
-    return _made(Collision, {**item, **states, "stones": (first, second), "normal": (nx, ny)})
+    return {"stones": (first, second), **states}
 
 
 def _made(kind: type[_Made], item: Mapping[str, Any]) -> _Made:

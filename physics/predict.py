@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -16,6 +17,7 @@ from physics.ice import Constant, IceLaw
 from physics.impact import Frictional, Impact, PointMass, RigidBody
 from physics.shot_model import ice as fitted_ice
 from physics.simulate import Shot, StoneStart, simulate
+from physics.spread import STATE, Doubt, draws, path_spread, simulated_hits
 
 STONE_FRICTION = 0.05
 """Friction between two stones where the shot does not tell it: granite on granite, wet."""
@@ -25,6 +27,9 @@ RESTITUTION, FRICTION = 0.83, 0.0109
 
 MOVED = 0.05
 """Distance by which a stone must move to count in the score, m."""
+
+STILL = 0.01
+"""Speed below which a stone lies still before the first hit, m/s."""
 
 SUDDEN, WITHIN = 0.1, 0.1
 """Change of velocity (m/s) within a time (s) that neither ice nor air can give a stone."""
@@ -57,7 +62,8 @@ def simulate_measured(
     -------
     samples : dict of str to DataFrame
         Model to the simulated states at the tracks' times from the start on, with the
-        columns ``stone, frame, t, x, y, theta, vx, vy, omega``.
+        columns ``stone, frame, t, x, y, theta, vx, vy, omega`` and the standard deviations
+        ``sd_x, sd_y, sd_vx, sd_vy, sd_omega`` that the errors of the start and the laws give.
     scores : dict of str to SimulationScore
         Root mean square distance over the stones that moved, m, and each stone's distance
         between its simulated and measured last place; both without what follows when
@@ -86,6 +92,7 @@ def simulate_measured(
         ice = fitted_ice(estimates.whole.state())
     clock = tracks.groupby("frame", sort=True)["t"].first()
     clock = clock[clock >= start]
+    doubt = _doubt(tracks, start, estimates)
     ends = explained_until(tracks, estimates, start)
     warnings += [
         f"simulation: {name} is compared until {end:.2f} s; neither ice nor a hit in view"
@@ -100,15 +107,19 @@ def simulate_measured(
             scores[name] = SimulationScore(None, {}, notes[name])
             continue
         try:
-            run = simulate(Shot(stones, impact, ice, NoCurl(), radius))
+            shot = Shot(stones, impact, ice, NoCurl(), radius)
+            run = simulate(shot)
         except InputError as error:
             scores[name] = SimulationScore(None, {}, f"cannot be simulated: {error}")
             continue
-        table = run.sample(clock.to_numpy(float) - start)
+        since = clock.to_numpy(float) - start
+        others = draws(shot, doubt)
+        table = run.sample(since).merge(path_spread(others, since), "left", ["stone", "t"])
         table["frame"] = clock.index.to_numpy()[table["frame"].to_numpy()]
         table["t"] = table["t"] + start
         samples[name] = table
-        scores[name] = score(tracks, table, start, ends, notes.get(name))
+        found = score(tracks, table, start, ends, notes.get(name))
+        scores[name] = replace(found, hits=simulated_hits(run, others, start))
     return samples, scores, tuple(warnings)
 
 
@@ -155,6 +166,28 @@ def _states(
             )
         )
     return tuple(out)
+
+
+def _doubt(tracks: pd.DataFrame, start: float, estimates: Estimates) -> Doubt:
+    """Collect the standard errors of start and laws; stones at rest have those of places alone."""
+    states, spins = {}, {}
+    for name, group in tracks.groupby("stone", sort=True):
+        early = group[group["t"] <= start]
+        row = group.iloc[0] if early.empty else early.iloc[-1]
+        still = _or_zero(np.hypot(row["vx"], row["vy"])) < STILL
+        errors = np.nan_to_num(row[[f"sd_{key}" for key in STATE]].to_numpy(float))
+        states[str(name)] = np.where([False, False, still, still, still], 0.0, errors)
+        own = [hit.after[str(name)] for hit in estimates.collisions if name in hit.stones]
+        spins[str(name)] = tuple(state.sd_omega or 0.0 for state in own)
+    mu = estimates.friction
+    rubs = [hit.stderr_stone_friction for hit in estimates.collisions]
+    return Doubt(
+        states,
+        spins,
+        restitution=estimates.restitution.stderr or 0.0,
+        stone_friction=min((rub for rub in rubs if rub), default=0.0),
+        friction=abs((mu.stderr or 0.0) / mu.value) if mu.value else 0.0,
+    )
 
 
 def _or_zero(value: float) -> float:

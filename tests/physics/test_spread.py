@@ -1,0 +1,63 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from physics.curl import NoCurl
+from physics.ice import Constant
+from physics.impact import Frictional, PointMass
+from physics.simulate import Shot, StoneStart, simulate
+from physics.spread import Doubt, draws, path_spread, simulated_hits
+
+MU, G = 0.0109, 9.81
+CERTAIN = np.zeros(5)
+
+
+def test_a_glide_is_as_uncertain_as_its_closed_form_says() -> None:
+    # Stopping distance v² / (2 μ g): 2 sd(v) / v and sd(μ) / μ of it.
+    shot = Shot((StoneStart("A", 0.0, 0.0, 0.0, 2.0),), ice=Constant(MU), curl=NoCurl())
+    way = 2.0**2 / (2 * MU * G)
+    for doubt, relative in (
+        (Doubt({"A": np.array([0, 0, 0, 0.01, 0])}, {}), 2 * 0.01 / 2.0),
+        (Doubt({"A": CERTAIN}, {}, friction=0.01), 0.01),
+    ):
+        end = path_spread(draws(shot, doubt, 200), np.array([0.0, 30.0])).iloc[-1]
+        assert end["sd_y"] == pytest.approx(way * relative, rel=0.15)
+        assert end["sd_x"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_head_on_hit_passes_on_what_is_not_known_of_restitution_and_speed() -> None:
+    stones = (StoneStart("A", 0.0, -1.0, 0.0, 2.0), StoneStart("B", 0.0, 0.0))
+    shot = Shot(stones, PointMass(0.8), Constant(MU), NoCurl())
+    states = {"A": np.array([0, 0, 0, 0.01, 0]), "B": CERTAIN}
+    runs = draws(shot, Doubt(states, {}, restitution=0.05), 300)
+    (hit,) = simulated_hits(simulate(shot), runs, start=1.5)
+    assert hit.stones == ("A", "B")
+    assert hit.t > 1.5
+    speed, after = hit.before["A"].vy, hit.after["B"]
+    assert after.vy == pytest.approx(0.9 * speed)
+    assert after.sd_vy == pytest.approx(np.hypot(0.05 / 2 * speed, 0.9 * 0.01), rel=0.15)
+    assert after.sd_vx == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_hit_that_hardly_ever_happens_has_no_errors() -> None:
+    stones = (StoneStart("A", 0.29, -1.0, 0.0, 1.0), StoneStart("B", 0.0, 0.0))
+    shot = Shot(stones, Frictional(0.8, 0.1), Constant(MU), NoCurl())
+    aside = {"A": np.array([0.2, 0, 0, 0, 0]), "B": CERTAIN}
+    (hit,) = simulated_hits(simulate(shot), draws(shot, Doubt(aside, {}), 40), 0.0)
+    assert hit.stderr_t is None
+    assert hit.after["B"].sd_vx is None
+
+
+def test_nothing_doubtful_has_no_spread_and_the_same_seed_gives_the_same() -> None:
+    stones = (StoneStart("A", 0.1, -1.0, 0.0, 1.0, 0.5), StoneStart("B", 0.0, 0.0))
+    shot = Shot(stones, Frictional(0.8, 0.1), Constant(MU), NoCurl())
+    none = Doubt({"A": CERTAIN, "B": CERTAIN}, {})
+    times = np.linspace(0.0, 3.0, 7)
+    table = path_spread(draws(shot, none, 5), times)
+    assert len(table) == 14
+    assert table.filter(like="sd_").to_numpy().max() < 1e-12
+    some = Doubt({"A": np.full(5, 0.01), "B": CERTAIN}, {}, 0.05, 0.02, 0.01)
+    one, two = (path_spread(draws(shot, some, 8), times) for _ in range(2))
+    assert one.equals(two)
+    assert path_spread([], times).empty
