@@ -73,7 +73,8 @@ def seek(
         light = cv2.cvtColor(ice.image, cv2.COLOR_BGR2LAB)[..., 0]
         appearance = any_stone(max(float(np.percentile(light[ice.valid], 75)), 60.0))
     response = _response(ice, appearance, disc)
-    peaks = _peaks(response, least, 1.8 * radius_px)
+    # Nearer than stones can be: paint of the cap's colour beside a stone may answer more strongly.
+    peaks = _peaks(response, least, 1.1 * radius_px)
     return Candidates(ice.place(peaks[:, 1], peaks[:, 0]), peaks[:, 2], appearance)
 
 
