@@ -40,6 +40,12 @@ VIEW_SD = (np.inf, np.inf, 0.15, np.inf)
 WIDTH = 3.0
 """Width of the Cauchy loss, in standard deviations."""
 
+_NEAR = 0.5
+"""A step that lowers the cost by less is so short that linear residuals are exact at its end."""
+
+REWEIGHTINGS = 2
+"""Rounds of weights for one linearisation of a view."""
+
 _FAR = 1e6
 """Residual, in standard deviations, of a point that the camera cannot see."""
 
@@ -252,26 +258,44 @@ def solve_view(
     hold = 1 / np.asarray(view_sd, float) ** 2
     start = now = view.vector
     at = linearised(frame, points, now, rig)
-    cost, damping = _cost(at.residual, width), 1e-4
+    residual = at.residual
+    cost, damping = _cost(residual, width), 1e-4
     for _ in range(iterations):
-        weighted = at.by_view / (1 + (at.residual / width) ** 2)
-        normal = weighted @ at.by_view.T
-        normal.flat[:: VIEW_SIZE + 1] += hold + damping * normal.diagonal() + 1e-9
-        tried = now - np.linalg.solve(normal, weighted @ at.residual + hold * (now - start))
-        ahead = linearised(frame, points, tried, rig)
-        new = _cost(ahead.residual, width) + 0.5 * float(hold @ (tried - start) ** 2)
+        step, ahead, new = _descent(at, now - start, hold, width, damping)
+        if cost - new < _NEAR:
+            if new < cost:
+                now, residual, cost = now + step, ahead, new
+            break
+        tried = linearised(frame, points, now + step, rig)
+        new = _cost(tried.residual, width) + 0.5 * float(hold @ (now + step - start) ** 2)
         if not new <= cost:
             damping *= 10
-            if damping > 1e4:
-                break
             continue
-        done = cost - new < _DONE * (1 + cost)
-        now, at, cost, damping = tried, ahead, new, max(damping / 10, 1e-9)
-        if done:
-            break
-    weighted = at.by_view / (1 + (at.residual / width) ** 2)
+        now, at, residual, cost = now + step, tried, tried.residual, new
+        damping = max(damping / 10, 1e-9)
+    weighted = at.by_view / (1 + (residual / width) ** 2)
     normal = weighted @ at.by_view.T + np.diag(hold + 1e-9)
-    return ViewSolution(View(now), inverse(normal), *_spread(at.residual, marks.sd, width), cost)
+    return ViewSolution(View(now), inverse(normal), *_spread(residual, marks.sd, width), cost)
+
+
+def _descent(
+    at: Linear, away: Array, hold: Array, width: float, damping: float
+) -> tuple[Array, Array, float]:
+    """Step of a view, `away` from its start, to the least cost of linear residuals.
+
+    Returns the step, and the residuals and the cost after it. Weights are worked out anew a few
+    times: that costs a tenth of linearising anew.
+    """
+    step = np.zeros(VIEW_SIZE)
+    residual = at.residual
+    for _ in range(REWEIGHTINGS):
+        weighted = at.by_view / (1 + (residual / width) ** 2)
+        normal = weighted @ at.by_view.T
+        normal.flat[:: VIEW_SIZE + 1] += hold + damping * normal.diagonal() + 1e-9
+        step = -np.asarray(np.linalg.solve(normal, weighted @ at.residual + hold * away))
+        residual = at.residual + step @ at.by_view
+    cost = _cost(residual, width) + 0.5 * float(hold @ (away + step) ** 2)
+    return step, residual, cost
 
 
 def solve(
