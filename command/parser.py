@@ -156,6 +156,7 @@ def command_line(version: str) -> argparse.ArgumentParser:
         '  ice = "fcv1"               # constant (with friction = 0.0109) | fcv1 | penner | fit\n'
         '  curl = "fcv1"              # none | fcv1\n'
         "  radius = 0.145\n"
+        '  sheet = "none"             # none | up | down: where stones that leave it go away\n'
         "  inertia = 0.5              # I / (m R^2)\n"
         "  [[stone]]                  # one for each stone\n"
         '  name = "A"\n'

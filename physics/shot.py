@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from data.errors import InputError
+from physics.bounds import Bounds
 from physics.registry import models, parameters_of
 from physics.simulate import FARTHEST, FASTEST, Shot, StoneStart
 
@@ -23,6 +24,8 @@ LARGEST_OVERLAP = 0.2
 
 _FAMILIES = {"model": ("impact", "frictional"), "ice": ("ice", "fcv1"), "curl": ("curl", "fcv1")}
 """Key in the file, the family of models that it chooses from, and the choice without it."""
+_SHEETS: dict[str, Bounds | None] = {"none": None, "up": Bounds(1), "down": Bounds(-1)}
+"""What `sheet` may be: ice without end, or a sheet with stones thrown up or down y."""
 _STONE_KEYS = ("name", "x", "y", "vx", "vy", "omega", "theta", "omega_after", "mass")
 
 
@@ -85,7 +88,8 @@ def read_shot(path: Path) -> Shot:
     A table ``[physics]``, all optional: model (point-mass, rigid-body, frictional) with
     restitution, stone_friction and inertia (I / (m R²)); ice (constant and penner with
     friction, fcv1 and fit with a, v_c and b), curl (none, fcv1 with turn, loss and slow),
-    radius (m): the models of `physics.registry` and their parameters. One table
+    radius (m): the models of `physics.registry` and their parameters; sheet (none, or up or
+    down, the way of play, where stones that leave it are to be taken away). One table
     ``[[stone]]`` a stone: name, x, y (m); vx, vy (m/s), omega (rad/s), theta (rad), mass (kg)
     and omega_after (rad/s; a number, or a list with one a hit) where they matter.
 
@@ -129,14 +133,15 @@ def _shot(content: Mapping[str, Any], faults: list[str]) -> Shot:
         faults.append("no stone: add a table [[stone]] with name, x and y")
     physics = _Table("[physics]", laws, faults)
     known = {item.name for family, _ in _FAMILIES.values() for item in _parameters(family)}
-    physics.only((*_FAMILIES, *sorted(known), "radius"))
+    physics.only((*_FAMILIES, *sorted(known), "radius", "sheet"))
     radius = physics.number("radius", RADIUS, 0.0, above=True)
+    bounds = _SHEETS[physics.choice("sheet", "none", tuple(_SHEETS))]
     impact, ice, curl = [_model(physics, key) for key in _FAMILIES]
     stones = tuple(_stone(k, item, faults) for k, item in enumerate(tables, start=1))
     _check_together(stones, radius, faults)
     if faults:
         return Shot(stones)
-    return Shot(stones, impact(), ice(), curl(), radius)
+    return Shot(stones, impact(), ice(), curl(), radius, bounds)
 
 
 def _parameters(family: str) -> list[Field[Any]]:

@@ -12,10 +12,12 @@ from numpy.typing import NDArray
 from data.errors import InputError
 from data.results import Results
 from data.sheet import SHEET, STONE
+from physics.bounds import Bounds
 from physics.curl import NoCurl
 from physics.curve import Curve, curve_for
 from physics.ice import Constant, Fit, IceLaw
 from physics.impact import Frictional
+from physics.motion import Motion, Path
 from physics.predict import FRICTION, RESTITUTION, STONE_FRICTION
 from physics.simulate import Shot, StoneStart
 
@@ -76,18 +78,18 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     -------
     Start
         The thrown stone, the fastest, is taken back by `BACK` on its way, or less where
-        another stone lies in it. It is let go at the hog line, if it is a curling stone.
+        another stone lies in it. If it is a curling stone, it is let go at the hog line, and
+        stones that leave the sheet are taken away.
 
     Raises
     ------
     InputError
         Where no stone moves.
     """
-    first = min((hit.t for hit in results.collisions), default=-math.inf)
-    rows = [_row(group, first) for _, group in tracks.groupby("stone", sort=True)]
+    ice, sd_friction, assumed = _ice(results)
+    time = _time(tracks, results)
+    rows = [_row(group, time, ice) for _, group in tracks.groupby("stone", sort=True)]
     table = pd.DataFrame(rows).reset_index(drop=True)
-    for key in STATE:
-        table[key] = table[key].fillna(0.0)
     stones = tuple(
         StoneStart(str(row["stone"]), **{key: float(row[key]) for key in STATE})
         for row in table.to_dict("records")
@@ -98,7 +100,6 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     # A stone at rest is known to rest.
     sd[[stone.vx == stone.vy == 0 for stone in stones], 2:] = 0.0
     thrown = _fastest(stones)
-    ice, sd_friction, assumed = _ice(results)
     e = results.restitution
     if e.value is None:
         assumed.append(f"restitution not measured, {RESTITUTION} assumed")
@@ -115,7 +116,8 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     moved[thrown] = _taken_back(stone, way, ice)
     curling = abs(results.radius / STONE.radius - 1) < 0.1
     release = max(HOG_TO_TEE + ahead - way, 0.0) if curling else 0.0
-    shot = Shot(tuple(moved), impact, ice, NoCurl(), results.radius)
+    bounds = Bounds(1 if stone.vy > 0 else -1) if curling else None
+    shot = Shot(tuple(moved), impact, ice, NoCurl(), results.radius, bounds)
     return Start(shot, thrown, sd, e.stderr or 0.0, sd_friction, release, tuple(assumed))
 
 
@@ -146,15 +148,32 @@ def _reach(curve: Curve) -> Array:
     return np.append(curve.coefficients[:, 4, 0], last)
 
 
-def _row(group: pd.DataFrame, first: float) -> pd.Series:
-    """Last state of a stone before the first hit, or its first one."""
-    early = group[group["t"] < first]
-    if not early.empty:
-        return early.iloc[-1]
-    row = group.iloc[0].copy()
-    if np.isfinite(first):
+def _time(tracks: pd.DataFrame, results: Results) -> float:
+    """Time at which the shot begins: the last before its first hit.
+
+    Without a hit, the first at which the fastest stone is seen.
+    """
+    first = min((hit.t for hit in results.collisions), default=math.inf)
+    early = tracks["t"] < first
+    if math.isfinite(first) and early.any():
+        return float(tracks.loc[early, "t"].max())
+    speed = np.nan_to_num(np.hypot(tracks["vx"].to_numpy(float), tracks["vy"].to_numpy(float)))
+    fastest = tracks["stone"].iloc[int(speed.argmax())]
+    return float(tracks.loc[tracks["stone"] == fastest, "t"].min())
+
+
+def _row(group: pd.DataFrame, time: float, ice: IceLaw) -> pd.Series:
+    """State of a stone at a time: its last one, from where it glides on, or its first one."""
+    early = group[group["t"] <= time]
+    row = group.iloc[0 if early.empty else len(early) - 1].copy()
+    row[list(STATE)] = row[list(STATE)].astype(float).fillna(0.0)
+    if early.empty:
         # It comes into view later: its way there is not known.
         row[["vx", "vy", "omega"]] = 0.0
+    elif row["t"] < time:
+        x, y, vx, vy, omega = (float(row[key]) for key in STATE)
+        then = Path(0.0, Motion(x, y, 0.0, vx, vy, omega), ice, NoCurl()).at(time - row["t"])
+        row[list(STATE)] = [then.x, then.y, then.vx, then.vy, then.omega]
     return row
 
 

@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 
 THROW_SD = (0.0076, 0.0018)
 """What players are off by as they let go: speed (m/s) and direction (rad)."""
+FASTEST_THROW, MOST_SPIN = 10.0, 20.0
+"""Speed (m/s) and spin (rad/s) beyond which a throw is a mistake."""
 LAWS = 64
 """Equally likely values that stand for the friction's distribution: equal ices share work."""
 
@@ -78,13 +80,17 @@ class Changes:
 
 @dataclass(frozen=True)
 class Odds:
-    """Where one stone comes to rest: mean and spread (m), and how often (0..1)."""
+    """Where one stone comes to rest: mean and spread (m), and how often (0..1).
 
-    x: float
-    y: float
-    sd_x: float
-    sd_y: float
+    Mean and spread are those of the samples in which it stays ``in_play``; None if it never does.
+    """
+
+    x: float | None
+    y: float | None
+    sd_x: float | None
+    sd_y: float | None
     moved: float
+    in_play: float
     in_house: float
     shot_stone: float
 
@@ -95,7 +101,7 @@ def changed(start: Start, changes: Changes) -> Start:
     Raises
     ------
     InputError
-        Where the thrown stone would begin on top of another.
+        Where the thrown stone would begin on top of another, or be faster than any.
     """
     shot = start.shot
     if changes.restitution is not None:
@@ -140,7 +146,8 @@ def sample(
     Returns
     -------
     DataFrame
-        ``sample, stone, x, y, hits``: places of rest, m, and hits of each stone.
+        ``sample, stone, x, y, hits, in_play``: places of rest, m, hits of each stone, and 0
+        for one that has left the sheet at that place.
     """
     rng = np.random.default_rng(seed)
     shot = start.shot
@@ -169,6 +176,7 @@ def sample(
             "x": done.x.ravel(),
             "y": done.y.ravel(),
             "hits": done.hits.ravel(),
+            "in_play": done.in_play.ravel().astype(int),
         }
     )
 
@@ -183,22 +191,33 @@ def odds(outcomes: pd.DataFrame, start: Start) -> dict[str, Odds]:
     x = outcomes["x"].to_numpy(float).reshape(-1, len(names))
     y = outcomes["y"].to_numpy(float).reshape(-1, len(names))
     hits = outcomes["hits"].to_numpy().reshape(-1, len(names))
-    distance = np.hypot(x, y)
+    in_play = outcomes["in_play"].to_numpy(bool).reshape(-1, len(names))
+    distance = np.where(in_play, np.hypot(x, y), np.inf)
     inside = distance < HOUSE.twelve_foot + start.shot.radius
     nearest = np.where(inside, distance, np.inf).argmin(axis=1)
     out = {}
     for k, stone in enumerate(start.shot.stones):
         moved = (hits[:, k] > 0) | (math.hypot(stone.vx, stone.vy) > 0)
         out[stone.name] = Odds(
-            x=float(x[:, k].mean()),
-            y=float(y[:, k].mean()),
-            sd_x=float(x[:, k].std()),
-            sd_y=float(y[:, k].std()),
+            **_spread(x[in_play[:, k], k], y[in_play[:, k], k]),
             moved=float(moved.mean()),
+            in_play=float(in_play[:, k].mean()),
             in_house=float(inside[:, k].mean()),
             shot_stone=float((inside[:, k] & (nearest == k)).mean()),
         )
     return out
+
+
+def _spread(x: Array, y: Array) -> dict[str, float | None]:
+    """Mean and standard deviation of places, m; None of none."""
+    if not len(x):
+        return dict.fromkeys(("x", "y", "sd_x", "sd_y"))
+    return {
+        "x": float(x.mean()),
+        "y": float(y.mean()),
+        "sd_x": float(x.std()),
+        "sd_y": float(y.std()),
+    }
 
 
 def _thrown(stone: StoneStart, changes: Changes) -> StoneStart:
@@ -208,13 +227,22 @@ def _thrown(stone: StoneStart, changes: Changes) -> StoneStart:
         return stone
     ux, uy = stone.vx / speed, stone.vy / speed
     speed = changes.speed.of(speed) if changes.speed else speed
+    spin = changes.spin.of(stone.omega) if changes.spin else stone.omega
+    if changes.speed and speed > FASTEST_THROW:
+        raise InputError(
+            f"speed: {stone.name} would be thrown at {speed:.3g} m/s; at most {FASTEST_THROW:g}"
+        )
+    if changes.spin and abs(spin) > MOST_SPIN:
+        raise InputError(
+            f"spin: {stone.name} would turn at {spin:.3g} rad/s; at most {MOST_SPIN:g}"
+        )
     return replace(
         stone,
         x=stone.x - changes.aim_offset * uy,
         y=stone.y + changes.aim_offset * ux,
         vx=speed * ux,
         vy=speed * uy,
-        omega=changes.spin.of(stone.omega) if changes.spin else stone.omega,
+        omega=spin,
     )
 
 

@@ -20,10 +20,14 @@ def odds_text(odds: Mapping[str, Any], written: Sequence[Path]) -> list[str]:
         f"{odds['thrown']} thrown {count(odds['samples'], 'time')}, at rest (mean ± spread):",
     ]
     for name, item in odds["stones"].items():
+        if item["x"] is None:
+            lines.append(f"  {name}  always leaves the sheet")
+            continue
         lines.append(
             f"  {name}  x {item['x']:+7.2f} ± {item['sd_x']:.2f} m"
             f"   y {item['y']:+7.2f} ± {item['sd_y']:.2f} m   moved {item['moved']:4.0%}"
-            f"   in the house {item['in_house']:4.0%}   shot stone {item['shot_stone']:4.0%}"
+            f"   in play {item['in_play']:4.0%}   in the house {item['in_house']:4.0%}"
+            f"   shot stone {item['shot_stone']:4.0%}"
         )
     return [*lines, f"written: {', '.join(map(str, written))}"]
 
@@ -32,7 +36,13 @@ def simulation_json(simulation: Simulation) -> dict[str, Any]:
     """Rest positions and hits of a simulation as plain values, for ``--json``."""
     return {
         "stones": {
-            name: {"x": rest.x, "y": rest.y, "theta": rest.theta, "t": rest.t}
+            name: {
+                "x": rest.x,
+                "y": rest.y,
+                "theta": rest.theta,
+                "t": rest.t,
+                "in_play": rest.in_play,
+            }
             for name, rest in simulation.rest.items()
         },
         "hits": [
@@ -53,6 +63,7 @@ def simulation_text(simulation: Simulation, path: Path) -> str:
     lines = ["at rest:"]
     lines += [
         f"  {name}  x {rest.x:+8.3f} m   y {rest.y:+8.3f} m   after {rest.t:6.2f} s"
+        f"{'' if rest.in_play else '   (there it left the sheet)'}"
         for name, rest in simulation.rest.items()
     ]
     lines.append("hits:" if simulation.hits else "no hits")

@@ -8,6 +8,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from data.errors import InputError
+from physics.bounds import Bounds
 from physics.curl import FCV1Curl, NoCurl
 from physics.ice import FCV1, Constant, Penner
 from physics.impact import Frictional, PointMass, RigidBody
@@ -195,3 +196,12 @@ def test_nothing_but_a_shot_or_one_line(
         assert "\n" not in str(error)
     else:
         assert shot.stones
+
+
+def test_the_sheet_is_chosen_by_its_way_of_play(tmp_path: Path) -> None:
+    stone = '[[stone]]\nname = "A"\nx = 0\ny = 0\n'
+    assert read(tmp_path, stone).bounds is None
+    assert read(tmp_path, '[physics]\nsheet = "none"\n' + stone).bounds is None
+    assert read(tmp_path, '[physics]\nsheet = "down"\n' + stone).bounds == Bounds(-1)
+    with pytest.raises(InputError, match=r"no sheet 'upp' \(did you mean up\?\)"):
+        read(tmp_path, '[physics]\nsheet = "upp"\n' + stone)

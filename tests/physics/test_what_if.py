@@ -10,7 +10,7 @@ import pytest
 from data.errors import InputError
 from data.results import Collision, Estimate, Friction, Input, MeasuredState, Results
 from data.sheet import GRAVITY
-from data.tracks import TRACK_COLUMNS
+from physics.bounds import Bounds
 from physics.curl import NoCurl
 from physics.ice import FCV1, Constant, Penner
 from physics.impact import Frictional, PointMass
@@ -26,12 +26,13 @@ HIT = Shot(
     Constant(MU),
     NoCurl(),
     R,
+    Bounds(-1),
 )
 
 
-def measured() -> tuple[pd.DataFrame, Results]:
-    """Tracks and results of `HIT`, as a run would write them."""
-    done = simulate(HIT)
+def measured(shot: Shot = HIT) -> tuple[pd.DataFrame, Results]:
+    """Tracks and results of a shot with one hit, as a run would write them."""
+    done = simulate(shot)
     (hit,) = done.hits
     tracks = done.sample(np.arange(0, 6, 0.04))
     for key in ("x", "y", "theta", "vx", "vy", "omega"):
@@ -48,7 +49,7 @@ def measured() -> tuple[pd.DataFrame, Results]:
         (collision,),
         radius=R,
     )
-    return tracks[list(TRACK_COLUMNS)], results
+    return tracks, results
 
 
 def test_an_unchanged_shot_ends_as_it_did() -> None:
@@ -145,7 +146,7 @@ def test_measured_uncertainties_spread_the_outcome() -> None:
 
 
 def test_restitution_is_drawn_where_it_is_not_known() -> None:
-    start = replace(written_start(HIT), sd_restitution=0.03)
+    start = replace(written_start(replace(HIT, bounds=None)), sd_restitution=0.03)
     out = sample(start, 600, (0.0, 0.0))
     b = out[out["stone"] == "B"]
     (hit,) = simulate(HIT).hits
@@ -163,8 +164,51 @@ def test_odds_count() -> None:
         (0, "A", 5.0, 0.0, 1), (0, "B", 0.5, 0.0, 1), (0, "C", -1.0, -1.0, 0),
         (1, "A", 0.0, 9.0, 1), (1, "B", 3.0, 0.0, 1), (1, "C", -1.0, -1.0, 0),
     ]  # fmt: skip
-    told = odds(pd.DataFrame(rows, columns=["sample", "stone", "x", "y", "hits"]), start)
+    table = pd.DataFrame(rows, columns=["sample", "stone", "x", "y", "hits"]).assign(in_play=1)
+    told = odds(table, start)
     assert [told[name].in_house for name in "ABC"] == [0.0, 0.5, 1.0]
     assert [told[name].shot_stone for name in "ABC"] == [0.0, 0.5, 0.5]
     assert [told[name].moved for name in "ABC"] == [1.0, 1.0, 0.0]
     assert (told["A"].x, told["A"].sd_x) == (2.5, 2.5)
+    table.loc[table["stone"] == "B", "in_play"] = 0
+    told = odds(table, start)
+    assert (told["B"].x, told["B"].sd_y, told["B"].in_play) == (None, None, 0.0)
+    assert [told[name].shot_stone for name in "ABC"] == [0.0, 0.0, 1.0]
+
+
+def test_all_stones_begin_at_one_time() -> None:
+    """A stone that was last seen a while before the hit has glided on until then."""
+    start = HIT.stones[0], StoneStart("B", 0.1, 0.5), StoneStart("C", 1.0, 0.0, 0.0, 0.9)
+    shot = replace(HIT, stones=start)
+    tracks, results = measured(shot)
+    hit = results.collisions[0].t
+    lost = (tracks["stone"] == "C") & (tracks["t"] > hit - 0.6)
+    begun = measured_start(tracks[~lost].reset_index(drop=True), results).shot.stones[2]
+    truth = simulate(shot).sample([tracks.loc[tracks["t"] < hit, "t"].max()])
+    expected = truth.set_index("stone").loc["C"]
+    assert (begun.x, begun.y) == pytest.approx((expected.x, expected.y), abs=1e-6)
+    assert begun.vy == pytest.approx(expected.vy, abs=1e-6)
+
+
+def test_a_measured_shot_is_played_on_a_sheet() -> None:
+    start = measured_start(*measured())
+    assert start.shot.bounds == Bounds(-1)
+    fast = changed(start, Changes(speed=Amount(2.5, relative=True)))
+    outcomes = sample(fast, 50)
+    ends = odds(outcomes, fast)
+    assert ends["B"].in_play < 0.1
+    assert ends["B"].in_house <= ends["B"].in_play
+    assert ends["C"].in_play > 0.8
+    assert set(outcomes["in_play"]) == {0, 1}
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        (Changes(speed=Amount(9.0, relative=True)), "would be thrown at"),
+        (Changes(spin=Amount(-100.0, relative=True)), "would turn at"),
+    ],
+)
+def test_throws_that_nobody_can_make(changes: Changes, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        changed(measured_start(*measured()), changes)
