@@ -81,7 +81,7 @@ class Curve:
         cell = self._cells[k]
         if cell is None:
             cubics = map(tuple, self.coefficients[k].tolist())
-            cell = self._cells[k] = Cell(*cubics, node=self._nodes[0][k])
+            cell = self._cells[k] = Cell._make([*cubics, self._nodes[0][k]])
         return cell
 
     def cell_at(self, tau: float) -> Cell:
