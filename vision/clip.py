@@ -2,32 +2,39 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
+from typing import Any
 
-os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")  # our one line, not the decoder's twenty
-
+import av
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from data.errors import InputError
 from data.inputs import IMAGE_SUFFIXES
-
-Image = NDArray[np.uint8]
+from vision.picture import Image as Image
+from vision.picture import Picture, Planes, image_of
 
 DEFAULT_IMAGE_FPS = 25.0
+
+THREADS = 4
+"""Most threads that decode a video: each holds pictures of its own."""
 
 
 @dataclass(frozen=True)
 class Frame:
-    """One picture (BGR, shape (h, w, 3)), its index in the clip and its time, s."""
+    """One picture, its index in the clip and its time, s."""
 
     index: int
     t: float
-    image: Image
+    picture: Picture
+
+    @cached_property
+    def image(self) -> Image:
+        """The picture in colour (BGR), shape (h, w, 3)."""
+        return image_of(self.picture)
 
 
 @dataclass
@@ -84,41 +91,33 @@ class Clip:
             self.warnings.append(text)
 
     def _read_video(self) -> Iterator[Frame]:
-        capture = cv2.VideoCapture(str(self.files[0]))
-        try:
-            index, before = 0, -np.inf
-            start = end = longest = 0.0
-            while self.last is None or index <= self.last:
-                if not capture.grab():
-                    break
-                # Read after grab: the presentation time stamp of this very frame.
-                t = capture.get(cv2.CAP_PROP_POS_MSEC) / 1000
+        index, before = -1, -np.inf
+        start = end = longest = 0.0
+        with av.open(str(self.files[0])) as container:
+            for index, (t, picture) in enumerate(_decoded(container)):
+                if self.last is not None and index > self.last:
+                    return
                 start = t if index == 0 else start
                 longest, end = max(longest, t - end if index else 0.0), t
-                if index >= self.first:
-                    ok, image = capture.retrieve()
-                    if not ok:
-                        self._warn(f"{self.files[0]}: frame {index} cannot be decoded")
-                    elif t <= before:
-                        self._warn(
-                            f"{self.files[0]}: frame {index} has no time of its own; left out"
-                        )
-                    else:
-                        before = t
-                        yield Frame(index, t, np.asarray(image, np.uint8))
-                index += 1
-            # Where the container does not count its frames (Matroska), the promised number is
-            # duration times rate, too many if the rate varies: so the time is asked as well.
-            rate = self.fps or np.inf
-            missing = self.frames / rate - (end - start) > 1.5 * max(1 / rate, longest)
-            ended_early = self.last is None or self.last >= index
-            if ended_early and index < self.frames and missing:
-                self._warn(
-                    f"{self.files[0]}: ends after {index} of {self.frames} frames; used as far as"
-                    " it goes"
-                )
-        finally:
-            capture.release()
+                if index < self.first:
+                    continue
+                if t <= before:
+                    self._warn(f"{self.files[0]}: frame {index} has no time of its own; left out")
+                    continue
+                if picture.shape[1::-1] != self.size:
+                    self._warn(f"{self.files[0]}: frame {index} is of another size; left out")
+                    continue
+                before = t
+                yield Frame(index, t, picture)
+        # Where the container does not count its frames (Matroska), the promised number is
+        # duration times rate, too many if the rate varies: so the time is asked as well.
+        rate, count = self.fps or np.inf, index + 1
+        missing = self.frames / rate - (end - start) > 1.5 * max(1 / rate, longest)
+        if count < self.frames and missing:
+            self._warn(
+                f"{self.files[0]}: ends after {count} of {self.frames} frames; used as far as it"
+                " goes"
+            )
 
     def _read_images(self) -> Iterator[Frame]:
         rate = self.fps or DEFAULT_IMAGE_FPS
@@ -128,7 +127,7 @@ class Clip:
             image = _read_image(path)
             if image is None:
                 self._warn(f"{path}: not a readable picture; left out")
-            elif (image.shape[1], image.shape[0]) != self.size:
+            elif image.shape[1::-1] != self.size:
                 self._warn(f"{path}: not of the size of the first picture; left out")
             else:
                 yield Frame(index, index / rate, image)
@@ -193,20 +192,54 @@ def _open_images(paths: Sequence[Path], fps: float | None, first: int, last: int
 def _open_video(paths: Sequence[Path], first: int, last: int | None) -> Clip:
     if len(paths) > 1:
         raise InputError(f"{paths[1]}: one video at a time, please")
-    capture = cv2.VideoCapture(str(paths[0]))
+    broken = f"{paths[0]}: not a video that can be read (damaged, or not one at all)"
     try:
-        ok, image = capture.read() if capture.isOpened() else (False, None)
-        if not ok or image is None:
-            raise InputError(
-                f"{paths[0]}: not a video that can be read (damaged, or not one at all)"
-            )
-        fps = float(capture.get(cv2.CAP_PROP_FPS))
-        count = int(capture.get(cv2.CAP_PROP_FRAME_COUNT))
-    finally:
-        capture.release()
-    size = (image.shape[1], image.shape[0])
+        with av.open(str(paths[0])) as container:
+            first_one = next(_decoded(container), None)
+            if first_one is None:
+                raise InputError(broken)
+            fps, count = _promised(container)
+    except (av.error.FFmpegError, OSError):
+        raise InputError(broken) from None
+    height, width, _ = first_one[1].shape
+    return Clip((paths[0],), (width, height), fps, max(count, 1), first, last)
+
+
+def _promised(container: Any) -> tuple[float | None, int]:
+    """Nominal rate, 1/s, and number of frames as the container has them."""
+    stream = container.streams.video[0]
+    rate = stream.average_rate or stream.guessed_rate
+    fps = float(rate) if rate else None
+    if stream.frames:
+        return fps, int(stream.frames)
+    if stream.duration:
+        duration = float(stream.duration * stream.time_base)
+    else:
+        duration = (container.duration or 0) / av.time_base
     # Some containers do not know their length; then the clip ends where reading ends.
-    return Clip((paths[0],), size, fps if fps > 0 else None, max(count, 1), first, last)
+    return fps, round(duration * (fps or 0.0))
+
+
+def _decoded(container: Any) -> Iterator[tuple[float, Planes]]:
+    """Decode the pictures of a video in order, each with its time, s; damaged ones are left out."""
+    if not container.streams.video:
+        return
+    stream = container.streams.video[0]
+    stream.thread_type, stream.codec_context.thread_count = "FRAME", THREADS
+    begin = stream.start_time or 0
+    packets = container.demux(stream)
+    while True:
+        try:
+            packet = next(packets)
+            frames = packet.decode()
+        except StopIteration:
+            return
+        except (av.error.InvalidDataError, av.error.EOFError):
+            continue
+        for frame in frames:
+            stamp = frame.dts if frame.pts is None else frame.pts
+            if stamp is not None:
+                yield float((stamp - begin) * stream.time_base), Planes.of(frame)
 
 
 def _read_image(path: Path) -> Image | None:

@@ -60,7 +60,7 @@ class ProjectClip(Clip):
             if frame.index >= self.first and timing.includes(np.array([frame.index]))[0]:
                 self.read += 1
                 t = timing.origin + self.pace * (frame.t - begin)
-                yield Frame(frame.index, t, frame.image)
+                yield Frame(frame.index, t, frame.picture)
         for text in self.whole.warnings:
             self._warn(_by_project(text, self.files[0], self.whole.files[0]))
 
