@@ -7,7 +7,7 @@ the picture after the video's filters.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -30,8 +30,13 @@ _MOVES_PIXELS = {
     "ResizeFilter": "resize",
     "RotateFilter": "rotate",
 }
-ANGLE_COLUMN = "theta(rad)"
-"""Column of text in which this program gives Tracker the angles of a stone."""
+TEXT_COLUMNS: Mapping[str, str] = {
+    "theta": "theta(rad)", "sd_x": "sd_x(m)", "sd_y": "sd_y(m)", "sd_theta": "sd_theta(rad)"
+}  # fmt: skip
+"""Columns of text in which this program gives Tracker what it has no columns for."""
+
+MEASURED = ("t", "x", "y", *TEXT_COLUMNS)
+"""What this program adds to each mark, in this order."""
 
 _UNEVEN = 0.02
 """Share of a frame by which a clip's times may be off equal steps and count as equal."""
@@ -97,11 +102,12 @@ class PointMass:
         Pixels.
     filled : int
         How many of the marks Tracker put between those of the user.
-    theta : ndarray, shape (n,)
-        How it is turned, rad, where a column of text of that name says so; else NaN or empty.
-    measured : ndarray, shape (n, 4)
-        Exact t, x, y and angle of each mark (s, m, rad), where this program wrote the project;
-        else without rows.
+    texts : mapping of str to ndarray, shape (n,)
+        What is in the columns of text that this program writes (`TEXT_COLUMNS`; m, rad); NaN
+        where there is no number.
+    measured : ndarray, shape (n, 7)
+        `MEASURED` of each mark (s, m, rad), where this program wrote the project; else without
+        rows.
     """
 
     name: str
@@ -109,8 +115,8 @@ class PointMass:
     frames: Frames
     marks: Array
     filled: int = 0
-    theta: Array = field(default_factory=lambda: np.empty(0))
-    measured: Array = field(default_factory=lambda: np.empty((0, 4)))
+    texts: Mapping[str, Array] = field(default_factory=dict)
+    measured: Array = field(default_factory=lambda: np.empty((0, len(MEASURED))))
 
 
 @dataclass(frozen=True)
@@ -248,14 +254,16 @@ class Project:
         used = self.timing.includes(track.frames)
         frames = track.frames[used]
         if len(track.measured):
-            t, x, y, theta = track.measured[used].T
-            known = {"t": t, "frame": frames, "x": x, "y": y, "theta": theta}
-            return pd.DataFrame({"stone": track.name, **known})
+            exact = dict(zip(MEASURED, track.measured[used].T, strict=True))
+            return pd.DataFrame({"stone": track.name, "frame": frames, **exact})
         x, y = self.coordinates.world(frames, track.marks[used]).T
         known = {"t": self.timing.times(frames), "frame": frames, "x": x, "y": y}
-        if len(track.theta):
-            known["theta"] = track.theta[used]
-        return pd.DataFrame({"stone": track.name, **known})
+        metre = 1 / LENGTH_UNITS.get(self.length_unit, 1.0)
+        texts = {
+            name: column[used] * (metre if name in ("sd_x", "sd_y") else 1.0)
+            for name, column in track.texts.items()
+        }
+        return pd.DataFrame({"stone": track.name, **known, **texts})
 
 
 def project_of(root: Thing, source: str) -> Project:
@@ -341,22 +349,26 @@ def _point_mass(track: Thing, name: str, shift: int) -> PointMass:
         frames=frames,
         marks=places,
         filled=_filled(frames, places, by_hand),
-        theta=_angles(track, frames + shift),
+        texts=_texts(track, frames + shift),
         measured=_measured(track, len(frames)),
     )
 
 
-def _angles(track: Thing, frames: Frames) -> Array:
-    """Read the angles of a stone in frames from the column of text that holds them."""
+def _texts(track: Thing, frames: Frames) -> dict[str, Array]:
+    """Read the columns of text that this program writes."""
     names, columns = track.thing("text_column_names"), track.thing("text_column_entries")
     if names is None or columns is None:
-        return np.empty(0)
-    found = [n for n, name in names.sparse().items() if name == ANGLE_COLUMN]
-    column = columns.sparse().get(found[0]) if found else None
-    if not isinstance(column, Thing):
-        return np.empty(0)
-    cells = column.sparse()
-    return np.array([_number_or_nan(cells.get(frame)) for frame in frames.tolist()])
+        return {}
+    entries = columns.sparse()
+    known = {label: name for name, label in TEXT_COLUMNS.items()}
+    found = {}
+    for n, label in names.sparse().items():
+        column = entries.get(n)
+        if isinstance(label, str) and label in known and isinstance(column, Thing):
+            cells = column.sparse()
+            numbers = [_number_or_nan(cells.get(frame)) for frame in frames.tolist()]
+            found[known[label]] = np.array(numbers)
+    return found
 
 
 def _number_or_nan(cell: str | Thing | None) -> float:
@@ -372,9 +384,10 @@ def _measured(track: Thing, count: int) -> Array:
     """Read the exact places that this program adds; Tracker drops them when it saves."""
     written = track.thing("measured")
     numbers = np.empty(0) if written is None else written.floats()
-    rows = numbers.reshape(-1, 4) if len(numbers) == 4 * count else np.empty((0, 4))
+    width = len(MEASURED)
+    rows = numbers.reshape(-1, width) if len(numbers) == width * count else np.empty((0, width))
     sound = np.isfinite(rows[:, :3]).all() and not np.isinf(rows).any()
-    return rows if sound and (np.diff(rows[:, 0]) > 0).all() else np.empty((0, 4))
+    return rows if sound and (np.diff(rows[:, 0]) > 0).all() else rows[:0]
 
 
 def _filled(frames: Frames, marks: Array, by_hand: NDArray[np.bool_]) -> int:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from data.files import whole_file, write_text
 from data.inputs import IMAGE_SUFFIXES
 from data.sheet import STONE
-from data.trk import ANGLE_COLUMN, Coordinates
+from data.trk import MEASURED, TEXT_COLUMNS, Coordinates
 
 Array = NDArray[np.float64]
 
@@ -57,7 +57,7 @@ def plain_view(sightings: pd.DataFrame, size: tuple[int, int] = (1280, 720)) -> 
     """Give a view from above without a video, in which all places lie within the picture."""
     xy = sightings[["x", "y"]].to_numpy(float)
     low, high = xy.min(axis=0), xy.max(axis=0)
-    scale = float(np.clip(0.8 * np.min(np.array(size) / np.maximum(high - low, 1e-3)), 1.5, 1e4))
+    scale = float(np.clip(0.8 * np.min(np.array(size) / np.maximum(high - low, 0.2)), 1.5, 1e4))
     middle = (low + high) / 2
     origin = np.array(size) / 2 + scale * middle * (-1.0, 1.0)
     keys = np.zeros(1, np.int64)
@@ -214,30 +214,35 @@ def _point_mass(
         int(frame): _object(f"{cls}$FrameData", [_value("x", float(x)), _value("y", float(y))])
         for frame, (x, y) in zip(rows["frame"], marks, strict=True)
     }
-    measured = rows[["t", "x", "y", "theta"]].to_numpy(float)
     return _object(
         cls,
         [
             _value("mass", STONE.mass),
             _value("name", stone),
             *_look(colour, _MARK),
-            *_angles(rows),
+            *_texts(rows),
             _sparse("framedata", f"{cls}$FrameData", data),
-            _numbers("measured", "[[D", measured),
+            _numbers("measured", "[[D", rows[list(MEASURED)].to_numpy(float)),
         ],
     )
 
 
-def _angles(rows: pd.DataFrame) -> list[list[str]]:
-    """Put angles into a column of text, which Tracker shows, exports and saves again."""
-    known = rows[rows["theta"].notna()]
-    if known.empty:
+def _texts(rows: pd.DataFrame) -> list[list[str]]:
+    """Put angles and errors into columns of text, which Tracker shows, exports and saves again."""
+    labels: dict[int, str] = {}
+    columns: list[str] = []
+    for name, label in TEXT_COLUMNS.items():
+        known = rows[rows[name].notna()]
+        if len(known):
+            cells = zip(known["frame"], known[name], strict=True)
+            entries = {int(frame): repr(float(value)) for frame, value in cells}
+            columns += _strings(f"[{len(labels)}]", entries)
+            labels[len(labels)] = label
+    if not labels:
         return []
-    entries = {int(n): repr(float(v)) for n, v in zip(known["frame"], known["theta"], strict=True)}
-    column = _strings("[0]", entries)
     return [
-        _strings("text_column_names", {0: ANGLE_COLUMN}),
-        [*_array("text_column_entries", f"[{_STRINGS}"), *column, "</property>"],
+        _strings("text_column_names", labels),
+        [*_array("text_column_entries", f"[{_STRINGS}"), *columns, "</property>"],
     ]
 
 
