@@ -20,7 +20,7 @@ from command.bars import Bars
 from command.parser import command_line
 from data.errors import CurlshotError, InputError, SceneError
 from data.files import check_folder, relative_path, staged
-from data.inputs import find_inputs
+from data.inputs import IMAGE_SUFFIXES, find_inputs
 from data.progress import Progress, no_progress
 from data.sheet import HOUSE, STONE, House, Stone
 
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from data.results import Estimate, Results
+    from physics.pool import Pooled
     from physics.start import Start
     from physics.what_if import Changes
     from vision.camera import Camera
@@ -44,6 +45,9 @@ WRITTEN = (
 
 WHAT_IF = ("outcomes.csv", "whatif.json", "spread.png")
 """All that samples of a simulation write beside it."""
+
+SEASON = ("shots.csv", "hits.csv", "season.json", "season.png")
+"""All that many shots together write."""
 
 CHECK_DPI = 110
 
@@ -506,6 +510,115 @@ def run(
     return replace(done, out=folder)
 
 
+def run_each(
+    clips: Sequence[Path],
+    out: str | Path,
+    settings: Settings = Settings(),
+    progress: Progress = no_progress,
+) -> tuple[dict[str, Run], dict[str, CurlshotError]]:
+    """Run many clips, one folder of `out` for each; one that fails does not stop the others.
+
+    Returns
+    -------
+    done : dict of str to Run
+        By the names of their folders.
+    failed : dict of str to CurlshotError
+        Why the others could not be used.
+    """
+    folder = check_folder(out)
+    assert folder is not None
+    done: dict[str, Run] = {}
+    failed: dict[str, CurlshotError] = {}
+    for name, clip in _apart(clips).items():
+        number = f"{len(done) + len(failed) + 1}/{len(clips)} "
+
+        def numbered(what: str, at: int, total: int | None, number: str = number) -> None:
+            progress(number + what, at, total)
+
+        try:
+            done[name] = run([clip], folder / name, settings, numbered)
+        except CurlshotError as error:
+            failed[name] = error
+    return done, failed
+
+
+def _apart(clips: Sequence[Path]) -> dict[str, Path]:
+    """Name clips by their stems, by those of their folders too where stems are shared."""
+    named: dict[str, Path] = {}
+    stems = [clip.stem for clip in clips]
+    for number, clip in enumerate(clips):
+        name = clip.stem
+        if stems.count(name) > 1:
+            name = f"{clip.resolve().parent.name}-{name}"
+        named[name if name not in named else f"{name}-{number + 1}"] = clip
+    return named
+
+
+def season(
+    runs: Mapping[str, Results], out: str | Path | None = None
+) -> tuple[pd.DataFrame, dict[str, Pooled]]:
+    """Put many shots side by side, and say what all of them say of e and μ.
+
+    Parameters
+    ----------
+    runs : mapping of str to Results
+        The shots by name.
+    out : str or Path, optional
+        Folder for the tables and the picture; nothing is written without it.
+
+    Returns
+    -------
+    shots : DataFrame
+        See `physics.season.shots_table`.
+    pooled : dict
+        ``restitution`` and ``friction``; see `physics.pool.Pooled`.
+    """
+    from dataclasses import asdict
+
+    from physics.season import hits_table, pooled, shots_table
+
+    folder = check_folder(out)
+    shots, hits = shots_table(runs), hits_table(runs)
+    means = pooled(shots)
+    if folder is None:
+        return shots, means
+    from data.files import whole_file, write_text
+    from data.tracks import write_table
+    from report.season import season_figure
+    from report.style import PNG_DPI
+
+    content = {"schema": 1, "shots": list(runs), **{k: asdict(v) for k, v in means.items()}}
+    with staged(folder) as stage:
+        write_table(shots, stage / "shots.csv")
+        write_table(hits, stage / "hits.csv")
+        write_text(stage / "season.json", json.dumps(content, indent=1, ensure_ascii=False) + "\n")
+        with whole_file(stage / "season.png") as part:
+            season_figure(shots, hits, means).savefig(part, format="png", dpi=PNG_DPI)
+    return shots, means
+
+
+def find_runs(names: Sequence[str | Path]) -> dict[str, Results]:
+    """Read the results of runs: of their folders, of folders of such folders, or files.
+
+    Raises
+    ------
+    InputError
+        Where there are none, or one is no results.json.
+    """
+    from data.results import Results
+
+    found: list[Path] = []
+    for path in map(Path, names):
+        here = path / "results.json" if path.is_dir() else path
+        below = sorted(path.glob("*/results.json")) if path.is_dir() else []
+        if not here.exists() and not below:
+            raise InputError(f"{here}: no such file; name the folders of runs")
+        found += [here] if here.exists() else below
+    unique = dict.fromkeys(path.resolve() for path in found)
+    folders = _apart([path.parent.with_suffix(".run") for path in unique])
+    return {name: Results.read(path) for name, path in zip(folders, unique, strict=True)}
+
+
 def _write_run(
     stage: Path, measured: Measured, done: Run, settings: Settings, progress: Progress
 ) -> None:
@@ -762,9 +875,34 @@ def _do_run(arguments: argparse.Namespace, bars: Bars) -> str:
     from report.summary import summary
 
     inputs = arguments.inputs or [sample_clip()]
+    files = find_inputs(inputs)
+    if len(files) > 1 and not any(f.suffix.lower() in TABLES | IMAGE_SUFFIXES for f in files):
+        return _run_season(arguments, files, bars)
     folder = _out(arguments, inputs[0])
     done = run(inputs, folder, _settings(arguments), bars)
     return summary(done.results, done.tracks, folder)
+
+
+def _run_season(arguments: argparse.Namespace, clips: Sequence[Path], bars: Bars) -> str:
+    from report.summary import season_text
+
+    folder = Path(arguments.out or "season")
+    done, failed = run_each(clips, folder, _settings(arguments), bars)
+    if not done:
+        name, error = next(iter(failed.items()))
+        raise InputError(f"none of {len(clips)} clips could be used; {name}: {error}")
+    shots, means = season({name: run.results for name, run in done.items()}, folder)
+    failures = [f"{name:<24s} not used: {_one_line(str(why))}" for name, why in failed.items()]
+    return "\n".join([*season_text(shots, means), *failures, f"written     {folder}"])
+
+
+def _do_season(arguments: argparse.Namespace, _: Bars) -> str:
+    from report.summary import season_text
+
+    folder = Path(arguments.out or "season")
+    shots, means = season(find_runs(arguments.runs), folder)
+    written = ", ".join(str(folder / name) for name in SEASON)
+    return "\n".join([*season_text(shots, means), f"written     {written}"])
 
 
 def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:
@@ -948,6 +1086,7 @@ def _write_odds(
 
 WORK = {
     "run": _do_run,
+    "season": _do_season,
     "track": _do_track,
     "check": _do_check,
     "estimate": _do_estimate,

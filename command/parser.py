@@ -43,6 +43,8 @@ def command_line(version: str) -> argparse.ArgumentParser:
         "  curlshot run shot.mp4                            a clip that shows the house\n"
         "  curlshot run frames/ --fps 25                    a folder of pictures\n"
         "  curlshot run 'frames/*.png' --fps 25             or a glob\n"
+        "  curlshot run season/*.mp4 -o season              many clips, a folder for each, and\n"
+        "                                                   e and μ of all of them together\n"
         "  curlshot run still.jpg                           one picture: positions only\n"
         "  curlshot run pucks.mp4 --stick 20,10,20,38,0.1 --radius 0.045 --frames 2:31\n"
         "                                                   no house: still camera, known length\n"
@@ -104,6 +106,18 @@ def command_line(version: str) -> argparse.ArgumentParser:
     _tab_option(estimate_)
     _assumption_options(estimate_)
     estimate_.add_argument("--fps", type=values.positive, help="rate of a table without times, 1/s")
+
+    season_ = _command(
+        commands,
+        "season",
+        "e and μ of many shots together, from the folders of their runs",
+        "  curlshot season shot1-curlshot shot2-curlshot -o both\n"
+        "  curlshot season runs                             every run in this folder\n"
+        "\n"
+        "Shots differ by more than their errors: the mean comes with their scatter. Gives\n"
+        "shots.csv, hits.csv, season.json and season.png.\n",
+    )
+    season_.add_argument("runs", nargs="+", metavar="RUN", help="folder of a run, or of runs")
 
     convert_ = _bare_command(
         commands,

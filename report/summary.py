@@ -9,6 +9,7 @@ from typing import Any
 import pandas as pd
 
 from data.results import Results
+from physics.pool import Pooled
 from physics.simulate import Simulation
 from report.numbers import count, plus_minus
 from report.tables import moving_stones
@@ -69,6 +70,24 @@ def simulation_text(simulation: Simulation, path: Path) -> str:
     lines.append("hits:" if simulation.hits else "no hits")
     lines += [f"  {hit.t:6.3f} s  {hit.stones[0]} on {hit.stones[1]}" for hit in simulation.hits]
     return "\n".join([*lines, f"written: {path}"])
+
+
+def season_text(shots: pd.DataFrame, pooled: Mapping[str, Pooled]) -> list[str]:
+    """One line per shot, and what all say together."""
+    lines = [
+        f"{shot['shot']:<24s} {count(int(shot['hits']), 'hit')}"
+        f"   e = {plus_minus(shot['restitution'], shot['stderr_restitution'])}"
+        f"   μ = {plus_minus(shot['friction'], shot['stderr_friction'])}"
+        for shot in shots.to_dict("records")
+    ]
+    for name, sign in (("restitution", "e"), ("friction", "μ")):
+        mean = pooled[name]
+        text = f"{name:<11s} {sign} = {plus_minus(mean.value, mean.stderr)}"
+        text += f" of {count(mean.shots, 'shot')}"
+        if mean.scatter is not None:
+            text += f"; shot to shot {plus_minus(mean.scatter, mean.stderr_scatter)}"
+        lines.append(text)
+    return lines
 
 
 def summary(results: Results, tracks: pd.DataFrame, out: Path | None = None) -> str:

@@ -1,0 +1,86 @@
+"""A season in one picture: e and μ of every shot, what all say together, e against speed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from physics.pool import Pooled
+from report.numbers import plus_minus
+from report.style import BLACK, BLUE, GREY, SKY, new_figure, plain_text, styled
+
+ROW = 0.24
+"""Height of a shot's row, inches."""
+
+LONGEST = 28
+"""Letters of a shot's name that are shown."""
+
+
+def season_figure(shots: pd.DataFrame, hits: pd.DataFrame, pooled: Mapping[str, Pooled]) -> Figure:
+    """Draw e and μ of the shots with their errors and the season's mean, and e against speed.
+
+    Parameters
+    ----------
+    shots, hits : DataFrame
+        From `physics.season.shots_table` and `hits_table`.
+    pooled : mapping
+        From `physics.season.pooled`.
+
+    Returns
+    -------
+    Figure
+    """
+    with styled():
+        height = max(3.2, 1.4 + ROW * len(shots))
+        figure = new_figure(11.0, height)
+        left, middle, right = figure.subplots(1, 3, width_ratios=(1, 1, 1.1))
+        _forest(left, shots, "restitution", pooled["restitution"], "restitution e")
+        handles, labels = left.get_legend_handles_labels()
+        _forest(middle, shots, "friction", pooled["friction"], "friction μ of the ice")
+        middle.set_yticklabels([])
+        _against_speed(right, hits, pooled["restitution"])
+        if labels[:-1]:
+            figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
+    return figure
+
+
+def _forest(axes: Axes, shots: pd.DataFrame, name: str, mean: Pooled, label: str) -> None:
+    rows = np.arange(len(shots))[::-1]
+    axes.errorbar(
+        shots[name], rows, xerr=shots[f"stderr_{name}"],
+        fmt="o", ms=4, color=BLUE, capsize=2, label="one shot",
+    )  # fmt: skip
+    if mean.value is not None and mean.stderr is not None:
+        axes.axvline(mean.value, color=BLACK, lw=1, label="mean of all shots")
+        for half, alpha, what in (
+            (mean.stderr, 0.45, "its standard error"),
+            (mean.scatter, 0.15, "scatter from shot to shot"),
+        ):
+            if half is not None:
+                low, high = mean.value - half, mean.value + half
+                axes.axvspan(low, high, color=SKY, alpha=alpha, lw=0, label=what)
+    axes.set_yticks(rows, [plain_text(_short(shot)) for shot in shots["shot"]])
+    axes.set_ylim(-0.7, len(shots) - 0.3)
+    axes.set_xlabel(label)
+    axes.set_title(f"{label.split()[1]} = {plus_minus(mean.value, mean.stderr)}")
+    axes.grid(axis="y", visible=False)
+
+
+def _against_speed(axes: Axes, hits: pd.DataFrame, mean: Pooled) -> None:
+    axes.errorbar(
+        hits["closing_speed"], hits["restitution"], yerr=hits["stderr"],
+        fmt="o", ms=4, color=GREY, mec=BLUE, mfc=BLUE, capsize=2,
+    )  # fmt: skip
+    if mean.value is not None:
+        axes.axhline(mean.value, color=BLACK, lw=1)
+    axes.set_xlabel("closing speed along the normal (m/s)")
+    axes.set_ylabel("restitution e of the hit")
+    axes.set_title("Each hit")
+
+
+def _short(name: str) -> str:
+    return name if len(name) <= LONGEST else f"{name[: LONGEST - 1]}…"

@@ -1,0 +1,81 @@
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from data.errors import InputError
+from data.results import Collision, Estimate, Friction, Input, MeasuredState, Results
+from physics.season import hits_table, pooled, shots_table
+from pipeline import find_runs, main, season
+from report.season import season_figure
+
+HIT = Collision(
+    1.0, 0.01, ("A", "B"), (0.6, 0.8), 0.82, 0.01,
+    {"A": MeasuredState(0, 0, 1.2, 1.6), "B": MeasuredState(0.1, 0.2, 0.3, 0.4)},
+    {"A": MeasuredState(0, 0, 0.2, 0.3), "B": MeasuredState(0.1, 0.2, 1.0, 1.1)},
+)  # fmt: skip
+SHOT = Results(
+    Input(("a.mp4",), 25.0, 100, 4.0),
+    Estimate(0.82, 0.01),
+    Friction(0.011, 0.0002),
+    (HIT,),
+)
+BARE = replace(SHOT, restitution=Estimate(), friction=Friction(), collisions=())
+
+
+def test_tables_say_what_the_results_say() -> None:
+    shots, hits = shots_table({"one": SHOT, "none": BARE}), hits_table({"one": SHOT, "none": BARE})
+    assert shots["shot"].tolist() == ["one", "none"]
+    assert shots.loc[0, "restitution"] == 0.82 and np.isnan(shots.loc[1, "restitution"])
+    assert len(hits) == 1
+    # Closing at 0.6 · (1.2 − 0.3) + 0.8 · (1.6 − 0.4).
+    assert hits.loc[0, "closing_speed"] == pytest.approx(1.5)
+
+
+def test_mean_leaves_out_what_is_not_known() -> None:
+    means = pooled(shots_table({"one": SHOT, "none": BARE}))
+    assert means["restitution"].shots == 1
+    assert means["restitution"].value == pytest.approx(0.82)
+    assert pooled(shots_table({"none": BARE}))["friction"].value is None
+
+
+@pytest.mark.parametrize("runs", [{}, {"none": BARE}, {"a $ <b>" * 9: SHOT, "none": BARE}])
+def test_picture_of_any_season(runs: dict[str, Results]) -> None:
+    shots = shots_table(runs)
+    figure = season_figure(shots, hits_table(runs), pooled(shots))
+    figure.draw_without_rendering()
+
+
+def test_command_reads_folders_of_runs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name, value in (("x", 0.80), ("y", 0.86)):
+        (tmp_path / "runs" / name).mkdir(parents=True)
+        shot = replace(SHOT, restitution=Estimate(value, 0.001))
+        shot.write(tmp_path / "runs" / name / "results.json")
+    out = tmp_path / "out"
+    assert main(["season", str(tmp_path / "runs"), "-o", str(out)]) == 0
+    assert "e = 0.83" in capsys.readouterr().out
+    content = json.loads((out / "season.json").read_text("utf-8"))
+    assert content["shots"] == ["x", "y"]
+    assert content["restitution"]["value"] == pytest.approx(0.83)
+    assert content["restitution"]["stderr"] > 0.02
+    assert pd.read_csv(out / "shots.csv")["restitution"].tolist() == [0.80, 0.86]
+    assert (out / "season.png").stat().st_size > 10_000
+
+
+def test_runs_of_one_name_are_told_apart(tmp_path: Path) -> None:
+    for parent in ("p", "q"):
+        (tmp_path / parent / "shot").mkdir(parents=True)
+        SHOT.write(tmp_path / parent / "shot" / "results.json")
+    found = find_runs([tmp_path / "p" / "shot", tmp_path / "q" / "shot", tmp_path / "p" / "shot"])
+    assert list(found) == ["p-shot", "q-shot"]
+    assert season(found)[0]["shot"].tolist() == ["p-shot", "q-shot"]
+
+
+def test_folder_without_runs_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="name the folders of runs"):
+        find_runs([tmp_path])
