@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+import pipeline
 from data.errors import InputError
 from data.results import Collision, Estimate, Friction, Input, MeasuredState, Results
 from physics.season import hits_table, pooled, shots_table
@@ -79,3 +80,23 @@ def test_runs_of_one_name_are_told_apart(tmp_path: Path) -> None:
 def test_folder_without_runs_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="name the folders of runs"):
         find_runs([tmp_path])
+
+
+def test_one_bad_clip_does_not_stop_the_others(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def run_or_not(clips: list[Path], out: Path, *_: object) -> pipeline.Run:
+        if clips[0].stem == "bad":
+            raise InputError(f"{clips[0]}: not a video")
+        return pipeline.Run(pd.DataFrame(), None, SHOT, pd.DataFrame(), out)
+
+    monkeypatch.setattr(pipeline, "run", run_or_not)
+    for name in ("good.mp4", "bad.mp4", "also.mp4"):
+        (tmp_path / name).touch()
+    clips = [str(tmp_path / name) for name in ("good.mp4", "bad.mp4", "also.mp4")]
+    assert main(["run", *clips, "-o", str(tmp_path / "out"), "-q"]) == 0
+    said = capsys.readouterr().out
+    assert "bad" in said and "not a video" in said and "2 shots" in said
+    assert main(["run", clips[1], clips[1], "-o", str(tmp_path / "none"), "-q"]) == 2
+    assert "none of 2 clips" in capsys.readouterr().err
+    assert not (tmp_path / "none").exists()
