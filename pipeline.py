@@ -386,6 +386,7 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
     import pandas as pd
 
     from data.results import Input, Results
+    from data.tracks import teams
     from physics.contacts import find_contacts
     from physics.estimate import estimate
     from physics.forecast import predict
@@ -432,7 +433,8 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
         laws=estimates.laws,
     )
     cameras = camera_table(measured.cameras) if measured.cameras else None
-    simulations = [as_tracks(table, model) for model, table in sampled.items()]
+    of_team = teams(tracks)
+    simulations = [as_tracks(table, model, of_team) for model, table in sampled.items()]
     return Run(
         tracks,
         cameras,
@@ -460,12 +462,15 @@ def _check_masses(masses: Mapping[str, float], stones: Sequence[str]) -> Mapping
     return masses
 
 
-def as_tracks(simulated: pd.DataFrame | None, model: str) -> pd.DataFrame:
+def as_tracks(
+    simulated: pd.DataFrame | None, model: str, of_team: Mapping[str, str] | None = None
+) -> pd.DataFrame:
     """Table of ``simulation.csv`` from a sampled simulation: no errors, nothing seen."""
     from data.tracks import TRACK_COLUMNS, empty_tracks
 
     table = empty_tracks() if simulated is None else simulated.reindex(columns=list(TRACK_COLUMNS))
     table["seen"] = 0
+    table["team"] = table["stone"].map(of_team or {}).fillna("")
     table.insert(0, "model", model)
     return table
 

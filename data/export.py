@@ -64,7 +64,8 @@ def write_text(sightings: pd.DataFrame, path: Path) -> None:
 
 def write_csv(sightings: pd.DataFrame, path: Path) -> None:
     """Write one row per stone and time, every number with all its digits."""
-    table = sightings[list(_CSV_COLUMNS)].assign(t=[_time(t) for t in sightings["t"]])
+    known = [name for name in _CSV_COLUMNS if name != "team" or sightings["team"].any()]
+    table = sightings[known].assign(t=[_time(t) for t in sightings["t"]])
     with whole_file(path) as part:
         table.to_csv(part, index=False, lineterminator="\n")
 

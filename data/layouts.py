@@ -46,7 +46,7 @@ class TrackFile:
     Attributes
     ----------
     tracks : DataFrame
-        ``stone, t, x, y`` and, where the file has them, ``theta``, ``frame`` and the sd
+        ``stone, t, x, y`` and, where the file has them, ``theta``, ``frame``, ``team`` and the sd
         columns; t in s, all with a place.
     decimals : int or None
         To how many decimals the times are printed; None where that does not matter.
@@ -306,6 +306,8 @@ def _tidy(table: TextTable, names: Sequence[str], fps: float | None) -> TrackFil
     times, decimals, warnings = times_of(table, values, clock, fps)
     stones = [stone.strip("\"'") for stone in table.cells([names.index("stone")])[0]]
     tracks = pd.DataFrame({"stone": stones, "t": times} | {n: values[k] for n, k in wanted.items()})
+    if "team" in names:
+        tracks["team"] = [team.strip("\"'") for team in table.cells([names.index("team")])[0]]
     used = tracks["x"].notna() & tracks["y"].notna()
     if "seen" in tracks:
         # What a filter carried is no measurement.

@@ -13,18 +13,24 @@ from data.files import whole_file
 
 TRACK_COLUMNS: tuple[str, ...] = (
     "stone", "frame", "t", "x", "y", "theta", "vx", "vy", "omega",
-    "sd_x", "sd_y", "sd_theta", "sd_vx", "sd_vy", "sd_omega", "seen",
+    "sd_x", "sd_y", "sd_theta", "sd_vx", "sd_vy", "sd_omega", "seen", "team",
 )  # fmt: skip
-"""Columns of ``tracks.csv``: m, s, rad; ``seen`` is 1 where the frame showed the stone."""
+"""Columns of ``tracks.csv``: m, s, rad; ``seen`` is 1 where the frame showed the stone.
+
+``team`` is what the stones of one team share: for clips the colour of their caps (``#rrggbb``), for
+tables what they say; empty where nothing is known.
+"""
 
 SIGHTING_COLUMNS: tuple[str, ...] = (
-    "stone", "frame", "t", "x", "y", "theta", "sd_x", "sd_y", "sd_theta", "sd_place",
+    "stone", "frame", "t", "x", "y", "theta", "sd_x", "sd_y", "sd_theta", "sd_place", "team",
 )  # fmt: skip
 """Columns of a table of sightings: measured places, before any filter. sd may be NaN.
 
 ``sd_x`` and ``sd_y`` are of what differs from sighting to sighting, ``sd_place`` (m, per axis) of
 what the sightings of a stone share and no filter averages out: the camera, the scale.
 """
+
+_NUMBERS = tuple(name for name in SIGHTING_COLUMNS if name not in ("stone", "team"))
 
 FARTHEST = 1e6
 """No time (s), place (m) or velocity (m/s) of a written track is as large."""
@@ -51,8 +57,8 @@ def check_sightings(table: pd.DataFrame, source: str = "tracks") -> pd.DataFrame
     Parameters
     ----------
     table : DataFrame
-        At least ``stone, t, x, y``; `frame`, `theta` and the sd columns are filled in
-        (NaN, and the rank of the time for `frame`) where they are missing. Rows whose x
+        At least ``stone, t, x, y``; `frame`, `theta`, the sd columns and `team` are filled in
+        (NaN, the rank of the time for `frame`, "" for `team`) where they are missing. Rows whose x
         or y is missing are dropped: a missing sample is no sighting.
     source : str
         What to call the table in messages.
@@ -72,7 +78,7 @@ def check_sightings(table: pd.DataFrame, source: str = "tracks") -> pd.DataFrame
         raise InputError(f"{source}: no column {', '.join(missing)}; needs stone, t, x, y")
     out = pd.DataFrame({"stone": table["stone"].astype(str)})
     faults: list[str] = []
-    for name in SIGHTING_COLUMNS[1:]:
+    for name in _NUMBERS:
         if name in table.columns:
             values = pd.to_numeric(table[name], errors="coerce").astype(float)
             given = table[name].notna() & (table[name].astype(str).str.strip() != "")
@@ -82,13 +88,15 @@ def check_sightings(table: pd.DataFrame, source: str = "tracks") -> pd.DataFrame
             out[name] = values.to_numpy()
         else:
             out[name] = np.nan
+    teams = table["team"] if "team" in table.columns else pd.Series("", index=table.index)
+    out["team"] = teams.fillna("").astype(str).str.strip()
     if table["stone"].isna().any():
         faults.append("a stone without a name")
     if out["t"].isna().any():
         faults.append("a time is missing")
     elif out["t"].abs().max() > LATEST and not np.isinf(out["t"]).any():
         faults.append(f"times up to {out['t'].abs().max():.3g} s make no sense")
-    infinite = [name for name in SIGHTING_COLUMNS[1:] if np.isinf(out[name]).any()]
+    infinite = [name for name in _NUMBERS if np.isinf(out[name]).any()]
     if infinite:
         faults.append(f"infinite numbers in column {', '.join(infinite)}")
     frames = out["frame"].dropna()
@@ -124,10 +132,18 @@ def check_sightings(table: pd.DataFrame, source: str = "tracks") -> pd.DataFrame
     return out[list(SIGHTING_COLUMNS)]
 
 
+def teams(table: pd.DataFrame) -> dict[str, str]:
+    """Team of each stone of a table with the columns ``stone`` and ``team``; "" where unknown."""
+    return {
+        str(stone): next((team for team in group if team), "")
+        for stone, group in table.groupby("stone", sort=False)["team"]
+    }
+
+
 def empty_tracks() -> pd.DataFrame:
     """Return a table of tracks without rows."""
     return pd.DataFrame({name: pd.Series(dtype=float) for name in TRACK_COLUMNS}).astype(
-        {"stone": str, "frame": int, "seen": int}
+        {"stone": str, "frame": int, "seen": int, "team": str}
     )
 
 
@@ -156,9 +172,11 @@ def read_tracks(path: Path) -> pd.DataFrame:
     InputError
         Where the file is missing or no such thing.
     """
-    numbers = {name: float for name in TRACK_COLUMNS if name not in ("stone", "frame", "seen")}
+    texts = {"stone": str, "team": str}
+    numbers = {name: float for name in TRACK_COLUMNS if name not in (*texts, "frame", "seen")}
     try:
-        table = pd.read_csv(path, dtype={"stone": str, **numbers})[list(TRACK_COLUMNS)]
+        table = pd.read_csv(path, dtype=texts | numbers)
+        table = table.assign(team=table.get("team", "")).fillna({"team": ""})[list(TRACK_COLUMNS)]
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}") from None
     except (ValueError, KeyError):  # pandas' own mistakes are ValueErrors

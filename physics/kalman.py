@@ -16,7 +16,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from data.tracks import TRACK_COLUMNS, empty_tracks
+from data.tracks import TRACK_COLUMNS, empty_tracks, teams
 from physics.contacts import Contact, cut_all
 from physics.fit import fit_shot
 from physics.glides import FREE, measure_glides, stop_time
@@ -68,7 +68,8 @@ def smooth(
         inside = (times >= trace.t[0]) & (times <= trace.t[-1])
         hits = sorted(c.t for c in contacts if name in c.stones)
         tables.append(_track(trace, times[inside], frames[inside], hits, fit, model, run))
-    return pd.concat(tables, ignore_index=True)[list(TRACK_COLUMNS)]
+    tracks = pd.concat(tables, ignore_index=True)
+    return tracks.assign(team=tracks["stone"].map(teams(sightings)))[list(TRACK_COLUMNS)]
 
 
 def _survey(

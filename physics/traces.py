@@ -75,7 +75,8 @@ def traces(sightings: pd.DataFrame) -> dict[str, Trace]:
     """
     out: dict[str, Trace] = {}
     for name, group in sightings.groupby("stone", sort=True):
-        columns = {key: group[key].to_numpy(float) for key in group.columns if key != "stone"}
+        texts = ("stone", "team")
+        columns = {key: group[key].to_numpy(float) for key in group.columns if key not in texts}
         t, xy = columns["t"], np.column_stack([columns["x"], columns["y"]])
         sd = np.column_stack([columns["sd_x"], columns["sd_y"]])
         theta = columns["theta"].copy()

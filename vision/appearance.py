@@ -35,6 +35,12 @@ class Colour:
         )
 
     @property
+    def name(self) -> str:
+        """The mean colour as ``#rrggbb``."""
+        blue, green, red = self.bgr
+        return f"#{red:02x}{green:02x}{blue:02x}"
+
+    @property
     def bgr(self) -> tuple[int, int, int]:
         """The mean colour as blue, green, red of 0 to 255."""
         return lab_to_bgr(self.mean)

@@ -12,7 +12,7 @@ from data.progress import Progress, no_progress
 from data.sheet import STONE, Stone
 from data.tracks import SIGHTING_COLUMNS, check_sightings, order_of_motion
 from vision.align import Complex
-from vision.appearance import Appearance, colour_difference, lab_to_bgr
+from vision.appearance import Appearance, colour_difference
 from vision.camera import Camera
 from vision.clip import Clip
 from vision.follow import Gate, Track, follow, names_by_motion
@@ -31,14 +31,11 @@ class StoneTracks:
     sightings : DataFrame
         With `SIGHTING_COLUMNS`; stones A, B, C … in the order in which they first move,
         then those at rest by their distance to the tee.
-    teams : mapping of str to (blue, green, red)
-        Each stone's cap colour, 0 to 255; stones of one team share one.
     warnings : tuple of str
         What a person should know.
     """
 
     sightings: pd.DataFrame
-    teams: Mapping[str, tuple[int, int, int]]
     warnings: tuple[str, ...] = ()
 
 
@@ -74,7 +71,7 @@ def track_stones(
         if frame.index in by_frame:
             watch.look(frame, by_frame[frame.index])
         progress("following the stones", done + 1, clip.expected)
-    gate = Gate(least_score=0.85 if is_plain(disc) else 1.6)
+    gate = Gate(least_score=0.85 if is_plain(disc) else 1.45)
     tracks = follow(watch.finish(), disc.radius, gate)
     moved, rest = names_by_motion(tracks, disc.radius)
     names = order_of_motion(dict(moved), rest)
@@ -82,12 +79,13 @@ def track_stones(
     named = dict(sorted(named.items(), key=lambda item: (len(item[0]), item[0])))
     if not named:
         empty = pd.DataFrame({name: pd.Series(dtype=float) for name in SIGHTING_COLUMNS})
-        empty = empty.astype({"stone": str, "frame": int})
-        return StoneTracks(empty, {}, ("no stones were found on the ice",))
+        empty = empty.astype({"stone": str, "frame": int, "team": str})
+        return StoneTracks(empty, ("no stones were found on the ice",))
     table = pd.concat(
         [_rows(name, track, disc) for name, track in named.items()], ignore_index=True
     )
-    return StoneTracks(check_sightings(table, "the stones found"), _teams(named, watch.appearance))
+    table["team"] = table["stone"].map(_teams(named, watch.appearance))
+    return StoneTracks(check_sightings(table, "the stones found"))
 
 
 def _rows(name: str, track: Track, disc: Stone) -> pd.DataFrame:
@@ -110,15 +108,11 @@ def _rows(name: str, track: Track, disc: Stone) -> pd.DataFrame:
     )
 
 
-def _teams(
-    tracks: Mapping[str, Track], appearance: Appearance | None
-) -> dict[str, tuple[int, int, int]]:
-    teams = {}
-    for name, track in tracks.items():
-        caps = () if appearance is None else appearance.caps
-        if caps:
-            nearest = min(caps, key=lambda cap: colour_difference(cap.mean, track.colour))
-            teams[name] = nearest.bgr
-        else:
-            teams[name] = lab_to_bgr(track.colour)
-    return teams
+def _teams(tracks: Mapping[str, Track], appearance: Appearance | None) -> dict[str, str]:
+    """Colour of the caps of each stone's team; "" where the colours of the clip are not known."""
+    if appearance is None:
+        return dict.fromkeys(tracks, "")
+    return {
+        name: min(appearance.caps, key=lambda cap: colour_difference(cap.mean, track.colour)).name
+        for name, track in tracks.items()
+    }

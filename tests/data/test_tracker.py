@@ -10,8 +10,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from data.errors import InputError
+from data.export import write_csv
 from data.tracker import Imported, read_table, uniform_steps
-from data.tracks import SIGHTING_COLUMNS, write_tracks
+from data.tracks import SIGHTING_COLUMNS, teams, write_tracks
 
 RED = "red stone"
 YELLOW = "yellow"
@@ -215,7 +216,7 @@ def test_tidy_table_in_any_order_keeps_spin_and_uncertainty(tmp_path: Path) -> N
 
 
 def test_own_tracks_come_back(tmp_path: Path) -> None:
-    table = truth().assign(theta=0.3, vx=0.0, vy=0.0, omega=0.0, seen=1)
+    table = truth().assign(theta=0.3, vx=0.0, vy=0.0, omega=0.0, seen=1, team="")
     table = table.assign(**{f"sd_{n}": 0.01 for n in ("x", "y", "theta", "vx", "vy", "omega")})
     write_tracks(table, tmp_path / "tracks.csv")
     found = read_table([tmp_path / "tracks.csv"])
@@ -588,3 +589,20 @@ def test_discs_of_motion_capture(shared: Path) -> None:
         assert found.warnings == ()
         with pytest.raises(InputError, match="no time column"):
             read_table([path])
+
+
+def test_the_team_of_a_table_is_kept(tmp_path: Path) -> None:
+    path = tmp_path / "teams.csv"
+    path.write_text(
+        "stone,t,x,y,team\n"
+        + "".join(
+            f"{stone},{k / 25},{x},{0.1 * k},{team}\n"
+            for stone, x, team in (("A", 0.0, "Norway"), ("B", 1.0, '"Great Britain"'))
+            for k in range(5)
+        )
+    )
+    found = read_table([path]).sightings
+    assert teams(found) == {"A": "Norway", "B": "Great Britain"}
+    copy = tmp_path / "copy.csv"
+    write_csv(found, copy)
+    assert teams(read_table([copy]).sightings) == teams(found)

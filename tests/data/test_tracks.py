@@ -18,6 +18,7 @@ from data.tracks import (
     order_of_motion,
     read_tracks,
     stone_name,
+    teams,
     write_table,
     write_tracks,
 )
@@ -201,3 +202,15 @@ def test_written_tracks_without_sense_are_refused(tmp_path: Path, wrong: str) ->
     path.write_text(",".join(TRACK_COLUMNS) + "\n" + wrong + "\n")
     with pytest.raises(InputError, match=r"without any row|that are none"):
         read_tracks(path)
+
+
+def test_teams_are_kept_in_all_that_is_written(tmp_path: Path) -> None:
+    given = shot().assign(team=["red"] * 4 + [None] * 4)
+    table = check_sightings(given)
+    assert teams(table) == {"A": "red", "B": ""}
+    path = tmp_path / "tracks.csv"
+    write_tracks(full_tracks().assign(team=table["team"]), path)
+    assert teams(read_tracks(path)) == {"A": "red", "B": ""}
+    without = pd.read_csv(path).drop(columns="team")
+    without.to_csv(path, index=False)
+    assert teams(read_tracks(path)) == {"A": "", "B": ""}

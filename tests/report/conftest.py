@@ -100,6 +100,7 @@ def make_shot(frames: int = 170) -> Shot:
     for name in ("x", "y", "theta", "vx", "vy", "omega"):
         tracks[f"sd_{name}"] = 0.004 if name in ("x", "y") else 0.02
     tracks["seen"] = 1
+    tracks["team"] = tracks["stone"].map({"A": "#d8c020", "B": "#b02030"}).fillna("")
     tracks.loc[(tracks["stone"] == "B") & tracks["frame"].between(60, 70), "seen"] = 0
     collisions = tuple(collision(hit, pieces) for hit in hits)
     simulations = {

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from data.sheet import STONE
-from data.tracks import SIGHTING_COLUMNS
+from data.tracks import SIGHTING_COLUMNS, teams
 from tests.scoring import score_tracks
 from vision.camera import Camera
 from vision.clip import open_clip
@@ -53,7 +53,9 @@ def test_the_sample_is_followed_from_end_to_end() -> None:
     assert score.names["A"] == "A"
     assert score.names["B"] == "B"
     assert score.names["C"] == "C"
-    assert stones.teams["A"] == stones.teams["C"] != stones.teams["B"]
+    team = teams(stones.sightings)
+    assert team["A"] == team["C"] != team["B"]
+    assert all(len(colour) == 7 for colour in team.values())
     assert told[-1][1] == told[-1][2] == 81
     turn = stones.sightings[stones.sightings["stone"] == "A"].set_index("frame")["theta"]
     true = truth[truth["stone"] == "A"].set_index("frame")["theta"].loc[turn.index]
