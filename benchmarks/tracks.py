@@ -216,7 +216,7 @@ def errors_of(tracks: pd.DataFrame, truth: Truth, names: dict[str, str]) -> pd.D
         for state in ("x", "y", "vx", "vy", "theta", "omega"):
             part[f"d_{state}"] = ours[state] - true[state]
             part[f"sd_{state}"] = ours[f"sd_{state}"]
-        part["d_theta"] -= np.round(np.nanmedian(part["d_theta"]), 9)
+        part["d_theta"] -= part["d_theta"].median()
         parts.append(part.reset_index())
     return pd.concat(parts, ignore_index=True)
 
