@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vision.camera import Camera
-from vision.clip import Image
 from vision.ice_map import lifted
+from vision.picture import Picture, colours_at
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
@@ -102,7 +102,7 @@ def joined(first: Profile, second: Profile) -> Profile:
     )
 
 
-def sample_rays(image: Image, camera: Camera, places: Array, profile: Profile, rays: int) -> Rays:
+def sample_rays(image: Picture, camera: Camera, places: Array, profile: Profile, rays: int) -> Rays:
     """Sample the picture on rays around places on the ice.
 
     Parameters
@@ -126,7 +126,7 @@ def sample_rays(image: Image, camera: Camera, places: Array, profile: Profile, r
     shape = (*across.shape, 3)
     across, down = (a.reshape(-1, a.shape[-1]) for a in (across, down))
     parts = [
-        cv2.remap(image, across[k : k + _MOST_ROWS], down[k : k + _MOST_ROWS], cv2.INTER_LINEAR)
+        colours_at(image, across[k : k + _MOST_ROWS], down[k : k + _MOST_ROWS])
         for k in range(0, len(across), _MOST_ROWS)
     ]
     bgr = np.asarray(parts[0] if len(parts) == 1 else np.concatenate(parts), np.uint8)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vision.camera import Camera
-from vision.clip import Image
+from vision.picture import Image, Picture, colours_at, reduced
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
@@ -54,7 +54,7 @@ def lifted(camera: Camera, ice: Array, height: Array | float) -> Array:
 
 
 def rectify(
-    image: Image,
+    image: Picture,
     camera: Camera,
     bounds: tuple[float, float, float, float],
     *,
@@ -103,17 +103,12 @@ def rectify(
     fine = np.sqrt(inside.sum()) * cell
     coarser = max(1, int(0.8 * np.sqrt(_visible_area(part, width, high)) / fine))
     if coarser > 1:
-        small = (width // coarser, high // coarser)
-        image = np.asarray(cv2.resize(image, small, interpolation=cv2.INTER_AREA), np.uint8)
+        image = reduced(image, coarser)
         pixels = np.asarray((pixels + 0.5) / coarser - 0.5, np.float32)
-    ice_image = cv2.remap(
-        image, pixels[..., 0], pixels[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT
-    )
+    ice_image = colours_at(image, pixels[..., 0], pixels[..., 1])
     limit = np.array([image.shape[1], image.shape[0]]) - 1
     valid = np.all((pixels >= 0) & (pixels <= limit), axis=-1)
-    return IceMap(
-        np.asarray(ice_image, np.uint8), valid, float(xs[left]), float(ys[top]), float(scale)
-    )
+    return IceMap(ice_image, valid, float(xs[left]), float(ys[top]), float(scale))
 
 
 def _visible_area(nodes: Floats, width: int, height: int) -> float:

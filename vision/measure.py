@@ -28,7 +28,7 @@ from vision.circles import (
     straight,
     summed,
 )
-from vision.clip import Image
+from vision.picture import Picture
 
 Array = NDArray[np.float64]
 Bytes = NDArray[np.uint8]
@@ -158,7 +158,7 @@ def handle_radii(disc: Stone, effort: Effort = EFFORT) -> Array:
 
 
 def measure(
-    image: Image,
+    image: Picture,
     camera: Camera,
     places: Array,
     appearance: Appearance | None,

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import av
 import cv2
@@ -32,13 +33,26 @@ class Planes:
 
     Attributes
     ----------
-    frame : av.VideoFrame
-        As decoded, in the format yuv420p or yuvj420p.
+    luma : ndarray, shape (h, w)
+        As coded.
+    blue, red : ndarray
+        Blue and red less luma as coded, of the size of the luma or of half of it.
+    to_bgr : ndarray, shape (3, 4)
+        From luma, both chromas and 1 to blue, green and red.
+    share : float
+        Samples of chroma per sample of luma, along either side.
+    frame : av.VideoFrame, optional
+        What they are the planes of, for the whole picture in colour.
     turns : int
-        Quarter turns, counter-clockwise, by which it is shown.
+        Quarter turns, counter-clockwise, by which that was turned.
     """
 
-    frame: av.VideoFrame
+    luma: Image
+    blue: Image
+    red: Image
+    to_bgr: NDArray[np.float64]
+    share: float = 0.5
+    frame: av.VideoFrame | None = None
     turns: int = 0
 
     @classmethod
@@ -46,64 +60,83 @@ class Planes:
         """Take a decoded frame of whatever format, the way up in which it is meant to be shown."""
         if frame.format.name not in ("yuv420p", "yuvj420p"):
             frame = frame.reformat(format="yuv420p")
-        return cls(frame, round(frame.rotation / 90) % 4)
+        turns = round(frame.rotation / 90) % 4
+        luma, blue, red = (_upright(_values(plane), turns) for plane in frame.planes)
+        return cls(luma, blue, red, _to_bgr(frame), frame=frame, turns=turns)
 
     @property
     def shape(self) -> tuple[int, int, int]:
         """Height, width and 3, as of a picture in colour."""
-        height, width = self.frame.height, self.frame.width
-        return (width, height, 3) if self.turns % 2 else (height, width, 3)
-
-    @cached_property
-    def luma(self) -> Image:
-        """Luma as coded, shape (h, w)."""
-        return self._plane(0)
-
-    @cached_property
-    def chroma(self) -> tuple[Image, Image]:
-        """Blue and red less luma as coded, each of shape (h / 2, w / 2), rounded up."""
-        return self._plane(1), self._plane(2)
-
-    def _plane(self, number: int) -> Image:
-        plane = self.frame.planes[number]
-        rows = np.frombuffer(memoryview(plane), np.uint8).reshape(plane.height, plane.line_size)
-        values = rows[:, : plane.width]
-        return np.ascontiguousarray(np.rot90(values, self.turns)) if self.turns else values
+        height, width = self.luma.shape
+        return height, width, 3
 
     @cached_property
     def image(self) -> Image:
         """The whole picture, BGR, shape (h, w, 3)."""
+        if self.frame is None:
+            height, width = self.luma.shape
+            chroma = [cv2.resize(plane, (width, height)) for plane in (self.blue, self.red)]
+            return np.asarray(cv2.transform(cv2.merge([self.luma, *chroma]), self.to_bgr), np.uint8)
         found = np.asarray(self.frame.to_ndarray(format="bgr24"), np.uint8)
-        return np.ascontiguousarray(np.rot90(found, self.turns)) if self.turns else found
-
-    @cached_property
-    def _to_bgr(self) -> NDArray[np.float64]:
-        """Matrix, shape (3, 4), from luma, both chromas and 1 to blue, green and red."""
-        red, blue = _WEIGHTS.get(self.frame.colorspace, (0.299, 0.114))
-        full = self.frame.color_range == ColorRange.JPEG or self.frame.format.name == "yuvj420p"
-        light, colour, black = (1.0, 1.0, 0.0) if full else (255 / 219, 255 / 224, 16.0)
-        green = 1 - red - blue
-        by_blue, by_red = 2 * colour * (1 - blue), 2 * colour * (1 - red)
-        matrix = np.array(
-            [
-                [light, by_blue, 0.0],
-                [light, -by_blue * blue / green, -by_red * red / green],
-                [light, 0.0, by_red],
-            ]
-        )
-        return np.column_stack([matrix, -matrix @ [black, 128.0, 128.0]])
+        return _upright(found, self.turns)
 
     def at(self, x: Floats, y: Floats) -> Image:
-        """Colours (BGR) at places, px, each of shape (rows, columns); black beside the picture."""
+        """Colours (BGR) at places, px, shape (rows, columns, 3): see `colours_at`."""
         luma = cv2.remap(self.luma, x, y, cv2.INTER_LINEAR)
-        # Each sample of colour stands in the middle of the four pixels that share it.
-        x, y = 0.5 * x - 0.25, 0.5 * y - 0.25
+        # A sample of colour stands in the middle of the pixels that share it.
+        x, y = (self.share * along + 0.5 * (self.share - 1) for along in (x, y))
         blue, red = (
             cv2.remap(plane, x, y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
-            for plane in self.chroma
+            for plane in (self.blue, self.red)
         )
-        found = cv2.transform(cv2.merge([luma, blue, red]), self._to_bgr)
-        return np.asarray(found, np.uint8)
+        return np.asarray(cv2.transform(cv2.merge([luma, blue, red]), self.to_bgr), np.uint8)
+
+    def reduced(self, times: int) -> Planes:
+        """Give the picture so many times smaller, each pixel the mean of what it covers."""
+        height, width = self.luma.shape[0] // times, self.luma.shape[1] // times
+        covered = times * height, times * width
+        chroma = tuple(round(self.share * side + 0.25) for side in covered)
+        return Planes(
+            _shrunk(self.luma, covered, (height, width)),
+            _shrunk(self.blue, chroma, (height, width)),
+            _shrunk(self.red, chroma, (height, width)),
+            self.to_bgr,
+            share=1.0,
+        )
+
+
+def _shrunk(plane: Image, covered: tuple[int, ...], size: tuple[int, int]) -> Image:
+    """Shrink what is covered of a plane, (height, width), to a size."""
+    part = plane[: covered[0], : covered[1]]
+    if part.shape[:2] == size:
+        return part
+    return np.asarray(cv2.resize(part, size[::-1], interpolation=cv2.INTER_AREA), np.uint8)
+
+
+def _values(plane: Any) -> Image:
+    rows = np.frombuffer(memoryview(plane), np.uint8).reshape(plane.height, plane.line_size)
+    return rows[:, : plane.width]
+
+
+def _upright(values: Image, turns: int) -> Image:
+    return np.ascontiguousarray(np.rot90(values, turns)) if turns else values
+
+
+def _to_bgr(frame: av.VideoFrame) -> NDArray[np.float64]:
+    """Matrix, shape (3, 4), from luma, both chromas and 1 to blue, green and red."""
+    red, blue = _WEIGHTS.get(frame.colorspace, (0.299, 0.114))
+    full = frame.color_range == ColorRange.JPEG or frame.format.name == "yuvj420p"
+    light, colour, black = (1.0, 1.0, 0.0) if full else (255 / 219, 255 / 224, 16.0)
+    green = 1 - red - blue
+    by_blue, by_red = 2 * colour * (1 - blue), 2 * colour * (1 - red)
+    matrix = np.array(
+        [
+            [light, by_blue, 0.0],
+            [light, -by_blue * blue / green, -by_red * red / green],
+            [light, 0.0, by_red],
+        ]
+    )
+    return np.column_stack([matrix, -matrix @ [black, 128.0, 128.0]])
 
 
 Picture = Image | Planes
@@ -127,3 +160,13 @@ def colours_at(picture: Picture, x: Floats, y: Floats) -> Image:
 def image_of(picture: Picture) -> Image:
     """Give the whole picture in colour (BGR), shape (h, w, 3)."""
     return picture.image if isinstance(picture, Planes) else picture
+
+
+def reduced(picture: Picture, times: int) -> Picture:
+    """Give a picture so many times smaller, each pixel the mean of what it covers."""
+    if times == 1:
+        return picture
+    if isinstance(picture, Planes):
+        return picture.reduced(times)
+    height, width = picture.shape[0] // times, picture.shape[1] // times
+    return _shrunk(picture, (times * height, times * width), (height, width))

@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 from data.sheet import Stone
 from vision.appearance import Appearance, any_stone, membership
 from vision.camera import Camera
-from vision.clip import Image
 from vision.ice_map import IceMap, rectify
+from vision.picture import Picture, colours_at
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
@@ -40,7 +40,7 @@ class Candidates:
 
 
 def seek(
-    image: Image,
+    image: Picture,
     camera: Camera,
     appearance: Appearance | None,
     disc: Stone,
@@ -79,7 +79,7 @@ def seek(
 
 
 def seek_about(
-    image: Image,
+    image: Picture,
     camera: Camera,
     places: Array,
     appearance: Appearance | None,
@@ -107,14 +107,12 @@ def seek_about(
     size = 2 * half + 1
     offset = np.arange(-half, half + 1) / scale
     grid = np.stack(np.meshgrid(offset, -offset), -1)
-    pixels = camera.project(places[:, None, None] + grid, disc.cap_height)
-    pixels = np.asarray(pixels.reshape(-1, size, 2), np.float32)
+    seen = camera.project(places[:, None, None] + grid, disc.cap_height)
+    pixels: Floats = seen.reshape(-1, size, 2).astype(np.float32)
     limit = np.array([image.shape[1], image.shape[0]]) - 1
     valid = np.all((pixels >= 0) & (pixels <= limit), axis=-1)
-    patches = cv2.remap(
-        image, pixels[..., 0], pixels[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT
-    )
-    ice = IceMap(np.asarray(patches, np.uint8), valid, 0.0, 0.0, scale)
+    patches = colours_at(image, pixels[..., 0], pixels[..., 1])
+    ice = IceMap(patches, valid, 0.0, 0.0, scale)
     # One above the other: at the places that may be chosen a patch's response is its own.
     response = cv2.GaussianBlur(_response(ice, appearance, disc), (0, 0), 0.7)
     response = np.asarray(response, np.float32).reshape(-1, size, size)

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from data.sheet import STONE, Stone
 from vision.appearance import Appearance
 from vision.camera import Camera
-from vision.clip import Image
 from vision.measure import EFFORT, Measures, is_plain, measure, scales, tilts
+from vision.picture import Picture
 from vision.seek import Bounds, seek, seek_about
 from vision.sighting import Refusal, Sighting
 
@@ -80,7 +80,7 @@ def plain_disc(radius: float) -> Stone:
 
 
 def find_stones(
-    image: Image,
+    image: Picture,
     camera: Camera,
     appearance: Appearance | None = None,
     disc: Stone = STONE,
@@ -108,7 +108,7 @@ def find_stones(
 
 
 def search_picture(
-    image: Image,
+    image: Picture,
     camera: Camera,
     appearance: Appearance | None = None,
     disc: Stone = STONE,
@@ -162,7 +162,7 @@ def search_picture(
 
 
 def look_at(
-    image: Image,
+    image: Picture,
     camera: Camera,
     places: Array,
     appearance: Appearance | None,

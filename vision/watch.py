@@ -148,7 +148,7 @@ class Watch:
     def _convincing(self, view: _View, known: Array) -> list[Sighting]:
         """Stones of any colour."""
         found = search_picture(
-            view.frame.image, view.camera, None, self._disc, self._search, None, known
+            view.frame.picture, view.camera, None, self._disc, self._search, None, known
         )
         return [stone for stone in found.stones if stone.score > CONVINCING]
 
@@ -182,12 +182,18 @@ class Watch:
 
     def _sought(self, view: _View, bounds: Bounds | None, known: Array) -> tuple[Sighting, ...]:
         return search_picture(
-            view.frame.image, view.camera, self.appearance, self._disc, self._search, bounds, known
+            view.frame.picture,
+            view.camera,
+            self.appearance,
+            self._disc,
+            self._search,
+            bounds,
+            known,
         ).stones
 
     def _follow(self, view: _View, leads: Sequence[_Lead]) -> list[_Lead]:
         """Add to a view the stones to which the leads point; return where these lead on to."""
-        t, image = view.frame.t, view.frame.image
+        t, image = view.frame.t, view.frame.picture
         if not leads or (self.appearance is None and not is_plain(self._disc)):
             return []
         known, apart = view.places, 1.6 * self._disc.radius

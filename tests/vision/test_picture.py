@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from vision.clip import open_clip
-from vision.picture import Planes, colours_at, image_of
+from vision.picture import Planes, colours_at, image_of, reduced
 
 WIDTH, HEIGHT = 96, 64
 
@@ -92,3 +92,14 @@ def test_a_picture_in_colour_is_sampled_as_it_is() -> None:
     image = smooth_picture()
     np.testing.assert_array_equal(colours_at(image, *everywhere(image.shape)), image)
     assert image_of(image) is image
+
+
+@pytest.mark.parametrize("times", [1, 2, 3, 4])
+def test_a_smaller_picture_shows_the_same(tmp_path: Path, times: int) -> None:
+    true = smooth_picture()
+    planes = first(write(tmp_path / "clip.mp4", true, "yuv420p"))
+    x, y = everywhere((HEIGHT // times - 2, WIDTH // times - 2))
+    smaller, whole = reduced(planes, times), reduced(true, times)
+    assert smaller.shape == whole.shape == (HEIGHT // times, WIDTH // times, 3)
+    seen = colours_at(smaller, x + 0.6, y + 0.3).astype(float)
+    assert np.abs(seen - colours_at(whole, x + 0.6, y + 0.3)).mean() < 4.0
