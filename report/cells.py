@@ -24,12 +24,24 @@ def data_significant(value: float | None, digits: int = 3, factor: float = 1.0) 
 def data_pair(value: float | None, stderr: float | None) -> Markup:
     """Write "value ± standard error", rounded together, with all digits kept for machines."""
     first, second = parts(value, stderr)
+    return Markup(DASH) if value is None else exact(value, first, stderr, second)
+
+
+def exact(value: float, text: str, stderr: float | None, error: str | None) -> Markup:
+    """Write a rounded value, and its rounded error if any, with all digits kept for machines."""
+    first = _element(value, text)
+    if stderr is None or error is None:
+        return first
+    return Markup('<span class="pm">{} ± {}</span>').format(first, _element(stderr, error))
+
+
+def data_parts(value: float | None, stderr: float | None) -> tuple[Markup, Markup | None]:
+    """Write a value and its standard error as two elements, rounded together."""
+    first, second = parts(value, stderr)
     if value is None:
-        return Markup(DASH)
-    text = _element(value, first)
-    if second is None or stderr is None:
-        return text
-    return Markup('<span class="pm">{} ± {}</span>').format(text, _element(stderr, second))
+        return Markup(DASH), None
+    error = None if second is None or stderr is None else _element(stderr, second)
+    return _element(value, first), error
 
 
 def _element(value: float, text: str) -> Markup:

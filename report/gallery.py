@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import pandas as pd
 from matplotlib.figure import Figure
 
 from data.results import Results
-from data.sheet import House
+from data.sheet import STONE, House
 from report import figures, tables
 
 
@@ -29,8 +30,29 @@ def pictures(
     tracks: pd.DataFrame,
     simulations: Mapping[str, pd.DataFrame],
     house: House | None,
+    residuals: pd.DataFrame | None = None,
+    posterior: pd.DataFrame | None = None,
 ) -> Iterator[Picture]:
-    """Give the figures of a shot in the order of the page, the plan view first."""
+    """Give the figures of a shot in the order of the page, the plan view first.
+
+    Nothing is drawn before `Picture.draw` is called, so that one figure at a time is in memory.
+
+    Parameters
+    ----------
+    results : Results
+        What the run found out.
+    tracks : DataFrame
+        With `data.tracks.TRACK_COLUMNS`.
+    simulations : mapping of str to DataFrame
+        Sampled simulation of each model.
+    house : House or None
+        Rings of the plan view; None where the scene has no house.
+    residuals : DataFrame, optional
+        As `report.tables.residual_table` makes it; without it there is no figure of them.
+    posterior : DataFrame, optional
+        Samples of ``restitution, friction, stone_friction``; the figure of what is known of
+        them needs these or the results' ``laws``.
+    """
     collisions, radius = results.collisions, results.radius
     moved = tables.moving_stones(tracks, collisions, radius)
     yield Picture(
@@ -39,10 +61,10 @@ def pictures(
         + ("measured paths (solid)" if moved else "nothing moved")
         + (" and simulated ones (broken)" if len(simulations) else "")
         + ("; crosses where stones touched" if collisions else "")
-        + ". Each stone where it was last seen, to scale.",
+        + ". Each stone where it was last seen, to scale; shaded how well its place is known.",
         f"Plan view of the sheet with {tracks['stone'].nunique()} stones, of which {len(moved)}"
         f" moved, and {len(collisions)} hits.",
-        lambda: figures.plan_figure(tracks, simulations, collisions, house=house, radius=radius),
+        partial(figures.plan_figure, tracks, simulations, collisions, house=house, radius=radius),
     )
     if moved:
         yield Picture(
@@ -50,28 +72,9 @@ def pictures(
             "Speed of each stone that moved, with two standard deviations either side. Numbered"
             " lines are the hits.",
             "Speed against time of stones " + ", ".join(moved) + ".",
-            lambda: figures.speed_figure(tracks, collisions, radius),
+            partial(figures.speed_figure, tracks, collisions, radius),
         )
-    used: set[str] = set()
-    for stone in moved:
-        name = _file_name(stone, used)
-        yield Picture(
-            f"motion_{name}",
-            f"Stone {stone}: place and angle against time, two standard deviations either side,"
-            " dotted where no frame showed it; straight pieces and numbers are the velocities"
-            " just before and after each hit.",
-            f"x, y and angle of stone {stone} against time.",
-            lambda stone=stone: figures.motion_figure(tracks, stone, collisions),  # type: ignore[misc]
-        )
-        if any((table["stone"] == stone).any() for table in simulations.values()):
-            yield Picture(
-                f"simulated_{name}",
-                f"Stone {stone}: the simulated motion of each model against the measured one.",
-                f"Simulated and measured x and y of stone {stone} against time.",
-                lambda stone=stone: figures.comparison_figure(  # type: ignore[misc]
-                    tracks, simulations, stone, collisions
-                ),
-            )
+    yield from _stones(moved, results, tracks, simulations)
     for rank, collision in enumerate(collisions, 1):
         first, second = collision.stones
         yield Picture(
@@ -79,8 +82,73 @@ def pictures(
             f"Hit {rank}, {first} on {second}: velocities before and after it in its normal (n)"
             " and tangential (t) axes.",
             f"Stones {first} and {second} touching, with arrows for their velocities.",
-            lambda rank=rank, hit=collision: figures.hit_figure(hit, rank, radius),  # type: ignore[misc]
+            partial(figures.hit_figure, collision, rank, radius),
         )
+    if any(glide.friction is not None for glide in results.glides):
+        curling = abs(radius / STONE.radius - 1) < 0.1
+        yield Picture(
+            "friction",
+            "Friction of each glide, two standard errors either side, over the speeds that it"
+            " spans, and the law of the whole shot (black)"
+            + ("; grey what others measured and laws they propose." if curling else "."),
+            "Friction against speed: a bar for each glide and a line for the whole shot.",
+            partial(
+                figures.friction_figure, results.glides, results.friction, tracks, curling=curling
+            ),
+        )
+    if results.laws is not None or posterior is not None:
+        yield Picture(
+            "posterior",
+            "What is known of restitution and friction together: each alone on the diagonal, pairs"
+            " below it.",
+            "Distributions of restitution and friction, and ellipses for their pairs.",
+            partial(figures.posterior_figure, results.laws, posterior),
+        )
+    if residuals is not None and len(residuals):
+        yield Picture(
+            "residuals",
+            "Sighted less smoothed places of all stones, the band twice the median standard"
+            " deviation; right, in standard deviations, against the normal distribution.",
+            "Residuals of x and y against time, and their histograms.",
+            partial(figures.residuals_figure, residuals, collisions),
+        )
+
+
+def _stones(
+    moved: Sequence[str],
+    results: Results,
+    tracks: pd.DataFrame,
+    simulations: Mapping[str, pd.DataFrame],
+) -> Iterator[Picture]:
+    """Give the figures of each stone that moved."""
+    collisions, used = results.collisions, set[str]()
+    turned = set(tracks.loc[tracks["theta"].notna(), "stone"])
+    for stone in moved:
+        name = _file_name(stone, used)
+        yield Picture(
+            f"motion_{name}",
+            f"Stone {stone}: place and speed against time, two standard deviations either side,"
+            " dotted where no frame showed it; straight pieces and numbers are the velocities"
+            " just before and after each hit, and the friction of each glide.",
+            f"x, y and speed of stone {stone} against time.",
+            partial(figures.motion_figure, tracks, stone, collisions, results.glides),
+        )
+        if stone in turned:
+            yield Picture(
+                f"spin_{name}",
+                f"Stone {stone}: angle and spin against time, drawn likewise; points are the spins"
+                " just before and after each hit.",
+                f"Angle and spin of stone {stone} against time.",
+                partial(figures.spin_figure, tracks, stone, collisions),
+            )
+        if any((table["stone"] == stone).any() for table in simulations.values()):
+            yield Picture(
+                f"simulated_{name}",
+                f"Stone {stone}: the simulated motion of each model against the measured one, each"
+                " with two standard deviations either side.",
+                f"Simulated and measured x and y of stone {stone} against time.",
+                partial(figures.comparison_figure, tracks, simulations, stone, collisions),
+            )
 
 
 def _file_name(stone: str, used: set[str]) -> str:

@@ -1,175 +1,254 @@
-"""Which tables a report shows, and how each cell is written."""
+"""Which tables a report shows, and which of their columns."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+import re
+from typing import Any
 
-import numpy as np
 import pandas as pd
-from markupsafe import Markup
 
 from data.results import Results
+from data.sheet import House
 from report import tables
-from report.cells import data, data_pair, data_significant
+from report.columns import Column, Table
+from report.units import METRES, Unit
 
-
-@dataclass(frozen=True)
-class Column:
-    """One column of a table in the page: head, unit, and how a row's cell is written.
-
-    `kind` is number, word or note: how the page sets it.
-    """
-
-    head: str
-    cell: Callable[[Mapping[str, object]], str]
-    unit: str = ""
-    kind: str = "number"
-
-
-@dataclass(frozen=True)
-class Table:
-    """One table of the page: heads and cells, ready to print."""
-
-    title: str
-    note: str
-    head: tuple[Column, ...]
-    rows: tuple[tuple[str, ...], ...]
+_STATES = (
+    Column("hit", "hit", kind="word"),
+    Column("time", "t", "s", stderr="stderr_t", decimals=4),
+    Column("stone", "stone", kind="word"),
+    Column("", "when", kind="word"),
+    *(Column(n, n, "m", stderr=f"sd_{n}", decimals=4) for n in ("x", "y")),
+    Column("v_x", "vx", "m/s", stderr="sd_vx", decimals=4),
+    Column("v_y", "vy", "m/s", stderr="sd_vy", decimals=4),
+    Column("ω", "omega", "rad/s", stderr="sd_omega", decimals=4),
+)
+_LAWS = (
+    Column("", "quantity", kind="word"),
+    Column("", "symbol", kind="word"),
+    Column("this shot", "value", stderr="stderr"),
+    Column("literature", "literature", stderr="stderr_literature"),
+    Column("from", "low"),
+    Column("to", "high"),
+    Column("source", "source", kind="note"),
+)
+_STONES = (
+    Column("stone", "stone", kind="word"),
+    Column("from", "t0", "s", decimals=2),
+    Column("to", "t1", "s", decimals=2),
+    Column("frames", "frames", decimals=0),
+    Column("seen", "seen", "%", decimals=0, factor=100),
+    Column("first x", "x0", "m", decimals=3),
+    Column("first y", "y0", "m", decimals=3),
+    Column("last x", "x1", "m", decimals=3),
+    Column("last y", "y1", "m", decimals=3),
+    Column("way", "path", "m", decimals=3),
+    Column("top speed", "top_speed", "m/s", decimals=3),
+    Column("turned", "turned", "rad", decimals=2),
+    Column("sd", "sd", "mm", factor=1000),
+)
+_HITS = (
+    Column("hit", "hit", kind="word"),
+    Column("time", "t", "s", stderr="stderr_t", decimals=4),
+    Column("stones", "stones", kind="word"),
+    Column("n_x", "nx", decimals=3),
+    Column("n_y", "ny", decimals=3),
+    Column("e", "restitution", stderr="stderr"),
+    Column("momentum missing", "momentum_residual", stderr="stderr_momentum"),
+    Column("energy lost", "energy_lost", "%", decimals=0, factor=100),
+    Column("stone on stone friction", "stone_friction", stderr="stderr_stone_friction"),
+    Column("note", "note", kind="note"),
+)
+_GLIDES = (
+    Column("stone", "stone", kind="word"),
+    Column("from", "t0", "s", decimals=2),
+    Column("to", "t1", "s", decimals=2),
+    Column("μ", "friction", stderr="stderr"),
+)
+_PAPER = {"rigid-body": 3, "point-mass": 4}
+"""Numbers that the models have as tables of the study."""
 
 
 def page_tables(
-    results: Results, tracks: pd.DataFrame, simulations: Mapping[str, pd.DataFrame]
+    results: Results,
+    tracks: pd.DataFrame,
+    house: House | None = None,
+    unit: Unit = METRES,
 ) -> list[Table]:
-    """Give the page's tables in their order; those without a row are left out."""
-    collisions, radius = results.collisions, results.radius
-    stones = [
-        _text("stone"),
-        _number("from", "t0", 2, "s"),
-        _number("to", "t1", 2, "s"),
-        _number("frames", "frames", 0),
-        _number("seen", "seen", 0, "%", 100),
-        _place("first at x, y", "x0", "y0"),
-        _place("last at x, y", "x1", "y1"),
-        _number("way", "path", 3, "m"),
-        _number("top speed", "top_speed", 3, "m/s"),
-        _number("turned", "turned", 2, "rad"),
-        _millimetres("sd", "sd"),
-    ]
-    hits = [
-        _text("hit"),
-        _pair("time", "t", "stderr_t", "s"),
-        Column("stones", lambda row: f"{row['first']} on {row['second']}", kind="word"),
-        _number(Markup("n<sub>x</sub>"), "nx", 3),
-        _number(Markup("n<sub>y</sub>"), "ny", 3),
-        _pair("e", "restitution", "stderr"),
-        _pair("momentum missing", "momentum_residual", "stderr_momentum"),
-        _number("energy lost", "energy_lost", 0, "%", 100),
-        _pair("stone on stone friction", "stone_friction", "stderr_stone_friction"),
-        _text("note"),
-    ]
-    states = [
-        _text("hit"),
-        _text("stone"),
-        _text("when", ""),
-        *(_number(name, name, 3, "m") for name in ("x", "y")),
-        _number(Markup("v<sub>x</sub>"), "vx", 4, "m/s"),
-        _number(Markup("v<sub>y</sub>"), "vy", 4, "m/s"),
-        _number("ω", "omega", 4, "rad/s"),
-    ]
-    glides = [
-        _text("stone"),
-        _number("from", "t0", 2, "s"),
-        _number("to", "t1", 2, "s"),
-        _pair("μ", "friction", "stderr"),
-    ]
-    scores = tables.score_table(results.simulations)
-    last_places = [
-        _millimetres(f"last place of {name}", str(name))
-        for name in scores.columns
-        if name not in ("model", "rmse", "note")
-    ]
+    """Give the tables of a shot in their order; those without a row are left out.
+
+    Parameters
+    ----------
+    results : Results
+        What the run found out.
+    tracks : DataFrame
+        With `data.tracks.TRACK_COLUMNS` and, where known, a column ``team``.
+    house : House, optional
+        The rings; without a house there are no tables for coaches.
+    unit : Unit
+        Of the tables for coaches; all others are SI.
+
+    Returns
+    -------
+    list of Table
+        The page shows their ``title``, ``note``, ``head`` and ``rows``;
+        `report.typeset.write_tables` writes them as files.
+    """
+    hits = tables.hit_table(results.collisions)
+    if len(hits):
+        hits["stones"] = hits["first"] + " on " + hits["second"]
     made = [
-        _table("Stones", "", tables.stone_table(tracks), stones),
-        _table(
+        *([] if house is None else coach_tables(results, tracks, house, unit)),
+        Table(
+            "table_1_laws",
+            "Restitution and friction",
+            "Literature as value ± standard error, or as the range that was measured.",
+            _LAWS,
+            tables.law_table(results),
+        ),
+        Table(
+            "table_2_measured",
+            "Measured before and after each hit",
+            "Places and velocities of the centres, and spins, at the instant of contact, from"
+            " fits to either side of it.",
+            _STATES,
+            tables.measured_table(results.collisions),
+        ),
+        *_simulated(results),
+        Table("stones", "Stones", "", _STONES, tables.stone_table(tracks)),
+        Table(
+            "hits",
             "Hits",
             "The normal n points from the first stone to the second. Momentum missing is"
             " |Σv′ − Σv| / |Σv|, zero for a perfect measurement.",
-            tables.hit_table(collisions),
+            _HITS,
             hits,
         ),
-        _table(
-            "Measured before and after each hit",
-            "Places and velocities of the centres at the instant of contact, from fits to either"
-            " side of it.",
-            tables.measured_table(collisions),
-            states,
+        Table(
+            "glides",
+            "Glides",
+            "Friction of each free glide.",
+            _GLIDES,
+            tables.glide_table(results.glides),
         ),
-        *(
-            _table(
-                f"Simulated before and after each hit: {model}",
-                "At the samples on either side of the hit; — where the simulation has no such hit.",
-                tables.simulated_table(table, collisions, radius),
-                states,
-            )
-            for model, table in simulations.items()
+        _scores(results),
+    ]
+    return [table for table in made if len(table.frame)]
+
+
+def coach_tables(
+    results: Results, tracks: pd.DataFrame, house: House, unit: Unit = METRES
+) -> list[Table]:
+    """Give the tables for coaches: who lies shot and how stones got there, in m or feet."""
+    hits, radius = results.collisions, results.radius
+    rest = tables.rest_table(tracks, hits, house, radius)
+    shot, why = tables.shot_stone(rest)
+    lies = f"Shot stone: {shot} ({why})." if shot else f"Shot stone: not known, {why}."
+    by = unit.symbol
+    speed: dict[str, Any] = {"unit": f"{by}/s", "factor": unit.per_metre, "decimals": 3}
+    length: dict[str, Any] = {"unit": by, "factor": unit.per_metre, "decimals": unit.decimals + 1}
+    apart = tables.distance_table(rest)
+    return [
+        Table(
+            "coach_stones",
+            "Where the stones stopped",
+            f"{lies} Centres of the stones, from the tee; turns counter-clockwise, curl to the"
+            " left of where the stone was heading.",
+            (
+                Column("stone", "stone", kind="word"),
+                Column("team", "team", kind="note"),
+                Column("lies", "lies", decimals=0),
+                Column("from the tee", "to_tee", stderr="sd_to_tee", **length),
+                Column("x", "x", stderr="sd_x", **length),
+                Column("y", "y", stderr="sd_y", **length),
+                Column("turns", "turns", stderr="sd_turns", decimals=2),
+                Column("curl", "curl", stderr="sd_curl", **length),
+                Column("note", "note", kind="note"),
+            ),
+            rest,
         ),
-        _table(
-            "Glides", "Friction of each free glide.", tables.glide_table(results.glides), glides
+        Table(
+            "coach_speeds",
+            "Speeds on the way",
+            "",
+            (
+                Column("stone", "stone", kind="word"),
+                Column("at", "at", kind="word"),
+                Column("time", "t", "s", decimals=2),
+                Column("speed", "speed", stderr="sd", **speed),
+                Column("note", "note", kind="note"),
+            ),
+            tables.speed_table(tracks, hits, radius),
         ),
-        _table(
-            "Simulated against measured",
-            "Root mean square distance over all stones and times after the first hit, and the"
-            " distance of the last places.",
-            scores,
-            [_text("model"), _millimetres("rms", "rmse"), *last_places, _text("note")],
+        Table(
+            "coach_hits",
+            "What each hit took and gave",
+            "The first stone arrives and goes on, the second is struck.",
+            (
+                Column("hit", "hit", kind="word"),
+                Column("stones", "stones", kind="word"),
+                Column("arrives at", "arrived", stderr="sd_arrived", **speed),
+                Column("goes on at", "left", stderr="sd_left", **speed),
+                Column("loses", "lost", stderr="sd_lost", **speed),
+                Column("of its speed", "share", "%", decimals=0, factor=100),
+                Column("struck stone leaves at", "struck", stderr="sd_struck", **speed),
+            ),
+            tables.takeout_table(hits),
+        ),
+        Table(
+            "coach_distances",
+            "Distances between stones",
+            "From centre to centre.",
+            (
+                Column("stone", "stone", kind="word"),
+                Column("to the tee", "tee", by, decimals=unit.decimals, factor=unit.per_metre),
+                *(
+                    Column(str(name), str(name), by, decimals=unit.decimals, factor=unit.per_metre)
+                    for name in apart.columns[2:]
+                ),
+            ),
+            apart,
         ),
     ]
-    return [table for table in made if table.rows]
 
 
-def _table(title: str, note: str, frame: pd.DataFrame, columns: Sequence[Column]) -> Table:
-    records = frame.to_dict("records")
-    cells = tuple(
-        tuple(c.cell({str(k): v for k, v in r.items()}) for c in columns) for r in records
-    )
-    # A column of notes that has none to say would only take room.
-    kept = [k for k, c in enumerate(columns) if c.kind != "note" or any(row[k] for row in cells)]
+def _simulated(results: Results) -> list[Table]:
+    order = sorted(results.simulations, key=lambda model: (_PAPER.get(model, 5), model))
+    return [
+        Table(
+            f"table_{_PAPER.get(model, 5 + k - len(_PAPER))}_{_plain(model)}",
+            f"Simulated before and after each hit: {model}",
+            "From the measured state just before the first hit. — where the simulation has no such"
+            " hit; errors are those of the start, of e and of μ.",
+            _STATES,
+            tables.simulated_table(results.simulations[model], results.collisions),
+        )
+        for k, model in enumerate(order)
+        if results.simulations[model].hits
+    ]
+
+
+def _scores(results: Results) -> Table:
+    scores = tables.score_table(results.simulations)
+    last_places = [
+        Column(f"last place of {name}", str(name), "mm", factor=1000)
+        for name in scores.columns
+        if name not in ("model", "rmse", "note")
+    ]
     return Table(
-        title,
-        note,
-        tuple(columns[k] for k in kept),
-        tuple(tuple(row[k] for k in kept) for row in cells),
+        "models",
+        "Simulated against measured",
+        "Root mean square distance over all stones and times after the first hit, and the"
+        " distance of the last places.",
+        (
+            Column("model", "model", kind="word"),
+            Column("rms", "rmse", "mm", factor=1000),
+            *last_places,
+            Column("note", "note", kind="note"),
+        ),
+        scores,
     )
 
 
-def _text(key: str, head: str | None = None) -> Column:
-    def cell(row: Mapping[str, object]) -> str:
-        value = row[key]
-        return "" if value is None or value != value else str(value)
-
-    return Column(key if head is None else head, cell, kind="note" if key == "note" else "word")
-
-
-def _number(head: str, key: str, decimals: int, unit: str = "", factor: float = 1.0) -> Column:
-    return Column(head, lambda row: data(_value(row[key]), decimals, factor), unit)
-
-
-def _millimetres(head: str, key: str) -> Column:
-    return Column(head, lambda row: data_significant(_value(row[key]), 3, 1000), "mm")
-
-
-def _pair(head: str, key: str, stderr: str, unit: str = "") -> Column:
-    return Column(head, lambda row: data_pair(_value(row[key]), _value(row[stderr])), unit)
-
-
-def _place(head: str, x: str, y: str) -> Column:
-    def cell(row: Mapping[str, object]) -> str:
-        return Markup("{}, {}").format(data(_value(row[x])), data(_value(row[y])))
-
-    return Column(head, cell, "m")
-
-
-def _value(cell: object) -> float | None:
-    if isinstance(cell, (int, float, np.integer, np.floating)) and np.isfinite(cell):
-        return float(cell)
-    return None
+def _plain(name: str) -> str:
+    return re.sub(r"[^\w-]+", "_", name)

@@ -33,13 +33,17 @@ def significant(value: float | None, digits: int = 3) -> str:
     return fixed(value, digits - 1 - exponent)
 
 
-def parts(value: float | None, stderr: float | None) -> tuple[str, str | None]:
+def parts(
+    value: float | None, stderr: float | None, most: int | None = None
+) -> tuple[str, str | None]:
     """Round a value and its standard error together.
 
     Parameters
     ----------
     value, stderr : float or None
         None and NaN stand for "not known".
+    most : int, optional
+        Decimals at most; what is nothing at so many, error and all, is written as 0.
 
     Returns
     -------
@@ -50,8 +54,12 @@ def parts(value: float | None, stderr: float | None) -> tuple[str, str | None]:
     if value is None or not math.isfinite(value):
         return DASH, None
     if stderr is None or not math.isfinite(stderr) or stderr <= 0:
-        return significant(value), None
+        return significant(value) if most is None or value == 0 else fixed(value, most), None
     decimals = decimals_of(stderr)
+    if most is not None:
+        decimals = min(decimals, most)
+        if round(value, decimals) == 0 == round(stderr, decimals):
+            return "0", None
     return fixed(value, decimals), fixed(stderr, decimals)
 
 

@@ -88,7 +88,7 @@ def write_report(
             results=results,
             pictures=shown,
             overlay=None if overlay is None or not overlay.is_file() else _video(overlay, folder),
-            tables=page_tables(results, tracks, simulations),
+            tables=page_tables(results, tracks, house),
             scores=[_score(name, results) for name in results.simulations],
             calibration=_calibration(cameras),
             why_no_e=_reason(results, r"\be\b|restitution|hit|collision"),

@@ -16,8 +16,10 @@ from data.results import (
     Friction,
     Glide,
     Input,
+    Joint,
     MeasuredState,
     Results,
+    SimulatedHit,
     SimulationScore,
 )
 from data.tracks import TRACK_COLUMNS
@@ -119,13 +121,26 @@ def make_shot(frames: int = 170) -> Shot:
             Glide("B", 1.52, 1.6, None, None),
         ),
         simulations={
-            "point-mass": SimulationScore(0.0312, {"A": 0.0213, "B": 0.0411, "C": 0.0987}),
+            "point-mass": SimulationScore(
+                0.0312, {"A": 0.0213, "B": 0.0411, "C": 0.0987}, None, simulated_hits(0.80)
+            ),
             "rigid-body": SimulationScore(None, {}, "no spins after the hit could be measured"),
             "frictional": SimulationScore(0.0123, {"A": 0.011, "B": None, "C": 0.0219}),
         },
+        laws=Joint(
+            ("restitution", "friction", "stone_friction"),
+            (0.8312345, 0.01093456, 0.05),
+            ((1.5e-4, 1e-7, 2e-6), (1e-7, 1.7e-7, 0.0), (2e-6, 0.0, 1e-4)),
+        ),
         warnings=("clip ends after 170 of 175 frames <used as far as it goes>",),
     )
     return Shot(tracks[list(TRACK_COLUMNS)], simulations, results)
+
+
+def simulated_hits(e: float) -> tuple[SimulatedHit, ...]:
+    pieces, hits = shot_pieces(e)
+    states = [collision(hit, pieces) for hit in hits]
+    return tuple(SimulatedHit(c.t, 0.003, c.stones, c.before, c.after) for c in states)
 
 
 def collision(hit: tuple[float, str, str, Vector], pieces: dict[str, list[Piece]]) -> Collision:
@@ -135,8 +150,9 @@ def collision(hit: tuple[float, str, str, Vector], pieces: dict[str, list[Piece]
         late = next(p for p in pieces[name] if p.t == t)
         early = pieces[name][pieces[name].index(late) - 1]
         place, velocity = early.at(t)
-        before[name] = MeasuredState(*map(float, (*place, *velocity)), early.omega)
-        after[name] = MeasuredState(*map(float, (*place, *late.velocity)), late.omega)
+        sd = (0.002, 0.003, 0.012, 0.015, 0.021)
+        before[name] = MeasuredState(*map(float, (*place, *velocity)), early.omega, *sd)
+        after[name] = MeasuredState(*map(float, (*place, *late.velocity)), late.omega, *sd)
     return Collision(
         t=t, stderr_t=0.0021, stones=(first, second), normal=(float(n[0]), float(n[1])),
         restitution=0.83, stderr=0.02, before=before, after=after, momentum_residual=0.013,

@@ -5,15 +5,19 @@ from itertools import combinations
 
 import matplotlib
 import numpy as np
+import pandas as pd
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.patches import Circle, Ellipse
 from matplotlib.text import Text
 
-from data.results import MeasuredState
+from data.results import Friction, Joint, MeasuredState
 from data.sheet import HOUSE
 from report import figures
-from report.style import render, styled
+from report.numbers import plus_minus
+from report.style import BLACK, GREEN, render, styled
+from report.tables import residual_table
 
 
 def texts(figure: Figure) -> list[Text]:
@@ -59,23 +63,39 @@ def check_layout(figure: Figure) -> None:
 
 
 @pytest.mark.parametrize("stone", ["A", "B", "C"])
-def test_motion_says_the_fitted_velocities(shot, stone):
-    collisions = shot.results.collisions
-    figure = figures.motion_figure(shot.tracks, stone, collisions)
+def test_motion_says_the_fitted_velocities_with_their_errors(shot, stone):
+    collisions, glides = shot.results.collisions, shot.results.glides
+    figure = figures.motion_figure(shot.tracks, stone, collisions, glides)
     check_layout(figure)
     assert len(figure.axes) == 3
     said = " ".join(t.get_text() for t in texts(figure))
     for hit in collisions:
         if stone in hit.stones:
-            for value in (hit.before[stone].vx, hit.after[stone].vy, hit.after[stone].omega):
-                assert f"{abs(value):.3f}" in said
+            after = hit.after[stone]
+            assert f"{abs(after.vx):.3f} ± 0.012" in said
+            assert f"{abs(after.vy):.3f} ± 0.015" in said
+    for glide in glides:
+        if glide.friction is not None:
+            assert (f"± {glide.stderr}" in said) == (glide.stone == stone)
 
 
-def test_motion_without_angle_has_no_empty_panel(shot):
-    tracks = shot.tracks.assign(theta=np.nan, omega=np.nan, sd_theta=np.nan)
-    figure = figures.motion_figure(tracks, "A", shot.results.collisions)
+def test_a_glide_is_drawn_along_the_measured_speed(shot):
+    figure = figures.motion_figure(shot.tracks, "C", shot.results.collisions, shot.results.glides)
+    (line,) = [line for line in figure.axes[2].lines if line.get_color() == GREEN]
+    track = shot.tracks[shot.tracks["stone"] == "C"]
+    speed = np.interp(line.get_xdata(), track["t"], np.hypot(track["vx"], track["vy"]))
+    np.testing.assert_allclose(line.get_ydata(), speed, atol=0.02)
+
+
+@pytest.mark.parametrize("stone", ["A", "B", "C"])
+def test_spin_says_the_fitted_spins_with_their_errors(shot, stone):
+    figure = figures.spin_figure(shot.tracks, stone, shot.results.collisions)
     check_layout(figure)
-    assert [ax.get_ylabel() for ax in figure.axes] == ["$x$ (m)", "$y$ (m)"]
+    assert [ax.get_ylabel() for ax in figure.axes] == ["angle (rad)", "spin (rad/s)"]
+    said = " ".join(t.get_text() for t in texts(figure))
+    for hit in shot.results.collisions:
+        if stone in hit.stones:
+            assert f"{hit.after[stone].omega:.3f} ± 0.021" in said
 
 
 @pytest.mark.parametrize("stone", ["A", "B", "C"])
@@ -107,10 +127,84 @@ def test_plan_shows_every_stone_to_scale(shot, house):
     check_layout(figure)
     (ax,) = figure.axes
     assert {"A", "B", "C", "D"} <= {t.get_text() for t in ax.texts}
-    radii = [round(p.get_radius(), 4) for p in ax.patches]
+    radii = [round(p.get_radius(), 4) for p in ax.patches if isinstance(p, Circle)]
     assert radii.count(0.1455) == 4 + 9
     assert radii.count(1.829) == (house is not None)
     assert ax.get_aspect() == 1
+
+
+def test_ellipses_are_enlarged_as_the_legend_says(shot):
+    figure = figures.plan_figure(shot.tracks, house=HOUSE)
+    (ax,), (legend,) = figure.axes, figure.legends
+    (said,) = [t.get_text() for t in legend.get_texts() if "sd" in t.get_text()]
+    factor = int(said.split(",")[1].split()[0])
+    sizes = [p.get_width() for p in ax.patches if type(p) is Ellipse]
+    assert len(sizes) == 4
+    assert sizes == pytest.approx([2 * 2 * 0.004 * factor] * 4)
+
+
+def residuals(shot, sd=0.003):
+    rng = np.random.default_rng(3)
+    sighted = shot.tracks.assign(sd_x=sd, sd_y=sd)
+    for axis in "xy":
+        sighted[axis] += sd * rng.standard_normal(len(sighted))
+    return residual_table(sighted, shot.tracks)
+
+
+def test_residuals_that_are_normal_look_so(shot):
+    table = residuals(shot)
+    assert table["dx"].std() == pytest.approx(0.003, rel=0.1)
+    figure = figures.residuals_figure(table, shot.results.collisions)
+    check_layout(figure)
+    said = [ax.get_title() for ax in figure.axes if ax.get_title()]
+    assert said[0].split()[0] in ("94", "95", "96")
+
+
+@pytest.mark.parametrize("curling", [True, False])
+@pytest.mark.parametrize(
+    "law", [Friction(0.0109, 4e-4), Friction(0.0109, 4e-4, "fit", 2e-3, 0.06, 0.009), Friction()]
+)
+def test_friction_shows_law_and_glides(shot, law, curling):
+    figure = figures.friction_figure(shot.results.glides, law, shot.tracks, curling=curling)
+    check_layout(figure)
+    (ax,) = figure.axes
+    low, high = ax.get_ylim()
+    assert low < 0.0109 < high
+    said = [t.get_text() for t in figure.legends[0].get_texts()]
+    assert any("Penner" in text for text in said) == curling
+    assert {"stone A", "stone C"} <= set(said)
+    if law.value is not None:
+        black = next(line for line in ax.lines if line.get_color() == BLACK)
+        assert np.interp(1.0, *black.get_data()) == pytest.approx(
+            0.0109 if law.law == "constant" else 2e-3 / 1.06 + 0.009, rel=1e-4
+        )
+
+
+def test_posterior_from_covariance_and_from_samples(shot):
+    laws = shot.results.laws
+    rng = np.random.default_rng(4)
+    samples = pd.DataFrame(
+        rng.multivariate_normal(laws.values, laws.cov, 3000), columns=list(laws.names)
+    )
+    for given in ((laws, None), (laws, samples), (None, samples)):
+        figure = figures.posterior_figure(*given)
+        check_layout(figure)
+        assert len(figure.axes) == 9
+        assert figure.axes[0].get_title().startswith("0.831 ± 0.012")
+    one = Joint(("friction",), (0.0109,), ((1e-8,),))
+    check_layout(figures.posterior_figure(one))
+    with pytest.raises(ValueError, match="nothing to draw"):
+        figures.posterior_figure(None, pd.DataFrame({"other": [1.0]}))
+
+
+def test_an_ellipse_lies_as_the_covariance_says():
+    laws = Joint(("restitution", "friction"), (0.8, 0.01), ((4e-4, 8e-7), (8e-7, 1e-8)))
+    figure = figures.posterior_figure(laws)
+    (one, two) = figure.axes[2].patches
+    c, s = np.cos(np.radians(one.get_angle())), np.sin(np.radians(one.get_angle()))
+    axes = np.array([[c, -s], [s, c]]) * [one.get_width() / 2, one.get_height() / 2]
+    np.testing.assert_allclose(axes @ axes.T, laws.cov, rtol=1e-6)
+    assert two.get_width() == pytest.approx(2 * one.get_width())
 
 
 def test_hit_gives_normal_and_tangential_parts(shot):
@@ -119,7 +213,11 @@ def test_hit_gives_normal_and_tangential_parts(shot):
         check_layout(figure)
         state = hit.after[hit.stones[1]]
         along = state.vx * hit.normal[0] + state.vy * hit.normal[1]
-        assert f"{along:.3f}" in [t.get_text() for t in texts(figure)]
+        across = -state.vx * hit.normal[1] + state.vy * hit.normal[0]
+        n, t = (np.hypot(0.012 * a, 0.015 * b) for a, b in (hit.normal, hit.normal[::-1]))
+        said = [t.get_text() for t in texts(figure)]
+        assert plus_minus(along, n) in said
+        assert plus_minus(across, t) in said
 
 
 def test_plan_of_stones_that_were_seen_once(shot):
@@ -151,6 +249,13 @@ def test_long_and_strange_names_and_close_hits_fit(shot):
         figures.plan_figure(tracks, simulations, hits, house=None),
         figures.speed_figure(tracks, hits),
         figures.motion_figure(tracks, new["A"], hits),
+        figures.spin_figure(tracks, new["A"], hits),
+        figures.residuals_figure(residuals(shot).replace({"stone": new}), hits),
+        figures.friction_figure(
+            [dataclasses.replace(g, stone=new[g.stone]) for g in shot.results.glides],
+            shot.results.friction,
+            tracks,
+        ),
         figures.comparison_figure(tracks, simulations, new["B"], hits),
         figures.hit_figure(hits[0], 1),
     ):

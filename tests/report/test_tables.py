@@ -1,8 +1,11 @@
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 
+from data.results import MeasuredState
 from report import tables
 
 
@@ -24,26 +27,46 @@ def test_measured_states_are_those_of_the_results(shot):
     assert (row["x"], row["vy"], row["omega"]) == (state.x, state.vy, state.omega)
 
 
-def test_hits_are_found_in_a_sampled_simulation(shot):
+def test_simulated_hits_stand_beside_the_measured_ones(shot):
     collisions = shot.results.collisions
+    score = shot.results.simulations["point-mass"]
     truth = tables.measured_table(collisions)
-    simulation = shot.tracks[["stone", "frame", "t", "x", "y", "theta", "vx", "vy", "omega"]]
-    found = tables.simulated_table(simulation, collisions)
-    assert list(found["hit"]) == list(truth["hit"])
-    for name in ("vx", "vy"):
-        # Half a frame of slowing by the ice at most.
-        np.testing.assert_allclose(found[name], truth[name].astype(float), atol=0.005)
+    found = tables.simulated_table(score, collisions)
+    assert list(found.columns) == list(truth.columns)
+    assert found[["hit", "stone", "when"]].equals(truth[["hit", "stone", "when"]])
+    row = found[(found["hit"] == 2) & (found["stone"] == "C") & (found["when"] == "after")].iloc[0]
+    assert row["vy"] == score.hits[1].after["C"].vy
+    assert row["sd_vy"] == 0.015
 
 
-def test_a_simulation_without_the_hit_says_nothing(shot):
-    simulation = shot.simulations["point-mass"].copy()
-    simulation.loc[simulation["stone"] == "C", ["vx", "vy"]] = 0.0
-    found = tables.simulated_table(simulation, shot.results.collisions)
+def test_hits_that_only_one_of_the_two_has_are_told_apart(shot):
+    collisions = shot.results.collisions
+    score = shot.results.simulations["point-mass"]
+    missed = dataclasses.replace(score, hits=score.hits[:1])
+    found = tables.simulated_table(missed, collisions)
     assert found.loc[found["hit"] == 1, "vx"].notna().all()
     assert found.loc[found["hit"] == 2, ["t", "x", "vx"]].isna().all().all()
-    none = tables.simulated_table(simulation.iloc[:0], shot.results.collisions)
-    assert len(none) == 8
-    assert none["vx"].isna().all()
+    more = tables.simulated_table(score, collisions[:1])
+    assert more["hit"].tolist()[:4] == [1] * 4
+    assert more["hit"].isna().tolist()[4:] == [True] * 4
+
+
+def test_the_axes_of_a_hit_keep_speed_and_error():
+    state = MeasuredState(0, 0, 3.0, 4.0, None, 0, 0, 0.1, 0.1)
+    (along, sd_n), (across, sd_t) = tables.in_axes(state, (0.6, 0.8))
+    assert (along, across) == pytest.approx((5.0, 0.0))
+    assert (sd_n, sd_t) == pytest.approx((0.1, 0.1))
+    assert tables.in_axes(MeasuredState(0, 0, 1, 0), (0, 1)) == ((0, None), (-1, None))
+
+
+def test_laws_stand_beside_the_literature_for_curling_stones_only(shot):
+    table = tables.law_table(shot.results)
+    assert table["symbol"].tolist() == ["e", "μ", "μ_s"]
+    assert table["value"].tolist() == pytest.approx([0.8312345, 0.01093456, 0.05])
+    assert table["stderr"].iloc[2] == pytest.approx(0.01)
+    assert table["literature"].iloc[0] == 0.83
+    pucks = tables.law_table(dataclasses.replace(shot.results, radius=0.035))
+    assert pucks[["literature", "low"]].isna().all().all()
 
 
 def test_scores_name_every_stone(shot):

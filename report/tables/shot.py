@@ -1,4 +1,4 @@
-"""The tables of a report, as DataFrames: SI units, one fact a column, NaN or None where unknown."""
+"""A shot in tables: its stones, hits, glides, the simulations' scores, what the fit leaves."""
 
 from __future__ import annotations
 
@@ -6,16 +6,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
-from data.results import Collision, Glide, SimulationScore, StoneState
+from data.results import Collision, Glide, SimulationScore
 from data.sheet import STONE
-
-Array = NDArray[np.float64]
-
-STATE_COLUMNS = ("x", "y", "vx", "vy", "omega")
-
-_LEAST_KICK = 0.02  # m/s between two samples; the ice alone takes 0.004 m/s at 25 per second
 
 
 def moving_stones(
@@ -98,61 +91,6 @@ def hit_table(collisions: Sequence[Collision]) -> pd.DataFrame:
     )
 
 
-def measured_table(collisions: Sequence[Collision]) -> pd.DataFrame:
-    """Place, velocity and spin of both stones before and after each hit (the paper's Table 2).
-
-    Returns
-    -------
-    DataFrame
-        ``hit, stone, when, x, y, vx, vy, omega``.
-    """
-    rows = []
-    for rank, collision in enumerate(collisions, 1):
-        for stone in collision.stones:
-            for when, side in (("before", collision.before), ("after", collision.after)):
-                rows.append(_state_row(rank, stone, when, side.get(stone)))
-    return pd.DataFrame(rows, columns=["hit", "stone", "when", *STATE_COLUMNS])
-
-
-def simulated_table(
-    simulation: pd.DataFrame, collisions: Sequence[Collision], radius: float = STONE.radius
-) -> pd.DataFrame:
-    """Return the same hits in a sampled simulation (the paper's Tables 3 and 4).
-
-    A hit of two stones shows as both velocities changing between two samples while the
-    stones are close; the samples on either side are the states before and after. A hit that
-    the simulation does not have leaves NaN.
-
-    Parameters
-    ----------
-    simulation : DataFrame
-        ``stone, frame, t, x, y, theta, vx, vy, omega`` of one model.
-    collisions : sequence of Collision
-        The measured hits, which say what to look for.
-    radius : float
-        Radius of the stones, m.
-
-    Returns
-    -------
-    DataFrame
-        ``hit, stone, when, t, x, y, vx, vy, omega``; `t` is that of the sample.
-    """
-    rows = []
-    for rank, collision in enumerate(collisions, 1):
-        tracks = [_states(simulation, name) for name in collision.stones]
-        common = tracks[0].index.intersection(tracks[1].index)
-        tracks = [track.loc[common] for track in tracks]
-        place = _hit_between(tracks[0], tracks[1], collision.t, radius)
-        for stone, track in zip(collision.stones, tracks, strict=True):
-            for when, offset in (("before", 0), ("after", 1)):
-                row: dict[str, object] = {"hit": rank, "stone": stone, "when": when}
-                if place is not None:
-                    row["t"] = common[place + offset]
-                    row |= {name: track[name].iloc[place + offset] for name in STATE_COLUMNS}
-                rows.append(row)
-    return pd.DataFrame(rows, columns=["hit", "stone", "when", "t", *STATE_COLUMNS])
-
-
 def glide_table(glides: Sequence[Glide]) -> pd.DataFrame:
     """One row per free glide and its friction."""
     columns = ["stone", "t0", "t1", "friction", "stderr"]
@@ -169,28 +107,24 @@ def score_table(simulations: Mapping[str, SimulationScore]) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=["model", "rmse", *stones, "note"])
 
 
-def _state_row(rank: int, stone: str, when: str, state: StoneState | None) -> dict[str, object]:
-    values = {name: None if state is None else getattr(state, name) for name in STATE_COLUMNS}
-    return {"hit": rank, "stone": stone, "when": when, **values}
+def residual_table(sightings: pd.DataFrame, tracks: pd.DataFrame) -> pd.DataFrame:
+    """Sighted less smoothed places, one row per sighting.
 
+    Parameters
+    ----------
+    sightings : DataFrame
+        `data.tracks.SIGHTING_COLUMNS`.
+    tracks : DataFrame
+        `data.tracks.TRACK_COLUMNS`, smoothed from them.
 
-def _states(simulation: pd.DataFrame, stone: str) -> pd.DataFrame:
-    rows = simulation[simulation["stone"] == stone].sort_values("t")
-    return rows.set_index("t")[list(STATE_COLUMNS)]
-
-
-def _hit_between(one: pd.DataFrame, two: pd.DataFrame, t: float, radius: float) -> int | None:
-    """Index of the sample just before the two stones hit each other, None if they do not."""
-    if len(one) < 2:
-        return None
-    times = one.index.to_numpy(float)
-    velocities = [table[["vx", "vy"]].to_numpy(float) for table in (one, two)]
-    kick = np.minimum(*(np.hypot(*np.diff(v, axis=0).T) for v in velocities))
-    apart = np.hypot(*(one[["x", "y"]].to_numpy(float) - two[["x", "y"]].to_numpy(float)).T)
-    apart = np.minimum(apart[:-1], apart[1:])
-    relative = np.hypot(*(velocities[0] - velocities[1]).T)
-    reach = 2 * radius + np.maximum(relative[:-1], relative[1:]) * np.diff(times)
-    found = np.flatnonzero((kick > _LEAST_KICK) & (apart <= reach * 1.001))
-    if len(found) == 0:
-        return None
-    return int(found[np.argmin(np.abs(times[found] - t))])
+    Returns
+    -------
+    DataFrame
+        ``stone, frame, t, dx, dy, sd_x, sd_y``: m and s; the standard deviations are those of
+        the sightings. Those without one are left out.
+    """
+    keys = ["stone", "frame"]
+    both = sightings.merge(tracks[[*keys, "x", "y"]], on=keys, suffixes=("", "_smooth"))
+    both["dx"], both["dy"] = both["x"] - both["x_smooth"], both["y"] - both["y_smooth"]
+    known = (both["sd_x"] > 0) & (both["sd_y"] > 0) & both[["dx", "dy"]].notna().all(axis=1)
+    return both.loc[known, [*keys, "t", "dx", "dy", "sd_x", "sd_y"]].reset_index(drop=True)

@@ -1,0 +1,134 @@
+"""A table as people read it: which columns, in what unit, rounded how; for page and paper alike."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+import pandas as pd
+from markupsafe import Markup, escape
+
+from report.cells import exact
+from report.numbers import fixed, parts, significant
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column: its head, where its values come from, and how they are written.
+
+    Attributes
+    ----------
+    title : str
+        Plain text; ``v_x`` has a subscript.
+    key : str
+        Column of the frame.
+    unit : str
+        Of what is written.
+    kind : str
+        number, word or note: how it is set.
+    stderr : str, optional
+        Column of the frame with the standard error; value and error are rounded together.
+    decimals : int, optional
+        Written with so many; with `stderr` it is the most.
+    digits : int
+        Significant digits where neither `stderr` nor `decimals` says otherwise.
+    factor : float
+        From the frame's SI unit to `unit`.
+    """
+
+    title: str
+    key: str
+    unit: str = ""
+    kind: Literal["number", "word", "note"] = "number"
+    stderr: str | None = None
+    decimals: int | None = None
+    digits: int = 3
+    factor: float = 1.0
+
+    @property
+    def head(self) -> Markup:
+        """The head as the page writes it."""
+        first, low, rest = self.title.partition("_")
+        return Markup("{}<sub>{}</sub>").format(first, rest) if low else escape(self.title)
+
+    def parts(self, row: Mapping[str, object]) -> tuple[str, str | None]:
+        """Write of a row the value, and the standard error if there is one."""
+        if self.kind != "number":
+            value = row[self.key]
+            # A rank turns into a float where one is missing.
+            if isinstance(value, float) and value.is_integer():
+                value = int(value)
+            return ("" if value is None or value != value else str(value)), None
+        number = self._number(row, self.key)
+        if self.stderr is not None:
+            return parts(number, self._number(row, self.stderr), self.decimals)
+        if self.decimals is not None:
+            return fixed(number, self.decimals), None
+        return significant(number, self.digits), None
+
+    def cell(self, row: Mapping[str, object]) -> Markup:
+        """Write a row's cell for the page: rounded, all digits kept for machines."""
+        text, error = self.parts(row)
+        value = as_number(row[self.key])
+        if self.kind != "number" or value is None:
+            return escape(text)
+        stderr = None if self.stderr is None else as_number(row[self.stderr])
+        return exact(value, text, stderr, error)
+
+    def _number(self, row: Mapping[str, object], key: str) -> float | None:
+        value = as_number(row[key])
+        return None if value is None else value * self.factor
+
+
+@dataclass(frozen=True)
+class Table:
+    """One table of a shot.
+
+    Attributes
+    ----------
+    name : str
+        Of its files.
+    title : str
+        One line above it.
+    note : str
+        What a reader has to know; may be empty.
+    columns : tuple of Column
+        What is shown.
+    frame : DataFrame
+        All of it, SI units, with standard errors.
+    """
+
+    name: str
+    title: str
+    note: str
+    columns: tuple[Column, ...]
+    frame: pd.DataFrame
+
+    @cached_property
+    def head(self) -> tuple[Column, ...]:
+        """Columns that are shown: one of notes that has none to say would only take room."""
+        return tuple(
+            column
+            for column in self.columns
+            if column.kind != "note" or any(column.parts(row)[0] for row in self.records)
+        )
+
+    @cached_property
+    def records(self) -> Sequence[Mapping[str, object]]:
+        """The rows, exact."""
+        return [{str(k): v for k, v in row.items()} for row in self.frame.to_dict("records")]
+
+    @property
+    def rows(self) -> tuple[tuple[Markup, ...], ...]:
+        """The cells as the page writes them."""
+        return tuple(tuple(column.cell(row) for column in self.head) for row in self.records)
+
+
+def as_number(cell: object) -> float | None:
+    """Return a cell as a finite number, else None."""
+    if isinstance(cell, int | float | np.integer | np.floating) and np.isfinite(cell):
+        return float(cell)
+    return None

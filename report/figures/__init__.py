@@ -1,0 +1,28 @@
+"""The figures of a shot: each one function on the tables, returning a matplotlib `Figure`.
+
+All lengths in m, times in s, angles in rad. The tables are `data.tracks.TRACK_COLUMNS` for
+what was measured and ``stone, frame, t, x, y, theta, vx, vy, omega`` for what was simulated.
+A figure belongs to no window: save it with ``savefig`` or show it as the last line of a
+notebook's cell.
+"""
+
+from report.figures.comparison import comparison_figure
+from report.figures.friction import friction_figure
+from report.figures.hit import hit_figure
+from report.figures.motion import motion_figure, speed_figure, spin_figure
+from report.figures.plan import draw_house, plan_figure
+from report.figures.posterior import posterior_figure
+from report.figures.residuals import residuals_figure
+
+__all__ = [
+    "comparison_figure",
+    "draw_house",
+    "friction_figure",
+    "hit_figure",
+    "motion_figure",
+    "plan_figure",
+    "posterior_figure",
+    "residuals_figure",
+    "speed_figure",
+    "spin_figure",
+]

@@ -1,0 +1,81 @@
+"""The simulated motion of a stone against the measured one, a line per model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from data.results import Collision
+from report.figures.parts import (
+    LABELS,
+    WIDTH,
+    draw_measured,
+    hits_of,
+    legend_below,
+    line,
+    rows_of,
+    short,
+    time_axis,
+    title,
+)
+from report.style import BLACK, model_lines, new_figure, plain_text, styled
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+
+
+def comparison_figure(
+    tracks: pd.DataFrame,
+    simulations: Mapping[str, pd.DataFrame],
+    stone: str,
+    collisions: Sequence[Collision] = (),
+) -> Figure:
+    """One stone's simulated x and y, a line per model, against the measured ones.
+
+    Bands are two standard deviations either side: grey of the measurement, coloured of a
+    simulation that has them.
+
+    Parameters
+    ----------
+    tracks : DataFrame
+        With `data.tracks.TRACK_COLUMNS`.
+    simulations : mapping of str to DataFrame
+        Sampled simulation of each model: ``stone, t, x, y`` and, if known, ``sd_x, sd_y``.
+    stone : str
+        Which stone.
+    collisions : sequence of Collision
+        All hits of the shot, in order.
+    """
+    rows = rows_of(tracks, stone)
+    lines = model_lines(simulations)
+    with styled():
+        figure = new_figure(WIDTH, 4.4)
+        axes = figure.subplots(2, 1, sharex=True)
+        for ax, column in zip(axes, ("x", "y"), strict=True):
+            t, values, sd, seen = rows[["t", column, f"sd_{column}", "seen"]].to_numpy(float).T
+            draw_measured(ax, t, values, sd, seen)
+            for model, table in simulations.items():
+                simulated = rows_of(table, stone)
+                colour, dash = lines[model]
+                t, values = simulated[["t", column]].to_numpy(float).T
+                if f"sd_{column}" in simulated:
+                    sd = simulated[f"sd_{column}"].to_numpy(float)
+                    ax.fill_between(
+                        t, values - 2 * sd, values + 2 * sd, color=colour, alpha=0.15, lw=0
+                    )
+                ax.plot(t, values, color=colour, linestyle=dash, lw=1.6, zorder=4)
+            ax.set_ylabel(LABELS[column])
+        own = [(rank, c.t) for rank, c in hits_of(collisions, stone)]
+        time_axis(axes, own, rows["t"].to_numpy(float))
+        figure.align_ylabels(axes)
+        title(figure, f"Stone {short(stone, 40)}: simulated and measured")
+        handles: list[Artist] = [line("measured (± 2 sd)", color=BLACK)]
+        handles += [
+            line(plain_text(model), color=colour, linestyle=dash, lw=1.6)
+            for model, (colour, dash) in lines.items()
+        ]
+        legend_below(figure, handles)
+    return figure

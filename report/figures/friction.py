@@ -1,0 +1,123 @@
+"""Friction of the ice against speed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from data.results import Friction, Glide
+from data.sheet import GRAVITY
+from physics.ice import FCV1, Constant, Fit, IceLaw, Penner
+from report.figures.parts import WIDTH, Array, legend_below, line, rows_of, short, speeds, title
+from report.numbers import plus_minus
+from report.style import BLACK, GREY, PALE, new_figure, stone_colours, styled
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+
+MEASURED = (0.006, 0.016)
+"""Friction of curling ice as measured by Li et al., 2022, Lubricants 10, 265."""
+
+_LAWS: tuple[tuple[str, IceLaw, Any], ...] = (
+    ("FCV1 (Uehara and Ito)", FCV1(), (0, (4, 2))),
+    ("Penner", Penner(), (0, (1, 1.5))),
+)
+
+_SLOWEST = 0.05
+"""Speed from which on a law is drawn, m/s: some have a pole at rest."""
+
+
+def friction_figure(
+    glides: Sequence[Glide], friction: Friction, tracks: pd.DataFrame, *, curling: bool = True
+) -> Figure:
+    """Friction of each glide over the speeds that it spans, and the law fitted to the shot.
+
+    A bar across is the span of speeds, the one upright two standard errors either side; the
+    band about the law is two of its value's.
+
+    Parameters
+    ----------
+    glides : sequence of Glide
+        Each with its friction.
+    friction : Friction
+        Of the whole shot.
+    tracks : DataFrame
+        With `data.tracks.TRACK_COLUMNS`, for the speeds of the glides.
+    curling : bool
+        Whether these are stones on curling ice: then laws of the literature are shown too, and
+        the range that was measured.
+    """
+    colours = stone_colours(tracks["stone"].unique())
+    spans = [(glide, _span(glide, tracks)) for glide in glides]
+    known = [(glide, span) for glide, span in spans if glide.friction is not None and span]
+    fastest = max([1.0, *(1.1 * span[1] for _, span in known)])
+    v = np.linspace(_SLOWEST, fastest, 200)
+    handles: list[Artist] = []
+    with styled():
+        figure = new_figure(WIDTH, 3.4)
+        ax = figure.subplots()
+        if curling:
+            ax.axhspan(*MEASURED, color=PALE, alpha=0.5, lw=0, zorder=0)
+            handles.append(line("Li et al., measured", color=PALE, lw=6))
+            for label, law, dash in _LAWS:
+                ax.plot(v, _friction(law, v), color=GREY, lw=1.1, linestyle=dash, zorder=2)
+                handles.append(line(label, color=GREY, lw=1.1, linestyle=dash))
+        for glide, (slow, fast) in known:
+            _draw_glide(ax, glide, slow, fast, colours[glide.stone])
+        for name in sorted({glide.stone for glide, _ in known}):
+            handles.append(line(f"stone {short(name)}", color=colours[name], lw=2.2))
+        if friction.value is not None:
+            mu = _friction(_law(friction), v)
+            error = 2 * (friction.stderr or 0.0)
+            ax.fill_between(v, mu - error, mu + error, color=BLACK, alpha=0.12, lw=0, zorder=1)
+            ax.plot(v, mu, color=BLACK, zorder=3)
+            text = plus_minus(friction.value, friction.stderr)
+            where = " at 1 m/s" if friction.law == "fit" else ""
+            handles.insert(0, line(f"this shot: μ = {text}{where}", color=BLACK))
+        ax.set(xlabel="speed (m/s)", ylabel="μ", xlim=(0, fastest))
+        ax.set_ylim(*_limits(known, friction, curling))
+        title(figure, "Friction of the ice against speed")
+        if handles:
+            legend_below(figure, handles)
+    return figure
+
+
+def _span(glide: Glide, tracks: pd.DataFrame) -> tuple[float, float] | None:
+    """Least and greatest speed of a glide, m/s."""
+    rows = rows_of(tracks, glide.stone)
+    rows = rows[(rows["t"] >= glide.t0) & (rows["t"] <= glide.t1)]
+    speed = speeds(rows)[0]
+    speed = speed[np.isfinite(speed)]
+    return (float(speed.min()), float(speed.max())) if len(speed) else None
+
+
+def _draw_glide(ax: Axes, glide: Glide, slow: float, fast: float, colour: str) -> None:
+    mu, stderr = float(glide.friction or 0.0), glide.stderr or 0.0
+    ax.plot([slow, fast], [mu, mu], color=colour, lw=2.2, zorder=4)
+    middle = (slow + fast) / 2
+    ax.errorbar(middle, mu, 2 * stderr, color=colour, fmt="none", capsize=3, lw=1.2, zorder=4)
+
+
+def _law(friction: Friction) -> IceLaw:
+    if friction.law == "fit" and None not in (friction.a, friction.v_c, friction.b):
+        return Fit(float(friction.a or 0), float(friction.v_c or 0), float(friction.b or 0))
+    return Constant(float(friction.value or 0.0))
+
+
+def _friction(law: IceLaw, speed: Array) -> Array:
+    return np.asarray(law.deceleration(speed)) / GRAVITY
+
+
+def _limits(
+    known: Sequence[tuple[Glide, object]], friction: Friction, curling: bool
+) -> tuple[float, float]:
+    """Limits that show the law and the glides that tell something; poor ones are cut."""
+    values = [friction.value or 0.0, *(MEASURED if curling else ())]
+    values += [float(g.friction or 0.0) for g, _ in known]
+    span = max(max(values) - min(values), 0.3 * max(map(abs, values)), 1e-4)
+    return min(values) - 0.15 * span, max(values) + 0.3 * span

@@ -1,0 +1,172 @@
+"""What several figures share: rows of a stone, lines that break, the axis of time, legends."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import ArrayLike, NDArray
+
+from data.results import Collision
+from report.numbers import fixed, parts
+from report.style import BLACK, GREY, PALE, plain_text
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+
+Array = NDArray[np.float64]
+
+WIDTH = 6.0
+"""Width of a figure, inches: its text stays readable on a phone."""
+
+LABELS = {
+    "x": "$x$ (m)",
+    "y": "$y$ (m)",
+    "speed": "speed (m/s)",
+    "theta": "angle (rad)",
+    "omega": "spin (rad/s)",
+}
+"""What stands at the axis of a column of the tracks."""
+
+Hits = Sequence[tuple[int, Collision]]
+"""Hits with their ranks."""
+
+
+def title(figure: Figure, text: str) -> None:
+    """Set the one line above a figure, at its left edge; the text is taken as it is."""
+    figure.suptitle(text, x=0.01, ha="left", fontsize=10, fontweight="bold")
+
+
+def rows_of(table: pd.DataFrame, stone: str) -> pd.DataFrame:
+    """Rows of one stone in order of time."""
+    return table[table["stone"] == stone].sort_values("t")
+
+
+def hits_of(collisions: Sequence[Collision], stone: str) -> list[tuple[int, Collision]]:
+    """Hits of one stone, each with its rank among all."""
+    return [(rank, c) for rank, c in enumerate(collisions, 1) if stone in c.stones]
+
+
+def speeds(rows: pd.DataFrame) -> tuple[Array, Array]:
+    """Speed of each row and its standard deviation, m/s."""
+    vx, vy, sx, sy = rows[["vx", "vy", "sd_vx", "sd_vy"]].to_numpy(float).T
+    return speed_of(vx, vy, sx, sy)
+
+
+def speed_of(vx: Array, vy: Array, sx: Array, sy: Array) -> tuple[Array, Array]:
+    """Speed and its standard deviation from a velocity and those of its parts."""
+    speed = np.hypot(vx, vy)
+    slow = speed < 1e-9
+    along = np.hypot(vx * sx, vy * sy) / np.where(slow, 1.0, speed)
+    return speed, np.where(slow, np.fmax(sx, sy), along)
+
+
+def broken(t: Array, *columns: Array, cuts: Sequence[float] = ()) -> list[Array]:
+    """Insert NaN rows where a line must not run on: in long gaps and at the cuts."""
+    if len(t) < 2:
+        return [t, *columns]
+    steps = np.diff(t)
+    gaps = np.flatnonzero(steps > 5 * np.median(steps)) + 1
+    at = np.unique(np.concatenate([gaps, np.searchsorted(t, np.asarray(cuts, float))]))
+    at = at[(at > 0) & (at < len(t))].astype(int)
+    return [np.insert(np.asarray(c, float), at, np.nan) for c in (t, *columns)]
+
+
+def draw_measured(
+    ax: Axes, t: Array, values: Array, sd: Array, seen: Array, cuts: Sequence[float] = ()
+) -> None:
+    """Draw a measured quantity with its band of 2 sd, dotted where no frame showed the stone."""
+    t, values, sd, seen = broken(t, values, sd, seen, cuts=cuts)
+    ax.fill_between(t, values - 2 * sd, values + 2 * sd, color=PALE, lw=0, zorder=1)
+    ax.plot(t, np.where(seen == 1, values, np.nan), color=BLACK, zorder=3)
+    if (seen == 0).any():
+        ax.plot(t, values, color=BLACK, lw=1, linestyle=":", zorder=2)
+    if len(t) == 1:
+        ax.plot(t, values, "o", color=BLACK, ms=4)
+
+
+def time_axis(
+    axes: Sequence[Axes] | NDArray[Any], hits: Sequence[tuple[int, float]], t: ArrayLike
+) -> None:
+    """Share one time axis; the hits are lines with their ranks on top, staggered where close."""
+    times = np.asarray(t, float)
+    first, last = float(times.min()), float(times.max())
+    margin = 0.02 * (last - first) or 0.5
+    axes[0].set_xlim(first - margin, last + margin)
+    axes[-1].set_xlabel("time (s)")
+    levels: list[float] = []  # time of the last label on each level
+    for rank, when in hits:
+        room = when - 0.045 * (last - first + 2 * margin)
+        level = next((k for k, taken in enumerate(levels) if taken < room), len(levels))
+        levels[level : level + 1] = [when]
+        for ax in axes:
+            ax.axvline(when, color=GREY, lw=0.8, linestyle=(0, (3, 2)), zorder=2)
+        axes[0].annotate(
+            f"{rank}",
+            (when, 1.0),
+            xycoords=("data", "axes fraction"),
+            xytext=(0, 2 + 10 * level),
+            textcoords="offset points",
+            ha="center",
+            va="bottom",
+            fontsize=8,
+            color=GREY,
+        )
+
+
+def short(name: str, letters: int = 16) -> str:
+    """Name of a stone as a figure has room for it."""
+    return plain_text(name if len(name) <= letters else name[: letters - 1] + "…")
+
+
+def symbols(names: Sequence[str]) -> dict[str, str]:
+    """Give what fits into a stone: its name, or 1 and 2 where a name is longer than that."""
+    if all(len(name) <= 2 for name in names):
+        return {name: plain_text(name) for name in names}
+    return {name: str(rank) for rank, name in enumerate(names, 1)}
+
+
+def line(label: str, **style: Any) -> Line2D:
+    """Return an entry of a legend."""
+    return Line2D([], [], label=label, **style)
+
+
+def legend_below(figure: Figure, handles: Sequence[Artist]) -> None:
+    """Put a legend under the figure in as many columns as its width has room for."""
+    widths = [0.5 + 0.066 * len(str(handle.get_label())) for handle in handles]
+    room = float(figure.get_figwidth()) - 0.2
+    columns = len(handles) if sum(widths) < room else int(room / max(widths))
+    figure.legend(
+        handles=handles,
+        loc="outside lower center",
+        ncols=max(1, min(len(handles), columns)),
+        columnspacing=1.2,
+    )
+
+
+def legend_beside(ax: Axes, handles: Sequence[Artist], head: str) -> None:
+    """Put a legend with a head to the right of one panel."""
+    if handles:
+        ax.legend(
+            handles=handles,
+            title=head,
+            loc="upper left",
+            bbox_to_anchor=(1.0, 1.05),
+            alignment="left",
+            handlelength=1.2,
+            borderaxespad=0.3,
+            labelspacing=0.3,
+        )
+
+
+def said(value: float, stderr: float | None, rest: bool = False) -> str:
+    """Write a value with its error as a figure has room for it; "at rest" for a stone that is."""
+    if rest:
+        return "at rest"
+    first, second = parts(value, stderr)
+    return fixed(value) if second is None else f"{first} ± {second}"

@@ -1,0 +1,217 @@
+"""The sheet from above: house, paths, hits, last places and how well they are known."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle, Ellipse
+
+from data.results import Collision
+from data.sheet import SHEET, STONE, House
+from report.figures.labels import name_stones
+from report.figures.parts import WIDTH, Array, legend_below, line, rows_of, title
+from report.style import (
+    BLACK,
+    GREY,
+    RING_FILLS,
+    model_lines,
+    new_figure,
+    plain_text,
+    stone_colours,
+    styled,
+)
+from report.tables import moving_stones
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+
+_TALLEST = 7.4
+"""Height of the sheet in the figure at most, inches."""
+
+_ENLARGED = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
+"""Factors by which an ellipse of uncertainty may be drawn larger than it is."""
+
+
+def plan_figure(
+    tracks: pd.DataFrame,
+    simulations: Mapping[str, pd.DataFrame] | None = None,
+    collisions: Sequence[Collision] = (),
+    *,
+    house: House | None,
+    radius: float = STONE.radius,
+) -> Figure:
+    """Draw the sheet from above: house, measured and simulated paths, hits, last places.
+
+    The shaded ellipses at the last places are two standard deviations, enlarged by a factor
+    that the legend gives, for they would be no more than a dot.
+
+    Parameters
+    ----------
+    tracks : DataFrame
+        With `data.tracks.TRACK_COLUMNS`.
+    simulations : mapping of str to DataFrame, optional
+        Sampled simulation of each model; their last places are drawn as empty circles.
+    collisions : sequence of Collision
+        The hits, a cross where the stones touched.
+    house : House or None
+        The rings to draw; None where the scene has no house.
+    radius : float
+        Radius of the stones, m.
+    """
+    simulations = simulations or {}
+    stones = sorted(str(name) for name in tracks["stone"].unique())
+    moved = moving_stones(tracks, collisions, radius)
+    colours, lines = stone_colours(stones), model_lines(simulations)
+    last = {name: _last_place(rows_of(tracks, name)) for name in stones}
+    low, high = _extent(tracks, simulations, moved, last, house, radius)
+    rows_below = 1 + (3 + len(lines)) // 3
+    scale = min((WIDTH - 0.75) / (high[0] - low[0]), _TALLEST / (high[1] - low[1]))
+    with styled():
+        figure = new_figure(WIDTH, scale * (high[1] - low[1]) + 0.85 + 0.2 * rows_below)
+        ax = figure.subplots()
+        if house is not None:
+            draw_house(ax, house, low, high)
+        for model, table in simulations.items():
+            for stone in moved:
+                path = rows_of(table, stone)
+                if not path.empty:
+                    _draw_simulated(ax, path, colours[stone], lines[model][1], radius)
+        for stone in moved:
+            x, y = rows_of(tracks, stone)[["x", "y"]].to_numpy(float).T
+            ax.plot(x, y, color=colours[stone], lw=2, alpha=0.85, zorder=3, solid_capstyle="round")
+        for stone in stones:
+            ax.add_patch(
+                Circle(_pair(last[stone]), radius, fc="white", ec=colours[stone], lw=1.6, zorder=4)
+            )
+        factor = _draw_ellipses(ax, tracks, last, colours, radius)
+        for collision in collisions:
+            ax.plot(*_contact(collision, radius), "x", color=BLACK, ms=6, mew=1.6, zorder=6)
+        ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
+        name_stones(ax, last, colours, radius, scale)
+        ax.set(xlabel="$x$ (m)", ylabel="$y$ (m)")
+        ax.grid(False)
+        title(figure, "Plan view")
+        handles: list[Artist] = [line("measured", color=GREY, lw=2)] if moved else []
+        handles += [
+            line(plain_text(model), color=GREY, linestyle=dash, lw=1.1)
+            for model, (_, dash) in lines.items()
+        ]
+        if collisions:
+            handles.append(line("hit", color=BLACK, marker="x", ls="none", mew=1.6))
+        if factor:
+            by = "" if factor == 1 else f", {factor} × enlarged"
+            shade: dict[str, Any] = {"color": GREY, "marker": "o", "ls": "none", "alpha": 0.5}
+            handles.append(line(f"± 2 sd{by}", mew=0, ms=7, **shade))
+        if handles:
+            legend_below(figure, handles)
+    return figure
+
+
+def draw_house(ax: Axes, house: House, low: Array, high: Array) -> None:
+    """Draw rings and lines where they lie between two corners, m."""
+    radii = (house.twelve_foot, house.eight_foot, house.four_foot, house.button)
+    for ring, fill in zip(radii, RING_FILLS, strict=True):
+        ax.add_patch(Circle((0, 0), ring, facecolor=fill, edgecolor="#b8c4d0", lw=0.6, zorder=0))
+    painted: dict[str, Any] = {"color": "#b8c4d0", "lw": 0.7, "zorder": 0.5}
+    ax.plot([0, 0], [max(low[1], -house.twelve_foot), min(high[1], SHEET.far_tee)], **painted)
+    ax.plot([low[0], high[0]], [0, 0], **painted)
+    for y in (-SHEET.back_line, SHEET.hog_line):
+        if low[1] < y < high[1]:
+            ax.plot([low[0], high[0]], [y, y], **painted)
+
+
+def _draw_simulated(ax: Axes, path: pd.DataFrame, colour: str, dash: Any, radius: float) -> None:
+    ax.plot(path["x"], path["y"], color=colour, linestyle=dash, lw=1.1)
+    end = Circle(_pair(_last_place(path)), radius, fill=False, ec=colour, lw=0.9)
+    end.set_linestyle(dash)
+    ax.add_patch(end)
+
+
+def _draw_ellipses(
+    ax: Axes,
+    tracks: pd.DataFrame,
+    last: Mapping[str, Array],
+    colours: Mapping[str, str],
+    radius: float,
+) -> int | None:
+    """Shade two standard deviations about the last places; return by how much enlarged."""
+    ends = tracks.sort_values("t").groupby("stone").last()
+    spread = {name: 2 * ends.loc[name, ["sd_x", "sd_y"]].to_numpy(float) for name in last}
+    known = {name: sd for name, sd in spread.items() if np.isfinite(sd).all() and sd.all()}
+    if not known:
+        return None
+    sizes = [float(sd.max()) for sd in known.values()]
+    room = min(0.9 * radius / float(np.median(sizes)), 2 * radius / max(sizes))
+    factor = max((f for f in _ENLARGED if f <= room), default=1)
+    for name, sd in known.items():
+        wide, tall = _pair(2 * factor * sd)
+        ax.add_patch(
+            Ellipse(_pair(last[name]), wide, tall, fc=colours[name], alpha=0.25, lw=0, zorder=5)
+        )
+    return factor
+
+
+def _contact(collision: Collision, radius: float) -> Array:
+    first, second = collision.stones
+    n = np.array(collision.normal)
+    places = []
+    for name, sign in ((first, 1), (second, -1)):
+        if name in collision.before:
+            state = collision.before[name]
+            places.append(np.array([state.x, state.y]) + sign * radius * n)
+    return np.mean(places, axis=0) if places else np.full(2, np.nan)
+
+
+def _pair(place: Array) -> tuple[float, float]:
+    return float(place[0]), float(place[1])
+
+
+def _last_place(rows: pd.DataFrame) -> Array:
+    return np.asarray(rows[["x", "y"]].to_numpy(float)[-1], float)
+
+
+def _extent(
+    tracks: pd.DataFrame,
+    simulations: Mapping[str, pd.DataFrame],
+    moved: Sequence[str],
+    last: Mapping[str, Array],
+    house: House | None,
+    radius: float,
+) -> tuple[Array, Array]:
+    """Corners of the part of the sheet that is shown, m.
+
+    All that matters is in it: last places, the house, and as much of the paths as keeps the
+    picture from becoming a strip. A simulation gone astray may leave the picture.
+    """
+    edge = 2 * radius
+    ends = np.array(list(last.values()))
+    core = [ends - edge, ends + edge] if len(ends) else [np.array([[-edge] * 2, [edge] * 2])]
+    if house is not None:
+        core.append(np.array([[-1, -1], [1, 1]]) * (house.twelve_foot + 0.5 * edge))
+    low, high = np.concatenate(core).min(axis=0), np.concatenate(core).max(axis=0)
+    paths = tracks.loc[tracks["stone"].isin(list(moved)), ["x", "y"]].to_numpy(float)
+    if len(paths):
+        low = np.minimum(low, paths.min(axis=0) - edge)
+        high = np.maximum(high, paths.max(axis=0) + edge)
+    for table in simulations.values():
+        for stone in moved:
+            rows = rows_of(table, stone)
+            if not rows.empty and np.isfinite(_last_place(rows)).all():
+                end = np.clip(_last_place(rows), low - 2 * edge, high + 2 * edge)
+                low, high = np.minimum(low, end - edge), np.maximum(high, end + edge)
+    width, height = high - low
+    if height > 2.2 * width:
+        core_low, core_high = ends.min(axis=0)[1] - edge, ends.max(axis=0)[1] + edge
+        if house is not None:
+            core_low = min(core_low, -house.twelve_foot - edge)
+            core_high = max(core_high, house.twelve_foot + edge)
+        high[1] = max(core_high, min(high[1], core_low + 2.2 * width))
+        low[1] = min(core_low, max(low[1], high[1] - 2.2 * width))
+    short = max(0.35 * (high[0] - low[0]) - (high[1] - low[1]), 0) / 2
+    margin = np.array([0, short])
+    return low - margin, high + margin

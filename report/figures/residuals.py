@@ -1,0 +1,93 @@
+"""What the fitted shot leaves of the sightings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from data.results import Collision
+from report.figures.parts import WIDTH, Array, legend_below, line, short, time_axis, title
+from report.style import BLACK, GREY, PALE, new_figure, stone_colours, styled
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+
+_FARTHEST = 5.0
+"""Residual, in standard deviations, up to which the histogram goes."""
+
+_MOST_NAMED = 12
+"""Stones that the legend names at most."""
+
+
+def residuals_figure(residuals: pd.DataFrame, collisions: Sequence[Collision] = ()) -> Figure:
+    """Sighted less smoothed places against time, and how they are distributed.
+
+    Left, in mm, with a band of twice the median standard deviation that was claimed; right, in
+    standard deviations, against the normal distribution that they should follow.
+
+    Parameters
+    ----------
+    residuals : DataFrame
+        ``stone, t, dx, dy, sd_x, sd_y``, m and s, as `report.tables.residual_table` makes it.
+    collisions : sequence of Collision
+        All hits of the shot, in order.
+    """
+    stones = sorted(str(name) for name in residuals["stone"].unique())
+    colours = stone_colours(stones)
+    with styled():
+        figure = new_figure(WIDTH, 4.2)
+        grid = figure.subplots(2, 2, sharex="col", width_ratios=[3, 1])
+        for row, axis in zip(grid, "xy", strict=True):
+            off, sd = residuals[[f"d{axis}", f"sd_{axis}"]].to_numpy(float).T
+            _draw_times(row[0], residuals, 1000 * off, 1000 * float(np.median(sd)), colours)
+            row[0].set_ylabel(f"Δ${axis}$ (mm)")
+            _draw_histogram(row[1], off / sd)
+        grid[1, 1].set_xlabel("in sd")
+        time_axis(
+            list(grid[:, 0]),
+            [(rank, c.t) for rank, c in enumerate(collisions, 1)],
+            residuals["t"].to_numpy(float),
+        )
+        figure.align_ylabels(grid[:, 0])
+        title(figure, "Residuals: sighted less smoothed places")
+        handles: list[Artist] = [
+            line(f"stone {short(name)}", color=colours[name], marker="o", ms=3, ls="none")
+            for name in stones[:_MOST_NAMED]
+        ]
+        handles.append(line("normal distribution", color=BLACK))
+        legend_below(figure, handles)
+    return figure
+
+
+def _draw_times(
+    ax: Axes, residuals: pd.DataFrame, off: Array, sd: float, colours: dict[str, str]
+) -> None:
+    ax.axhspan(-2 * sd, 2 * sd, color=PALE, alpha=0.6, lw=0, zorder=1)
+    ax.axhline(0, color=GREY, lw=0.8, zorder=2)
+    names, t = residuals["stone"].astype(str).to_numpy(), residuals["t"].to_numpy(float)
+    for name, colour in colours.items():
+        own = names == name
+        ax.plot(
+            t[own], off[own], ".", color=colour, ms=2.5, alpha=0.7, mew=0, zorder=3,
+            rasterized=True,
+        )  # fmt: skip
+    # One wild sighting shall not squeeze all the others.
+    reach = 1.15 * max(float(np.quantile(np.abs(off), 0.995)), 2 * sd)
+    ax.set_ylim(-reach, reach)
+
+
+def _draw_histogram(ax: Axes, scaled: Array) -> None:
+    kept = np.clip(scaled[np.isfinite(scaled)], -_FARTHEST, _FARTHEST)
+    ax.hist(kept, bins=np.linspace(-_FARTHEST, _FARTHEST, 31).tolist(), density=True, color=PALE)
+    x = np.linspace(-_FARTHEST, _FARTHEST, 101)
+    ax.plot(x, np.exp(-(x**2) / 2) / np.sqrt(2 * np.pi), color=BLACK, lw=1.2)
+    ax.set_yticks([])
+    ax.spines["left"].set_visible(False)
+    ax.grid(False)
+    share = float(np.mean(np.abs(kept) < 2)) if len(kept) else np.nan
+    ax.set_title(f"{100 * share:.0f} % within 2 sd", fontsize=8, fontweight="normal", loc="center")

@@ -1,0 +1,37 @@
+"""The tables of a shot, as DataFrames: SI units, one fact a column, NaN or None where unknown."""
+
+from report.tables.coach import (
+    distance_table,
+    rest_table,
+    shot_stone,
+    speed_table,
+    takeout_table,
+)
+from report.tables.laws import law_table
+from report.tables.shot import (
+    glide_table,
+    hit_table,
+    moving_stones,
+    residual_table,
+    score_table,
+    stone_table,
+)
+from report.tables.states import in_axes, measured_table, simulated_table
+
+__all__ = [
+    "distance_table",
+    "glide_table",
+    "hit_table",
+    "in_axes",
+    "law_table",
+    "measured_table",
+    "moving_stones",
+    "residual_table",
+    "rest_table",
+    "score_table",
+    "shot_stone",
+    "simulated_table",
+    "speed_table",
+    "stone_table",
+    "takeout_table",
+]

@@ -1,0 +1,97 @@
+"""States of the stones at the hits, measured and simulated, and in the axes of a hit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+
+import numpy as np
+import pandas as pd
+
+from data.results import Collision, MeasuredState, SimulatedHit, SimulationScore
+
+STATE_COLUMNS = ("x", "y", "vx", "vy", "omega")
+COLUMNS = (
+    *("hit", "t", "stderr_t", "stone", "when"),
+    *STATE_COLUMNS,
+    *(f"sd_{name}" for name in STATE_COLUMNS),
+)
+
+
+def in_axes(
+    state: MeasuredState, normal: tuple[float, float]
+) -> tuple[tuple[float, float | None], tuple[float, float | None]]:
+    """Velocity along a hit's normal and its tangent, each with its standard error, m/s.
+
+    The tangent is the normal turned a quarter to the left. Errors of vx and vy are taken as
+    independent; that of the normal is left out.
+    """
+    nx, ny = normal
+    along = state.vx * nx + state.vy * ny
+    across = state.vy * nx - state.vx * ny
+    if state.sd_vx is None or state.sd_vy is None:
+        return (along, None), (across, None)
+    errors = (
+        np.hypot(state.sd_vx * nx, state.sd_vy * ny),
+        np.hypot(state.sd_vx * ny, state.sd_vy * nx),
+    )
+    return (along, float(errors[0])), (across, float(errors[1]))
+
+
+def measured_table(collisions: Sequence[Collision]) -> pd.DataFrame:
+    """Place, velocity and spin of both stones before and after each hit (the paper's Table 2).
+
+    Returns
+    -------
+    DataFrame
+        ``hit, t, stderr_t, stone, when, x, y, vx, vy, omega``, and ``sd_x`` to ``sd_omega``.
+    """
+    rows = [
+        row for rank, hit in enumerate(collisions, 1) for row in _state_rows(rank, hit.stones, hit)
+    ]
+    return pd.DataFrame(rows, columns=list(COLUMNS))
+
+
+def simulated_table(score: SimulationScore, collisions: Sequence[Collision]) -> pd.DataFrame:
+    """Return the same hits in a simulation (the paper's Tables 3 and 4).
+
+    The k-th hit of two stones is the k-th measured one of them. A hit that the simulation does
+    not have leaves NaN; one that only the simulation has comes last and has no number.
+
+    Parameters
+    ----------
+    score : SimulationScore
+        Of one model, with its hits.
+    collisions : sequence of Collision
+        The measured hits, which say what to look for.
+
+    Returns
+    -------
+    DataFrame
+        As `measured_table`.
+    """
+    left = list(score.hits)
+    rows: list[dict[str, object]] = []
+    for rank, collision in enumerate(collisions, 1):
+        same = next((hit for hit in left if set(hit.stones) == set(collision.stones)), None)
+        if same is not None:
+            left.remove(same)
+        rows += _state_rows(rank, collision.stones, same)
+    for hit in left:
+        rows += _state_rows(None, hit.stones, hit)
+    return pd.DataFrame(rows, columns=list(COLUMNS))
+
+
+def _state_rows(
+    rank: int | None, stones: tuple[str, str], hit: Collision | SimulatedHit | None
+) -> list[dict[str, object]]:
+    rows = []
+    for stone in stones:
+        for when in ("before", "after"):
+            row: dict[str, object] = {"hit": rank, "stone": stone, "when": when}
+            if hit is not None:
+                row |= {"t": hit.t, "stderr_t": hit.stderr_t}
+                state = (hit.before if when == "before" else hit.after).get(stone)
+                row |= {} if state is None else asdict(state)
+            rows.append(row)
+    return rows
