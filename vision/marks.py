@@ -2,8 +2,7 @@
 
 Nothing is known about colours. Beside each line the colour on either side is learned: given from
 the frames before, else the median along it; a normal counts where both sides look like that, and
-the edge is where the profile crosses half way. A thin line is where the profile leaves the mean
-of its two sides, in whatever direction of colour.
+the edge is where the profile crosses half way. Thin lines are left to `vision.stripes`.
 """
 
 from __future__ import annotations
@@ -13,8 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.normals import BLOCK, SAMPLES, THIN, Normals, Profiles, lay_out, profiles
-from vision.pose import CIRCLES, FIXED, TWELVE, Marks, joined
+from vision.normals import SAMPLES, THIN, Profiles, lay_out, profiles
+from vision.pose import CIRCLES, FIXED, TWELVE, Marks
+from vision.runs import Runs, smooth
+from vision.stripes import find_stripes
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
@@ -29,19 +30,6 @@ EDGE_SD = 0.45
 NOISE_SD = 0.1
 """Least standard deviation of an edge point by itself, px."""
 
-FAINT = 1.5
-"""Grey levels that a thin line must stand out by to count half."""
-
-CLEAR = 0.6
-"""How clear a thin line must be all along, 1 for strong everywhere."""
-
-STRIPES_SD = 0.018
-"""Width of the bell that a thin line is smoothed with, m: two stripes become one."""
-
-CALM, LOUD = 12.0, 80.0
-"""Where the sides of a thin line differ by more, or it stands out by more, it is something else,
-grey levels."""
-
 _TO_CHROMA = np.array([[0.114, 0.587, 0.299], [0.5, -0.331, -0.169], [-0.081, -0.419, 0.5]])
 _WORTH = np.array([1.0, 0.25, 0.25])
 
@@ -49,7 +37,12 @@ SHARPNESS = np.asarray(_TO_CHROMA.T * _WORTH @ _TO_CHROMA, np.float32)
 """How much colours (blue, green, red) tell of where an edge is: most cameras and films keep what
 is not brightness (ITU-R BT.601) at half the resolution."""
 
-_SLANT = ((np.arange(SAMPLES, dtype=np.float32) - SAMPLES // 2) / (SAMPLES - SAMPLES // 5))[:, None]
+LEAST_ON_LINE, LEAST_SHARE = 8, 0.3
+"""Edge points that the side of the sheet or a wide line must have, and the share of normals."""
+
+_THIRD = SAMPLES // 3
+_ENDS = np.zeros((2, SAMPLES), np.float32)
+_ENDS[0, :_THIRD] = _ENDS[1, -_THIRD:] = 1 / _THIRD
 
 
 @dataclass(frozen=True)
@@ -65,18 +58,26 @@ class Evidence:
         Fraction of each circle that has an edge of the circle's own two colours.
     palette : ndarray, shape (9, 2, 3)
         Colours on either side of each kind of edge; NaN where none was made out.
-    profile : ndarray, shape (33,)
-        Mean profile across the 12-ft edge, from ice (−0.5) to paint (0.5), about the marks.
+    rim : ndarray, shape (n, 33)
+        Profiles across the 12-ft edge, from ice (−0.5) to paint (0.5).
+    crossing : ndarray, shape (n,)
+        Samples at which the marks on it are.
     step : float
-        Distance of its samples, px.
+        Distance of the samples, px.
     """
 
     marks: Marks
     visible: Array
     covered: Array
     palette: Array
-    profile: Array
+    rim: Profiles
+    crossing: Array
     step: float
+
+    @property
+    def profile(self) -> Array:
+        """Mean profile across the 12-ft edge about the marks, shape (33,); NaN where unknown."""
+        return _mean_profile(self.rim, self.crossing)
 
     @property
     def support(self) -> Array:
@@ -119,39 +120,49 @@ def measure(
     """
     h, w = image.shape[:2]
     normals = lay_out(view, rig, (w, h), reach=reach, spacing=spacing, most=most, lines=lines)
-    found, mean = np.full((FIXED, 2, 3), np.nan), np.full(SAMPLES, np.nan)
+    colours = profiles(image, normals)
+    wide = {kind: part for kind, part in normals.kinds.items() if kind not in THIN}
+    count = max((part.stop for part in wide.values()), default=0)
+    if palette is None:
+        palette = np.full((FIXED, 2, colours.shape[2]), np.nan)
+    value, good, found = _steps(colours[:count], wide, palette)
+    shift = np.zeros(count)
+    shift[wide.get(TWELVE, slice(0))] = level
+    sample, crossed = _crossings(value - shift.astype(np.float32)[:, None])
+    good &= crossed
+    rim = np.flatnonzero(good[wide.get(TWELVE, slice(0))])
+    stripes = find_stripes(colours, normals)
+    # Both together: edges and, behind them, blocks of thin lines.
+    kinds = wide | {
+        kind: slice(part.start + count, part.stop + count) for kind, part in stripes.kinds.items()
+    }
+    along = np.append(normals.along[:count], stripes.along)
+    point = np.concatenate([normals.point[:count], stripes.point])
+    normal = np.concatenate([normals.normal[:count], stripes.normal])
+    offset = np.append((sample / (SAMPLES // 2) - 1) * normals.reach[:count], stripes.offset)
+    good = np.append(good, stripes.good)
     covered = np.zeros(CIRCLES)
-    parts: list[Marks] = []
-    if normals.kinds:
-        colours = profiles(image, normals)
-        wide = {kind: part for kind, part in normals.kinds.items() if kind not in THIN}
-        known = found if palette is None else palette
-        values, shown, found = _steps(
-            colours[: sum(p.stop - p.start for p in wide.values())], wide, known
-        )
-        rim = wide.get(TWELVE, slice(0))
-        values[rim] -= level
-        samples, crossed = _crossings(values)
-        shown &= crossed
-        mean = _mean_profile(values[rim][shown[rim]], samples[rim][shown[rim]]) + level
-        offsets = samples / (SAMPLES // 2) - 1
-        for kind, part in wide.items():
-            offset, good = offsets[part] * normals.reach[part], shown[part]
-            if kind < CIRCLES:
-                covered[kind] = normals.visible[kind] * good.mean()
-                sd = max(_scatter(offset[good]), least_sd)
-            elif good.sum() >= max(8, 0.3 * len(good)):
-                good, sd = _straight(normals.along[part], offset, good, least_sd)
-            else:
-                continue
-            pixel = normals.point[part] + normals.normal[part] * offset[:, None]
-            parts.append(_marks(kind, normals.along[part], pixel, normals.normal[part], good, sd))
-        for kind in THIN:
-            if kind in normals.kinds:
-                part = normals.kinds[kind]
-                parts.extend(_thin_line(kind, normals, part, colours[part], least_sd))
+    sd = np.full(len(good), least_sd)
+    straight = []
+    for kind, part in kinds.items():
+        shown = good[part]
+        if kind < CIRCLES:
+            covered[kind] = normals.visible[kind] * shown.mean()
+            sd[part] = max(_scatter(offset[part][shown]), least_sd)
+        elif kind in THIN or shown.sum() >= max(LEAST_ON_LINE, LEAST_SHARE * len(shown)):
+            straight.append(part)
+        else:
+            good[part] = False
+    if straight:
+        runs = Runs.of(straight)
+        shown = good[runs.index] & runs.real
+        left, spread = smooth(along[runs.index], offset[runs.index], shown, least_sd)
+        good[runs.index[runs.real]] = left[runs.real]
+        sd[runs.index] = spread[:, None]
+    line = np.repeat(list(kinds), [part.stop - part.start for part in kinds.values()])
+    marks = Marks(line, along, point + normal * offset[:, None], normal, sd).pick(good)
     step = 2 * reach / (SAMPLES - 1)
-    return Evidence(joined(parts), normals.visible, covered, found, mean, step)
+    return Evidence(marks, normals.visible, covered, found, value[rim], sample[rim], step)
 
 
 def _steps(
@@ -167,8 +178,7 @@ def _steps(
     palette : ndarray, shape (9, 2, 3)
         Colours on either side of each kind of edge.
     """
-    third = SAMPLES // 3
-    ends = np.stack([profile[:, :third].mean(1), profile[:, -third:].mean(1)], axis=1)
+    ends = _ENDS @ profile
     sides = np.empty_like(ends)
     for kind, part in kinds.items():
         learned = np.isfinite(known[kind, 0, 0])
@@ -180,14 +190,16 @@ def _steps(
     good = (((ends - sides) ** 2).sum(2) < tolerance[:, None]).all(1)
     axis = difference @ SHARPNESS
     axis /= np.maximum((axis * difference).sum(1), 1.0)[:, None]
-    height = np.einsum("nsc,nc->ns", ends, axis)
+    height = (ends @ axis[..., None])[..., 0]
     strength = height[:, 1] - height[:, 0]
     good &= (strength > 0.5) & (strength < 1.6) & (square > MIN_CONTRAST**2)
-    value = np.einsum("nmc,nc->nm", profile, axis) - height.mean(1)[:, None]
-    palette = np.full((FIXED, 2, 3), np.nan)
+    value = (profile @ axis[..., None])[..., 0] - height.mean(1)[:, None]
+    palette = np.full(known.shape, np.nan)
     for kind, part in kinds.items():
-        if good[part].any():
-            palette[kind] = ends[part][good[part]].mean(0)
+        shown = good[part]
+        if shown.any():
+            total = shown.astype(np.float32) @ ends[part].reshape(len(shown), -1)
+            palette[kind] = (total / shown.sum()).reshape(palette.shape[1:])
     return value, good, palette
 
 
@@ -223,85 +235,3 @@ def _scatter(offset: Array) -> float:
         return EDGE_SD
     steps = np.sort(np.abs(np.diff(offset)))
     return 1.05 * float(steps[len(steps) // 2])
-
-
-def _straight(along: Array, offset: Array, good: Flags, least_sd: float) -> tuple[Flags, float]:
-    """Leave out what lies off a smooth curve through a line's offsets; what is ragged counts less.
-
-    Returns which are left and their standard deviation.
-    """
-    s = (along - along.mean()) / np.ptp(along)
-    terms = np.stack([np.ones(len(s)), s, s * s])
-    keep, spread = good, least_sd
-    for _ in range(2):
-        count = min(3, max(int(keep.sum()) // 2, 1))
-        on = terms[:count, keep]
-        curve = np.linalg.solve(on @ on.T + 1e-9 * np.eye(count), on @ offset[keep]) @ terms[:count]
-        away = np.abs(offset - curve)
-        spread = max(1.5 * float(np.sort(away[keep])[keep.sum() // 2]), least_sd)
-        keep = good & (away < 2.5 * spread)
-        if keep.sum() < 3:
-            break
-    return keep, spread
-
-
-def _thin_line(
-    kind: int, normals: Normals, part: slice, profile: Profiles, least_sd: float
-) -> list[Marks]:
-    """Measure a thin line, blocks of neighbouring normals together; nothing if none is seen."""
-    fifth = SAMPLES // 5
-    mean = profile.reshape(-1, BLOCK, SAMPLES, 3).mean(1)
-    first, last = mean[:, :fifth].mean(1), mean[:, -fifth:].mean(1)
-    mean -= 0.5 * (first + last)[:, None] + (last - first)[:, None] * _SLANT
-    use = ((last - first) ** 2).sum(1) < CALM**2
-    use &= np.abs(mean).max((1, 2)) < LOUD
-    if use.sum() < 3:
-        return []
-    along, point, normal = (
-        whole[part].reshape(-1, BLOCK, *whole.shape[1:])[use].mean(1)
-        for whole in (normals.along, normals.point, normals.normal)
-    )
-    step = 2 * float(normals.reach[part][0]) / (SAMPLES - 1)
-    # Darker than the ice, perhaps lighter than the paint: only the size of the deviation counts.
-    smooth = _bell(STRIPES_SD * _scale(along, point) / step) @ mean[use]
-    value = np.sqrt((smooth**2).sum(2))
-    share = (along - along[0]) / (along[-1] - along[0])
-    # The straight path across the profiles along which they deviate most.
-    ends = np.arange(fifth, SAMPLES - fifth, 2)
-    path = np.round(ends[:, None, None] + (ends[:, None] - ends[:, None, None]) * share)
-    path = path.reshape(-1, len(share)).astype(np.int64)
-    row = np.arange(len(value))
-    clear = value / (value.max(1, keepdims=True) + FAINT)
-    strength = clear[row, path].mean(1)
-    best = path[int(strength.argmax())]
-    highest = float(strength.max())
-    if highest < CLEAR:
-        return []
-    near = value[row[:, None], best[:, None] + np.arange(-2, 3)]
-    top = near[:, 1:-1].argmax(1) + 1
-    low, height, high = near[row, top - 1], near[row, top], near[row, top + 1]
-    bend = np.maximum(2 * height - low - high, 1e-9)
-    offset = step * (best + top - 2 + 0.5 * (high - low) / bend - (SAMPLES - 1) / 2)
-    good = (height > 0.4 * highest) & (height >= low) & (height >= high)
-    if good.sum() < 3:
-        return []
-    good, sd = _straight(along, offset, good, least_sd)
-    pixel = point + normal * offset[:, None]
-    return [_marks(kind, along, pixel, normal, good, sd)]
-
-
-def _scale(along: Array, point: Array) -> float:
-    """Pixels per metre along a line."""
-    return float(np.hypot(*(point[-1] - point[0])) / (along[-1] - along[0]))
-
-
-def _bell(sd: float) -> Profiles:
-    """Matrix that smooths profiles by a bell of `sd` samples, (SAMPLES, SAMPLES)."""
-    away = np.arange(SAMPLES)[:, None] - np.arange(SAMPLES)
-    weight = np.exp(-0.5 * (away / max(sd, 1.0)) ** 2)
-    return np.asarray(weight / weight.sum(1, keepdims=True), np.float32)
-
-
-def _marks(kind: int, along: Array, pixel: Array, normal: Array, good: Flags, sd: float) -> Marks:
-    count = int(good.sum())
-    return Marks(np.full(count, kind), along[good], pixel[good], normal[good], np.full(count, sd))

@@ -48,8 +48,8 @@ BLOCK = 6
 MOST_BLOCKS, MOST_STEPS = 18, 40
 """Most marks of a thin line, and of the edge of a wide one."""
 
-LEAST = 8
-"""Fewer normals than this are no line."""
+LEAST, LEAST_BLOCKS = 8, 3
+"""Fewer normals than this are no line; of a thin line, fewer blocks."""
 
 
 def _candidates() -> list[tuple[int, Array]]:
@@ -140,7 +140,10 @@ def lay_out(
     most: int,
     lines: bool,
 ) -> Normals:
-    """Places to measure: on the circles every `spacing` px, at most `most`; and on the lines."""
+    """Places to measure: on the circles every `spacing` px, at most `most`; and on the lines.
+
+    Where `most` is small there are fewer on the lines as well.
+    """
     upto = len(_KINDS) if lines else CIRCLES
     count, groups = int(_COUNTS[:upto].sum()), int(_GROUPS[:upto].sum())
     measure = np.repeat(measures(rig)[_KINDS[:upto]], _COUNTS[:upto])
@@ -153,9 +156,8 @@ def lay_out(
     shown = np.add.reduceat(inside, _STARTS[:upto], dtype=np.int64)
     span = np.add.reduceat(np.where(inside, length, 0.0), _STARTS[:upto]) / 2
     scale = span / np.maximum(shown * _SPACING[:upto], 1e-9)
-    wanted = np.where(_GROUP[:upto] > 1, MOST_BLOCKS, MOST_STEPS)
+    wanted = np.where(_GROUP[:upto] > 1, min(most // 5, MOST_BLOCKS), min(most // 2, MOST_STEPS))
     wanted[:CIRCLES] = np.clip(span[:CIRCLES] / spacing, 12, most)
-    wanted[shown < LEAST] = 0
     kept = _thinned(inside, wanted, groups)
     at = np.flatnonzero(np.repeat(kept, _GROUP_SIZE[:groups]))
     counts = _GROUP[:upto] * np.add.reduceat(kept, _FIRST_GROUP[:upto], dtype=np.int64)
@@ -187,7 +189,8 @@ def _thinned(inside: Flags, wanted: Index, groups: int) -> Flags:
     total = np.cumsum(whole)
     number = total - whole - np.repeat(total[first] - whole[first], sizes)
     have = np.add.reduceat(whole, first, dtype=np.int64)
-    ratio = np.repeat(np.minimum(wanted / np.maximum(have, 1), 1.0), sizes)
+    enough = have >= np.where(_GROUP[: len(wanted)] > 1, LEAST_BLOCKS, LEAST)
+    ratio = np.repeat(np.minimum(wanted / np.maximum(have, 1), 1.0) * enough, sizes)
     return np.asarray(
         whole & (np.floor((number + 1) * ratio + 1e-9) > np.floor(number * ratio + 1e-9))
     )
@@ -195,6 +198,8 @@ def _thinned(inside: Flags, wanted: Index, groups: int) -> Flags:
 
 def profiles(image: Image, normals: Normals) -> Profiles:
     """Colours along the normals, shape (n, SAMPLES, 3)."""
+    if not normals.kinds:
+        return np.zeros((0, SAMPLES, 3), np.float32)
     along = (normals.normal * normals.reach[:, None]).astype(np.float32)
     start = normals.point.astype(np.float32)
     x, y = (start[:, axis, None] + along[:, axis, None] * _SHARES for axis in (0, 1))
