@@ -431,6 +431,10 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
         radius=radius,
         predictions=predictions,
         laws=estimates.laws,
+        methods=estimates.methods,
+        law_choice=() if estimates.whole is None else estimates.whole.laws,
+        curl=estimates.curl,
+        stones=estimates.by_stone,
     )
     cameras = camera_table(measured.cameras) if measured.cameras else None
     of_team = teams(tracks)

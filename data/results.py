@@ -49,6 +49,68 @@ class Joint:
 
 
 @dataclass(frozen=True)
+class Told(Estimate):
+    """An estimate with a ``note`` that says why there is none, or what it is worth."""
+
+    note: str | None = None
+
+
+@dataclass(frozen=True)
+class Method:
+    """Restitution and friction by one method, beside which others can be held.
+
+    ``hits`` holds the restitution of each hit, in the order of the collisions.
+    """
+
+    restitution: Estimate = field(default_factory=Estimate)
+    friction: Estimate = field(default_factory=Estimate)
+    stone_friction: Told = field(default_factory=Told)
+    hits: tuple[Estimate, ...] = ()
+    note: str | None = None
+
+
+@dataclass(frozen=True)
+class Law:
+    """One choice of laws that the shot was fitted with.
+
+    ``criterion`` is Schwarz's, less that of the best; ``weight`` is the probability that goes
+    with it, and ``friction`` that of the ice at 1 m/s under these laws.
+    """
+
+    name: str
+    criterion: float
+    weight: float
+    friction: Estimate
+
+
+@dataclass(frozen=True)
+class StoneResult:
+    """What one stone tells by itself.
+
+    ``friction`` of the ice over its glides, ``turn`` of its path (rad/s, to the left positive)
+    and ``speed`` (m/s) at which, both means over its glides; ``spin`` (rad/s) as it is first
+    seen to move.
+    """
+
+    friction: Estimate = field(default_factory=Estimate)
+    turn: Estimate = field(default_factory=Estimate)
+    speed: float | None = None
+    spin: Estimate = field(default_factory=Estimate)
+
+
+@dataclass(frozen=True)
+class Posterior:
+    """Summary of a posterior sample of restitution and frictions.
+
+    ``quantiles`` by name of the quantity, then of the quantile; ``correlation`` by two names.
+    """
+
+    samples: int
+    quantiles: Mapping[str, Mapping[str, float]]
+    correlation: Mapping[str, Mapping[str, float]]
+
+
+@dataclass(frozen=True)
 class StoneState:
     """Place (m), velocity (m/s) and spin (rad/s) of one stone; None where unknown."""
 
@@ -75,7 +137,8 @@ class Collision:
     """One hit of two stones.
 
     ``normal`` is the unit vector from the first stone to the second at contact,
-    ``restitution`` may be None where the hit cannot tell (``note`` says why),
+    ``restitution`` may be None where the hit cannot tell (``note`` says why), and so may
+    ``stone_friction`` (``note_stone_friction``),
     ``momentum_residual`` is |Σv' − Σv| / |Σv| (masses as given) and ``energy_lost`` the
     fraction of the translational kinetic energy that is gone.
     """
@@ -94,17 +157,24 @@ class Collision:
     stone_friction: float | None = None
     stderr_stone_friction: float | None = None
     note: str | None = None
+    note_stone_friction: str | None = None
 
 
 @dataclass(frozen=True)
 class Glide:
-    """One free glide of one stone and the friction that slowed it."""
+    """One free glide of one stone and the friction that slowed it.
+
+    ``turn`` is how its path turned (rad/s, to the left positive) at its mean ``speed`` (m/s).
+    """
 
     stone: str
     t0: float
     t1: float
     friction: float | None
     stderr: float | None
+    turn: float | None = None
+    stderr_turn: float | None = None
+    speed: float | None = None
 
 
 @dataclass(frozen=True)
@@ -173,6 +243,11 @@ class Results:
     radius: float = 0.1455
     predictions: Mapping[str, Prediction] = field(default_factory=dict)
     laws: Joint | None = None
+    methods: Mapping[str, Method] = field(default_factory=dict)
+    law_choice: tuple[Law, ...] = ()
+    curl: Told = field(default_factory=Told)
+    stones: Mapping[str, StoneResult] = field(default_factory=dict)
+    posterior: Posterior | None = None
 
     def to_json(self) -> str:
         """Text of ``results.json``: strict JSON, values that are not finite as null."""
@@ -213,6 +288,17 @@ class Results:
                     name: _prediction(item) for name, item in raw.get("predictions", {}).items()
                 },
                 laws=_joint(raw.get("laws")),
+                methods={name: _method(item) for name, item in raw.get("methods", {}).items()},
+                law_choice=tuple(
+                    _made(Law, _with_estimates(item, "friction"))
+                    for item in raw.get("law_choice", ())
+                ),
+                curl=_made(Told, raw.get("curl", {})),
+                stones={
+                    name: _made(StoneResult, _with_estimates(item, "friction", "turn", "spin"))
+                    for name, item in raw.get("stones", {}).items()
+                },
+                posterior=(_made(Posterior, raw["posterior"]) if raw.get("posterior") else None),
             )
         except OSError as error:
             raise InputError(f"{path}: {error.strerror}") from None
@@ -258,8 +344,19 @@ def _length(value: Any) -> float:
 
 
 def _prediction(item: dict[str, Any]) -> Prediction:
-    laws = {name: _made(Estimate, item[name]) for name in ("restitution", "friction")}
-    return _made(Prediction, {**item, **laws})
+    return _made(Prediction, _with_estimates(item, "restitution", "friction"))
+
+
+def _method(item: dict[str, Any]) -> Method:
+    hits = tuple(_made(Estimate, hit) for hit in item["hits"])
+    told = _made(Told, item["stone_friction"])
+    own = _with_estimates(item, "restitution", "friction")
+    return _made(Method, {**own, "stone_friction": told, "hits": hits})
+
+
+def _with_estimates(item: dict[str, Any], *names: str) -> dict[str, Any]:
+    """Make the estimates of an item of these names."""
+    return {**item, **{name: _made(Estimate, item[name]) for name in names}}
 
 
 def _joint(item: dict[str, Any] | None) -> Joint | None:

@@ -55,10 +55,9 @@ def measure_glides(
 
 @dataclass(frozen=True)
 class _Slowing:
-    """Decelerations of one glide along and across its path, m/s², and their errors."""
+    """Deceleration of one glide along its path and its error, m/s²."""
 
     along: float
-    across: float
     sd: float
 
 
@@ -85,8 +84,13 @@ def _each(
         sd = float(np.hypot(np.sqrt(slope @ cov @ slope), bend))
         if sd / GRAVITY > WORST:
             continue
-        found.append(_Slowing(value, float(along[0] * x[1, 2] - along[1] * x[0, 2]), sd))
-        glides.append(Glide(piece.stone, float(t[0]), end, value / GRAVITY, sd / GRAVITY))
+        # Of the acceleration across the path: to its left.
+        aside = np.array([0.0, 0.0, -along[1], 0.0, 0.0, along[0]])
+        turn = float(aside @ fit.theta[6 * i : 6 * i + 6]) / size
+        sd_turn = float(np.hypot(np.sqrt(aside @ cov @ aside), bend)) / size
+        found.append(_Slowing(value, sd))
+        slowed = value / GRAVITY, sd / GRAVITY
+        glides.append(Glide(piece.stone, float(t[0]), end, *slowed, turn, sd_turn, size))
     return tuple(glides), found
 
 

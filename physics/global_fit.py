@@ -16,7 +16,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from data.errors import InputError
-from data.results import Estimate, Joint
+from data.results import Estimate, Joint, Law
 from physics.residuals import HUBER, huber_weights, inflation
 from physics.shot_model import Unknown, Watched
 from physics.simulate import Simulation
@@ -65,6 +65,8 @@ class GlobalFit:
         Factor that the variances of the sightings were enlarged by.
     settled : bool
         Whether the fit came to its end.
+    laws : tuple of Law
+        Choices of laws that were compared, the best first, if any.
     """
 
     names: tuple[str, ...]
@@ -77,6 +79,7 @@ class GlobalFit:
     sightings: int
     inflation: float
     settled: bool
+    laws: tuple[Law, ...] = ()
 
     def __getitem__(self, name: str) -> Estimate:
         """Value and standard error of an unknown; 0 as error where it was held."""

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
+from data.results import Law
 from physics.global_fit import GlobalFit, fit_shots
 from physics.shot_model import Watched
 
@@ -22,19 +25,64 @@ def fit_with_chosen_laws(shots: Sequence[Watched]) -> GlobalFit:
     Friction that depends on the speed and curl are each taken up, and friction between stones
     is kept as an unknown, where Schwarz's criterion (1978, Ann. Stat. 6, 461) is the better for
     it, the deviance counted in the noise that the residuals show. Otherwise the stones stick.
+
+    What the other choices of laws would give is in the errors: each adds the square of its
+    difference, weighted by the probability that goes with its criterion (Buckland et al., 1997,
+    Biometrics 53, 603).
     """
     held = dict(STRAIGHT)
     best = fit_shots(shots, fixed=held)
+    tried = [best]
     for name in STRAIGHT:
         fewer = {key: value for key, value in held.items() if key != name}
         more = fit_shots(shots, fixed=fewer, start=_start(best))
+        tried.append(more)
         if more.settled and _criterion(more, more.inflation) < _criterion(best, more.inflation):
             best, held = more, fewer
     if any(shot.hits for shot in shots):
         stuck = fit_shots(shots, fixed=held | STICKING, start=_start(best))
+        tried.append(stuck)
         if stuck.settled and _criterion(stuck, best.inflation) < _criterion(best, best.inflation):
             best = stuck
-    return best
+    return _with_others(best, [fit for fit in tried if fit.settled or fit is best])
+
+
+def _with_others(best: GlobalFit, tried: Sequence[GlobalFit]) -> GlobalFit:
+    """Put what the fits with other laws say into the errors of the best one."""
+    criteria = np.array([_criterion(fit, best.inflation) for fit in tried])
+    weights = np.exp(-0.5 * (criteria - criteria.min()))
+    weights /= weights.sum()
+    between = np.zeros_like(best.cov)
+    for fit, weight in zip(tried, weights.tolist(), strict=True):
+        off = _difference(fit, best)
+        between += weight * np.outer(off, off)
+    order = np.argsort(criteria, kind="stable").tolist()
+    laws = tuple(
+        Law(
+            _name(tried[k]),
+            float(criteria[k] - criteria.min()),
+            float(weights[k]),
+            tried[k]["friction"],
+        )
+        for k in order
+    )
+    return replace(best, cov=best.cov + between, laws=laws)
+
+
+def _difference(fit: GlobalFit, best: GlobalFit) -> NDArray[np.float64]:
+    """How far the unknowns of a fit lie from those of the best one; 0 where it holds them."""
+    values = dict(zip(fit.names, fit.values.tolist(), strict=True))
+    return np.array(
+        [values.get(name, own) - own for name, own in zip(best.names, best.values, strict=True)]
+    )
+
+
+def _name(fit: GlobalFit) -> str:
+    """Return the laws of a fit in words."""
+    ice = "constant" if "slope" in fit.fixed else "fit"
+    curl = "none" if "turn" in fit.fixed else "fcv1"
+    hits = "stones stick" if "stone_friction" in fit.fixed else "stones slide"
+    return f"ice {ice}, curl {curl}, {hits}"
 
 
 def _start(fit: GlobalFit) -> dict[str, float]:

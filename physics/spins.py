@@ -112,15 +112,16 @@ def stone_friction(
     spins: Sequence[tuple[Estimate, Estimate]],
     radius: float,
     inertia: float,
-) -> tuple[float, float] | None:
-    """Friction between the stones where they slid throughout the contact, else None.
+) -> tuple[Estimate, str | None]:
+    """Friction between the stones where they slid throughout the contact, else why it is unknown.
 
     The tangential impulse that stops the slip is u_t / ((1/m1 + 1/m2)(1 + 1/k)); a smaller
     one is Coulomb's limit, μ_s times the normal impulse.
     """
     first, second = spins[0][0], spins[1][0]
     if first.value is None or second.value is None:
-        return None
+        stone = fit.meetings[k].stones[0 if first.value is None else 1]
+        return Estimate(), f"the spin of {stone} before the hit is not seen"
     turn = radius * (first.value + second.value)
 
     def parts(states: Sequence[Encounter]) -> Floats:
@@ -147,6 +148,11 @@ def stone_friction(
     sd = float(np.sqrt(cov[0, 0]))
     room = stick - rub
     sd_room = float(np.sqrt(cov[0, 0] + cov[1, 1] + spin_sd**2))
-    if room < 2 * sd_room or rub < -2 * sd:
-        return None
-    return max(float(rub), 0.0), sd
+    if rub < -2 * sd:
+        return Estimate(), f"the tangential impulse ({rub:.3f} ± {sd:.3f}) has the wrong sign"
+    if room < 2 * sd_room:
+        return Estimate(), (
+            f"the stones may have stopped sliding on each other: an impulse of {stick:.3f} does it,"
+            f" {rub:.3f} ± {sd_room:.3f} was seen, in units of the normal one"
+        )
+    return Estimate(max(float(rub), 0.0), sd), None

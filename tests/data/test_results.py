@@ -19,9 +19,14 @@ from data.results import (
     Glide,
     Input,
     Joint,
+    Law,
     MeasuredState,
+    Method,
+    Posterior,
     Results,
     SimulationScore,
+    StoneResult,
+    Told,
 )
 
 RESULTS = Results(
@@ -53,6 +58,16 @@ RESULTS = Results(
     },
     warnings=("two frames are missing",),
     laws=Joint(("restitution", "friction"), (0.83, 0.0109), ((4e-4, 1e-7), (1e-7, 9e-8))),
+    methods={
+        "local": Method(Estimate(0.82, 0.03), hits=(Estimate(0.81, 0.03),)),
+        "global": Method(stone_friction=Told(note="nothing slides"), note="not used"),
+    },
+    law_choice=(Law("ice constant", 0.0, 0.9, Estimate(0.0109, 3e-4)),),
+    curl=Told(0.008, 0.001),
+    stones={
+        "A": StoneResult(Estimate(0.01, 1e-3), Estimate(0.002, 0.001), 1.2, Estimate(0.6, 0.1))
+    },
+    posterior=Posterior(100, {"restitution": {"0.5": 0.83}}, {"restitution": {"restitution": 1.0}}),
 )
 
 
@@ -75,7 +90,8 @@ def test_the_form_of_the_file() -> None:
     assert raw["schema"] == SCHEMA == 1
     assert set(raw) == {
         *("schema", "input", "restitution", "friction", "collisions", "glides"),
-        *("simulations", "warnings", "radius", "predictions", "laws"),
+        *("simulations", "warnings", "radius", "predictions", "laws", "methods", "law_choice"),
+        *("curl", "stones", "posterior"),
     }
     assert raw["input"] == {
         "files": ["clip Ä.mp4"],

@@ -1,0 +1,188 @@
+"""Restitution and friction from the paths on either side of the hits, never across them.
+
+Nothing is differentiated twice. See `physics.fit` for the model.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from data.results import Collision, Estimate, Friction, Glide
+from data.sheet import STONE
+from physics.contacts import Contact, cut_all
+from physics.fit import fit_shot
+from physics.glides import FREE, measure_glides
+from physics.hits import Discs, measure_hits, pooled
+from physics.residuals import huber_weights
+from physics.segments import Piece
+from physics.shot_fit import Deceleration, Encounter, Meeting, ShotFit
+from physics.traces import Trace, traces
+
+Floats = NDArray[np.float64]
+
+UNEVEN, BESIDE = 0.025, 1.0
+"""Where decelerations differ by more than UNEVEN (m/s²) from glide to glide, no glide is taken
+to be even either, and velocities at a hit come from BESIDE seconds on either side of it."""
+
+
+@dataclass(frozen=True)
+class Local:
+    """What the paths beside the hits say.
+
+    Attributes
+    ----------
+    restitution : Estimate
+        Pooled over all hits that tell it.
+    friction : Friction
+        Pooled over all glides.
+    collisions : tuple of Collision
+        In order of time.
+    glides : tuple of Glide
+        In order of stone and time.
+    warnings : tuple of str
+        What could not be told and why; what does not agree.
+    fit : ShotFit or None
+        Of the paths; None without a hit.
+    known : mapping
+        Stone to its sightings.
+    """
+
+    restitution: Estimate = field(default_factory=Estimate)
+    friction: Friction = field(default_factory=Friction)
+    collisions: tuple[Collision, ...] = ()
+    glides: tuple[Glide, ...] = ()
+    warnings: tuple[str, ...] = ()
+    fit: ShotFit | None = None
+    known: Mapping[str, Trace] = field(default_factory=dict)
+
+
+def estimate_locally(
+    sightings: pd.DataFrame,
+    contacts: Sequence[Contact],
+    *,
+    radius: float,
+    masses: Mapping[str, float] | None = None,
+    friction_expected: bool = True,
+    inertia: float = STONE.inertia,
+) -> Local:
+    """Estimate restitution and friction from the paths beside the hits.
+
+    Parameters are those of `physics.estimate.estimate`.
+    """
+    known = traces(sightings)
+    meetings = [
+        Meeting(c.t, c.stones, max(_gap(known[stone], c.t) for stone in c.stones)) for c in contacts
+    ]
+    pieces, _ = cut_all(known, meetings, radius)
+    idle = [piece for piece in pieces if piece.rest and _alone(piece)]
+    still = [_scatter(known[piece.stone], piece) for piece in idle]
+    pieces = [piece for piece in pieces if not (piece.rest and _alone(piece))]
+    if not pieces:
+        return Local(warnings=("no stone moves: neither restitution nor friction",))
+
+    def fit(pieces: list[Piece], slowing: Deceleration, momentum: bool = True) -> ShotFit:
+        return fit_shot(
+            known, pieces, meetings, radius,
+            masses=masses, still=still, deceleration=slowing, momentum=momentum,
+        )  # fmt: skip
+
+    glides, friction, prior = measure_glides(fit(pieces, FREE), known, radius)
+    friction, warnings = _checked(friction, glides, prior, friction_expected)
+    if not meetings:
+        warnings.append("restitution: no hit seen")
+        return Local(Estimate(), friction, (), glides, tuple(warnings))
+    if prior.along > UNEVEN:
+        pieces = [_near(piece, known[piece.stone], meetings) for piece in pieces]
+    joint = fit(pieces, prior)
+    discs = Discs(radius, masses or {}, inertia)
+    collisions, restitution = measure_hits(joint, fit(pieces, prior, momentum=False), known, discs)
+    warnings += [text for hit in collisions for text in _doubts(hit)]
+    warnings += _distances(joint, radius)
+    return Local(restitution, friction, collisions, glides, tuple(warnings), joint, known)
+
+
+def _checked(
+    friction: Friction, glides: Sequence[Glide], prior: Deceleration, expected: bool
+) -> tuple[Friction, list[str]]:
+    """Return the friction of the glides if it can be one, and what is odd about it."""
+    value, stderr = friction.value, friction.stderr
+    if value is None or stderr is None:
+        missing = "friction: no stone glides freely for long enough to tell it"
+        return friction, [missing] if expected else []
+    if value + 2 * stderr < 0:
+        return Friction(), [
+            f"friction: the stones gain speed (μ = {value:.3f} ± {stderr:.3f}), so these are no"
+            " free glides on level ice; not reported"
+        ]
+    each = [glide.friction for glide in glides if glide.friction is not None]
+    if len(each) > 1 and prior.along > max(UNEVEN, 0.3 * prior.mean):
+        return friction, [
+            f"friction differs from glide to glide ({min(each):.4f} to {max(each):.4f}):"
+            " it depends on speed or place, the value is a mean"
+        ]
+    return friction, []
+
+
+def _doubts(hit: Collision) -> list[str]:
+    """Say what is missing or odd about a hit."""
+    name = f"hit of {hit.stones[0]} and {hit.stones[1]} at {hit.t:.2f} s"
+    out = [f"{name}: {hit.note}"] if hit.note else []
+    residual, stderr = hit.momentum_residual, hit.stderr_momentum
+    if residual is not None and stderr is not None and residual > max(0.05, 3 * stderr):
+        out.append(
+            f"{name}: momentum changes by {100 * residual:.0f} % ± {100 * stderr:.0f} %:"
+            " scale, masses or tracks are off"
+        )
+    return out
+
+
+def _alone(piece: Piece) -> bool:
+    return piece.opens is None and piece.closes is None
+
+
+def _near(piece: Piece, trace: Trace, meetings: Sequence[Meeting]) -> Piece:
+    """Leave out of a moving piece what is far from the hits that bound it."""
+    hits = [meetings[k].t for k in (piece.opens, piece.closes) if k is not None]
+    if piece.rest or not hits:
+        return piece
+    t = trace.t[piece.samples]
+    beside = np.min([np.abs(t - hit) for hit in hits], axis=0) < BESIDE
+    return replace(piece, samples=piece.samples[beside])
+
+
+def _scatter(trace: Trace, piece: Piece) -> Floats:
+    """Normalised residuals of a stone at rest."""
+    xy = trace.xy[piece.samples]
+    out: Floats = (xy - np.median(xy, axis=0)) / trace.sd[piece.samples]
+    return out * huber_weights(out)
+
+
+def _gap(trace: Trace, time: float) -> float:
+    """Time between the sightings either side of `time`, at least the usual step."""
+    if len(trace.t) < 2:
+        return trace.step
+    k = int(np.clip(np.searchsorted(trace.t, time), 1, len(trace.t) - 1))
+    return max(trace.step, float(trace.t[k] - trace.t[k - 1]))
+
+
+def _distances(fit: ShotFit, radius: float) -> list[str]:
+    """Say so where hits happen at another distance than two radii."""
+
+    def ratios(states: Sequence[Encounter]) -> Floats:
+        return np.array([np.hypot(*(s.places[1] - s.places[0])) / (2 * radius) for s in states])
+
+    values, cov = fit.propagate(range(len(fit.meetings)), ratios)
+    mean = pooled(values, cov)
+    if mean.value is None or mean.stderr is None:
+        return []
+    if abs(mean.value - 1) < max(0.02, 2 * mean.stderr):
+        return []
+    return [
+        f"discs meet at {mean.value * 2 * radius:.4g} m where two radii are {2 * radius:.4g} m:"
+        " the scale or the radius is off"
+    ]
