@@ -37,6 +37,8 @@ def written_unit(
     for full, name in zip(written, plain, strict=True):
         bracket = re.search(r"[(\[]\s*([^)\]]*?)\s*[)\]]", full[:100])
         words = set(re.split(r"[_ .\d]+", name))
+        if "sd" in words:
+            continue
         if bracket and not words.isdisjoint(wanted) and bracket.group(1) in units:
             return bracket.group(1)
     return None

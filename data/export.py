@@ -12,6 +12,7 @@ import pandas as pd
 from data.errors import InputError
 from data.files import check_folder, whole_file
 from data.tracks import SIGHTING_COLUMNS
+from data.trk import TEXT_COLUMNS
 
 _CSV_COLUMNS = tuple(name for name in SIGHTING_COLUMNS if name != "sd_place")
 
@@ -34,8 +35,8 @@ def write_text(sightings: pd.DataFrame, path: Path) -> None:
     Notes
     -----
     One stone: its name, then t, x, y. Several: pairs such as ``x_A, y_A``. All numbers have as
-    many digits as it takes to read the same number again. Frames and angles follow in columns
-    that Tracker does not need.
+    many digits as it takes to read the same number again. Angles, errors and frames follow in
+    columns that Tracker does not need; none begins or ends with x or y, as places do there.
     """
     stones = list(dict.fromkeys(sightings["stone"]))
     labels = {stone: "_".join(stone.split()) for stone in stones}
@@ -45,15 +46,17 @@ def write_text(sightings: pd.DataFrame, path: Path) -> None:
     one = len(stones) == 1
     by_frame = sightings.drop_duplicates("frame").set_index("frame")["t"].sort_index()
     columns = {"t": [_time(t) for t in by_frame]}
-    angles: dict[str, list[str]] = {}
+    beside: dict[str, list[str]] = {}
     for stone in stones:
         rows = sightings[sightings["stone"] == stone].set_index("frame").reindex(by_frame.index)
         end = "" if one else f"_{labels[stone]}"
         columns[f"x{end}"] = [_number(v) for v in rows["x"]]
         columns[f"y{end}"] = [_number(v) for v in rows["y"]]
-        if rows["theta"].notna().any():
-            angles[f"theta{end}(rad)"] = [_number(v) for v in rows["theta"]]
-    columns |= angles
+        for name, label in TEXT_COLUMNS.items():
+            if rows[name].notna().any():
+                whose = label.replace("(", f"{end}(")
+                beside[whose] = [_number(v) for v in rows[name]]
+    columns |= beside
     columns["frame"] = [str(frame) for frame in by_frame.index]
     lines = [labels[stones[0]]] if one else []
     lines.append("\t".join(columns))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -68,13 +68,16 @@ class TrackFile:
 
 @dataclass(frozen=True)
 class _Place:
-    """Columns of one stone in a wide table."""
+    """Columns of one stone in a wide table: of its place, and of what else is told of it."""
 
     stone: str
     x: int
     y: int
-    theta: int | None = None
-    frame: int | None = None
+    others: Mapping[str, int] = field(default_factory=dict)
+
+    @property
+    def columns(self) -> dict[str, int]:
+        return {"x": self.x, "y": self.y, **self.others}
 
 
 def read_layout(path: Path, fps: float | None) -> TrackFile:
@@ -118,19 +121,26 @@ def _is_header(cells: Sequence[str]) -> bool:
 
 
 def _pairs(names: Sequence[str]) -> dict[str, tuple[int, int]]:
-    """Columns of x and y by what their names share: ``red_x, red_y`` or ``x1, y1``."""
-    halves: dict[tuple[str, str], dict[str, int]] = {}
-    for column, name in enumerate(names):
-        for axis in "xy":
-            if name.startswith(axis):
-                halves.setdefault(("first", name[1:].strip("_ .")), {}).setdefault(axis, column)
-            if name.endswith(axis):
-                halves.setdefault(("last", name[:-1].strip("_ .")), {}).setdefault(axis, column)
-    pairs = {stem: (half["x"], half["y"]) for (_, stem), half in halves.items() if len(half) == 2}
+    """Columns of x and y by what their names share: ``x1, y1`` or ``red_x, red_y``."""
+    # An angle of a stone named x, or the error of a place, is no place.
+    places = {k: name for k, name in enumerate(names) if name.split("_")[0] not in {*_ANGLE, "sd"}}
+    pairs = _halves((name[:1], name[1:], k) for k, name in places.items())
+    used = {k for pair in pairs.values() for k in pair}
+    rest = ((name[-1:], name[:-1], k) for k, name in places.items() if k not in used)
+    pairs = _halves(rest) | pairs
     pairs.pop("", None)
     # vx, vy, ax, ay and so on are no stones; but ax, ay beside bx, by are.
     dull = _DERIVED if set(pairs) <= _DERIVED else _DERIVED - {"a"}
     return {stem: pair for stem, pair in pairs.items() if stem not in dull}
+
+
+def _halves(names: Iterable[tuple[str, str, int]]) -> dict[str, tuple[int, int]]:
+    """Find axes that share a stem, from the axis, the stem and the column of each."""
+    found: dict[str, dict[str, int]] = {}
+    for axis, stem, column in names:
+        if axis in ("x", "y"):
+            found.setdefault(stem.strip("_ ."), {}).setdefault(axis, column)
+    return {stem: (half["x"], half["y"]) for stem, half in found.items() if len(half) == 2}
 
 
 def _wide(table: TextTable, names: Sequence[str], fps: float | None) -> TrackFile:
@@ -150,7 +160,7 @@ def _wide(table: TextTable, names: Sequence[str], fps: float | None) -> TrackFil
             f"{table.path}: two stones with one name, {doubled[0]}; rename one in the line of names"
         )
     clock = clock_column(table, names, fps)
-    columns = {clock} | {k for p in places for k in (p.x, p.y, p.theta, p.frame)}
+    columns = {clock} | {k for place in places for k in place.columns.values()}
     values = values_of(table, columns)
     times, decimals, warnings = times_of(table, values, clock, fps)
     others = [k for k, name in enumerate(names) if name in TIME_NAMES and k != clock]
@@ -168,19 +178,15 @@ def _blocks(table: TextTable, names: Sequence[str]) -> list[_Place]:
     ys = [k for k, name in enumerate(names) if name == "y"]
     if len(xs) != len(ys):
         raise InputError(f"{table.path}: columns x: {len(xs)}, columns y: {len(ys)}; needs as many")
-    frames = [k for k, name in enumerate(names) if name == "frame"]
-    angles = [k for k, name in enumerate(names) if name in _ANGLE]
     stones = _titles(table, xs, len(names))
-    return [
-        _Place(
-            stones[k],
-            xs[k],
-            ys[k],
-            angles[k] if len(angles) == len(xs) else None,
-            frames[k] if len(frames) == len(xs) else None,
-        )
-        for k in range(len(xs))
-    ]
+    others: list[dict[str, int]] = [{} for _ in xs]
+    for kind in _COMPANIONS:
+        alike = _ANGLE if kind == "theta" else {kind}
+        found = [k for k, name in enumerate(names) if name in alike]
+        if len(found) == len(xs):
+            for place, column in zip(others, found, strict=True):
+                place[kind] = column
+    return [_Place(stones[k], xs[k], ys[k], others[k]) for k in range(len(xs))]
 
 
 def _titles(table: TextTable, starts: Sequence[int], width: int) -> list[str]:
@@ -221,9 +227,15 @@ def _named_pairs(table: TextTable, names: Sequence[str]) -> list[_Place]:
             stone = stem[len(words[0]) + 1 :]
         elif words[0] in _CENTRE and len(pairs) == 1:
             stone = _title(table)
-        theta = next((k for k, name in enumerate(names) if _angle_of(name) in (stem, stone)), None)
+        others = {} if frame is None else {"frame": frame}
+        for k, name in enumerate(names):
+            kind, _, whose = name.rpartition(f"_{stone}")
+            if not whose and kind in ("sd_x", "sd_y", "sd_theta"):
+                others.setdefault(kind, k)
+            elif _angle_of(name) in (stem, stone):
+                others.setdefault("theta", k)
         written = table.names[x] if table.names is not None else ""
-        places.append(_Place(_as_written(stone, written), x, y, theta, frame))
+        places.append(_Place(_as_written(stone, written), x, y, others))
     return places
 
 
@@ -256,8 +268,7 @@ def _side_by_side(
     refuse_disorder(table, times)
     parts = []
     for place in places:
-        columns = {"x": place.x, "y": place.y, "theta": place.theta, "frame": place.frame}
-        present = {key: values[column] for key, column in columns.items() if column is not None}
+        present = {key: values[column] for key, column in place.columns.items()}
         part = pd.DataFrame({"stone": place.stone, "t": times, **present})
         part = part[part["x"].notna() & part["y"].notna()]
         if part.empty:

@@ -29,6 +29,9 @@ def shot(seed: int = 0, stones: str = "ABC", even: bool = True) -> pd.DataFrame:
                 "x": np.sin(t) + rng.normal(0, 0.001, len(t)),
                 "y": 2 * t,
                 "theta": 31.0 + t if stone != "B" else np.nan,
+                "sd_x": 0.002 if stone != "C" else np.nan,
+                "sd_y": 0.003 if stone != "C" else np.nan,
+                "sd_theta": 0.02 if stone == "A" else np.nan,
             }
         )[rng.uniform(size=len(t)) > 0.2]
         for stone in stones
@@ -36,11 +39,11 @@ def shot(seed: int = 0, stones: str = "ABC", even: bool = True) -> pd.DataFrame:
     return check_sightings(pd.concat(rows))
 
 
-SAME = ["stone", "frame", "t", "x", "y", "theta"]
+SAME = ["stone", "frame", "t", "x", "y", "theta", "sd_x", "sd_y", "sd_theta"]
 
 
 @pytest.mark.parametrize("even", [True, False])
-@pytest.mark.parametrize("stones", ["A", "ABC", "BCX"])
+@pytest.mark.parametrize("stones", ["A", "ABC", "BCX", "XYB"])
 @pytest.mark.parametrize("ending", [".txt", ".csv"])
 def test_what_is_written_is_read_again(
     tmp_path: Path, ending: str, stones: str, even: bool
