@@ -175,7 +175,7 @@ def read_tracks(path: Path) -> pd.DataFrame:
     texts = {"stone": str, "team": str}
     numbers = {name: float for name in TRACK_COLUMNS if name not in (*texts, "frame", "seen")}
     try:
-        table = pd.read_csv(path, dtype=texts | numbers)
+        table = pd.read_csv(path, dtype={**texts, **numbers})
         table = table.assign(team=table.get("team", "")).fillna({"team": ""})[list(TRACK_COLUMNS)]
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}") from None
