@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -22,7 +23,7 @@ class Column:
     Attributes
     ----------
     title : str
-        Plain text; ``v_x`` has a subscript.
+        Plain text; a letter with an index as ``v_x``.
     key : str
         Column of the frame.
     unit : str
@@ -51,8 +52,15 @@ class Column:
     @property
     def head(self) -> Markup:
         """The head as the page writes it."""
-        first, low, rest = self.title.partition("_")
-        return Markup("{}<sub>{}</sub>").format(first, rest) if low else escape(self.title)
+        if self.symbol is None:
+            return escape(self.title)
+        return Markup("{}<sub>{}</sub>").format(*self.symbol)
+
+    @property
+    def symbol(self) -> tuple[str, str] | None:
+        """Letter and index of a head such as ``v_x``; None where it is words."""
+        found = re.fullmatch(r"(\w)_(\w)", self.title)
+        return None if found is None else (found[1], found[2])
 
     def parts(self, row: Mapping[str, object]) -> tuple[str, str | None]:
         """Write of a row the value, and the standard error if there is one."""

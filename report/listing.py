@@ -28,8 +28,8 @@ _LAWS = (
     Column("", "symbol", kind="word"),
     Column("this shot", "value", stderr="stderr"),
     Column("literature", "literature", stderr="stderr_literature"),
-    Column("from", "low"),
-    Column("to", "high"),
+    Column("from", "low", digits=2),
+    Column("to", "high", digits=2),
     Column("source", "source", kind="note"),
 )
 _STONES = (
@@ -161,7 +161,7 @@ def coach_tables(
                 Column("from the tee", "to_tee", stderr="sd_to_tee", **length),
                 Column("x", "x", stderr="sd_x", **length),
                 Column("y", "y", stderr="sd_y", **length),
-                Column("turns", "turns", stderr="sd_turns", decimals=2),
+                Column("turns", "turns", stderr="sd_turns", decimals=3),
                 Column("curl", "curl", stderr="sd_curl", **length),
                 Column("note", "note", kind="note"),
             ),

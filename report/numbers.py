@@ -58,7 +58,7 @@ def parts(
     decimals = decimals_of(stderr)
     if most is not None:
         decimals = min(decimals, most)
-        if round(value, decimals) == 0 == round(stderr, decimals):
+        if max(abs(value), stderr) < 2 * 10**-most:
             return "0", None
     return fixed(value, decimals), fixed(stderr, decimals)
 

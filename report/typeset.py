@@ -48,7 +48,8 @@ _LATEX = {
     "{": r"\{", "}": r"\}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}",
     "−": "$-$", "±": r"$\pm$", "×": r"$\times$", "≤": r"$\le$", "≥": r"$\ge$", "—": "---",
     "–": "--", "…": r"\ldots{}", "°": r"$^\circ$", "²": "$^2$", "′": "$'$", "·": r"$\cdot$",
-    "μ": r"$\mu$", "ω": r"$\omega$", "θ": r"$\theta$", "Σ": r"$\Sigma$", "Δ": r"$\Delta$",
+    "μ": r"$\mu$", "ₛ": r"$_{\mathrm{s}}$", "ω": r"$\omega$", "θ": r"$\theta$",
+    "Σ": r"$\Sigma$", "Δ": r"$\Delta$",
     "“": "``", "”": "''",
 }  # fmt: skip
 
@@ -92,9 +93,8 @@ def _latex(text: str) -> str:
 
 
 def _latex_head(column: Column) -> str:
-    first, low, rest = column.title.partition("_")
-    head = rf"${first}_{{\mathrm{{{rest}}}}}$" if low else _latex(column.title)
-    head = head.replace("μ", r"\mu") if low else head
+    symbol = column.symbol
+    head = _latex(column.title) if symbol is None else f"${symbol[0]}_{symbol[1]}$"
     return head + (rf" ({_latex(column.unit)})" if column.unit else "")
 
 

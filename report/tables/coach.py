@@ -109,13 +109,13 @@ def rest_table(
     Returns
     -------
     DataFrame
-        ``stone, team, turns, sd_turns, curl, sd_curl, x, y, sd_x, sd_y, to_tee, sd_to_tee, lies,
-        note``: whole turns, counter-clockwise positive; `curl` to the left of where it was
-        heading, until its first hit; places and distances of the centre from the tee, m; `lies` 1
-        for shot stone, 2 for the next, NaN outside of the house. ``team`` is None where the
-        tracks do not have it.
+        ``stone, team, turns, sd_turns, curl, sd_curl, x, y, sd_x, sd_y, to_tee, sd_to_tee,
+        in_house, lies, note``: whole turns, counter-clockwise positive; `curl` to the left of
+        where it was heading, until its first hit; places and distances of the centre from the
+        tee, m; `in_house` 1 or 0, NaN where unknown; `lies` 1 for shot stone, 2 for the next,
+        NaN outside of the house. ``team`` is None where the tracks do not have it.
     """
-    end = float(tracks["t"].max())
+    end, reach = float(tracks["t"].max()), house.twelve_foot + radius
     moved, team = moving_stones(tracks, collisions, radius), team_names(tracks)
     rows = []
     for name, group in tracks.groupby("stone", sort=True):
@@ -130,17 +130,18 @@ def rest_table(
         why_not = _moving(track, end)
         if why_not is None:
             row |= _place(track)
+            row["in_house"] = float(np.hypot(*track[["x", "y"]].iloc[-1]) < reach)
         else:
             notes.append(why_not)
+            row["in_house"] = 0.0 if _leaves(track, reach) else np.nan
         row["note"] = "; ".join(notes) or None
         rows.append(row)
     columns = [
         *("stone", "team", "turns", "sd_turns", "curl", "sd_curl"),
-        *("x", "y", "sd_x", "sd_y", "to_tee", "sd_to_tee", "lies", "note"),
+        *("x", "y", "sd_x", "sd_y", "to_tee", "sd_to_tee", "in_house", "lies", "note"),
     ]
     table = pd.DataFrame(rows, columns=columns)
-    distance = pd.to_numeric(table["to_tee"])
-    inside = distance[distance < house.twelve_foot + radius]
+    inside = table.loc[table["in_house"] == 1, "to_tee"]
     table["lies"] = inside.rank(method="first").reindex(table.index)
     return table
 
@@ -184,7 +185,7 @@ def shot_stone(rest: pd.DataFrame) -> tuple[str | None, str]:
     reason : str
         How many stones of its team count, where teams are known; else why it cannot be told.
     """
-    unknown = rest.loc[rest["x"].isna(), "stone"]
+    unknown = rest.loc[rest["in_house"].isna(), "stone"]
     if len(unknown):
         return None, f"where {', '.join(unknown)} stopped is not known"
     inside = rest[rest["lies"].notna()].sort_values("lies")
@@ -304,6 +305,12 @@ def _moving(track: pd.DataFrame, end: float) -> str | None:
     if end - when > UNSEEN:
         return f"out of sight after {when:.1f} s, at {speed:.2f} m/s"
     return f"still moves at {speed:.2f} m/s as the clip ends"
+
+
+def _leaves(track: pd.DataFrame, reach: float) -> bool:
+    """Whether a stone that moves is out of the house and on its way from it."""
+    x, y, vx, vy = track[["x", "y", "vx", "vy"]].iloc[-1].to_numpy(float)
+    return bool(np.hypot(x, y) > reach and x * vx + y * vy > 0)
 
 
 def _place(track: pd.DataFrame) -> dict[str, object]:

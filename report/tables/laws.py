@@ -40,7 +40,7 @@ def law_table(results: Results) -> pd.DataFrame:
         rows.append(
             {
                 "quantity": "coefficient of friction between stones",
-                "symbol": "μ_s",
+                "symbol": "μₛ",
                 "value": laws.values[k],
                 "stderr": laws.cov[k][k] ** 0.5,
             }

@@ -61,7 +61,7 @@ def test_the_axes_of_a_hit_keep_speed_and_error():
 
 def test_laws_stand_beside_the_literature_for_curling_stones_only(shot):
     table = tables.law_table(shot.results)
-    assert table["symbol"].tolist() == ["e", "μ", "μ_s"]
+    assert table["symbol"].tolist() == ["e", "μ", "μₛ"]
     assert table["value"].tolist() == pytest.approx([0.8312345, 0.01093456, 0.05])
     assert table["stderr"].iloc[2] == pytest.approx(0.01)
     assert table["literature"].iloc[0] == 0.83
