@@ -16,6 +16,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from command.again import again
 from command.bars import Bars
 from command.parser import command_line
 from data.errors import CurlshotError, InputError, SceneError
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
 VERSION = "0.1.0"
 WRITTEN = (
     "tracks.csv", "camera.csv", "results.json", "simulation.csv", "report.html", "overlay.mp4",
-    "figures",
+    "figures", "tables",
 )  # fmt: skip
 """All that a run may write into its folder."""
 
@@ -633,6 +634,7 @@ def _write_run(
 ) -> None:
     from data.tracks import write_table, write_tracks
     from report.page import write_report
+    from report.provenance import Provenance, sources
 
     write_tracks(done.tracks, stage / "tracks.csv")
     write_table(done.simulations, stage / "simulation.csv")
@@ -641,11 +643,12 @@ def _write_run(
         write_table(done.cameras, stage / "camera.csv")
     house = measured.house
     overlay: Path | None = None
+    clip_start = 0.0
     if measured.clip is not None and settings.overlay:
         from report.overlay import write_overlay
 
         overlay = stage / "overlay.mp4"
-        write_overlay(
+        clip_start = write_overlay(
             measured.clip,
             measured.cameras,
             done.tracks,
@@ -664,8 +667,13 @@ def _write_run(
         cameras=done.cameras,
         clip_name=measured.files[0].name,
         overlay=overlay,
+        clip_start=clip_start,
         house=house,
-        version=VERSION,
+        provenance=Provenance(
+            VERSION,
+            again(measured.files, vars(settings), vars(Settings())),
+            sources(measured.files),
+        ),
     )
     progress("report", 1, 1)
 
@@ -880,6 +888,14 @@ def _out(arguments: argparse.Namespace, first: str | Path) -> Path:
     return Path(f"{plain or 'out'}-curlshot")
 
 
+def _stale(folder: Path, inputs: Sequence[Path]) -> tuple[str, ...]:
+    """Names of what an earlier run left in `folder`, without the inputs and their cameras."""
+    kept = {path.name for path in inputs if path.resolve().parent == folder.resolve()}
+    if "tracks.csv" in kept:
+        kept.add("camera.csv")
+    return tuple(name for name in WRITTEN if name not in kept)
+
+
 def _do_run(arguments: argparse.Namespace, bars: Bars) -> str:
     from report.summary import summary
 
@@ -926,7 +942,7 @@ def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:
     measured = measure(arguments.inputs, replace(settings, clip=True), bars)
     contacts = find_contacts(measured.sightings, settings.radius)
     tracks = smooth(measured.sightings, contacts, radius=settings.radius)
-    with staged(folder) as stage:
+    with staged(folder, replaces=_stale(folder, measured.files)) as stage:
         write_tracks(tracks, stage / "tracks.csv")
         write_table(camera_table(measured.cameras), stage / "camera.csv")
     lines = [
@@ -956,7 +972,7 @@ def _do_estimate(arguments: argparse.Namespace, bars: Bars) -> str:
     if measured.clip is not None:
         raise InputError(f"{measured.files[0]}: not a table of tracks; try curlshot run")
     done = analyse(measured, settings)
-    with staged(folder) as stage:
+    with staged(folder, replaces=_stale(folder, measured.files)) as stage:
         done.results.write(stage / "results.json")
     return summary(done.results, done.tracks, folder)
 

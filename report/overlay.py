@@ -94,7 +94,7 @@ def write_overlay(
     rings: Sequence[float] | None = RINGS,
     radius: float = STONE.radius,
     progress: Progress = no_progress,
-) -> None:
+) -> float:
     """Write the clip as an H.264 MP4 with the results drawn on it, whole or not at all.
 
     The frames keep their own distances in time; the first is at 0. Frames without a camera
@@ -118,6 +118,11 @@ def write_overlay(
         Radius of the stones, m.
     progress : Progress
         Told after each frame.
+
+    Returns
+    -------
+    float
+        Time in the clip of the first picture, s, which is 0 in the MP4.
     """
     scene = _scene(tracks, collisions, rings, radius)
     by_frame = {camera.frame: camera for camera in cameras}
@@ -128,6 +133,7 @@ def write_overlay(
             image = frame.image if camera is None else draw(frame, camera, scene)
             encoder.add(image, frame.t)
             progress("overlay", done, total)
+    return encoder.start or 0.0
 
 
 def draw(frame: Frame, camera: Camera, scene: Scene) -> Image:
@@ -335,7 +341,7 @@ class _Encoder:
     def __init__(self, path: Path, size: tuple[int, int], fps: float | None) -> None:
         self._pad = (size[1] % 2, size[0] % 2)
         self._step = 1 / fps if fps else 1 / DEFAULT_IMAGE_FPS
-        self._start: float | None = None
+        self.start: float | None = None
         self._waiting: tuple[Image, int] | None = None
         self._container: Any = av.open(
             str(path), "w", format="mp4", options={"movflags": "+faststart"}
@@ -366,9 +372,9 @@ class _Encoder:
 
     def add(self, image: Image, t: float) -> None:
         """Take the next picture, seen from time `t` (s) on."""
-        if self._start is None:
-            self._start = t
-        pts = round((t - self._start) / _TIME_BASE)
+        if self.start is None:
+            self.start = t
+        pts = round((t - self.start) / _TIME_BASE)
         if self._waiting is not None:
             self._step = float((pts - self._waiting[1]) * _TIME_BASE)
             self._send(self._step)

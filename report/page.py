@@ -1,31 +1,45 @@
-"""The page: figures, tables, the answer and the clip in one file that opens offline."""
+"""The page: the answer, the shot to play, what if, figures and tables, offline in one file."""
 
 from __future__ import annotations
 
 import base64
+import json
 import os
-import platform
 import re
 from collections.abc import Mapping
-from importlib import metadata
 from pathlib import Path
+from typing import Any
 from urllib.parse import quote
 
+import numpy as np
 import pandas as pd
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
 
+from data.errors import InputError
 from data.files import whole_file, write_text
 from data.results import Results
 from data.sheet import House
-from report.cells import data, data_pair, data_significant
+from report.cells import data, data_parts, data_significant
 from report.gallery import pictures
 from report.listing import page_tables
-from report.style import render
+from report.playback import playback
+from report.provenance import UNKNOWN, Provenance, libraries
+from report.style import render, stone_colours
+from report.tables import moving_stones
+from report.trial import sliders, trial
+from report.typeset import write_tables
+from report.units import METRES, Unit
 
-EMBED_LIMIT = 8_000_000
-"""Largest overlay, bytes, that goes into the page; a larger one is linked."""
+WEB = Path(__file__).parent / "web"
+SCRIPTS = ("motion.js", "simulate.js", "plan.js", "player.js", "whatif.js")
+"""In the order in which the page needs them."""
 
-_LIBRARIES = ("numpy", "scipy", "pandas", "filterpy", "opencv-python-headless", "matplotlib")
+FIGURES = (
+    "plan", "speed", "friction", "posterior", "residuals", "hit_*", "motion_*", "spin_*",
+    "simulated_*",
+)  # fmt: skip
+"""Names that figures of an earlier run may have."""
 
 
 def write_report(
@@ -37,10 +51,13 @@ def write_report(
     cameras: pd.DataFrame | None = None,
     clip_name: str | None = None,
     overlay: Path | None = None,
+    clip_start: float = 0.0,
     house: House | None = None,
-    version: str = "",
+    residuals: pd.DataFrame | None = None,
+    unit: Unit = METRES,
+    provenance: Provenance = UNKNOWN,
 ) -> Path:
-    """Write ``report.html`` and ``figures/`` into `folder`.
+    """Write ``report.html``, ``figures/`` and ``tables/`` into `folder`.
 
     Parameters
     ----------
@@ -58,11 +75,17 @@ def write_report(
     clip_name : str, optional
         What the page is called; the first input file's name if not given.
     overlay : Path, optional
-        The annotated clip; up to `EMBED_LIMIT` bytes it goes into the page.
+        The annotated clip, which the page plays from where it lies.
+    clip_start : float
+        Time of the annotated clip's first picture, s.
     house : House, optional
         Rings for the plan view; None where the scene has no house.
-    version : str
-        Of this program.
+    residuals : DataFrame, optional
+        Of the places that were seen, for the figure of them (see `report.gallery.pictures`).
+    unit : Unit
+        Of the tables for coaches.
+    provenance : Provenance
+        What the report was made from.
 
     Returns
     -------
@@ -70,7 +93,7 @@ def write_report(
         The page.
     """
     shown = []
-    wanted = list(pictures(results, tracks, simulations, house))
+    wanted = list(pictures(results, tracks, simulations, house, residuals))
     for picture in wanted:
         svg, png = render(picture.draw())
         for suffix, content in ((".svg", svg), (".png", png)):
@@ -78,24 +101,46 @@ def write_report(
                 part.write_bytes(content)
         shown.append((picture, _smaller(svg, png)))
     _remove_stale(folder / "figures", {picture.name for picture in wanted})
-    files = [Path(name).name for name in results.input.files]
+    tables = page_tables(results, tracks, house, unit)
+    write_tables(folder / "tables", tables)
+    scores = [(name, score.rmse) for name, score in results.simulations.items()]
+    known = [(rmse, name) for name, rmse in scores if rmse is not None]
+    what_if = _what_if(tracks, results)
     page = (
         _environment()
         .get_template("page.html")
         .render(
-            beside=2 if len(shown) > 1 and shown[1][0].name == "speed" else 1,
-            title=clip_name or (files[0] if files else "shot"),
+            title=clip_name or next((Path(name).name for name in results.input.files), "shot"),
+            lead=_lead(results, tracks),
             results=results,
-            pictures=shown,
-            overlay=None if overlay is None or not overlay.is_file() else _video(overlay, folder),
-            tables=page_tables(results, tracks, house),
-            scores=[_score(name, results) for name in results.simulations],
+            provenance=provenance,
+            best=min(known, default=None),
+            scores=scores,
+            models=[name for name, _ in scores if name in simulations],
             calibration=_calibration(cameras),
+            place_sd=_place_sd(tracks),
             why_no_e=_reason(results, r"\be\b|restitution|hit|collision"),
             why_no_mu=_reason(results, r"μ|friction|glide"),
+            why_no_simulation=_reason(results, "simulat"),
             cautions=_cautions(results),
-            version=version,
-            libraries=_libraries(),
+            clip=None if overlay is None else _link(overlay, folder),
+            clip_file="" if overlay is None else overlay.name,
+            moving=_moving(tracks, results),
+            rings=house is not None,
+            what_if=what_if,
+            sliders=[] if what_if is None else sliders(what_if),
+            pictures=shown,
+            tables=tables,
+            libraries=libraries(),
+            css=Markup(_source("page.css")),
+            scripts=[Markup(_source(name)) for name in SCRIPTS],
+            shot_data=_json(
+                {
+                    **playback(results, tracks, simulations, house),
+                    "clip_start": clip_start,
+                    "what_if": what_if,
+                }
+            ),
         )
     )
     path = folder / "report.html"
@@ -105,7 +150,7 @@ def write_report(
 
 def _environment() -> Environment:
     environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent),
+        loader=FileSystemLoader(WEB),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
@@ -113,8 +158,28 @@ def _environment() -> Environment:
     )
     environment.filters["number"] = data
     environment.filters["significant"] = data_significant
-    environment.globals["pair"] = data_pair
+    environment.globals["pair"] = data_parts
     return environment
+
+
+def _source(name: str) -> str:
+    return (WEB / name).read_text(encoding="utf-8").rstrip()
+
+
+def _json(values: Any) -> Markup:
+    """Return JSON that is safe inside a script element, whatever names it holds."""
+    text = json.dumps(values, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    for sign in "<>&\u2028\u2029":
+        text = text.replace(sign, f"\\u{ord(sign):04x}")
+    return Markup(text)
+
+
+def _what_if(tracks: pd.DataFrame, results: Results) -> dict[str, Any] | None:
+    """Return the shot to throw again; None where no stone moves."""
+    try:
+        return trial(tracks, results)
+    except InputError:
+        return None
 
 
 def _smaller(svg: bytes, png: bytes) -> str:
@@ -122,24 +187,43 @@ def _smaller(svg: bytes, png: bytes) -> str:
     return f"data:image/{kind};base64,{base64.b64encode(content).decode()}"
 
 
-def _video(path: Path, folder: Path) -> str:
-    if path.stat().st_size <= EMBED_LIMIT:
-        return "data:video/mp4;base64," + base64.b64encode(path.read_bytes()).decode()
+def _link(path: Path, folder: Path) -> str:
     return quote(Path(os.path.relpath(path, folder)).as_posix())
 
 
 def _remove_stale(folder: Path, names: set[str]) -> None:
     """Remove figures that an earlier run left and this one does not have."""
-    for pattern in ("speed", "motion_*", "simulated_*", "hit_*"):
+    for pattern in FIGURES:
         for suffix in (".svg", ".png"):
             for path in folder.glob(pattern + suffix):
                 if path.stem not in names:
                     path.unlink()
 
 
-def _score(model: str, results: Results) -> dict[str, object]:
-    score = results.simulations[model]
-    return {"model": model, "rmse": score.rmse, "note": score.note}
+# ---------------------------------------------------------------------------- the answer
+
+
+def _lead(results: Results, tracks: pd.DataFrame) -> str:
+    """Say in a sentence what was seen."""
+    moved = moving_stones(tracks, results.collisions, results.radius)
+    count = tracks["stone"].nunique()
+    stones = f"{count} stone{'' if count == 1 else 's'}"
+    which = "none of which moved" if not moved else f"of which {_listed(moved)} moved"
+    return f"{stones}, {which}, watched for {results.input.duration:.1f} s."
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def _moving(tracks: pd.DataFrame, results: Results) -> list[dict[str, Any]]:
+    """Stones whose speed is worth reading, with their rank among all and their colour."""
+    colours = stone_colours(tracks["stone"].unique())
+    ranks = {name: rank for rank, name in enumerate(sorted(colours))}
+    return [
+        {"name": name, "rank": ranks[name], "colour": colours[name]}
+        for name in moving_stones(tracks, results.collisions, results.radius)
+    ]
 
 
 def _calibration(cameras: pd.DataFrame | None) -> dict[str, float | None] | None:
@@ -151,6 +235,14 @@ def _calibration(cameras: pd.DataFrame | None) -> dict[str, float | None] | None
         "found": int(cameras["found"].sum()),
         "rms": float(residuals.median()) if len(residuals) else None,
     }
+
+
+def _place_sd(tracks: pd.DataFrame) -> float | None:
+    """Median standard error of a place where it was seen, per axis, m."""
+    seen = tracks.loc[tracks["seen"] == 1, ["sd_x", "sd_y"]].to_numpy(float)
+    sd = np.sqrt((seen**2).mean(axis=1))
+    sd = sd[np.isfinite(sd)]
+    return float(np.median(sd)) if len(sd) else None
 
 
 def _reason(results: Results, words: str) -> str:
@@ -170,13 +262,3 @@ def _cautions(results: Results) -> list[str]:
     ]
     models = [f"{name}: {score.note}" for name, score in results.simulations.items() if score.note]
     return list(dict.fromkeys([*results.warnings, *notes, *models]))
-
-
-def _libraries() -> dict[str, str]:
-    found = {"Python": platform.python_version()}
-    for name in _LIBRARIES:
-        try:
-            found[name] = metadata.version(name)
-        except metadata.PackageNotFoundError:
-            continue
-    return found

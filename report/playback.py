@@ -5,7 +5,7 @@ Lists of numbers are rounded to whole steps and given by their differences, whic
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
@@ -93,7 +93,8 @@ def shot_values(shot: Shot) -> dict[str, Any]:
         family: {"name": law.name, **asdict(law)}  # type: ignore[call-overload]
         for family, law in (("impact", shot.impact), ("ice", shot.ice), ("curl", shot.curl))
     }
-    return {"stones": stones, "radius": shot.radius, **laws}
+    bounds = None if shot.bounds is None else asdict(shot.bounds)
+    return {"stones": stones, "radius": shot.radius, "bounds": bounds, **laws}
 
 
 def differences(values: ArrayLike, column: str) -> list[int]:
@@ -105,7 +106,7 @@ def differences(values: ArrayLike, column: str) -> list[int]:
     return _differences(np.round(known / STEPS[column]))
 
 
-def _differences(values: Sequence[float] | pd.Index | pd.Series) -> list[int]:
+def _differences(values: ArrayLike) -> list[int]:
     whole = np.asarray(values).astype(np.int64)
     return np.diff(whole, prepend=0).tolist()  # type: ignore[no-any-return]
 

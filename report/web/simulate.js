@@ -2,7 +2,8 @@
 /* A shot simulated from hit to hit, by the equations of physics/ (impact/, simulate.py), where they
    are explained. A shot is
    {stones: [{name, x, y, vx, vy, omega, theta, mass, omega_after}],
-    impact: {name, ...}, ice: {name, ..., factor}, curl: {name, ...}, radius}. */
+    impact: {name, ...}, ice: {name, ..., factor}, curl: {name, ...}, radius,
+    bounds: null or {play, half_width, back_line, hog_line}}. */
 const simulator = (() => {
   const TOUCHING = 1e-9, PRESSED = 1e-6, SLOW = 1e-3, SIMULTANEOUS = 1e-10;
   const MAX_IMPULSES = 200000;
@@ -108,6 +109,43 @@ const simulator = (() => {
     return t;
   }
 
+  // ---- where stones are in play (physics/bounds.py)
+
+  const SHORTEST = 1e-9;
+
+  /** How far a stone is out over the side lines or the back line; negative within. */
+  const beyond = (bounds, p, radius) => Math.max(
+    Math.abs(p.x) + radius - bounds.half_width,
+    bounds.play * p.y - radius - bounds.back_line,
+  );
+
+  /** Bound on how far a path leaves the chord between two of its points. */
+  function bow(p, q) {
+    const turn = Math.abs(q.heading - p.heading);
+    return turn < 2 ? (distance(p, q) / 2) * Math.tan(turn / 2) : Infinity;
+  }
+
+  /** Time at which a stone on its path leaves the play. */
+  function leavesAt(path, bounds, radius, hit) {
+    if (path.length === 0) return Infinity;
+    const end = path.point(path.stop), later = [[path.stop, end]];
+    let [t0, p0] = [path.start, path.point(path.start)];
+    while (later.length) {
+      const [t1, p1] = later[later.length - 1];
+      const out = Math.max(beyond(bounds, p0, radius), beyond(bounds, p1, radius));
+      const inside = out < -bow(p0, p1);
+      if (!inside && t1 - t0 > SHORTEST) {
+        const middle = t0 + (t1 - t0) / 2;
+        later.push([middle, path.point(middle)]);
+        continue;
+      }
+      if (!inside && beyond(bounds, p1, radius) >= 0) return t1;
+      [t0, p0] = later.pop();
+    }
+    const short = bounds.play * end.y - radius < -bounds.hog_line;
+    return !hit && short ? path.stop : Infinity;
+  }
+
   // ---- from hit to hit
 
   class Run {
@@ -117,6 +155,8 @@ const simulator = (() => {
       this.hits = [];
       this.hitCount = shot.stones.map(() => 0);
       this.paths = shot.stones.map(() => []);
+      this.leaves = shot.stones.map(() => Infinity);
+      this.gone = shot.stones.map(() => Infinity);
       shot.stones.forEach((stone, k) => this.setOff(k, { theta: 0, ...motionOf(stone) }));
       this.pairs = [];
       shot.stones.forEach((a, i) =>
@@ -138,13 +178,15 @@ const simulator = (() => {
         const { i, j } = pair;
         this.lookAhead(this.pairs.filter((p) => p.i === i || p.i === j || p.j === i || p.j === j));
       }
-      return { hits: this.hits, paths: this.paths, stones: this.shot.stones };
+      return { hits: this.hits, paths: this.paths, gone: this.gone };
     }
 
     setOff(k, state) {
       const paths = this.paths[k];
       if (paths.length && paths[paths.length - 1].start >= this.t) paths.pop();
-      paths.push(new motion.Path(this.t, state, this.shot.ice, this.shot.curl));
+      const { ice, curl, bounds, radius } = this.shot, path = new motion.Path(this.t, state, ice, curl);
+      paths.push(path);
+      if (bounds) this.leaves[k] = leavesAt(path, bounds, radius, this.hitCount[k] > 0);
     }
 
     last(k) {
@@ -155,6 +197,7 @@ const simulator = (() => {
     lookAhead(pairs) {
       const points = this.paths.map((_, k) => this.last(k).point(this.t));
       for (const pair of pairs) {
+        if (this.gone[pair.i] < Infinity || this.gone[pair.j] < Infinity) continue;
         const a = points[pair.i], b = points[pair.j];
         const gap = distance(a, b) - pair.reach, speed = a.speed + b.speed;
         const far = speed === 0 || gap > this.last(pair.i).length + this.last(pair.j).length;
@@ -167,6 +210,11 @@ const simulator = (() => {
       for (;;) {
         let first = Infinity;
         for (const pair of this.pairs) first = Math.min(first, pair.due);
+        const leaving = Math.min(...this.leaves);
+        if (leaving < Infinity && leaving <= first) {
+          this.takeAway(this.leaves.indexOf(leaving));
+          continue;
+        }
         if (first === Infinity) return null;
         const due = this.pairs.filter((pair) => pair.due <= first + SIMULTANEOUS);
         const unknown = due.filter((pair) => !pair.exact);
@@ -176,6 +224,12 @@ const simulator = (() => {
           pair.exact = true;
         }
       }
+    }
+
+    takeAway(k) {
+      this.gone[k] = this.leaves[k];
+      this.leaves[k] = Infinity;
+      for (const pair of this.pairs) if (pair.i === k || pair.j === k) pair.due = Infinity;
     }
 
     nextContact(pair) {
@@ -247,17 +301,17 @@ const simulator = (() => {
   /** Let the stones glide and hit each other until all rest: hits, and paths by stone. */
   const simulate = (shot) => new Run(shot).run();
 
-  /** State of stone `k` of a simulation at the time t >= 0. */
-  function stateAt(simulation, k, t) {
-    const paths = simulation.paths[k];
+  /** State of stone `k` of a simulation at the time t >= 0; its last one where it has left. */
+  function stateAt(simulation, k, when) {
+    const paths = simulation.paths[k], t = Math.min(when, simulation.gone[k]);
     let rank = paths.length - 1;
     while (rank > 0 && paths[rank].start > t) rank--;
     return paths[rank].at(t);
   }
 
-  /** Time at which the last stone stops, its spin included. */
-  const endOf = (simulation) =>
-    Math.max(0, ...simulation.paths.map((paths) => paths[paths.length - 1].rest));
+  /** Time at which the last stone stops, its spin included, or leaves. */
+  const endOf = ({ paths, gone }) =>
+    Math.max(0, ...paths.map((own, k) => Math.min(own[own.length - 1].rest, gone[k])));
 
   /** The shot with something changed (see physics/what_if.py); what is null stays. */
   function changed(shot, thrown, changes) {

@@ -14,7 +14,8 @@ import pytest
 from data.results import Estimate, Friction
 from data.sheet import HOUSE
 from report.numbers import MINUS
-from report.page import EMBED_LIMIT, write_report
+from report.page import write_report
+from report.provenance import Provenance, Source
 from vision.camera import Camera, camera_table
 
 VOID = {"meta", "img", "br", "hr", "link", "input", "source"}
@@ -74,7 +75,7 @@ def write(folder: Path, shot, **kwargs) -> Path:
         "tracks": shot.tracks,
         "simulations": shot.simulations,
         "house": HOUSE,
-        "version": "1.2.3",
+        "provenance": Provenance("1.2.3", "curlshot run 'take 7.mp4'", (Source("a<b", 7, "0" * 64),)),
     }
     return write_report(folder, **(options | kwargs))
 
@@ -96,9 +97,8 @@ def test_page_is_well_formed_and_offline(written):
     page = Page(written[0])
     assert page.text.startswith("<!DOCTYPE html>")
     assert page.tags[0] == ("html", {"lang": "en-GB"})
-    sources = [a["src"] for tag in ("img", "video", "script") for a in page.all(tag)]
-    assert sources
-    assert all(source is not None and source.startswith("data:") for source in sources)
+    assert all((a["src"] or "").startswith("data:") for a in page.all("img"))
+    assert not [a for tag in ("video", "script") for a in page.all(tag) if "src" in a]
     assert not page.all("link")
     assert not re.search(r"(src|href)=\"https?:|@import|url\(http", page.text)
     ids = [attrs["id"] for _, attrs in page.tags if "id" in attrs]
@@ -146,18 +146,21 @@ def test_names_of_files_are_no_markup(written):
     assert "<best>" not in page.text
 
 
-def test_the_clip_is_embedded_when_small_and_linked_when_large(written, tmp_path, shot):
+def test_the_clip_is_played_from_beside_the_page(written, tmp_path, shot):
     (video,) = Page(written[0]).all("video")
-    kind, content = (video["src"] or "").split(",")
-    assert kind == "data:video/mp4;base64"
-    assert base64.b64decode(content) == b"not really a film"
-    large = tmp_path / "my overlay.mp4"
-    large.write_bytes(bytes(EMBED_LIMIT + 1))
+    assert video["data-src"] == "overlay.mp4"
     still = shot.tracks[shot.tracks["frame"] == 0]
     results = dataclasses.replace(shot.results, collisions=())
     options = {"results": results, "tracks": still, "simulations": {}}
-    page = Page(write(tmp_path, shot, overlay=large, **options))
-    assert page.all("video")[0]["src"] == "my%20overlay.mp4"
+    page = Page(write(tmp_path / "out", shot, overlay=tmp_path / "my clip.mp4", **options))
+    assert page.all("video")[0]["data-src"] == "../my%20clip.mp4"
+    assert not Page(write(tmp_path, shot, **options)).all("video")
+
+
+def test_it_says_how_to_make_it_again(written):
+    said = Page(written[0]).said
+    for words in ("curlshot run 'take 7.mp4'", "a<b, 7 bytes", "sha256 000", "numpy"):
+        assert words in said
 
 
 def test_figures_lie_beside_the_page(written):

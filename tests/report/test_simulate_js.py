@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from data.errors import InputError
+from physics.bounds import Bounds
 from physics.curl import Curl, FCV1Curl, NoCurl
 from physics.ice import FCV1, Constant, Fit, IceLaw, Penner
 from physics.impact import Frictional, Impact, PointMass, RigidBody
@@ -61,7 +62,7 @@ def random_shot(rng: np.random.Generator) -> Shot:
             mass=float(rng.choice([19.1, 18.0])),
         )
     ]
-    wanted = int(rng.integers(1, 12))
+    wanted = int(rng.integers(4, 13))
     while len(stones) <= wanted:
         x, y = rng.uniform(-1.4, 1.4), rng.uniform(-1.4, 1.4)
         if len(stones) == 2:  # frozen onto the other
@@ -78,7 +79,8 @@ def random_shot(rng: np.random.Generator) -> Shot:
         rng.integers(4)
     ]
     curl: Curl = [NoCurl(), FCV1Curl()][rng.integers(2)]
-    return Shot(tuple(stones), impact, ice, curl, radius)
+    bounds = [None, Bounds(1)][rng.integers(2)]
+    return Shot(tuple(stones), impact, ice, curl, radius, bounds)
 
 
 def outcomes(tab: Tab, shots: list[Shot]) -> list[dict[str, Any]]:
@@ -87,8 +89,12 @@ def outcomes(tab: Tab, shots: list[Shot]) -> list[dict[str, Any]]:
 
 
 def states(done: Simulation, t: float) -> np.ndarray:
-    table = done.sample([t]).set_index("stone").loc[list(done.paths)]
-    return table[["x", "y", "theta", "vx", "vy", "omega"]].to_numpy(float)
+    """States at a time; of a stone that has left by then, its last one."""
+    rows = []
+    for name, paths in done.paths.items():
+        when = min(t, done.gone.get(name, t))
+        rows.append([path for path in paths if path.start <= when][-1].at(when))
+    return np.array(rows)
 
 
 @needs_chromium
@@ -103,16 +109,17 @@ def test_random_shots_go_as_in_python(tab):
         assert out["end"] == pytest.approx(end, abs=1e-3)
         assert [name for _, name, _, _ in out["hits"]] == [" on ".join(h.stones) for h in done.hits]
         for t, seen in zip((out["end"] / 3, out["end"] + 1), out["states"], strict=True):
-            off = np.abs(np.array(seen) - states(done, t))
+            expected, there = states(done, t), [name not in done.gone for name in done.rest]
+            off = np.abs(np.array(seen) - expected)
             worst = max(worst, float(off[:, :2].max()))
             assert off[:, :2].max() <= TOLERANCE
-            assert off[:, 2:].max() <= 0.01
+            assert off[there, 2:].max(initial=0.0) <= 0.01
         for (t, _, x, y), hit in zip(out["hits"], done.hits, strict=True):
             first = hit.before[hit.stones[0]]
             place = np.array([first.x, first.y]) + shot.radius * np.array(hit.normal)
             assert t == pytest.approx(hit.t, abs=1e-4)
             assert np.hypot(x - place[0], y - place[1]) <= TOLERANCE
-    assert many > COUNT / 4, "shots with several hits are the hard ones"
+    assert many > COUNT / 5, "shots with several hits are the hard ones"
     assert worst <= TOLERANCE
 
 

@@ -1,0 +1,51 @@
+"""The command line that does a run again."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+MOST_FILES = 8
+"""Input files that are named one by one."""
+
+
+def again(
+    files: Sequence[Path], settings: Mapping[str, object], usual: Mapping[str, object]
+) -> str:
+    """Write the ``curlshot run`` that reads the same files with the same settings.
+
+    Parameters
+    ----------
+    files : sequence of Path
+        What was read; of many the folder is named.
+    settings, usual : mapping
+        The fields of the settings and what they are where nothing is said.
+    """
+    inputs = [file.name for file in files]
+    if len(files) > MOST_FILES:
+        inputs = [f"{files[0].parent.name}/"]
+    words = ["curlshot", "run", *inputs]
+    for key, value in settings.items():
+        if value != usual[key]:
+            words += _option(key, value)
+    return shlex.join(words)
+
+
+def _option(key: str, value: object) -> list[str]:
+    """Words of one option on the command line."""
+    if key == "overlay":
+        return ["--no-overlay"]
+    name = "--mass" if key == "masses" else f"--{key.replace('_', '-')}"
+    if isinstance(value, Mapping):
+        return [word for stone, item in value.items() for word in (name, f"{stone}={item}")]
+    if key == "frames" and isinstance(value, tuple):
+        first, last = value
+        return [name, f"{first}:{'' if last is None else last}"]
+    if key == "house" and isinstance(value, tuple):
+        frame, *points = value
+        text = ",".join(map(str, points))
+        return [name, text if frame is None else f"{frame}:{text}"]
+    if isinstance(value, tuple):
+        return [name, ",".join(map(str, value))]
+    return [name, str(value)]
