@@ -19,12 +19,13 @@ from data.progress import Progress, no_progress
 from data.sheet import HOUSE
 from vision.adjust import ViewSolution, solve, solve_view
 from vision.camera import Camera
-from vision.clip import Clip, Frame, Image
+from vision.clip import Clip, Frame
 from vision.house import SHARING, HouseFit, find_house
 from vision.joint import HouseTrack, Seen, fit_clip
 from vision.landmarks import Keyframe, keyframe, recognise
 from vision.marks import Evidence, measure
 from vision.outline import Rim
+from vision.picture import Picture
 from vision.placed import Placed, nobody
 from vision.pose import ANYWHERE, CIRCLES, OVERHEAD, R4, R8, Prior, View, camera, joined
 
@@ -87,7 +88,7 @@ class _Piece:
     palette: Array
     edge: Rim
     seen: list[Seen] = field(default_factory=list)
-    image: Image | None = None
+    picture: Picture | None = None
     cov: Array = field(default_factory=lambda: np.zeros((4, 4)))
     key: Keyframe | None = None
     lost: int = 0
@@ -131,7 +132,7 @@ class HouseFollower:
         if piece is not None:
             seen = _next(piece, frame)
             if seen is not None:
-                _add(piece, seen, frame.image)
+                _add(piece, seen, frame.picture)
                 _refine(piece, self._size)
                 self._waiting.clear()
                 return [(frame, self._provisional(piece, seen))]
@@ -185,18 +186,18 @@ class HouseFollower:
         first = _settle(piece, frame, view)
         if first is None:
             first = Seen(frame.index, frame.t, view, house.evidence.marks, True)
-        _add(piece, first, frame.image)
+        _add(piece, first, frame.picture)
         placed = [(frame, first)]
         for earlier in reversed(self._waiting):
             seen = _next(piece, earlier)
             if seen is None:
                 break
-            _add(piece, seen, earlier.image)
+            _add(piece, seen, earlier.picture)
             placed.append((earlier, seen))
         self._waiting.clear()
         placed.reverse()
         piece.seen = [*before, *(seen for _, seen in placed)]
-        piece.image, piece.key = frame.image, None
+        piece.picture, piece.key = frame.picture, None
         return [(f, self._provisional(piece, s)) for f, s in placed]
 
     def _same(self, house: HouseFit) -> tuple[_Piece | None, View]:
@@ -252,9 +253,9 @@ def follow_house(
     return track
 
 
-def _add(piece: _Piece, seen: Seen, image: Image) -> None:
+def _add(piece: _Piece, seen: Seen, picture: Picture) -> None:
     piece.seen.append(seen)
-    piece.image, piece.lost = image, 0
+    piece.picture, piece.lost = picture, 0
 
 
 def _next(piece: _Piece, frame: Frame) -> Seen | None:
@@ -264,14 +265,14 @@ def _next(piece: _Piece, frame: Frame) -> Seen | None:
     if seen is not None:
         piece.key = None
         return seen
-    if piece.key is None and piece.image is not None:
-        piece.key = keyframe(last.index, piece.image, last.view, piece.rig, piece.cov)
+    if piece.key is None and piece.picture is not None:
+        piece.key = keyframe(last.index, piece.picture, last.view, piece.rig, piece.cov)
     if piece.key is None or piece.key.drift > MOST_DRIFT:
         return None
-    landmarks = recognise(piece.key, frame.image, last.view, piece.rig)
+    landmarks = recognise(piece.key, frame.picture, last.view, piece.rig)
     if landmarks is None:
         return None
-    size = (frame.image.shape[1], frame.image.shape[0])
+    size = (frame.picture.shape[1], frame.picture.shape[0])
     view = solve_view(
         landmarks, last.view, piece.rig, size, width=10.0, view_sd=np.full(4, np.inf)
     ).view
@@ -279,12 +280,12 @@ def _next(piece: _Piece, frame: Frame) -> Seen | None:
     if seen is not None:
         piece.key = None
         return seen
-    lines = _look(piece, frame.image, view, REACH).marks
+    lines = _look(piece, frame.picture, view, REACH).marks
     marks = joined([landmarks, lines.pick(lines.line >= CIRCLES)])
     fit = solve_view(marks, view, piece.rig, size, view_sd=(1, 1, 0.02, 0.1))
     key = piece.key
     if len(landmarks) < len(key.ice):  # half of its corners are gone: two marks each
-        piece.key = keyframe(frame.index, frame.image, fit.view, piece.rig, fit.cov, key.drift)
+        piece.key = keyframe(frame.index, frame.picture, fit.view, piece.rig, fit.cov, key.drift)
     return Seen(frame.index, frame.t, fit.view, marks, False, key)
 
 
@@ -302,9 +303,9 @@ def _predicted(piece: _Piece, frame: Frame) -> View:
     return View(last.view.vector + ahead * (last.view.vector - before.view.vector))
 
 
-def _look(piece: _Piece, image: Image, view: View, reach: float) -> Evidence:
+def _look(piece: _Piece, picture: Picture, view: View, reach: float) -> Evidence:
     return measure(
-        image, view.vector, piece.rig, reach=max(reach * image.shape[1], 6.0),
+        picture, view.vector, piece.rig, reach=max(reach * picture.shape[1], 6.0),
         most=MOST_NORMALS, least_sd=MARK_SD, palette=piece.palette,
         level=piece.edge.level,
     )  # fmt: skip
@@ -312,9 +313,9 @@ def _look(piece: _Piece, image: Image, view: View, reach: float) -> Evidence:
 
 def _settle(piece: _Piece, frame: Frame, view: View) -> Seen | None:
     """Refine a predicted view on the rings; None where they are not there."""
-    size = (frame.image.shape[1], frame.image.shape[0])
+    size = (frame.picture.shape[1], frame.picture.shape[0])
     for _ in range(3):
-        evidence = _look(piece, frame.image, view, REACH)
+        evidence = _look(piece, frame.picture, view, REACH)
         if not _enough(evidence, piece.rig, evidence.covered):
             return None
         fit = solve_view(

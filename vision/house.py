@@ -18,8 +18,9 @@ from data.sheet import HOUSE
 from vision.adjust import solve
 from vision.camera import Camera
 from vision.lines import sides, upright
-from vision.marks import Evidence, Image, measure
+from vision.marks import Evidence, measure
 from vision.outline import Rim, find_rim
+from vision.picture import Image
 from vision.pose import (
     ANYWHERE,
     DOWN,

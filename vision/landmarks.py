@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vision.camera import Camera
+from vision.picture import Image, Picture, Planes
 from vision.pose import FIXED, Marks, View, camera, fixed, project
 
 Array = NDArray[np.float64]
-Image = NDArray[np.uint8]
 
 WIDTH = 640
 """Width of the small pictures, px."""
@@ -75,7 +75,7 @@ class Keyframe:
 
 
 def keyframe(
-    frame: int, image: Image, view: View, rig: Array, cov: Array, drift: float = 0.0
+    frame: int, picture: Picture, view: View, rig: Array, cov: Array, drift: float = 0.0
 ) -> Keyframe:
     """Make a keyframe of a picture.
 
@@ -90,8 +90,8 @@ def keyframe(
     drift : float
         Standard deviation of the places that the view itself rests on, m.
     """
-    h, w = image.shape[:2]
-    grey = _small(image)
+    h, w = picture.shape[:2]
+    grey = _small(picture)
     factor = w / grey.shape[1]
     found = cv2.goodFeaturesToTrack(
         grey, MOST_CORNERS, 0.01, APART, mask=_on_ice(view, rig, (w, h), grey)
@@ -117,7 +117,7 @@ def _on_ice(view: View, rig: Array, size: tuple[int, int], grey: Image) -> Image
     return mask
 
 
-def recognise(key: Keyframe, image: Image, view: View, rig: Array) -> Marks | None:
+def recognise(key: Keyframe, picture: Picture, view: View, rig: Array) -> Marks | None:
     """Find the landmarks of a keyframe in a picture, as marks.
 
     Parameters
@@ -130,8 +130,8 @@ def recognise(key: Keyframe, image: Image, view: View, rig: Array) -> Marks | No
     Marks or None
         None where the picture does not show the same scene.
     """
-    h, w = image.shape[:2]
-    grey = _small(image)
+    h, w = picture.shape[:2]
+    grey = _small(picture)
     factor = w / grey.shape[1]
     size = np.array([grey.shape[1], grey.shape[0]])
     expected = _shrunk(project(key.ice, view.vector, rig, (w, h)), factor)
@@ -182,10 +182,16 @@ def replaced(marks: Marks, key: Keyframe, now: Camera) -> Marks:
     return replace(marks, along=ice[:, 0], across=ice[:, 1])
 
 
-def _small(image: Image) -> Image:
+def _small(picture: Picture) -> Image:
+    if isinstance(picture, Planes):
+        return _resized(picture.luma)
+    return np.asarray(cv2.cvtColor(_resized(picture), cv2.COLOR_BGR2GRAY), np.uint8)
+
+
+def _resized(image: Image) -> Image:
     factor = WIDTH / image.shape[1]
     small = cv2.resize(image, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA)
-    return np.asarray(cv2.cvtColor(small, cv2.COLOR_BGR2GRAY), np.uint8)
+    return np.asarray(small, np.uint8)
 
 
 def _large(small: Array, factor: float) -> Array:

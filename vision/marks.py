@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vision.normals import SAMPLES, THIN, Profiles, lay_out, profiles
+from vision.picture import Picture
 from vision.pose import CIRCLES, FIXED, TWELVE, Marks
 from vision.runs import Runs, smooth
 from vision.stripes import find_stripes
 
 Array = NDArray[np.float64]
-Image = NDArray[np.uint8]
 Flags = NDArray[np.bool_]
 
 MIN_CONTRAST = 10.0
@@ -88,7 +88,7 @@ class Evidence:
 
 
 def measure(
-    image: Image,
+    picture: Picture,
     view: Array,
     rig: Array,
     *,
@@ -104,7 +104,7 @@ def measure(
 
     Parameters
     ----------
-    image : ndarray of uint8, shape (h, w, 3)
+    picture : Picture
     view, rig : ndarray
         Camera as in `vision.pose`.
     reach : float
@@ -118,9 +118,9 @@ def measure(
     level : float
         Where the 12-ft edge is between ice (−0.5) and paint (0.5), as `vision.outline` tells.
     """
-    h, w = image.shape[:2]
+    h, w = picture.shape[:2]
     normals = lay_out(view, rig, (w, h), reach=reach, spacing=spacing, most=most, lines=lines)
-    colours = profiles(image, normals)
+    colours = profiles(picture, normals)
     wide = {kind: part for kind, part in normals.kinds.items() if kind not in THIN}
     count = max((part.stop for part in wide.values()), default=0)
     if palette is None:

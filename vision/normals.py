@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import SHEET
+from vision.picture import Picture, colours_at
 from vision.pose import (
     BACK_LINE,
     CENTRE_LINE,
@@ -25,7 +25,6 @@ from vision.pose import (
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 Flags = NDArray[np.bool_]
-Image = NDArray[np.uint8]
 Profiles = NDArray[np.float32]
 
 THIN = (CENTRE_LINE, TEE_LINE, BACK_LINE)
@@ -196,12 +195,11 @@ def _thinned(inside: Flags, wanted: Index, groups: int) -> Flags:
     )
 
 
-def profiles(image: Image, normals: Normals) -> Profiles:
+def profiles(picture: Picture, normals: Normals) -> Profiles:
     """Colours along the normals, shape (n, SAMPLES, 3)."""
     if not normals.kinds:
         return np.zeros((0, SAMPLES, 3), np.float32)
     along = (normals.normal * normals.reach[:, None]).astype(np.float32)
     start = normals.point.astype(np.float32)
     x, y = (start[:, axis, None] + along[:, axis, None] * _SHARES for axis in (0, 1))
-    found = cv2.remap(image, x, y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
-    return np.asarray(found, np.float32)
+    return np.asarray(colours_at(picture, x, y), np.float32)
