@@ -283,12 +283,8 @@ def random_tilted_clip(seed: int) -> Clip:
     )  # fmt: skip
 
 
-def named(kinds: Sequence[str], draws: int) -> list[Clip]:
-    """Pick clips by the beginnings of their names (all for none), and add `draws` random ones."""
+def named(kinds: Sequence[str], seeds: Sequence[int]) -> list[Clip]:
+    """Pick clips by the beginnings of their names (all for none), random ones of these seeds."""
     drawing: tuple[Callable[[int], Clip], ...] = (random_clip, random_tilted_clip)
-    everything = [
-        *clips(),
-        *plain_clips(),
-        *(draw(seed) for draw in drawing for seed in range(draws)),
-    ]
+    everything = [*clips(), *plain_clips(), *(draw(seed) for draw in drawing for seed in seeds)]
     return [c for c in everything if not kinds or c.name.startswith(tuple(kinds))]

@@ -25,6 +25,7 @@ from vision.pose import (
     ANYWHERE,
     DOWN,
     OVERHEAD,
+    TWELVE,
     Prior,
     View,
     aim,
@@ -52,6 +53,15 @@ ASIDE = 2.0
 
 ROUGH = 0.5
 """What a house loses per pixel of residual in the small picture."""
+
+WHOLE = 0.6
+"""Share of what is visible of a circle that is nearly all of it, with people over it."""
+
+UNPAINTED = ((0.72, 1.1), (1.32, 1.7), (1.95, 3.1))
+"""From where to where there is no edge of a circle, m."""
+
+LEAST_STEP, WHOLE_AROUND = 20.0, 0.85
+"""Grey levels by which an edge stands out, and its share of a circle, for one that is there."""
 
 TILT_GAIN = 8.0
 """By how much the log likelihood must rise for a camera that does not hang over the tee."""
@@ -205,11 +215,33 @@ def judge(evidence: Evidence) -> float:
     if covered[0] < 0.12 or support[0] < 0.35:
         return 0.0
     seen = evidence.visible > 0.05
-    # The 12-ft ring has an inner edge: two edges of other things rarely stand as 3 : 2.
-    second = 1 if seen[1] else 2
-    if not seen[second] or support[second] < 0.3:
+    # Edges of other things rarely stand as 3 : 2; where there are but 3 : 1, they must be whole
+    # and what is around them ice.
+    inner = support[1] > 0.3 or (support[2] > 0.3 and not seen[1])
+    ice = evidence.palette[TWELVE, 0]
+    if not inner and (min(support[0], support[2]) < WHOLE or ice.min() < max(0.6 * ice.max(), 80)):
         return 0.0
     return float(covered.sum() + 0.5 * support[seen].mean())
+
+
+def _is_target(image: Image, found: Camera) -> bool:
+    """Whether there are whole circles where a house has none: between its own or around them."""
+    angle = np.linspace(0, 2 * np.pi, 72, endpoint=False)
+    way = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    for first, last in UNPAINTED:
+        place = found.project(np.arange(first, last, 0.02)[:, None, None] * way)
+        seen = ((place > 0) & (place < np.array(found.size) - 1)).all((0, 2))
+        if seen.mean() < 0.5:
+            continue
+        x, y = place[:, seen].astype(np.float32).transpose(2, 0, 1)
+        colour = cv2.remap(image, x, y, cv2.INTER_LINEAR).astype(float)
+        step = colour[4:] - colour[:-4]
+        usual = np.median(step, axis=1)
+        size = np.linalg.norm(usual, axis=-1)
+        along = (step * usual[:, None]).sum(-1) / np.maximum(size**2, 1.0)[:, None]
+        if (((along > 0.5).mean(1) > WHOLE_AROUND) & (size > LEAST_STEP)).any():
+            return True
+    return False
 
 
 def _refine(image: Image, best: _Fitted, factor: float, frame: int, t: float) -> HouseFit | None:
@@ -236,8 +268,8 @@ def _refine(image: Image, best: _Fitted, factor: float, frame: int, t: float) ->
         fit = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
         view, rig = fit.views[0], fit.rig
         edge = find_rim(evidence.profile, evidence.step)
-    if judge(evidence) == 0:
-        return None
     rms = float(fit.rms[0])
     found = camera(view, rig, size, frame=frame, t=t, rms_px=rms)
+    if judge(evidence) == 0 or _is_target(image, found):
+        return None
     return HouseFit(found, view, rig, evidence, rms, overhead, edge)

@@ -113,6 +113,34 @@ def test_no_house_is_no_house() -> None:
         assert find_house(image) is None
 
 
+WHITE = PAINTS["navy-orange"].eight
+
+
+@pytest.mark.parametrize(
+    "missing",
+    [{"four": WHITE, "button": WHITE, "logo": ""}, {"eight": PAINTS["navy-orange"].twelve}],
+    ids=["one ring", "12 and 4 ft alone"],
+)
+def test_few_rings_are_a_house(missing: dict[str, object]) -> None:
+    path = still_camera(target=(0.1, 0.3), px_per_m=95, roll=0.02)
+    paint = replace(PAINTS["navy-orange"], **missing)
+    fit = find_house(render_still(replace(sample_scene(), paint=paint), path, 1.0))
+    assert rms(errors(fit, path)) < 0.003
+
+
+@pytest.mark.parametrize("ratios", [(1, 0.8, 0.6, 0.4, 0.2), (1, 0.9, 0.3), (1, 0.83, 0.67, 0.5)])
+def test_a_target_is_no_house(ratios: tuple[float, ...]) -> None:
+    rng = np.random.default_rng(4)
+    for _ in range(4):
+        image = np.full((*SIZE[::-1], 3), rng.integers(0, 256, 3), np.uint8)
+        centre, radius = rng.uniform((400, 250), (900, 470)), rng.uniform(120, 300)
+        for share in ratios:
+            colour = tuple(int(c) for c in rng.integers(0, 256, 3))
+            place = tuple(int(v) for v in centre)
+            cv2.circle(image, place, round(radius * share), colour, -1, cv2.LINE_AA)
+        assert find_house(image) is None
+
+
 def test_real_stills_agree_with_cameras_measured_by_hand(shared: Path) -> None:
     known = json.loads((shared / "frames/stills.json").read_text())
     radii = (HOUSE.twelve_foot, HOUSE.eight_foot, HOUSE.four_foot)
