@@ -34,8 +34,9 @@ if TYPE_CHECKING:
     from physics.start import Start
     from physics.what_if import Changes
     from vision.camera import Camera
-    from vision.clip import Clip
+    from vision.clip import Clip, Frame
     from vision.joint import HouseTrack
+    from vision.placed import Placed
 
 VERSION = "0.1.0"
 WRITTEN = (
@@ -233,10 +234,18 @@ def _import_tables(files: tuple[Path, ...], settings: Settings) -> Measured:
 
 
 def _look_at_clip(files: tuple[Path, ...], settings: Settings, progress: Progress) -> Measured:
-    from vision.track import track_stones
+    from vision.track import tracks_of
+    from vision.watch import Watch
 
-    seen = _film(files, settings, progress)
-    stones = track_stones(seen.clip, seen.cameras, disc=seen.disc, progress=progress)
+    watch = Watch(_disc(settings))
+
+    def look(frame: Frame, camera: Camera) -> None:
+        if not watch.begun:
+            _check_size(settings.radius, camera)
+        watch.look(frame, camera)
+
+    seen = _film(files, settings, progress, look)
+    stones = tracks_of(watch, seen.cameras)
     return Measured(
         files,
         stones.sightings,
@@ -249,27 +258,34 @@ def _look_at_clip(files: tuple[Path, ...], settings: Settings, progress: Progres
     )
 
 
-def _film(files: tuple[Path, ...], settings: Settings, progress: Progress) -> Filmed:
-    """Open a clip and find its cameras."""
+def _disc(settings: Settings) -> Stone:
+    """Say what is looked for: stones in a house or of their size, else plain discs."""
     from vision.stones import plain_disc
 
-    clip = _open_clip(files, settings)
-    stone = replace(STONE, radius=settings.radius)
+    sized_as_stones = settings.camera is None or settings.radius == STONE.radius
+    if settings.stick is None and sized_as_stones:
+        return replace(STONE, radius=settings.radius)
+    return plain_disc(settings.radius)
+
+
+def _film(
+    files: tuple[Path, ...], settings: Settings, progress: Progress, placed: Placed
+) -> Filmed:
+    """Open a clip, read it and find its cameras; `placed` is told of each frame on the way."""
+    clip, disc = _open_clip(files, settings), _disc(settings)
     if settings.stick is not None:
         from vision.stick import stick_cameras
 
-        cameras = stick_cameras(clip, settings.stick, progress)
-        filmed = Filmed(clip, cameras, plain_disc(settings.radius))
+        cameras = stick_cameras(clip, settings.stick, progress, placed)
+        filmed = Filmed(clip, cameras, disc)
     elif settings.camera is not None:
-        cameras, notes = _given_cameras(clip, settings.camera, settings, progress)
-        if settings.radius == STONE.radius:
-            filmed = Filmed(clip, cameras, stone, HOUSE, notes)
-        else:
-            filmed = Filmed(clip, cameras, plain_disc(settings.radius), None, notes)
+        cameras, notes = _given_cameras(clip, settings.camera, settings, progress, placed)
+        house = HOUSE if settings.radius == STONE.radius else None
+        filmed = Filmed(clip, cameras, disc, house, notes)
     else:
-        followed = _follow(clip, settings, progress)
+        followed = _follow(clip, settings, progress, placed)
         house = House(*(float(radius) for radius in followed.radii))
-        filmed = Filmed(clip, followed.cameras, stone, house, followed.warnings)
+        filmed = Filmed(clip, followed.cameras, disc, house, followed.warnings)
     _check_size(settings.radius, filmed.cameras[0])
     return filmed
 
@@ -291,7 +307,7 @@ def _open_clip(files: tuple[Path, ...], settings: Settings) -> Clip:
 
 
 def _given_cameras(
-    clip: Clip, path: Path, settings: Settings, progress: Progress
+    clip: Clip, path: Path, settings: Settings, progress: Progress, placed: Placed
 ) -> tuple[tuple[Camera, ...], tuple[str, ...]]:
     """Read the cameras of a table, or of a Tracker project."""
     from data.export import PROJECTS
@@ -299,23 +315,23 @@ def _given_cameras(
     if path.suffix.lower() not in PROJECTS:
         from vision.camera_file import given_cameras
 
-        return given_cameras(clip, path, progress)
+        return given_cameras(clip, path, progress, placed)
     from data.project import read_project
     from vision.project_clip import project_cameras
 
     project = read_project(path, settings.tab)
-    return project_cameras(clip, project, settings.length_unit, progress)
+    return project_cameras(clip, project, settings.length_unit, progress, placed)
 
 
-def _follow(clip: Clip, settings: Settings, progress: Progress) -> HouseTrack:
+def _follow(clip: Clip, settings: Settings, progress: Progress, placed: Placed) -> HouseTrack:
     """Follow the house, from where a person says that it is or from where it is found."""
     from vision.follow_house import follow_house
     from vision.given import GivenHouse, follow_given
 
     if settings.house is None:
-        return follow_house(clip, progress)
+        return follow_house(clip, progress, placed=placed)
     frame, *points = settings.house
-    return follow_given(clip, GivenHouse.of(points, frame), progress)
+    return follow_given(clip, GivenHouse.of(points, frame), progress, placed)
 
 
 def _check_size(radius: float, camera: Camera) -> None:
@@ -352,9 +368,10 @@ def check(
     from report.check import Look, check_figure, check_lines, frames_to_show
     from vision.camera import camera_table
     from vision.glance import glance
+    from vision.placed import nobody
 
     files = find_inputs(inputs)
-    seen = _film(files, settings, progress)
+    seen = _film(files, settings, progress, nobody)
     clip, cameras = seen.clip, seen.cameras
     radii = () if seen.house is None else _painted(seen.house)
     table = camera_table(cameras)

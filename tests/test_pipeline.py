@@ -330,7 +330,8 @@ def test_a_house_or_a_camera_may_be_given(
     assert "not part of the errors" in capsys.readouterr().out
     one, two = (pd.read_csv(tmp_path / name / "tracks.csv") for name in ("one", "two"))
     assert len(one) == len(two) and one["frame"].nunique() == 9
-    np.testing.assert_allclose(one[["x", "y"]], two[["x", "y"]], atol=1e-4)
+    # The one's stones were measured while its cameras were provisional.
+    np.testing.assert_allclose(one[["x", "y"]], two[["x", "y"]], atol=1e-3)
     assert pipeline.main(["check", *common, str(tmp_path / "see"), "--camera", str(table)]) == 0
     assert (tmp_path / "see" / "check.png").exists()
 

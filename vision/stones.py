@@ -245,6 +245,18 @@ def sightings(
     ]  # fmt: skip
 
 
+def placed_by(camera: Camera, seen: Sequence[Sighting], disc: Stone) -> list[Sighting]:
+    """Give sightings the places that another camera of the same picture gives them."""
+    if not seen:
+        return []
+    places = camera.ice(np.array([sighting.pixel for sighting in seen]), disc.cap_height)
+    shared = _shared_errors(camera, places, disc)
+    return [
+        replace(sighting, x=x, y=y, sd_place=sd)
+        for sighting, (x, y), sd in zip(seen, places.tolist(), shared.tolist(), strict=True)
+    ]
+
+
 def _shared_errors(camera: Camera, places: Array, disc: Stone) -> Array:
     """Give the standard errors that no filter averages out, m: camera, cap's edge and height."""
     rms = camera.rms_px if np.isfinite(camera.rms_px) else 0.3

@@ -71,8 +71,27 @@ def track_stones(
         if frame.index in by_frame:
             watch.look(frame, by_frame[frame.index])
         progress("following the stones", done + 1, clip.expected)
+    return tracks_of(watch, cameras)
+
+
+def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
+    """Follow and name the stones that a watch has seen, and measure how they are turned.
+
+    Parameters
+    ----------
+    watch : Watch
+        Has looked at all frames.
+    cameras : sequence of Camera
+        One per frame, as they are known in the end; frames without one are left out.
+
+    Returns
+    -------
+    StoneTracks
+        As `track_stones`.
+    """
+    disc = watch.disc
     gate = Gate(least_score=0.85 if is_plain(disc) else 1.45)
-    tracks = follow(watch.finish(), disc.radius, gate)
+    tracks = follow(watch.finish(cameras), disc.radius, gate)
     moved, rest = names_by_motion(tracks, disc.radius)
     names = order_of_motion(dict(moved), rest)
     named = {names[str(number)]: track for number, track in enumerate(tracks)}

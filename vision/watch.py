@@ -23,7 +23,7 @@ from vision.handle import cap_spectrum
 from vision.measure import handle_radii, is_plain
 from vision.seek import Bounds
 from vision.sighting import Sighting
-from vision.stones import FOLLOWING, Search, look_at, search_picture
+from vision.stones import FOLLOWING, Search, look_at, placed_by, search_picture
 
 Array = NDArray[np.float64]
 
@@ -105,7 +105,7 @@ class Watch:
 
     def __init__(self, disc: Stone = STONE, search: Search = FOLLOWING, pace: Pace = Pace()):
         self.appearance: Appearance | None = None
-        self._disc, self._search, self._pace = disc, search, pace
+        self.disc, self._search, self._pace = disc, search, pace
         self._radii = handle_radii(disc)
         self._lessons: list[Sighting] = []
         self._waiting: list[_View] = []
@@ -113,24 +113,47 @@ class Watch:
         self._leads: list[_Lead] = []
         self._searched = -np.inf
         self._checked = -np.inf
-        self._seen: list[tuple[int, float, list[Sighting]]] = []
+        self._seen: list[tuple[int, float, Camera, list[Sighting]]] = []
 
     def look(self, frame: Frame, camera: Camera) -> None:
         """Take in a frame; the first ones wait until the look of the stones is learned."""
         view = _View(frame, camera)
         self._waiting.append(view)
-        self._seen.append((frame.index, frame.t, view.sightings))
+        self._seen.append((frame.index, frame.t, camera, view.sightings))
         if self._knows or len(self._waiting) >= self._pace.memory:
             self._catch_up()
 
-    def finish(self) -> list[tuple[int, float, list[Sighting]]]:
-        """Give the number, the time and the sightings of each frame."""
+    @property
+    def begun(self) -> bool:
+        """Whether a frame has been looked at."""
+        return bool(self._seen)
+
+    def finish(
+        self, cameras: Sequence[Camera] | None = None
+    ) -> list[tuple[int, float, list[Sighting]]]:
+        """Give the number, the time and the sightings of each frame.
+
+        Parameters
+        ----------
+        cameras : sequence of Camera, optional
+            What is known of the cameras by now: it places the stones; frames without one are
+            left out. Else the cameras stand with which the frames were looked at.
+        """
         self._catch_up()
-        return self._seen
+        if cameras is None:
+            return [(frame, t, seen) for frame, t, _, seen in self._seen]
+        final = {camera.frame: camera for camera in cameras}
+        placed = []
+        for frame, t, camera, seen in self._seen:
+            if frame in final:
+                known = final[frame]
+                anew = seen if known is camera else placed_by(known, seen, self.disc)
+                placed.append((frame, t, anew))
+        return placed
 
     @property
     def _knows(self) -> bool:
-        return self.appearance is not None or is_plain(self._disc)
+        return self.appearance is not None or is_plain(self.disc)
 
     def _catch_up(self) -> None:
         if not self._knows:
@@ -148,7 +171,7 @@ class Watch:
     def _convincing(self, view: _View, known: Array) -> list[Sighting]:
         """Stones of any colour."""
         found = search_picture(
-            view.frame.picture, view.camera, None, self._disc, self._search, None, known
+            view.frame.picture, view.camera, None, self.disc, self._search, None, known
         )
         return [stone for stone in found.stones if stone.score > CONVINCING]
 
@@ -185,7 +208,7 @@ class Watch:
             view.frame.picture,
             view.camera,
             self.appearance,
-            self._disc,
+            self.disc,
             self._search,
             bounds,
             known,
@@ -194,18 +217,18 @@ class Watch:
     def _follow(self, view: _View, leads: Sequence[_Lead]) -> list[_Lead]:
         """Add to a view the stones to which the leads point; return where these lead on to."""
         t, image = view.frame.t, view.frame.picture
-        if not leads or (self.appearance is None and not is_plain(self._disc)):
+        if not leads or (self.appearance is None and not is_plain(self.disc)):
             return []
-        known, apart = view.places, 1.6 * self._disc.radius
-        near = 0.15 * self._disc.radius
+        known, apart = view.places, 1.6 * self.disc.radius
+        near = 0.15 * self.disc.radius
         expected = np.array([lead.at(t) for lead in leads])
-        found = look_at(image, view.camera, expected, self.appearance, self._disc, self._search)
+        found = look_at(image, view.camera, expected, self.appearance, self.disc, self._search)
         going: list[_Lead] = []
         lost: list[_Lead] = []
         # The best first: of two leads to one stone, the other is lost.
         for index in sorted(range(len(leads)), key=lambda i: -_score(found[i])):
             lead, sighting = leads[index], found[index]
-            if _distance(known, expected[index]) < 0.5 * self._disc.radius:
+            if _distance(known, expected[index]) < 0.5 * self.disc.radius:
                 continue  # it leads to a stone that is followed already
             if sighting is None or _distance(known, np.array([sighting.x, sighting.y])) < apart:
                 lost.append(lead)
@@ -225,9 +248,9 @@ class Watch:
     def _near(self, view: _View, lead: _Lead) -> Sighting | None:
         """Seek a stone that is not where it is expected about there and about its last place."""
         either = np.array([lead.at(view.frame.t), lead.place])
-        reach = self._pace.reach * self._disc.radius
-        low, high = either.min(0) - reach - self._disc.radius, either.max(0) + reach
-        high = high + self._disc.radius
+        reach = self._pace.reach * self.disc.radius
+        low, high = either.min(0) - reach - self.disc.radius, either.max(0) + reach
+        high = high + self.disc.radius
         bounds = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
         found = self._sought(view, bounds, view.places)
         away = [_distance(either, place) for place in _places(found)]
