@@ -12,6 +12,8 @@ from io import BytesIO
 from typing import Any
 
 import matplotlib.style
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
 BLACK = "#1a1a1a"
@@ -113,7 +115,9 @@ def render(figure: Figure) -> tuple[bytes, bytes]:
     """Return the figure as SVG and as PNG, the layout worked out once."""
     with styled():
         svg, png = BytesIO(), BytesIO()
-        figure.savefig(png, format="png", dpi=PNG_DPI)
+        # By the canvases themselves: ``savefig`` would draw each once more before.
+        figure.set_dpi(PNG_DPI)
+        FigureCanvasAgg(figure).print_png(png)  # type: ignore[no-untyped-call]
         figure.set_layout_engine("none")  # placed by now; a second pass would cost as much again
-        figure.savefig(svg, format="svg", metadata={"Date": None})
+        FigureCanvasSVG(figure).print_svg(svg, metadata={"Date": None})  # type: ignore[no-untyped-call]
     return svg.getvalue(), png.getvalue()

@@ -17,6 +17,7 @@ from report.figures.parts import (
     legend_below,
     line,
     rows_of,
+    set_height,
     short,
     time_axis,
     title,
@@ -68,6 +69,7 @@ def comparison_figure(
                     )
                 ax.plot(t, values, color=colour, linestyle=dash, lw=1.6, zorder=4)
             ax.set_ylabel(LABELS[column])
+            set_height(ax)
         own = [(rank, c.t) for rank, c in hits_of(collisions, stone)]
         time_axis(axes, own, rows["t"].to_numpy(float))
         figure.align_ylabels(axes)

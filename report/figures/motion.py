@@ -25,6 +25,7 @@ from report.figures.parts import (
     line,
     rows_of,
     said,
+    set_height,
     short,
     speed_of,
     speeds,
@@ -77,12 +78,13 @@ def motion_figure(
             draw_measured(ax, t, values, sd, seen)
             _draw_rates(ax, rows, stone, column, hits)
             ax.set_ylabel(LABELS[column])
+            set_height(ax)
         speed, sd = speeds(rows)
         t, seen = rows[["t", "seen"]].to_numpy(float).T
         draw_measured(axes[2], t, speed, sd, seen, [c.t for _, c in hits])
         _draw_glides(axes[2], t, speed, stone, own, hits)
         axes[2].set_ylabel(LABELS["speed"])
-        axes[2].set_ylim(bottom=0)
+        set_height(axes[2], bottom=0.0)
         time_axis(axes, [(rank, c.t) for rank, c in hits], t)
         figure.align_ylabels(axes)
         title(figure, f"Stone {short(stone, 40)}: motion")
@@ -113,8 +115,8 @@ def spin_figure(tracks: pd.DataFrame, stone: str, collisions: Sequence[Collision
             ax.set_ylabel(LABELS[column])
         _draw_rates(axes[0], rows, stone, "theta", hits)
         _draw_spins(axes[1], stone, hits)
-        _widen(axes[0], 0.1)
-        _widen(axes[1], 0.1)
+        set_height(axes[0], 0.1)
+        set_height(axes[1], 0.1)
         time_axis(axes, [(rank, c.t) for rank, c in hits], rows["t"].to_numpy(float))
         figure.align_ylabels(axes)
         title(figure, f"Stone {short(stone, 40)}: angle and spin")
@@ -141,7 +143,7 @@ def speed_figure(
             )
             ax.plot(t, speed, color=colour, label=f"stone {short(stone)}")
         ax.set_ylabel(LABELS["speed"])
-        ax.set_ylim(bottom=0)
+        set_height(ax, bottom=0.0)
         time_axis([ax], [(k, c.t) for k, c in enumerate(collisions, 1)], tracks["t"].to_numpy())
         title(figure, "Speed")
         if stones:
@@ -229,11 +231,3 @@ def _draw_spins(ax: Axes, stone: str, hits: Hits) -> None:
 
 def _draw_point(ax: Axes, t: float, value: float, sd: float, colour: str) -> None:
     ax.errorbar(t, value, 2 * sd, color=colour, fmt="o", ms=3.5, capsize=2, lw=1.2, zorder=6)
-
-
-def _widen(ax: Axes, least: float) -> None:
-    """Give an axis at least so much height: noise shall not fill the panel."""
-    low, high = ax.get_ylim()
-    if high - low < least:
-        middle = (low + high) / 2
-        ax.set_ylim(middle - least / 2, middle + least / 2)

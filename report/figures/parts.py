@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike, NDArray
@@ -90,33 +92,78 @@ def draw_measured(
         ax.plot(t, values, "o", color=BLACK, ms=4)
 
 
+def set_height(ax: Axes, least: float = 0.0, bottom: float | None = None) -> None:
+    """Choose the limits of y by the lines, and by the bands but where they are widest.
+
+    Parameters
+    ----------
+    ax : Axes
+        With the lines and bands that count drawn, and no other.
+    least : float
+        Height at least: noise shall not fill the panel.
+    bottom : float, optional
+        The lower limit, where it is given by the quantity.
+    """
+    ends = [np.asarray(item.get_ydata(), float) for item in ax.lines]
+    for band in ax.collections:
+        if isinstance(band, PolyCollection):
+            paths = [np.asarray(path.vertices, float)[:, 1] for path in band.get_paths()]
+            edges = np.concatenate([np.zeros(0), *paths])
+            edges = edges[np.isfinite(edges)]
+            ends.append(np.quantile(edges, [0.03, 0.97]) if len(edges) else edges)
+    values = np.concatenate([np.zeros(0), *ends])
+    values = values[np.isfinite(values)]
+    if not len(values):
+        return
+    low, high = float(values.min()), float(values.max())
+    room = max(1.1 * (high - low), least) or 1.0
+    middle = (low + high) / 2
+    ax.set_ylim(middle - room / 2 if bottom is None else bottom, middle + room / 2)
+
+
 def time_axis(
     axes: Sequence[Axes] | NDArray[Any], hits: Sequence[tuple[int, float]], t: ArrayLike
 ) -> None:
-    """Share one time axis; the hits are lines with their ranks on top, staggered where close."""
+    """Share one time axis; the hits are lines with their ranks on top, as one where close."""
     times = np.asarray(t, float)
     first, last = float(times.min()), float(times.max())
     margin = 0.02 * (last - first) or 0.5
     axes[0].set_xlim(first - margin, last + margin)
     axes[-1].set_xlabel("time (s)")
-    levels: list[float] = []  # time of the last label on each level
-    for rank, when in hits:
-        room = when - 0.045 * (last - first + 2 * margin)
-        level = next((k for k, taken in enumerate(levels) if taken < room), len(levels))
-        levels[level : level + 1] = [when]
+    for _, when in hits:
         for ax in axes:
             ax.axvline(when, color=GREY, lw=0.8, linestyle=(0, (3, 2)), zorder=2)
+    for label, when in _joined(hits, 0.014 * (last - first + 2 * margin)):
         axes[0].annotate(
-            f"{rank}",
+            label,
             (when, 1.0),
             xycoords=("data", "axes fraction"),
-            xytext=(0, 2 + 10 * level),
+            xytext=(0, 2),
             textcoords="offset points",
             ha="center",
             va="bottom",
             fontsize=8,
             color=GREY,
         )
+
+
+def _joined(hits: Sequence[tuple[int, float]], letter: float) -> list[tuple[str, float]]:
+    """Labels of hits and their times; those of which one would reach into the next become one."""
+    groups: list[list[tuple[int, float]]] = [[hit] for hit in hits]
+    while True:
+        labels = [(_ranks([r for r, _ in g]), sum(t for _, t in g) / len(g)) for g in groups]
+        for k, ((one, t), (two, later)) in enumerate(pairwise(labels)):
+            if later - t < letter * (1 + (len(one) + len(two)) / 2):
+                groups[k : k + 2] = [groups[k] + groups[k + 1]]
+                break
+        else:
+            return labels
+
+
+def _ranks(ranks: Sequence[int]) -> str:
+    if len(ranks) > 2 and ranks[-1] - ranks[0] == len(ranks) - 1:
+        return f"{ranks[0]}–{ranks[-1]}"
+    return ", ".join(map(str, ranks))
 
 
 def short(name: str, letters: int = 16) -> str:

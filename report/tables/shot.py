@@ -9,6 +9,7 @@ import pandas as pd
 
 from data.results import Collision, Glide, SimulationScore
 from data.sheet import STONE
+from physics.traces import traces
 
 
 def moving_stones(
@@ -121,10 +122,14 @@ def residual_table(sightings: pd.DataFrame, tracks: pd.DataFrame) -> pd.DataFram
     -------
     DataFrame
         ``stone, frame, t, dx, dy, sd_x, sd_y``: m and s; the standard deviations are those of
-        the sightings. Those without one are left out.
+        the sightings, from their scatter where the table has none.
     """
-    keys = ["stone", "frame"]
-    both = sightings.merge(tracks[[*keys, "x", "y"]], on=keys, suffixes=("", "_smooth"))
+    keys, sd = ["stone", "frame"], ["sd_x", "sd_y"]
+    table = sightings.sort_values(["stone", "t"]).reset_index(drop=True)
+    known = traces(table)
+    if known:
+        table[sd] = np.concatenate([known[str(name)].sd for name in sorted(known)])
+    both = table.merge(tracks[[*keys, "x", "y"]], on=keys, suffixes=("", "_smooth"))
     both["dx"], both["dy"] = both["x"] - both["x_smooth"], both["y"] - both["y_smooth"]
-    known = (both["sd_x"] > 0) & (both["sd_y"] > 0) & both[["dx", "dy"]].notna().all(axis=1)
-    return both.loc[known, [*keys, "t", "dx", "dy", "sd_x", "sd_y"]].reset_index(drop=True)
+    both = both[both[["dx", "dy"]].notna().all(axis=1)]
+    return both[[*keys, "t", "dx", "dy", *sd]].reset_index(drop=True)

@@ -262,6 +262,25 @@ def test_long_and_strange_names_and_close_hits_fit(shot):
         check_layout(figure)
 
 
+def test_close_hits_share_a_label(shot):
+    hit = shot.results.collisions[0]
+    hits = [dataclasses.replace(hit, t=t) for t in (0.8, 0.81, 0.83, 4.0, 6.0, 6.02)]
+    figure = figures.speed_figure(shot.tracks, hits)
+    check_layout(figure)
+    assert [t.get_text() for t in figure.axes[0].texts] == ["1–3", "4", "5, 6"]
+
+
+def test_one_wide_spot_of_a_band_does_not_squeeze_the_rest(shot):
+    tracks = shot.tracks.copy()
+    tracks.loc[tracks["frame"].between(38, 40), ["sd_omega", "sd_vx", "sd_x"]] = 50.0
+    for figure in (
+        figures.spin_figure(tracks, "B", shot.results.collisions),
+        figures.motion_figure(tracks, "B", shot.results.collisions),
+    ):
+        for ax in figure.axes:
+            assert np.ptp(ax.get_ylim()) < 6
+
+
 def test_long_delivery_keeps_the_house_in_view(shot):
     tracks = shot.tracks.copy()
     thrown = tracks["stone"] == "A"
