@@ -24,8 +24,8 @@ from vision.pose import (
     Marks,
     Prior,
     View,
-    distortion,
     ice_frame,
+    joined,
     measures,
     rotation_matrix,
     turning,
@@ -106,13 +106,25 @@ class ViewSolution:
 
 
 class Frame:
-    """One frame's marks in the form in which residuals are worked out, one column per mark."""
+    """Marks of one frame, or of several, in the form in which residuals are worked out.
 
-    def __init__(self, marks: Marks, size: tuple[int, int], offset: Array | float = 0.0) -> None:
+    One column per mark; the frames follow each other, `counts` marks of each.
+    """
+
+    def __init__(
+        self,
+        marks: Marks,
+        size: tuple[int, int],
+        offset: Array | float = 0.0,
+        counts: Sequence[int] | None = None,
+    ) -> None:
         self.size = size
         self.radius = float(np.hypot(*size)) / 2
         self.sd = marks.sd
         self.line = marks.line
+        self.counts = [len(marks)] if counts is None else list(counts)
+        ends = np.cumsum(self.counts).tolist()
+        self.parts = [slice(end - n, end) for end, n in zip(ends, self.counts, strict=True)]
         place, way = ice_frame(marks.line, marks.along, marks.across)
         self.foot = np.zeros((3, len(marks)))
         self.way = np.ascontiguousarray(way.T)
@@ -128,6 +140,19 @@ class Frame:
         away[:2] += self.way * measures(rig)[self.line]
         return away
 
+    def each(self, values: Array) -> Array:
+        """Give every mark its frame's value."""
+        return values if len(values) == 1 else np.repeat(values, self.counts)
+
+    def turned(self, matrices: Sequence[Array], columns: Array) -> Array:
+        """Multiply the columns of every frame, (3, n), by its matrix, (3, 3)."""
+        if len(matrices) == 1:
+            return np.asarray(matrices[0] @ columns)
+        found = np.empty_like(columns)
+        for matrix, part in zip(matrices, self.parts, strict=True):
+            found[:, part] = matrix @ columns[:, part]
+        return found
+
 
 @dataclass(frozen=True)
 class Linear:
@@ -137,36 +162,41 @@ class Linear:
     ----------
     residual : ndarray, shape (n,)
     by_view : ndarray, shape (4, n)
-        Derivatives by the view.
-    by_point : ndarray, shape (3, n)
-        Derivatives by the point in the camera's axes.
+        Derivatives by the view of the mark's frame.
+    by_place : ndarray, shape (3, n)
+        Derivatives by the place on the ice, along the ice's axes.
     by_k1 : ndarray, shape (n,)
         Derivative by k1; `r2` times that is the one by k2.
     r2 : ndarray, shape (n,)
         |q|² of the undistorted point.
-    rotation : ndarray, shape (3, 3)
     """
 
     residual: Array
     by_view: Array
-    by_point: Array
+    by_place: Array
     by_k1: Array
     r2: Array
-    rotation: Array
 
 
-def linearised(frame: Frame, points: Array, view: Array, rig: Array) -> Linear:
-    """Residuals of a frame's marks at `points` (see `Frame.points`), and derivatives."""
-    rotation = rotation_matrix(view)
-    p = rotation @ points
+def linearised(frame: Frame, points: Array, views: Array, rig: Array) -> Linear:
+    """Residuals of marks at `points` (see `Frame.points`), and derivatives.
+
+    Parameters
+    ----------
+    views : ndarray, shape (4,) or (frames, 4)
+    """
+    views = views.reshape(-1, VIEW_SIZE)
+    rotations = [rotation_matrix(view) for view in views]
+    p = frame.turned(rotations, points)
     z = p[2]
     hidden = z <= 1e-3
     blind = bool(hidden.any())
     if blind:
         z = np.where(hidden, 1.0, z)
-    lens = (np.exp(view[3]) / frame.radius) / z
+    lens = frame.each(np.exp(views[:, 3]) / frame.radius) / z
     q = p[:2] * lens
-    k1, k2 = distortion(rig, view[3], frame.size)
+    k1 = frame.each(rig[K1] + rig[K1_ZOOM] * zoom(views[:, 3], frame.size))
+    k2 = rig[K2]
     r2 = q[0] * q[0] + q[1] * q[1]
     stretch = 1 + r2 * (k1 + k2 * r2)
     nx, ny = frame.normal
@@ -188,24 +218,29 @@ def linearised(frame: Frame, points: Array, view: Array, rig: Array) -> Linear:
     moment[1] = p[2] * by_point[0] - p[0] * by_point[2]
     moment[2] = p[0] * by_point[1] - p[1] * by_point[0]
     by_view = np.empty((VIEW_SIZE, p.shape[1]))
-    by_view[:3] = turning(view).T @ moment
+    by_view[:3] = frame.turned([turning(view).T for view in views], moment)
     by_view[3] = by_log_f + by_k1 * rig[K1_ZOOM]
-    return Linear(residual, by_view, by_point, by_k1, r2, rotation)
+    by_place = frame.turned([rotation.T for rotation in rotations], by_point)
+    return Linear(residual, by_view, by_place, by_k1, r2)
 
 
-def by_rig(frame: Frame, at: Linear, view: Array) -> Array:
+def by_rig(frame: Frame, at: Linear, views: Array) -> Array:
     """Differentiate the residuals by the rig, shape (14, n)."""
     found = np.zeros((RIG_SIZE, len(frame.line)))
-    by_ice = at.rotation.T @ at.by_point
-    found[POSITION] = -by_ice
+    found[POSITION] = -at.by_place
     found[K1] = at.by_k1
     found[K2] = at.by_k1 * at.r2
-    found[K1_ZOOM] = at.by_k1 * zoom(view[3], frame.size)
+    zoomed = zoom(views.reshape(-1, VIEW_SIZE)[:, 3], frame.size)
+    found[K1_ZOOM] = at.by_k1 * frame.each(zoomed)
     column = MEASURED[frame.line]
     unknown = np.flatnonzero(column >= 0)
-    by_measure = by_ice[0] * frame.way[0] + by_ice[1] * frame.way[1]
-    found[column[unknown], unknown] = by_measure[unknown]
+    found[column[unknown], unknown] = by_measure(frame, at)[unknown]
     return found
+
+
+def by_measure(frame: Frame, at: Linear) -> Array:
+    """Differentiate the residuals by the measure of the mark's own line, shape (n,)."""
+    return np.asarray(at.by_place[0] * frame.way[0] + at.by_place[1] * frame.way[1])
 
 
 def inverse(matrix: Array) -> Array:
@@ -344,37 +379,36 @@ def solve(
             tuple(f.inliers for f in found),
             sum(f.cost for f in found),
         )
-    each = [Frame(m, size) for m in frames]
+    every = Frame(joined(frames), size, counts=[len(m) for m in frames])
     held = sharing / prior.sd**2
     hold = 1 / np.asarray(view_sd, float) ** 2
-    start = [v.vector for v in views]
+    start = np.array([v.vector for v in views])
 
-    def look(vs: Sequence[Array], s: Array) -> tuple[list[Linear], float]:
-        seen = [linearised(f, f.points(s), v, s) for f, v in zip(each, vs, strict=True)]
-        value = 0.5 * float((held * (s - prior.mean) ** 2).sum())
-        for at, v, v0 in zip(seen, vs, start, strict=True):
-            value += _cost(at.residual, width) + 0.5 * float(hold @ (v - v0) ** 2)
-        return seen, value
+    def look(vs: Array, s: Array) -> tuple[Linear, float]:
+        at = linearised(every, every.points(s), vs, s)
+        value = float((held * (s - prior.mean) ** 2).sum() + (hold * (vs - start) ** 2).sum())
+        return at, 0.5 * value + _cost(at.residual, width)
 
-    now, shared, damping = list(start), rig, 1e-4
-    seen, cost = look(now, shared)
+    now, shared, damping = start, rig, 1e-4
+    at, cost = look(now, shared)
     schur = np.zeros((RIG_SIZE, RIG_SIZE))
     for _ in range(iterations):
-        schur, right = np.diag(held), held * (shared - prior.mean)
+        weight = 1 / (1 + (at.residual / width) ** 2)
+        jv, js = at.by_view * weight, by_rig(every, at, now)
+        schur = np.diag(held) + (js * weight) @ js.T
+        right = held * (shared - prior.mean) + js @ (weight * at.residual)
         blocks = []
-        for frame, at, v, v0 in zip(each, seen, now, start, strict=True):
-            weight = 1 / (1 + (at.residual / width) ** 2)
-            jv, js = at.by_view * weight, by_rig(frame, at, v)
-            vv = jv @ at.by_view.T + np.diag(hold)
+        for part, v, v0 in zip(every.parts, now, start, strict=True):
+            vv = jv[:, part] @ at.by_view[:, part].T + np.diag(hold)
             vv.flat[:: VIEW_SIZE + 1] += damping * vv.diagonal() + 1e-9
-            vs = jv @ js.T
-            gv = jv @ at.residual + hold * (v - v0)
+            vs = jv[:, part] @ js[:, part].T
+            gv = jv[:, part] @ at.residual[part] + hold * (v - v0)
             eliminate = np.linalg.solve(vv, np.column_stack([vs, gv]))
-            schur += (js * weight) @ js.T - vs.T @ eliminate[:, :-1]
-            right += js @ (weight * at.residual) - vs.T @ eliminate[:, -1]
+            schur -= vs.T @ eliminate[:, :-1]
+            right -= vs.T @ eliminate[:, -1]
             blocks.append(eliminate)
         step = -np.linalg.solve(schur, right)
-        tried = [v - b[:, -1] - b[:, :-1] @ step for v, b in zip(now, blocks, strict=True)]
+        tried = now - np.array([b[:, -1] + b[:, :-1] @ step for b in blocks])
         ahead, new = look(tried, shared + step)
         if not new <= cost:
             damping *= 10
@@ -382,11 +416,11 @@ def solve(
                 break
             continue
         done = cost - new < _DONE * (1 + cost)
-        now, shared, seen, cost = tried, shared + step, ahead, new
+        now, shared, at, cost = tried, shared + step, ahead, new
         damping = max(damping / 10, 1e-9)
         if done:
             break
-    spread = [_spread(at.residual, f.sd, width) for at, f in zip(seen, each, strict=True)]
+    spread = [_spread(at.residual[part], every.sd[part], width) for part in every.parts]
     return Solution(
         shared,
         tuple(View(v) for v in now),

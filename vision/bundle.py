@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from vision.adjust import VIEW_SD, WIDTH, Frame, Linear, by_rig, inverse, linearised
-from vision.pose import CIRCLES, FIXED, RIG_SIZE, VIEW_SIZE, Marks, Prior, View
+from vision.adjust import VIEW_SD, WIDTH, Frame, Linear, by_measure, by_rig, inverse, linearised
+from vision.pose import CIRCLES, FIXED, RIG_SIZE, VIEW_SIZE, Marks, Prior, View, joined
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -93,18 +93,6 @@ def family(line: Ints) -> Ints:
     return np.asarray((line >= CIRCLES).astype(np.int64) + (line == FIXED), np.int64)
 
 
-class _Look:
-    """One frame's marks, ordered by the pieces they lie on."""
-
-    def __init__(self, marks: Marks, size: tuple[int, int]) -> None:
-        identity = piece_of(marks)
-        order = np.asarray(np.argsort(identity, kind="stable"), np.int64)
-        self.frame = Frame(marks.pick(order), size)
-        self.family = family(self.frame.line)
-        self.identity, self.first = np.unique(identity[order], return_index=True)
-        self.count = np.diff(np.append(self.first, len(marks)))
-
-
 def bundle(
     frames: Sequence[Marks],
     views: Sequence[View],
@@ -156,7 +144,11 @@ class _State:
 
 
 class _Problem:
-    """Residuals, normal equations and variances; unknowns in the order rig, offsets, views."""
+    """Residuals, normal equations and variances; unknowns in the order rig, offsets, views.
+
+    The marks are ordered by frames and, within a frame, by the pieces they lie on: a run of marks
+    is what one frame shows of one piece.
+    """
 
     def __init__(
         self,
@@ -166,73 +158,79 @@ class _Problem:
         prior: Prior,
         view_sd: ArrayLike,
     ) -> None:
-        self.looks = [_Look(m, size) for m in frames]
-        self.pieces = np.unique(np.concatenate([k.identity for k in self.looks]))
-        self.where = [np.searchsorted(self.pieces, k.identity) for k in self.looks]
+        ordered = [m.pick(np.argsort(piece_of(m), kind="stable")) for m in frames]
+        marks = joined(ordered)
+        self.frame = Frame(marks, size, counts=[len(m) for m in ordered])
+        self.kind = family(marks.line)
+        identity = piece_of(marks)
+        self.pieces, self.piece = np.unique(identity, return_inverse=True)
         self.family = family(self.pieces // _BINS)
+        number = np.repeat(np.arange(len(frames)), self.frame.counts)
+        changes = (np.diff(identity, prepend=-1) != 0) | (np.diff(number, prepend=-1) != 0)
+        self.first = np.flatnonzero(changes)
+        self.run_piece = RIG_SIZE + self.piece[self.first]
+        cut = RIG_SIZE + len(self.pieces)
+        self.run_view = cut + VIEW_SIZE * number[self.first] + np.arange(VIEW_SIZE)[:, None]
+        self.of_piece = np.zeros((len(self.first), len(self.pieces)))
+        self.of_piece[np.arange(len(self.first)), self.piece[self.first]] = 1.0
         self.prior = prior
         self.start = np.array([v.vector for v in views])
         self.hold = 1 / np.asarray(view_sd, float) ** 2
 
-    def see(self, state: _State) -> list[Linear]:
-        """Linearise every frame."""
-        seen = []
-        for look, where, view in zip(self.looks, self.where, state.views, strict=True):
-            points = look.frame.points(state.rig)
-            points[:2] += look.frame.way * np.repeat(state.offset[where], look.count)
-            seen.append(linearised(look.frame, points, view, state.rig))
-        return seen
+    def see(self, state: _State) -> Linear:
+        """Linearise all frames."""
+        points = self.frame.points(state.rig)
+        points[:2] += self.frame.way * state.offset[self.piece]
+        return linearised(self.frame, points, state.views, state.rig)
 
-    def cost(self, state: _State, seen: Sequence[Linear], paint: Array, noise: Array) -> float:
+    def cost(self, state: _State, at: Linear, paint: Array, noise: Array) -> float:
         """Half the robust sum of squares."""
         off = (state.rig - self.prior.mean) / self.prior.sd
         value = float(off @ off + ((state.offset / paint[self.family]) ** 2).sum())
         value += float((self.hold * (state.views - self.start) ** 2).sum())
-        for look, at in zip(self.looks, seen, strict=True):
-            r = at.residual / noise[look.family] / WIDTH
-            value += float(WIDTH**2 * np.log1p(r * r).sum())
-        return value / 2
+        r = at.residual / noise[self.kind] / WIDTH
+        return (value + float(WIDTH**2 * np.log1p(r * r).sum())) / 2
 
-    def normal(
-        self, state: _State, seen: Sequence[Linear], paint: Array, noise: Array
-    ) -> tuple[Array, Array]:
+    def normal(self, state: _State, at: Linear, paint: Array, noise: Array) -> tuple[Array, Array]:
         """Assemble the normal equations: matrix and right-hand side."""
-        count = len(self.pieces)
-        cut = RIG_SIZE + count
-        size = cut + state.views.size
-        matrix, right = np.zeros((size, size)), np.zeros(size)
-        weight = np.concatenate(
-            [1 / self.prior.sd**2, 1 / paint[self.family] ** 2, np.tile(self.hold, len(seen))]
+        rig, paints = slice(0, RIG_SIZE), slice(RIG_SIZE, RIG_SIZE + len(self.pieces))
+        held = np.concatenate(
+            [
+                1 / self.prior.sd**2,
+                1 / paint[self.family] ** 2,
+                np.tile(self.hold, len(state.views)),
+            ]
         )
-        matrix.flat[:: size + 1] = weight
-        right[:RIG_SIZE] = state.rig - self.prior.mean
-        right[RIG_SIZE:cut] = state.offset
-        right[cut:] = (state.views - self.start).ravel()
-        right *= weight
-        for k, (look, where, at) in enumerate(zip(self.looks, self.where, seen, strict=True)):
-            sd = noise[look.family]
-            w = 1 / (sd**2 + (at.residual / WIDTH) ** 2)
-            rows = np.concatenate([by_rig(look.frame, at, state.views[k]), at.by_view])
-            by_offset = _by_offset(look.frame, at)
-            columns = np.append(np.arange(RIG_SIZE), cut + VIEW_SIZE * k + np.arange(VIEW_SIZE))
-            matrix[np.ix_(columns, columns)] += (rows * w) @ rows.T
-            right[columns] += rows @ (w * at.residual)
-            if len(look.first):
-                mixed = np.add.reduceat(rows * (w * by_offset), look.first, axis=1)
-                place = RIG_SIZE + where
-                matrix[columns[:, None], place] += mixed
-                matrix[place[:, None], columns] += mixed.T
-                matrix[place, place] += np.add.reduceat(w * by_offset**2, look.first)
-                right[place] += np.add.reduceat(w * by_offset * at.residual, look.first)
+        away = [state.rig - self.prior.mean, state.offset, (state.views - self.start).ravel()]
+        right = held * np.concatenate(away)
+        matrix = np.zeros((len(held), len(held)))
+        w = 1 / (noise[self.kind] ** 2 + (at.residual / WIDTH) ** 2)
+        by_shared, by_offset = by_rig(self.frame, at, state.views), by_measure(self.frame, at)
+        shared, own, pull = by_shared * w, at.by_view * w, w * at.residual
+        matrix[rig, rig] = shared @ by_shared.T
+        right[rig] += by_shared @ pull
+        for k, part in enumerate(self.frame.parts):
+            view = slice(paints.stop + VIEW_SIZE * k, paints.stop + VIEW_SIZE * (k + 1))
+            matrix[view, view] = own[:, part] @ at.by_view[:, part].T
+            matrix[view, rig] = own[:, part] @ by_shared[:, part].T
+            right[view] += own[:, part] @ at.residual[part]
+        if len(self.first):
+            runs = np.add.reduceat(np.concatenate([shared, own]) * by_offset, self.first, axis=1)
+            matrix[paints, rig] = (runs[rig] @ self.of_piece).T
+            matrix[self.run_view, self.run_piece] = runs[RIG_SIZE:]
+        matrix = np.tril(matrix) + np.tril(matrix, -1).T
+        held[paints] += np.bincount(self.piece, w * by_offset**2, len(self.pieces))
+        right[paints] += np.bincount(self.piece, by_offset * pull, len(self.pieces))
+        matrix.flat[:: len(held) + 1] += held
         return matrix, right
 
     def fit(
         self, state: _State, paint: Array, noise: Array, iterations: int
     ) -> tuple[_State, Array]:
         """Gauss-Newton with damping; the state and its covariance."""
-        seen = self.see(state)
-        cost, damping = self.cost(state, seen, paint, noise), 1e-6
-        matrix, right = self.normal(state, seen, paint, noise)
+        at = self.see(state)
+        cost, damping = self.cost(state, at, paint, noise), 1e-6
+        matrix, right = self.normal(state, at, paint, noise)
         for _ in range(iterations):
             damped = matrix.copy()
             damped.flat[:: len(right) + 1] *= 1 + damping
@@ -243,8 +241,8 @@ class _Problem:
                 damping = max(damping, 1e-6) * 30
                 continue
             done = cost - new < 1e-3 * (1 + 1e-3 * cost)
-            state, seen, cost = ahead, looked, new
-            matrix, right = self.normal(state, seen, paint, noise)
+            state, at, cost = ahead, looked, new
+            matrix, right = self.normal(state, at, paint, noise)
             if done:
                 break
         return state, inverse(matrix)
@@ -256,23 +254,15 @@ class _Problem:
         squares = squares + np.bincount(self.family, state.offset**2 + variance, FAMILIES)
         counts = counts + np.bincount(self.family, minlength=FAMILIES)
         fresh = np.sqrt(squares / counts)
-        seen = self.see(state)
-        residual = np.concatenate([at.residual for at in seen])
-        kinds = np.concatenate([k.family for k in self.looks])
+        residual, kinds = self.see(state).residual, self.kind
         w = 1 / (1 + (residual / noise[kinds] / WIDTH) ** 2)
         # What the fit has taken up: one per unknown, as far as the data rather than priors fix it.
         taken = np.bincount(self.family, 1 - variance / paint[self.family] ** 2, FAMILIES)
-        taken[0] += VIEW_SIZE * len(seen)
+        taken[0] += VIEW_SIZE * len(state.views)
         most = np.bincount(kinds, w, FAMILIES)
         squares = np.bincount(kinds, w * residual**2, FAMILIES) / LOST
         free = np.maximum(most - taken, 0.2 * most)
         return fresh, np.sqrt((squares + NOISE_TRUST) / (free + NOISE_TRUST))
-
-
-def _by_offset(frame: Frame, at: Linear) -> Array:
-    """Differentiate the residuals by a shift of the paint along its measure."""
-    by_ice = at.rotation[:, :2].T @ at.by_point
-    return np.asarray((by_ice * frame.way).sum(0))
 
 
 def sensitivity(
@@ -283,7 +273,7 @@ def sensitivity(
     found = np.zeros((VIEW_SIZE, shared))
     found[:, :RIG_SIZE] = weighted @ by_rig(frame, at, view).T
     known = piece >= 0
-    mixed = (weighted * _by_offset(frame, at))[:, known]
+    mixed = (weighted * by_measure(frame, at))[:, known]
     for row, values in zip(found, mixed, strict=True):
         row[RIG_SIZE:] = np.bincount(piece[known], values, shared - RIG_SIZE)
     return -cov @ found

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import cv2
 import numpy as np
@@ -19,6 +20,7 @@ from data.sheet import HOUSE, SHEET
 from vision.camera import Camera, CameraError
 
 Array = NDArray[np.float64]
+Log = TypeVar("Log", float, Array)
 
 CIRCLES = 3
 TWELVE, EIGHT, FOUR, CENTRE_LINE, TEE_LINE, LEFT, RIGHT, BACK_LINE, HOG_LINE, FIXED = range(10)
@@ -242,9 +244,9 @@ def distortion(rig: Array, log_f: float, size: tuple[int, int]) -> tuple[float, 
     return float(rig[K1] + rig[K1_ZOOM] * zoom(log_f, size)), float(rig[K2])
 
 
-def zoom(log_f: float, size: tuple[int, int]) -> float:
+def zoom(log_f: Log, size: tuple[int, int]) -> Log:
     """Log focal length over twice the picture's width: 0 in the midst of what is usual."""
-    return float(log_f) - math.log(2.0 * size[0])
+    return log_f - math.log(2.0 * size[0])
 
 
 def project(ice: Array, view: Array, rig: Array, size: tuple[int, int]) -> Array:
