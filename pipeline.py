@@ -204,7 +204,11 @@ def measure(
         if not all(tables):
             odd = files[tables.index(False)]
             raise InputError(f"{odd}: tables of tracks and pictures do not mix; give one kind")
-        return _import_tables(files, settings)
+        from data.discs import refuse_no_discs
+
+        measured = _import_tables(files, settings)
+        refuse_no_discs(measured.sightings, settings.radius, ", ".join(map(str, files)))
+        return measured
     return _look_at_clip(files, settings, progress)
 
 

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from data.angles import FASTEST_SPIN, attach, read_angles, spin_rate
 from data.columns import ANGLE_UNITS, LENGTH_UNITS
+from data.discs import top_speed
 from data.errors import InputError
 from data.export import read_parquet
 from data.layouts import TrackFile, read_layout
@@ -326,7 +327,7 @@ def _check_scale(table: pd.DataFrame, source: str) -> list[str]:
             f" (--length-unit: {', '.join(LENGTH_UNITS)})"
         )
     for stone, rows in table.groupby("stone", sort=False):
-        speed, t = _top_speed(rows[["t", "x", "y"]].to_numpy(float))
+        speed, t = top_speed(rows["t"].to_numpy(float), rows[["x", "y"]].to_numpy(float))
         if speed > FASTEST:
             raise InputError(
                 f"{source}: {stone} moves at {speed:.0f} m/s at t = {t:.3g} s: probably the wrong"
@@ -339,18 +340,3 @@ def _check_scale(table: pd.DataFrame, source: str) -> list[str]:
             " length unit"
         ]
     return []
-
-
-def _top_speed(txy: Array, window: float = 0.1) -> tuple[float, float]:
-    """Find the greatest mean speed over a window, s, and its time: noise hardly counts."""
-    t, x, y = txy.T
-    if len(t) < 2:
-        return 0.0, float(t[0])
-    ends = np.searchsorted(t, t + window * (1 - 1e-9))
-    first = np.flatnonzero(ends < len(t))
-    if len(first) == 0:
-        first, ends = np.array([0]), np.array([len(t) - 1])
-    last = ends[first] if len(ends) == len(t) else ends
-    speeds = np.hypot(x[last] - x[first], y[last] - y[first]) / (t[last] - t[first])
-    top = int(np.argmax(speeds))
-    return float(speeds[top]), float(t[first[top]])

@@ -1,0 +1,87 @@
+"""Whether tracks can be those of discs of a radius: evidence of a wrong unit, radius or name."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from data.columns import LENGTH_UNITS
+from data.errors import InputError
+from data.sheet import STONE
+
+OVERLAP = 0.8
+"""Share of their width to which centres may seem to come: nobody marks them exactly."""
+
+OFTEN = 3
+"""Times; what two discs do so often is no slip of one mark."""
+
+FASTEST_STONE = 6.0
+"""m/s; the hardest takeouts leave the hand at 4 to 5."""
+
+
+def refuse_no_discs(sightings: pd.DataFrame, radius: float, source: str) -> None:
+    """Refuse tracks that discs of this radius cannot have.
+
+    Parameters
+    ----------
+    sightings : DataFrame
+        `data.tracks.SIGHTING_COLUMNS`.
+    radius : float
+        Of the discs, m.
+    source : str
+        What to call the tracks in messages.
+
+    Raises
+    ------
+    InputError
+        Two discs lie in one another at several times, or a curling stone is faster than any.
+    """
+    if radius == STONE.radius:
+        _refuse_racing(sightings, source)
+    places = sightings.pivot_table(index="t", columns="stone", values=["x", "y"])
+    for one, other in combinations(sorted(sightings["stone"].unique()), 2):
+        apart = np.hypot(
+            places["x"][one] - places["x"][other], places["y"][one] - places["y"][other]
+        )
+        inside = apart[apart < OVERLAP * 2 * radius]
+        if len(inside) >= OFTEN:
+            raise InputError(
+                f"{source}: {one} and {other} come within {_length(inside.min())} of each other at"
+                f" t = {inside.idxmin():.3g} s, but discs of radius {radius:g} m are"
+                f" {_length(2 * radius)} wide: another length unit (--length-unit), another radius"
+                " (--radius), or not both are stones (--names)"
+            )
+
+
+def _refuse_racing(sightings: pd.DataFrame, source: str) -> None:
+    for stone, rows in sightings.groupby("stone", sort=False):
+        speed, t = top_speed(rows["t"].to_numpy(), rows[["x", "y"]].to_numpy())
+        if speed > FASTEST_STONE:
+            raise InputError(
+                f"{source}: {stone} moves at {speed:.1f} m/s at t = {t:.3g} s, faster than any"
+                f" curling stone: another length unit (--length-unit: {', '.join(LENGTH_UNITS)}), a"
+                " slipped mark, or other discs (--radius)"
+            )
+
+
+def top_speed(
+    t: NDArray[np.float64], xy: NDArray[np.float64], window: float = 0.1
+) -> tuple[float, float]:
+    """Find the greatest mean speed over a window, s, and its time: noise hardly counts."""
+    if len(t) < 2:
+        return 0.0, float(t[0])
+    ends = np.searchsorted(t, t + window * (1 - 1e-9))
+    first = np.flatnonzero(ends < len(t))
+    if len(first) == 0:
+        first, ends = np.array([0]), np.array([len(t) - 1])
+    last = ends[first] if len(ends) == len(t) else ends
+    speeds = np.hypot(*(xy[last] - xy[first]).T) / (t[last] - t[first])
+    top = int(np.argmax(speeds))
+    return float(speeds[top]), float(t[first[top]])
+
+
+def _length(metres: float) -> str:
+    return f"{metres:.2f} m" if metres >= 1 else f"{100 * metres:.2g} cm"
