@@ -9,7 +9,6 @@ not at hand are left out.
 from __future__ import annotations
 
 import json
-import resource
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -177,28 +176,7 @@ def stills_table() -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def speed_line() -> str:
-    """CPU time of tracking, decoding included, against decoding alone; the most memory held."""
-    scene = random_scene(np.random.default_rng(11), resting=7)
-    view = broadcast_camera(size=(1920, 1080), end=4.0, px_per_m=(190.0, 147.0))
-    path, truth = cached_clip(scene, view, duration=4.0)
-    clip = open_clip([path])
-    cameras = cameras_of_table(truth.camera, truth.size)
-    start = time.process_time()
-    frames = sum(1 for _ in clip)
-    decoding = time.process_time() - start
-    start = time.process_time()
-    stones = track_stones(clip, cameras).sightings["stone"].nunique()
-    tracking = time.process_time() - start
-    held = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    return (
-        f"1080p, {stones} stones: tracking {1e3 * tracking / frames:.1f} ms/frame,"
-        f" {tracking / decoding:.1f} times decoding; {held:.0f} MB at most"
-    )
-
-
 def main() -> None:
-    print(speed_line(), flush=True)
     pd.set_option("display.width", 200)
     pd.set_option("display.max_columns", 20)
     print(clips_table().round(3).to_string(index=False))
