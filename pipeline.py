@@ -99,6 +99,8 @@ class Settings:
         Whether the annotated clip is written.
     restitution, friction : float, optional
         What predictions assume beforehand; values of the literature by default.
+    units : str
+        Of what coaches read: m or ft. All else is SI.
 
     Raises
     ------
@@ -122,6 +124,7 @@ class Settings:
     overlay: bool = True
     restitution: float | None = None
     friction: float | None = None
+    units: str = "m"
 
     def __post_init__(self) -> None:
         ways = {"--stick": self.stick, "--house": self.house, "--camera": self.camera}
@@ -172,6 +175,8 @@ class Run:
         As ``simulation.csv``: one column ``model``, else as the tracks.
     out : Path or None
         Where the files are.
+    house : House or None
+        The rings; None where the scene has no house.
     """
 
     tracks: pd.DataFrame
@@ -179,6 +184,7 @@ class Run:
     results: Results
     simulations: pd.DataFrame
     out: Path | None = None
+    house: House | None = None
 
 
 def sample_clip() -> Path:
@@ -466,6 +472,7 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
         cameras,
         results,
         pd.concat(simulations, ignore_index=True) if simulations else as_tracks(None, ""),
+        house=measured.house,
     )
 
 
@@ -656,6 +663,8 @@ def _write_run(
     from data.tracks import write_table, write_tracks
     from report.page import write_report
     from report.provenance import Provenance, sources
+    from report.tables import residual_table
+    from report.units import UNITS
 
     write_tracks(done.tracks, stage / "tracks.csv")
     write_table(done.simulations, stage / "simulation.csv")
@@ -690,6 +699,8 @@ def _write_run(
         overlay=overlay,
         clip_start=clip_start,
         house=house,
+        residuals=residual_table(measured.sightings, done.tracks),
+        unit=UNITS[settings.units],
         provenance=Provenance(
             VERSION,
             again(measured.files, vars(settings), vars(Settings())),
@@ -896,6 +907,7 @@ def _settings(arguments: argparse.Namespace) -> Settings:
         overlay=not known.get("no_overlay", False),
         restitution=known.get("restitution"),
         friction=known.get("friction"),
+        units=known.get("units", "m"),
     )
 
 
@@ -919,6 +931,7 @@ def _stale(folder: Path, inputs: Sequence[Path]) -> tuple[str, ...]:
 
 def _do_run(arguments: argparse.Namespace, bars: Bars) -> str:
     from report.summary import summary
+    from report.units import UNITS
 
     inputs = arguments.inputs or [sample_clip()]
     files = find_inputs(inputs)
@@ -926,7 +939,7 @@ def _do_run(arguments: argparse.Namespace, bars: Bars) -> str:
         return _run_season(arguments, files, bars)
     folder = _out(arguments, inputs[0])
     done = run(inputs, folder, _settings(arguments), bars)
-    return summary(done.results, done.tracks, folder)
+    return summary(done.results, done.tracks, folder, done.house, UNITS[arguments.units])
 
 
 def _run_season(arguments: argparse.Namespace, clips: Sequence[Path], bars: Bars) -> str:
@@ -986,6 +999,7 @@ def _do_check(arguments: argparse.Namespace, bars: Bars) -> str:
 
 def _do_estimate(arguments: argparse.Namespace, bars: Bars) -> str:
     from report.summary import summary
+    from report.units import UNITS
 
     settings, folder = _settings(arguments), _out(arguments, arguments.inputs[0])
     check_folder(folder)
@@ -995,7 +1009,7 @@ def _do_estimate(arguments: argparse.Namespace, bars: Bars) -> str:
     done = analyse(measured, settings)
     with staged(folder, replaces=_stale(folder, measured.files)) as stage:
         done.results.write(stage / "results.json")
-    return summary(done.results, done.tracks, folder)
+    return summary(done.results, done.tracks, folder, done.house, UNITS[arguments.units])
 
 
 def _do_convert(arguments: argparse.Namespace, _: Bars) -> str:

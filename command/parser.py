@@ -67,6 +67,7 @@ def command_line(version: str) -> argparse.ArgumentParser:
         help="measure the clip of a Tracker project, not what is marked in it",
     )
     _assumption_options(run_)
+    _units_option(run_)
     run_.add_argument(
         "--no-overlay", action="store_true", help="do not write the annotated clip overlay.mp4"
     )
@@ -105,6 +106,7 @@ def command_line(version: str) -> argparse.ArgumentParser:
     _table_options(estimate_)
     _tab_option(estimate_)
     _assumption_options(estimate_)
+    _units_option(estimate_)
     estimate_.add_argument("--fps", type=values.positive, help="rate of a table without times, 1/s")
 
     season_ = _command(
@@ -312,6 +314,12 @@ def _assumption_options(parser: argparse.ArgumentParser) -> None:
         type=values.friction,
         metavar="MU",
         help="μ that predictions assume (0.0109 ± 0.003)",
+    )
+
+
+def _units_option(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--units", choices=("m", "ft"), default="m", help="of what coaches read (m); all else is SI"
     )
 
 

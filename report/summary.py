@@ -9,10 +9,12 @@ from typing import Any
 import pandas as pd
 
 from data.results import Results
+from data.sheet import House
 from physics.pool import Pooled
 from physics.simulate import Simulation
 from report.numbers import count, plus_minus
-from report.tables import moving_stones
+from report.tables import moving_stones, rest_table, shot_stone
+from report.units import METRES, Unit
 
 
 def odds_text(odds: Mapping[str, Any], written: Sequence[Path]) -> list[str]:
@@ -90,8 +92,14 @@ def season_text(shots: pd.DataFrame, pooled: Mapping[str, Pooled]) -> list[str]:
     return lines
 
 
-def summary(results: Results, tracks: pd.DataFrame, out: Path | None = None) -> str:
-    """Put the outcome into a dozen lines that a person can read."""
+def summary(
+    results: Results,
+    tracks: pd.DataFrame,
+    out: Path | None = None,
+    house: House | None = None,
+    unit: Unit = METRES,
+) -> str:
+    """Put the outcome into a dozen lines that a person can read; `unit` of lengths."""
     moved = moving_stones(tracks, results.collisions, results.radius)
     names = sorted(tracks["stone"].unique())
     lines = [
@@ -113,16 +121,27 @@ def summary(results: Results, tracks: pd.DataFrame, out: Path | None = None) -> 
     for model, score in results.simulations.items():
         off = f"— ({score.note or 'nothing to compare'})"
         if score.rmse is not None:
-            off = f"{score.rmse * 100:.1f} cm RMS off"
+            off = f"{unit.little(score.rmse)} RMS off"
         lines.append(f"simulated   {model}: {off}")
     for model, guess in results.predictions.items():
         if guess.rmse is not None:
             lines.append(
                 f"predicted   {model}, from before the first hit, e and μ assumed:"
-                f" {guess.rmse * 100:.1f} cm RMS off"
+                f" {unit.little(guess.rmse)} RMS off"
             )
+    if house is not None:
+        lines.append(f"shot stone  {_shot_stone(results, tracks, house, unit)}")
     lines += [f"warning     {text}" for text in results.warnings]
     if out is not None:
         report = out / "report.html"
         lines.append(f"written     {report if report.exists() else out}")
     return "\n".join(lines)
+
+
+def _shot_stone(results: Results, tracks: pd.DataFrame, house: House, unit: Unit) -> str:
+    rest = rest_table(tracks, results.collisions, house, results.radius)
+    name, why = shot_stone(rest)
+    if name is None:
+        return f"not known: {why}"
+    distance = float(rest.loc[rest["stone"] == name, "to_tee"].iloc[0])
+    return f"{name}, {unit.length(distance)} from the tee; {why}"

@@ -29,6 +29,7 @@ CONTRACT = {
     "simulation.csv",
     "report.html",
     "figures",
+    "tables",
     "overlay.mp4",
 }
 SHOT = """

@@ -4,10 +4,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from data.sheet import SHEET
+from data.sheet import HOUSE, SHEET
 from data.tracks import TRACK_COLUMNS
 from report import tables
+from report.summary import summary
 from report.tables.coach import colour_word, team_names
+from report.units import FEET
 
 MU_G = 0.0109 * 9.81
 
@@ -165,3 +167,17 @@ def test_two_teams_of_one_colour_word_keep_their_colours():
         [glide("A", (0, 0), end=1.0, team="#c02030"), glide("B", (1, 0), end=1.0, team="#e03040")]
     )
     assert team_names(tracks) == {"A": "#c02030", "B": "#e03040"}
+
+
+def test_the_summary_says_who_lies_shot_in_the_unit_asked_for(shot):
+    text = summary(shot.results, shot.tracks, house=HOUSE)
+    (line,) = [line for line in text.splitlines() if line.startswith("shot stone")]
+    rest = tables.rest_table(shot.tracks, shot.results.collisions)
+    name, why = tables.shot_stone(rest)
+    distance = rest.loc[rest["stone"] == name, "to_tee"].iloc[0]
+    assert line == f"shot stone  {name}, {distance:.2f} m from the tee; {why}"
+    assert "3.1 cm RMS" in text
+    feet = summary(shot.results, shot.tracks, house=HOUSE, unit=FEET)
+    assert f"{name}, {distance / 0.3048:.1f} ft from the tee" in feet
+    assert "1.2 in RMS" in feet
+    assert "shot stone" not in summary(shot.results, shot.tracks)
