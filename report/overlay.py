@@ -30,6 +30,7 @@ RINGS = (HOUSE.twelve_foot, HOUSE.eight_foot, HOUSE.four_foot)
 _TIME_BASE = Fraction(1, 90_000)  # fine enough for any rate, exact for 24, 25, 30, 50 and 60
 _CIRCLE = np.stack([np.cos(a := np.linspace(0, 2 * np.pi, 121)), np.sin(a)], axis=1)
 _SHIFT = 4  # bits of a pixel's fraction in cv2's drawing
+_APART = 0.02  # m between the points of a trail
 _RESTS = 0.05  # m/s below which a stone's speed is not worth a label
 _FLASH = 0.4  # s
 _FONT = cv2.FONT_HERSHEY_SIMPLEX
@@ -64,7 +65,7 @@ class Scene:
     states : mapping of int to list
         The stones of each frame.
     paths : mapping of str to (frames, places)
-        Where each stone was, shape (n,) and (n, 2).
+        Where each stone was, shape (n,) and (n, 2), without places close to the one before.
     hits : sequence of (t, place, text)
         When and where two stones touched.
     colours : mapping of str to BGR
@@ -144,10 +145,12 @@ def draw(frame: Frame, camera: Camera, scene: Scene) -> Image:
     for line in scene.lines:
         draw_line(image, camera, line, _LINE_COLOUR, thin, edge=False)
     states = scene.states.get(frame.index, [])
+    now = {state.stone: state.place for state in states}
     for name, (frames, places) in scene.paths.items():
         stop = int(np.searchsorted(frames, frame.index, side="right"))
-        if stop > 1:
-            draw_line(image, camera, places[:stop], scene.colours[name], thick)
+        trail = places[:stop] if name not in now else np.vstack([places[:stop], now[name]])
+        if len(trail) > 1:
+            draw_line(image, camera, trail, scene.colours[name], thick)
     boxes = []
     for state in states:
         outline = state.place + scene.radius * _CIRCLE
@@ -209,7 +212,8 @@ def _scene(
                 State(stone, places[k], float(theta[k]), speed, bool(seen[k]))
             )
         if np.ptp(places, axis=0).max() > radius / 3:
-            paths[stone] = (frames, places)
+            kept = _apart(places, _APART)
+            paths[stone] = (frames[kept], places[kept])
     hits = []
     for collision in collisions:
         first, second = collision.stones
@@ -222,6 +226,16 @@ def _scene(
     }
     height = STONE.cap_height / 2 * radius / STONE.radius
     return Scene(tuple(lines), states, paths, hits, colours, radius, height)
+
+
+def _apart(places: Array, least: float) -> NDArray[np.intp]:
+    """Ranks of places, each at least so far from the one before it, m."""
+    kept = [0]
+    for rank, (x, y) in enumerate(places.tolist()):
+        x0, y0 = places[kept[-1]]
+        if np.hypot(x - x0, y - y0) >= least:
+            kept.append(rank)
+    return np.array(kept)
 
 
 def _bgr(colour: str) -> Colour:
@@ -350,9 +364,10 @@ class _Encoder:
             "libx264",
             rate=Fraction(fps or DEFAULT_IMAGE_FPS).limit_denominator(1001),
             options={
-                "preset": "veryfast",
-                "crf": "22",
-                "x264-params": "colorprim=bt709:transfer=bt709:colormatrix=bt709",
+                "preset": "superfast",
+                "crf": "24",
+                # What OpenCV turns colours by; players read it here.
+                "x264-params": "colorprim=bt709:transfer=bt709:colormatrix=smpte170m",
             },
         )
         self._stream.width, self._stream.height = size[0] + self._pad[1], size[1] + self._pad[0]
@@ -390,8 +405,8 @@ class _Encoder:
             image = np.asarray(
                 cv2.copyMakeBorder(image, 0, bottom, 0, right, cv2.BORDER_REPLICATE), np.uint8
             )
-        frame = av.VideoFrame.from_ndarray(np.ascontiguousarray(image), format="bgr24")
-        frame = frame.reformat(format="yuv420p", dst_colorspace="ITU709")
+        planes = np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2YUV_I420), np.uint8)
+        frame = av.VideoFrame.from_ndarray(planes, format="yuv420p")
         frame.pts, frame.time_base = pts, _TIME_BASE
         frame.duration = round(lasts / _TIME_BASE)
         self._container.mux(self._stream.encode(frame))
