@@ -54,6 +54,7 @@ def write_report(
     clip_start: float = 0.0,
     house: House | None = None,
     residuals: pd.DataFrame | None = None,
+    posterior: pd.DataFrame | None = None,
     unit: Unit = METRES,
     provenance: Provenance = UNKNOWN,
 ) -> Path:
@@ -82,6 +83,8 @@ def write_report(
         Rings for the plan view; None where the scene has no house.
     residuals : DataFrame, optional
         Of the places that were seen, for the figure of them (see `report.gallery.pictures`).
+    posterior : DataFrame, optional
+        Samples of restitution and frictions, for the figure of them.
     unit : Unit
         Of the tables for coaches.
     provenance : Provenance
@@ -93,7 +96,7 @@ def write_report(
         The page.
     """
     shown = []
-    wanted = list(pictures(results, tracks, simulations, house, residuals))
+    wanted = list(pictures(results, tracks, simulations, house, residuals, posterior))
     for picture in wanted:
         svg, png = render(picture.draw())
         for suffix, content in ((".svg", svg), (".png", png)):
