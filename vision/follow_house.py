@@ -52,8 +52,8 @@ MARK_SD = 0.2
 WIDTH = 6.0
 """Width of the robust loss, in standard deviations, while the shared part is provisional."""
 
-SETTLED_PX = 1.5
-"""Correction below which the edges need not be measured anew from the corrected view, px."""
+SETTLED = 0.33
+"""Correction below which the edges need not be measured anew, half lengths of the normals."""
 
 LEAST_ARC = 1.2
 """Length of circle that must be seen to fix a view, m."""
@@ -323,7 +323,7 @@ def _settle(piece: _Piece, frame: Frame, view: View) -> Seen | None:
         )
         shift = np.abs(fit.view.vector - view.vector)
         view = fit.view
-        if shift[:3].max() * view.focal < SETTLED_PX:
+        if shift[:3].max() * view.focal < SETTLED * REACH * size[0]:
             break
     if not _enough(evidence, piece.rig, _explained(evidence, fit)):
         return None

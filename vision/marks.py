@@ -40,9 +40,9 @@ is not brightness (ITU-R BT.601) at half the resolution."""
 LEAST_ON_LINE, LEAST_SHARE = 8, 0.3
 """Edge points that the side of the sheet or a wide line must have, and the share of normals."""
 
-_THIRD = SAMPLES // 3
+_END = SAMPLES // 4
 _ENDS = np.zeros((2, SAMPLES), np.float32)
-_ENDS[0, :_THIRD] = _ENDS[1, -_THIRD:] = 1 / _THIRD
+_ENDS[0, :_END] = _ENDS[1, -_END:] = 1 / _END
 
 
 @dataclass(frozen=True)
