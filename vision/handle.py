@@ -149,14 +149,14 @@ def handle_angles(
     for _ in range(turning.rounds):
         reference = turned(pictures[known], -angles[known]).mean(0)
         angles[known], likeness = angles_between(reference, pictures[known], angles[known], 0.2)
-    fit = align(pictures[known], angles[known], radii, turning.shift)
-    told = np.flatnonzero(known)[likeness > turning.least_likeness]
-    if len(told) < 0.5 * len(seen):
+    good = likeness > turning.least_likeness
+    if good.sum() < 0.5 * len(seen):
         # Most frames do not look like the mean: there is nothing on the cap to go by.
         return theta, sd
+    told = np.flatnonzero(known)[good]
+    fit = align(pictures[told], angles[told], radii, turning.shift)
     rows = np.array(seen)[told]
-    good = likeness > turning.least_likeness
-    theta[rows], sd[rows] = fit.angle[good], fit.sd[good]
+    theta[rows], sd[rows] = fit.angle, fit.sd
     sd *= _jitter(times, theta, sd)
     return theta - theta[rows[0]], sd
 
