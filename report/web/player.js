@@ -57,7 +57,7 @@ class Player {
   }
 
   #drawPlan() {
-    const { data } = this, places = [];
+    const { data } = this, places = (this.places = []);
     for (const stones of [this.stones, ...Object.values(this.simulations)]) {
       for (const { x, y } of stones) x.forEach((value, k) => places.push([value, y[k]]));
     }
@@ -284,10 +284,14 @@ class SpeedChart {
     }
     text("speed (m/s)", { x: left, y: 9 }, "axis");
     text("time (s)", { x: W - right, y: H - 1, "text-anchor": "end" }, "axis");
+    const groups = []; // hits too close for a label each share one
     player.data.hits.forEach((hit, k) => {
-      svgElement("line", { class: "moment", x1: x(hit.t), x2: x(hit.t), y1: top, y2: H - bottom }, svg);
-      text(k + 1, { x: x(hit.t), y: top - 3, "text-anchor": "middle" });
+      const at = x(hit.t), last = groups[groups.length - 1];
+      svgElement("line", { class: "moment", x1: at, x2: at, y1: top, y2: H - bottom }, svg);
+      if (last && at - last.at < 14) last.ranks.push(k + 1);
+      else groups.push({ at, ranks: [k + 1] });
     });
+    for (const { at, ranks } of groups) text(ranks.join(", "), { x: at, y: top - 3, "text-anchor": "middle" });
     const moments = player.data.hits.map((hit) => hit.t);
     for (const stone of moving) {
       // A hit lies between two frames: no line leads from the one to the other.

@@ -24,8 +24,9 @@ class WhatIf {
     const { data, scene } = this, done = simulator.simulate(data.shot);
     const end = simulator.endOf(done);
     this.unchanged = data.shot.stones.map((_, k) => simulator.stateAt(done, k, end));
-    const places = [...data.shot.stones, ...this.unchanged].map(({ x, y }) => [x, y]);
-    this.plan = new PlanView(byId("whatif-view"), scene, places);
+    const places = [...data.shot.stones, ...(scene.rings.length ? this.unchanged : [])];
+    const seen = scene.rings.length ? [] : player.places; // elsewhere discs may end far away
+    this.plan = new PlanView(byId("whatif-view"), scene, places.map(({ x, y }) => [x, y]).concat(seen));
     this.unchanged.forEach(({ x, y }, k) => {
       const ghost = this.plan.stone("", this.colours[data.shot.stones[k].name], "ghost");
       ghost.move(x, y, 0);

@@ -288,6 +288,22 @@ def test_without_its_clip_the_plan_plays_alone(browser, page, tmp_path, shot):
         assert_shows(tab, shot, tab.value("player.rank"))
 
 
+def test_a_still_picture_has_a_page_too(browser, tmp_path, shot):
+    still = shot.tracks[shot.tracks["frame"] == 0].assign(vx=np.nan, vy=np.nan, omega=np.nan)
+    results = dataclasses.replace(
+        shot.results, collisions=(), glides=(), simulations={}, laws=None, warnings=("one picture",)
+    )
+    page = write_report(tmp_path, results=results, tracks=still, simulations={}, house=HOUSE)
+    with browser.tab() as tab:
+        tab.open(page)
+        assert_shows(tab, shot, 0)
+        tab.press(" ")
+        tab.press(".")
+        assert tab.value("player.rank") == 0
+        assert tab.value("document.querySelector('#whatif')") is None
+        assert tab.complaints == []
+
+
 def test_names_are_never_run(browser, tmp_path, shot):
     evil = "</script><script>window.ran=1</script><img src=x onerror='window.ran=1'>"
     tracks = shot.tracks.replace({"stone": {"B": evil}})
