@@ -37,6 +37,8 @@ def _option(key: str, value: object) -> list[str]:
     if key == "overlay":
         return ["--no-overlay"]
     name = "--mass" if key == "masses" else f"--{key.replace('_', '-')}"
+    if value is True:
+        return [name]
     if isinstance(value, Mapping):
         return [word for stone, item in value.items() for word in (name, f"{stone}={item}")]
     if key == "frames" and isinstance(value, tuple):
