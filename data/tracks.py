@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from data.errors import InputError
 from data.files import whole_file
+
+Array = NDArray[np.float64]
 
 TRACK_COLUMNS: tuple[str, ...] = (
     "stone", "frame", "t", "x", "y", "theta", "vx", "vy", "omega",
@@ -76,60 +79,84 @@ def check_sightings(table: pd.DataFrame, source: str = "tracks") -> pd.DataFrame
     missing = [name for name in ("stone", "t", "x", "y") if name not in table.columns]
     if missing:
         raise InputError(f"{source}: no column {', '.join(missing)}; needs stone, t, x, y")
-    out = pd.DataFrame({"stone": table["stone"].astype(str)})
     faults: list[str] = []
+    numbers = {}
     for name in _NUMBERS:
-        if name in table.columns:
-            values = pd.to_numeric(table[name], errors="coerce").astype(float)
-            given = table[name].notna() & (table[name].astype(str).str.strip() != "")
-            if bool((values.isna() & given).any()):
-                row = int(np.flatnonzero((values.isna() & given).to_numpy())[0])
-                faults.append(f"column {name} is not a number in data row {row + 1}")
-            out[name] = values.to_numpy()
-        else:
-            out[name] = np.nan
-    teams = table["team"] if "team" in table.columns else pd.Series("", index=table.index)
-    out["team"] = teams.fillna("").astype(str).str.strip()
+        numbers[name], wrong = _as_numbers(table, name)
+        if wrong.any():
+            row = int(np.flatnonzero(wrong)[0])
+            faults.append(f"column {name} is not a number in data row {row + 1}")
+    faults += _nonsense(numbers)
     if table["stone"].isna().any():
         faults.append("a stone without a name")
-    if out["t"].isna().any():
-        faults.append("a time is missing")
-    elif out["t"].abs().max() > LATEST and not np.isinf(out["t"]).any():
-        faults.append(f"times up to {out['t'].abs().max():.3g} s make no sense")
-    infinite = [name for name in _NUMBERS if np.isinf(out[name]).any()]
-    if infinite:
-        faults.append(f"infinite numbers in column {', '.join(infinite)}")
-    frames = out["frame"].dropna()
-    if not infinite and ((frames % 1 != 0) | (frames.abs() > _LAST_FRAME)).any():
-        faults.append("column frame holds numbers that are no frames")
-    if (out[["sd_x", "sd_y", "sd_theta"]] < 0).any(axis=None):
-        faults.append("a standard deviation is negative")
-    out = out[out["x"].notna() & out["y"].notna()]
-    for stone, group in out.groupby("stone", sort=False):
-        with np.errstate(invalid="ignore", over="ignore"):
-            steps = np.diff(group["t"].to_numpy(float))
-        if (steps < 0).any():
-            row = int(np.flatnonzero(steps < 0)[0])
-            faults.append(
-                f"stone {stone}: time goes back after t = {group['t'].iloc[row]:g} s"
-                " (two stones of one name?)"
-            )
-        elif (steps == 0).any():
-            row = int(np.flatnonzero(steps == 0)[0])
-            faults.append(
-                f"stone {stone}: two rows at t = {group['t'].iloc[row]:g} s"
-                " (two stones of one name?)"
-            )
+    stones = table["stone"].astype(str).to_numpy()
+    teams = table["team"] if "team" in table.columns else pd.Series("", index=table.index)
+    out = pd.DataFrame({"stone": stones, **numbers})
+    out["team"] = teams.fillna("").astype(str).str.strip().to_numpy()
+    out = out[~(np.isnan(numbers["x"]) | np.isnan(numbers["y"]))]
+    faults += _disorder(out["stone"].to_numpy(), out["t"].to_numpy())
     if out.empty:
         faults.append("no row with a place (x and y)")
     if faults:
         raise InputError(f"{source}: {'; '.join(faults)}")
     if out["frame"].isna().any():
-        times = np.unique(out["t"].to_numpy(float))
-        out["frame"] = np.searchsorted(times, out["t"].to_numpy(float))
+        times = np.unique(out["t"].to_numpy())
+        out["frame"] = np.searchsorted(times, out["t"].to_numpy())
     out["frame"] = out["frame"].astype(int)
     out = out.sort_values(["stone", "t"], kind="stable").reset_index(drop=True)
     return out[list(SIGHTING_COLUMNS)]
+
+
+def _as_numbers(table: pd.DataFrame, name: str) -> tuple[Array, NDArray[np.bool_]]:
+    """Numbers of a column, NaN where it has none, and which cells are neither."""
+    none = np.zeros(len(table), bool)
+    if name not in table.columns:
+        return np.full(len(table), np.nan), none
+    column = table[name]
+    if pd.api.types.is_numeric_dtype(column):
+        return column.to_numpy(float, na_value=np.nan), none
+    values = pd.to_numeric(column, errors="coerce").to_numpy(float, na_value=np.nan)
+    given = column.notna() & (column.astype(str).str.strip() != "")
+    return values, np.isnan(values) & given.to_numpy(bool)
+
+
+def _nonsense(numbers: Mapping[str, Array]) -> list[str]:
+    """Say which numbers make no sense, whatever the stone."""
+    faults: list[str] = []
+    latest = float(np.abs(numbers["t"]).max(initial=0.0))
+    if np.isnan(latest):
+        faults.append("a time is missing")
+    elif LATEST < latest < np.inf:
+        faults.append(f"times up to {latest:.3g} s make no sense")
+    infinite = [name for name, values in numbers.items() if np.isinf(values).any()]
+    if infinite:
+        faults.append(f"infinite numbers in column {', '.join(infinite)}")
+    frames = numbers["frame"][~np.isnan(numbers["frame"])]
+    if not infinite and ((frames % 1 != 0) | (np.abs(frames) > _LAST_FRAME)).any():
+        faults.append("column frame holds numbers that are no frames")
+    if any((numbers[name] < 0).any() for name in ("sd_x", "sd_y", "sd_theta")):
+        faults.append("a standard deviation is negative")
+    return faults
+
+
+def _disorder(stones: NDArray[np.object_], t: Array) -> list[str]:
+    """Say where the time of a stone goes back, or stands still."""
+    faults: list[str] = []
+    for stone in dict.fromkeys(stones.tolist()):
+        own = t[stones == stone]
+        with np.errstate(invalid="ignore", over="ignore"):
+            steps = np.diff(own)
+        back, still = np.flatnonzero(steps < 0), np.flatnonzero(steps == 0)
+        if len(back):
+            faults.append(
+                f"stone {stone}: time goes back after t = {own[back[0]]:g} s"
+                " (two stones of one name?)"
+            )
+        elif len(still):
+            faults.append(
+                f"stone {stone}: two rows at t = {own[still[0]]:g} s (two stones of one name?)"
+            )
+    return faults
 
 
 def teams(table: pd.DataFrame) -> dict[str, str]:

@@ -1,79 +1,15 @@
 from __future__ import annotations
 
-import io
-import zipfile
-from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 
 from data.errors import InputError
 from data.project import read_project
 from data.tracker import read_table
-
-KEYS = {0: (160.0, 120.0, 10.0, 50.0, 50.0), 3: (170.0, 110.0, -25.0, 40.0, 42.0)}
-MARKS = {"red": {n: (40.0 + 9 * n, 200.0 - 8 * n) for n in range(6)}, "blue": {2: (200.0, 50.0)}}
-
-
-def numbers(**values: float) -> str:
-    return "".join(f'<property name="{k}" type="double">{v}</property>' for k, v in values.items())
-
-
-def sparse(name: str, entries: Mapping[int, str]) -> str:
-    items = "".join(
-        f'<property name="[{n}]" type="object"><object class="a.b.C$D">{body}</object></property>'
-        for n, body in entries.items()
-    )
-    return f'<property name="{name}" type="array" class="[La.b;">{items}</property>'
-
-
-def project(
-    marks: Mapping[str, Mapping[int, tuple[float, float]]] = MARKS,
-    keys: Mapping[int, tuple[float, ...]] = KEYS,
-    clip: str = "",
-    root: str = "",
-    video: str = "",
-    mass: Mapping[str, float] | None = None,
-    duration: float = 40.0,
-) -> str:
-    names = ("xorigin", "yorigin", "angle", "xscale", "yscale")
-    coords = {n: numbers(**dict(zip(names, row, strict=True))) for n, row in keys.items()}
-    tracks = "".join(
-        '<property name="item" type="object"><object class="x.tracker.PointMass">'
-        + numbers(mass=(mass or {}).get(name, 1.0))
-        + f'<property name="name" type="string"><![CDATA[{name}]]></property>'
-        + sparse("framedata", {n: numbers(x=x, y=y) for n, (x, y) in rows.items()})
-        + "</object></property>"
-        for name, rows in marks.items()
-    )
-    return (
-        '<?xml version="1.0" encoding="UTF-8"?><object class="x.tracker.TrackerPanel">'
-        '<property name="videoclip" type="object"><object class="x.VideoClip">'
-        f'<property name="video" type="object"><object class="x.V">{video}</object></property>'
-        f'{clip}</object></property><property name="clipcontrol" type="object">'
-        f'<object class="x.StepperClipControl">{numbers(delta_t=duration)}</object></property>'
-        '<property name="coords" type="object"><object class="x.ImageCoordSystem">'
-        f"{sparse('framedata', coords)}</object></property>{root}"
-        f'<property name="tracks" type="collection" class="x">{tracks}</property></object>'
-    )
-
-
-def put(folder: Path, text: str | bytes, name: str = "shot.trk") -> Path:
-    path = folder / name
-    path.write_bytes(text.encode() if isinstance(text, str) else text)
-    return path
-
-
-def archive(entries: Mapping[str, str | bytes]) -> bytes:
-    buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as file:
-        for name, content in entries.items():
-            file.writestr(name, content)
-    return buffer.getvalue()
+from tests.data.dialects import KEYS, MARKS, archive, numbers, project, put
 
 
 def test_places_are_those_of_the_moving_coordinate_system(tmp_path: Path) -> None:
@@ -239,42 +175,6 @@ def test_archives_do_no_harm(tmp_path: Path) -> None:
     outside = put(tmp_path, archive({"../../evil.trk": project()}), "b.trz")
     assert len(read_table([outside]).sightings) == 7
     assert sorted(item.name for item in tmp_path.iterdir()) == ["a.trz", "b.trz"]
-
-
-@settings(
-    deadline=None,
-    max_examples=600,
-    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
-)
-@given(data=st.data(), zipped=st.booleans())
-def test_damaged_projects_are_read_or_refused(
-    tmp_path: Path, data: st.DataObject, zipped: bool
-) -> None:
-    raw = bytearray(archive({"a.trk": project()}) if zipped else project().encode())
-    words = [
-        b"NaN",
-        b"1e308",
-        b"-1",
-        b"9" * 30,
-        b"",
-        b"null",
-        b"&a;",
-        b"[7]",
-        b"\xff",
-        b"</object>",
-    ]
-    for _ in range(data.draw(st.integers(1, 4))):
-        at = data.draw(st.integers(0, len(raw)))
-        until = at + data.draw(st.sampled_from([0, 1, 5, 30]))
-        raw[at:until] = data.draw(st.sampled_from(words) | st.binary(max_size=3))
-    try:
-        found = read_table([put(tmp_path, bytes(raw))])
-    except InputError as refusal:
-        assert "\n" not in str(refusal)
-        return
-    table = found.sightings
-    assert np.isfinite(table[["t", "x", "y"]].to_numpy()).all()
-    assert (table.groupby("stone")["t"].diff().dropna() > 0).all()
 
 
 # Files that Tracker and its users wrote.

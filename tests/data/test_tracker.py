@@ -1,100 +1,22 @@
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from data.errors import InputError
 from data.export import write_csv
 from data.tracker import Imported, read_table, uniform_steps
 from data.tracks import SIGHTING_COLUMNS, teams, write_tracks
-
-RED = "red stone"
-YELLOW = "yellow"
-
-
-def truth(n: int = 40, fps: float = 30.0) -> pd.DataFrame:
-    """Two stones on parabolas; the second is not seen in every frame."""
-    frame = np.arange(n)
-    t = frame / fps
-    red = pd.DataFrame(
-        {
-            "stone": RED,
-            "frame": frame,
-            "t": t,
-            "x": -2.6 + 0.9 * t,
-            "y": -1.16 + 1.7 * t - 0.05 * t**2,
-        }
-    )
-    yellow = red.assign(stone=YELLOW, x=1.9 - 0.31 * t, y=0.0123 - 0.4 * t)
-    return pd.concat([red, yellow[(frame > 3) & (frame % 7 != 0)]], ignore_index=True)
-
-
-def java(value: float, pattern: str) -> str:
-    """Print a number as Tracker does: full precision, or four significant digits."""
-    if not np.isfinite(value):
-        return ""
-    if pattern == "full":
-        mantissa, exponent = f"{value:.6E}".split("E")
-        return f"{mantissa}E{int(exponent)}"
-    size = abs(value)
-    if 0 < size < 0.1 or size >= 1000:
-        mantissa, exponent = f"{value:.3E}".split("E")
-        return f"{mantissa}E{int(exponent)}"
-    return f"{value:.{3 if size < 10 else 2 if size < 100 else 1}f}"
-
-
-def export(
-    table: pd.DataFrame,
-    delimiter: str = "\t",
-    pattern: str = "full",
-    decimal: str = ".",
-    swedish: bool = False,
-    columns: Sequence[str] = ("x", "y", "vx", "frame"),
-) -> str:
-    """Write tracks in the layout of Tracker 6."""
-    stones = list(dict.fromkeys(table["stone"]))
-    lines = ["#multi:"] if len(stones) > 1 else []
-    lines.append(delimiter + "".join(stone + delimiter * len(columns) for stone in stones))
-    lines.append("t" + delimiter + "".join(name + delimiter for name in columns) * len(stones))
-
-    def text(value: float, form: str) -> str:
-        plain = (f"{value:.3f}" if form == "ms" else java(value, form)).replace(".", decimal)
-        if swedish and plain:
-            plain = plain.replace("E", "×10^").replace("-", "\N{MINUS SIGN}")
-        return plain
-
-    by_stone = {stone: rows.set_index("frame") for stone, rows in table.groupby("stone")}
-    times = table.drop_duplicates("frame").set_index("frame")["t"].sort_index()
-    for frame, t in times.items():
-        cells = [text(t, "full" if pattern == "full" else "ms")]
-        for stone in stones:
-            here = by_stone[stone]
-            for name in columns:
-                if frame not in here.index:
-                    cells.append("")
-                elif name == "frame":
-                    cells.append(str(frame))
-                else:
-                    value = here[name][frame] if name in here else 99.0
-                    cells.append(text(value, pattern))
-        lines.append(delimiter.join(cells))
-    return "\n".join(lines) + "\n"
-
-
-def put(folder: Path, text: str | bytes, name: str = "shot.txt") -> Path:
-    path = folder / name
-    path.write_bytes(text.encode() if isinstance(text, str) else text)
-    return path
+from tests.data.dialects import RED, export, put, truth
 
 
 def read(folder: Path, text: str | bytes, **options: object) -> Imported:
-    return read_table([put(folder, text)], **options)  # type: ignore[arg-type]
+    return read_table([put(folder, text, "shot.txt")], **options)  # type: ignore[arg-type]
 
 
 def assert_same(found: pd.DataFrame, wanted: pd.DataFrame, digits: float) -> None:
@@ -380,90 +302,6 @@ def test_one_picture_has_places_and_no_rate(tmp_path: Path) -> None:
     assert list(found.sightings["frame"]) == [0, 0, 0]
 
 
-def _accepted_or_refused(path: Path) -> None:
-    try:
-        found = read_table([path], fps=25)
-    except InputError as refusal:
-        assert "\n" not in str(refusal)
-        return
-    table = found.sightings
-    assert np.isfinite(table[["t", "x", "y"]].to_numpy()).all()
-    assert (table.groupby("stone")["t"].diff().dropna() > 0).all()
-    assert table[["x", "y"]].abs().to_numpy().max() <= 100
-    assert found.fps is None or found.fps > 0
-
-
-fuzzed = settings(
-    deadline=None,
-    max_examples=800,
-    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
-)
-
-
-@fuzzed
-@given(raw=st.binary(max_size=300))
-def test_any_bytes_are_read_or_refused(tmp_path: Path, raw: bytes) -> None:
-    _accepted_or_refused(put(tmp_path, raw))
-
-
-WORDS = [
-    *(
-        "t",
-        "x",
-        "y",
-        "stone",
-        "theta",
-        "frame",
-        "seen",
-        "x1",
-        "y1",
-        "ang_1",
-        "sd_x",
-        "A",
-        "#multi:",
-    ),
-    *(
-        "0",
-        "1",
-        "-1.5",
-        "2,5",
-        "1e308",
-        "-1e308",
-        "1E-3",
-        "inf",
-        "nan",
-        "−2×10^−3",
-        "٣",
-        "1_0",
-        '"',
-    ),
-    *("\t", ";", ",", " ", "::", "\n", "\n", "\r\n", "(ms)", "[cm]", "1e17", "9" * 400),
-]
-
-
-@fuzzed
-@given(words=st.lists(st.sampled_from(WORDS), max_size=60), header=st.sampled_from(["", "t,x,y\n"]))
-def test_any_words_are_read_or_refused(tmp_path: Path, words: list[str], header: str) -> None:
-    _accepted_or_refused(put(tmp_path, header + "".join(words)))
-
-
-@fuzzed
-@given(data=st.data(), delimiter=st.sampled_from("\t;, "), tidy=st.booleans())
-def test_damaged_exports_are_read_or_refused(
-    tmp_path: Path, data: st.DataObject, delimiter: str, tidy: bool
-) -> None:
-    table = truth(8)
-    text = table.to_csv(index=False, sep=delimiter) if tidy else export(table, delimiter)
-    raw = bytearray(text.encode())
-    for _ in range(data.draw(st.integers(1, 4))):
-        at = data.draw(st.integers(0, len(raw)))
-        until = at + data.draw(st.sampled_from([0, 0, 1, 1, 5, 30]))
-        raw[at:until] = data.draw(
-            st.one_of(st.binary(max_size=3), st.sampled_from([word.encode() for word in WORDS]))
-        )
-    _accepted_or_refused(put(tmp_path, bytes(raw)))
-
-
 # Files that Tracker and its users wrote.
 
 
@@ -519,21 +357,6 @@ def test_all_dialects_of_one_shot_agree(shared: Path, family: str, best: str) ->
         np.testing.assert_allclose(rows["t"], wanted["t"], rtol=0, atol=5e-4)
         compared += 1
     assert compared >= 1
-
-
-def test_damaged_files_of_users_are_read_or_refused(tmp_path: Path, shared: Path) -> None:
-    rng = np.random.default_rng(5)
-    folder = shared / "tracker"
-    paths = [*_texts(folder / "samples"), *_texts(folder / "real")]
-    texts = [path.read_bytes()[:1500] for path in paths]
-    assert len(texts) > 20
-    for _ in range(6000):
-        raw = bytearray(texts[rng.integers(len(texts))])
-        for _ in range(rng.integers(1, 5)):
-            at = int(rng.integers(len(raw) + 1))
-            until = at + int(rng.choice([0, 0, 1, 5, 40]))
-            raw[at:until] = WORDS[rng.integers(len(WORDS))].encode()
-        _accepted_or_refused(put(tmp_path, bytes(raw)))
 
 
 def test_rows_between_the_steps_of_a_clip_are_no_places(shared: Path) -> None:
