@@ -4,6 +4,8 @@ from pathlib import Path
 
 import pytest
 
+import pipeline
+
 SHARED = Path(__file__).resolve().parents[2] / "shared"
 
 
@@ -13,3 +15,9 @@ def shared() -> Path:
     if not SHARED.is_dir():
         pytest.skip("the folder ../shared with real footage and tracks is not here")
     return SHARED
+
+
+@pytest.fixture(scope="session")
+def sample(tmp_path_factory: pytest.TempPathFactory) -> pipeline.Run:
+    """One run of the bundled sample with all its files."""
+    return pipeline.run(out=tmp_path_factory.mktemp("sample") / "out")

@@ -56,11 +56,6 @@ def curlshot(
     )
 
 
-@pytest.fixture(scope="module")
-def sample(tmp_path_factory: pytest.TempPathFactory) -> pipeline.Run:
-    return pipeline.run(out=tmp_path_factory.mktemp("sample") / "out")
-
-
 def test_sample_is_measured_to_the_bars(sample: pipeline.Run) -> None:
     truth = read_truth(SAMPLE)
     score = score_tracks(sample.tracks, truth.stones)

@@ -46,6 +46,7 @@ def posterior_figure(laws: Joint | None, samples: pd.DataFrame | None = None) ->
     ValueError
         Where there is neither.
     """
+    samples = None if samples is None else samples.dropna(axis=1, how="all")
     known = set(laws.names if laws is not None else ()) | set(
         () if samples is None else samples.columns
     )

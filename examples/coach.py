@@ -1,0 +1,33 @@
+"""What a coach asks of a shot, in feet.
+
+Run it as ``python examples/coach.py RUN``. RUN is the folder that `curlshot run` wrote.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from data.results import Results
+from data.tracks import read_tracks
+from report.tables import rest_table, shot_stone, speed_table, takeout_table
+from report.units import FEET
+
+run = Path(sys.argv[1])
+results, tracks = Results.read(run / "results.json"), read_tracks(run / "tracks.csv")
+hits = results.collisions
+
+rest = rest_table(tracks, hits)
+name, why = shot_stone(rest)
+print(f"shot stone: {name or 'not known'} ({why})")
+for stone in rest.to_dict("records"):
+    known = stone["to_tee"] >= 0  # NaN where the clip cannot tell; the note says why
+    place = f"{FEET.length(stone['to_tee'])} from the tee" if known else stone["note"]
+    print(f"  {stone['stone']}: {place}")
+
+for row in speed_table(tracks, hits).to_dict("records"):
+    speed = f"{row['speed']:.3f} ± {row['sd']:.3f} m/s" if row["speed"] >= 0 else row["note"]
+    print(f"  {row['stone']}, {row['at']}: {speed}")
+
+for row in takeout_table(hits).to_dict("records"):
+    print(f"  {row['stones']}: {row['share']:.0%} of its speed lost")

@@ -1,0 +1,36 @@
+"""Figures and tables of a run, as in a notebook.
+
+Run it as ``python examples/figures.py RUN [OUT]``. RUN is the folder that
+`curlshot run` wrote. Each function gives a matplotlib Figure: as the last line of a notebook's cell
+it shows itself.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pandas as pd
+
+from data.results import Results
+from data.sheet import HOUSE
+from data.tracks import read_tracks
+from report.figures import comparison_figure, hit_figure, motion_figure, plan_figure
+from report.tables import measured_table
+
+run = Path(sys.argv[1])
+out = Path(sys.argv[2]) if sys.argv[2:] else run
+
+results = Results.read(run / "results.json")
+tracks = read_tracks(run / "tracks.csv")
+simulations = dict(list(pd.read_csv(run / "simulation.csv").groupby("model")))
+hits = results.collisions
+
+plan_figure(tracks, simulations, hits, house=HOUSE).savefig(out / "my_plan.pdf")
+motion_figure(tracks, "A", hits, results.glides).savefig(out / "my_motion.pdf")
+comparison_figure(tracks, {"frictional": simulations["frictional"]}, "B", hits).savefig(
+    out / "my_comparison.pdf"
+)
+hit_figure(hits[0]).savefig(out / "my_hit.png", dpi=300)
+
+print(measured_table(hits).to_string(float_format=lambda value: f"{value:.4f}"))
