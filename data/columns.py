@@ -69,18 +69,19 @@ def times_of(
     bracket = re.search(r"[(\[]\s*(\w+)\s*[)\]]", written[:100])
     unit = _TIME_UNITS.get(bracket.group(1), 1.0) if bracket else 1.0
     different = np.unique(times)
-    whole = not bracket and len(different) > 2 and bool((different == np.floor(different)).all())
-    if whole and fps is not None:
+    whole = bool((different == np.floor(different)).all()) and len(different) > 2
+    decimals = _decimals(table, column)
+    if whole and not bracket and (fps is not None or decimals == 0):
+        if fps is None:
+            raise InputError(
+                f"{table.path}: the times are whole numbers: frames? give their rate (--fps), 1 if"
+                " they are seconds; for milliseconds name the column t (ms)"
+            )
         return times / fps, None, [f"{table.path}: the times are whole numbers; taken as frames"]
     warnings: list[str] = []
-    if whole:
-        warnings.append(
-            f"{table.path}: the times are whole numbers; taken as seconds (if they are frames,"
-            " give --fps)"
-        )
-    elif fps is not None:
+    if fps is not None:
         warnings.append(f"{table.path}: has times of its own; the frame rate given is not used")
-    return times * unit, _decimals(table, column) if unit == 1.0 else None, warnings
+    return times * unit, decimals if unit == 1.0 else None, warnings
 
 
 def _decimals(table: TextTable, column: int) -> int | None:

@@ -172,12 +172,17 @@ def test_wide_table_without_time_needs_the_rate(tmp_path: Path) -> None:
     assert list(found["stone"].unique()) == ["a", "b"]
 
 
-def test_whole_numbers_as_time_are_frames_if_a_rate_is_given(tmp_path: Path) -> None:
+def test_whole_numbers_as_time_are_frames_or_refused(tmp_path: Path) -> None:
     text = "t,x,y\n1,0,0\n2,0.1,0\n4,0.3,0\n"
-    assert list(read(tmp_path, text, fps=25).sightings["t"]) == [0.04, 0.08, 0.16]
-    seconds = read(tmp_path, text)
-    assert list(seconds.sightings["t"]) == [1, 2, 4]
-    assert "whole numbers" in seconds.warnings[0]
+    frames = read(tmp_path, text, fps=25)
+    assert list(frames.sightings["t"]) == [0.04, 0.08, 0.16]
+    assert "taken as frames" in frames.warnings[0]
+    with pytest.raises(InputError, match=r"whole numbers: frames\? give their rate"):
+        read(tmp_path, text)
+    seconds = "t,x,y\n1.000,0,0\n2.000,0.1,0\n4.000,0.3,0\n"
+    assert list(read(tmp_path, seconds).sightings["t"]) == [1, 2, 4]
+    ms = read(tmp_path, text.replace("t,x", "t (ms),x"))
+    np.testing.assert_allclose(ms.sightings["t"], [0.001, 0.002, 0.004])
 
 
 def test_angles_about_the_origin_are_no_spin(tmp_path: Path) -> None:
