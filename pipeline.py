@@ -503,7 +503,7 @@ def as_tracks(
 
     table = empty_tracks() if simulated is None else simulated.reindex(columns=list(TRACK_COLUMNS))
     table["seen"] = 0
-    table["team"] = table["stone"].map(of_team or {}).fillna("")
+    table["team"] = [(of_team or {}).get(str(name), "") for name in table["stone"]]
     table.insert(0, "model", model)
     return table
 
