@@ -157,6 +157,13 @@ def colours_at(picture: Picture, x: Floats, y: Floats) -> Image:
     return np.asarray(cv2.remap(picture, x, y, cv2.INTER_LINEAR), np.uint8)
 
 
+def lightness_at(picture: Picture, x: Floats, y: Floats) -> Image:
+    """Lightness at places in a picture, as it is coded: as `colours_at`, shape (rows, columns)."""
+    if isinstance(picture, Planes):
+        return np.asarray(cv2.remap(picture.luma, x, y, cv2.INTER_LINEAR), np.uint8)
+    return np.asarray(cv2.cvtColor(colours_at(picture, x, y), cv2.COLOR_BGR2GRAY), np.uint8)
+
+
 def image_of(picture: Picture) -> Image:
     """Give the whole picture in colour (BGR), shape (h, w, 3)."""
     return picture.image if isinstance(picture, Planes) else picture

@@ -39,6 +39,8 @@ class Sighting:
         Colours of the cap and of the granite, for learning.
     spectrum : ndarray or None
         What is kept of the handle's picture to measure the angle (`vision.handle.cap_spectrum`).
+    measured : bool
+        Whether its edges were measured in this picture; else it looked as when they last were.
     """
 
     x: float
@@ -55,6 +57,7 @@ class Sighting:
     cap_samples: Array = field(repr=False, default_factory=lambda: np.empty((0, 3)))
     granite_samples: Array = field(repr=False, default_factory=lambda: np.empty((0, 3)))
     spectrum: NDArray[np.complex64] | None = field(repr=False, default=None)
+    measured: bool = True
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,15 +20,20 @@ from vision.appearance import CONVINCING, Appearance, colour_difference, learn
 from vision.camera import Camera
 from vision.clip import Frame
 from vision.handle import cap_spectrum
+from vision.lead import Lead
 from vision.measure import handle_radii, is_plain
 from vision.seek import Bounds
 from vision.sighting import Sighting
+from vision.still import portraits, unchanged
 from vision.stones import FOLLOWING, Search, look_at, placed_by, search_picture
 
 Array = NDArray[np.float64]
 
 HANDLE_VISIBLE = 0.75
 """Share of a stone that must be seen for its angle to be measured."""
+
+STILL = 0.03
+"""How far from where it rests a stone may be seen, in radii."""
 
 UNLIKE = 30.0
 """Difference of cap colours (L*a*b* units) from which a colour is a new one."""
@@ -50,6 +55,8 @@ class Pace:
         Time from one search for stones of any colour to the next, s.
     patience : float
         Time for which a stone is still looked for where it is expected, s.
+    trust : float
+        Time from one measurement of a stone that looks unchanged to the next, s.
     reach : float
         How far, in radii, a stone may be from where it is expected or from where it was.
     """
@@ -59,6 +66,7 @@ class Pace:
     every: float = 0.2
     colours: float = 0.8
     patience: float = 0.3
+    trust: float = 0.25
     reach: float = 1.5
 
 
@@ -71,27 +79,6 @@ class _View:
     @property
     def places(self) -> Array:
         return _places(self.sightings)
-
-
-@dataclass(frozen=True)
-class _Lead:
-    """Where a stone was at the time t, how it moved, and whether it was missed since."""
-
-    place: Array
-    velocity: Array
-    t: float
-    missed: bool = False
-
-    def at(self, t: float) -> Array:
-        return np.asarray(self.place + self.velocity * (t - self.t))
-
-    def on(self, sighting: Sighting, t: float, near: float) -> _Lead:
-        """Go on from a sighting; it corrects what was expected, unless the course has changed."""
-        seen, expected, step = np.array([sighting.x, sighting.y]), self.at(t), t - self.t
-        if np.hypot(*(seen - expected)) > near:
-            return _Lead(seen, (seen - self.place) / step, t)
-        velocity = self.velocity + 0.3 * (seen - expected) / step
-        return _Lead(expected + 0.6 * (seen - expected), velocity, t)
 
 
 class Watch:
@@ -110,7 +97,7 @@ class Watch:
         self._lessons: list[Sighting] = []
         self._waiting: list[_View] = []
         self._recent: deque[_View] = deque(maxlen=pace.memory)
-        self._leads: list[_Lead] = []
+        self._leads: list[Lead] = []
         self._searched = -np.inf
         self._checked = -np.inf
         self._seen: list[tuple[int, float, Camera, list[Sighting]]] = []
@@ -182,7 +169,7 @@ class Watch:
             self._searched = t
             self._look_for_colours(view)
             fresh = self._sought(view, None, view.places)
-            leads = [_Lead(place, np.zeros(2), t) for place in _places(fresh)]
+            leads = [Lead.to(sighting, t) for sighting in fresh]
             view.sightings.extend(map(self._reduced, fresh))
             self._leads += leads
             for past in reversed(self._recent):
@@ -214,17 +201,17 @@ class Watch:
             known,
         ).stones
 
-    def _follow(self, view: _View, leads: Sequence[_Lead]) -> list[_Lead]:
+    def _follow(self, view: _View, leads: Sequence[Lead]) -> list[Lead]:
         """Add to a view the stones to which the leads point; return where these lead on to."""
-        t, image = view.frame.t, view.frame.picture
+        t = view.frame.t
         if not leads or (self.appearance is None and not is_plain(self.disc)):
             return []
         known, apart = view.places, 1.6 * self.disc.radius
-        near = 0.15 * self.disc.radius
+        near, still = 0.15 * self.disc.radius, STILL * self.disc.radius
         expected = np.array([lead.at(t) for lead in leads])
-        found = look_at(image, view.camera, expected, self.appearance, self.disc, self._search)
-        going: list[_Lead] = []
-        lost: list[_Lead] = []
+        found = self._measured(view, leads, expected)
+        going: list[tuple[Lead, Sighting | None]] = []
+        lost: list[Lead] = []
         # The best first: of two leads to one stone, the other is lost.
         for index in sorted(range(len(leads)), key=lambda i: -_score(found[i])):
             lead, sighting = leads[index], found[index]
@@ -233,19 +220,57 @@ class Watch:
             if sighting is None or _distance(known, np.array([sighting.x, sighting.y])) < apart:
                 lost.append(lead)
                 continue
-            view.sightings.append(self._reduced(sighting))
+            view.sightings.append(sighting)
             known = view.places
-            going.append(lead.on(sighting, t, near))
+            going.append((lead.on(sighting, t, near, still), sighting))
         for lead in lost:
             nearby = None if lead.missed else self._near(view, lead)
             if nearby is not None:
                 view.sightings.append(self._reduced(nearby))
-                going.append(lead.on(nearby, t, near))
+                going.append((lead.on(nearby, t, near, still), nearby))
             elif abs(t - lead.t) < self._pace.patience:
-                going.append(replace(lead, missed=True))
-        return going
+                going.append((replace(lead, missed=True), None))
+        return self._portrayed(view, going)
 
-    def _near(self, view: _View, lead: _Lead) -> Sighting | None:
+    def _measured(
+        self, view: _View, leads: Sequence[Lead], expected: Array
+    ) -> list[Sighting | None]:
+        """Look at each stone where it is expected; what rests and looks as it did, only briefly."""
+        picture, camera = view.frame.picture, view.camera
+        found: list[Sighting | None] = [None] * len(leads)
+        resting = [
+            (index, lead.portrait)
+            for index, lead in enumerate(leads)
+            if lead.portrait and abs(view.frame.t - lead.portrait.t) < self._pace.trust
+        ]
+        alike = unchanged(picture, camera, [portrait for _, portrait in resting], self.disc)
+        for (index, _), sighting in zip(resting, alike, strict=True):
+            found[index] = sighting
+        others = [index for index, sighting in enumerate(found) if sighting is None]
+        if others:
+            measured = look_at(
+                picture, camera, expected[others], self.appearance, self.disc, self._search
+            )
+            for index, sighting in zip(others, measured, strict=True):
+                found[index] = sighting and self._reduced(sighting)
+        return found
+
+    def _portrayed(self, view: _View, going: Sequence[tuple[Lead, Sighting | None]]) -> list[Lead]:
+        """Take the portraits of the stones at rest that have just been measured."""
+        leads = [lead for lead, _ in going]
+        due = [
+            (index, sighting)
+            for index, (lead, sighting) in enumerate(going)
+            if lead.rests and sighting is not None and sighting.measured
+        ]
+        taken = portraits(
+            view.frame.picture, view.camera, view.frame.t, [s for _, s in due], self.disc
+        )
+        for (index, _), portrait in zip(due, taken, strict=True):
+            leads[index] = replace(leads[index], portrait=portrait)
+        return leads
+
+    def _near(self, view: _View, lead: Lead) -> Sighting | None:
         """Seek a stone that is not where it is expected about there and about its last place."""
         either = np.array([lead.at(view.frame.t), lead.place])
         reach = self._pace.reach * self.disc.radius
