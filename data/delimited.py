@@ -36,6 +36,9 @@ _EXPORT = "from Tracker, save tracks as text with File > Export > Data"
 _NUMBER = re.compile(
     r"[+-]?(\d+([.,]\d*)?|[.,]\d+)(e[+-]?\d+)?|[+-]?(inf|infinity|∞)", re.IGNORECASE
 )
+_SPREADSHEET = re.compile('"?sep=.?"?', re.IGNORECASE)
+"""What spreadsheets take for the delimiter of what follows, and no name of a track."""
+
 _UNIT = re.compile(r"[(\[]?(m?s|sec|[cm]?m|in|ft|px|kg|rad|deg|°|(m|rad|deg|°)/s[²2]?)?[)\]]?")
 _MISSING = frozenset({"", "nan", "na", "n/a", "#n/a", "null", "none", "-"})
 _BIDI_MARKS = dict.fromkeys(map(ord, "\u200e\u200f\u061c\u2066\u2067\u2068\u2069"))
@@ -153,7 +156,7 @@ def read_text_table(path: Path, is_header: Callable[[Sequence[str]], bool]) -> T
         header = _header(line.lstrip("# "), is_header)
         if header is not None:
             return _with_header(path, title, line, *header, lines[k + 1 :])
-        if line.startswith("#"):
+        if line.startswith("#") or _SPREADSHEET.fullmatch(line.strip()):
             continue
         if (delimiter := _delimiter_of_numbers(plain_digits(line))) is not None:
             return _without_header(path, title, delimiter, lines[k:])
@@ -263,7 +266,8 @@ def _with_header(
     units = [cell.strip() for cell in split(rows[0])] if rows else []
     if any(units) and all(not unit or _UNIT.fullmatch(unit) for unit in units):
         named = zip(names, units, strict=False)
-        names = (*(f"{name} ({unit})" for name, unit in named), *names[len(units) :])
+        labels = (f"{name} ({unit.strip('()[]')})" for name, unit in named)
+        names = (*labels, *names[len(units) :])
         rows, numbers = rows[1:], numbers[1:]
     warnings: tuple[str, ...] = ()
     if delimiter == " " and any(len(row.rstrip().split(" ")) > width for row in rows):

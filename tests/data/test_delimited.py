@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from data.delimited import TextTable, plain_decimals, plain_digits, read_text_table
 from data.errors import InputError
+from data.tracker import read_table
 
 
 def is_header(names: Sequence[str]) -> bool:
@@ -82,7 +83,7 @@ def test_words_for_nothing(tmp_path: Path) -> None:
 
 
 def test_a_row_of_units_joins_the_names(tmp_path: Path) -> None:
-    assert read(tmp_path, "t;x\ns;(cm)\n0;1\n").names == ("t (s)", "x ((cm))")
+    assert read(tmp_path, "t;x\ns;(cm)\n0;1\n").names == ("t (s)", "x (cm)")
     assert read(tmp_path, "t;x\n;\n0;1\n").names == ("t", "x")
 
 
@@ -152,3 +153,13 @@ def test_more_cells_than_memory_should_hold_are_refused(tmp_path: Path) -> None:
     table = read(tmp_path, "t,x\n" + "0,1\n" * 1000)
     with pytest.raises(InputError, match="1000 rows of 4000 numbers are too many"):
         table.numbers([1] * 4000)
+
+
+@pytest.mark.parametrize("units", ["s;cm;cm", "(s);(cm);(cm);", "[s];[cm];[cm]", ";cm;cm"])
+def test_a_row_of_units_below_the_header(tmp_path: Path, units: str) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text(f"sep=;\nMass A;;;\nt;x;y;\n{units}\n0,04;110;200;\n0,08;112;205;;;\n;;;\n")
+    found = read_table([path])
+    assert list(found.sightings["stone"]) == ["Mass A"] * 2
+    np.testing.assert_allclose(found.sightings["x"], [1.1, 1.12])
+    assert "taken in cm as the header says" in found.warnings[0]
