@@ -1,8 +1,8 @@
 """Figures and tables of a run, as in a notebook.
 
 Run it as ``python examples/figures.py RUN [OUT]``. RUN is the folder that
-`curlshot run` wrote. Each function gives a matplotlib Figure: as the last line of a notebook's cell
-it shows itself.
+`curlshot run` wrote. Each function gives a matplotlib Figure: after ``%matplotlib inline`` it shows
+itself as the last line of a notebook's cell.
 """
 
 from __future__ import annotations

@@ -2,8 +2,8 @@
 
 All lengths in m, times in s, angles in rad. The tables are `data.tracks.TRACK_COLUMNS` for
 what was measured and ``stone, frame, t, x, y, theta, vx, vy, omega`` for what was simulated.
-A figure belongs to no window: save it with ``savefig`` or show it as the last line of a
-notebook's cell.
+A figure belongs to no window: save it with ``savefig``, or after ``%matplotlib inline`` show it as
+the last line of a notebook's cell.
 """
 
 from report.figures.comparison import comparison_figure

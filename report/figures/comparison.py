@@ -60,6 +60,7 @@ def comparison_figure(
             draw_measured(ax, t, values, sd, seen)
             for model, table in simulations.items():
                 simulated = rows_of(table, stone)
+                simulated = simulated[simulated["t"].between(rows["t"].min(), rows["t"].max())]
                 colour, dash = lines[model]
                 t, values = simulated[["t", column]].to_numpy(float).T
                 if f"sd_{column}" in simulated:

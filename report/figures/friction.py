@@ -81,7 +81,8 @@ def friction_figure(
             handles.insert(0, line(f"this shot: μ = {text}{where}", color=BLACK))
         ax.set(xlabel="speed (m/s)", ylabel="μ", xlim=(0, fastest))
         ax.set_ylim(*_limits(known, friction, curling))
-        title(figure, "Friction of the ice against speed")
+        what = "Friction of the ice" if curling else "Friction"
+        title(figure, f"{what} against speed")
         if handles:
             legend_below(figure, handles)
     return figure
@@ -116,8 +117,11 @@ def _friction(law: IceLaw, speed: Array) -> Array:
 def _limits(
     known: Sequence[tuple[Glide, object]], friction: Friction, curling: bool
 ) -> tuple[float, float]:
-    """Limits that show the law and the glides that tell something; poor ones are cut."""
+    """Limits that show the law and all glides, the errors of poor ones cut."""
     values = [friction.value or 0.0, *(MEASURED if curling else ())]
     values += [float(g.friction or 0.0) for g, _ in known]
     span = max(max(values) - min(values), 0.3 * max(map(abs, values)), 1e-4)
-    return min(values) - 0.15 * span, max(values) + 0.3 * span
+    for glide, _ in known:
+        reach = min(2 * (glide.stderr or 0.0), 0.7 * span)
+        values += [float(glide.friction or 0.0) + sign * reach for sign in (-1, 1)]
+    return min(values) - 0.1 * span, max(values) + 0.1 * span
