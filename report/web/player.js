@@ -151,16 +151,24 @@ class Player {
       this.video.play().catch(() => this.pause());
     }
     const started = performance.now(), from = this.times[this.rank];
-    const tick = (now) => {
+    const follow = (t) => {
       if (!this.playing) return;
-      const t = this.video
-        ? this.video.currentTime + this.data.clip_start
-        : from + ((now - started) / 1000) * this.rate;
-      this.draw(Math.max(lastUpTo(this.times, t + 1e-4), 0));
+      this.draw(Math.max(lastUpTo(this.times, t + 1e-3), 0));
       if (this.rank >= this.times.length - 1 && !this.video) this.pause();
-      else requestAnimationFrame(tick);
+      else next();
     };
-    requestAnimationFrame(tick);
+    const next = () => {
+      const { video } = this;
+      // The time of the very picture that is shown, where the browser tells it.
+      if (video?.requestVideoFrameCallback) {
+        video.requestVideoFrameCallback((_, { mediaTime }) => follow(mediaTime + this.data.clip_start));
+      } else if (video) {
+        requestAnimationFrame(() => follow(video.currentTime + this.data.clip_start));
+      } else {
+        requestAnimationFrame((now) => follow(from + (Math.max(now - started, 0) / 1000) * this.rate));
+      }
+    };
+    next();
   }
 
   pause() {
@@ -282,7 +290,7 @@ class SpeedChart {
     for (let t = Math.ceil(t0 / every) * every; t <= t1 + 1e-9; t += every) {
       text(number(t, every < 1 ? 1 : 0), { x: x(t), y: H - bottom + 14, "text-anchor": "middle" });
     }
-    text("speed (m/s)", { x: left, y: 9 }, "axis");
+    text("speed (m/s)", { x: 0, y: 9 }, "axis");
     text("time (s)", { x: W - right, y: H - 1, "text-anchor": "end" }, "axis");
     const groups = []; // hits too close for a label each share one
     player.data.hits.forEach((hit, k) => {

@@ -81,14 +81,24 @@ def page(tmp_path_factory, shot) -> Path:
     )
 
 
-@pytest.fixture
-def tab(browser: Browser, page: Path) -> Iterator[Tab]:
+@pytest.fixture(scope="module")
+def opened(browser: Browser, page: Path) -> Iterator[Tab]:
     with browser.tab() as tab:
-        tab.media()
         tab.open(page)
         tab.wait("document.querySelector('#clip').readyState >= 2")
         yield tab
-        assert tab.complaints == []
+
+
+@pytest.fixture
+def tab(opened: Tab) -> Iterator[Tab]:
+    """Give the page as it is at first; nothing may complain."""
+    opened.media()
+    opened.size(1440, 900)
+    opened.value("document.activeElement.blur(), player.setRate(1), player.seek(0), null")
+    opened.value("whatIf.reset(), null")
+    yield opened
+    opened.value("player.pause(), null")
+    assert opened.complaints == []
 
 
 @pytest.fixture(scope="module")
@@ -119,6 +129,7 @@ def test_clip_and_plan_play_in_step(tab, shot):
     tab.wait("!player.playing")
     rank = tab.value("player.rank")
     assert 5 < rank < 50
+    # The picture that is shown is at most a frame ahead of the latest that was told.
     assert tab.value("document.querySelector('#clip').currentTime") == pytest.approx(
         rank / 25, abs=0.09
     )
