@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -33,6 +34,7 @@ from vision.pose import (
 )
 
 Array = NDArray[np.float64]
+Value = TypeVar("Value", np.float64, np.bool_)
 
 VIEW_SD = (np.inf, np.inf, 0.15, np.inf)
 """How far a view may lie from its start: the roll is free where no line is seen."""
@@ -41,9 +43,12 @@ WIDTH = 3.0
 """Width of the Cauchy loss, in standard deviations."""
 
 _NEAR = 0.5
-"""A step that lowers the cost by less is so short that linear residuals are exact at its end."""
+"""A step that lowers the cost by less is the last one."""
 
-REWEIGHTINGS = 2
+_STRAIGHT = 0.001
+"""Over such a turn (rad) or change of log focal length residuals are straight to 0.003 px."""
+
+REWEIGHTINGS = 4
 """Rounds of weights for one linearisation of a view."""
 
 _FAR = 1e6
@@ -123,6 +128,7 @@ class Frame:
         self.sd = marks.sd
         self.line = marks.line
         self.counts = [len(marks)] if counts is None else list(counts)
+        self.number = np.repeat(np.arange(len(self.counts)), self.counts)
         ends = np.cumsum(self.counts).tolist()
         self.parts = [slice(end - n, end) for end, n in zip(ends, self.counts, strict=True)]
         place, way = ice_frame(marks.line, marks.along, marks.across)
@@ -140,9 +146,15 @@ class Frame:
         away[:2] += self.way * measures(rig)[self.line]
         return away
 
-    def each(self, values: Array) -> Array:
-        """Give every mark its frame's value."""
-        return values if len(values) == 1 else np.repeat(values, self.counts)
+    def each(self, values: NDArray[Value]) -> NDArray[Value]:
+        """Give every mark its frame's value, (..., frames) to (..., n); alone, it is broadcast."""
+        return values if len(self.parts) == 1 else np.repeat(values, self.counts, axis=-1)
+
+    def summed(self, values: Array) -> Array:
+        """Sum up each frame's marks, (n,) to (frames,)."""
+        if len(self.parts) == 1:
+            return np.asarray(values.sum(keepdims=True))
+        return np.bincount(self.number, values, len(self.parts)).astype(np.float64)
 
     def turned(self, matrices: Sequence[Array], columns: Array) -> Array:
         """Multiply the columns of every frame, (3, n), by its matrix, (3, 3)."""
@@ -248,9 +260,9 @@ def inverse(matrix: Array) -> Array:
     return np.asarray(np.linalg.inv(matrix), np.float64)
 
 
-def _cost(r: Array, width: float) -> float:
-    """Cauchy loss of residuals in standard deviations."""
-    return float(0.5 * width**2 * np.log1p((r / width) ** 2).sum())
+def _loss(r: Array, width: float) -> Array:
+    """Cauchy loss of each residual in standard deviations."""
+    return 0.5 * width**2 * np.log1p((r / width) ** 2)
 
 
 def _spread(r: Array, sd: Array, width: float) -> tuple[float, NDArray[np.bool_]]:
@@ -289,47 +301,68 @@ def solve_view(
         Width of the Cauchy loss in standard deviations.
     """
     frame = Frame(marks, size, offset)
+    return solve_views(frame, [view], rig, view_sd=view_sd, width=width, iterations=iterations)[0]
+
+
+def solve_views(
+    frame: Frame,
+    views: Sequence[View],
+    rig: Array,
+    *,
+    view_sd: ArrayLike = VIEW_SD,
+    width: float = WIDTH,
+    iterations: int = 12,
+) -> list[ViewSolution]:
+    """Fit the views of several frames at once, each by itself; as `solve_view`."""
     points = frame.points(rig)
     hold = 1 / np.asarray(view_sd, float) ** 2
-    start = now = view.vector
+    start = now = np.array([view.vector for view in views])
     at = linearised(frame, points, now, rig)
     residual = at.residual
-    cost, damping = _cost(residual, width), 1e-4
+    cost = frame.summed(_loss(residual, width))
+    damping = np.full(len(now), 1e-4)
     for _ in range(iterations):
-        step, ahead, new = _descent(at, now - start, hold, width, damping)
-        if cost - new < _NEAR:
-            if new < cost:
-                now, residual, cost = now + step, ahead, new
+        step, ahead, new = _descent(frame, at, now - start, hold, width, damping)
+        if ((cost - new < _NEAR) | (np.abs(step).max(1) < _STRAIGHT)).all():
+            better = new < cost
+            now, cost = np.where(better[:, None], now + step, now), np.where(better, new, cost)
+            residual = np.where(frame.each(better), ahead, residual)
             break
         tried = linearised(frame, points, now + step, rig)
-        new = _cost(tried.residual, width) + 0.5 * float(hold @ (now + step - start) ** 2)
-        if not new <= cost:
-            damping *= 10
-            continue
-        now, at, residual, cost = now + step, tried, tried.residual, new
-        damping = max(damping / 10, 1e-9)
+        new = frame.summed(_loss(tried.residual, width))
+        new += 0.5 * (now + step - start) ** 2 @ hold
+        better = new <= cost
+        now, cost = np.where(better[:, None], now + step, now), np.where(better, new, cost)
+        damping = np.where(better, np.maximum(damping / 10, 1e-9), 10 * damping)
+        at = tried if better.all() else linearised(frame, points, now, rig)
+        residual = at.residual
     weighted = at.by_view / (1 + (residual / width) ** 2)
-    normal = weighted @ at.by_view.T + np.diag(hold + 1e-9)
-    return ViewSolution(View(now), inverse(normal), *_spread(residual, marks.sd, width), cost)
+    found = []
+    for k, part in enumerate(frame.parts):
+        normal = weighted[:, part] @ at.by_view[:, part].T + np.diag(hold + 1e-9)
+        rms, inliers = _spread(residual[part], frame.sd[part], width)
+        found.append(ViewSolution(View(now[k]), inverse(normal), rms, inliers, float(cost[k])))
+    return found
 
 
 def _descent(
-    at: Linear, away: Array, hold: Array, width: float, damping: float
-) -> tuple[Array, Array, float]:
-    """Step of a view, `away` from its start, to the least cost of linear residuals.
+    frame: Frame, at: Linear, away: Array, hold: Array, width: float, damping: Array
+) -> tuple[Array, Array, Array]:
+    """Step views, `away` from their starts, to the least costs of linear residuals.
 
-    Returns the step, and the residuals and the cost after it. Weights are worked out anew a few
-    times: that costs a tenth of linearising anew.
+    Returns the steps, and the residuals and the costs after them. Weights are worked out anew a
+    few times: that costs a tenth of linearising anew.
     """
-    step = np.zeros(VIEW_SIZE)
-    residual = at.residual
+    step, residual = np.zeros_like(away), at.residual
+    held = hold * np.eye(VIEW_SIZE) + 1e-9 * np.eye(VIEW_SIZE)
     for _ in range(REWEIGHTINGS):
         weighted = at.by_view / (1 + (residual / width) ** 2)
-        normal = weighted @ at.by_view.T
-        normal.flat[:: VIEW_SIZE + 1] += hold + damping * normal.diagonal() + 1e-9
-        step = -np.asarray(np.linalg.solve(normal, weighted @ at.residual + hold * away))
-        residual = at.residual + step @ at.by_view
-    cost = _cost(residual, width) + 0.5 * float(hold @ (away + step) ** 2)
+        normal = np.array([weighted[:, p] @ at.by_view[:, p].T for p in frame.parts])
+        right = np.array([weighted[:, p] @ at.residual[p] for p in frame.parts]) + hold * away
+        normal += held + damping[:, None, None] * normal * np.eye(VIEW_SIZE)
+        step = -np.asarray(np.linalg.solve(normal, right[..., None]))[..., 0]
+        residual = at.residual + (frame.each(step.T) * at.by_view).sum(0)
+    cost = frame.summed(_loss(residual, width)) + 0.5 * (away + step) ** 2 @ hold
     return step, residual, cost
 
 
@@ -387,7 +420,7 @@ def solve(
     def look(vs: Array, s: Array) -> tuple[Linear, float]:
         at = linearised(every, every.points(s), vs, s)
         value = float((held * (s - prior.mean) ** 2).sum() + (hold * (vs - start) ** 2).sum())
-        return at, 0.5 * value + _cost(at.residual, width)
+        return at, 0.5 * value + float(_loss(at.residual, width).sum())
 
     now, shared, damping = start, rig, 1e-4
     at, cost = look(now, shared)

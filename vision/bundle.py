@@ -266,14 +266,27 @@ class _Problem:
 
 
 def sensitivity(
-    frame: Frame, at: Linear, view: Array, w: Array, cov: Array, piece: Ints, shared: int
+    by_view: Array, by_shared: Array, by_offset: Array, cov: Array, piece: Ints, shared: int
 ) -> Array:
-    """How a view follows rig and offsets when fitted with these held, shape (4, shared)."""
-    weighted = at.by_view * w
+    """How a view follows rig and offsets when fitted with these held, shape (4, shared).
+
+    Parameters
+    ----------
+    by_view : ndarray, shape (4, n)
+        Derivatives of a frame's residuals, times their weights.
+    by_shared, by_offset : ndarray, shapes (14, n) and (n,)
+        Derivatives by the rig, and by a shift of the paint under the mark.
+    cov : ndarray, shape (4, 4)
+        Of the view.
+    piece : ndarray of int, shape (n,)
+        Which offset is that of the paint under the mark; −1 for none.
+    shared : int
+        How many rig and offsets are.
+    """
     found = np.zeros((VIEW_SIZE, shared))
-    found[:, :RIG_SIZE] = weighted @ by_rig(frame, at, view).T
+    found[:, :RIG_SIZE] = by_view @ by_shared.T
     known = piece >= 0
-    mixed = (weighted * by_measure(frame, at))[:, known]
+    mixed = (by_view * by_offset)[:, known]
     for row, values in zip(found, mixed, strict=True):
         row[RIG_SIZE:] = np.bincount(piece[known], values, shared - RIG_SIZE)
     return -cov @ found

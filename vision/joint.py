@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import HOUSE
-from vision.adjust import WIDTH, Frame, linearised, solve_view
+from vision.adjust import WIDTH, Frame, by_measure, by_rig, inverse, linearised, solve_views
 from vision.bundle import ARC, LOST, NOISE_TRUST, Bundle, bundle, family, piece_of, sensitivity
 from vision.camera import PARAMETERS, Camera, CameraError
 from vision.landmarks import Keyframe, replaced
@@ -34,7 +34,9 @@ from vision.pose import (
     Prior,
     View,
     camera,
-    ice_points,
+    ice_frame,
+    joined,
+    measures,
     project,
     turning,
     zoom,
@@ -44,6 +46,9 @@ Array = NDArray[np.float64]
 
 JOINT_FRAMES = 12
 """Frames to which the shared part is fitted."""
+
+TOGETHER = 16
+"""Frames whose views are fitted in one go."""
 
 VIEW_SD = (np.inf, np.inf, 0.05, np.inf)
 
@@ -139,53 +144,64 @@ def fit_clip(seen: Sequence[Seen], rig: Array, prior: Prior, size: tuple[int, in
 
 def _fit_frames(seen: Sequence[Seen], shared: Bundle, size: tuple[int, int]) -> list[Camera]:
     """Fit all frames; what is known from a keyframe is placed by that one's final camera."""
-    done = {s.index: fit_frame(s, shared, size) for s in seen if s.key is None}
-    waiting = [s for s in seen if s.key is not None]
-    while waiting:
-        left = []
-        for s in waiting:
-            if s.key is not None and s.key.frame in done:
-                marks = replaced(s.marks, s.key, done[s.key.frame])
-                done[s.index] = fit_frame(replace(s, marks=marks), shared, size)
-            else:
-                left.append(s)
-        if len(left) == len(waiting):
-            break
-        waiting = left
+    done: dict[int, Camera] = {}
+    ready, waiting = [s for s in seen if s.key is None], [s for s in seen if s.key is not None]
+    while ready:
+        for k in range(0, len(ready), TOGETHER):
+            cameras = fit_frames(ready[k : k + TOGETHER], shared, size)
+            done.update({camera.frame: camera for camera in cameras})
+        ready = [
+            replace(s, marks=replaced(s.marks, s.key, done[s.key.frame]))
+            for s in waiting
+            if s.key is not None and s.key.frame in done
+        ]
+        waiting = [s for s in waiting if s.key is not None and s.key.frame not in done]
     return [done[s.index] for s in seen if s.index in done]
 
 
-def fit_frame(seen: Seen, shared: Bundle, size: tuple[int, int]) -> Camera:
-    """Fit one frame's view with what it shares held; the camera, with its error."""
-    sd = seen.marks.sd * shared.noise[family(seen.marks.line)]
-    marks = replace(seen.marks, sd=sd)
+def fit_frames(seen: Sequence[Seen], shared: Bundle, size: tuple[int, int]) -> list[Camera]:
+    """Fit frames' views with what they share held; the cameras, with their errors."""
+    marks = joined([s.marks for s in seen])
+    marks = replace(marks, sd=marks.sd * shared.noise[family(marks.line)])
     offset, piece = shared.offsets(marks)
-    fit = solve_view(marks, seen.view, shared.rig, size, view_sd=VIEW_SD, offset=offset)
-    view = fit.view.vector
-    frame = Frame(marks, size, offset)
-    at = linearised(frame, frame.points(shared.rig), view, shared.rig)
-    w = 1 / (1 + (at.residual / WIDTH) ** 2)
+    frame = Frame(marks, size, offset, [len(s.marks) for s in seen])
+    fits = solve_views(frame, [s.view for s in seen], shared.rig, view_sd=VIEW_SD)
+    views = np.array([fit.view.vector for fit in fits])
+    at = linearised(frame, frame.points(shared.rig), views, shared.rig)
+    weight = 1 / (1 + (at.residual / WIDTH) ** 2)
     # A frame may be noisier than most: fewer marks, people, blur.
-    square = float((w * at.residual**2).sum()) / LOST
-    free = max(float(w.sum()) - VIEW_SIZE, 0.0)
-    own = LONG_RANGE**2 * fit.cov * (NOISE_TRUST + square) / (NOISE_TRUST + free)
-    follows = sensitivity(frame, at, view, w, fit.cov, piece, len(shared.cov))
-    both = np.concatenate([follows, np.eye(RIG_SIZE, len(shared.cov))])
-    to_camera = _parameters(view, shared.rig, size)
-    common = to_camera @ both
-    error = CameraError(
-        LONG_RANGE**2 * common @ shared.cov @ common.T,
-        to_camera[:, :VIEW_SIZE] @ own @ to_camera[:, :VIEW_SIZE].T,
-        YARDSTICK_SD / HOUSE.twelve_foot,
-        0.0 if seen.key is None else seen.key.drift,
-    )
-    rms = fit.rms if seen.found else float("nan")
-    quality = _explained(marks.pick(fit.inliers), fit.view, shared.rig, size)
-    quality *= 1 / (1 + (rms / POOR_PX) ** 2) if seen.found else 0.0
-    return camera(
-        fit.view, shared.rig, size, frame=seen.index, t=seen.t, rms_px=rms, found=seen.found,
-        error=error, quality=quality,
-    )  # fmt: skip
+    square = frame.summed(weight * at.residual**2) / LOST
+    free = np.maximum(frame.summed(weight) - VIEW_SIZE, 0.0)
+    noisier = (NOISE_TRUST + square) / (NOISE_TRUST + free)
+    by_view = at.by_view * weight
+    by_shared, by_offset = by_rig(frame, at, views), by_measure(frame, at)
+    hold, spread = 1 / np.square(VIEW_SD), LONG_RANGE**2 * shared.cov
+    found = []
+    for k, (s, fit, part) in enumerate(zip(seen, fits, frame.parts, strict=True)):
+        normal = by_view[:, part] @ at.by_view[:, part].T + np.diag(hold)
+        cov = inverse(normal)  # linearised at the same place as the rest, else errors do not cancel
+        follows = sensitivity(
+            by_view[:, part], by_shared[:, part], by_offset[part], cov, piece[part], len(spread)
+        )
+        both = np.concatenate([follows, np.eye(RIG_SIZE, len(spread))])
+        to_camera = _parameters(views[k], shared.rig, size)
+        common, own = to_camera @ both, to_camera[:, :VIEW_SIZE]
+        error = CameraError(
+            common @ spread @ common.T,
+            LONG_RANGE**2 * noisier[k] * own @ cov @ own.T,
+            YARDSTICK_SD / HOUSE.twelve_foot,
+            0.0 if s.key is None else s.key.drift,
+        )
+        rms = fit.rms if s.found else float("nan")
+        quality = _explained(s.marks.pick(fit.inliers), fit.view, shared.rig, size)
+        quality *= 1 / (1 + (rms / POOR_PX) ** 2) if s.found else 0.0
+        found.append(
+            camera(
+                fit.view, shared.rig, size, frame=s.index, t=s.t, rms_px=rms, found=s.found,
+                error=error, quality=quality,
+            )
+        )  # fmt: skip
+    return found
 
 
 def _parameters(view: Array, rig: Array, size: tuple[int, int]) -> Array:
@@ -201,15 +217,19 @@ def _parameters(view: Array, rig: Array, size: tuple[int, int]) -> Array:
     return found
 
 
+_ARCS = np.arange(-np.pi + ARC / 2, np.pi, ARC)
+_ON_CIRCLE = np.repeat(np.arange(CIRCLES), len(_ARCS))
+_FOOT, _WAY = ice_frame(_ON_CIRCLE, np.tile(_ARCS, CIRCLES))
+
+
 def _explained(marks: Marks, view: View, rig: Array, size: tuple[int, int]) -> float:
     """Share of the pieces of the circles in the picture on which there are marks."""
-    angle = np.arange(-np.pi + ARC / 2, np.pi, ARC)
-    line = np.repeat(np.arange(CIRCLES), len(angle))
-    place = project(ice_points(line, np.tile(angle, CIRCLES), rig), view.vector, rig, size)
-    with np.errstate(invalid="ignore"):
-        shown = ((place > 0) & (place < np.array(size) - 1)).all(-1)
-    marked = np.unique(piece_of(marks.pick(marks.line < CIRCLES)))
-    return min(len(marked) / max(int(shown.sum()), 1), 1.0)
+    pieces = _FOOT + _WAY * measures(rig)[_ON_CIRCLE, None]
+    x, y = project(pieces, view.vector, rig, size).T
+    w, h = size
+    shown = int(((x > 0) & (y > 0) & (x < w - 1) & (y < h - 1)).sum())
+    marked = len(set(piece_of(marks)[marks.line < CIRCLES].tolist()))
+    return min(marked / max(shown, 1), 1.0)
 
 
 def _spread(seen: Sequence[Seen]) -> list[Seen]:
