@@ -260,9 +260,9 @@ def placed_by(camera: Camera, seen: Sequence[Sighting], disc: Stone) -> list[Sig
 def _shared_errors(camera: Camera, places: Array, disc: Stone) -> Array:
     """Give the standard errors that no filter averages out, m: camera, cap's edge and height."""
     rms = camera.rms_px if np.isfinite(camera.rms_px) else 0.3
-    edge = 0.0 if is_plain(disc) else 0.010 * disc.radius
+    edge = 0.0 if is_plain(disc) else 0.005 * disc.radius
     aslant = 0.04 * disc.cap_height * tilts(camera, places)
-    squares = (0.35 * rms / scales(camera, places)) ** 2 + edge**2 + aslant**2
+    squares = (0.25 * rms / scales(camera, places)) ** 2 + edge**2 + aslant**2
     return np.asarray(np.sqrt(squares + camera.place_sd(places) ** 2))
 
 
