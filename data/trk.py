@@ -108,6 +108,8 @@ class PointMass:
     measured : ndarray, shape (n, 7)
         `MEASURED` of each mark (s, m, rad), where this program wrote the project; else without
         rows.
+    team : str
+        What the stones of one team share, where this program wrote the project.
     """
 
     name: str
@@ -117,6 +119,7 @@ class PointMass:
     filled: int = 0
     texts: Mapping[str, Array] = field(default_factory=dict)
     measured: Array = field(default_factory=lambda: np.empty((0, len(MEASURED))))
+    team: str = ""
 
 
 @dataclass(frozen=True)
@@ -255,7 +258,7 @@ class Project:
         frames = track.frames[used]
         if len(track.measured):
             exact = dict(zip(MEASURED, track.measured[used].T, strict=True))
-            return pd.DataFrame({"stone": track.name, "frame": frames, **exact})
+            return pd.DataFrame({"stone": track.name, "team": track.team, "frame": frames, **exact})
         x, y = self.coordinates.world(frames, track.marks[used]).T
         known = {"t": self.timing.times(frames), "frame": frames, "x": x, "y": y}
         metre = 1 / LENGTH_UNITS.get(self.length_unit, 1.0)
@@ -351,6 +354,7 @@ def _point_mass(track: Thing, name: str, shift: int) -> PointMass:
         filled=_filled(frames, places, by_hand),
         texts=_texts(track, frames + shift),
         measured=_measured(track, len(frames)),
+        team=track.text("team").strip(),
     )
 
 

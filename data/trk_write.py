@@ -219,6 +219,7 @@ def _point_mass(
         [
             _value("mass", STONE.mass),
             _value("name", stone),
+            _value("team", str(rows["team"].iloc[0])),
             *_look(colour, _MARK),
             *_texts(rows),
             _sparse("framedata", f"{cls}$FrameData", data),

@@ -13,7 +13,7 @@ from data.tracks import check_sightings
 from data.trk import Coordinates
 from data.trk_write import View, plain_view, project_xml, write_trk, write_trz
 
-SAME = ["stone", "frame", "t", "x", "y", "theta", "sd_x", "sd_y", "sd_theta"]
+SAME = ["stone", "team", "frame", "t", "x", "y", "theta", "sd_x", "sd_y", "sd_theta"]
 
 
 def shot(even: bool = True) -> pd.DataFrame:
@@ -22,7 +22,7 @@ def shot(even: bool = True) -> pd.DataFrame:
     t = frame / 30 if even else np.cumsum(rng.uniform(0.02, 0.06, len(frame)))
     a = pd.DataFrame({"stone": "A", "frame": frame, "t": t, "x": t, "y": np.sin(t), "theta": 3 * t})
     b = a.assign(stone='b & "c" <d>', x=-t / 3, theta=np.nan)[rng.uniform(size=len(t)) > 0.3]
-    return check_sightings(pd.concat([a, b]))
+    return check_sightings(pd.concat([a.assign(team="#c02020"), b]))
 
 
 def moving_view(frames: np.ndarray) -> View:
