@@ -12,7 +12,7 @@ import av
 import cv2
 import numpy as np
 import pandas as pd
-from matplotlib.colors import to_rgb
+from matplotlib.colors import is_color_like, to_rgb
 from numpy.typing import NDArray
 
 from data.files import whole_file
@@ -32,6 +32,7 @@ _CIRCLE = np.stack([np.cos(a := np.linspace(0, 2 * np.pi, 121)), np.sin(a)], axi
 _SHIFT = 4  # bits of a pixel's fraction in cv2's drawing
 _APART = 0.02  # m between the points of a trail
 _RESTS = 0.05  # m/s below which a stone's speed is not worth a label
+_TURNS = 0.1  # rad/s, the same for its spin
 _FLASH = 0.4  # s
 _FONT = cv2.FONT_HERSHEY_SIMPLEX
 _LETTERS = 0.5  # size of the letters in a picture 720 px high
@@ -45,13 +46,15 @@ Box = tuple[Array, Array]
 
 @dataclass(frozen=True)
 class State:
-    """One stone in one frame: place (m), angle (rad, NaN where unknown), speed (m/s)."""
+    """One stone in one frame: place (m), angle (rad), speed (m/s), spin (rad/s); NaN: unknown."""
 
     stone: str
     place: Array
     theta: float
     speed: float
+    omega: float
     seen: bool
+    team: Colour | None = None
 
 
 @dataclass(frozen=True)
@@ -204,12 +207,16 @@ def _scene(
     for name, rows in tracks.sort_values("t").groupby("stone", sort=True):
         stone = str(name)
         frames = rows["frame"].to_numpy(np.int64)
-        x, y, theta, vx, vy, seen = rows[["x", "y", "theta", "vx", "vy", "seen"]].to_numpy(float).T
+        columns = ["x", "y", "theta", "vx", "vy", "omega", "seen"]
+        x, y, theta, vx, vy, omega, seen = rows[columns].to_numpy(float).T
+        team = _team_colour(rows["team"].iloc[0])
         places = np.stack([x, y], axis=1)
         for k, index in enumerate(frames):
             speed = float(np.hypot(vx[k], vy[k]))
             states.setdefault(int(index), []).append(
-                State(stone, places[k], float(theta[k]), speed, bool(seen[k]))
+                State(
+                    stone, places[k], float(theta[k]), speed, float(omega[k]), bool(seen[k]), team
+                )
             )
         if np.ptp(places, axis=0).max() > radius / 3:
             kept = _apart(places, _APART)
@@ -236,6 +243,11 @@ def _apart(places: Array, least: float) -> NDArray[np.intp]:
         if np.hypot(x - x0, y - y0) >= least:
             kept.append(rank)
     return np.array(kept)
+
+
+def _team_colour(team: str) -> Colour | None:
+    """Colour by which a team is called; None where it has another name, or none."""
+    return _bgr(team) if team and is_color_like(team) else None
 
 
 def _bgr(colour: str) -> Colour:
@@ -279,7 +291,10 @@ def _labels(
     unit: float,
     boxes: list[Box],
 ) -> None:
-    """Write each stone's name, and its speed while it moves, where nothing is in the way."""
+    """Write each stone's name, and speed and spin while it has any, where nothing is in the way.
+
+    The stripe before the name has the colour of its team.
+    """
     taken = list(boxes)
     for state, box in zip(states, boxes, strict=True):
         if not _inside(image, (box[0] + box[1]) / 2):
@@ -287,6 +302,8 @@ def _labels(
         text = state.stone
         if state.speed > _RESTS:
             text += f" {state.speed:.2f} m/s"
+        if abs(state.omega) > _TURNS:
+            text += f" {state.omega:+.1f} rad/s"
         size, _ = _text_box(text, unit)
         places = [
             np.array([x, y])
@@ -300,7 +317,7 @@ def _labels(
         ]
         corner = places[int(np.argmin(cost))]
         taken.append((corner, corner + size))
-        _write(image, text, corner, unit)
+        _write(image, text, corner, unit, state.team)
 
 
 def _flashes(
@@ -325,12 +342,16 @@ def _text_box(text: str, unit: float) -> tuple[Array, int]:
     return np.array([w + 2 * margin, h + below + 2 * margin], float), margin + h
 
 
-def _write(image: Image, text: str, corner: Array, unit: float) -> None:
+def _write(
+    image: Image, text: str, corner: Array, unit: float, stripe: Colour | None = None
+) -> None:
     """Write white on a darkened box, whose upper left corner is at `corner`."""
     size, base = _text_box(text, unit)
     left, top = (max(round(float(v)), 0) for v in corner)
     box = image[top : top + round(size[1]), left : left + round(size[0])]
     box[:] = box // 3
+    if stripe is not None:
+        box[:, : round(3 * unit)] = stripe
     at = (left + round(3 * unit), top + base)
     thickness = max(round(unit), 1)
     cv2.putText(image, text, at, _FONT, _LETTERS * unit, _WHITE, thickness, cv2.LINE_AA)

@@ -178,3 +178,25 @@ def test_colours_survive(tmp_path, shot):
     for k, colour in enumerate(patches):
         seen = images[0][20:-20, 80 * k + 20 : 80 * k + 60].mean(axis=(0, 1))
         np.testing.assert_allclose(seen, colour, atol=8)
+
+
+def test_labels_show_the_spin_and_the_colour_of_the_team(tmp_path, shot):
+    clip = open_clip(pictures(tmp_path, 3), fps=25.0)
+    moving = shot.tracks[shot.tracks["frame"] < 3].assign(x=0.0, y=0.0, vx=1.0, vy=0.0)
+    one = moving[moving["stone"] == "A"].assign(team="#00ff00", omega=1.5)
+    shown = {}
+    for name, table in {
+        "both": one, "slow": one.assign(omega=0.0), "unknown": one.assign(team="Norway")
+    }.items():  # fmt: skip
+        out = tmp_path / f"{name}.mp4"
+        write_overlay(clip, [camera(k) for k in range(3)], table, (), out)
+        shown[name] = read(out)[1][1].astype(int)
+
+    def green(image: np.ndarray) -> int:
+        return int((image[..., 1] - image[..., [0, 2]].max(-1) > 60).sum())
+
+    def dark(image: np.ndarray) -> int:
+        return int((image < 60).all(-1).sum())
+
+    assert green(shown["both"]) > 10 > green(shown["unknown"])
+    assert dark(shown["both"]) > 1.15 * dark(shown["slow"])
