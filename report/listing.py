@@ -65,6 +65,19 @@ _GLIDES = (
     Column("to", "t1", "s", decimals=2),
     Column("μ", "friction", stderr="stderr"),
 )
+_CHOICES = (
+    Column("laws", "laws", kind="word"),
+    Column("weight", "weight", "%", decimals=1, factor=100),
+    Column("criterion", "criterion", decimals=1),
+    Column("μ at 1 m/s", "friction", stderr="stderr"),
+)
+_ICE = (
+    Column("stone", "stone", kind="word"),
+    Column("μ", "friction", stderr="sd_friction"),
+    Column("turn", "turn", "rad/s", stderr="sd_turn"),
+    Column("mean speed", "speed", "m/s", decimals=3),
+    Column("spin", "spin", "rad/s", stderr="sd_spin"),
+)
 _PAPER = {"rigid-body": 3, "point-mass": 4}
 """Numbers that the models have as tables of the study."""
 
@@ -124,12 +137,28 @@ def page_tables(
             _HITS,
             hits,
         ),
+        _methods(results),
+        Table(
+            "laws_tried",
+            "Laws that the whole shot was fitted with",
+            "By Schwarz’s criterion, less that of the best; the weight is the probability that goes"
+            " with it. What the others would give is in the errors.",
+            _CHOICES,
+            tables.choice_table(results),
+        ),
         Table(
             "glides",
             "Glides",
             "Friction of each free glide.",
             _GLIDES,
             tables.glide_table(results.glides),
+        ),
+        Table(
+            "ice",
+            "The ice by stone",
+            f"Turn of the path to the left, at the mean speed of the glides. {_curl(results)}",
+            _ICE,
+            tables.ice_table(results),
         ),
         _scores(results),
     ]
@@ -152,8 +181,8 @@ def coach_tables(
         Table(
             "coach_stones",
             "Where the stones stopped",
-            f"{lies} Centres of the stones, from the tee; turns counter-clockwise, curl to the"
-            " left of where the stone was heading.",
+            f"{lies} Centres of the stones, from the tee; turns counter-clockwise; curl of the"
+            " thrown stone, to the left of where it was heading.",
             (
                 Column("stone", "stone", kind="word"),
                 Column("team", "team", kind="note"),
@@ -210,6 +239,33 @@ def coach_tables(
             apart,
         ),
     ]
+
+
+def _curl(results: Results) -> str:
+    note = results.curl.note or ""
+    return f"{note[:1].upper()}{note[1:]}." if note else ""
+
+
+def _methods(results: Results) -> Table:
+    hits = [
+        Column(f"e of hit {rank}", f"hit {rank}", stderr=f"sd_hit {rank}")
+        for rank in range(1, len(results.collisions) + 1)
+    ]
+    return Table(
+        "methods",
+        "Restitution and friction, method by method",
+        "Local: from the paths beside the hits. Global: one fit of the whole shot. Finite"
+        " differences: as the study had them.",
+        (
+            Column("method", "method", kind="word"),
+            Column("e", "restitution", stderr="sd_restitution"),
+            *hits,
+            Column("μ", "friction", stderr="sd_friction"),
+            Column("μₛ", "stone_friction", stderr="sd_stone_friction"),
+            Column("note", "note", kind="note"),
+        ),
+        tables.method_table(results),
+    )
 
 
 def _simulated(results: Results) -> list[Table]:

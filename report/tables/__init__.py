@@ -7,7 +7,7 @@ from report.tables.coach import (
     speed_table,
     takeout_table,
 )
-from report.tables.laws import law_table
+from report.tables.laws import choice_table, ice_table, law_table, method_table
 from report.tables.shot import (
     glide_table,
     hit_table,
@@ -19,12 +19,15 @@ from report.tables.shot import (
 from report.tables.states import in_axes, measured_table, simulated_table
 
 __all__ = [
+    "choice_table",
     "distance_table",
     "glide_table",
     "hit_table",
+    "ice_table",
     "in_axes",
     "law_table",
     "measured_table",
+    "method_table",
     "moving_stones",
     "residual_table",
     "rest_table",

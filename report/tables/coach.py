@@ -127,6 +127,8 @@ def rest_table(
             hits = [hit.t for hit in collisions if name in hit.stones]
             if _thrown(track):
                 row |= _curl(track[track["t"] < min(hits, default=np.inf)], notes)
+        else:
+            notes.append("did not move")
         why_not = _moving(track, end)
         if why_not is None:
             row |= _place(track)

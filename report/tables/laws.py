@@ -1,4 +1,4 @@
-"""Restitution and friction of a shot beside those of the literature."""
+"""Restitution and friction of a shot: beside the literature, by method, by law, by stone."""
 
 from __future__ import annotations
 
@@ -50,3 +50,81 @@ def law_table(results: Results) -> pd.DataFrame:
         if curling:
             row |= dict(zip(keys, LITERATURE[name], strict=True))
     return pd.DataFrame(rows, columns=["quantity", "symbol", "value", "stderr", *keys])
+
+
+def method_table(results: Results) -> pd.DataFrame:
+    """Give restitution and frictions as each method has them, one row a method.
+
+    Returns
+    -------
+    DataFrame
+        ``method, restitution, sd_restitution, friction, sd_friction, stone_friction,
+        sd_stone_friction, note``, and ``hit 1, sd_hit 1`` and so on with the restitution of each
+        hit.
+    """
+    rows = []
+    for name, method in results.methods.items():
+        rub = method.stone_friction
+        row: dict[str, object] = {"method": name}
+        told = {
+            "restitution": method.restitution,
+            "friction": method.friction,
+            "stone_friction": rub,
+            **{f"hit {rank}": hit for rank, hit in enumerate(method.hits, 1)},
+        }
+        for key, value in told.items():
+            row |= {key: value.value, f"sd_{key}": value.stderr}
+        row["note"] = "; ".join(note for note in (method.note, rub.note) if note) or None
+        rows.append(row)
+    keys = ["restitution", "friction", "stone_friction"]
+    keys += [f"hit {rank}" for rank in range(1, len(results.collisions) + 1)]
+    columns = ["method", *(name for key in keys for name in (key, f"sd_{key}")), "note"]
+    return pd.DataFrame(rows, columns=columns)
+
+
+def choice_table(results: Results) -> pd.DataFrame:
+    """Give the laws that the whole shot was fitted with, the best first.
+
+    Returns
+    -------
+    DataFrame
+        ``laws, weight, criterion, friction, stderr``: `weight` is the probability of a choice,
+        `criterion` Schwarz's less that of the best.
+    """
+    rows = [
+        {
+            "laws": law.name,
+            "weight": law.weight,
+            "criterion": law.criterion,
+            "friction": law.friction.value,
+            "stderr": law.friction.stderr,
+        }
+        for law in sorted(results.law_choice, key=lambda law: law.criterion)
+    ]
+    return pd.DataFrame(rows, columns=["laws", "weight", "criterion", "friction", "stderr"])
+
+
+def ice_table(results: Results) -> pd.DataFrame:
+    """Give what each stone tells of the ice by itself.
+
+    Returns
+    -------
+    DataFrame
+        ``stone, friction, sd_friction, turn, sd_turn, speed, spin, sd_spin``: `turn` of its path
+        to the left, rad/s, at its mean `speed`, m/s; `spin` as it is first seen to move, rad/s.
+    """
+    rows = [
+        {
+            "stone": name,
+            "friction": stone.friction.value,
+            "sd_friction": stone.friction.stderr,
+            "turn": stone.turn.value,
+            "sd_turn": stone.turn.stderr,
+            "speed": stone.speed,
+            "spin": stone.spin.value,
+            "sd_spin": stone.spin.stderr,
+        }
+        for name, stone in results.stones.items()
+    ]
+    columns = ["stone", "friction", "sd_friction", "turn", "sd_turn", "speed", "spin", "sd_spin"]
+    return pd.DataFrame(rows, columns=columns)

@@ -17,10 +17,14 @@ from data.results import (
     Glide,
     Input,
     Joint,
+    Law,
     MeasuredState,
+    Method,
     Results,
     SimulatedHit,
     SimulationScore,
+    StoneResult,
+    Told,
 )
 from data.tracks import TRACK_COLUMNS
 from tests.report.browser import Browser
@@ -127,6 +131,18 @@ def make_shot(frames: int = 170) -> Shot:
             "rigid-body": SimulationScore(None, {}, "no spins after the hit could be measured"),
             "frictional": SimulationScore(0.0123, {"A": 0.011, "B": None, "C": 0.0219}),
         },
+        methods={
+            "local": Method(
+                Estimate(0.83, 0.02), Estimate(0.0109, 4e-4), Told(), (Estimate(0.83, 0.02),)
+            ),
+            "global": Method(Estimate(0.831, 0.012), note="one fit"),
+        },
+        law_choice=(
+            Law("ice fit", 4.7, 0.087, Estimate(0.0111, 6e-4)),
+            Law("ice constant", 0.0, 0.913, Estimate(0.0109, 4e-4)),
+        ),
+        curl=Told(None, None, "no curl shows"),
+        stones={"A": StoneResult(Estimate(0.0112, 0.0011), Estimate(), 1.1, Estimate(0.66, 0.01))},
         laws=Joint(
             ("restitution", "friction", "stone_friction"),
             (0.8312345, 0.01093456, 0.05),

@@ -23,6 +23,7 @@ def test_the_tables_of_the_study_and_of_coaches_are_there(made):
     names = list(made)
     assert names[:4] == ["coach_stones", "coach_speeds", "coach_hits", "coach_distances"]
     assert {"table_1_laws", "table_2_measured", "table_4_point-mass"} <= set(names)
+    assert {"methods", "laws_tried", "ice"} <= set(names)
     assert "table_3_rigid-body" not in names  # it could not run
 
 

@@ -82,3 +82,15 @@ def test_only_stones_that_moved_count_as_moving(shot):
     still["x"] += np.random.default_rng(1).normal(0, 0.01, len(still))
     assert tables.moving_stones(still) == ()
     assert tables.moving_stones(shot.tracks[shot.tracks["frame"] == 0]) == ()
+
+
+def test_methods_laws_and_stones_are_listed(shot):
+    methods = tables.method_table(shot.results).set_index("method")
+    assert methods.loc["local", "hit 1"] == 0.83
+    assert np.isnan(methods.loc["global", "hit 2"])
+    assert methods.loc["global", "note"] == "one fit"
+    choices = tables.choice_table(shot.results)
+    assert choices["laws"].tolist() == ["ice constant", "ice fit"]
+    assert choices["weight"].sum() == pytest.approx(1.0)
+    (ice,) = tables.ice_table(shot.results).to_dict("records")
+    assert (ice["stone"], ice["friction"], ice["sd_spin"]) == ("A", 0.0112, 0.01)
