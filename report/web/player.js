@@ -30,6 +30,8 @@ function lastUpTo(values, value) {
   return low - 1;
 }
 
+const most = (values) => values.reduce((high, value) => Math.max(high, value), 0);
+const moves = (stone) => most(stone.speed) >= 0.05; // m/s
 const number = (value, decimals) => value.toFixed(decimals).replace(/^-(?=0\.?0*$)/, "").replace("-", "−");
 const byId = (id) => document.getElementById(id);
 
@@ -49,7 +51,7 @@ class Player {
     this.playing = false;
     this.video = byId("clip");
     this.#drawPlan();
-    this.chart = byId("speeds") ? new SpeedChart(byId("speeds"), this) : null;
+    this.chart = new SpeedChart(byId("speeds"), this);
     this.#listen();
     this.#openClip();
     this.choose(byId("model")?.value ?? "");
@@ -65,17 +67,16 @@ class Player {
     this.hits = data.hits.filter((hit) => hit.x !== null).map((hit) => (
       { t: hit.t, mark: this.plan.hit(hit.x, hit.y) }
     ));
-    const still = (stone) => Math.max(...stone.speed) < 0.05;
     this.ghosts = new Map(this.stones.map((stone) => [
       stone.name, [this.plan.trail(stone.colour, "ghost"), this.plan.stone(stone.name, stone.colour, "ghost")],
     ]));
     this.drawn = this.stones.map((stone) => {
       const whole = this.plan.trail(stone.colour, "whole"), past = this.plan.trail(stone.colour, "past");
       const places = Array.from(stone.x, (x, k) => [x, stone.y[k]]);
-      if (!still(stone)) whole.through(places);
+      if (moves(stone)) whole.through(places);
       const drawn = this.plan.stone(stone.name, stone.colour);
       drawn.turns(stone.turns);
-      return { stone, past, places: still(stone) ? null : places, drawn };
+      return { stone, past, places: moves(stone) ? places : null, drawn };
     });
   }
 
@@ -83,23 +84,16 @@ class Player {
     const { video } = this;
     if (!video) return;
     video.controls = false;
-    video.addEventListener("error", () => this.#loseClip(), true);
+    video.addEventListener("error", () => this.#loseClip());
     video.addEventListener("ended", () => this.pause());
     video.addEventListener("click", () => this.toggle());
-    if (video.error || video.networkState === HTMLMediaElement.NETWORK_NO_SOURCE) this.#loseClip();
-    video.src = video.dataset.src;
-    video.load();
+    if (video.error) this.#loseClip();
   }
 
   #loseClip() {
     this.video = null;
     byId("player").classList.add("alone");
     byId("clip-missing").hidden = false;
-  }
-
-  /** Time on the video's clock; its first picture is at 0. */
-  #clock(t) {
-    return t - this.data.clip_start;
   }
 
   #listen() {
@@ -116,24 +110,24 @@ class Player {
 
   #press(event) {
     if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
-    const { target } = event, taken = target.closest("input, select, textarea, button, a, [data-keys]");
-    const own = !taken || taken.id === "scrub" || taken.closest(".transport");
-    const keys = {
-      ",": () => this.step(-1),
-      ".": () => this.step(1),
-      " ": () => this.toggle(),
-      ArrowLeft: () => this.skip(-0.5),
-      ArrowRight: () => this.skip(0.5),
-      Home: () => this.seek(0),
-      End: () => this.seek(this.times.length - 1),
-    };
-    const act = keys[event.key];
-    if (!act || taken?.matches("select, textarea")) return;
-    if (event.key === " " && taken?.matches("button, a, input:not(#scrub)")) return;
-    if (!own && event.key !== "," && event.key !== ".") return;
-    if (!own && taken.matches("[data-keys]")) return;
+    const held = event.target.closest("input, select, textarea, button, a, [data-keys]");
+    const free = !held || held.id === "scrub";
+    const acts = {};
+    if (free || !held.matches("select, textarea")) {
+      Object.assign(acts, { ",": () => this.step(-1), ".": () => this.step(1) });
+    }
+    if (free || held.matches("button, a")) {
+      Object.assign(acts, {
+        ArrowLeft: () => this.skip(-0.5),
+        ArrowRight: () => this.skip(0.5),
+        Home: () => this.seek(0),
+        End: () => this.seek(this.times.length - 1),
+      });
+    }
+    if (free) acts[" "] = () => this.toggle();
+    if (!(event.key in acts)) return;
     event.preventDefault();
-    act();
+    acts[event.key]();
   }
 
   toggle() {
@@ -210,7 +204,8 @@ class Player {
     if (this.video) {
       // Into the middle of the frame: its edges may round to the one before.
       const t = this.times[rank], next = this.times[rank + 1] ?? t + 0.01;
-      this.video.currentTime = Math.max(this.#clock(t + Math.min(next - t, 0.04) / 2), 0);
+      const middle = t + Math.min(next - t, 0.04) / 2;
+      this.video.currentTime = Math.max(middle - this.data.clip_start, 0);
     }
     this.draw(rank);
   }
@@ -241,7 +236,7 @@ class Player {
     scrub.setAttribute("aria-valuetext", `${number(t, 2)} seconds, frame ${this.frames[rank]}`);
     byId("now").textContent = `${number(t, 2)} s`;
     byId("frame").textContent = `frame ${this.frames[rank]}`;
-    this.chart?.mark(t);
+    this.chart.mark(t);
     for (const cells of document.querySelectorAll("[data-stone]")) {
       const stone = this.stones[Number(cells.dataset.stone)], row = lastUpTo(stone.rank, rank);
       cells.querySelector(".speed").textContent = row < 0 ? "—" : `${number(stone.speed[row], 2)} m/s`;
@@ -273,8 +268,8 @@ class SpeedChart {
     const W = Math.max(Math.min(svg.clientWidth, 760), 320), H = 220, left = 38, right = 8, top = 16, bottom = 26;
     svg.setAttribute("viewBox", `0 0 ${W} ${H}`);
     const { times } = player, t0 = times[0], t1 = Math.max(times[times.length - 1], t0 + 0.01);
-    const moving = player.stones.filter((stone) => Math.max(...stone.speed) >= 0.05);
-    const fastest = Math.max(0.1, ...moving.map((stone) => Math.max(...stone.speed)));
+    const moving = player.stones.filter(moves);
+    const fastest = Math.max(0.1, ...moving.map((stone) => most(stone.speed)));
     const step = [0.05, 0.1, 0.25, 0.5, 1, 2, 5].find((s) => fastest / s <= 5) ?? 10;
     const high = Math.ceil(fastest / step) * step;
     const x = (t) => left + ((t - t0) / (t1 - t0)) * (W - left - right);

@@ -99,7 +99,9 @@ def test_page_is_well_formed_and_offline(written):
     assert page.text.startswith("<!DOCTYPE html>")
     assert page.tags[0] == ("html", {"lang": "en-GB"})
     assert all((a["src"] or "").startswith("data:") for a in page.all("img"))
-    assert not [a for tag in ("video", "script") for a in page.all(tag) if "src" in a]
+    assert [a["src"] for tag in ("video", "script") for a in page.all(tag) if "src" in a] == [
+        "overlay.mp4"
+    ]
     assert not page.all("link")
     assert not re.search(r"(src|href)=\"https?:|@import|url\(http", page.text)
     ids = [attrs["id"] for _, attrs in page.tags if "id" in attrs]
@@ -150,12 +152,12 @@ def test_names_of_files_are_no_markup(written):
 
 def test_the_clip_is_played_from_beside_the_page(written, tmp_path, shot):
     (video,) = Page(written[0]).all("video")
-    assert video["data-src"] == "overlay.mp4"
+    assert video["src"] == "overlay.mp4"
     still = shot.tracks[shot.tracks["frame"] == 0]
     results = dataclasses.replace(shot.results, collisions=())
     options = {"results": results, "tracks": still, "simulations": {}}
     page = Page(write(tmp_path / "out", shot, overlay=tmp_path / "my clip.mp4", **options))
-    assert page.all("video")[0]["data-src"] == "../my%20clip.mp4"
+    assert page.all("video")[0]["src"] == "../my%20clip.mp4"
     assert not Page(write(tmp_path, shot, **options)).all("video")
 
 
