@@ -25,8 +25,8 @@ from physics.local import Local, estimate_locally
 from physics.shot_model import ice
 from physics.watched import loose_priors, watch
 
-POOR_FIT = 30.0
-"""Factor on the variance of sightings from which a simulated shot is not the one seen."""
+POOR_FIT = 16.0
+"""Mean square of residuals against errors from which a simulated shot is not the one seen."""
 
 LAWS = ("restitution", "friction", "stone_friction")
 """Unknowns of a shot that are not of one stone alone."""
@@ -206,10 +206,10 @@ def _whole(
         return None, f"whole shot: cannot be simulated ({error}); values beside the hits used"
     if not fit.settled or not fit.hits_as_seen:
         return fit, "whole shot: the simulator does not follow it; values beside the hits used"
-    if fit.inflation > POOR_FIT:
+    if fit.misfit > POOR_FIT:
         return fit, (
             "whole shot: the simulated paths differ from the tracks by more than their errors"
-            f" (variance × {fit.inflation:.0f}); values beside the hits used"
+            f" (variance × {fit.misfit:.0f}); values beside the hits used"
         )
     return fit, _disagreement(local.restitution, fit["restitution"])
 

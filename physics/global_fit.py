@@ -118,6 +118,17 @@ class GlobalFit:
         """Whether the stones hit each other in the fitted shots as they did."""
         return all(shot.hits_as_seen(self.simulation(rank)) for rank, shot in enumerate(self.shots))
 
+    @property
+    def misfit(self) -> float:
+        """Mean square of the residuals in terms of all errors of the places, shared ones too.
+
+        The inflation compares them with what is anew in each frame alone: on a good clip the
+        map of the ice is off by several times that, alike for all sightings near each other.
+        """
+        traces = [trace for shot in self.shots for trace in shot.traces.values()]
+        shared = np.concatenate([(trace.sd_place[:, None] / trace.sd) ** 2 for trace in traces])
+        return self.inflation / (1 + float(shared.mean()))
+
     def residuals(self) -> pd.DataFrame:
         """Sighted less fitted places: ``shot, stone, t, dx, dy`` (m) ``sd_x, sd_y`` (m)."""
         tables = []
