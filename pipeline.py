@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 VERSION = "0.1.0"
 WRITTEN = (
     "tracks.csv", "camera.csv", "results.json", "simulation.csv", "report.html", "overlay.mp4",
-    "figures", "tables",
+    "figures", "tables", "posterior.csv",
 )  # fmt: skip
 """All that a run may write into its folder."""
 
@@ -99,6 +99,8 @@ class Settings:
         Whether the annotated clip is written.
     restitution, friction : float, optional
         What predictions assume beforehand; values of the literature by default.
+    samples : int
+        Draws of restitution and frictions from what the shot tells.
     units : str
         Of what coaches read: m or ft. All else is SI.
 
@@ -124,6 +126,7 @@ class Settings:
     overlay: bool = True
     restitution: float | None = None
     friction: float | None = None
+    samples: int = 0
     units: str = "m"
 
     def __post_init__(self) -> None:
@@ -177,6 +180,8 @@ class Run:
         Where the files are.
     house : House or None
         The rings; None where the scene has no house.
+    posterior : DataFrame or None
+        As ``posterior.csv``: draws of restitution and frictions, where they were asked for.
     """
 
     tracks: pd.DataFrame
@@ -185,6 +190,7 @@ class Run:
     simulations: pd.DataFrame
     out: Path | None = None
     house: House | None = None
+    posterior: pd.DataFrame | None = None
 
 
 def sample_clip() -> Path:
@@ -411,6 +417,7 @@ def _painted(house: House) -> tuple[float, ...]:
 
 def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
     """Tracks, estimates and simulations from sightings; writes nothing."""
+    import numpy as np
     import pandas as pd
 
     from data.results import Input, Results
@@ -419,6 +426,7 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
     from physics.estimate import estimate
     from physics.forecast import predict
     from physics.kalman import smooth
+    from physics.posterior import sample_posterior, summarise
     from physics.predict import simulate_measured
     from physics.watched import LITERATURE
     from vision.camera import camera_table
@@ -442,6 +450,7 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
         restitution=_assumed(settings.restitution, LITERATURE.restitution),
         friction=_assumed(settings.friction, LITERATURE.friction),
     )
+    drawn = sample_posterior(estimates, settings.samples, np.random.default_rng(0))
     times = sightings["t"]
     results = Results(
         input=Input(
@@ -463,6 +472,7 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
         law_choice=() if estimates.whole is None else estimates.whole.laws,
         curl=estimates.curl,
         stones=estimates.by_stone,
+        posterior=None if drawn is None else summarise(drawn),
     )
     cameras = camera_table(measured.cameras) if measured.cameras else None
     of_team = teams(tracks)
@@ -473,6 +483,7 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
         results,
         pd.concat(simulations, ignore_index=True) if simulations else as_tracks(None, ""),
         house=measured.house,
+        posterior=drawn,
     )
 
 
@@ -671,6 +682,8 @@ def _write_run(
     done.results.write(stage / "results.json")
     if done.cameras is not None:
         write_table(done.cameras, stage / "camera.csv")
+    if done.posterior is not None:
+        write_table(done.posterior, stage / "posterior.csv")
     house = measured.house
     overlay: Path | None = None
     clip_start = 0.0
@@ -907,6 +920,7 @@ def _settings(arguments: argparse.Namespace) -> Settings:
         overlay=not known.get("no_overlay", False),
         restitution=known.get("restitution"),
         friction=known.get("friction"),
+        samples=known.get("samples") or 0,
         units=known.get("units", "m"),
     )
 
@@ -998,6 +1012,7 @@ def _do_check(arguments: argparse.Namespace, bars: Bars) -> str:
 
 
 def _do_estimate(arguments: argparse.Namespace, bars: Bars) -> str:
+    from data.tracks import write_table
     from report.summary import summary
     from report.units import UNITS
 
@@ -1009,6 +1024,8 @@ def _do_estimate(arguments: argparse.Namespace, bars: Bars) -> str:
     done = analyse(measured, settings)
     with staged(folder, replaces=_stale(folder, measured.files)) as stage:
         done.results.write(stage / "results.json")
+        if done.posterior is not None:
+            write_table(done.posterior, stage / "posterior.csv")
     return summary(done.results, done.tracks, folder, done.house, UNITS[arguments.units])
 
 

@@ -315,6 +315,13 @@ def _assumption_options(parser: argparse.ArgumentParser) -> None:
         metavar="MU",
         help="μ that predictions assume (0.0109 ± 0.003)",
     )
+    parser.add_argument(
+        "--samples",
+        type=values.samples,
+        metavar="N",
+        help="draw e, μ and the friction between stones N times from what the shot tells:"
+        " posterior.csv, quantiles in results.json",
+    )
 
 
 def _units_option(parser: argparse.ArgumentParser) -> None:

@@ -36,7 +36,7 @@ def sample_posterior(
     estimates : Estimates
         Of the shot.
     count : int
-        Number of draws.
+        Number of draws; of 0 there is no sample.
     rng : Generator
         Of the random numbers.
 
@@ -44,7 +44,7 @@ def sample_posterior(
     -------
     DataFrame or None
         ``sample, restitution, friction, stone_friction``, NaN in a column that the shot does not
-        tell; None where it tells none.
+        tell; None where it tells none or no draw is asked for.
 
     Raises
     ------
@@ -53,7 +53,7 @@ def sample_posterior(
     """
     mean, cov = _joint(estimates)
     told = np.isfinite(mean)
-    if not told.any():
+    if not told.any() or not count:
         return None
     low, high = np.array([POSSIBLE[name] for name in LAWS]).T[:, told]
     rows = np.empty((0, int(told.sum())))
