@@ -23,7 +23,8 @@ from vision.clip import Clip, Frame
 from vision.house import SHARING, HouseFit, find_house
 from vision.joint import HouseTrack, Seen, fit_clip
 from vision.landmarks import Keyframe, keyframe, recognise
-from vision.marks import Evidence, measure
+from vision.marks import Evidence, measure_along
+from vision.normals import Normals, lay_out
 from vision.outline import Rim
 from vision.picture import Picture
 from vision.placed import Placed, nobody
@@ -40,11 +41,11 @@ LOOK_BACK = 30
 PATIENCE = 12
 """Frames in a row that may fail before following gives up and only finding is left."""
 
-MOST_NORMALS = 60
+MOST_NORMALS = 48
 """Normals on each circle."""
 
-REACH = 0.007
-"""Half length of the normals in widths of the picture."""
+REACH, LEAST_REACH = 0.007, 6.0
+"""Half length of the normals in widths of the picture, and the least, px."""
 
 MARK_SD = 0.2
 """Least standard deviation of a mark, px."""
@@ -91,6 +92,7 @@ class _Piece:
     picture: Picture | None = None
     cov: Array = field(default_factory=lambda: np.zeros((4, 4)))
     key: Keyframe | None = None
+    normals: Normals | None = None
     lost: int = 0
 
     @property
@@ -280,7 +282,7 @@ def _next(piece: _Piece, frame: Frame) -> Seen | None:
     if seen is not None:
         piece.key = None
         return seen
-    lines = _look(piece, frame.picture, view, REACH).marks
+    lines = _look(piece, frame.picture, view).marks
     marks = joined([landmarks, lines.pick(lines.line >= CIRCLES)])
     fit = solve_view(marks, view, piece.rig, size, view_sd=(1, 1, 0.02, 0.1))
     key = piece.key
@@ -303,19 +305,23 @@ def _predicted(piece: _Piece, frame: Frame) -> View:
     return View(last.view.vector + ahead * (last.view.vector - before.view.vector))
 
 
-def _look(piece: _Piece, picture: Picture, view: View, reach: float) -> Evidence:
-    return measure(
-        picture, view.vector, piece.rig, reach=max(reach * picture.shape[1], 6.0),
-        most=MOST_NORMALS, least_sd=MARK_SD, palette=piece.palette,
-        level=piece.edge.level,
-    )  # fmt: skip
+def _look(piece: _Piece, picture: Picture, view: View) -> Evidence:
+    size = (picture.shape[1], picture.shape[0])
+    normals = piece.normals and piece.normals.moved(view.vector, piece.rig, size)
+    if normals is None:
+        reach = max(REACH * size[0], LEAST_REACH)
+        normals = lay_out(view.vector, piece.rig, size, reach=reach, most=MOST_NORMALS)
+        piece.normals = normals
+    return measure_along(
+        picture, normals, least_sd=MARK_SD, palette=piece.palette, level=piece.edge.level
+    )
 
 
 def _settle(piece: _Piece, frame: Frame, view: View) -> Seen | None:
     """Refine a predicted view on the rings; None where they are not there."""
     size = (frame.picture.shape[1], frame.picture.shape[0])
     for _ in range(3):
-        evidence = _look(piece, frame.picture, view, REACH)
+        evidence = _look(piece, frame.picture, view)
         if not _enough(evidence, piece.rig, evidence.covered):
             return None
         fit = solve_view(

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.normals import SAMPLES, THIN, Profiles, lay_out, profiles
+from vision.normals import SAMPLES, THIN, Normals, Profiles, lay_out, profiles
 from vision.picture import Picture
 from vision.pose import CIRCLES, FIXED, TWELVE, Marks
 from vision.runs import Runs, smooth
@@ -97,8 +97,8 @@ def measure(
     most: int = 360,
     least_sd: float = EDGE_SD,
     palette: Array | None = None,
-    level: float = 0.0,
     lines: bool = True,
+    level: float = 0.0,
 ) -> Evidence:
     """Measure the circles, and the lines if asked, near where the camera puts them.
 
@@ -115,11 +115,25 @@ def measure(
         Least standard deviation of a mark, px.
     palette : ndarray, shape (9, 2, 3), optional
         Colours of the edges in the frames before; NaN where not known.
+    lines : bool
+        Whether lines are measured.
     level : float
         Where the 12-ft edge is between ice (−0.5) and paint (0.5), as `vision.outline` tells.
     """
     h, w = picture.shape[:2]
     normals = lay_out(view, rig, (w, h), reach=reach, spacing=spacing, most=most, lines=lines)
+    return measure_along(picture, normals, least_sd=least_sd, palette=palette, level=level)
+
+
+def measure_along(
+    picture: Picture,
+    normals: Normals,
+    *,
+    least_sd: float = EDGE_SD,
+    palette: Array | None = None,
+    level: float = 0.0,
+) -> Evidence:
+    """Measure circles and lines along given normals; see `measure`."""
     colours = profiles(picture, normals)
     wide = {kind: part for kind, part in normals.kinds.items() if kind not in THIN}
     count = max((part.stop for part in wide.values()), default=0)
@@ -161,7 +175,7 @@ def measure(
         sd[runs.index] = spread[:, None]
     line = np.repeat(list(kinds), [part.stop - part.start for part in kinds.values()])
     marks = Marks(line, along, point + normal * offset[:, None], normal, sd).pick(good)
-    step = 2 * reach / (SAMPLES - 1)
+    step = 2 * float(normals.reach[0]) / (SAMPLES - 1) if count else 0.0
     return Evidence(marks, normals.visible, covered, found, value[rim], sample[rim], step)
 
 

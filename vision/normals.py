@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,6 +47,9 @@ BLOCK = 6
 MOST_BLOCKS, MOST_STEPS = 18, 40
 """Most marks of a thin line, and of the edge of a wide one."""
 
+MOST_MOVED = 0.01
+"""How far the same normals may move from where they were laid out, in widths of the picture."""
+
 LEAST, LEAST_BLOCKS = 8, 3
 """Fewer normals than this are no line; of a thin line, fewer blocks."""
 
@@ -80,7 +83,8 @@ _SPACING = np.array([along[1] - along[0] for _, along in _CANDIDATES])
 _COUNTS = np.array([len(along) for _, along in _CANDIDATES])
 _STARTS = np.cumsum(_COUNTS) - _COUNTS
 _ALONG = np.concatenate([along for _, along in _CANDIDATES])
-_FOOT, _WAY = (np.ascontiguousarray(v.T) for v in ice_frame(np.repeat(_KINDS, _COUNTS), _ALONG))
+_LINE = np.repeat(_KINDS, _COUNTS)
+_FOOT, _WAY = (np.ascontiguousarray(v.T) for v in ice_frame(_LINE, _ALONG))
 
 # Candidates are kept by groups: on a thin line a block, else one alone.
 _GROUP = np.where(np.isin(_KINDS, THIN), BLOCK, 1)
@@ -109,6 +113,8 @@ class Normals:
 
     Attributes
     ----------
+    at : ndarray of int, shape (n,)
+        Which of all places that may be measured they are.
     kinds : dict of int to slice
         Which of the places lie on each kind of line.
     along : ndarray, shape (n,)
@@ -119,14 +125,36 @@ class Normals:
         Half length to be looked at, px.
     visible : ndarray, shape (3,)
         Fraction of each circle inside the picture.
+    samples : ndarray of float32, shape (2, n, SAMPLES)
+        From the place to the samples along the normal, x and y, px.
     """
 
+    at: Index
     kinds: dict[int, slice]
     along: Array
     point: Array
     normal: Array
     reach: Array
     visible: Array
+    samples: Profiles
+
+    def moved(self, view: Array, rig: Array, size: tuple[int, int]) -> Normals | None:
+        """Give the same normals in a picture taken a little later.
+
+        Returns
+        -------
+        Normals or None
+            None where they have moved so far that they must be laid out anew.
+        """
+        if not len(self.at):
+            return None
+        measure = measures(rig)[_LINE[self.at]]
+        point = project((_FOOT[:, self.at] + _WAY[:, self.at] * measure).T, view, rig, size)
+        low, high = point.min(0) - self.reach[0], point.max(0) + self.reach[0]
+        near = np.abs(point - self.point).max() < MOST_MOVED * size[0]
+        if not (near and low.min() > 0 and (high < np.array(size) - 1).all()):
+            return None
+        return replace(self, point=point)
 
 
 def lay_out(
@@ -135,9 +163,9 @@ def lay_out(
     size: tuple[int, int],
     *,
     reach: float,
-    spacing: float,
-    most: int,
-    lines: bool,
+    spacing: float = 6.0,
+    most: int = 360,
+    lines: bool = True,
 ) -> Normals:
     """Places to measure: on the circles every `spacing` px, at most `most`; and on the lines.
 
@@ -155,7 +183,7 @@ def lay_out(
     shown = np.add.reduceat(inside, _STARTS[:upto], dtype=np.int64)
     span = np.add.reduceat(np.where(inside, length, 0.0), _STARTS[:upto]) / 2
     scale = span / np.maximum(shown * _SPACING[:upto], 1e-9)
-    wanted = np.where(_GROUP[:upto] > 1, min(most // 5, MOST_BLOCKS), min(most // 2, MOST_STEPS))
+    wanted = np.where(_GROUP[:upto] > 1, min(most // 6, MOST_BLOCKS), min(most // 2, MOST_STEPS))
     wanted[:CIRCLES] = np.clip(span[:CIRCLES] / spacing, 12, most)
     kept = _thinned(inside, wanted, groups)
     at = np.flatnonzero(np.repeat(kept, _GROUP_SIZE[:groups]))
@@ -170,15 +198,10 @@ def lay_out(
     thin, hog = _GROUP[:upto] > 1, _KINDS[:upto] == HOG_LINE
     reaches[thin] = np.maximum(reach, LINE_REACH * scale[thin])
     reaches[hog] = np.minimum(reach, BAND * scale[hog])
-    normal = np.stack([down[at], -across[at]]) / length[at]
-    return Normals(
-        kinds,
-        _ALONG[at],
-        place[at],
-        normal.T,
-        np.repeat(reaches, counts),
-        shown[:CIRCLES] / _COUNTS[:CIRCLES],
-    )
+    normal, reaches = np.stack([down[at], -across[at]]) / length[at], np.repeat(reaches, counts)
+    samples = (normal * reaches).astype(np.float32)[..., None] * _SHARES
+    visible = shown[:CIRCLES] / _COUNTS[:CIRCLES]
+    return Normals(at, kinds, _ALONG[at], place[at], normal.T, reaches, visible, samples)
 
 
 def _thinned(inside: Flags, wanted: Index, groups: int) -> Flags:
@@ -199,7 +222,5 @@ def profiles(picture: Picture, normals: Normals) -> Profiles:
     """Colours along the normals, shape (n, SAMPLES, 3)."""
     if not normals.kinds:
         return np.zeros((0, SAMPLES, 3), np.float32)
-    along = (normals.normal * normals.reach[:, None]).astype(np.float32)
-    start = normals.point.astype(np.float32)
-    x, y = (start[:, axis, None] + along[:, axis, None] * _SHARES for axis in (0, 1))
+    x, y = normals.point.T.astype(np.float32)[..., None] + normals.samples
     return np.asarray(colours_at(picture, x, y), np.float32)
