@@ -86,6 +86,8 @@ def unpack_clip(path: Path, tab: str | None, folder: Path) -> tuple[Project, tup
         return project, tuple(_beside(path, Path(place.folder), name) for name in project.video)
     except UNREADABLE as error:
         raise InputError(f"{path}: damaged archive ({error})") from None
+    except OSError as error:
+        raise InputError(f"{path}: its clip cannot be unpacked ({error.strerror})") from None
 
 
 @dataclass(frozen=True)

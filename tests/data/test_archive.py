@@ -10,6 +10,11 @@ import pytest
 from data import archive
 from data.archive import unpack
 from data.errors import InputError
+from data.project import unpack_clip
+from tests.data import dialects
+from tests.data.dialects import project
+
+CLIP = '<property name="path" type="string">v/c.mp4</property>'
 
 
 def zipped(entries: Mapping[str, bytes]) -> zipfile.ZipFile:
@@ -100,3 +105,13 @@ def test_an_archive_that_lies_about_sizes_is_stopped(
     monkeypatch.setattr(archive, "LARGEST_CLIP", 10)
     with pytest.raises(InputError, match="which no clip has"):
         files_of(tmp_path, {"c.mp4": b"more than ten bytes"}, "c.mp4")
+
+
+def test_an_entry_that_starts_nowhere_is_refused(tmp_path: Path) -> None:
+    raw = bytearray(dialects.archive({"a.trk": project(video=CLIP), "v/c.mp4": b"clip"}))
+    at = raw.index(b"PK\x01\x02", raw.index(b"PK\x01\x02") + 1)  # the clip in the directory
+    raw[at + 42 : at + 46] = b"\xff\xff\xff\x7f"  # where it starts
+    path = dialects.put(tmp_path, bytes(raw), "a.trz")
+    (tmp_path / "to").mkdir()
+    with pytest.raises(InputError, match=r"a\.trz"):
+        unpack_clip(path, None, tmp_path / "to")
