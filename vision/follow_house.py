@@ -282,7 +282,7 @@ def _next(piece: _Piece, frame: Frame) -> Seen | None:
     if seen is not None:
         piece.key = None
         return seen
-    lines = _look(piece, frame.picture, view).marks
+    lines = _look(piece, frame.picture, _normals(piece, frame.picture, view)).marks
     marks = joined([landmarks, lines.pick(lines.line >= CIRCLES)])
     fit = solve_view(marks, view, piece.rig, size, view_sd=(1, 1, 0.02, 0.1))
     key = piece.key
@@ -305,13 +305,18 @@ def _predicted(piece: _Piece, frame: Frame) -> View:
     return View(last.view.vector + ahead * (last.view.vector - before.view.vector))
 
 
-def _look(piece: _Piece, picture: Picture, view: View) -> Evidence:
+def _normals(piece: _Piece, picture: Picture, view: View) -> Normals:
+    """Give the normals for a view: those of the frame before, if they have not moved far."""
     size = (picture.shape[1], picture.shape[0])
     normals = piece.normals and piece.normals.moved(view.vector, piece.rig, size)
     if normals is None:
         reach = max(REACH * size[0], LEAST_REACH)
         normals = lay_out(view.vector, piece.rig, size, reach=reach, most=MOST_NORMALS)
         piece.normals = normals
+    return normals
+
+
+def _look(piece: _Piece, picture: Picture, normals: Normals) -> Evidence:
     return measure_along(
         picture, normals, least_sd=MARK_SD, palette=piece.palette, level=piece.edge.level
     )
@@ -321,8 +326,11 @@ def _settle(piece: _Piece, frame: Frame, view: View) -> Seen | None:
     """Refine a predicted view on the rings; None where they are not there."""
     size = (frame.picture.shape[1], frame.picture.shape[0])
     for _ in range(3):
-        evidence = _look(piece, frame.picture, view)
-        if not _enough(evidence, piece.rig, evidence.covered):
+        normals = _normals(piece, frame.picture, view)
+        if not _enough(piece.rig, normals.visible, normals.visible):
+            return None
+        evidence = _look(piece, frame.picture, normals)
+        if not _enough(piece.rig, evidence.visible, evidence.covered):
             return None
         fit = solve_view(
             evidence.marks, view, piece.rig, size, view_sd=FREE, width=WIDTH, iterations=6
@@ -331,7 +339,7 @@ def _settle(piece: _Piece, frame: Frame, view: View) -> Seen | None:
         view = fit.view
         if shift[:3].max() * view.focal < SETTLED * REACH * size[0]:
             break
-    if not _enough(evidence, piece.rig, _explained(evidence, fit)):
+    if not _enough(piece.rig, evidence.visible, _explained(evidence, fit)):
         return None
     known = np.isfinite(piece.palette)
     new = np.isfinite(evidence.palette)
@@ -351,10 +359,10 @@ def _explained(evidence: Evidence, fit: ViewSolution) -> Array:
     return evidence.covered * share
 
 
-def _enough(evidence: Evidence, rig: Array, covered: Array) -> bool:
-    """Whether so much of the circles is covered that they fix a view."""
+def _enough(rig: Array, visible: Array, covered: Array) -> bool:
+    """Whether so much of the circles is covered, of what is visible, that they fix a view."""
     around = 2 * np.pi * np.array([HOUSE.twelve_foot, rig[R8], rig[R4]])
-    arc, whole = float(covered @ around), float(evidence.visible @ around)
+    arc, whole = float(covered @ around), float(visible @ around)
     return arc > LEAST_ARC and arc > LEAST_SUPPORT * whole
 
 
