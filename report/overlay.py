@@ -12,14 +12,14 @@ import av
 import cv2
 import numpy as np
 import pandas as pd
-from matplotlib.colors import is_color_like, to_rgb
+from matplotlib.colors import to_rgb
 from numpy.typing import NDArray
 
 from data.files import whole_file
 from data.progress import Progress, no_progress
 from data.results import Collision
 from data.sheet import HOUSE, SHEET, STONE
-from report.style import stone_colours
+from report.style import stone_colours, team_colour
 from vision.camera import Camera, apply_homography
 from vision.clip import DEFAULT_IMAGE_FPS, Clip, Frame, Image
 
@@ -209,13 +209,19 @@ def _scene(
         frames = rows["frame"].to_numpy(np.int64)
         columns = ["x", "y", "theta", "vx", "vy", "omega", "seen"]
         x, y, theta, vx, vy, omega, seen = rows[columns].to_numpy(float).T
-        team = _team_colour(rows["team"].iloc[0])
+        team = team_colour(rows["team"].iloc[0])
         places = np.stack([x, y], axis=1)
         for k, index in enumerate(frames):
             speed = float(np.hypot(vx[k], vy[k]))
             states.setdefault(int(index), []).append(
                 State(
-                    stone, places[k], float(theta[k]), speed, float(omega[k]), bool(seen[k]), team
+                    stone,
+                    places[k],
+                    float(theta[k]),
+                    speed,
+                    float(omega[k]),
+                    bool(seen[k]),
+                    None if team is None else _bgr(team),
                 )
             )
         if np.ptp(places, axis=0).max() > radius / 3:
@@ -243,11 +249,6 @@ def _apart(places: Array, least: float) -> NDArray[np.intp]:
         if np.hypot(x - x0, y - y0) >= least:
             kept.append(rank)
     return np.array(kept)
-
-
-def _team_colour(team: str) -> Colour | None:
-    """Colour by which a team is called; None where it has another name, or none."""
-    return _bgr(team) if team and is_color_like(team) else None
 
 
 def _bgr(colour: str) -> Colour:

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from data.results import Results
 from data.sheet import SHEET, House
 from physics.simulate import Shot
-from report.style import stone_colours
+from report.style import stone_colours, team_colour
 
 STEPS: Mapping[str, float] = {
     "t": 1e-5, "x": 1e-4, "y": 1e-4, "theta": 1e-3, "speed": 1e-4, "omega": 1e-3,
@@ -57,7 +57,12 @@ def playback(
     ranks = {int(frame): rank for rank, frame in enumerate(clock.index)}
     colours = stone_colours(tracks["stone"].unique())
     stones = [
-        {"name": str(name), "colour": colours[str(name)], **_columns(group, ranks)}
+        {
+            "name": str(name),
+            "colour": colours[str(name)],
+            "team": team_colour(group["team"].iloc[0]),
+            **_columns(group, ranks),
+        }
         for name, group in tracks.sort_values("frame").groupby("stone", sort=True)
     ]
     return {

@@ -14,6 +14,7 @@ from typing import Any
 import matplotlib.style
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.colors import is_color_like, to_hex
 from matplotlib.figure import Figure
 
 BLACK = "#1a1a1a"
@@ -91,6 +92,11 @@ def new_figure(width: float, height: float) -> Figure:
 def stone_colours(stones: Iterable[str]) -> dict[str, str]:
     """Give each stone its colour, by the order of the names."""
     return {name: _STONES[rank % len(_STONES)] for rank, name in enumerate(sorted(stones))}
+
+
+def team_colour(team: str) -> str | None:
+    """Colour (#rrggbb) by which a team is called; None where it has another name, or none."""
+    return to_hex(team) if team and is_color_like(team) else None
 
 
 def model_lines(models: Iterable[str]) -> dict[str, tuple[str, Any]]:

@@ -57,13 +57,14 @@ class PlanView {
     };
   }
 
-  /** A stone with its handle; `kind` is solid or ghost. */
-  stone(name, colour, kind = "solid", parent = this.stones) {
-    const group = svgElement("g", { class: `stone ${kind}`, style: `--stone: ${colour}` }, parent);
+  /** A stone with its handle; `kind` is solid, ghost or end. A solid one shows its team's colour. */
+  stone({ name, colour, team }, kind = "solid") {
+    const group = svgElement("g", { class: `stone ${kind}`, style: `--stone: ${colour}` }, this.stones);
     const turned = svgElement("g", {}, group);
     svgElement("line", { class: "handle", x1: UNITS, x2: UNITS * 1.45 }, turned);
     svgElement("circle", { class: "body", r: UNITS }, group);
     if (kind === "solid") {
+      if (team) svgElement("circle", { class: "team", r: 0.84 * UNITS, stroke: team }, group);
       const short = name.length <= 2;
       const label = svgElement("text", { class: "name", y: short ? 0 : 1.75 * UNITS }, group);
       label.classList.toggle("outside", !short);

@@ -68,13 +68,13 @@ class Player {
       { t: hit.t, mark: this.plan.hit(hit.x, hit.y) }
     ));
     this.ghosts = new Map(this.stones.map((stone) => [
-      stone.name, [this.plan.trail(stone.colour, "ghost"), this.plan.stone(stone.name, stone.colour, "ghost")],
+      stone.name, [this.plan.trail(stone.colour, "ghost"), this.plan.stone(stone, "ghost")],
     ]));
     this.drawn = this.stones.map((stone) => {
       const whole = this.plan.trail(stone.colour, "whole"), past = this.plan.trail(stone.colour, "past");
       const places = Array.from(stone.x, (x, k) => [x, stone.y[k]]);
       if (moves(stone)) whole.through(places);
-      const drawn = this.plan.stone(stone.name, stone.colour);
+      const drawn = this.plan.stone(stone);
       drawn.turns(stone.turns);
       return { stone, past, places: moves(stone) ? places : null, drawn };
     });
@@ -265,7 +265,7 @@ class Player {
 /** Speed of each stone that moves against time, with a cursor that is also a handle. */
 class SpeedChart {
   constructor(svg, player) {
-    const W = Math.max(Math.min(svg.clientWidth, 760), 320), H = 220, left = 38, right = 8, top = 16, bottom = 26;
+    const W = Math.max(Math.min(svg.clientWidth, 760), 320), H = 228, left = 38, right = 8, top = 26, bottom = 26;
     svg.setAttribute("viewBox", `0 0 ${W} ${H}`);
     const { times } = player, t0 = times[0], t1 = Math.max(times[times.length - 1], t0 + 0.01);
     const moving = player.stones.filter(moves);

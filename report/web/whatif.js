@@ -8,7 +8,7 @@ class WhatIf {
     this.model = byId("whatif-model");
     this.ice = byId("whatif-ice");
     this.curl = byId("whatif-curl");
-    this.colours = Object.fromEntries(scene.stones.map((stone) => [stone.name, stone.colour]));
+    this.known = Object.fromEntries(scene.stones.map((stone) => [stone.name, stone]));
     this.#draw();
     this.initial = new Map(this.sliders.map((slider) => [slider.id, slider.value]));
     for (const input of [...this.sliders, this.model, this.ice, this.curl]) {
@@ -28,14 +28,13 @@ class WhatIf {
     const seen = scene.rings.length ? [] : player.places; // elsewhere discs may end far away
     this.plan = new PlanView(byId("whatif-view"), scene, places.map(({ x, y }) => [x, y]).concat(seen));
     this.unchanged.forEach(({ x, y }, k) => {
-      const ghost = this.plan.stone("", this.colours[data.shot.stones[k].name], "ghost");
+      const ghost = this.plan.stone(this.known[data.shot.stones[k].name], "ghost");
       ghost.move(x, y, 0);
       ghost.turns(false);
     });
     this.drawn = data.shot.stones.map((stone, k) => {
-      const trail = this.plan.trail(this.colours[stone.name], "simulated");
-      const end = this.plan.stone(stone.name, this.colours[stone.name], "end");
-      const start = this.plan.stone(stone.name, this.colours[stone.name]);
+      const known = this.known[stone.name], trail = this.plan.trail(known.colour, "simulated");
+      const end = this.plan.stone(known, "end"), start = this.plan.stone(known);
       this.#holdable(start, k);
       return { trail, start, end };
     });
@@ -180,7 +179,7 @@ class WhatIf {
         this.done.gone[k] < Infinity ? "left" : number(Math.hypot(rest.x, rest.y), 3), number(100 * off, 1)];
       cells.forEach((text, i) => {
         const cell = document.createElement(i ? "td" : "th");
-        if (!i) { cell.scope = "row"; cell.style.setProperty("--stone", this.colours[stone.name]); }
+        if (!i) { cell.scope = "row"; cell.style.setProperty("--stone", this.known[stone.name].colour); }
         cell.textContent = text;
         row.append(cell);
       });
