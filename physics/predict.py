@@ -9,12 +9,13 @@ import numpy as np
 import pandas as pd
 
 from data.errors import InputError
-from data.results import Collision, SimulationScore
+from data.results import Collision, Estimate, SimulationScore
 from data.sheet import STONE
-from physics.curl import NoCurl
+from physics.curl import Curl, NoCurl
 from physics.estimate import Estimates
 from physics.ice import Constant, IceLaw
 from physics.impact import Frictional, Impact, PointMass, RigidBody
+from physics.shot_model import curl as fitted_curl
 from physics.shot_model import ice as fitted_ice
 from physics.simulate import Shot, StoneStart, simulate
 from physics.spread import STATE, Doubt, draws, path_spread, simulated_hits
@@ -90,6 +91,9 @@ def simulate_measured(
     ice: IceLaw = Constant(max(friction, 0.0) or 1e-6)
     if estimates.friction.law == "fit" and estimates.whole is not None:
         ice = fitted_ice(estimates.whole.state())
+    curl: Curl = NoCurl()
+    if estimates.whole is not None:
+        curl = fitted_curl(estimates.whole.state())
     clock = tracks.groupby("frame", sort=True)["t"].first()
     clock = clock[clock >= start]
     doubt = _doubt(tracks, start, estimates)
@@ -107,7 +111,7 @@ def simulate_measured(
             scores[name] = SimulationScore(None, {}, notes[name])
             continue
         try:
-            shot = Shot(stones, impact, ice, NoCurl(), radius)
+            shot = Shot(stones, impact, ice, curl, radius)
             run = simulate(shot)
         except InputError as error:
             scores[name] = SimulationScore(None, {}, f"cannot be simulated: {error}")
@@ -180,12 +184,11 @@ def _doubt(tracks: pd.DataFrame, start: float, estimates: Estimates) -> Doubt:
         own = [hit.after[str(name)] for hit in estimates.collisions if name in hit.stones]
         spins[str(name)] = tuple(state.sd_omega or 0.0 for state in own)
     mu = estimates.friction
-    rubs = [hit.stderr_stone_friction for hit in estimates.collisions]
     return Doubt(
         states,
         spins,
         restitution=estimates.restitution.stderr or 0.0,
-        stone_friction=min((rub for rub in rubs if rub), default=0.0),
+        stone_friction=between_stones(estimates).stderr or 0.0,
         friction=abs((mu.stderr or 0.0) / mu.value) if mu.value else 0.0,
     )
 
@@ -203,20 +206,16 @@ def _models(
         restitution = RESTITUTION
         if estimates.collisions:
             warnings.append(f"simulation: restitution not measured, {RESTITUTION} assumed")
-    measured = [
-        (hit.stone_friction, hit.stderr_stone_friction)
-        for hit in estimates.collisions
-        if hit.stone_friction is not None and hit.stderr_stone_friction
-    ]
     notes: dict[str, str] = {}
-    stone_friction = max([STONE_FRICTION, *(_rub(hit) for hit in estimates.collisions)])
-    if measured:
-        values, errors = np.array(measured, float).T
-        stone_friction = float(np.average(values, weights=errors**-2))
+    told = between_stones(estimates)
+    stone_friction = told.value
+    if stone_friction is not None:
         notes["frictional"] = f"friction between the stones {stone_friction:.3f}, measured"
-    elif estimates.collisions:
+    else:
+        stone_friction = max([STONE_FRICTION, *(_rub(hit) for hit in estimates.collisions)])
         how = "at least about" if stone_friction > STONE_FRICTION else "assumed to be"
-        notes["frictional"] = f"friction between the stones {how} {stone_friction:.2g}"
+        if estimates.collisions:
+            notes["frictional"] = f"friction between the stones {how} {stone_friction:.2g}"
     out: dict[str, Impact | None] = {
         "point-mass": PointMass(restitution),
         "rigid-body": RigidBody(restitution),
@@ -228,6 +227,22 @@ def _models(
         out["rigid-body"] = None
         notes["rigid-body"] = f"needs the spin after the hit of {', '.join(blind)}"
     return out, notes
+
+
+def between_stones(estimates: Estimates) -> Estimate:
+    """Friction between the stones: of the whole shot if it tells it, else of its hits."""
+    if estimates.whole is not None and estimates.whole.told("stone_friction"):
+        return estimates.whole["stone_friction"]
+    told = [
+        (hit.stone_friction, hit.stderr_stone_friction)
+        for hit in estimates.collisions
+        if hit.stone_friction is not None and hit.stderr_stone_friction
+    ]
+    if not told:
+        return Estimate()
+    values, errors = np.array(told, float).T
+    weights = errors**-2
+    return Estimate(float(weights @ values / weights.sum()), float(weights.sum() ** -0.5))
 
 
 def _rub(hit: Collision) -> float:

@@ -13,7 +13,7 @@ from data.errors import InputError
 from data.results import Results
 from data.sheet import SHEET, STONE
 from physics.bounds import Bounds
-from physics.curl import NoCurl
+from physics.curl import FCV1Curl, NoCurl
 from physics.curve import Curve, curve_for
 from physics.ice import Constant, Fit, IceLaw
 from physics.impact import Frictional
@@ -103,10 +103,10 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     e = results.restitution
     if e.value is None:
         assumed.append(f"restitution not measured, {RESTITUTION} assumed")
-    told = [hit.stone_friction for hit in results.collisions if hit.stone_friction is not None]
+    told = _between_stones(results)
     impact = Frictional(
         min(max(RESTITUTION if e.value is None else e.value, 0.0), 1.0),
-        max(float(np.mean(told)), 0.0) if told else STONE_FRICTION,
+        STONE_FRICTION if told is None else max(told, 0.0),
     )
     stone = stones[thrown]
     speed = math.hypot(stone.vx, stone.vy)
@@ -117,7 +117,9 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     curling = abs(results.radius / STONE.radius - 1) < 0.1
     release = max(HOG_TO_TEE + ahead - way, 0.0) if curling else 0.0
     bounds = Bounds(1 if stone.vy > 0 else -1) if curling else None
-    shot = Shot(tuple(moved), impact, ice, NoCurl(), results.radius, bounds)
+    turn = results.curl.value
+    curl = NoCurl() if turn is None else FCV1Curl(turn=turn, loss=0.0)
+    shot = Shot(tuple(moved), impact, ice, curl, results.radius, bounds)
     return Start(shot, thrown, sd, e.stderr or 0.0, sd_friction, release, tuple(assumed))
 
 
@@ -175,6 +177,14 @@ def _row(group: pd.DataFrame, time: float, ice: IceLaw) -> pd.Series:
         then = Path(0.0, Motion(x, y, 0.0, vx, vy, omega), ice, NoCurl()).at(time - row["t"])
         row[list(STATE)] = [then.x, then.y, then.vx, then.vy, then.omega]
     return row
+
+
+def _between_stones(results: Results) -> float | None:
+    """Friction between the stones, of the whole shot if it tells it, else the mean of its hits."""
+    if results.laws is not None and "stone_friction" in results.laws.names:
+        return results.laws.values[results.laws.names.index("stone_friction")]
+    told = [hit.stone_friction for hit in results.collisions if hit.stone_friction is not None]
+    return float(np.mean(told)) if told else None
 
 
 def _fastest(stones: tuple[StoneStart, ...]) -> int:
