@@ -73,8 +73,9 @@ class Method:
 class Law:
     """One choice of laws that the shot was fitted with.
 
-    ``criterion`` is Schwarz's, less that of the best; ``weight`` is the probability that goes
-    with it, and ``friction`` that of the ice at 1 m/s under these laws.
+    ``criterion`` is minus twice the log probability of the sightings, less that of the best;
+    ``weight`` is the probability of these laws among those tried, and ``friction`` that of the
+    ice at 1 m/s under them.
     """
 
     name: str

@@ -24,7 +24,7 @@ Floats = NDArray[np.float64]
 DISTANCE_SD = 0.015
 """How well two radii are known as the distance at contact (scale, shape), relative."""
 
-MOMENTUM_SD = 0.003
+MOMENTUM_SD = 0.0015
 """How well momentum is known to be kept (local scale, masses), relative to the speeds."""
 
 FARTHEST = 100.0

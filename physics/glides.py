@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
 from data.results import Estimate, Friction, Glide
-from data.sheet import GRAVITY
+from data.sheet import GRAVITY, STONE
 from physics.shot_fit import Deceleration, ShotFit
 from physics.traces import PLACE_REACH, Trace
 
@@ -18,10 +17,11 @@ Floats = NDArray[np.float64]
 FREE = Deceleration(0.0, 3.0, 3.0)
 """What is assumed of decelerations when they are to be measured: nothing."""
 
-USUAL = Estimate(0.1, 0.1)
-"""Deceleration of what glides, m/s²: only used where the glides at hand tell less."""
+USUAL, ANY = Estimate(0.103, 0.04), Estimate(0.1, 0.1)
+"""Deceleration of curling stones on ice (μ of 0.006 to 0.016 was measured by Li et al., 2022,
+Lubricants 10, 265) and of anything that glides, m/s²: only used where the glides tell less."""
 
-LEAST_SPREAD = 0.015
+LEAST_SPREAD = 0.01
 """Least spread of decelerations from glide to glide, m/s²: no ice law is exactly constant."""
 
 WORST = 0.02
@@ -42,9 +42,10 @@ def measure_glides(
     prior : Deceleration
         What to assume of a glide that is too short to tell.
     """
-    glides, found = _each(fit, known, radius)
-    friction, spread = _pooled(found)
-    mean, sd = float(USUAL.value or 0.0), float(USUAL.stderr or 0.0)
+    glides, values, cov = _each(fit, known, radius)
+    friction, spread = _pooled(values, cov)
+    usual = USUAL if abs(radius / STONE.radius - 1) < 0.1 else ANY
+    mean, sd = float(usual.value or 0.0), float(usual.stderr or 0.0)
     if friction.value is not None and friction.stderr is not None:
         measured, error = friction.value * GRAVITY, max(friction.stderr * GRAVITY, 1e-6)
         share = sd**2 / (sd**2 + error**2)
@@ -53,45 +54,41 @@ def measure_glides(
     return glides, friction, Deceleration(mean, spread, spread)
 
 
-@dataclass(frozen=True)
-class _Slowing:
-    """Deceleration of one glide along its path and its error, m/s²."""
-
-    along: float
-    sd: float
-
-
 def _each(
     fit: ShotFit, known: Mapping[str, Trace], radius: float
-) -> tuple[tuple[Glide, ...], list[_Slowing]]:
-    """Friction of each piece that is long enough to tell it."""
-    glides, found = [], []
+) -> tuple[tuple[Glide, ...], Floats, Floats]:
+    """Each glide that is long enough, and all their decelerations (m/s²) with covariance."""
+    glides: list[Glide] = []
+    slopes: list[Floats] = []
+    bends: list[float] = []
     for i, piece in enumerate(fit.pieces):
         if piece.rest or len(piece.samples) < 5:
             continue
         t = known[piece.stone].t[piece.samples]
-        x = fit.theta[6 * i : 6 * i + 6].reshape(2, 3)
-        cov = fit.cov[6 * i : 6 * i + 6, 6 * i : 6 * i + 6]
+        own = slice(6 * i, 6 * i + 6)
+        x, cov = fit.theta[own].reshape(2, 3), fit.cov[own, own]
         end = stop_time(x, fit.origins[i], float(t[-1]))
         speed = x[:, 1] + x[:, 2] * 0.5 * (float(t[0]) + end - 2 * fit.origins[i])
         size = float(np.hypot(*speed))
         if size < radius or size * (end - float(t[0])) < radius:
             continue
         along = speed / size
-        slope = np.array([0.0, 0.0, -along[0], 0.0, 0.0, -along[1]])
-        value = float(slope @ fit.theta[6 * i : 6 * i + 6])
+        slowing = np.array([0.0, 0.0, -along[0], 0.0, 0.0, -along[1]])
+        aside = np.array([0.0, 0.0, -along[1], 0.0, 0.0, along[0]])  # to the left
         bend = _bend(known[piece.stone].sd_place[piece.samples], size, end - float(t[0]))
-        sd = float(np.hypot(np.sqrt(slope @ cov @ slope), bend))
+        sd, sd_aside = (float(np.hypot(np.sqrt(s @ cov @ s), bend)) for s in (slowing, aside))
         if sd / GRAVITY > WORST:
             continue
-        # Of the acceleration across the path: to its left.
-        aside = np.array([0.0, 0.0, -along[1], 0.0, 0.0, along[0]])
-        turn = float(aside @ fit.theta[6 * i : 6 * i + 6]) / size
-        sd_turn = float(np.hypot(np.sqrt(aside @ cov @ aside), bend)) / size
-        found.append(_Slowing(value, sd))
-        slowed = value / GRAVITY, sd / GRAVITY
-        glides.append(Glide(piece.stone, float(t[0]), end, *slowed, turn, sd_turn, size))
-    return tuple(glides), found
+        mu = float(slowing @ fit.theta[own]) / GRAVITY
+        turn = float(aside @ fit.theta[own]) / size
+        glides.append(
+            Glide(piece.stone, float(t[0]), end, mu, sd / GRAVITY, turn, sd_aside / size, size)
+        )
+        bends.append(bend)
+        slopes.append(np.zeros(len(fit.theta)))
+        slopes[-1][own] = slowing
+    rows = np.array(slopes).reshape(len(glides), len(fit.theta))
+    return tuple(glides), rows @ fit.theta, rows @ fit.cov @ rows.T + np.diag(np.square(bends))
 
 
 def _bend(sd_place: Floats, speed: float, duration: float) -> float:
@@ -121,24 +118,33 @@ def stop_time(x: Floats, origin: float, last: float) -> float:
     return min(last, origin + float(x[:, 1] @ x[:, 1]) / braking)
 
 
-def _pooled(found: Sequence[_Slowing]) -> tuple[Friction, float]:
+def _pooled(values: Floats, cov: Floats) -> tuple[Friction, float]:
     """Mean friction over the glides, and the spread of decelerations between them, m/s².
 
-    Random effects after DerSimonian and Laird, 1986, Control. Clin. Trials 7, 177.
+    Random effects after DerSimonian and Laird, 1986, Control. Clin. Trials 7, 177, for values
+    whose errors are correlated: what a fit takes from the speed before a hit it takes from the
+    speed after it.
+
+    Parameters
+    ----------
+    values : (n,) array
+        Decelerations, m/s².
+    cov : (n, n) array
+        Their covariance.
     """
-    if not found:
+    count = len(values)
+    if not count:
         return Friction(), 0.0
-    values = np.array([slowing.along for slowing in found])
-    variance = np.array([slowing.sd for slowing in found]) ** 2
-    weights = 1 / variance
-    mean = float(weights @ values / weights.sum())
-    between, clear = 0.0, False
-    if len(values) > 1:
-        excess = float(weights @ (values - mean) ** 2) - (len(values) - 1)
-        between = max(0.0, excess / float(weights.sum() - (weights**2).sum() / weights.sum()))
-        # Two or three glides show some spread by chance alone.
-        clear = excess > 2 * float(np.sqrt(2 * (len(values) - 1)))
-    weights = 1 / (variance + between)
-    mean = float(weights @ values / weights.sum())
-    stderr = float(np.sqrt(1 / weights.sum()))
+    ones = np.ones(count)
+    inverse = np.linalg.inv(cov)
+    weights: Floats = inverse @ ones
+    off = values - weights @ values / weights.sum()
+    between = 0.0
+    excess = float(off @ inverse @ off) - (count - 1)
+    # Two or three glides show some spread by chance alone.
+    if count > 1 and excess > np.sqrt(2 * (count - 1)):
+        between = excess / float(np.trace(inverse) - weights @ weights / weights.sum())
+    weights = np.linalg.inv(cov + between * np.eye(count)) @ ones
+    mean, stderr = float(weights @ values / weights.sum()), float(weights.sum() ** -0.5)
+    clear = excess > 2 * np.sqrt(2 * (count - 1))
     return Friction(mean / GRAVITY, stderr / GRAVITY), float(np.sqrt(between)) if clear else 0.0

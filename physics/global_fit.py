@@ -59,6 +59,8 @@ class GlobalFit:
         As given.
     deviance : float
         Huber's sum of squared residuals of the sightings.
+    elsewhere : float
+        The like of the spins and of what was known beforehand.
     sightings : int
         Number of sightings.
     inflation : float
@@ -76,6 +78,7 @@ class GlobalFit:
     fixed: Mapping[str, float]
     shots: tuple[Watched, ...]
     deviance: float
+    elsewhere: float
     sightings: int
     inflation: float
     settled: bool
@@ -249,6 +252,7 @@ class _Problem:
             dict(self.fixed),
             tuple(self.shots),
             sum(_huber(run) for places, _ in residuals for run in places),
+            self._elsewhere(at, residuals),
             self.sightings,
             self.noise,
             settled,
@@ -290,8 +294,11 @@ class _Problem:
 
     def _cost(self, at: Floats, residuals: Sequence[tuple[list[Floats], Floats]]) -> float:
         data = sum(_huber(run) for places, _ in residuals for run in places) / self.noise
+        return float(data) + self._elsewhere(at, residuals)
+
+    def _elsewhere(self, at: Floats, residuals: Sequence[tuple[list[Floats], Floats]]) -> float:
         spins = sum(_huber(spins[:, None]) for _, spins in residuals)
-        return float(data + spins + np.sum(((at - self.mean) / self.sd) ** 2))
+        return float(spins + np.sum(((at - self.mean) / self.sd) ** 2))
 
     def _slopes(
         self, at: Floats, residuals: Sequence[tuple[list[Floats], Floats]]

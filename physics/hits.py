@@ -181,5 +181,8 @@ def pooled(values: Floats, cov: Floats) -> Estimate:
     variance = 1 / float(weights.sum())
     if len(values) > 1:
         off = values - mean
-        variance *= max(1.0, float(off @ np.linalg.solve(cov, off)) / (len(values) - 1))
+        free = len(values) - 1
+        ratio = float(off @ np.linalg.solve(cov, off)) / free
+        if ratio > 1 + np.sqrt(2 / free):  # some scatter is chance
+            variance *= ratio
     return Estimate(mean, float(np.sqrt(variance)))

@@ -23,12 +23,12 @@ def fit_with_chosen_laws(shots: Sequence[Watched]) -> GlobalFit:
     """Fit shots with the laws that the sightings ask for.
 
     Friction that depends on the speed and curl are each taken up, and friction between stones
-    is kept as an unknown, where Schwarz's criterion (1978, Ann. Stat. 6, 461) is the better for
-    it, the deviance counted in the noise that the residuals show. Otherwise the stones stick.
+    is kept as an unknown, where the sightings are the more probable for it: minus twice the
+    logarithm of that probability, by Laplace's method, is the criterion (Kass and Raftery,
+    1995, J. Am. Stat. Assoc. 90, 773). Otherwise the stones stick.
 
     What the other choices of laws would give is in the errors: each adds the square of its
-    difference, weighted by the probability that goes with its criterion (Buckland et al., 1997,
-    Biometrics 53, 603).
+    difference, weighted by its probability (Buckland et al., 1997, Biometrics 53, 603).
     """
     held = dict(STRAIGHT)
     best = fit_shots(shots, fixed=held)
@@ -95,4 +95,10 @@ def _start(fit: GlobalFit) -> dict[str, float]:
 
 
 def _criterion(fit: GlobalFit, noise: float) -> float:
-    return fit.deviance / noise + len(fit.names) * float(np.log(2 * fit.sightings / noise))
+    """Minus twice the log probability of the sightings, but for what all fits share."""
+    known = fit.prior_sd[np.isfinite(fit.prior_sd)]
+    sd = np.sqrt(np.diag(fit.cov))  # apart, for determinants leave what numbers can hold
+    volume = float(np.linalg.slogdet(fit.cov / np.outer(sd, sd))[1]) + 2 * np.sum(np.log(sd))
+    volume -= len(fit.names) * np.log(fit.inflation / noise)
+    prior = 2 * np.sum(np.log(known))
+    return float(fit.deviance / noise + fit.elsewhere + prior - volume)

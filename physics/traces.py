@@ -13,7 +13,7 @@ Floats = NDArray[np.float64]
 SMALLEST_SD = 1e-5
 """Smallest standard deviation of a place, m: what no track at hand surpasses."""
 
-PLACE_REACH = 0.5
+PLACE_REACH = 1.0
 """Distance over which the error that places share becomes another one, m."""
 
 
@@ -112,7 +112,9 @@ def _filled(t: Floats, values: Floats, sd: Floats, least: float, default: float)
         return np.full_like(values, max(_level(scatter), least))
     given = np.where(np.isfinite(given), given, float(np.nanmedian(given)))
     if len(scatter) >= 5:
-        given = given * max(1.0, _level(scatter / given[2:-2]))
+        level = _level(scatter / given[2:-2])
+        # Some of it is chance: a median of that many has an error of some 0.8 / √n.
+        given = given * (level if level > 1 + 1.6 / np.sqrt(len(scatter)) else 1.0)
     return np.maximum(given, least)
 
 

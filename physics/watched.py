@@ -28,6 +28,10 @@ SLIDING = 0.02
 """Friction between two stones that a fit sets out from: low, so that they slide. Once they
 stick, more of it changes nothing and no slope leads back."""
 
+SLOPE, TURN = Estimate(0.001, 0.0015), Estimate(0.0, 0.01)
+"""What is known of a in μ(v) = a / (v + v_c) + b, m/s (0 in the constant law, 0.002 in FCV1, some
+0.0035 in Penner's), and of the turn of a path at 1 m/s, rad/s (0.0082 in FCV1)."""
+
 LEAST_GAP = 2.0
 """Time between two hits of one stone from which on its spin is seen twice, s."""
 
@@ -139,8 +143,8 @@ def watch(
         Unknown("restitution", _mean(priors.restitution), 0.0, 1.5, priors.restitution),
         Unknown("stone_friction", SLIDING, 0.0, 2.0, priors.stone_friction),
         Unknown("friction", _mean(priors.friction), 1e-5, 1.0, priors.friction),
-        Unknown("slope", 0.0, 0.0, 0.02),
-        Unknown("turn", 0.0, -0.1, 0.1),
+        Unknown("slope", 0.0, 0.0, 0.02, SLOPE),
+        Unknown("turn", 0.0, -0.1, 0.1, TURN),
         Unknown("size", 1.0, 0.7, 1.3, priors.size),
     )
     states: list[Unknown] = []
