@@ -81,27 +81,27 @@ def thrown_often(shot: Shot, variants: int) -> States:
     return states
 
 
-def peer(repeats: int) -> None:
-    """Print the time of two balls and of a break in pooltool, if it is there."""
+def peer_rates(repeats: int) -> dict[str, float]:
+    """Seconds of two balls and of a break in pooltool; empty where it is not installed."""
     try:
         pooltool = import_module("pooltool")
     except ImportError:
-        print("pooltool-billiards is not installed: no peer")
-        return
+        return {}
     two = {
         "cue": pooltool.Ball.create("cue", xy=(0.5, 0.5)),
         "1": pooltool.Ball.create("1", xy=(0.5, 1.2)),
     }
     table = pooltool.Table.default()
     rack = pooltool.get_rack(pooltool.GameType.NINEBALL, table)
+    out = {}
     for name, balls in (("pooltool, 2 balls", two), ("pooltool, break of 9", rack)):
         system = pooltool.System(
             cue=pooltool.Cue(cue_ball_id="cue"), table=pooltool.Table.default(), balls=balls
         )
         system.cue.set_state(V0=3.0, phi=pooltool.aim.at_ball(system, "1"))
         pooltool.simulate(system)
-        spent = seconds(lambda s=system: pooltool.simulate(s), repeats)  # type: ignore[misc]
-        print(f"{name:24} {1e3 * spent:8.3f} ms {1 / spent:8.0f} shots/s")
+        out[name] = seconds(lambda s=system: pooltool.simulate(s), repeats)  # type: ignore[misc]
+    return out
 
 
 def error_against_ode(speed: float) -> float:
@@ -150,7 +150,8 @@ def main(repeats: int) -> None:
         hits = simulate_many(shot, states).hits.sum() / 2 / variants
         spent = seconds(lambda a=shot, b=states: simulate_many(a, b), 3) / variants  # type: ignore[misc]
         print(f"{name:24} {1e3 * spent:8.3f} ms {1 / spent:8.0f} shots/s {hits:6.1f} hits")
-    peer(min(repeats, 3))
+    for name, spent in peer_rates(min(repeats, 3)).items():
+        print(f"{name:24} {1e3 * spent:8.3f} ms {1 / spent:8.0f} shots/s")
     build = seconds(lambda: curve.__wrapped__(FCV1(), FCV1Curl(), 4.0), repeats)
     print(f"{'a new ice law':24} {1e3 * build:8.3f} ms")
     for speed in (0.5, 2.0, 3.5):
