@@ -25,7 +25,7 @@ from physics.local import Local, estimate_locally
 from physics.shot_model import ice
 from physics.watched import loose_priors, watch
 
-POOR_FIT = 16.0
+POOR_FIT = 30.0
 """Mean square of residuals against errors from which a simulated shot is not the one seen."""
 
 LAWS = ("restitution", "friction", "stone_friction")
