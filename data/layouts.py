@@ -56,6 +56,8 @@ class TrackFile:
         Whether angles run on past a full turn by the layout's own rule.
     warnings : list of str
         What was decided on evidence, or left out.
+    masses : dict of str to float
+        Masses of the tracks by name, where the file has them.
     """
 
     tracks: pd.DataFrame
@@ -64,6 +66,7 @@ class TrackFile:
     angle_unit: str | None = None
     continuous: bool = False
     warnings: list[str] = field(default_factory=list)
+    masses: dict[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ velocities can be stale: both are left out. Projects are read by `data.project`.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -110,21 +111,19 @@ def read_table(
     _check_units(length_unit, angle_unit, fps)
     if not paths:
         raise InputError("no table of tracks given")
-    masses: dict[str, float] = {}
     files = []
     for path in paths:
         if is_project(path):
-            project = read_project(path, tab)
-            files.append(project.file())
-            masses |= {mass.name: mass.mass for mass in project.masses}
+            files.append(read_project(path, tab).file())
         elif path.suffix.lower() == ".parquet":
             files.append(_checked_parquet(path))
         else:
             files.append(read_layout(path, fps))
     warnings = [text for file in files for text in file.warnings]
+    files, notes = _named_by_file(paths, files)
+    warnings += notes
     if names:
         paths, files = _named(paths, files, names)
-        masses = {stone: masses[track] for stone, track in names.items() if track in masses}
     for path, file in zip(paths, files, strict=True):
         warnings += _to_si(path, file, length_unit, angle_unit)
     source = ", ".join(str(path) for path in paths)
@@ -137,6 +136,7 @@ def read_table(
         track = read_angles(path, angle_unit, fps)
         table, notes = attach(table, stone, track, str(path))
         warnings += [*track.warnings, *notes]
+    masses = {stone: mass for file in files for stone, mass in file.masses.items()}
     masses, notes = _set_masses(masses, set(table["stone"]), source)
     return Imported(table, tuple(dict.fromkeys(warnings + notes)), rate, masses)
 
@@ -157,17 +157,39 @@ def _named(
     stones = {track: stone for stone, track in names.items()}
     if len(stones) < len(names):
         raise InputError("one track cannot be two stones; name each once (--names)")
-    kept = [
-        replace(
-            file,
-            tracks=file.tracks.assign(stone=file.tracks["stone"].map(stones)).dropna(
-                subset=["stone"], ignore_index=True
-            ),
-        )
-        for file in files
-    ]
+    kept = [_renamed(file, stones) for file in files]
     used = [(path, file) for path, file in zip(paths, kept, strict=True) if len(file.tracks)]
     return [path for path, _ in used], [file for _, file in used]
+
+
+def _renamed(file: TrackFile, names: Mapping[str, str]) -> TrackFile:
+    """Give tracks new names, and leave out those without."""
+    tracks = file.tracks.assign(stone=file.tracks["stone"].map(names))
+    masses = {names[track]: mass for track, mass in file.masses.items() if track in names}
+    return replace(file, tracks=tracks.dropna(subset=["stone"], ignore_index=True), masses=masses)
+
+
+def _named_by_file(
+    paths: Sequence[Path], files: Sequence[TrackFile]
+) -> tuple[list[TrackFile], list[str]]:
+    """Name tracks after their files where each file has one and they share a name."""
+    tracks = [list(file.tracks["stone"].unique()) for file in files]
+    shared = [name for name, n in Counter(t for each in tracks for t in each).items() if n > 1]
+    out = list(files)
+    warnings = []
+    for name in shared:
+        where = [k for k, each in enumerate(tracks) if name in each]
+        stems = [paths[k].stem for k in where]
+        taken = {track for each in tracks for track in each if track != name}
+        if any(len(tracks[k]) > 1 for k in where) or len({*stems} - taken) < len(where):
+            continue  # to be refused
+        for k, stem in zip(where, stems, strict=True):
+            out[k] = _renamed(files[k], {name: stem})
+        warnings.append(
+            f"{', '.join(str(paths[k]) for k in where)}: all their tracks are named {name}; named"
+            f" after the files instead: {', '.join(stems)}"
+        )
+    return out, warnings
 
 
 def _set_masses(

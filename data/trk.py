@@ -243,7 +243,8 @@ class Project:
                 " here (--length-unit)"
             )
         tracks = pd.concat(parts, ignore_index=True)
-        return TrackFile(tracks, None, unit, "rad", continuous=True, warnings=warnings)
+        masses = {track.name: track.mass for track in self.masses}
+        return TrackFile(tracks, None, unit, "rad", True, warnings, masses)
 
     def refuse_uncalibrated(self) -> None:
         """Raise `InputError` where nobody has told Tracker how long something is."""

@@ -116,6 +116,20 @@ def test_one_file_per_stone_on_one_clock(tmp_path: Path) -> None:
         read_table([paths[0], paths[0]])
 
 
+def test_tracks_of_one_name_are_named_after_their_files(tmp_path: Path) -> None:
+    """Who marks one stone per project has a mass A in each."""
+    rows = "mass_A\nt\tx\ty\n0.00\t{0}\t2\n0.04\t{0}.1\t2\n"
+    paths = [put(tmp_path, rows.format(k), f"{name}.txt") for k, name in enumerate("ABC")]
+    found = read_table(paths)
+    assert list(found.sightings["stone"]) == ["A", "A", "B", "B", "C", "C"]
+    assert "all their tracks are named mass_A; named after the files" in found.warnings[0]
+    chosen = read_table(paths, names={"red": "B"}).sightings
+    assert list(chosen["x"]) == [1.0, 1.1]
+    (tmp_path / "again").mkdir()
+    with pytest.raises(InputError, match="two stones with one name, mass_A"):
+        read_table([*paths, put(tmp_path / "again", rows.format(5), "A.txt")])
+
+
 def test_nameless_file_is_named_after_itself(tmp_path: Path) -> None:
     path = put(tmp_path, "t,y,x\n0,1,2\n0.1,1,2.5\n", "Stein Ä.csv")
     found = read_table([path]).sightings
