@@ -30,12 +30,13 @@ RINGS = (HOUSE.twelve_foot, HOUSE.eight_foot, HOUSE.four_foot)
 _TIME_BASE = Fraction(1, 90_000)  # fine enough for any rate, exact for 24, 25, 30, 50 and 60
 _CIRCLE = np.stack([np.cos(a := np.linspace(0, 2 * np.pi, 121)), np.sin(a)], axis=1)
 _SHIFT = 4  # bits of a pixel's fraction in cv2's drawing
-_APART = 0.02  # m between the points of a trail
+_APART = 0.1  # radii between the points of a trail
 _RESTS = 0.05  # m/s below which a stone's speed is not worth a label
 _TURNS = 0.1  # rad/s, the same for its spin
 _FLASH = 0.4  # s
 _FONT = cv2.FONT_HERSHEY_SIMPLEX
 _LETTERS = 0.5  # size of the letters in a picture 720 px high
+_LEAST_UNIT = 0.75  # of that size, below which letters cannot be read
 _WHITE, _BLACK = (255, 255, 255), (0, 0, 0)
 _LINE_COLOUR = (255, 255, 120)
 
@@ -143,8 +144,9 @@ def write_overlay(
 def draw(frame: Frame, camera: Camera, scene: Scene) -> Image:
     """Return a copy of the frame's picture with the scene drawn on it."""
     image = frame.image.copy()
-    unit = max(image.shape[0] / 720, 0.4)
-    thin, thick = max(round(unit), 1), max(round(2 * unit), 1)
+    scale = image.shape[0] / 720
+    unit = max(scale, _LEAST_UNIT)
+    thin, thick = max(round(scale), 1), max(round(2 * scale), 1)
     for line in scene.lines:
         draw_line(image, camera, line, _LINE_COLOUR, thin, edge=False)
     states = scene.states.get(frame.index, [])
@@ -225,7 +227,7 @@ def _scene(
                 )
             )
         if np.ptp(places, axis=0).max() > radius / 3:
-            kept = _apart(places, _APART)
+            kept = _apart(places, _APART * radius)
             paths[stone] = (frames[kept], places[kept])
     hits = []
     for collision in collisions:
