@@ -218,10 +218,22 @@ def measure(
             raise InputError(f"{odd}: tables of tracks and pictures do not mix; give one kind")
         from data.discs import refuse_no_discs
 
+        _refuse_clip_options(files[0], settings)
         measured = _import_tables(files, settings)
         refuse_no_discs(measured.sightings, settings.radius, ", ".join(map(str, files)))
         return measured
     return _look_at_clip(files, settings, progress)
+
+
+def _refuse_clip_options(path: Path, settings: Settings) -> None:
+    """Refuse to pass over what a person says about a clip where tracks are read."""
+    from data.export import PROJECTS
+
+    said = {"--stick": settings.stick, "--house": settings.house, "--camera": settings.camera}
+    given = [name for name, value in {**said, "--frames": settings.frames}.items() if value]
+    if given:
+        clip = "; add --clip to measure its clip" if path.suffix.lower() in PROJECTS else ""
+        raise InputError(f"{path}: only clips take {', '.join(given)}; tracks are read here{clip}")
 
 
 def _import_tables(files: tuple[Path, ...], settings: Settings) -> Measured:
@@ -319,7 +331,10 @@ def _open_clip(files: tuple[Path, ...], settings: Settings) -> Clip:
         raise InputError(f"{odd}: not a clip; name a video, pictures, or one Tracker project")
     from vision.project_clip import open_project_clip
 
-    return open_project_clip(files[0], settings.tab, settings.frames)
+    clip = open_project_clip(files[0], settings.tab, settings.frames)
+    if settings.fps is not None:
+        clip.warnings.append(f"{files[0]}: a project says how long frames last; --fps is ignored")
+    return clip
 
 
 def _given_cameras(

@@ -220,6 +220,8 @@ def test_the_clip_or_the_marks(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert (out / "report.html").exists()
     assert pipeline.main(["run", str(out / "tracks.csv"), "--clip", *common]) == 2
     assert "not a clip" in capsys.readouterr().err
+    assert pipeline.main(["run", trz, "--camera", trz, *common]) == 2
+    assert "only clips take --camera" in capsys.readouterr().err
 
 
 def test_the_clips_of_users_are_read(shared: Path) -> None:
