@@ -104,7 +104,7 @@ def pictures(
             "Distributions of restitution and friction, and ellipses for their pairs.",
             partial(figures.posterior_figure, results.laws, posterior),
         )
-    if residuals is not None and len(residuals):
+    if residuals is not None and residuals["t"].nunique() > 1:
         yield Picture(
             "residuals",
             "Sighted less smoothed places of all stones, the band twice the median standard"

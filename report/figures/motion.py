@@ -14,6 +14,7 @@ from data.results import Collision, Glide, MeasuredState
 from data.sheet import GRAVITY, STONE
 from report.figures.parts import (
     LABELS,
+    MOST_ENTRIES,
     WIDTH,
     Array,
     Hits,
@@ -153,7 +154,7 @@ def speed_figure(
 
 def _panels(count: int, entries: int) -> tuple[Figure, list[Axes]]:
     """Panels above each other, each with room for a legend of so many entries beside it."""
-    figure = new_figure(WIDTH, count * max(1.45, 0.19 * entries + 0.5) + 0.55)
+    figure = new_figure(WIDTH, count * max(1.45, 0.19 * min(entries, MOST_ENTRIES) + 0.5) + 0.55)
     return figure, list(figure.subplots(count, 1, sharex=True))
 
 

@@ -35,6 +35,9 @@ LABELS = {
 }
 """What stands at the axis of a column of the tracks."""
 
+MOST_ENTRIES = 10
+"""Entries of a legend beside a panel, at most."""
+
 Hits = Sequence[tuple[int, Collision]]
 """Hits with their ranks."""
 
@@ -197,7 +200,10 @@ def legend_below(figure: Figure, handles: Sequence[Artist]) -> None:
 
 
 def legend_beside(ax: Axes, handles: Sequence[Artist], head: str) -> None:
-    """Put a legend with a head to the right of one panel."""
+    """Put a legend with a head to the right of one panel; of many entries the first ones."""
+    if len(handles) > MOST_ENTRIES:
+        more = len(handles) - MOST_ENTRIES + 1
+        handles = [*handles[: MOST_ENTRIES - 1], line(f"and {more} more", ls="none")]
     if handles:
         ax.legend(
             handles=handles,

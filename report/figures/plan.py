@@ -33,6 +33,9 @@ if TYPE_CHECKING:
 _TALLEST = 7.4
 """Height of the sheet in the figure at most, inches."""
 
+_NARROWEST = 2.2
+"""Height of the sheet in the figure over its width, at most."""
+
 _ENLARGED = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 """Factors by which an ellipse of uncertainty may be drawn larger than it is."""
 
@@ -185,8 +188,8 @@ def _extent(
 ) -> tuple[Array, Array]:
     """Corners of the part of the sheet that is shown, m.
 
-    All that matters is in it: last places, the house, and as much of the paths as keeps the
-    picture from becoming a strip. A simulation gone astray may leave the picture.
+    All that matters is in it: last places, the house, the paths, but of those on a sheet only as
+    much as keeps the picture from becoming a strip. A simulation gone astray may leave it.
     """
     edge = 2 * radius
     ends = np.array(list(last.values()))
@@ -204,14 +207,13 @@ def _extent(
             if not rows.empty and np.isfinite(_last_place(rows)).all():
                 end = np.clip(_last_place(rows), low - 2 * edge, high + 2 * edge)
                 low, high = np.minimum(low, end - edge), np.maximum(high, end + edge)
+    if house is not None:
+        # Of a long delivery the end is enough.
+        room = _NARROWEST * float(high[0] - low[0])
+        core_low = min(float(ends[:, 1].min()), -house.twelve_foot) - edge
+        core_high = max(float(ends[:, 1].max()), house.twelve_foot) + edge
+        high[1] = max(core_high, min(high[1], core_low + room))
+        low[1] = min(core_low, max(low[1], high[1] - room))
     width, height = high - low
-    if height > 2.2 * width:
-        core_low, core_high = ends.min(axis=0)[1] - edge, ends.max(axis=0)[1] + edge
-        if house is not None:
-            core_low = min(core_low, -house.twelve_foot - edge)
-            core_high = max(core_high, house.twelve_foot + edge)
-        high[1] = max(core_high, min(high[1], core_low + 2.2 * width))
-        low[1] = min(core_low, max(low[1], high[1] - 2.2 * width))
-    short = max(0.35 * (high[0] - low[0]) - (high[1] - low[1]), 0) / 2
-    margin = np.array([0, short])
-    return low - margin, high + margin
+    thin = max(height / _NARROWEST - width, 0) / 2, max(0.35 * width - height, 0) / 2
+    return low - thin, high + thin

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 _FARTHEST = 5.0
 """Residual, in standard deviations, up to which the histogram goes."""
 
+_MANY = 500
+"""Sightings from which on their dots are small."""
+
 _MOST_NAMED = 12
 """Stones that the legend names at most."""
 
@@ -69,11 +72,12 @@ def _draw_times(
 ) -> None:
     ax.axhspan(-2 * sd, 2 * sd, color=PALE, alpha=0.6, lw=0, zorder=1)
     ax.axhline(0, color=GREY, lw=0.8, zorder=2)
+    size = 2.5 if len(residuals) > _MANY else 4.5
     names, t = residuals["stone"].astype(str).to_numpy(), residuals["t"].to_numpy(float)
     for name, colour in colours.items():
         own = names == name
         ax.plot(
-            t[own], off[own], ".", color=colour, ms=2.5, alpha=0.7, mew=0, zorder=3,
+            t[own], off[own], ".", color=colour, ms=size, alpha=0.7, mew=0, zorder=3,
             rasterized=True,
         )  # fmt: skip
     # One wild sighting shall not squeeze all the others.

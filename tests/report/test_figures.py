@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Ellipse
 from matplotlib.text import Text
 
-from data.results import Friction, Joint, MeasuredState
+from data.results import Friction, Glide, Joint, MeasuredState
 from data.sheet import HOUSE
 from report import figures
 from report.numbers import plus_minus
@@ -290,6 +290,25 @@ def test_long_delivery_keeps_the_house_in_view(shot):
     low, high = figure.axes[0].get_ylim()
     assert low < -1.829
     assert 1.829 < high < 12
+
+
+def test_without_a_house_the_whole_way_is_in_view(shot):
+    tracks = shot.tracks[shot.tracks["stone"] == "A"].copy()
+    tracks["y"] = np.linspace(30, 0.5, len(tracks))
+    figure = figures.plan_figure(tracks, house=None)
+    check_layout(figure)
+    low, high = figure.axes[0].get_ylim()
+    assert low < 0.5
+    assert high > 30
+
+
+def test_of_many_glides_the_legend_names_the_first(shot):
+    glides = [Glide("C", 1.6 + 0.2 * k, 1.78 + 0.2 * k, 0.0109, 1e-3) for k in range(24)]
+    figure = figures.motion_figure(shot.tracks, "C", shot.results.collisions, glides)
+    check_layout(figure)
+    said = [t.get_text() for t in figure.axes[2].get_legend().get_texts()]
+    assert len(said) == 10
+    assert said[-1] == "and 15 more"
 
 
 def test_drawing_leaves_the_session_as_it_was(shot):
