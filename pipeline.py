@@ -728,6 +728,7 @@ def _write_run(
         clip_start=clip_start,
         house=house,
         residuals=residual_table(measured.sightings, done.tracks),
+        posterior=done.posterior,
         unit=UNITS[settings.units],
         provenance=Provenance(
             VERSION,
