@@ -18,7 +18,9 @@ SHORTEST = 1e-9
 """Interval of time over which a graze counts as none, s."""
 
 
-def first_contact(a: Path, b: Path, start: float, reach: float) -> float:
+def first_contact(
+    a: Path, b: Path, start: float, places: tuple[Point, Point], reach: float
+) -> float:
     """First time after `start` at which two paths are within `reach`, inf where never.
 
     Parameters
@@ -27,6 +29,8 @@ def first_contact(a: Path, b: Path, start: float, reach: float) -> float:
         Paths of two stones that are farther apart than `reach` at the start.
     start : float
         Time at which to begin, s.
+    places : tuple of two Point
+        Where they are then.
     reach : float
         Distance of their centres, m.
     """
@@ -34,7 +38,7 @@ def first_contact(a: Path, b: Path, start: float, reach: float) -> float:
     if end <= start:
         return math.inf
     later = [(end, a.point(end), b.point(end))]
-    t0, a0, b0 = start, a.point(start), b.point(start)
+    t0, a0, b0 = start, *places
     while later:
         t1, a1, b1 = later[-1]
         step = t1 - t0

@@ -26,7 +26,7 @@ from physics.bounds import Bounds, leaves_at
 from physics.curl import Curl, FCV1Curl
 from physics.ice import FCV1, IceLaw
 from physics.impact import Frictional, Impact
-from physics.motion import Motion, Path
+from physics.motion import Motion, Path, Point
 
 SIMULATION_COLUMNS: tuple[str, ...] = (
     "stone", "frame", "t", "x", "y", "theta", "vx", "vy", "omega",
@@ -270,6 +270,7 @@ class _Run:
         }
         # Times of the contacts to come; earliest ones that can be, unless in `exact`.
         self.contacts: dict[tuple[int, int], float] = {}
+        self.here: dict[int, Point] = {}
         self.exact: set[tuple[int, int]] = set()
         for k, stone in enumerate(shot.stones):
             if stone.vx or stone.vy:
@@ -283,6 +284,7 @@ class _Run:
                 break
             self.t = max(self.t, self.contacts[pair])
             self._hit(*pair)
+            self.here.clear()
             for k in pair:
                 self._look_ahead(k)
         else:
@@ -310,19 +312,26 @@ class _Run:
     def _look_ahead(self, k: int) -> None:
         """Bound the next contacts of stone `k`: stones only get slower until they meet."""
         path = self.paths[k][-1]
-        a = path.point(self.t)
+        a = self._now(k)
         for other, paths in enumerate(self.paths):
             if other == k or other in self.gone:
                 continue
             pair = (k, other) if k < other else (other, k)
             self.exact.discard(pair)
-            b = paths[-1].point(self.t)
+            b = self._now(other)
             gap = math.hypot(b.x - a.x, b.y - a.y) - self.reach[pair]
             speed = a.speed + b.speed
             if speed == 0 or gap > path.length + paths[-1].length:
                 self.contacts.pop(pair, None)
             else:
                 self.contacts[pair] = self.t + max(gap, 0.0) / speed
+
+    def _now(self, k: int) -> Point:
+        """Where stone `k` is at present; asked for once for each of the others."""
+        point = self.here.get(k)
+        if point is None:
+            point = self.here[k] = self.paths[k][-1].point(self.t)
+        return point
 
     def _next_pair(self, until: float) -> tuple[int, int] | None:
         """Return the pair that meets next; None where none does by then."""
@@ -360,7 +369,7 @@ class _Run:
         a, b = self.paths[i][-1], self.paths[j][-1]
         if a.stop <= self.t and b.stop <= self.t:
             return math.inf
-        pa, pb = a.point(self.t), b.point(self.t)
+        pa, pb = self._now(i), self._now(j)
         distance = math.dist(pa[:2], pb[:2])
         reach = self.reach[i, j]
         if distance - reach > a.length + b.length:
@@ -369,7 +378,7 @@ class _Run:
             if _closing(a.at(self.t), b.at(self.t)) > SLOW:
                 return self.t
             reach = min(reach, distance) - PRESSED
-        return first_contact(a, b, self.t, reach)
+        return first_contact(a, b, self.t, (pa, pb), reach)
 
     def _hit(self, i: int, j: int) -> None:
         """Resolve the contact of stones `i` and `j` at the present time."""
