@@ -10,6 +10,8 @@ from data.sheet import HOUSE, SHEET
 from vision.pose import SIDE_L, SIDE_R, View, project, turned
 
 Array = NDArray[np.float64]
+Floats = NDArray[np.float32]
+Flags = NDArray[np.bool_]
 Image = NDArray[np.uint8]
 
 
@@ -30,7 +32,26 @@ SURE_STEP = 150.0
 
 QUARTER = np.pi / 2
 
-RINGS = (HOUSE.four_foot, HOUSE.eight_foot, HOUSE.twelve_foot)
+STEP = np.radians(0.25)
+"""Angle from one ray about the tee to the next."""
+
+QUARTER_STEPS = 360
+"""Rays in a quarter turn."""
+
+ALONG = np.arange(0.2, 2.6, 0.04)
+"""Where the rays are sampled, m from the tee."""
+
+ON, BESIDE = (-0.015, 0.0, 0.015), (-0.055, 0.055)
+"""Where a line, if there is one along a ray, and the ice beside it are sampled, m aside."""
+
+PARTS = np.searchsorted(
+    ALONG, (0.0, HOUSE.four_foot, HOUSE.eight_foot, HOUSE.twelve_foot, SHEET.half_width_min)
+)
+"""Where each part of a ray begins: a line may be lighter than one paint and darker than another;
+the last part lies beyond the end of the tee line."""
+
+LEAST_IN_PART = 5
+"""Samples of a part that must be in the picture."""
 
 
 def upright(image: Image, view: View, rig: Array) -> tuple[View, Array]:
@@ -40,26 +61,25 @@ def upright(image: Image, view: View, rig: Array) -> tuple[View, Array]:
     They also tell the centre line from the tee line where the camera stands beside the sheet;
     y then points to the end of the sheet that is higher in the picture.
     """
-    coarse = np.radians(np.arange(-45.0, 45.0, 0.25))
-    score = _cross_score(image, view, rig, coarse)
+    score, turn = _cross_score(image, view, rig), STEP * (np.arange(QUARTER_STEPS) - 180)
     noise = float(np.median(score)) + 1e-9
     spread = float(np.median(np.abs(score - noise))) + 0.05 * noise
-    score -= 0.02 * noise * np.abs(np.degrees(coarse)) / 10
-    best, best_worth, sure = 0.0, -np.inf, False
+    score -= 0.02 * noise * np.abs(np.degrees(turn)) / 10
+    best, best_worth, sure = 0, -np.inf, False
     for top in _peaks(score, CANDIDATES, apart=6):
-        angle = float(coarse[top])
-        strength = _strength(image, *turned(view, rig, angle))
+        strength = _strength(image, *turned(view, rig, float(turn[top])))
         worth = (score[top] - noise) / (score.max() - noise) + strength / FULL_STEP
         if worth > best_worth:
-            best, best_worth = angle, worth
+            best, best_worth = top, worth
             sure = score[top] - noise > 6 * spread or strength > SURE_STEP
     if not sure:
         return view, rig
-    fine = best + np.radians(np.arange(-0.5, 0.5, 0.02))
     # The middle of the plateau: a line is wider than a step of the angle.
-    height = _cross_score(image, view, rig, fine)
-    weight = np.clip(height - 0.8 * height.max(), 0, None)
-    level = turned(view, rig, float((weight * fine).sum() / weight.sum()))
+    near = np.arange(best - 3, best + 4)
+    height = score[near % QUARTER_STEPS] - noise
+    weight = np.clip(height - 0.5 * height.max(), 0, None)
+    aside = float((weight * near).sum() / weight.sum()) - best
+    level = turned(view, rig, float(turn[best] + STEP * aside))
     sideways = _upwards(image, *turned(*level, QUARTER))
     if _strength(image, *sideways) > _strength(image, *level) + SURE_STEP:
         return sideways
@@ -89,32 +109,51 @@ def _peaks(score: Array, count: int, apart: int) -> list[int]:
     return found
 
 
-def _cross_score(image: Image, view: View, rig: Array, angles: Array) -> Array:
-    """How much the two lines through the tee stand out, for each angle of the cross."""
-    along = np.concatenate([np.arange(0.2, 2.6, 0.04), -np.arange(0.2, 2.6, 0.04)])
-    ends = np.where(np.abs(along) < SHEET.half_width_min, along, np.nan)
-    # Shape (line, offset, place along it): each line itself and the ice on either side of it.
-    across = np.array([-0.015, 0.0, 0.015, -0.055, 0.055])[:, None]
-    centre = np.stack([across + 0 * along, along + 0 * across], axis=-1)
-    tee = np.stack([ends + 0 * across, across + 0 * along], axis=-1)
-    cross = np.stack([centre, tee])
-    turn = np.array([[np.cos(angles), -np.sin(angles)], [np.sin(angles), np.cos(angles)]])
-    ice = np.einsum("ija,lokj->aloki", turn, cross)
+def _cross_score(image: Image, view: View, rig: Array) -> Array:
+    """How much two lines through the tee stand out, for turns from −45° to 45°."""
+    angle = STEP * np.arange(4 * QUARTER_STEPS)
+    ice = ALONG[:, None, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
     size = (image.shape[1], image.shape[0])
     place = project(ice.reshape(-1, 2), view.vector, rig, size).reshape(ice.shape)
     with np.errstate(invalid="ignore"):
-        within = (place > 0) & (place < np.array(size) - 1)
-    inside = np.asarray(within.all((2, 4)))
-    colour = _colours(image, place.reshape(len(angles), -1, 2)).reshape(*ice.shape[:-1], 3)
-    ridge = colour[:, :, :3].mean(2) - colour[:, :, 3:].mean(2)
+        inside = np.asarray(((place > 0) & (place < np.array(size) - 1)).all(-1))
+    ridge, known = _ridges(_colours(image, place).astype(np.float32), inside)
     # A line is faint all the way, darker than ice and perhaps lighter than paint; stones, brooms
-    # and print are strong here and there. So each ring's part of each half counts on its own.
-    ridge = np.where(inside[..., None], np.clip(ridge, -FAINT, FAINT), 0.0)
-    part = np.flatnonzero(np.r_[True, np.diff(np.searchsorted(RINGS, np.abs(along))) != 0])
-    total = np.linalg.norm(np.add.reduceat(ridge, part, axis=2), axis=-1)
-    count = np.add.reduceat(inside, part, axis=2, dtype=int)
-    score = np.where(count > 5, total / np.sqrt(np.maximum(count, 1)), 0.0)
-    return np.asarray(score.sum((1, 2)), np.float64)
+    # and print are strong here and there. So each ring's part of each ray counts on its own.
+    ridge = np.where(known[..., None], np.clip(ridge, -FAINT, FAINT), 0.0)
+    total = np.linalg.norm(np.add.reduceat(ridge, PARTS, axis=0), axis=-1)
+    count = np.add.reduceat(known, PARTS, axis=0, dtype=int)
+    score = np.where(count > LEAST_IN_PART, total / np.sqrt(np.maximum(count, 1)), 0.0)
+    centre, tee = score.sum(0), score[:-1].sum(0)
+    ray = np.arange(QUARTER_STEPS) - QUARTER_STEPS // 2
+    return np.asarray(
+        sum(
+            line[(ray + quarter * QUARTER_STEPS) % len(line)]
+            for line, quarter in ((tee, 0), (centre, 1), (tee, 2), (centre, 3))
+        ),
+        np.float64,
+    )
+
+
+def _ridges(colour: Floats, inside: Flags) -> tuple[Floats, Flags]:
+    """Contrast of rays, (places, rays, 3), to what is beside them; and where it is known."""
+    ridge, known = np.zeros_like(colour), inside.copy()
+    reach = int(np.ceil(max(BESIDE) / ALONG[0] / STEP)) + 1
+    taps = [(a, 1 / len(ON)) for a in ON] + [(a, -1 / len(BESIDE)) for a in BESIDE]
+    count = colour.shape[1]
+    for k, distance in enumerate(ALONG):
+        around, within = (
+            np.concatenate([v[-reach:], v, v[:reach]]) for v in (colour[k], inside[k])
+        )
+        for aside, weight in taps:
+            step = int(np.floor(aside / distance / STEP))
+            between = aside / distance / STEP - step
+            for first, share in ((reach + step, 1 - between), (reach + step + 1, between)):
+                ridge[k] += np.float32(weight * share) * around[first : first + count]
+        away = int(np.ceil(max(BESIDE) / distance / STEP))
+        for first in (reach - away, reach + away):
+            known[k] &= within[first : first + count]
+    return ridge, known
 
 
 def sides(image: Image, view: View, rig: Array) -> Array:
