@@ -21,7 +21,9 @@ class FCV1:
     a, v_c, b : float
         Constants of the law: m/s, m/s and a pure number.
     gravity : float
-        Free fall, m/s², as the simulator has it.
+        Free fall, m/s². The simulator has 9.80665, but its steps of 1 ms in single precision
+        let a stone stop up to 3 mm sooner in 62 m; with 9.807 the exact motion ends within
+        1.1 mm of where it does.
     """
 
     a: float = parameter(0.00200985, 0.0, 1.0)
