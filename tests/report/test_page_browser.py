@@ -12,6 +12,9 @@ import numpy as np
 import pytest
 
 from data.sheet import HOUSE
+from physics.curl import FCV1Curl
+from physics.ice import FCV1
+from physics.impact import Frictional, PointMass, RigidBody
 from physics.shot import read_shot
 from physics.simulate import Shot as Throw
 from physics.simulate import simulate
@@ -180,6 +183,14 @@ def test_hits_flash_and_models_can_be_chosen(tab, shot):
     assert np.hypot(x - model.x, y - model.y) <= MILLIMETRE
 
 
+def pick(tab: Tab, element: str, value: object) -> None:
+    """Choose a value of a control."""
+    tab.value(
+        f"(() => {{ const s = document.querySelector('#whatif-{element}');"
+        f"s.value = {json.dumps(value)}; s.dispatchEvent(new Event('input')); }})()"
+    )
+
+
 def test_without_a_change_it_is_the_measured_shot(tab, start):
     assert_alike(tab.value(OUTCOME), rest(start.shot))
 
@@ -195,13 +206,41 @@ def test_without_a_change_it_is_the_measured_shot(tab, start):
     ],
 )
 def test_a_slider_changes_the_outcome_as_python_says(tab, start, slider, number, changes):
-    tab.value(
-        f"(() => {{ const s = document.querySelector('#whatif-{slider}'); s.value = {number};"
-        "s.dispatchEvent(new Event('input')); })()"
-    )
+    pick(tab, slider, number)
     assert_alike(tab.value(OUTCOME), rest(changed(start, changes).shot))
     tab.click("#whatif-reset")
     assert_alike(tab.value(OUTCOME), rest(start.shot))
+
+
+def test_laws_and_models_are_those_of_python(tab, start):
+    impact = start.shot.impact
+    assert isinstance(impact, Frictional)
+    pick(tab, "rub", 0.3)
+    rough = dataclasses.replace(start.shot, impact=dataclasses.replace(impact, stone_friction=0.3))
+    assert_alike(tab.value(OUTCOME), rest(rough))
+    pick(tab, "ice", "fcv1")
+    pick(tab, "curl", "fcv1")
+    other = dataclasses.replace(rough, ice=FCV1(), curl=FCV1Curl())
+    assert_alike(tab.value(OUTCOME), rest(other))
+    pick(tab, "model", "point-mass")
+    plain = dataclasses.replace(other, impact=PointMass(impact.restitution))
+    assert_alike(tab.value(OUTCOME), rest(plain))
+    pick(tab, "model", "rigid-body")
+    # As in the tables: 0.4 rad/s after it hits, 0.3 after it is hit, and unhit its own.
+    spins = {"A": (0.4,), "B": (0.3, 0.4), "C": (0.3,), "D": (0.0,)}
+    stones = tuple(dataclasses.replace(s, omega_after=spins[s.name]) for s in other.stones)
+    rigid = dataclasses.replace(other, stones=stones, impact=RigidBody(impact.restitution))
+    assert_alike(tab.value(OUTCOME), rest(rigid))
+
+
+def test_the_throw_runs_and_comes_back(tab, start):
+    y = "-whatIf.drawn[0].start.group.transform.baseVal.consolidate().matrix.f"
+    scale = 14.55 / start.shot.radius
+    begun = start.shot.stones[start.thrown].y * scale
+    tab.click("#whatif-run")
+    tab.wait(f"{y} < {begun - 20}")
+    pick(tab, "restitution", 0.7)
+    tab.wait(f"Math.abs({y} - {begun}) < 0.1")
 
 
 def placed(tab: Tab, start: Start) -> Throw:
@@ -244,10 +283,8 @@ def test_stones_cannot_be_dragged_into_each_other(tab, start):
 
 
 def test_the_copied_shot_is_the_one_shown(tab, tmp_path):
-    tab.value(
-        "(() => { const s = document.querySelector('#whatif-friction'); s.value = 0.012;"
-        "s.dispatchEvent(new Event('input')); document.querySelector('#whatif-copy').click(); })()"
-    )
+    pick(tab, "friction", 0.012)
+    tab.click("#whatif-copy")
     path = tmp_path / "SHOT.toml"
     path.write_text(tab.value("document.querySelector('#whatif-toml').value"), encoding="utf-8")
     assert_alike(tab.value(OUTCOME), rest(read_shot(path)))
