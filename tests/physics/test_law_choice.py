@@ -1,0 +1,61 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from physics.contacts import find_contacts
+from physics.estimate import Estimates, estimate
+from tests.physics.watch import RADIUS, hit_motion, watch
+from tests.synthetic.physics import Ice, Impact, Start, simulate
+
+
+def measure(ice: Ice | None, sd: float = 0.002) -> Estimates:
+    """A long, well seen shot on constant ice, or on another."""
+    if ice is None:
+        motion = hit_motion(1.2, 0.1, before=2.0, after=5.0)
+    else:
+        stones = [Start(0.1, -2.8, 0.0, 1.4, 0.0, 1.0), Start(0.0, 0.0)]
+        motion = simulate(stones, 7.0, ice=ice, impact=Impact(0.83), step=5e-4, keep_every=4)
+    seen = watch(motion, np.random.default_rng(5), sd=sd)
+    return estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+
+
+def test_constant_ice_and_no_curl() -> None:
+    found = measure(None)
+    assert found.whole is not None
+    laws = found.whole.laws
+    assert laws[0].name.startswith("ice constant, curl none")
+    assert laws[0].criterion == 0
+    assert sum(law.weight for law in laws) == pytest.approx(1)
+    assert [law.criterion for law in laws] == sorted(law.criterion for law in laws)
+    assert (found.friction.law, found.friction.a) == ("constant", None)
+    assert found.curl.value is None
+    assert found.curl.note is not None
+    assert "no curl" in found.curl.note
+
+
+def test_friction_that_falls_with_the_speed_and_curl() -> None:
+    found = measure(Ice(b=0.00626, a=0.00201, v_c=0.0639, curl=0.0082))
+    assert found.whole is not None
+    assert found.whole.laws[0].name.startswith("ice fit, curl fcv1")
+    assert found.friction.law == "fit"
+    assert found.friction.stderr is not None
+    assert abs(float(found.friction.value or 0) - 0.00815) < 3 * found.friction.stderr
+    assert found.curl.stderr is not None
+    assert abs(float(found.curl.value or 0) - 0.0082) < 3 * found.curl.stderr
+
+
+def test_other_laws_add_to_the_errors() -> None:
+    """Where the tracks can hardly tell the laws apart the friction's error says so."""
+    found = measure(None, sd=0.02)
+    assert found.whole is not None
+    best, *others = found.whole.laws
+    error = found.whole["friction"].stderr
+    assert error is not None
+    assert best.friction.stderr is not None
+    between = sum(
+        law.weight * (float(law.friction.value or 0) - float(best.friction.value or 0)) ** 2
+        for law in others
+    )
+    assert error**2 == pytest.approx(best.friction.stderr**2 + between, rel=1e-6)
+    assert between > 0
