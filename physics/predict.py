@@ -209,9 +209,7 @@ def _models(
     notes: dict[str, str] = {}
     told = between_stones(estimates)
     stone_friction = told.value
-    if stone_friction is not None:
-        notes["frictional"] = f"friction between the stones {stone_friction:.3f}, measured"
-    else:
+    if stone_friction is None:
         stone_friction = max([STONE_FRICTION, *(_rub(hit) for hit in estimates.collisions)])
         how = "at least about" if stone_friction > STONE_FRICTION else "assumed to be"
         if estimates.collisions:
