@@ -61,6 +61,8 @@ MEASURED_THROWS = 1000
 
 TABLES = frozenset({".csv", ".txt", ".tsv", ".dat", ".trk", ".trz", ".parquet"})
 
+SPREADSHEETS = frozenset({".ods", ".xls", ".xlsx"})
+
 
 @dataclass(frozen=True)
 class Settings:
@@ -324,6 +326,8 @@ def _open_clip(files: tuple[Path, ...], settings: Settings) -> Clip:
     from vision.clip import open_clip
 
     kinds = [path.suffix.lower() for path in files]
+    if SPREADSHEETS.intersection(kinds):
+        raise InputError(f"{files[0]}: a spreadsheet; save it as CSV")
     if not TABLES.intersection(kinds):
         return open_clip(files, settings.fps, settings.frames)
     if len(files) > 1 or kinds[0] not in PROJECTS:
