@@ -185,24 +185,74 @@ class Fits:
     shares: Array
 
 
-def _edges(rim: Rim, inside: Bools, radius: Array, expected: Array) -> tuple[Array, Array]:
-    """Place of the strongest fall near the expected radius (n, rays) on each ray; its strength."""
-    step = float(radius[1] - radius[0])
-    first, last = np.searchsorted(radius, rim.radius + 4 * rim.width * np.array([-1, 1])).tolist()
-    fall = np.maximum(rim.fall[..., first:last], 0)
-    if not inside.all():
-        fall *= inside[..., first:last]
-    away = (radius[first:last] - expected[..., None]).astype(np.float32) / np.float32(rim.width)
-    best = (fall * np.exp(-0.5 * away * away)).argmax(-1)
-    half = int(np.clip(round(_EDGE_WIDTH / step), 2, 4))
-    fall = np.pad(fall, ((0, 0), (0, 0), (half, half))).reshape(-1, last - first + 2 * half)
-    rows = np.arange(len(fall))[:, None] * fall.shape[1]
-    offsets = np.arange(2 * half + 1)
-    strength = fall.ravel().take(rows + best.reshape(-1, 1) + offsets)
-    total = strength @ np.ones(len(offsets), np.float32)
-    place = (strength @ (offsets - half).astype(np.float32)) / np.maximum(total, 1e-9)
-    place = place.reshape(best.shape) + best
-    return np.asarray(radius[first] + step * place, float), total.reshape(best.shape)
+@dataclass(frozen=True)
+class _Bands:
+    """Where the edges of the rims may lie, all rims side by side.
+
+    Attributes
+    ----------
+    fall : ndarray, shape (n, circles, rays, steps + 2 half)
+        Of the rims; 0 beyond the reach of each.
+    radius : ndarray, shape (circles, steps)
+        m, without the margins.
+    width : ndarray, shape (circles,)
+        Standard deviation of where an edge is expected, m.
+    half : int
+        Steps on either side that belong to one edge.
+    """
+
+    fall: Floats
+    radius: Floats
+    width: Floats
+    half: int
+
+    @classmethod
+    def of(cls, rims: Sequence[Rim], rays: Rays) -> _Bands:
+        """Cut them out of the falls along the rays."""
+        step = float(rays.radius[1] - rays.radius[0])
+        half = int(np.clip(round(_EDGE_WIDTH / step), 2, 4))
+        reach = [rim.radius + 4 * rim.width * np.array([-1, 1]) for rim in rims]
+        ranks = [np.searchsorted(rays.radius, ends).tolist() for ends in reach]
+        steps = max(last - first for first, last in ranks)
+        shape = (len(rays.inside), len(rims), len(rays.angle), steps + 2 * half)
+        fall = np.zeros(shape, np.float32)
+        whole = bool(rays.inside.all())
+        for k, (rim, (first, last)) in enumerate(zip(rims, ranks, strict=True)):
+            band = fall[:, k, :, half : half + last - first]
+            np.maximum(rim.fall[..., first:last], 0, out=band)
+            if not whole:
+                band *= rays.inside[..., first:last]
+        begins = rays.radius[[first for first, _ in ranks]]
+        radius = begins[:, None] + step * np.arange(steps)
+        width = np.array([rim.width for rim in rims], np.float32)
+        return cls(fall, np.asarray(radius, np.float32), width, half)
+
+    def edges(self, expected: Array) -> tuple[Array, Array]:
+        """Find the strongest fall near the expected radii, shape (n, circles, rays).
+
+        Returns
+        -------
+        radius, strength : ndarray, shape (n, circles, rays)
+            Where it lies, m, and how much falls there.
+        """
+        half, size = self.half, self.fall.shape[-1]
+        away = self.radius[:, None] - expected[..., None].astype(np.float32)
+        away /= self.width[:, None, None]
+        away *= away
+        away *= np.float32(-0.5)
+        shape = away.shape[:-1]
+        best = (self.fall[..., half : size - half] * np.exp(away, out=away)).argmax(-1).ravel()
+        offsets = np.arange(2 * half + 1)
+        rows = np.arange(0, self.fall.size, size)
+        # Which edge is meant is told by where it is expected; where it lies, by itself alone.
+        strength = self.fall.ravel().take((rows + best)[:, None] + offsets)
+        best = np.clip(best + strength.argmax(1) - half, 0, size - 2 * half - 1)
+        strength = self.fall.ravel().take((rows + best)[:, None] + offsets)
+        total = strength @ np.ones(len(offsets), np.float32)
+        place = (strength @ (offsets - half).astype(np.float32)) / np.maximum(total, 1e-9)
+        step = float(self.radius[0, 1] - self.radius[0, 0])
+        radius = self.radius[:, :1] + step * (place + best).reshape(shape)
+        return np.asarray(radius, float), total.reshape(shape)
 
 
 def fit_circles(
@@ -240,6 +290,8 @@ def fit_circles(
     prior[:, range(size), range(size)] = 1e-9
     for k, radius in enumerate(expected.tolist()):
         prior[:, 2 + k, 2 + k] += (noise / (slack * radius)) ** 2
+    bands = _Bands.of(rims, rays)
+    strong = np.array([rim.strength for rim in rims])[:, None]
     inside = np.concatenate([rim.inside for rim in rims], 1)
     may = np.concatenate([(rim.use & rim.inside) * rim.weight[:, None] for rim in rims], 1)
     least = reach * float(expected[-1]) + 2 * noise
@@ -247,13 +299,9 @@ def fit_circles(
     solution = np.zeros((n, size))
     for _ in range(rounds):
         shape = (solution @ design.T).reshape(n, circles, -1) + expected[:, None]
-        found = [_edges(rim, rays.inside, rays.radius, shape[:, k]) for k, rim in enumerate(rims)]
-        target = np.concatenate(
-            [edge - rim.radius for rim, (edge, _) in zip(rims, found, strict=True)], 1
-        )
-        base = may * np.concatenate(
-            [strength > rim.strength for rim, (_, strength) in zip(rims, found, strict=True)], 1
-        )
+        edge, strength = bands.edges(shape)
+        target = (edge - expected[:, None]).reshape(n, -1)
+        base = may * (strength > strong).reshape(n, -1)
         for _ in range(3):
             residual = target - solution @ design.T
             w = base * np.maximum(1 - (residual / scale[:, None]) ** 2, 0) ** 2

@@ -98,6 +98,8 @@ class Measures:
         Share of the circle that was seen.
     evidence : ndarray, shape (n,)
         For a stone 0 to about 3.5, for a plain disc 0 to 1.
+    response : ndarray, shape (n,)
+        Mean worth of the cap less that of the granite around it, 0 to 2; 0 for a plain disc.
     outline : ndarray, shape (n, circles)
         Radii found, as shares of the nominal ones.
     handle : ndarray, shape (n, rays, rings, 3)
@@ -115,6 +117,7 @@ class Measures:
     colour: Array
     visible: Array
     evidence: Array
+    response: Array
     outline: Array
     handle: Bytes
     worth: Floats
@@ -210,6 +213,13 @@ def tilts(camera: Camera, places: Array) -> Array:
     return np.asarray(np.hypot(away[:, 0], away[:, 1]) / camera.position[2])
 
 
+def _template(disc: Stone, radius: Array) -> Array:
+    """Weights of the radii in the mean over the cap less the mean over the granite."""
+    cap = radius * (radius < 0.94 * disc.cap_radius)
+    ring = radius * ((radius > 1.05 * disc.cap_radius) & (radius < 0.96 * disc.radius))
+    return np.asarray(cap / cap.sum() - ring / ring.sum())
+
+
 def _mean_of(values: Floats, use: Floats) -> Array:
     """Mean colours (n, 3) of samples (n, rays, radii, 3) by weights; 0 where there are none."""
     total = use.reshape(len(use), 1, -1) @ values.reshape(len(values), -1, 3)
@@ -282,6 +292,7 @@ def _stones(
         colour=cap,
         visible=visible,
         evidence=clear - uneven - 0.5 * misfit,
+        response=worth.mean(1) @ _template(disc, radius),
         outline=fit.radii / np.array([disc.cap_radius, disc.radius]),
         handle=handle,
         worth=worth,
@@ -307,6 +318,7 @@ def _plain(
         colour=_mean_of(rays.lab.astype(np.float32), within.astype(np.float32)),
         visible=fit.shares[:, 0] * at_rim.mean(1),
         evidence=fit.shares[:, 0],
+        response=np.zeros(n),
         outline=fit.radii / disc.radius,
         handle=handle,
         worth=np.zeros(within.shape, np.float32),

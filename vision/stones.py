@@ -62,6 +62,9 @@ FOLLOWING = Search(radius_px=8.0)
 """For a clip: a coarser map, for what one picture hides the next ones show."""
 
 
+ON_COURSE = 0.15
+"""Within this many radii of where it is expected a stone need not be looked for."""
+
 NEARBY = 0.35
 """How far from where it is expected a stone is measured, in radii."""
 
@@ -183,12 +186,35 @@ def look_at(
     list of Sighting or None
         One per place; None where there is no stone.
     """
-    about, scores = seek_about(
-        image, camera, places, appearance, disc, radius_px=search.radius_px, reach=NEARBY
-    )
-    seen = measure(image, camera, about, appearance, disc)
-    out: list[Sighting | None] = [None] * len(places)
-    chosen = [i for i, fault in enumerate(judge(seen, scores, disc, search)) if not fault]
+    seen = measure(image, camera, places, appearance, disc)
+    right = seen.shift < ON_COURSE * disc.radius
+    out = _found(seen, seen.response, right, camera, disc, search)
+    others = [i for i, sighting in enumerate(out) if sighting is None]
+    if others:
+        about, scores = seek_about(
+            image, camera, places[others], appearance, disc,
+            radius_px=search.radius_px, reach=NEARBY,
+        )  # fmt: skip
+        seen = measure(image, camera, about, appearance, disc)
+        anywhere = np.ones(len(others), bool)
+        found = _found(seen, scores, anywhere, camera, disc, search)
+        for i, sighting in zip(others, found, strict=True):
+            out[i] = sighting
+    return out
+
+
+def _found(
+    seen: Measures,
+    scores: Array,
+    right: NDArray[np.bool_],
+    camera: Camera,
+    disc: Stone,
+    search: Search,
+) -> list[Sighting | None]:
+    """Give the sightings where places show stones and are the right ones, else None."""
+    out: list[Sighting | None] = [None] * len(scores)
+    faults = judge(seen, scores, disc, search)
+    chosen = [i for i, fault in enumerate(faults) if right[i] and not fault]
     found = sightings(seen, np.array(chosen, np.intp), camera, disc, scores)
     for i, sighting in zip(chosen, found, strict=True):
         out[i] = sighting

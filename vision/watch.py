@@ -62,9 +62,9 @@ class Pace:
     """
 
     memory: int = 24
-    lesson: int = 3
-    every: float = 0.2
-    colours: float = 0.8
+    lesson: int = 8
+    every: float = 0.4
+    colours: float = 1.6
     patience: float = 0.3
     trust: float = 0.25
     reach: float = 1.5
@@ -165,7 +165,7 @@ class Watch:
     def _see(self, view: _View) -> None:
         t = view.frame.t
         self._leads = self._follow(view, self._leads)
-        if t - self._searched >= self._pace.every or not self._knows:
+        if t - self._searched >= self._pace.every:
             self._searched = t
             self._look_for_colours(view)
             fresh = self._sought(view, None, view.places)

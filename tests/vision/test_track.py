@@ -113,4 +113,4 @@ def test_pucks_on_a_dark_table(shared: Path) -> None:
         np.polyfit(np.arange(13), total[-13:], 1),
     )
     assert np.hypot(*(before[0] - after[0])) < 0.03 * np.hypot(*before[0])
-    assert np.abs(np.diff(thrown["theta"].dropna())).max() < 0.05
+    assert np.nanmax(np.abs(np.diff(thrown["theta"]))) < 0.05
