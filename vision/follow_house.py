@@ -26,14 +26,15 @@ from vision.landmarks import Keyframe, keyframe, recognise
 from vision.marks import Evidence, measure_along
 from vision.normals import Normals, lay_out
 from vision.outline import Rim
-from vision.picture import Picture
+from vision.picture import Picture, image_of
 from vision.placed import Placed, nobody
 from vision.pose import ANYWHERE, CIRCLES, OVERHEAD, R4, R8, Prior, View, camera, joined
 
 Array = NDArray[np.float64]
 
-FIND_EVERY = 5
-"""Frames from one attempt to find the house to the next."""
+FIND_EVERY, FIND_RARELY = 5, 15
+"""Frames from one attempt to find the house to the next: one more after each failure, till the
+second. What is found then is followed back through the frames kept."""
 
 LOOK_BACK = 30
 """Frames kept while the house has not been found, to be followed backwards from the first find."""
@@ -119,6 +120,7 @@ class HouseFollower:
         self._pieces: list[_Piece] = []
         self._piece: _Piece | None = None
         self._waiting: deque[Frame] = deque(maxlen=LOOK_BACK)
+        self._between = FIND_EVERY
         self._since_find = FIND_EVERY
 
     def look(self, frame: Frame) -> Sequence[tuple[Frame, Camera]]:
@@ -140,7 +142,7 @@ class HouseFollower:
                 return [(frame, self._provisional(piece, seen))]
             piece.lost += 1
             if piece.lost == 1:
-                self._since_find = FIND_EVERY
+                self._since_find = self._between = FIND_EVERY
             if piece.lost > PATIENCE:
                 self._piece = None
         house = self._find(frame)
@@ -154,10 +156,11 @@ class HouseFollower:
         if self._first is not None and not self._pieces:
             return self._first if frame.index == self._first.camera.frame else None
         self._since_find += 1
-        if self._since_find < FIND_EVERY:
+        if self._since_find < self._between:
             return None
-        self._since_find = 0
-        return find_house(frame.image, frame=frame.index, t=frame.t)
+        self._since_find, self._between = 0, min(self._between + 1, FIND_RARELY)
+        # Not the frame's own picture in colour: that would be kept as long as the frame.
+        return find_house(image_of(frame.picture), frame=frame.index, t=frame.t)
 
     def finish(self) -> HouseTrack | None:
         """Fit what all frames of the shot share; None where no house was seen."""

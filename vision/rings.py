@@ -142,16 +142,17 @@ def _votes(
     size = np.ptp(corners, axis=0)
     low = corners.min(0) - MARGIN * size
     across, down = ((1 + 2 * MARGIN) * size / CELL).astype(int) + 1
-    reach = np.arange(2 * CELL, 0.62 * w, CELL)
-    reach = np.concatenate([-reach, reach]).astype(np.float32) / np.float32(CELL)
+    reach = np.arange(2, 0.62 * w / CELL, dtype=np.float32)
+    rim = len(reach) + 2  # so wide that no line leaves the cells: that need not be looked after
+    reach = np.concatenate([-reach, reach])
     step = max(len(points) // VOTERS, 1)
-    start = ((points[::step] - low) / CELL).astype(np.float32)
+    start = ((points[::step] - low) / CELL + rim).astype(np.float32)
     way = gradients[::step].astype(np.float32)
-    x = (start[:, :1] + way[:, :1] * reach).astype(np.int32)
-    y = (start[:, 1:] + way[:, 1:] * reach).astype(np.int32)
-    inside = (x >= 0) & (x < across) & (y >= 0) & (y < down)
-    votes = np.bincount((y * across + x)[inside], minlength=across * down)
-    heat = cv2.GaussianBlur(votes.reshape(down, across).astype(np.float32), (0, 0), 1.0)
+    cell = (start[:, 1:] + way[:, 1:] * reach).astype(np.int32) * (across + 2 * rim)
+    cell += (start[:, :1] + way[:, :1] * reach).astype(np.int32)
+    votes = np.bincount(cell.ravel(), minlength=(across + 2 * rim) * (down + 2 * rim))
+    votes = votes.reshape(down + 2 * rim, -1)[rim:-rim, rim:-rim]
+    heat = cv2.GaussianBlur(votes.astype(np.float32), (0, 0), 1.0)
     # Straight edges lay broad ridges: a centre stands out from its surroundings.
     heat = np.asarray(heat - cv2.blur(heat, (15, 15)))
     found = []
