@@ -1,23 +1,37 @@
 """What the frames of a clip share, fitted to many of them at once.
 
 The unknowns are the rig (place, lens, painted measures), each frame's view, and the paint: how
-far each piece of a painted line lies off its nominal course. Edge points of one piece, in however
-many frames, share that error: so it, not the number of points, limits what can be known. How
-large such errors are, and the noise of single points, is learned from the residuals themselves
-by expectation and maximisation: Dempster, Laird and Rubin, 1977, Journal of the Royal Statistical
-Society B 39, 1. Bundle adjustment: Triggs et al., 2000, LNCS 1883.
+far each piece of a painted line lies off its nominal course. A camera stays where it is unless
+the marks fit much better if it moves slowly: then along a curve of the third degree in time.
+
+Edge points of one piece, in however many frames, share that error: so it, not the number of
+points, limits what can be known. How large such errors are, and the noise of single points, is
+learned from the residuals themselves by expectation and maximisation: Dempster, Laird and Rubin,
+1977, Journal of the Royal Statistical Society B 39, 1. Bundle adjustment: Triggs et al., 2000,
+LNCS 1883.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 
 from vision.adjust import VIEW_SD, WIDTH, Frame, Linear, by_measure, by_rig, inverse, linearised
-from vision.pose import CIRCLES, FIXED, RIG_SIZE, VIEW_SIZE, Marks, Prior, View, joined
+from vision.pose import (
+    CIRCLES,
+    FIXED,
+    POSITION,
+    RIG_SIZE,
+    VIEW_SIZE,
+    Marks,
+    Prior,
+    View,
+    joined,
+)
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -45,6 +59,19 @@ NOISE_TRUST = 10.0
 LOST = 0.85
 """Expected w r² of a normal residual over the expected w, Cauchy weights of width 3."""
 
+TRAVEL_SD = 0.3
+"""How far a camera that moves goes, m."""
+
+MOVES = 100.0
+"""By how much the log likelihood must rise for a camera that moves: as marks share more errors
+than those of the paint, it rises by up to 35 for one that does not."""
+
+DEGREE = 3
+"""Of the polynomial of time along which a camera moves."""
+
+LEAST_FRAMES = 6
+"""Fewer frames tell nothing of a camera's motion."""
+
 ROUNDS = 4
 """Estimates of paint and noise, each followed by a fit."""
 
@@ -56,22 +83,43 @@ class Bundle:
     Attributes
     ----------
     rig : ndarray, shape (14,)
+    travel : ndarray, shape (d, 3)
+        Coefficients of the camera's motion; none if it stays where it is.
+    span : tuple of float
+        First and last time of the frames, s.
     pieces : ndarray of int, shape (c,)
         Identities of the pieces of paint, ascending (see `piece_of`).
     offset : ndarray, shape (c,)
         How far each lies off its line, m.
-    cov : ndarray, shape (14 + c, 14 + c)
-        Covariance of rig and offsets.
+    cov : ndarray, shape (14 + 3 d + c, 14 + 3 d + c)
+        Covariance of rig, travel and offsets.
     noise : ndarray, shape (3,)
         Standard deviation of a single mark on a circle, on a line, of a fixed point, in stated
         ones.
     """
 
     rig: Array
+    travel: Array
+    span: tuple[float, float]
     pieces: Ints
     offset: Array
     cov: Array
     noise: Array
+
+    def moved(self, t: Array) -> Array:
+        """How far the camera is from the rig's place at these times, shape (n, 3), m."""
+        return _basis(t, self.span, len(self.travel)) @ self.travel
+
+    def cov_at(self, t: float) -> Array:
+        """Covariance of rig and offsets at a time, shape (14 + c, 14 + c)."""
+        count = len(self.travel)
+        if not count:
+            return self.cov
+        others = [k for k in range(len(self.cov)) if not RIG_SIZE <= k < RIG_SIZE + 3 * count]
+        onto = np.eye(len(self.cov))[others]
+        basis = _basis(np.array([t]), self.span, count)[0]
+        onto[POSITION, RIG_SIZE : RIG_SIZE + 3 * count] = np.kron(basis, np.eye(3))
+        return np.asarray(onto @ self.cov @ onto.T)
 
     def offsets(self, marks: Marks) -> tuple[Array, Ints]:
         """Offset of the paint under each mark, m, and the place of its piece; 0, −1 if unseen."""
@@ -93,8 +141,16 @@ def family(line: Ints) -> Ints:
     return np.asarray((line >= CIRCLES).astype(np.int64) + (line == FIXED), np.int64)
 
 
+def _basis(t: Array, span: tuple[float, float], degree: int) -> Array:
+    """Legendre polynomials of the 1st to this degree over a span of time, shape (n, degree)."""
+    first, last = span
+    share = np.clip(2 * (t - first) / max(last - first, 1e-9) - 1, -1, 1)
+    return np.asarray(legendre.legvander(share, degree)[:, 1:])
+
+
 def bundle(
     frames: Sequence[Marks],
+    times: Sequence[float],
     views: Sequence[View],
     rig: Array,
     size: tuple[int, int],
@@ -108,6 +164,8 @@ def bundle(
     ----------
     frames : sequence of Marks
         Not empty.
+    times : sequence of float
+        Of the frames, s, ascending.
     views : sequence of View
         Start values, one per frame, and the centres of the weak prior `view_sd`.
     rig : ndarray, shape (14,)
@@ -116,35 +174,46 @@ def bundle(
         Width and height of the picture, px.
     prior : Prior
     """
-    problem = _Problem(frames, views, size, prior, view_sd)
-    state = _State(rig, np.zeros(len(problem.pieces)), np.array([v.vector for v in views]))
-    paint, noise = PAINT_SD, np.ones(FAMILIES)
-    for step in range(ROUNDS):
-        state, cov = problem.fit(state, paint, noise, 6 if step == 0 else 2)
-        paint, noise = problem.spread(state, cov, paint, noise)
-    state, cov = problem.fit(state, paint, noise, 4)
-    shared = RIG_SIZE + len(problem.pieces)
-    found = Bundle(state.rig, problem.pieces, state.offset, cov[:shared, :shared], noise)
-    return found, tuple(View(v) for v in state.views)
+    span = times[0], times[-1]
+    still = _Problem(frames, _basis(np.array(times), span, 0), views, size, prior, view_sd)
+    start = np.array([v.vector for v in views])
+    state = _State(rig, np.zeros((0, 3)), np.zeros(len(still.pieces)), start)
+    problem, found = still, still.learn(state, PAINT_SD, np.ones(FAMILIES))
+    if len(frames) >= LEAST_FRAMES:
+        moving = _Problem(
+            frames, _basis(np.array(times), span, DEGREE), views, size, prior, view_sd
+        )
+        state, _, paint, noise = found
+        state = replace(state, travel=np.zeros((DEGREE, 3)))
+        if moving.gain(state, paint, noise) > MOVES:
+            problem, found = moving, moving.learn(state, paint, noise)
+    state, cov, _, noise = found
+    shared = problem.shared + len(problem.pieces)
+    known = cov[:shared, :shared]
+    views = tuple(View(v) for v in state.views)
+    return Bundle(state.rig, state.travel, span, problem.pieces, state.offset, known, noise), views
 
 
 @dataclass(frozen=True)
 class _State:
     rig: Array
+    travel: Array
     offset: Array
     views: Array
 
     def moved(self, step: Array) -> _State:
-        cut = RIG_SIZE + len(self.offset)
+        shared = RIG_SIZE + self.travel.size
+        cut = shared + len(self.offset)
         return _State(
             self.rig + step[:RIG_SIZE],
-            self.offset + step[RIG_SIZE:cut],
+            self.travel + step[RIG_SIZE:shared].reshape(-1, 3),
+            self.offset + step[shared:cut],
             self.views + step[cut:].reshape(-1, VIEW_SIZE),
         )
 
 
 class _Problem:
-    """Residuals, normal equations and variances; unknowns in the order rig, offsets, views.
+    """Residuals, normal equations and variances; unknowns in the order rig, travel, offsets, views.
 
     The marks are ordered by frames and, within a frame, by the pieces they lie on: a run of marks
     is what one frame shows of one piece.
@@ -153,6 +222,7 @@ class _Problem:
     def __init__(
         self,
         frames: Sequence[Marks],
+        basis: Array,
         views: Sequence[View],
         size: tuple[int, int],
         prior: Prior,
@@ -168,8 +238,10 @@ class _Problem:
         number = np.repeat(np.arange(len(frames)), self.frame.counts)
         changes = (np.diff(identity, prepend=-1) != 0) | (np.diff(number, prepend=-1) != 0)
         self.first = np.flatnonzero(changes)
-        self.run_piece = RIG_SIZE + self.piece[self.first]
-        cut = RIG_SIZE + len(self.pieces)
+        self.basis = basis[number]
+        self.shared = RIG_SIZE + 3 * basis.shape[1]
+        self.run_piece = self.shared + self.piece[self.first]
+        cut = self.shared + len(self.pieces)
         self.run_view = cut + VIEW_SIZE * number[self.first] + np.arange(VIEW_SIZE)[:, None]
         self.of_piece = np.zeros((len(self.first), len(self.pieces)))
         self.of_piece[np.arange(len(self.first)), self.piece[self.first]] = 1.0
@@ -179,7 +251,7 @@ class _Problem:
 
     def see(self, state: _State) -> Linear:
         """Linearise all frames."""
-        points = self.frame.points(state.rig)
+        points = self.frame.points(state.rig) - (self.basis @ state.travel).T
         points[:2] += self.frame.way * state.offset[self.piece]
         return linearised(self.frame, points, state.views, state.rig)
 
@@ -187,25 +259,34 @@ class _Problem:
         """Half the robust sum of squares."""
         off = (state.rig - self.prior.mean) / self.prior.sd
         value = float(off @ off + ((state.offset / paint[self.family]) ** 2).sum())
+        value += float((state.travel**2).sum()) / TRAVEL_SD**2
         value += float((self.hold * (state.views - self.start) ** 2).sum())
         r = at.residual / noise[self.kind] / WIDTH
         return (value + float(WIDTH**2 * np.log1p(r * r).sum())) / 2
 
     def normal(self, state: _State, at: Linear, paint: Array, noise: Array) -> tuple[Array, Array]:
         """Assemble the normal equations: matrix and right-hand side."""
-        rig, paints = slice(0, RIG_SIZE), slice(RIG_SIZE, RIG_SIZE + len(self.pieces))
+        rig, paints = slice(0, self.shared), slice(self.shared, self.shared + len(self.pieces))
         held = np.concatenate(
             [
                 1 / self.prior.sd**2,
+                np.full(state.travel.size, 1 / TRAVEL_SD**2),
                 1 / paint[self.family] ** 2,
                 np.tile(self.hold, len(state.views)),
             ]
         )
-        away = [state.rig - self.prior.mean, state.offset, (state.views - self.start).ravel()]
+        away = [
+            state.rig - self.prior.mean,
+            state.travel.ravel(),
+            state.offset,
+            (state.views - self.start).ravel(),
+        ]
         right = held * np.concatenate(away)
         matrix = np.zeros((len(held), len(held)))
         w = 1 / (noise[self.kind] ** 2 + (at.residual / WIDTH) ** 2)
         by_shared, by_offset = by_rig(self.frame, at, state.views), by_measure(self.frame, at)
+        along = (self.basis.T[:, None] * by_shared[POSITION]).reshape(-1, len(w))
+        by_shared = np.concatenate([by_shared, along])
         shared, own, pull = by_shared * w, at.by_view * w, w * at.residual
         matrix[rig, rig] = shared @ by_shared.T
         right[rig] += by_shared @ pull
@@ -217,12 +298,27 @@ class _Problem:
         if len(self.first):
             runs = np.add.reduceat(np.concatenate([shared, own]) * by_offset, self.first, axis=1)
             matrix[paints, rig] = (runs[rig] @ self.of_piece).T
-            matrix[self.run_view, self.run_piece] = runs[RIG_SIZE:]
+            matrix[self.run_view, self.run_piece] = runs[self.shared :]
         matrix = np.tril(matrix) + np.tril(matrix, -1).T
         held[paints] += np.bincount(self.piece, w * by_offset**2, len(self.pieces))
         right[paints] += np.bincount(self.piece, by_offset * pull, len(self.pieces))
         matrix.flat[:: len(held) + 1] += held
         return matrix, right
+
+    def learn(
+        self, state: _State, paint: Array, noise: Array
+    ) -> tuple[_State, Array, Array, Array]:
+        """Fit with the paint and the noise that the residuals show: state, covariance, both."""
+        for step in range(ROUNDS):
+            state, cov = self.fit(state, paint, noise, 6 if step == 0 else 2)
+            paint, noise = self.spread(state, cov, paint, noise)
+        state, cov = self.fit(state, paint, noise, 4)
+        return state, cov, paint, noise
+
+    def gain(self, state: _State, paint: Array, noise: Array) -> float:
+        """By how much the cost falls to where linear residuals have its least."""
+        matrix, right = self.normal(state, self.see(state), paint, noise)
+        return 0.5 * float(right @ np.linalg.solve(matrix, right))
 
     def fit(
         self, state: _State, paint: Array, noise: Array, iterations: int
@@ -249,7 +345,7 @@ class _Problem:
 
     def spread(self, state: _State, cov: Array, paint: Array, noise: Array) -> tuple[Array, Array]:
         """Estimate the paint's and the marks' standard deviations anew."""
-        variance = np.diagonal(cov)[RIG_SIZE : RIG_SIZE + len(self.pieces)]
+        variance = np.diagonal(cov)[self.shared :][: len(self.pieces)]
         squares, counts = PAINT_TRUST * PAINT_SD**2, np.full(FAMILIES, PAINT_TRUST)
         squares = squares + np.bincount(self.family, state.offset**2 + variance, FAMILIES)
         counts = counts + np.bincount(self.family, minlength=FAMILIES)

@@ -4,7 +4,7 @@ What the frames share is fitted to some of them (`vision.bundle`), then every vi
 Each camera says how well it is known: by its own marks, and by what all frames share.
 
 Assumed: the principal point is the middle of the picture, pixels are square, the camera stays
-where it is, and the 12-ft circle has its nominal radius.
+where it is or moves slowly, and the 12-ft circle has its nominal radius.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from vision.camera import PARAMETERS, Camera, CameraError
 from vision.landmarks import Keyframe, replaced
 from vision.pose import (
     CIRCLES,
+    FIXED,
     K1,
     K1_ZOOM,
     K2,
@@ -56,8 +57,9 @@ LONG_RANGE = 2.3
 """Errors of paint and outline are alike over longer stretches than single pieces and marks tell:
 so much larger than these say are the standard errors, as cameras known otherwise show."""
 
-YARDSTICK_SD = 0.0018
-"""How well the outer edge of the 12-ft circle is made out in a picture, m."""
+YARDSTICK_SD = 0.0010
+"""How well the outer edge of the 12-ft circle is made out, m: an outline 5 to 10 mm wide, little
+darker than the paint, goes unseen and displaces the edge by a tenth of its width."""
 
 UNTOLD = 0.7
 """Share of its prior standard deviation above which the camera's height counts as assumed."""
@@ -78,7 +80,7 @@ class HouseTrack:
         Radii of the painted 12-, 8- and 4-ft edges, m; the first is the yardstick.
     radii_sd : ndarray, shape (3,)
     position_sd : ndarray, shape (3,)
-        Standard deviation of the camera's place, m.
+        Standard deviation of the camera's place, m; of a moving one's mean place.
     warnings : tuple of str
     """
 
@@ -130,7 +132,8 @@ def fit_clip(seen: Sequence[Seen], rig: Array, prior: Prior, size: tuple[int, in
     """
     good = [s for s in seen if s.found]
     chosen = _spread(good)
-    shared, _ = bundle([s.marks for s in chosen], [s.view for s in chosen], rig, size, prior)
+    times = [s.t for s in chosen]
+    shared, _ = bundle([s.marks for s in chosen], times, [s.view for s in chosen], rig, size, prior)
     cameras = _fit_frames(seen, shared, size)
     sd = LONG_RANGE * np.sqrt(np.diag(shared.cov)[:RIG_SIZE])
     return HouseTrack(
@@ -151,12 +154,25 @@ def _fit_frames(seen: Sequence[Seen], shared: Bundle, size: tuple[int, int]) -> 
             cameras = fit_frames(ready[k : k + TOGETHER], shared, size)
             done.update({camera.frame: camera for camera in cameras})
         ready = [
-            replace(s, marks=replaced(s.marks, s.key, done[s.key.frame]))
+            _carried(s, s.key, done[s.key.frame])
             for s in waiting
             if s.key is not None and s.key.frame in done
         ]
         waiting = [s for s in waiting if s.key is not None and s.key.frame not in done]
     return [done[s.index] for s in seen if s.index in done]
+
+
+def _carried(seen: Seen, key: Keyframe, by: Camera) -> Seen:
+    """Give a frame that is carried by a keyframe the places that its camera tells, with errors."""
+    marks = replaced(seen.marks, key, by)
+    if by.error is None or marks.across is None:
+        return replace(seen, marks=marks)
+    known = marks.line == FIXED
+    ice = np.stack([marks.along[known], marks.across[known]], axis=-1)
+    own = by.place_cov(ice) - by.shared_place_cov(ice)
+    square = float(np.trace(own, axis1=-2, axis2=-1).mean()) / 2
+    drift = float(np.hypot(np.sqrt(square), by.error.drift))
+    return replace(seen, marks=marks, key=replace(key, drift=drift))
 
 
 def fit_frames(seen: Sequence[Seen], shared: Bundle, size: tuple[int, int]) -> list[Camera]:
@@ -165,6 +181,8 @@ def fit_frames(seen: Sequence[Seen], shared: Bundle, size: tuple[int, int]) -> l
     marks = replace(marks, sd=marks.sd * shared.noise[family(marks.line)])
     offset, piece = shared.offsets(marks)
     frame = Frame(marks, size, offset, [len(s.marks) for s in seen])
+    away = shared.moved(np.array([s.t for s in seen]))
+    frame.foot -= frame.each(away.T)
     fits = solve_views(frame, [s.view for s in seen], shared.rig, view_sd=VIEW_SD)
     views = np.array([fit.view.vector for fit in fits])
     at = linearised(frame, frame.points(shared.rig), views, shared.rig)
@@ -175,16 +193,19 @@ def fit_frames(seen: Sequence[Seen], shared: Bundle, size: tuple[int, int]) -> l
     noisier = (NOISE_TRUST + square) / (NOISE_TRUST + free)
     by_view = at.by_view * weight
     by_shared, by_offset = by_rig(frame, at, views), by_measure(frame, at)
-    hold, spread = 1 / np.square(VIEW_SD), LONG_RANGE**2 * shared.cov
+    hold = 1 / np.square(VIEW_SD)
     found = []
     for k, (s, fit, part) in enumerate(zip(seen, fits, frame.parts, strict=True)):
         normal = by_view[:, part] @ at.by_view[:, part].T + np.diag(hold)
         cov = inverse(normal)  # linearised at the same place as the rest, else errors do not cancel
+        rig = shared.rig.copy()
+        rig[POSITION] += away[k]
+        spread = LONG_RANGE**2 * shared.cov_at(s.t)
         follows = sensitivity(
             by_view[:, part], by_shared[:, part], by_offset[part], cov, piece[part], len(spread)
         )
         both = np.concatenate([follows, np.eye(RIG_SIZE, len(spread))])
-        to_camera = _parameters(views[k], shared.rig, size)
+        to_camera = _parameters(views[k], rig, size)
         common, own = to_camera @ both, to_camera[:, :VIEW_SIZE]
         error = CameraError(
             common @ spread @ common.T,
@@ -193,11 +214,11 @@ def fit_frames(seen: Sequence[Seen], shared: Bundle, size: tuple[int, int]) -> l
             0.0 if s.key is None else s.key.drift,
         )
         rms = fit.rms if s.found else float("nan")
-        quality = _explained(s.marks.pick(fit.inliers), fit.view, shared.rig, size)
+        quality = _explained(s.marks.pick(fit.inliers), fit.view, rig, size)
         quality *= 1 / (1 + (rms / POOR_PX) ** 2) if s.found else 0.0
         found.append(
             camera(
-                fit.view, shared.rig, size, frame=s.index, t=s.t, rms_px=rms, found=s.found,
+                fit.view, rig, size, frame=s.index, t=s.t, rms_px=rms, found=s.found,
                 error=error, quality=quality,
             )
         )  # fmt: skip
