@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-import numpy as np
 import pandas as pd
 
 from data.errors import InputError
@@ -217,15 +216,14 @@ def _whole(
 def _disagreement(local: Estimate, whole: Estimate) -> str | None:
     """Say so where two estimates of the restitution differ by more than they may.
 
-    The second uses all that the first does, and more: the variance of their difference is the
-    difference of their variances (Hausman, 1978, Econometrica 46, 1251), though hardly less
-    than a quarter of the larger one, for these are estimates too.
+    The second uses all that the first does, and more: with errors that are anew in each frame
+    the variance of their difference would be the difference of their variances (Hausman, 1978,
+    Econometrica 46, 1251). What a map of the ice shares moves them apart by more, up to about
+    the larger of their errors.
     """
     if local.value is None or local.stderr is None or whole.value is None or whole.stderr is None:
         return None
-    variance = abs(local.stderr**2 - whole.stderr**2)
-    least = 0.25 * max(local.stderr, whole.stderr) ** 2
-    if abs(whole.value - local.value) <= 3 * float(np.sqrt(max(variance, least))):
+    if abs(whole.value - local.value) <= 3 * max(local.stderr, whole.stderr):
         return None
     return (
         f"restitution: {local.value:.3f} ± {local.stderr:.3f} beside the hits,"
