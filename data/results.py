@@ -160,6 +160,11 @@ class Collision:
     note: str | None = None
     note_stone_friction: str | None = None
 
+    @property
+    def earliest(self) -> float:
+        """Time before which the stones have not met for certain, s: three standard errors."""
+        return self.t - 3 * (self.stderr_t or 0.0)
+
 
 @dataclass(frozen=True)
 class Glide:

@@ -132,7 +132,7 @@ def _start_time(tracks: pd.DataFrame, estimates: Estimates) -> float:
     times = np.unique(tracks["t"].to_numpy(float))
     if not estimates.collisions:
         return float(times[0])
-    before = times[times < min(hit.t for hit in estimates.collisions)]
+    before = times[times < min(hit.earliest for hit in estimates.collisions)]
     return float(before[-1] if len(before) else times[0])
 
 
@@ -140,7 +140,7 @@ def _states(
     tracks: pd.DataFrame, start: float, estimates: Estimates, masses: Mapping[str, float]
 ) -> tuple[StoneStart, ...]:
     """Every stone's state at the start; one first seen later starts where it is then."""
-    first_hit = min((hit.t for hit in estimates.collisions), default=np.inf)
+    first_hit = min((hit.earliest for hit in estimates.collisions), default=np.inf)
     out = []
     for name, group in tracks.groupby("stone", sort=True):
         early = group[group["t"] < first_hit]

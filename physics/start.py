@@ -155,7 +155,7 @@ def _time(tracks: pd.DataFrame, results: Results) -> float:
 
     Without a hit, the first at which the fastest stone is seen.
     """
-    first = min((hit.t for hit in results.collisions), default=math.inf)
+    first = min((hit.earliest for hit in results.collisions), default=math.inf)
     early = tracks["t"] < first
     if math.isfinite(first) and early.any():
         return float(tracks.loc[early, "t"].max())

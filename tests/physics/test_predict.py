@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -37,6 +38,19 @@ def test_the_shot_again_lands_where_it_did() -> None:
     hit = find_contacts(seen, RADIUS)[0].t
     assert table["t"].min() < hit < table["t"].min() + 0.04
     assert set(table["frame"]) <= set(seen["frame"])
+
+
+def test_a_frame_that_may_lie_behind_the_hit_is_no_start() -> None:
+    # The tracks are cut at the contact; the fit's time of the same hit may be just behind a frame.
+    seen = watch(hit_motion(1.5, 0.1), np.random.default_rng(44), sd=0.004)
+    (contact,) = find_contacts(seen, RADIUS)
+    tracks = smooth(seen, (contact,), radius=RADIUS)
+    found = estimate(seen, (contact,), radius=RADIUS)
+    frame = float(tracks["t"][tracks["t"] >= contact.t].min())
+    late = replace(found.collisions[0], t=frame + 1e-5, stderr_t=frame - contact.t)
+    found = replace(found, collisions=(late,))
+    _, scores, _ = simulate_measured(tracks, found, radius=RADIUS)
+    assert [hit.stones for hit in scores["frictional"].hits] == [("A", "B")]
 
 
 def test_who_glides_only_is_no_part_of_the_score() -> None:
