@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -24,6 +25,9 @@ from physics.traces import traces
 from physics.watched import LITERATURE, watch
 
 Floats = NDArray[np.float64]
+
+AFTER = 1.16
+"""Time after the first hit, s, at which the study of the 2018 Olympic final states its error."""
 
 DRAWS = 48
 """Simulated shots from which the spread of the last places is taken."""
@@ -136,7 +140,27 @@ def _scored(
         restitution,
         friction,
         found.note,
+        _errors_at(tracks, table, first + AFTER, found.rest_error),
     )
+
+
+def _errors_at(
+    tracks: pd.DataFrame, predicted: pd.DataFrame, time: float, stones: Iterable[str]
+) -> dict[str, float | None]:
+    """Distance between predicted and measured places of stones at a time, m; None if unseen."""
+    out: dict[str, float | None] = {}
+    for stone in stones:
+        places = []
+        for table in (tracks, predicted):
+            own = table[table["stone"] == stone]
+            t = own["t"].to_numpy(float)
+            if not len(t) or not t[0] <= time <= t[-1]:
+                break
+            places.append([np.interp(time, t, own[axis].to_numpy(float)) for axis in "xy"])
+        out[stone] = None
+        if len(places) == 2:
+            out[stone] = math.dist(*places)
+    return out
 
 
 def _run(fit: GlobalFit, values: Mapping[str, float], model: str, end: float) -> Simulation:

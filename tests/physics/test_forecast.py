@@ -36,6 +36,9 @@ def test_last_places_are_predicted_from_before_the_hit() -> None:
         assert sd is not None
         assert error is not None
         assert error < 2 * sd
+    soon = frictional.error_after
+    assert sorted(soon) == ["A", "B", "C"]
+    assert all(error is not None and error < 0.02 for error in soon.values())
     assert made["rigid-body"].rmse is None
     assert "spins" in (made["rigid-body"].note or "")
 
