@@ -1,0 +1,82 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from data.sheet import HOUSE
+from vision.normals import BLOCK, SAMPLES, THIN, lay_out, profiles
+from vision.pose import CIRCLES, OVERHEAD, TWELVE, aim, ice_points, project, start_rig
+
+SIZE = (1280, 720)
+POSITION = (0.1, -0.2, 8.5)
+REACH = 9.0
+
+
+def view(centre: tuple[float, float] = (640.0, 380.0), scale: float = 130.0) -> np.ndarray:
+    return aim(centre, scale, POSITION, SIZE).vector
+
+
+def rig() -> np.ndarray:
+    found = start_rig(OVERHEAD, POSITION)
+    found[3:6] = -0.06, 0.0, 0.02
+    return found
+
+
+@pytest.mark.parametrize("centre", [(640.0, 380.0), (100.0, 900.0)])
+def test_normals_stand_on_their_lines_inside_the_picture(centre: tuple[float, float]) -> None:
+    normals = lay_out(view(centre), rig(), SIZE, reach=REACH, most=48)
+    line = np.repeat(list(normals.kinds), [p.stop - p.start for p in normals.kinds.values()])
+    places = [ice_points(line, normals.along + step, rig()) for step in (-1e-4, 0.0, 1e-4)]
+    before, here, after = (project(place, view(centre), rig(), SIZE) for place in places)
+    np.testing.assert_allclose(here, normals.point, atol=1e-9)
+    tangent = after - before
+    tangent /= np.linalg.norm(tangent, axis=1)[:, None]
+    np.testing.assert_allclose(np.linalg.norm(normals.normal, axis=1), 1)
+    assert np.abs((tangent * normals.normal).sum(1)).max() < 0.02
+    assert (normals.point > REACH).all()
+    assert (normals.point < np.array(SIZE) - 1 - REACH).all()
+
+
+def test_there_are_as_many_as_wanted_evenly_spread() -> None:
+    normals = lay_out(view(), rig(), SIZE, reach=REACH, most=48)
+    circle = normals.along[normals.kinds[TWELVE]]
+    assert len(circle) == 48
+    assert np.ptp(np.diff(circle)) < np.radians(1.1)
+    for kind in THIN:
+        if kind in normals.kinds:
+            along = normals.along[normals.kinds[kind]].reshape(-1, BLOCK)
+            assert np.ptp(along, axis=1).max() < BLOCK * 0.05
+    assert (lay_out(view(), rig(), SIZE, reach=REACH, lines=False).kinds.keys()) == {0, 1, 2}
+
+
+def test_what_is_seen_of_each_circle_is_told() -> None:
+    # The upper edge of the picture runs through the tee.
+    normals = lay_out(view((640.0, 0.0)), rig(), SIZE, reach=REACH)
+    assert normals.visible[:CIRCLES] == pytest.approx(0.5, abs=0.06)
+    away = lay_out(view((640.0, 6000.0)), rig(), SIZE, reach=REACH, lines=False)
+    assert not away.kinds
+    assert profiles(np.zeros((SIZE[1], SIZE[0], 3), np.uint8), away).shape == (0, SAMPLES, 3)
+
+
+def test_normals_move_with_the_picture_until_they_leave_it() -> None:
+    normals = lay_out(view(), rig(), SIZE, reach=REACH, most=48, lines=False)
+    later = view((643.0, 376.0))
+    moved = normals.moved(later, rig(), SIZE)
+    assert moved is not None
+    ring = moved.kinds[TWELVE]
+    there = HOUSE.twelve_foot * np.stack([np.cos(moved.along[ring]), np.sin(moved.along[ring])], 1)
+    np.testing.assert_allclose(moved.point[ring], project(there, later, rig(), SIZE), atol=1e-9)
+    assert normals.moved(view((700.0, 380.0)), rig(), SIZE) is None
+    edge = lay_out(view((640.0, 0.0)), rig(), SIZE, reach=REACH, lines=False)
+    assert edge.moved(view((640.0, -5.0)), rig(), SIZE) is None
+
+
+def test_profiles_are_read_along_the_normals() -> None:
+    normals = lay_out(view(), rig(), SIZE, reach=REACH, most=48)
+    x, y = np.meshgrid(np.arange(SIZE[0]), np.arange(SIZE[1]))
+    image = np.stack([x / 6, y / 6, np.full_like(x, 100.0)], axis=-1).astype(np.uint8)
+    share = np.linspace(-1, 1, SAMPLES)[:, None]
+    at = normals.point[:, None] + (normals.normal * normals.reach[:, None])[:, None] * share
+    found = profiles(image, normals)
+    np.testing.assert_allclose(found[..., :2], at / 6, atol=1.6)
+    np.testing.assert_array_equal(found[..., 2], 100)

@@ -1,0 +1,73 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from vision.normals import SAMPLES, Normals, lay_out
+from vision.pose import CENTRE_LINE, OVERHEAD, TEE_LINE, aim, start_rig
+from vision.stripes import find_stripes
+
+SIZE = (1280, 720)
+POSITION = (0.0, 0.0, 8.5)
+REACH = 9.0
+STEP = 2 * REACH / (SAMPLES - 1)
+
+
+def laid_out() -> Normals:
+    view, rig = aim((640.0, 360.0), 130.0, POSITION, SIZE), start_rig(OVERHEAD, POSITION)
+    return lay_out(view.vector, rig, SIZE, reach=REACH, most=90)
+
+
+def ice(rng: np.random.Generator, count: int) -> np.ndarray:
+    """Colours of noisy ice along normals, a little lighter on one side."""
+    level = 215.0 + np.linspace(-3, 3, SAMPLES)[:, None]
+    return (level + rng.normal(0, 2, (count, SAMPLES, 3))).astype(np.float32)
+
+
+def line(normals: Normals, kind: int, depth: float, places: tuple[float, ...]) -> np.ndarray:
+    """A line's share of the colours: darker by `depth` where it is, px off the middle."""
+    x = np.linspace(-REACH, REACH, SAMPLES)
+    found = np.zeros((len(normals.along), SAMPLES, 1), np.float32)
+    for place in places:
+        off = place + 0.3 * normals.along[normals.kinds[kind], None]
+        found[normals.kinds[kind], :, 0] -= depth * np.exp(-0.5 * ((x - off) / 1.2) ** 2)
+    return found
+
+
+@pytest.mark.parametrize("depth", [6.0, 40.0, -6.0])
+def test_a_faint_line_is_found_where_it_is(depth: float) -> None:
+    normals, rng = laid_out(), np.random.default_rng(1)
+    profile = ice(rng, len(normals.along)) + line(normals, CENTRE_LINE, depth, (1.5,))
+    stripes = find_stripes(profile, normals)
+    part = stripes.kinds[CENTRE_LINE]
+    assert stripes.good[part].mean() > 0.7
+    off = stripes.offset[part] - (1.5 + 0.3 * stripes.along[part])
+    assert np.median(np.abs(off[stripes.good[part]])) < 0.35
+    assert not stripes.good[stripes.kinds[TEE_LINE]].any()
+
+
+def test_two_stripes_are_one_line_between_them() -> None:
+    normals, rng = laid_out(), np.random.default_rng(2)
+    profile = ice(rng, len(normals.along)) + line(normals, TEE_LINE, 30.0, (-1.4, 2.4))
+    stripes = find_stripes(profile, normals)
+    part = stripes.kinds[TEE_LINE]
+    off = stripes.offset[part] - (0.5 + 0.3 * stripes.along[part])
+    assert stripes.good[part].mean() > 0.7
+    assert abs(np.median(off[stripes.good[part]])) < 0.6
+
+
+def test_bare_ice_and_edges_of_paint_are_no_lines() -> None:
+    normals, rng = laid_out(), np.random.default_rng(3)
+    bare = ice(rng, len(normals.along))
+    assert not find_stripes(bare, normals).good.any()
+    paint = bare.copy()
+    paint[:, SAMPLES // 2 :] -= 90
+    assert not find_stripes(paint, normals).good.any()
+
+
+def test_without_lines_in_view_there_is_nothing() -> None:
+    view, rig = aim((640.0, 360.0), 130.0, POSITION, SIZE), start_rig(OVERHEAD, POSITION)
+    circles = lay_out(view.vector, rig, SIZE, reach=REACH, lines=False)
+    found = find_stripes(ice(np.random.default_rng(4), len(circles.along)), circles)
+    assert not found.kinds
+    assert len(found.good) == 0
