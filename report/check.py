@@ -14,8 +14,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from data.sheet import STONE
+from report.drawing import circle, draw_lines, ice_lines
 from report.numbers import count
-from report.overlay import draw_line, ice_lines
 from report.style import BLUE, GREY, ORANGE, SKY, VERMILLION, new_figure, styled
 from vision.camera import Camera
 from vision.clip import Frame, Image
@@ -36,7 +36,7 @@ REACH = 2.2
 
 _RINGS, _LINES = (255, 255, 0), (0, 255, 255)  # BGR: on no common paint
 _TAKEN, _REFUSED = (80, 255, 80), (60, 60, 255)
-_CIRCLE = np.stack([np.cos(a := np.linspace(0, 2 * np.pi, 61)), np.sin(a)], axis=1)
+_CIRCLE = circle(61)
 
 
 @dataclass(frozen=True)
@@ -160,16 +160,16 @@ def _drawn(look: Look, rings: Sequence[float], radius: float, reasons: Sequence[
     """Draw the model on a copy of the frame, reduced to the size of the sheet."""
     image = look.frame.image.copy()
     thickness = max(round(image.shape[1] / PICTURE_WIDTH), 1)
-    for rank, line in enumerate(ice_lines(rings)):
-        colour = _RINGS if rank < len(rings) else _LINES
-        draw_line(image, look.camera, line, colour, thickness, edge=False)
+    lines = ice_lines(rings)
+    for colour, some in ((_RINGS, lines[: len(rings)]), (_LINES, lines[len(rings) :])):
+        draw_lines(image, look.camera, some, colour, thickness, edge=False)
     height = STONE.cap_height * radius / STONE.radius
     for stone in look.stones:
         outline = np.array([stone.x, stone.y]) + radius * _CIRCLE
-        draw_line(image, look.camera, outline, _TAKEN, 2 * thickness, height)
+        draw_lines(image, look.camera, [outline], _TAKEN, 2 * thickness, height)
     for place in look.refused:
         outline = np.array([place.x, place.y]) + radius * _CIRCLE
-        draw_line(image, look.camera, outline, _REFUSED, thickness, height)
+        draw_lines(image, look.camera, [outline], _REFUSED, thickness, height)
         at = look.camera.project(np.array([place.x + radius, place.y]), height)
         cv2.putText(
             image, str(reasons.index(place.reason) + 1), (int(at[0]) + 4, int(at[1])),

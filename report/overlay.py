@@ -4,12 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from pathlib import Path
-from typing import Any, Self
 
-import av
-import cv2
 import numpy as np
 import pandas as pd
 from matplotlib.colors import to_rgb
@@ -18,31 +14,35 @@ from numpy.typing import NDArray
 from data.files import whole_file
 from data.progress import Progress, no_progress
 from data.results import Collision
-from data.sheet import HOUSE, SHEET, STONE
+from data.sheet import HOUSE, STONE
+from report.drawing import (
+    WHITE,
+    Box,
+    Colour,
+    circle,
+    draw_lines,
+    ice_lines,
+    inside,
+    overlap,
+    text_box,
+    write,
+)  # fmt: skip
+from report.encode import Encoder
 from report.style import stone_colours, team_colour
-from vision.camera import Camera, apply_homography
-from vision.clip import DEFAULT_IMAGE_FPS, Clip, Frame, Image
+from vision.camera import Camera
+from vision.clip import Clip, Frame, Image
 
 Array = NDArray[np.float64]
 
 RINGS = (HOUSE.twelve_foot, HOUSE.eight_foot, HOUSE.four_foot)
 
-_TIME_BASE = Fraction(1, 90_000)  # fine enough for any rate, exact for 24, 25, 30, 50 and 60
-_CIRCLE = np.stack([np.cos(a := np.linspace(0, 2 * np.pi, 121)), np.sin(a)], axis=1)
-_SHIFT = 4  # bits of a pixel's fraction in cv2's drawing
+_RIM = circle(49)
 _APART = 0.1  # radii between the points of a trail
 _RESTS = 0.05  # m/s below which a stone's speed is not worth a label
 _TURNS = 0.1  # rad/s, the same for its spin
 _FLASH = 0.4  # s
-_FONT = cv2.FONT_HERSHEY_SIMPLEX
-_LETTERS = 0.5  # size of the letters in a picture 720 px high
-_LEAST_UNIT = 0.75  # of that size, below which letters cannot be read
-_WHITE, _BLACK = (255, 255, 255), (0, 0, 0)
+_LEAST_UNIT = 0.75  # of the usual size, below which letters cannot be read
 _LINE_COLOUR = (255, 255, 120)
-
-Colour = tuple[int, int, int]
-Box = tuple[Array, Array]
-"""Upper left and lower right corner, px."""
 
 
 @dataclass(frozen=True)
@@ -132,7 +132,7 @@ def write_overlay(
     scene = _scene(tracks, collisions, rings, radius)
     by_frame = {camera.frame: camera for camera in cameras}
     total = clip.expected
-    with whole_file(path) as part, _Encoder(part, clip.size, clip.fps) as encoder:
+    with whole_file(path) as part, Encoder(part, clip.size, clip.fps) as encoder:
         for done, frame in enumerate(clip, 1):
             camera = by_frame.get(frame.index)
             image = frame.image if camera is None else draw(frame, camera, scene)
@@ -147,54 +147,26 @@ def draw(frame: Frame, camera: Camera, scene: Scene) -> Image:
     scale = image.shape[0] / 720
     unit = max(scale, _LEAST_UNIT)
     thin, thick = max(round(scale), 1), max(round(2 * scale), 1)
-    for line in scene.lines:
-        draw_line(image, camera, line, _LINE_COLOUR, thin, edge=False)
+    draw_lines(image, camera, scene.lines, _LINE_COLOUR, thin, edge=False)
     states = scene.states.get(frame.index, [])
     now = {state.stone: state.place for state in states}
     for name, (frames, places) in scene.paths.items():
         stop = int(np.searchsorted(frames, frame.index, side="right"))
         trail = places[:stop] if name not in now else np.vstack([places[:stop], now[name]])
-        if len(trail) > 1:
-            draw_line(image, camera, trail, scene.colours[name], thick)
-    boxes = []
+        draw_lines(image, camera, [trail], scene.colours[name], thick)
     for state in states:
-        outline = state.place + scene.radius * _CIRCLE
-        pixels = camera.project(outline, scene.height)
-        boxes.append((pixels.min(axis=0), pixels.max(axis=0)))
-        colour = scene.colours[state.stone]
-        draw_line(image, camera, outline, colour, thick if state.seen else thin, scene.height)
+        rim = [state.place + scene.radius * _RIM]
         if np.isfinite(state.theta):
             tip = np.array([np.cos(state.theta), np.sin(state.theta)])
-            spoke = state.place + scene.radius * np.array([[0.4], [1.0]]) * tip
-            draw_line(image, camera, spoke, colour, thick, scene.height)
-    _labels(image, states, unit, boxes)
-    _flashes(image, camera, frame.t, scene, unit, thick)
+            rim.append(state.place + scene.radius * np.array([[0.4], [1.0]]) * tip)
+        width = thick if state.seen else thin
+        draw_lines(image, camera, rim, scene.colours[state.stone], width, scene.height)
+    _label(image, camera, states, scene, unit)
+    _flash(image, camera, frame.t, scene, unit, thick)
     return image
 
 
 # ---------------------------------------------------------------------------- the scene
-
-
-def ice_lines(rings: Sequence[float]) -> list[Array]:
-    """Give the rings and the lines near the house as they should be painted, m.
-
-    Parameters
-    ----------
-    rings : sequence of float
-        Painted radii, m; without any there are no lines either.
-
-    Returns
-    -------
-    list of ndarray, shape (n, 2)
-        Each ring, then tee line, back line, hog line and centre line.
-    """
-    if not len(rings):
-        return []
-    lines = [ring * _CIRCLE for ring in rings]
-    across = np.linspace(-1, 1, 41)[:, None] * [SHEET.half_width_min, 0]
-    lines += [np.add(across, [0, y]) for y in (0.0, -SHEET.back_line, SHEET.hog_line)]
-    along = np.linspace(-SHEET.back_line, SHEET.hog_line, 81)[:, None]
-    return [*lines, along * [0, 1]]
 
 
 def _scene(
@@ -258,72 +230,53 @@ def _bgr(colour: str) -> Colour:
     return blue, green, red
 
 
-# ---------------------------------------------------------------------------- drawing
+# ---------------------------------------------------------------------------- words
 
 
-def draw_line(
-    image: Image,
-    camera: Camera,
-    ice: Array,
-    colour: Colour,
-    thickness: int,
-    height: float = 0.0,
-    edge: bool = True,
-) -> None:
-    """Draw a line on the ice, in the pieces that the camera can see, with a dark rim."""
-    h, w = image.shape[:2]
-    ahead = ice @ camera.homography[2, :2] + camera.homography[2, 2] > 1e-6
-    flat = apply_homography(camera.homography, np.where(ahead[:, None], ice, 0.0))
-    # Far outside, the distortion's polynomial folds back into the picture.
-    near = (np.abs(flat - [w / 2, h / 2]) < 0.7 * max(w, h)).all(axis=1)
-    usable = np.concatenate([[False], ahead & near, [False]]).astype(int)
-    stops = np.flatnonzero(np.diff(usable))
-    pieces = []
-    for start, stop in zip(stops[::2], stops[1::2], strict=True):
-        if stop - start > 1:
-            pixels = camera.project(ice[start:stop], height)
-            pieces.append(np.round(pixels * 2**_SHIFT).astype(np.int32))
-    if edge:
-        cv2.polylines(image, pieces, False, _BLACK, thickness + 2, cv2.LINE_AA, _SHIFT)
-    cv2.polylines(image, pieces, False, colour, thickness, cv2.LINE_AA, _SHIFT)
-
-
-def _labels(
-    image: Image,
-    states: Sequence[State],
-    unit: float,
-    boxes: list[Box],
+def _label(
+    image: Image, camera: Camera, states: Sequence[State], scene: Scene, unit: float
 ) -> None:
     """Write each stone's name, and speed and spin while it has any, where nothing is in the way.
 
     The stripe before the name has the colour of its team.
     """
-    taken = list(boxes)
-    for state, box in zip(states, boxes, strict=True):
-        if not _inside(image, (box[0] + box[1]) / 2):
+    stones = [
+        _box(camera.project(s.place + scene.radius * _RIM[::6], scene.height)) for s in states
+    ]
+    taken = list(stones)
+    for state, stone in zip(states, stones, strict=True):
+        left, top, right, bottom = stone
+        middle = (left + right) / 2, (top + bottom) / 2
+        if not inside(image, (*middle, *middle)):
             continue
         text = state.stone
         if state.speed > _RESTS:
             text += f" {state.speed:.2f} m/s"
         if abs(state.omega) > _TURNS:
             text += f" {state.omega:+.1f} rad/s"
-        size, _ = _text_box(text, unit)
+        w, h = text_box(text, unit)
         places = [
-            np.array([x, y])
-            for x in (box[1][0] + 3, box[0][0] - 3 - size[0])
-            for y in (box[0][1] - 0.3 * size[1], box[1][1] - 0.7 * size[1])
+            (x, y, x + w, y + h)
+            for x in (right + 3, left - 3 - w)
+            for y in (top - 0.3 * h, bottom - 0.7 * h)
         ]
-        cost = [sum(_overlap((p, p + size), other) for other in taken) for p in places]
-        cost = [
-            c + (0 if _inside(image, p) and _inside(image, p + size) else 1e6)
-            for c, p in zip(cost, places, strict=True)
-        ]
-        corner = places[int(np.argmin(cost))]
-        taken.append((corner, corner + size))
-        _write(image, text, corner, unit, state.team)
+        best = min(places, key=lambda place: _cost(image, place, taken))
+        taken.append(best)
+        write(image, text, best[:2], unit, state.team)
 
 
-def _flashes(
+def _box(pixels: Array) -> Box:
+    (left, top), (right, bottom) = pixels.min(axis=0).tolist(), pixels.max(axis=0).tolist()
+    return left, top, right, bottom
+
+
+def _cost(image: Image, place: Box, taken: Sequence[Box]) -> float:
+    """Say how bad it would be to write there: what would be hidden, and what would be cut."""
+    hidden = sum(overlap(place, other) for other in taken)
+    return hidden if inside(image, place) else hidden + 1e6
+
+
+def _flash(
     image: Image, camera: Camera, t: float, scene: Scene, unit: float, thickness: int
 ) -> None:
     """Write the time; for a moment after a hit, a ring that grows from it and its name."""
@@ -331,106 +284,8 @@ def _flashes(
     for when, place, text in scene.hits:
         if 0 <= t - when < _FLASH:
             growth = 0.5 + 2.5 * (t - when) / _FLASH
-            ring = place + growth * scene.radius * _CIRCLE
-            draw_line(image, camera, ring, _WHITE, thickness, scene.height)
+            ring = place + growth * scene.radius * _RIM
+            draw_lines(image, camera, [ring], WHITE, thickness, scene.height)
             lines.append(text)
     for row, text in enumerate(lines):
-        _write(image, text, np.array([10, 10 + 25 * row]) * unit, unit)
-
-
-def _text_box(text: str, unit: float) -> tuple[Array, int]:
-    """Return width and height of a label with its margin, px, and its base line."""
-    (w, h), below = cv2.getTextSize(text, _FONT, _LETTERS * unit, 1)
-    margin = round(3 * unit)
-    return np.array([w + 2 * margin, h + below + 2 * margin], float), margin + h
-
-
-def _write(
-    image: Image, text: str, corner: Array, unit: float, stripe: Colour | None = None
-) -> None:
-    """Write white on a darkened box, whose upper left corner is at `corner`."""
-    size, base = _text_box(text, unit)
-    left, top = (max(round(float(v)), 0) for v in corner)
-    box = image[top : top + round(size[1]), left : left + round(size[0])]
-    box[:] = box // 3
-    if stripe is not None:
-        box[:, : round(3 * unit)] = stripe
-    at = (left + round(3 * unit), top + base)
-    thickness = max(round(unit), 1)
-    cv2.putText(image, text, at, _FONT, _LETTERS * unit, _WHITE, thickness, cv2.LINE_AA)
-
-
-def _inside(image: Image, place: Array) -> bool:
-    h, w = image.shape[:2]
-    return bool(0 <= place[0] < w and 0 <= place[1] < h)
-
-
-def _overlap(one: Box, other: Box) -> float:
-    sides = np.minimum(one[1], other[1]) - np.maximum(one[0], other[0])
-    return float(sides[0] * sides[1]) if (sides > 0).all() else 0.0
-
-
-# ---------------------------------------------------------------------------- coding
-
-
-class _Encoder:
-    """An H.264 file that browsers play, frame by frame, each at its own time."""
-
-    def __init__(self, path: Path, size: tuple[int, int], fps: float | None) -> None:
-        self._pad = (size[1] % 2, size[0] % 2)
-        self._step = 1 / fps if fps else 1 / DEFAULT_IMAGE_FPS
-        self.start: float | None = None
-        self._waiting: tuple[Image, int] | None = None
-        self._container: Any = av.open(
-            str(path), "w", format="mp4", options={"movflags": "+faststart"}
-        )
-        self._stream: Any = self._container.add_stream(
-            "libx264",
-            rate=Fraction(fps or DEFAULT_IMAGE_FPS).limit_denominator(1001),
-            options={
-                "preset": "superfast",
-                "crf": "24",
-                # What OpenCV turns colours by; players read it here.
-                "x264-params": "colorprim=bt709:transfer=bt709:colormatrix=smpte170m",
-            },
-        )
-        self._stream.width, self._stream.height = size[0] + self._pad[1], size[1] + self._pad[0]
-        self._stream.pix_fmt = "yuv420p"
-        self._stream.codec_context.time_base = _TIME_BASE
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        try:
-            if kind is None:
-                self._send(self._step)
-                self._container.mux(self._stream.encode())
-        finally:
-            self._container.close()
-
-    def add(self, image: Image, t: float) -> None:
-        """Take the next picture, seen from time `t` (s) on."""
-        if self.start is None:
-            self.start = t
-        pts = round((t - self.start) / _TIME_BASE)
-        if self._waiting is not None:
-            self._step = float((pts - self._waiting[1]) * _TIME_BASE)
-            self._send(self._step)
-        self._waiting = (image, pts)
-
-    def _send(self, lasts: float) -> None:
-        """Code the picture that waited to learn how long it is shown."""
-        if self._waiting is None:
-            return
-        image, pts = self._waiting
-        if any(self._pad):
-            bottom, right = self._pad
-            image = np.asarray(
-                cv2.copyMakeBorder(image, 0, bottom, 0, right, cv2.BORDER_REPLICATE), np.uint8
-            )
-        planes = np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2YUV_I420), np.uint8)
-        frame = av.VideoFrame.from_ndarray(planes, format="yuv420p")
-        frame.pts, frame.time_base = pts, _TIME_BASE
-        frame.duration = round(lasts / _TIME_BASE)
-        self._container.mux(self._stream.encode(frame))
+        write(image, text, (10 * unit, (10 + 25 * row) * unit), unit)
