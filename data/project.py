@@ -11,7 +11,8 @@ from pathlib import Path, PurePath, PurePosixPath
 from data.archive import UNREADABLE, unpack
 from data.errors import InputError
 from data.osp_xml import LARGEST, Thing, parse
-from data.trk import Project, project_of
+from data.trk import Project
+from data.trk_read import project_of
 
 MOST_ENTRIES = 100_000
 """Files in an archive; a clip of single pictures has thousands."""

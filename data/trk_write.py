@@ -8,7 +8,7 @@ places and angles in a property `measured`, which Tracker passes over and `data.
 from __future__ import annotations
 
 import zipfile
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -18,6 +18,17 @@ from numpy.typing import NDArray
 
 from data.files import whole_file, write_text
 from data.inputs import IMAGE_SUFFIXES
+from data.osp_write import (
+    STRINGS,
+    array,
+    collection,
+    entry,
+    nested,
+    numbers,
+    sparse,
+    strings,
+    thing,
+)
 from data.sheet import STONE
 from data.trk import MEASURED, TEXT_COLUMNS, Coordinates
 
@@ -25,7 +36,6 @@ Array = NDArray[np.float64]
 
 _TRACKER = "org.opensourcephysics.cabrillo.tracker."
 _MEDIA = "org.opensourcephysics.media."
-_STRINGS = "[Ljava.lang.String;"
 _MARK, _MODEL = "Footprint.Diamond", "CircleFootprint.Circle#7 outline"
 """How Tracker draws places: those that were measured, and the larger ones of simulations."""
 _COLOURS = ((255, 0, 0), (255, 200, 0), (0, 120, 255), (0, 160, 80), (200, 0, 200), (0, 200, 200))
@@ -110,29 +120,29 @@ def project_xml(
         (simulations or {}).items(), _cycle(len(simulations or {}), 2), strict=True
     ):
         tracks.append(_external_model(model, table, clock, colour))
-    root = _object(
+    root = thing(
         f"{_TRACKER}TrackerPanel",
         [
-            _value("semantic_version", "6.2.0"),
-            _value("width", float(view.size[0])),
-            _value("height", float(view.size[1])),
-            _nested("videoclip", _clip(view, clock)),
-            _nested(
+            entry("semantic_version", "6.2.0"),
+            entry("width", float(view.size[0])),
+            entry("height", float(view.size[1])),
+            nested("videoclip", _clip(view, clock)),
+            nested(
                 "clipcontrol",
-                _object(
+                thing(
                     f"{_MEDIA}core.StepperClipControl",
                     [
-                        _value("rate", 1.0),
-                        _value("delta_t", 1000 * clock.duration),
-                        _value("frame", clock.first),
+                        entry("rate", 1.0),
+                        entry("delta_t", 1000 * clock.duration),
+                        entry("frame", clock.first),
                     ],
                 ),
             ),
-            _nested("coords", _coordinates(view.coordinates)),
-            _value("length_unit", "m"),
-            _value("mass_unit", "kg"),
-            _value("units_visible", True),
-            _collection("tracks", tracks),
+            nested("coords", _coordinates(view.coordinates)),
+            entry("length_unit", "m"),
+            entry("mass_unit", "kg"),
+            entry("units_visible", True),
+            collection("tracks", tracks),
         ],
     )
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + "\n".join(root) + "\n"
@@ -159,26 +169,26 @@ class _Clock:
 
 
 def _clip(view: View, clock: _Clock) -> list[str]:
-    return _object(
+    return thing(
         f"{_MEDIA}core.VideoClip",
         [
-            *([_nested("video", _video(view, clock))] if view.video else []),
-            _value("video_framecount", max(view.frames, clock.last + 1)),
-            _value("startframe", clock.first),
-            _value("stepsize", 1),
-            _value("stepcount", clock.last - clock.first + 1),
-            _value("starttime", 1000 * clock.start),
+            *([nested("video", _video(view, clock))] if view.video else []),
+            entry("video_framecount", max(view.frames, clock.last + 1)),
+            entry("startframe", clock.first),
+            entry("stepsize", 1),
+            entry("stepcount", clock.last - clock.first + 1),
+            entry("starttime", 1000 * clock.start),
         ],
     )
 
 
 def _video(view: View, clock: _Clock) -> list[str]:
-    path = _value("path", view.video[0])
+    path = entry("path", view.video[0])
     if Path(view.video[0]).suffix.lower() not in IMAGE_SUFFIXES:
-        return _object(f"{_MEDIA}xuggle.XuggleVideo", [path])
-    pictures = _strings("paths", dict(enumerate(view.video)))
-    step = _value("delta_t", 1000 * clock.duration)
-    return _object(f"{_MEDIA}core.ImageVideo", [pictures, path, step])
+        return thing(f"{_MEDIA}xuggle.XuggleVideo", [path])
+    pictures = strings("paths", dict(enumerate(view.video)))
+    step = entry("delta_t", 1000 * clock.duration)
+    return thing(f"{_MEDIA}core.ImageVideo", [pictures, path, step])
 
 
 def _coordinates(system: Coordinates) -> list[str]:
@@ -188,20 +198,20 @@ def _coordinates(system: Coordinates) -> list[str]:
     names = ("xorigin", "yorigin", "angle", "xscale", "yscale")
     data = {
         # Frames before the first key are drawn with it.
-        0 if k == 0 else int(key): _object(
+        0 if k == 0 else int(key): thing(
             f"{cls}$FrameData",
-            [_value(name, float(v)) for name, v in zip(names, row, strict=True)],
+            [entry(name, float(v)) for name, v in zip(names, row, strict=True)],
         )
         for k, (key, row) in enumerate(zip(system.keys, rows, strict=True))
     }
-    return _object(
+    return thing(
         cls,
         [
-            _value("fixedorigin", fixed),
-            _value("fixedangle", fixed),
-            _value("fixedscale", fixed),
-            _value("locked", True),
-            _sparse("framedata", f"{cls}$FrameData", data),
+            entry("fixedorigin", fixed),
+            entry("fixedangle", fixed),
+            entry("fixedscale", fixed),
+            entry("locked", True),
+            sparse("framedata", f"{cls}$FrameData", data),
         ],
     )
 
@@ -211,19 +221,19 @@ def _point_mass(
 ) -> list[str]:
     cls = f"{_TRACKER}PointMass"
     data = {
-        int(frame): _object(f"{cls}$FrameData", [_value("x", float(x)), _value("y", float(y))])
+        int(frame): thing(f"{cls}$FrameData", [entry("x", float(x)), entry("y", float(y))])
         for frame, (x, y) in zip(rows["frame"], marks, strict=True)
     }
-    return _object(
+    return thing(
         cls,
         [
-            _value("mass", STONE.mass),
-            _value("name", stone),
-            _value("team", str(rows["team"].iloc[0])),
+            entry("mass", STONE.mass),
+            entry("name", stone),
+            entry("team", str(rows["team"].iloc[0])),
             *_look(colour, _MARK),
             *_texts(rows),
-            _sparse("framedata", f"{cls}$FrameData", data),
-            _numbers("measured", "[[D", rows[list(MEASURED)].to_numpy(float)),
+            sparse("framedata", f"{cls}$FrameData", data),
+            numbers("measured", rows[list(MEASURED)].to_numpy(float)),
         ],
     )
 
@@ -237,13 +247,13 @@ def _texts(rows: pd.DataFrame) -> list[list[str]]:
         if len(known):
             cells = zip(known["frame"], known[name], strict=True)
             entries = {int(frame): repr(float(value)) for frame, value in cells}
-            columns += _strings(f"[{len(labels)}]", entries)
+            columns += strings(f"[{len(labels)}]", entries)
             labels[len(labels)] = label
     if not labels:
         return []
     return [
-        _strings("text_column_names", labels),
-        [*_array("text_column_entries", f"[{_STRINGS}"), *columns, "</property>"],
+        strings("text_column_names", labels),
+        array("text_column_entries", f"[{STRINGS}", columns),
     ]
 
 
@@ -251,19 +261,19 @@ def _external_model(
     model: str, table: pd.DataFrame, clock: _Clock, colour: tuple[int, int, int]
 ) -> list[str]:
     """Give all stones of a simulation at the steps of the clip, resting where it ends."""
-    properties = [_value("name", model), *_look(colour, _MODEL), _numbers("t", "[D", clock.times)]
+    properties = [entry("name", model), *_look(colour, _MODEL), numbers("t", clock.times)]
     for k, (stone, rows) in enumerate(table.groupby("stone")):
         # The first point is the model's own, the others are numbered.
         end = "" if k == 0 else str(k - 1)
         for axis in ("x", "y"):
             at = np.interp(clock.times, rows["t"], rows[axis])
-            properties.append(_numbers(f"{axis}{end}", "[D", at))
-        properties.append(_value(f"pointname{end}", str(stone)))
-        properties.append(_value(f"mass{end}", STONE.mass))
+            properties.append(numbers(f"{axis}{end}", at))
+        properties.append(entry(f"pointname{end}", str(stone)))
+        properties.append(entry(f"mass{end}", STONE.mass))
         if end:
-            properties += [_colour(colour, f"color{end}"), _value(f"footprint{end}", _MODEL)]
-    properties.append(_value("start_frame", clock.first))
-    return _object(f"{_TRACKER}ParticleDataTrack", properties)
+            properties += [_colour(colour, f"color{end}"), entry(f"footprint{end}", _MODEL)]
+    properties.append(entry("start_frame", clock.first))
+    return thing(f"{_TRACKER}ParticleDataTrack", properties)
 
 
 def _look(colour: tuple[int, int, int], footprint: str) -> list[list[str]]:
@@ -271,7 +281,7 @@ def _look(colour: tuple[int, int, int], footprint: str) -> list[list[str]]:
 
     Without the trail of past places: they lie elsewhere once the camera has moved.
     """
-    return [_colour(colour), _value("footprint", footprint), _value("visible", True)]
+    return [_colour(colour), entry("footprint", footprint), entry("visible", True)]
 
 
 def _cycle(count: int, start: int = 0) -> list[tuple[int, int, int]]:
@@ -280,54 +290,4 @@ def _cycle(count: int, start: int = 0) -> list[tuple[int, int, int]]:
 
 def _colour(colour: tuple[int, int, int], name: str = "color") -> list[str]:
     parts = zip(("red", "green", "blue", "alpha"), (*colour, 255), strict=True)
-    return _nested(name, _object("java.awt.Color", [_value(part, v) for part, v in parts]))
-
-
-# The grammar: Tracker reads it line by line, one property each.
-
-
-def _object(cls: str, properties: Iterable[Sequence[str]]) -> list[str]:
-    return [f'<object class="{cls}">', *(line for p in properties for line in p), "</object>"]
-
-
-def _nested(name: str, thing: Sequence[str]) -> list[str]:
-    return [f'<property name="{name}" type="object">', *thing, "</property>"]
-
-
-def _value(name: str, value: str | float | bool) -> list[str]:
-    kind = {bool: "boolean", int: "int", float: "double", str: "string"}[type(value)]
-    text = str(value).lower() if kind == "boolean" else str(value)
-    if kind == "string":
-        text = " ".join("".join(c for c in text if c.isprintable()).split())
-        if not set(text).isdisjoint("\"'<>&"):
-            text = f"<![CDATA[{text.replace(']]>', ']] >')}]]>"
-    return [f'<property name="{name}" type="{kind}">{text}</property>']
-
-
-def _array(name: str, cls: str) -> list[str]:
-    return [f'<property name="{name}" type="array" class="{cls}">']
-
-
-def _sparse(name: str, cls: str, entries: Mapping[int, Sequence[str]]) -> list[str]:
-    body = [line for n, entry in entries.items() for line in _nested(f"[{n}]", entry)]
-    return [*_array(name, f"[L{cls};"), *body, "</property>"]
-
-
-def _strings(name: str, entries: Mapping[int, str]) -> list[str]:
-    body = [line for n, text in entries.items() for line in _value(f"[{n}]", text)]
-    return [*_array(name, _STRINGS), *body, "</property>"]
-
-
-def _collection(name: str, things: Iterable[Sequence[str]]) -> list[str]:
-    body = [line for thing in things for line in _nested("item", thing)]
-    head = f'<property name="{name}" type="collection" class="java.util.ArrayList">'
-    return [head, *body, "</property>"]
-
-
-def _numbers(name: str, cls: str, values: Array) -> list[str]:
-    def row(numbers: Array) -> str:
-        cells = ("NaN" if np.isnan(v) else repr(float(v)) for v in numbers)
-        return "{" + ",".join(cells) + "}"
-
-    text = row(values) if values.ndim == 1 else "{" + ",".join(row(r) for r in values) + "}"
-    return [*_array(name, cls), *_value("array", text), "</property>"]
+    return nested(name, thing("java.awt.Color", [entry(part, v) for part, v in parts]))
