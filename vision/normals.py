@@ -35,7 +35,7 @@ SAMPLES = 33
 
 _SHARES = np.linspace(-1.0, 1.0, SAMPLES, dtype=np.float32)
 
-LINE_REACH = 0.05
+LINE_REACH = 0.06
 """Half width looked at across a thin line, m: some are painted as two stripes 3 cm apart."""
 
 BAND = 0.08

@@ -25,7 +25,7 @@ FAINT = 1.5
 CLEAR = 0.6
 """How clear a thin line must be all along, 1 for strong everywhere."""
 
-STRIPES_SD = 0.018
+STRIPES_SD = 0.025
 """Width of the bell that a thin line is smoothed with, m: two stripes become one."""
 
 CALM, LOUD = 12.0, 80.0
