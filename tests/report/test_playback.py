@@ -1,0 +1,120 @@
+from __future__ import annotations
+
+import dataclasses
+import json
+
+import numpy as np
+import pytest
+
+from data.errors import InputError
+from data.results import MeasuredState
+from data.sheet import HOUSE
+from physics.bounds import Bounds
+from physics.curl import FCV1Curl
+from physics.ice import FCV1, Fit
+from physics.impact import PointMass
+from physics.simulate import Shot, StoneStart
+from physics.start import measured_start
+from report.playback import STEPS, differences, playback, shot_values
+from report.trial import sliders, trial
+
+
+def decoded(values: list[int], column: str) -> np.ndarray:
+    return np.cumsum(values) * STEPS[column]
+
+
+def test_columns_come_back_to_half_a_step(shot):
+    data = json.loads(json.dumps(playback(shot.results, shot.tracks, shot.simulations, HOUSE)))
+    times = decoded(data["t"], "t")
+    for stone in data["stones"]:
+        rows = shot.tracks[shot.tracks["stone"] == stone["name"]]
+        np.testing.assert_allclose(times[np.cumsum(stone["at"])], rows["t"], atol=STEPS["t"] / 2)
+        for name in ("x", "y", "theta", "omega"):
+            off = np.abs(decoded(stone[name], name) - rows[name].to_numpy(float))
+            assert off.max() <= 0.5001 * STEPS[name]
+        speed = np.hypot(rows["vx"], rows["vy"])
+        assert np.abs(decoded(stone["speed"], "speed") - speed).max() <= 0.5001 * STEPS["speed"]
+    assert [hit["stones"] for hit in data["hits"]] == [["A", "B"], ["B", "C"]]
+
+
+def test_what_is_not_known_keeps_the_value_before():
+    assert decoded(differences([np.nan, 1.0, np.nan, 2.0], "x").copy(), "x") == pytest.approx(
+        [0.0, 1.0, 1.0, 2.0]
+    )
+
+
+def test_simulated_stones_at_rest_take_one_row(shot):
+    data = playback(shot.results, shot.tracks, shot.simulations, HOUSE)
+    rows = {s["name"]: len(s["x"]) for s in data["simulations"]["frictional"]}
+    assert rows["D"] == 1
+    assert rows["A"] == shot.tracks["frame"].nunique()
+
+
+def test_without_a_house_there_are_no_rings(shot):
+    data = playback(shot.results, shot.tracks, {}, None)
+    assert data["rings"] == [] and data["lines"] == {} and data["simulations"] == {}
+
+
+def test_hits_lie_where_the_stones_touch(shot):
+    data = playback(shot.results, shot.tracks, {}, HOUSE)
+    for hit, collision in zip(data["hits"], shot.results.collisions, strict=True):
+        for stone in collision.stones:
+            state = collision.before[stone]
+            away = np.hypot(hit["x"] - state.x, hit["y"] - state.y)
+            assert away == pytest.approx(shot.results.radius, abs=1e-6)
+
+
+def test_a_shot_is_told_in_full():
+    stones = (StoneStart("A", 0, -2, 0, 2, omega_after=0.3), StoneStart("B", 0, 0))
+    values = shot_values(Shot(stones, PointMass(0.8), FCV1(), FCV1Curl(), 0.14, Bounds(-1)))
+    assert values["impact"] == {"name": "point-mass", "restitution": 0.8}
+    assert values["ice"]["name"] == "fcv1" and values["ice"]["gravity"] == 9.807
+    assert values["curl"]["name"] == "fcv1" and values["bounds"]["play"] == -1
+    assert [stone["omega_after"] for stone in values["stones"]] == [[0.3], []]
+    json.dumps(values, allow_nan=False)
+
+
+def test_sliders_begin_at_what_was_measured(shot):
+    what_if = trial(shot.tracks, shot.results)
+    start = measured_start(shot.tracks, shot.results)
+    thrown = start.shot.stones[start.thrown]
+    stands = {s.key: (float(s.value), float(s.step)) for s in sliders(what_if)}
+    truth = {
+        "restitution": shot.results.restitution.value,
+        "friction": shot.results.friction.value,
+        "rub": start.shot.impact.stone_friction,
+        "speed": np.hypot(thrown.vx, thrown.vy),
+        "spin": thrown.omega,
+        "aim": 0.0,
+    }
+    assert stands.keys() == truth.keys()
+    for key, (value, step) in stands.items():
+        assert value == pytest.approx(truth[key], abs=step / 2 + 1e-12), key
+    for slider in sliders(what_if):
+        assert float(slider.low) <= float(slider.value) <= float(slider.high)
+
+
+def test_sliders_reach_as_far_as_what_was_measured(shot):
+    fast = Fit(0.001, 0.1, 0.03)
+    what_if = trial(shot.tracks, shot.results)
+    what_if["shot"]["ice"] = {"name": "fit", **dataclasses.asdict(fast)}
+    what_if["shot"]["stones"][what_if["thrown"]]["omega"] = -9.0
+    reach = {s.key: s for s in sliders(what_if)}
+    assert float(reach["friction"].high) >= 0.0309
+    assert float(reach["spin"].low) <= -9.0
+
+
+def test_rigid_bodies_need_all_spins(shot):
+    assert trial(shot.tracks, shot.results)["spins_known"]
+    first, *others = shot.results.collisions
+    after = {**first.after, "A": MeasuredState(0, 0, 0, 0, None)}
+    blind = dataclasses.replace(
+        shot.results, collisions=(dataclasses.replace(first, after=after), *others)
+    )
+    assert not trial(shot.tracks, blind)["spins_known"]
+
+
+def test_nothing_to_throw_where_nothing_moves(shot):
+    still = shot.tracks[shot.tracks["stone"] == "D"]
+    with pytest.raises(InputError, match="no stone moves"):
+        trial(still, dataclasses.replace(shot.results, collisions=()))
