@@ -8,25 +8,23 @@ velocities can be stale: both are left out. Projects are read by `data.project`.
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from data.angles import FASTEST_SPIN, attach, read_angles, spin_rate
+from data.clock import with_clock
 from data.columns import ANGLE_UNITS, LENGTH_UNITS
 from data.discs import top_speed
 from data.errors import InputError
 from data.export import read_parquet
 from data.layouts import TrackFile, read_layout
 from data.project import is_project, read_project
-from data.tracks import LATEST, check_sightings
-
-Array = NDArray[np.float64]
+from data.stone_names import chosen, named_by_file, refuse_shared_names
+from data.tracks import check_sightings
 
 FASTEST = 20.0
 """m/s; a stone is thrown at 2 to 4."""
@@ -120,16 +118,16 @@ def read_table(
         else:
             files.append(read_layout(path, fps))
     warnings = [text for file in files for text in file.warnings]
-    files, notes = _named_by_file(paths, files)
+    files, notes = named_by_file(paths, files)
     warnings += notes
     if names:
-        paths, files = _named(paths, files, names)
+        paths, files = chosen(paths, files, names)
     for path, file in zip(paths, files, strict=True):
         warnings += _to_si(path, file, length_unit, angle_unit)
     source = ", ".join(str(path) for path in paths)
-    _refuse_shared_names(paths, files)
+    refuse_shared_names(paths, files)
     table = pd.concat([file.tracks for file in files], ignore_index=True)
-    table, rate = _with_clock(table, [file.decimals for file in files])
+    table, rate = with_clock(table, [file.decimals for file in files])
     table = check_sightings(table, source)
     warnings += _check_scale(table, source)
     for stone, path in (angles or {}).items():
@@ -144,52 +142,6 @@ def read_table(
 def _checked_parquet(path: Path) -> TrackFile:
     tracks = check_sightings(read_parquet(path), str(path))
     return TrackFile(tracks, angle_unit="rad", continuous=True)
-
-
-def _named(
-    paths: Sequence[Path], files: Sequence[TrackFile], names: Mapping[str, str]
-) -> tuple[list[Path], list[TrackFile]]:
-    """Keep the tracks that are named, under the names of their stones."""
-    there = list(dict.fromkeys(t for file in files for t in file.tracks["stone"].unique()))
-    missing = [track for track in names.values() if track not in there]
-    if missing:
-        raise InputError(f"no track named {missing[0]}; there are {', '.join(there)}")
-    stones = {track: stone for stone, track in names.items()}
-    if len(stones) < len(names):
-        raise InputError("one track cannot be two stones; name each once (--names)")
-    kept = [_renamed(file, stones) for file in files]
-    used = [(path, file) for path, file in zip(paths, kept, strict=True) if len(file.tracks)]
-    return [path for path, _ in used], [file for _, file in used]
-
-
-def _renamed(file: TrackFile, names: Mapping[str, str]) -> TrackFile:
-    """Give tracks new names, and leave out those without."""
-    tracks = file.tracks.assign(stone=file.tracks["stone"].map(names))
-    masses = {names[track]: mass for track, mass in file.masses.items() if track in names}
-    return replace(file, tracks=tracks.dropna(subset=["stone"], ignore_index=True), masses=masses)
-
-
-def _named_by_file(
-    paths: Sequence[Path], files: Sequence[TrackFile]
-) -> tuple[list[TrackFile], list[str]]:
-    """Name tracks after their files where each file has one and they share a name."""
-    tracks = [list(file.tracks["stone"].unique()) for file in files]
-    shared = [name for name, n in Counter(t for each in tracks for t in each).items() if n > 1]
-    out = list(files)
-    warnings = []
-    for name in shared:
-        where = [k for k, each in enumerate(tracks) if name in each]
-        stems = [paths[k].stem for k in where]
-        taken = {track for each in tracks for track in each if track != name}
-        if any(len(tracks[k]) > 1 for k in where) or len({*stems} - taken) < len(where):
-            continue  # to be refused
-        for k, stem in zip(where, stems, strict=True):
-            out[k] = _renamed(files[k], {name: stem})
-        warnings.append(
-            f"{', '.join(str(paths[k]) for k in where)}: all their tracks are named {name}; named"
-            f" after the files instead: {', '.join(stems)}"
-        )
-    return out, warnings
 
 
 def _set_masses(
@@ -272,71 +224,6 @@ def _spins_too_fast(tracks: pd.DataFrame) -> bool:
         if spin_rate(t, theta) > FASTEST_SPIN:
             return True
     return False
-
-
-def _refuse_shared_names(paths: Sequence[Path], files: Sequence[TrackFile]) -> None:
-    owner: dict[str, Path] = {}
-    for path, file in zip(paths, files, strict=True):
-        for stone in file.tracks["stone"].unique():
-            if stone in owner:
-                raise InputError(
-                    f"{path}: two stones with one name, {stone}, which is in {owner[stone]} too;"
-                    " rename one (the line above the header, or the file)"
-                )
-            owner[stone] = path
-
-
-def _with_clock(
-    table: pd.DataFrame, decimals: Sequence[int | None]
-) -> tuple[pd.DataFrame, float | None]:
-    """Give the rows the equal time steps that their printed times were rounded from."""
-    t = table["t"].to_numpy(float)
-    if not np.isfinite(t).all() or np.abs(t).max() > LATEST:
-        return table, None  # to be refused with its reason
-    times, rank = np.unique(t, return_inverse=True)
-    if len(times) < 2:
-        return table, None
-    printed = max((d for d in decimals if d is not None), default=None)
-    count, start, step = uniform_steps(times)
-    even = start + step * count
-    off = float(np.abs(even - times).max())
-    rounding = 0.75 * 10.0**-printed if printed is not None else 0.0
-    explained = off < rounding < 0.3 * step
-    uniform = explained or off < 0.05 * step
-    if explained and off > 1e-6 * step:
-        # Equal steps explain the printed times: the rounding goes.
-        table = table.assign(t=even[rank])
-    frame = table["frame"] if "frame" in table else pd.Series(np.nan, index=table.index)
-    if frame.isna().any() and uniform:
-        table = table.assign(frame=count[rank])
-    elif frame.isna().any() and "frame" in table:
-        table = table.drop(columns="frame")
-    typical = step if uniform else float(np.median(np.diff(times)))
-    return table, float(f"{1 / typical:.9g}")
-
-
-def uniform_steps(times: Array) -> tuple[Array, float, float]:
-    """Fit equal steps to increasing times, of which some may be missing.
-
-    Parameters
-    ----------
-    times : ndarray, shape (n,)
-        At least two times, s.
-
-    Returns
-    -------
-    count : ndarray, shape (n,)
-        Number of steps since the first time.
-    start, step : float
-        So that ``start + step * count`` fits best, s.
-    """
-    steps = np.diff(times)
-    short = float(np.median(steps[steps < 1.5 * steps.min()]))
-    count = np.concatenate([[0.0], np.cumsum(np.maximum(np.round(steps / short), 1))])
-    centred = count - count.mean()
-    with np.errstate(over="ignore"):  # times a hair apart among others: no equal steps
-        step = float((centred * (times - times.mean())).sum() / (centred**2).sum())
-    return count, float(times.mean() - step * count.mean()), step
 
 
 def _check_scale(table: pd.DataFrame, source: str) -> list[str]:

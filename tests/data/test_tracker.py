@@ -8,9 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from data.clock import uniform_steps
 from data.errors import InputError
 from data.export import write_csv
-from data.tracker import Imported, read_table, uniform_steps
+from data.tracker import Imported, read_table
 from data.tracks import SIGHTING_COLUMNS, teams, write_tracks
 from tests.data.dialects import RED, export, put, truth
 
