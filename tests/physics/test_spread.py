@@ -3,11 +3,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from physics.contacts import find_contacts
 from physics.curl import NoCurl
+from physics.estimate import estimate
 from physics.ice import Constant
 from physics.impact import Frictional, PointMass
+from physics.kalman import smooth
+from physics.predict import simulate_measured
 from physics.simulate import Shot, StoneStart, simulate
 from physics.spread import Doubt, draws, path_spread, simulated_hits
+from tests.physics.watch import RADIUS, hit_motion, watch
 
 MU, G = 0.0109, 9.81
 CERTAIN = np.zeros(5)
@@ -61,3 +66,27 @@ def test_nothing_doubtful_has_no_spread_and_the_same_seed_gives_the_same() -> No
     one, two = (path_spread(draws(shot, some, 8), times) for _ in range(2))
     assert one.equals(two)
     assert path_spread([], times).empty
+
+
+def test_errors_of_a_simulated_shot_mean_what_they_say() -> None:
+    motion = hit_motion(1.5, 0.1, before=1.2, after=3.0, stone_friction=0.1)
+    rng, pulls = np.random.default_rng(18), []
+    for _ in range(10):
+        seen = watch(motion, rng, sd=0.004, fps=25)
+        hits = find_contacts(seen, RADIUS)
+        tracks = smooth(seen, hits, radius=RADIUS)
+        found = estimate(seen, hits, radius=RADIUS)
+        samples, scores, _ = simulate_measured(tracks, found, radius=RADIUS)
+        last = samples["frictional"].groupby("stone").last()
+        truth = motion.at(np.array([last["t"].iloc[0]]))[0][:, :2]
+        pulls += (
+            ((last[["x", "y"]] - truth) / last[["sd_x", "sd_y"]].to_numpy()).to_numpy().tolist()
+        )
+        (hit,) = scores["frictional"].hits
+        for name, true in zip("AB", motion.hits[0].after, strict=True):
+            state = hit.after[name]
+            off = np.array([state.vx, state.vy]) - true[:2]
+            pulls.append((off / [state.sd_vx, state.sd_vy]).tolist())
+    # The eight of one draw hang together: hardly more than ten are independent.
+    assert 0.4 < np.std(pulls) < 1.4
+    assert np.mean(np.abs(pulls) < 2) > 0.85
