@@ -141,8 +141,9 @@ def page_tables(
         Table(
             "laws_tried",
             "Laws that the whole shot was fitted with",
-            "By Schwarz’s criterion, less that of the best; the weight is the probability that goes"
-            " with it. What the others would give is in the errors.",
+            "The criterion is minus twice the log probability of the sightings, less that of the"
+            " best; the weight is the probability of these laws. What the others would give is in"
+            " the errors.",
             _CHOICES,
             tables.choice_table(results),
         ),
