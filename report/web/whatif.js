@@ -93,7 +93,7 @@ class WhatIf {
     for (const slider of this.sliders) slider.value = this.initial.get(slider.id);
     this.model.value = shot.impact.name;
     this.ice.value = "measured";
-    this.curl.value = shot.curl.name;
+    this.curl.value = "measured";
     this.update();
   }
 
@@ -104,13 +104,16 @@ class WhatIf {
       // Where it was not moved it stands for the measured number with all its digits.
       return slider.value === this.initial.get(slider.id) ? null : Number(slider.value);
     };
-    const measured = this.ice.value === "measured";
+    const law = (family) => {
+      const name = this[family].value;
+      return name === "measured" ? data.shot[family] : data.laws[family][name];
+    };
     const base = {
       ...data.shot,
       stones: data.shot.stones.map((stone, k) => ({ ...stone, x: this.places[k][0], y: this.places[k][1] })),
       impact: { ...data.shot.impact, name: this.model.value },
-      ice: measured ? data.shot.ice : data.laws.ice[this.ice.value],
-      curl: data.laws.curl[this.curl.value],
+      ice: law("ice"),
+      curl: law("curl"),
     };
     return simulator.changed(base, data.thrown, {
       restitution: value("restitution"),
