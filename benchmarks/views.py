@@ -28,11 +28,14 @@ from tests.synthetic import (
     random_scene,
     sweepers,
 )
+from tests.synthetic.travelling import Travelling
 
 OVERHEAD, TILTED, OBLIQUE = 2.0, 5.0, 10.0
 """Largest RMS error of ice points in the house, mm: from overhead, at 30°, at 50°."""
 
 WIDTH, HEIGHT = 1280, 720
+
+WHITE = PAINTS["navy-orange"].eight
 
 
 @dataclass(frozen=True)
@@ -109,6 +112,20 @@ def camera(
     if len(keys) > 1:
         keys = (replace(keys[0], t=keys[0].t - 0.2), *keys, replace(keys[-1], t=keys[-1].t + 0.2))
     return CameraPath((WIDTH, HEIGHT), at, keys, shake)
+
+
+def gliding(
+    velocity: tuple[float, float, float],
+    *keys: Key,
+    at: tuple[float, float, float] = (-0.1, -0.15, 8.6),
+) -> CameraPath:
+    """Let a camera glide on from where it is at first, m/s."""
+    return Travelling(**vars(camera(*keys, at=at)), velocity=velocity)
+
+
+def _without_eight(name: str) -> Paint:
+    paint = painted(name, four=0.62)
+    return replace(paint, eight=paint.twelve)
 
 
 def look(tilt: float, height: float, azimuth: float = 0.0) -> tuple[float, float, float]:
@@ -213,6 +230,13 @@ def clips() -> tuple[Clip, ...]:
         Clip("neighbours", scene(25, painted("green-blue", 1.211, 0.612), pitch=4.8,
                                  half_width=(2.2, 2.2)),
              camera(Key(0.0, 0.1, 0.2, 96, 0.03, -0.05, 0.02))),
+        Clip("gliding", scene(27, painted("red-blue", 1.214, 0.62)),
+             gliding((0.12, 0.05, -0.08), Key(0.0, 0.05, 0.5, 125), Key(2.4, 0.0, 0.1, 120))),
+        Clip("tilt-30-gliding", scene(28, painted("green-lime", 1.212, 0.625)),
+             gliding((0.25, 0.1, 0.0), still, at=look(tilted, 8.0)), TILTED, supersample=2),
+        Clip("one-ring", scene(29, replace(painted("blue-red", 1.212), four=WHITE, button=WHITE,
+                                           logo="")), camera(still)),
+        Clip("12-and-4", scene(30, _without_eight("navy-orange")), camera(still)),
         Clip("close-up", scene(26, painted("teal-red", 1.217, 0.613, outline=0.006)),
              camera(Key(0.0, 0.1, 0.2, 225), Key(2.4, -0.2, 0.9, 200), at=(-0.05, -0.5, 7.6))),
     )  # fmt: skip
