@@ -3,12 +3,13 @@
 Two discs are never nearer than two radii, so between frames a stone is told from its
 neighbours by place alone as long as it moves by less than about a radius more or less than
 expected; a hit changes its course by no more than that from one frame to the next. Out of
-sight a moving stone is expected to glide on and come to rest; one at rest stays.
+sight a moving stone is expected to glide on and come to rest; one at rest stays; where two
+would meet, a hit is expected.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -45,6 +46,8 @@ class Gate:
         Evidence that the better part of a track's sightings must show.
     deceleration : float
         Of a stone that glides unseen, m/s².
+    restitution : float
+        Of a hit that nobody saw.
     """
 
     reach: float = 1.25
@@ -55,6 +58,7 @@ class Gate:
     births: int = 5
     least_score: float = 0.0
     deceleration: float = 0.1
+    restitution: float = 0.85
 
 
 GATE = Gate()
@@ -189,10 +193,12 @@ def _assign(
         return {}
     seen = np.array([(s.x, s.y) for s in sightings])
     cost = np.full((len(tracks), len(sightings)), _FORBIDDEN)
+    struck = _struck(tracks, t, radius, gate)
     for row, track in enumerate(tracks):
         wait = t - track.times[-1]
         reach = min(gate.reach + gate.growth * wait, gate.most) * radius
-        away = np.hypot(*(seen - track.expected(t, gate.deceleration)).T) / reach
+        place = struck[row] if row in struck else track.expected(t, gate.deceleration)
+        away = np.hypot(*(seen - place).T) / reach
         # A stone that has been hit a moment ago is still near where it was.
         near = np.hypot(*(seen - track._place).T) / reach
         distance = np.minimum(away, near + 0.1)
@@ -210,69 +216,36 @@ def _assign(
     }
 
 
-def first_motion(track: Track, radius: float) -> float | None:
-    """Time at which a stone first moved, s; None for one that stays where it is.
+def _struck(tracks: Sequence[Track], t: float, radius: float, gate: Gate) -> dict[int, Array]:
+    """Where stones are expected that have met since they were seen, by their ranks.
 
-    A stone moves when it leaves its first place for good by more than its jitter and a
-    share of its radius; the time is carried back to when it was still there.
+    Their paths are taken as straight; each stone's first meeting counts, and of the two only
+    the push along the line of their centres.
     """
-    places = np.array([(s.x, s.y) for s in track.sightings])
-    times = np.array(track.times)
-    if len(times) < 3:
-        return None
-    least = 0.25 * radius
-    start = places[0]
-    if float(np.hypot(*(places - start).T).max()) < least:
-        return None
-    # Its first place is that of all its first sightings that are alike.
-    still = 1
-    while still < len(times) and np.hypot(*(places[still] - np.median(places[:still], 0))) < least:
-        still += 1
-    if still >= len(times):
-        return None
-    home = np.median(places[:still], axis=0)
-    away = np.hypot(*(places - home).T)
-    jitter = float(np.median(away[:still])) if still > 3 else 0.0
-    limit = max(least, 6 * jitter)
-    beyond = away > limit
-    if beyond.sum() < min(3, len(times) - still):
-        return None
-    first = int(beyond.argmax())
-    if first == 0:
-        return float(times[0])
-    last = min(first + 3, len(times) - 1)
-    speed = (away[last] - away[first]) / (times[last] - times[first]) if last > first else 0.0
-    start = times[first] - away[first] / speed if speed > 0 else times[first - 1]
-    # Within a frame of its first it may as well have moved before.
-    return float(start if start > times[1] else times[0])
-
-
-def _first_speed(track: Track, steps: int = 5) -> float:
-    """Mean speed over the first few frames, m/s."""
-    first, last = track.sightings[0], track.sightings[min(steps, len(track.times) - 1)]
-    wait = track.times[min(steps, len(track.times) - 1)] - track.times[0]
-    return float(np.hypot(last.x - first.x, last.y - first.y) / wait) if wait > 0 else 0.0
-
-
-def names_by_motion(
-    tracks: Sequence[Track], radius: float
-) -> tuple[Mapping[str, float], Sequence[str]]:
-    """Tell the times of first motion, and the stones at rest by their distance to the tee.
-
-    Returns
-    -------
-    moved : mapping
-        Number of the track, as text, to its time; the faster first among equals.
-    rest : sequence of str
-        The others.
-    """
-    moved: list[tuple[float, float, str]] = []
-    rest: list[tuple[float, str]] = []
-    for number, track in enumerate(tracks):
-        start = first_motion(track, radius)
-        if start is None:
-            x, y = np.median([(s.x, s.y) for s in track.sightings], axis=0)
-            rest.append((float(np.hypot(x, y)), str(number)))
-        else:
-            moved.append((start, -_first_speed(track), str(number)))
-    return {name: start for start, _, name in sorted(moved)}, [name for _, name in sorted(rest)]
+    places = np.array([track._place for track in tracks])
+    ways = np.array([track._velocity * (track.speed > 0) for track in tracks])
+    since = np.array([track.times[-1] for track in tracks])
+    known = np.array([len(track.times) >= gate.births for track in tracks])
+    first, second = np.triu_indices(len(tracks), 1)
+    start = np.maximum(since[first], since[second])
+    apart = places[second] + ways[second] * (start - since[second])[:, None]
+    apart = apart - places[first] - ways[first] * (start - since[first])[:, None]
+    closing = ways[second] - ways[first]
+    # They are two radii apart where |apart + closing s| = 2 R.
+    a, b = (closing**2).sum(1), (apart * closing).sum(1)
+    c = (apart**2).sum(1) - 4 * radius**2
+    root = np.sqrt(np.maximum(b * b - a * c, 0.0))
+    at = start + np.where(a > 0, (-b - root) / np.where(a > 0, a, 1.0), np.inf)
+    lasted = np.minimum(since[first], since[second])
+    meets = (b < 0) & (b * b > a * c) & (at >= lasted) & (at < t) & known[first] & known[second]
+    out: dict[int, Array] = {}
+    for k in np.flatnonzero(meets)[np.argsort(at[meets])].tolist():
+        pair = int(first[k]), int(second[k])
+        if out.keys() & set(pair):
+            continue
+        there = [places[i] + ways[i] * (at[k] - since[i]) for i in pair]
+        normal = (there[1] - there[0]) / (2 * radius)
+        push = -0.5 * (1 + gate.restitution) * float(closing[k] @ normal) * normal
+        for i, place, change in zip(pair, there, (-push, push), strict=True):
+            out[i] = place + (ways[i] + change) * (t - at[k])
+    return out

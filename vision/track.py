@@ -15,9 +15,10 @@ from vision.align import Complex
 from vision.appearance import Appearance, colour_difference
 from vision.camera import Camera
 from vision.clip import Clip
-from vision.follow import Gate, Track, follow, names_by_motion
+from vision.follow import Gate, Track, follow
 from vision.handle import handle_angles
 from vision.measure import handle_radii, is_plain
+from vision.naming import names_by_motion
 from vision.stones import FOLLOWING, Search
 from vision.watch import Watch
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from data.tracks import order_of_motion
-from vision.follow import Track, first_motion, follow, names_by_motion
+from vision.follow import Track, follow
+from vision.naming import first_motion, names_by_motion
 from vision.sighting import Sighting
 
 R = 0.1455

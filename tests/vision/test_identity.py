@@ -108,3 +108,21 @@ def test_leaving_and_entering_the_picture(speed: float, later: float) -> None:
         return bool(abs(place[1] - 0.5) > 1.5) or (stone == 2 and 0.8 < t < 1.9)
 
     assert nobody_switched(followed(motion, 3.0, hidden=hidden)[1], 3)
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    speed=st.floats(0.8, 2.5),
+    offset=st.floats(-0.2, 0.2),
+    gap=st.floats(0.1, 0.4),
+    share=st.floats(0.1, 0.9),
+)
+def test_a_hit_that_nobody_saw(speed: float, offset: float, gap: float, share: float) -> None:
+    starts = [Start(offset, 1.0, 0.0, -speed), Start(0.0, 0.0)]
+    motion = simulate(starts, 2.5, impact=Impact(0.8, 0.05), step=1e-3)
+    since = motion.hits[0].t - gap * share
+
+    def hidden(stone: int, t: float, place: np.ndarray) -> bool:
+        return since < t < since + gap
+
+    assert nobody_switched(followed(motion, 2.5, hidden=hidden)[1], 2)
