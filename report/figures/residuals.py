@@ -30,8 +30,8 @@ _MOST_NAMED = 12
 def residuals_figure(residuals: pd.DataFrame, collisions: Sequence[Collision] = ()) -> Figure:
     """Sighted less smoothed places against time, and how they are distributed.
 
-    Left, in mm, with a band of twice the median standard deviation that was claimed; right, in
-    standard deviations, against the normal distribution that they should follow.
+    Left, in mm, with a band of twice the median standard deviation that was claimed, and carets
+    at the edge for what lies beyond; right, in standard deviations, against the normal distribution that they should follow.
 
     Parameters
     ----------
@@ -80,8 +80,13 @@ def _draw_times(
             t[own], off[own], ".", color=colour, ms=size, alpha=0.7, mew=0, zorder=3,
             rasterized=True,
         )  # fmt: skip
-    # One wild sighting shall not squeeze all the others.
-    reach = 1.15 * max(float(np.quantile(np.abs(off), 0.995)), 2 * sd)
+    # A few wild sightings shall not squeeze all the others: they are marks at the edge.
+    reach = 1.5 * max(float(np.quantile(np.abs(off), 0.98)), 2 * sd)
+    for sign, mark in ((1, 6), (-1, 7)):  # carets with their tips at the value, up and down
+        wild = sign * off > reach
+        ax.plot(
+            t[wild], np.full(wild.sum(), sign * reach), marker=mark, color=BLACK, ls="none", ms=4
+        )
     ax.set_ylim(-reach, reach)
 
 

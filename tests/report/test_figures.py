@@ -321,3 +321,19 @@ def test_drawing_leaves_the_session_as_it_was(shot):
     assert svg.startswith(b"<?xml")
     assert png.startswith(b"\x89PNG")
     assert render(figures.speed_figure(shot.tracks))[0] == svg
+
+
+def test_wild_sightings_are_marks_at_the_edge(shot):
+    table = residuals(shot)
+    table.loc[7, "dx"] = 0.5
+    table.loc[9, "dy"] = -0.5
+    figure = figures.residuals_figure(table, shot.results.collisions)
+    check_layout(figure)
+    for ax, sign, row in ((figure.axes[0], 1, 7), (figure.axes[2], -1, 9)):
+        low, high = ax.get_ylim()
+        assert high < 20  # mm
+        (mark,) = [
+            line for line in ax.lines if line.get_marker() in (6, 7) and len(line.get_xdata())
+        ]
+        assert list(mark.get_xdata()) == [table.loc[row, "t"]]
+        assert mark.get_ydata()[0] == (high if sign > 0 else low)
