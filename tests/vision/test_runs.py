@@ -29,7 +29,6 @@ def test_what_lies_off_the_curve_is_left_out() -> None:
     seed=st.integers(0, 10_000),
     long=st.integers(3, 40),
     short=st.integers(1, 40),
-    bad=st.integers(),
 )
 def test_a_line_is_judged_by_itself(seed: int, long: int, short: int) -> None:
     rng = np.random.default_rng(seed)
