@@ -108,8 +108,8 @@ def pictures(
         yield Picture(
             "residuals",
             "Sighted less smoothed places of all stones, the band twice the median standard"
-            " deviation, carets for what lies beyond the edge; right, in standard deviations, against"
-            " the normal distribution.",
+            " deviation, carets for what lies beyond the edge; right, in standard deviations,"
+            " against the normal distribution.",
             "Residuals of x and y against time, and their histograms.",
             partial(figures.residuals_figure, residuals, collisions),
         )

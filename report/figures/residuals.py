@@ -31,7 +31,8 @@ def residuals_figure(residuals: pd.DataFrame, collisions: Sequence[Collision] = 
     """Sighted less smoothed places against time, and how they are distributed.
 
     Left, in mm, with a band of twice the median standard deviation that was claimed, and carets
-    at the edge for what lies beyond; right, in standard deviations, against the normal distribution that they should follow.
+    at the edge for what lies beyond; right, in standard deviations, against the normal
+    distribution that they should follow.
 
     Parameters
     ----------
