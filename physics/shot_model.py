@@ -113,7 +113,9 @@ class Watched:
         )
         impact = Frictional(values["restitution"], values["stone_friction"], self.inertia)
         radius = self.radius * values.get("size", 1.0)
-        return Shot(stones, impact, ice(values), curl(values), radius)
+        curling = abs(self.radius / STONE.radius - 1) < 0.1
+        bend = curl(values) if curling else curl(values, loss=0.0)
+        return Shot(stones, impact, ice(values), bend, radius)
 
     def replay(self, values: Mapping[str, float], until: float | None = None) -> Simulation:
         """Simulate the shot up to a time of the clip; to the last sighting if None."""
@@ -149,10 +151,10 @@ def ice(values: Mapping[str, float]) -> Fit:
     return Fit(a=slope, v_c=V_C, b=max(values["friction"] - slope / (1 + V_C), 1e-6))
 
 
-def curl(values: Mapping[str, float]) -> Curl:
-    """Return the law of curl with the turn at 1 m/s as given; spins are kept."""
+def curl(values: Mapping[str, float], loss: float = FCV1Curl.loss) -> Curl:
+    """Return the law of curl with the turn at 1 m/s as given, and spins lost as in FCV1."""
     turn = values.get("turn", 0.0)
-    return FCV1Curl(turn=turn, loss=0.0) if turn else NoCurl()
+    return FCV1Curl(turn=turn, loss=loss) if turn or loss else NoCurl()
 
 
 def _path(paths: Sequence[Path], t: float):  # type: ignore[no-untyped-def]

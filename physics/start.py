@@ -117,8 +117,7 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     curling = abs(results.radius / STONE.radius - 1) < 0.1
     release = max(HOG_TO_TEE + ahead - way, 0.0) if curling else 0.0
     bounds = Bounds(1 if stone.vy > 0 else -1) if curling else None
-    turn = results.curl.value
-    curl = NoCurl() if turn is None else FCV1Curl(turn=turn, loss=0.0)
+    curl = FCV1Curl(turn=results.curl.value or 0.0) if curling else NoCurl()
     shot = Shot(tuple(moved), impact, ice, curl, results.radius, bounds)
     return Start(shot, thrown, sd, e.stderr or 0.0, sd_friction, release, tuple(assumed))
 
