@@ -32,6 +32,8 @@ class Encoder:
             options={
                 "preset": "superfast",
                 "crf": "24",
+                # A whole picture every half second: stepping back has little to decode again.
+                "g": str(max(round((fps or DEFAULT_IMAGE_FPS) / 2), 1)),
                 # What OpenCV turns colours by; players read it here.
                 "x264-params": "colorprim=bt709:transfer=bt709:colormatrix=smpte170m",
             },

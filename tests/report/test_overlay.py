@@ -166,6 +166,14 @@ def test_the_first_picture_keeps_its_time(tmp_path, shot):
     np.testing.assert_allclose(times, np.array(TIMES[3:7]) - TIMES[3], atol=1e-4)
 
 
+def test_one_can_step_back_quickly(tmp_path, shot):
+    clip = open_clip(pictures(tmp_path, 60), fps=25.0)
+    write_overlay(clip, [], shot.tracks, (), tmp_path / "overlay.mp4")
+    with av.open(str(tmp_path / "overlay.mp4")) as video:
+        whole = [k for k, frame in enumerate(video.decode(video=0)) if frame.key_frame]
+    assert max(np.diff([*whole, 60])) <= 13
+
+
 def test_colours_survive(tmp_path, shot):
     path = tmp_path / "colours.png"
     image = np.zeros((240, 320, 3), np.uint8)
