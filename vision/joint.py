@@ -64,6 +64,9 @@ darker than the paint, goes unseen and displaces the edge by a tenth of its widt
 UNTOLD = 0.7
 """Share of its prior standard deviation above which the camera's height counts as assumed."""
 
+POOR, POOR_SHARE = 0.4, 0.1
+"""Quality below which a frame is poor, and the share of such frames that is worth a warning."""
+
 POOR_PX = 1.0
 """Residual at which a fit is half as good as it might be, px."""
 
@@ -141,7 +144,7 @@ def fit_clip(seen: Sequence[Seen], rig: Array, prior: Prior, size: tuple[int, in
         np.array([HOUSE.twelve_foot, *shared.rig[[R8, R4]]]),
         np.array([YARDSTICK_SD, sd[R8], sd[R4]]),
         sd[POSITION],
-        _warnings(seen, prior, shared.rig, sd),
+        _warnings(seen, cameras, prior, shared.rig, sd),
     )
 
 
@@ -259,8 +262,16 @@ def _spread(seen: Sequence[Seen]) -> list[Seen]:
     return [seen[i] for i in at]
 
 
-def _warnings(seen: Sequence[Seen], prior: Prior, rig: Array, sd: Array) -> tuple[str, ...]:
+def _warnings(
+    seen: Sequence[Seen], cameras: Sequence[Camera], prior: Prior, rig: Array, sd: Array
+) -> tuple[str, ...]:
     found = []
+    poor = [c.frame for c in cameras if c.found and c.quality < POOR]
+    if len(poor) > POOR_SHARE * len(cameras):
+        found.append(
+            f"in {len(poor)} of {len(cameras)} frames ({poor[0]} to {poor[-1]}) the model explains"
+            " little of the rings; look at the sheet of curlshot check before trusting it"
+        )
     lost = sum(not s.found for s in seen)
     if lost:
         found.append(

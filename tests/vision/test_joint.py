@@ -88,12 +88,12 @@ def test_less_seen_is_known_less_and_no_error() -> None:
 
 
 def test_quality_falls_when_the_fit_is_bad() -> None:
-    good, bad = (
-        fit_clip(
-            clip(np.random.default_rng(1), noise=noise), start_rig(OVERHEAD), OVERHEAD, SIZE
-        ).cameras[0]
+    tracks = [
+        fit_clip(clip(np.random.default_rng(1), noise=noise), start_rig(OVERHEAD), OVERHEAD, SIZE)
         for noise in (0.1, 2.5)
-    )
+    ]
+    assert ["explains little" in " ".join(t.warnings) for t in tracks] == [False, True]
+    good, bad = (t.cameras[0] for t in tracks)
     assert 1 >= good.quality > bad.quality + 0.2
     assert bad.rms_px > 1.0 > good.rms_px
     assert np.trace(bad.place_cov((1.0, 1.0))) > 4 * np.trace(good.place_cov((1.0, 1.0)))
