@@ -59,7 +59,7 @@ MOST_SAMPLES = 1_000_000
 MEASURED_THROWS = 1000
 """Samples of a measured shot where the person says nothing."""
 
-TABLES = frozenset({".csv", ".txt", ".tsv", ".dat", ".trk", ".trz", ".parquet"})
+TABLES = frozenset({".csv", ".txt", ".tsv", ".dat", ".trk", ".trz", ".zip", ".parquet"})
 
 SPREADSHEETS = frozenset({".ods", ".xls", ".xlsx"})
 
@@ -229,12 +229,12 @@ def measure(
 
 def _refuse_clip_options(path: Path, settings: Settings) -> None:
     """Refuse to pass over what a person says about a clip where tracks are read."""
-    from data.export import PROJECTS
+    from data.project import ENDINGS
 
     said = {"--stick": settings.stick, "--house": settings.house, "--camera": settings.camera}
     given = [name for name, value in {**said, "--frames": settings.frames}.items() if value]
     if given:
-        clip = "; add --clip to measure its clip" if path.suffix.lower() in PROJECTS else ""
+        clip = "; add --clip to measure its clip" if path.suffix.lower() in ENDINGS else ""
         raise InputError(f"{path}: only clips take {', '.join(given)}; tracks are read here{clip}")
 
 
@@ -322,7 +322,7 @@ def _film(
 
 def _open_clip(files: tuple[Path, ...], settings: Settings) -> Clip:
     """Open a video, pictures, or the clip of a Tracker project."""
-    from data.export import PROJECTS
+    from data.project import ENDINGS
     from vision.clip import open_clip
 
     kinds = [path.suffix.lower() for path in files]
@@ -330,8 +330,8 @@ def _open_clip(files: tuple[Path, ...], settings: Settings) -> Clip:
         raise InputError(f"{files[0]}: a spreadsheet; save it as CSV")
     if not TABLES.intersection(kinds):
         return open_clip(files, settings.fps, settings.frames)
-    if len(files) > 1 or kinds[0] not in PROJECTS:
-        odd = files[0] if kinds[0] not in PROJECTS else files[1]
+    if len(files) > 1 or kinds[0] not in ENDINGS:
+        odd = files[0] if kinds[0] not in ENDINGS else files[1]
         raise InputError(f"{odd}: not a clip; name a video, pictures, or one Tracker project")
     from vision.project_clip import open_project_clip
 
@@ -345,9 +345,9 @@ def _given_cameras(
     clip: Clip, path: Path, settings: Settings, progress: Progress, placed: Placed
 ) -> tuple[tuple[Camera, ...], tuple[str, ...]]:
     """Read the cameras of a table, or of a Tracker project."""
-    from data.export import PROJECTS
+    from data.project import ENDINGS
 
-    if path.suffix.lower() not in PROJECTS:
+    if path.suffix.lower() not in ENDINGS:
         from vision.camera_file import given_cameras
 
         return given_cameras(clip, path, progress, placed)
