@@ -1,13 +1,8 @@
 """The tables of a shot, as DataFrames: SI units, one fact a column, NaN or None where unknown."""
 
-from report.tables.coach import (
-    distance_table,
-    rest_table,
-    shot_stone,
-    speed_table,
-    takeout_table,
-)
+from report.tables.coach import speed_table, takeout_table
 from report.tables.laws import choice_table, ice_table, law_table, method_table
+from report.tables.rest import distance_table, rest_table, shot_stone
 from report.tables.shot import (
     glide_table,
     hit_table,

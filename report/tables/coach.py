@@ -1,45 +1,19 @@
-"""What a coach asks of a shot: speeds, turns, curl, takeouts, where stones lie, who lies shot.
+"""How fast stones were at the lines and beside the hits, and what each hit took.
 
 SI units throughout. What a clip cannot tell is NaN, and the column ``note`` says why.
 """
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
-from colorsys import rgb_to_hsv
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from data.results import Collision, MeasuredState
-from data.sheet import HOUSE, SHEET, STONE, House
-from data.tracks import teams
+from data.sheet import SHEET, STONE
+from report.tables.rest import STILL, thrown
 from report.tables.shot import moving_stones
-
-Array = NDArray[np.float64]
-
-STILL = 0.03
-"""Speed below which a stone has stopped, m/s: ice of μ = 0.008 stops it within 6 mm."""
-
-LAST = 0.25
-"""The last seconds of a track that tell whether its stone has stopped."""
-
-UNSEEN = 0.5
-"""Time by which a track may end before the clip does and still tell where its stone is, s."""
-
-HEADING = 0.5
-"""The first seconds of a track that tell where its stone was heading."""
-
-_HUES = (
-    *((15, "red"), (42, "orange"), (70, "yellow"), (165, "green"), (195, "teal"), (255, "blue")),
-    *((300, "purple"), (335, "pink"), (361, "red")),
-)
-"""Words for hues up to an angle, degrees."""
-
-POOR_CURL = 0.1
-"""Standard error of a curl from which on it is not told, m."""
 
 
 def speed_table(
@@ -56,7 +30,7 @@ def speed_table(
     for name in moving_stones(tracks, collisions, radius):
         track = tracks[tracks["stone"] == name].sort_values("t")
         hits = [(rank, hit) for rank, hit in enumerate(collisions, 1) if name in hit.stones]
-        if _thrown(track):
+        if thrown(track):
             side = 1.0 if float(track["vy"].head(5).mean()) <= 0 else -1.0
             for at, y in (("hog line", SHEET.hog_line), ("tee line", 0.0)):
                 rows.append({"stone": name, "at": at, **_crossing(track, side * y, side)})
@@ -98,149 +72,6 @@ def takeout_table(collisions: Sequence[Collision]) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=columns)
 
 
-def rest_table(
-    tracks: pd.DataFrame,
-    collisions: Sequence[Collision] = (),
-    house: House = HOUSE,
-    radius: float = STONE.radius,
-) -> pd.DataFrame:
-    """Tell how each stone turned and curled, where it stopped, and how near to the tee.
-
-    Returns
-    -------
-    DataFrame
-        ``stone, team, turns, sd_turns, curl, sd_curl, x, y, sd_x, sd_y, to_tee, sd_to_tee,
-        in_house, lies, note``: whole turns, counter-clockwise positive; `curl` to the left of
-        where it was heading, until its first hit; places and distances of the centre from the
-        tee, m; `in_house` 1 or 0, NaN where unknown; `lies` 1 for shot stone, 2 for the next,
-        NaN outside of the house. ``team`` is None where the tracks do not have it.
-    """
-    end, reach = float(tracks["t"].max()), house.twelve_foot + radius
-    moved, team = moving_stones(tracks, collisions, radius), team_names(tracks)
-    rows = []
-    for name, group in tracks.groupby("stone", sort=True):
-        track = group.sort_values("t")
-        notes: list[str] = []
-        row: dict[str, object] = {"stone": str(name), "team": team[str(name)]}
-        if name in moved:
-            row |= _turns(track, notes)
-            hits = [hit.t for hit in collisions if name in hit.stones]
-            if _thrown(track):
-                row |= _curl(track[track["t"] < min(hits, default=np.inf)], notes)
-        else:
-            notes.append("did not move")
-        why_not = _moving(track, end)
-        if why_not is None:
-            row |= _place(track)
-            row["in_house"] = float(np.hypot(*track[["x", "y"]].iloc[-1]) < reach)
-        else:
-            notes.append(why_not)
-            row["in_house"] = 0.0 if _leaves(track, reach) else np.nan
-        row["note"] = "; ".join(notes) or None
-        rows.append(row)
-    columns = [
-        *("stone", "team", "turns", "sd_turns", "curl", "sd_curl"),
-        *("x", "y", "sd_x", "sd_y", "to_tee", "sd_to_tee", "in_house", "lies", "note"),
-    ]
-    table = pd.DataFrame(rows, columns=columns)
-    inside = table.loc[table["in_house"] == 1, "to_tee"]
-    table["lies"] = inside.rank(method="first").reindex(table.index)
-    return table
-
-
-def distance_table(rest: pd.DataFrame) -> pd.DataFrame:
-    """Distances of the centres of the stones from the tee and from each other, m.
-
-    Parameters
-    ----------
-    rest : DataFrame
-        As `rest_table` gives it.
-
-    Returns
-    -------
-    DataFrame
-        ``stone, tee`` and a column for each stone; only stones whose place is known.
-    """
-    known = rest[rest["x"].notna()]
-    xy = known[["x", "y"]].to_numpy(float)
-    apart = np.hypot(*(xy[:, None] - xy[None]).transpose(2, 0, 1)) if len(xy) else np.empty((0, 0))
-    np.fill_diagonal(apart, np.nan)
-    names = [str(name) for name in known["stone"]]
-    table = pd.DataFrame(apart, columns=[f"to {name}" for name in names])
-    table.insert(0, "stone", names)
-    table.insert(1, "tee", np.hypot(*xy.T) if len(xy) else [])
-    return table
-
-
-def shot_stone(rest: pd.DataFrame) -> tuple[str | None, str]:
-    """Tell who lies shot.
-
-    Parameters
-    ----------
-    rest : DataFrame
-        As `rest_table` gives it.
-
-    Returns
-    -------
-    name : str or None
-        The stone nearest to the tee, None where that cannot be told.
-    reason : str
-        How many stones of its team count, where teams are known; else why it cannot be told.
-    """
-    unknown = rest.loc[rest["in_house"].isna(), "stone"]
-    if len(unknown):
-        return None, f"where {', '.join(unknown)} stopped is not known"
-    inside = rest[rest["lies"].notna()].sort_values("lies")
-    if inside.empty:
-        return None, "no stone is in the house"
-    if len(inside) > 1:
-        near, far = inside.iloc[0], inside.iloc[1]
-        error = float(np.hypot(near["sd_to_tee"], far["sd_to_tee"]))
-        if far["to_tee"] - near["to_tee"] < 2 * error and _rivals(near["team"], far["team"]):
-            return None, f"{near['stone']} and {far['stone']} are too close to tell"
-    best = inside.iloc[0]
-    if best["team"] is None:
-        return str(best["stone"]), "teams are not known"
-    others = (inside["team"] != best["team"]).to_numpy()
-    count = int(np.argmax(others)) if others.any() else len(others)
-    return str(best["stone"]), f"{best['team']} lies {count}"
-
-
-def team_names(tracks: pd.DataFrame) -> dict[str, str | None]:
-    """Name the team of each stone, None where it is not known.
-
-    Colours (``#rrggbb``) become words, unless two teams would have the same one.
-    """
-    known = teams(tracks)
-    words = {team: colour_word(team) for team in set(known.values())}
-    if len(set(words.values())) < len(words):
-        words = {team: team for team in words}
-    return {stone: words[team] or None for stone, team in known.items()}
-
-
-def colour_word(colour: str) -> str:
-    """Return the word for a colour ``#rrggbb``; any other text as it is."""
-    if not re.fullmatch(r"#[0-9a-fA-F]{6}", colour):
-        return colour
-    red, green, blue = (int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5))
-    hue, saturation, value = rgb_to_hsv(red, green, blue)
-    if value < 0.2:
-        return "black"
-    if saturation < 0.2:
-        return "white" if value > 0.75 else "grey"
-    return next(word for top, word in _HUES if 360 * hue < top)
-
-
-def _rivals(one: object, two: object) -> bool:
-    return one is None or two is None or one != two
-
-
-def _thrown(track: pd.DataFrame) -> bool:
-    """Whether a stone moves as it comes into view."""
-    early = track[track["t"] < track["t"].iloc[0] + LAST]
-    return bool(np.hypot(early["vx"], early["vy"]).median() > 3 * STILL)
-
-
 def _speed(state: MeasuredState) -> tuple[float, float]:
     speed = float(np.hypot(state.vx, state.vy))
     errors = [np.nan if sd is None else sd for sd in (state.sd_vx, state.sd_vy)]
@@ -264,63 +95,3 @@ def _crossing(track: pd.DataFrame, line: float, side: float) -> dict[str, object
     sd = np.hypot(vx * sx, vy * sy) / np.maximum(speed, 1e-9)
     between = [float(a[k - 1] + share * (a[k] - a[k - 1])) for a in (t, speed, sd)]
     return dict(zip(("t", "speed", "sd"), between, strict=True))
-
-
-def _turns(track: pd.DataFrame, notes: list[str]) -> dict[str, object]:
-    seen = track[track["theta"].notna()]
-    if len(seen) < 2:
-        notes.append("how it turned was not seen")
-        return {}
-    theta, sd = seen[["theta", "sd_theta"]].to_numpy(float).T
-    error = float(np.hypot(sd[0], sd[-1])) / (2 * np.pi)
-    return {"turns": float(theta[-1] - theta[0]) / (2 * np.pi), "sd_turns": error}
-
-
-def _curl(track: pd.DataFrame, notes: list[str]) -> dict[str, object]:
-    """Distance by which a stone came to lie left of the line on which it set out."""
-    early = track[track["t"] <= track["t"].iloc[0] + HEADING] if len(track) else track
-    if len(early) < 3:
-        notes.append("curl: seen too briefly before it was hit")
-        return {}
-    heading = early[["vx", "vy"]].to_numpy(float).mean(axis=0)
-    speed = float(np.hypot(*heading))
-    ux, uy = heading / speed
-    dx, dy = (track[["x", "y"]].iloc[-1] - track[["x", "y"]].iloc[0]).to_numpy(float)
-    # Neighbours in a smoothed track share their error: the mean is no better than one of them.
-    turn = float(early[["sd_vx", "sd_vy"]].to_numpy(float).mean()) / speed
-    place = float(track[["sd_x", "sd_y"]].iloc[[0, -1]].to_numpy(float).mean())
-    error = float(np.hypot(turn * np.hypot(dx, dy), np.sqrt(2) * place))
-    if not error < POOR_CURL:
-        notes.append(f"curl: {np.hypot(dx, dy):.1f} m of way is too short to tell")
-        return {}
-    # The mean velocity of the first seconds is that of their middle.
-    return {"curl": float(ux * dy - uy * dx), "sd_curl": error}
-
-
-def _moving(track: pd.DataFrame, end: float) -> str | None:
-    """Why it is not known where a stone stopped; None where it is."""
-    late = track[track["t"] >= track["t"].iloc[-1] - LAST]
-    speed = float(np.hypot(late["vx"], late["vy"]).median())
-    if not speed > STILL:
-        return None
-    when = float(track["t"].iloc[-1])
-    if end - when > UNSEEN:
-        return f"out of sight after {when:.1f} s, at {speed:.2f} m/s"
-    return f"still moves at {speed:.2f} m/s as the clip ends"
-
-
-def _leaves(track: pd.DataFrame, reach: float) -> bool:
-    """Whether a stone that moves is out of the house and on its way from it."""
-    x, y, vx, vy = track[["x", "y", "vx", "vy"]].iloc[-1].to_numpy(float)
-    return bool(np.hypot(x, y) > reach and x * vx + y * vy > 0)
-
-
-def _place(track: pd.DataFrame) -> dict[str, object]:
-    x, y, sx, sy = track[["x", "y", "sd_x", "sd_y"]].iloc[-1].to_numpy(float)
-    distance = float(np.hypot(x, y))
-    error = float(np.hypot(x * sx, y * sy)) / max(distance, 1e-9)
-    return {
-        **dict(zip(("x", "y", "sd_x", "sd_y"), (x, y, sx, sy), strict=True)),
-        "to_tee": distance,
-        "sd_to_tee": error,
-    }

@@ -9,7 +9,7 @@ from data.sheet import HOUSE, SHEET
 from data.tracks import TRACK_COLUMNS
 from report import tables
 from report.summary import summary
-from report.tables.coach import colour_word, team_names
+from report.tables.teams import colour_word, team_names
 from report.units import FEET
 
 MU_G = 0.0109 * 9.81
