@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -40,3 +42,21 @@ def test_a_stone_that_jumps_is_found_again_at_once() -> None:
         assert len(places) == 3
         true = (0.3, 0.07 if index >= 7 else 0.2)
         assert np.hypot(*(places - true).T).min() < 0.006
+
+
+def test_a_stone_that_spins_on_the_spot_is_measured_all_the_time() -> None:
+    scene = scene_of(AT_REST)
+    camera = camera_of(CAMERA, scene)
+    watch = Watch()
+    for index in range(30):
+        first = scene.stones[0]
+        turned = replace(first, start=replace(first.start, theta=0.02 * index))
+        image = render_still(replace(scene, stones=(turned, *scene.stones[1:])), CAMERA)
+        watch.look(Frame(index, index / 25, np.asarray(image, np.uint8)), camera)
+    told = {True: 0, False: 0}
+    for _, _, sightings in watch.finish():
+        for sighting in sightings:
+            spins = np.hypot(sighting.x - AT_REST[0][0], sighting.y - AT_REST[0][1]) < 0.05
+            told[bool(spins)] += sighting.spectrum is not None
+    assert told[True] > 25
+    assert told[False] < 40
