@@ -6,7 +6,7 @@
     bounds: null or {play, half_width, back_line, hog_line}}. */
 const simulator = (() => {
   const TOUCHING = 1e-9, PRESSED = 1e-6, SLOW = 1e-3, SIMULTANEOUS = 1e-10;
-  const MAX_IMPULSES = 200000;
+  const MAX_IMPULSES = 20000; // the page must not hang
 
   // ---- stone on stone
 

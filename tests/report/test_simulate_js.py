@@ -48,7 +48,7 @@ def tab(browser: Browser):
 
 
 def random_shot(rng: np.random.Generator) -> Shot:
-    """A stone thrown into a house of others, two of which touch; any laws."""
+    """A stone thrown into a house of others, some of which touch; any laws."""
     radius = float(rng.choice([0.145, 0.1455]))
     stones = [
         StoneStart(
@@ -65,8 +65,9 @@ def random_shot(rng: np.random.Generator) -> Shot:
     wanted = int(rng.integers(4, 13))
     while len(stones) <= wanted:
         x, y = rng.uniform(-1.4, 1.4), rng.uniform(-1.4, 1.4)
-        if len(stones) == 2:  # frozen onto the other
-            other, turn = stones[1], rng.uniform(0, 2 * np.pi)
+        if len(stones) > 1 and rng.random() < 0.25:  # frozen onto another
+            other = stones[int(rng.integers(1, len(stones)))]
+            turn = rng.uniform(0, 2 * np.pi)
             x, y = other.x + 2 * radius * np.cos(turn), other.y + 2 * radius * np.sin(turn)
         if all(np.hypot(x - s.x, y - s.y) > 2 * radius - 1e-12 for s in stones):
             stones.append(StoneStart("ABCDEFGHIJKLM"[len(stones)], float(x), float(y)))
