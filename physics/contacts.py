@@ -26,6 +26,9 @@ SIGNIFICANT = 5.0
 MOST_PUSH = 3.0
 """Most that a hit can change the relative speed of two stones, in closing speeds (1 + e)."""
 
+LITTLE = 0.25
+"""Time within which a hit shows in where a stone is, s, unless six sightings take longer."""
+
 SHARE = 0.15
 """Smallest part of the other's change of velocity that a stone must show in a hit."""
 
@@ -181,7 +184,7 @@ def _approaches(
     step = np.maximum(np.hypot(*np.diff(apart, axis=0).T) - noise, 0.0)
     step = _over_gaps(a, b, t, step)
     reach = REACH * 2 * radius + 0.6 * np.maximum(np.append(step, 0.0), np.append(0.0, step))
-    near = np.flatnonzero(distance < reach)
+    near = np.flatnonzero(distance < reach + noise / 3)
     # One approach lasts until they are clearly out of reach of each other.
     far = np.cumsum(distance > 1.1 * reach + noise)
     looseness = max(a.step, b.step)
@@ -226,9 +229,10 @@ def _meeting_times(
 
 
 def _moves(path: Trace, time: float, radius: float) -> bool:
-    """Whether a stone is somewhere else a few sightings after `time` than before it."""
+    """Whether a stone is somewhere else a little after `time` than before it."""
     k = int(np.searchsorted(path.t, time))
-    before, after = path.xy[max(k - 6, 0) : max(k - 1, 1)], path.xy[k + 1 : k + 6]
+    few = max(6, round(LITTLE / path.step))
+    before, after = path.xy[max(k - few, 0) : max(k - 1, 1)], path.xy[k + 1 : k + few]
     if not len(before) or not len(after):
         return True
     shift = float(np.hypot(*(after.mean(axis=0) - before.mean(axis=0))))
