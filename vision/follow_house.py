@@ -54,7 +54,7 @@ MARK_SD = 0.2
 WIDTH = 6.0
 """Width of the robust loss, in standard deviations, while the shared part is provisional."""
 
-SETTLED = 0.33
+SETTLED = 0.4
 """Correction below which the edges need not be measured anew, half lengths of the normals."""
 
 LEAST_ARC = 1.2
