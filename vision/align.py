@@ -25,7 +25,7 @@ HARMONICS = ORDERS[1:-1]
 """Those that are compared."""
 
 _ROUNDS = 6
-_LEAST_SCALE = 3.0
+_LEAST_SCALE = 2.5
 """How much larger errors are at least than if every ring and harmonic erred for itself."""
 
 

@@ -187,7 +187,7 @@ def _jitter(times: Array, theta: Array, sd: Array) -> float:
     """How many times larger than claimed the errors are, at least 1.
 
     By the scatter of angles about a steady turning in three frames in a row. Errors that last
-    for longer (light, the handle's shadow) make it about half as much again, and pictures in quick
+    for longer (light, the handle's shadow) make it a quarter more, and pictures in quick
     succession share them.
     """
     step = np.diff(times)
@@ -197,4 +197,4 @@ def _jitter(times: Array, theta: Array, sd: Array) -> float:
     if steady.sum() < 5:
         return alike
     scatter = 1.4826 * float(np.median(np.abs(bend[steady]))) / np.sqrt(6)
-    return float(alike * max(1.5 * scatter / max(float(np.nanmedian(sd)), 1e-6), 1.0))
+    return float(alike * max(1.25 * scatter / max(float(np.nanmedian(sd)), 1e-6), 1.0))
