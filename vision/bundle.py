@@ -20,7 +20,8 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 
-from vision.adjust import VIEW_SD, WIDTH, Frame, Linear, by_measure, by_rig, inverse, linearised
+from vision.adjust import VIEW_SD, WIDTH, inverse
+from vision.linear import Frame, Linear, by_measure, by_rig, linearised
 from vision.pose import (
     CIRCLES,
     FIXED,

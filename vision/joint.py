@@ -16,10 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import HOUSE
-from vision.adjust import WIDTH, Frame, by_measure, by_rig, inverse, linearised, solve_views
+from vision.adjust import WIDTH, inverse, solve_views
 from vision.bundle import ARC, LOST, NOISE_TRUST, Bundle, bundle, family, piece_of, sensitivity
 from vision.camera import PARAMETERS, Camera, CameraError
 from vision.landmarks import Keyframe, replaced
+from vision.linear import Frame, by_measure, by_rig, linearised
 from vision.pose import (
     CIRCLES,
     FIXED,

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from vision.adjust import Frame, by_rig, linearised, solve, solve_view
+from vision.adjust import solve, solve_view, solve_views
+from vision.linear import Frame
 from vision.pose import (
     CENTRE_LINE,
     FIXED,
@@ -12,8 +13,6 @@ from vision.pose import (
     POSITION,
     R4,
     R8,
-    RIG_SIZE,
-    VIEW_SIZE,
     Marks,
     View,
     fixed,
@@ -57,26 +56,6 @@ def views(count: int) -> list[View]:
         View(np.array([0.15 - 0.2 * s, 0.01 * s, 0.03 - 0.04 * s, 7.5 - 0.3 * s]))
         for s in np.linspace(0, 1, count)
     ]
-
-
-def test_derivatives_are_those_of_the_residuals() -> None:
-    rng = np.random.default_rng(1)
-    rig, view = true_rig(), views(1)[0].vector
-    frame = Frame(marks(rng, view, rig, 1.0), SIZE)
-
-    def residuals(v: np.ndarray, r: np.ndarray) -> np.ndarray:
-        return linearised(frame, frame.points(r), v, r).residual
-
-    at = linearised(frame, frame.points(rig), view, rig)
-    shared = by_rig(frame, at, view)
-    for i in range(VIEW_SIZE):
-        step = np.eye(VIEW_SIZE)[i] * 1e-6
-        change = (residuals(view + step, rig) - residuals(view - step, rig)) / 2e-6
-        np.testing.assert_allclose(at.by_view[i], change, rtol=1e-5, atol=1e-3)
-    for i in range(RIG_SIZE):
-        step = np.eye(RIG_SIZE)[i] * 1e-6
-        change = (residuals(view, rig + step) - residuals(view, rig - step)) / 2e-6
-        np.testing.assert_allclose(shared[i], change, rtol=1e-5, atol=1e-3)
 
 
 def test_exact_marks_give_the_camera_back() -> None:
@@ -167,3 +146,17 @@ def test_views_of_no_marks_are_not_known() -> None:
     np.testing.assert_array_equal(found.view.vector, view.vector)
     assert np.sqrt(found.cov[0, 0]) > 1.0
     assert np.isnan(found.rms)
+
+
+def test_views_fitted_together_are_those_fitted_alone() -> None:
+    rng = np.random.default_rng(8)
+    rig, truth = true_rig(), views(5)
+    frames = [marks(rng, v.vector, rig, SD) for v in truth]
+    frames[2] = frames[2].pick(np.zeros(len(frames[2]), bool))
+    start = [View(v.vector + rng.normal(0, 0.003, 4)) for v in truth]
+    together = Frame(joined(frames), SIZE, counts=[len(m) for m in frames])
+    for k, found in enumerate(solve_views(together, start, rig)):
+        alone = solve_view(frames[k], start[k], rig, SIZE)
+        np.testing.assert_allclose(found.view.vector, alone.view.vector, atol=2e-5)
+        np.testing.assert_allclose(np.diag(found.cov), np.diag(alone.cov), rtol=0.05)
+        np.testing.assert_array_equal(found.inliers.shape, alone.inliers.shape)
