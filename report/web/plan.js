@@ -12,9 +12,10 @@ function svgElement(name, attributes = {}, parent = null) {
 
 class PlanView {
   /** An empty sheet in `svg`, wide enough for all of `places` and the house. */
-  constructor(svg, { radius, rings, lines }, places) {
+  constructor(svg, { radius, rings, lines, stones }, places) {
     Object.assign(this, { svg, radius, scale: UNITS / radius });
-    const [x0, y0, x1, y1] = extent(places, rings, radius).map((value) => value * this.scale);
+    const margin = (stones.some(({ name }) => name.length > 2) ? 2.8 : 1.8) * radius; // for names
+    const [x0, y0, x1, y1] = extent(places, rings, radius, margin).map((value) => value * this.scale);
     svg.setAttribute("viewBox", [x0, -y1, x1 - x0, y1 - y0].map((v) => v.toFixed(1)).join(" "));
     svg.style.aspectRatio = `${(x1 - x0).toFixed(1)} / ${(y1 - y0).toFixed(1)}`;
     const ice = svgElement("g", { class: "ice" }, svg);
@@ -106,7 +107,7 @@ class PlanView {
 }
 
 /** Corners of what is shown, m: the house and what happens about it, no longer than is of use. */
-function extent(places, rings, radius) {
+function extent(places, rings, radius, margin) {
   const rim = rings.length ? rings[0] + 2 * radius : 0;
   const boxes = rings.length ? [[-rim, -rim], [rim, rim]] : [];
   const reach = rings.length ? 6 * rings[0] : Infinity;
@@ -117,8 +118,7 @@ function extent(places, rings, radius) {
     x0 = Math.min(x0, x); x1 = Math.max(x1, x);
     y0 = Math.min(y0, y); y1 = Math.max(y1, y);
   }
-  const rimmed = 1.8 * radius, least = 8 * radius;
-  const grow = (low, high) => Math.max(rimmed, (least - (high - low)) / 2);
+  const grow = (low, high) => Math.max(margin, (8 * radius - (high - low)) / 2);
   const [dx, dy] = [grow(x0, x1), grow(y0, y1)];
   return [x0 - dx, y0 - dy, x1 + dx, y1 + dy];
 }

@@ -223,11 +223,18 @@ class Player {
     }
     for (const stone of this.simulations[this.model] ?? []) {
       const [, ghost] = this.ghosts.get(stone.name), row = lastUpTo(stone.rank, rank);
-      ghost.show(row >= 0 && stone.x.length > 1);
+      ghost.show(row >= 0 && stone.x.length > 1 && !this.#hides(stone, row, rank));
       if (row >= 0) ghost.move(stone.x[row], stone.y[row], stone.theta[row]);
     }
     for (const hit of this.hits) hit.mark.at(t - hit.t);
     this.#tell(rank, t);
+  }
+
+  /** Whether a simulated stone lies so close to the measured one that its rim would only fray it. */
+  #hides(simulated, row, rank) {
+    const stone = this.stones.find(({ name }) => name === simulated.name), k = lastUpTo(stone.rank, rank);
+    if (k < 0) return false;
+    return Math.hypot(stone.x[k] - simulated.x[row], stone.y[k] - simulated.y[row]) < 0.1 * this.data.radius;
   }
 
   #tell(rank, t) {
@@ -265,7 +272,7 @@ class Player {
 /** Speed of each stone that moves against time, with a cursor that is also a handle. */
 class SpeedChart {
   constructor(svg, player) {
-    const W = Math.max(Math.min(svg.clientWidth, 760), 320), H = 228, left = 38, right = 8, top = 26, bottom = 26;
+    const W = Math.max(Math.min(svg.clientWidth, 760), 320), H = 228, left = 38, right = 14, top = 26, bottom = 26;
     svg.setAttribute("viewBox", `0 0 ${W} ${H}`);
     const { times } = player, t0 = times[0], t1 = Math.max(times[times.length - 1], t0 + 0.01);
     const moving = player.stones.filter(moves);

@@ -35,6 +35,7 @@ class WhatIf {
     this.drawn = data.shot.stones.map((stone, k) => {
       const known = this.known[stone.name], trail = this.plan.trail(known.colour, "simulated");
       const end = this.plan.stone(known, "end"), start = this.plan.stone(known);
+      for (const drawn of [start, end]) drawn.turns(known.turns);
       this.#holdable(start, k);
       return { trail, start, end };
     });
