@@ -169,5 +169,9 @@ def _colour(samples: Array, floor: tuple[float, float, float]) -> Colour:
 
 def membership(image: Image, appearance: Appearance) -> Floats:
     """Say what each pixel may be: 1 cap, −1 granite, 0 neither; shape (h, w)."""
-    b, g, r = (image[..., channel].astype(np.int32) >> 2 for channel in range(3))
-    return np.asarray(appearance.membership.ravel().take((b << 12) | (g << 6) | r), np.float32)
+    steps = image >> 2
+    index = steps[..., 0].astype(np.int32)
+    for channel in (1, 2):
+        index <<= 6
+        index |= steps[..., channel]
+    return np.asarray(appearance.membership.ravel().take(index), np.float32)

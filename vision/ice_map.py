@@ -95,19 +95,22 @@ def rectify(
     left, right = max(columns[0] - 1, 0), min(columns[-1] + 2, len(xs))
     part = np.asarray(nodes[top:bottom, left:right], np.float32)
     shape = ((bottom - top - 1) * cell, (right - left - 1) * cell)
-    column, row = np.meshgrid(
-        np.arange(shape[1], dtype=np.float32) / cell, np.arange(shape[0], dtype=np.float32) / cell
+    finer = np.array([[1 / cell, 0, 0], [0, 1 / cell, 0]])
+    flags = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
+    across, down = (
+        np.asarray(cv2.warpAffine(axis, finer, shape[::-1], flags=flags), np.float32)
+        for axis in cv2.split(part)
     )
-    pixels = np.asarray(cv2.remap(part, column, row, cv2.INTER_LINEAR), np.float32)
     # A picture much finer than the map is averaged first, else the map would be grainy.
     fine = np.sqrt(inside.sum()) * cell
-    coarser = max(1, int(0.8 * np.sqrt(_visible_area(part, width, high)) / fine))
+    finest = max(1.0, 0.8 * float(np.sqrt(_visible_area(part, width, high))) / fine)
+    coarser = 2 ** int(np.log2(finest))  # halving is fast
     if coarser > 1:
         image = reduced(image, coarser)
-        pixels = np.asarray((pixels + 0.5) / coarser - 0.5, np.float32)
-    ice_image = colours_at(image, pixels[..., 0], pixels[..., 1])
-    limit = np.array([image.shape[1], image.shape[0]]) - 1
-    valid = np.all((pixels >= 0) & (pixels <= limit), axis=-1)
+        across, down = ((axis + 0.5) / coarser - 0.5 for axis in (across, down))
+    ice_image = colours_at(image, across, down)
+    valid = (across >= 0) & (across <= image.shape[1] - 1)
+    valid &= (down >= 0) & (down <= image.shape[0] - 1)
     return IceMap(ice_image, valid, float(xs[left]), float(ys[top]), float(scale))
 
 

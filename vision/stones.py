@@ -58,7 +58,7 @@ class Search:
 SEARCH = Search()
 """For a single picture, which has one chance."""
 
-FOLLOWING = Search(radius_px=8.0)
+FOLLOWING = Search(radius_px=6.5)
 """For a clip: a coarser map, for what one picture hides the next ones show."""
 
 
