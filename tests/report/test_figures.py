@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import dataclasses
+from io import BytesIO
 from itertools import combinations
 
 import matplotlib
@@ -11,12 +12,13 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Ellipse
 from matplotlib.text import Text
+from PIL import Image
 
 from data.results import Friction, Glide, Joint, MeasuredState
 from data.sheet import HOUSE
 from report import figures
 from report.numbers import plus_minus
-from report.style import BLACK, GREEN, render, styled
+from report.style import BLACK, GREEN, PNG_DPI, render, styled
 from report.tables import residual_table
 
 
@@ -337,3 +339,21 @@ def test_wild_sightings_are_marks_at_the_edge(shot):
         ]
         assert list(mark.get_xdata()) == [table.loc[row, "t"]]
         assert mark.get_ydata()[0] == (high if sign > 0 else low)
+
+
+def test_a_png_is_small_and_its_paper_white(shot):
+    figure = figures.plan_figure(shot.tracks, shot.simulations, house=HOUSE)
+    _, png = render(figure)
+    assert len(png) < 100_000
+    picture = Image.open(BytesIO(png))
+    wide, high = (int(size * PNG_DPI) for size in figure.get_size_inches())
+    assert picture.size == (wide, high)
+    colours = picture.convert("RGB").getcolors()
+    assert colours is not None
+    assert max(colours)[1] == (255, 255, 255)
+    true = np.asarray(picture.convert("RGB"), int)
+    canvas = FigureCanvasAgg(figure)
+    figure.set_dpi(PNG_DPI)
+    canvas.draw()
+    off = np.abs(true - np.asarray(canvas.buffer_rgba())[:, :, :3])
+    assert off.mean() < 1.5  # of 255
