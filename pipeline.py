@@ -469,6 +469,7 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
         restitution=_assumed(settings.restitution, LITERATURE.restitution),
         friction=_assumed(settings.friction, LITERATURE.friction),
     )
+    of_team = teams(tracks)
     drawn = sample_posterior(estimates, settings.samples, np.random.default_rng(0))
     times = sightings["t"]
     results = Results(
@@ -492,9 +493,9 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
         curl=estimates.curl,
         stones=estimates.by_stone,
         posterior=None if drawn is None else summarise(drawn),
+        teams={stone: team for stone, team in of_team.items() if team},
     )
     cameras = camera_table(measured.cameras) if measured.cameras else None
-    of_team = teams(tracks)
     simulations = [as_tracks(table, model, of_team) for model, table in sampled.items()]
     return Run(
         tracks,

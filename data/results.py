@@ -240,7 +240,10 @@ class Input:
 
 @dataclass(frozen=True)
 class Results:
-    """All that a run found out; see `to_json` for the file's form."""
+    """All that a run found out; see `to_json` for the file's form.
+
+    ``teams`` has each stone's as in ``tracks.csv``; without those of which nothing is known.
+    """
 
     input: Input
     restitution: Estimate
@@ -257,6 +260,7 @@ class Results:
     curl: Told = field(default_factory=Told)
     stones: Mapping[str, StoneResult] = field(default_factory=dict)
     posterior: Posterior | None = None
+    teams: Mapping[str, str] = field(default_factory=dict)
 
     def to_json(self) -> str:
         """Text of ``results.json``: strict JSON, values that are not finite as null."""
@@ -308,6 +312,7 @@ class Results:
                     for name, item in raw.get("stones", {}).items()
                 },
                 posterior=(_made(Posterior, raw["posterior"]) if raw.get("posterior") else None),
+                teams={str(name): str(team) for name, team in raw.get("teams", {}).items()},
             )
         except OSError as error:
             raise InputError(f"{path}: {error.strerror}") from None

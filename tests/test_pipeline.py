@@ -87,6 +87,9 @@ def test_run_writes_the_whole_contract(sample: pipeline.Run) -> None:
     raw = json.loads((sample.out / "results.json").read_text())
     assert raw["schema"] == 1
     assert raw["restitution"]["value"] == sample.results.restitution.value
+    teams = raw["teams"]
+    assert teams["A"] == teams["C"] == teams["D"] != teams["B"] == teams["E"] == teams["F"]
+    assert dict(zip(tracks["stone"], tracks["team"], strict=True)) == teams
 
 
 def test_tracks_come_back_to_the_same_physics(sample: pipeline.Run) -> None:

@@ -68,6 +68,7 @@ RESULTS = Results(
         "A": StoneResult(Estimate(0.01, 1e-3), Estimate(0.002, 0.001), 1.2, Estimate(0.6, 0.1))
     },
     posterior=Posterior(100, {"restitution": {"0.5": 0.83}}, {"restitution": {"restitution": 1.0}}),
+    teams={"A": "#d8c020"},
 )
 
 
@@ -91,7 +92,7 @@ def test_the_form_of_the_file() -> None:
     assert set(raw) == {
         *("schema", "input", "restitution", "friction", "collisions", "glides"),
         *("simulations", "warnings", "radius", "predictions", "laws", "methods", "law_choice"),
-        *("curl", "stones", "posterior"),
+        *("curl", "stones", "posterior", "teams"),
     }
     assert raw["input"] == {
         "files": ["clip Ä.mp4"],
