@@ -108,6 +108,8 @@ class Measures:
     worth : ndarray, shape (n, rays, radii)
         What the samples of `rays` may be: 1 cap, −1 granite, 0 neither.
     rays : Rays
+    scale, tilt : ndarray, shape (n,)
+        Of the view there: px per metre, and tangent of its angle to the vertical.
     """
 
     ok: Bools
@@ -122,6 +124,8 @@ class Measures:
     handle: Bytes
     worth: Floats
     rays: Rays
+    scale: Array
+    tilt: Array
 
 
 def is_plain(disc: Stone) -> bool:
@@ -188,7 +192,7 @@ def measure(
     handle = (pairs[:, :, ::2] >> 1) + (pairs[:, :, 1::2] >> 1)
     scale, tilt = scales(camera, places), tilts(camera, places)
     if is_plain(disc):
-        return _plain(rays, handle, places, scale, disc, effort)
+        return _plain(rays, handle, places, scale, tilt, disc, effort)
     assert appearance is not None
     # Behind the plane of the handle a slanting view shows the cap displaced. Rings that leave
     # it show its edge, which stays while the stone turns: they are blanked.
@@ -297,11 +301,19 @@ def _stones(
         handle=handle,
         worth=worth,
         rays=rays,
+        scale=scale,
+        tilt=tilt,
     )
 
 
 def _plain(
-    rays: Rays, handle: Bytes, places: Array, scale: Array, disc: Stone, effort: Effort
+    rays: Rays,
+    handle: Bytes,
+    places: Array,
+    scale: Array,
+    tilt: Array,
+    disc: Stone,
+    effort: Effort,
 ) -> Measures:
     n, pixel = len(places), 1 / scale
     falls = falls_along(rays.lab.astype(np.float32))
@@ -323,6 +335,8 @@ def _plain(
         handle=handle,
         worth=np.zeros(within.shape, np.float32),
         rays=rays,
+        scale=scale,
+        tilt=tilt,
     )
 
 

@@ -258,7 +258,7 @@ def sightings(
     """Sightings of the places chosen."""
     evidence = seen.evidence if is_plain(disc) else seen.evidence + 0.5 * scores
     pixels = camera.project(seen.centre, disc.cap_height)
-    shared = _shared_errors(camera, seen.centre, disc)
+    shared = _shared_errors(camera, seen.centre, disc, seen.scale, seen.tilt)
     return [
         Sighting(
             x, y, sd_x, sd_y, float(shared[i]), seen.colour[i], float(seen.visible[i]),
@@ -276,19 +276,22 @@ def placed_by(camera: Camera, seen: Sequence[Sighting], disc: Stone) -> list[Sig
     if not seen:
         return []
     places = camera.ice(np.array([sighting.pixel for sighting in seen]), disc.cap_height)
-    shared = _shared_errors(camera, places, disc)
+    scale, tilt = scales(camera, places), tilts(camera, places)
+    shared = _shared_errors(camera, places, disc, scale, tilt)
     return [
         replace(sighting, x=x, y=y, sd_place=sd)
         for sighting, (x, y), sd in zip(seen, places.tolist(), shared.tolist(), strict=True)
     ]
 
 
-def _shared_errors(camera: Camera, places: Array, disc: Stone) -> Array:
+def _shared_errors(camera: Camera, places: Array, disc: Stone, scale: Array, tilt: Array) -> Array:
     """Give the standard errors that no filter averages out, m: camera, cap's edge and height."""
     rms = camera.rms_px if np.isfinite(camera.rms_px) else 0.3
     edge = 0.0 if is_plain(disc) else 0.005 * disc.radius
-    aslant = 0.04 * disc.cap_height * tilts(camera, places)
-    squares = (0.25 * rms / scales(camera, places)) ** 2 + edge**2 + aslant**2
+    aslant = 0.04 * disc.cap_height * tilt
+    squares = (0.25 * rms / scale) ** 2 + edge**2 + aslant**2
+    if camera.error is None:
+        return np.asarray(np.sqrt(squares))
     return np.asarray(np.sqrt(squares + camera.place_sd(places) ** 2))
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from math import hypot, inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,7 +65,7 @@ class Pace:
     memory: int = 24
     lesson: int = 8
     every: float = 0.4
-    colours: float = 1.6
+    colours: float = 0.8
     patience: float = 0.3
     trust: float = 0.25
     reach: float = 1.5
@@ -206,7 +207,7 @@ class Watch:
         t = view.frame.t
         if not leads or (self.appearance is None and not is_plain(self.disc)):
             return []
-        known, apart = view.places, 1.6 * self.disc.radius
+        apart = 1.6 * self.disc.radius
         near, still = 0.15 * self.disc.radius, STILL * self.disc.radius
         expected = np.array([lead.at(t) for lead in leads])
         found = self._measured(view, leads, expected)
@@ -215,13 +216,12 @@ class Watch:
         # The best first: of two leads to one stone, the other is lost.
         for index in sorted(range(len(leads)), key=lambda i: -_score(found[i])):
             lead, sighting = leads[index], found[index]
-            if _distance(known, expected[index]) < 0.5 * self.disc.radius:
+            if _nearest(view.sightings, *expected[index].tolist()) < 0.5 * self.disc.radius:
                 continue  # it leads to a stone that is followed already
-            if sighting is None or _distance(known, np.array([sighting.x, sighting.y])) < apart:
+            if sighting is None or _nearest(view.sightings, sighting.x, sighting.y) < apart:
                 lost.append(lead)
                 continue
             view.sightings.append(sighting)
-            known = view.places
             going.append((lead.on(sighting, t, near, still), sighting))
         for lead in lost:
             nearby = None if lead.missed else self._near(view, lead)
@@ -278,7 +278,7 @@ class Watch:
         high = high + self.disc.radius
         bounds = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
         found = self._sought(view, bounds, view.places)
-        away = [_distance(either, place) for place in _places(found)]
+        away = [min(float(np.hypot(*(place - e))) for e in either) for place in _places(found)]
         if not away or min(away) > reach:
             return None
         return found[int(np.argmin(away))]
@@ -295,11 +295,9 @@ class Watch:
         )
 
 
-def _distance(places: Array, place: Array) -> float:
-    """From a place to the nearest of others, m."""
-    if not len(places):
-        return float("inf")
-    return float(np.hypot(*(places - place).T).min())
+def _nearest(sightings: Sequence[Sighting], x: float, y: float) -> float:
+    """Distance from a place to the nearest of the stones seen, m."""
+    return min((hypot(s.x - x, s.y - y) for s in sightings), default=inf)
 
 
 def _score(sighting: Sighting | None) -> float:
