@@ -311,7 +311,7 @@ class _Problem:
     ) -> tuple[_State, Array, Array, Array]:
         """Fit with the paint and the noise that the residuals show: state, covariance, both."""
         for step in range(ROUNDS):
-            state, cov = self.fit(state, paint, noise, 6 if step == 0 else 2)
+            state, cov = self.fit(state, paint, noise, 6 if step == 0 else 1)
             paint, noise = self.spread(state, cov, paint, noise)
         state, cov = self.fit(state, paint, noise, 4)
         return state, cov, paint, noise

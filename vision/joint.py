@@ -45,6 +45,7 @@ from vision.pose import (
 )
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 JOINT_FRAMES = 12
 """Frames to which the shared part is fitted."""
@@ -198,6 +199,7 @@ def fit_frames(seen: Sequence[Seen], shared: Bundle, size: tuple[int, int]) -> l
     by_view = at.by_view * weight
     by_shared, by_offset = by_rig(frame, at, views), by_measure(frame, at)
     hold = 1 / np.square(VIEW_SD)
+    identity, on_circle = piece_of(marks), marks.line < CIRCLES
     found = []
     for k, (s, fit, part) in enumerate(zip(seen, fits, frame.parts, strict=True)):
         normal = by_view[:, part] @ at.by_view[:, part].T + np.diag(hold)
@@ -218,7 +220,8 @@ def fit_frames(seen: Sequence[Seen], shared: Bundle, size: tuple[int, int]) -> l
             0.0 if s.key is None else s.key.drift,
         )
         rms = fit.rms if s.found else float("nan")
-        quality = _explained(s.marks.pick(fit.inliers), fit.view, rig, size)
+        good = fit.inliers & on_circle[part]
+        quality = _explained(identity[part][good], fit.view, rig, size)
         quality *= 1 / (1 + (rms / POOR_PX) ** 2) if s.found else 0.0
         found.append(
             camera(
@@ -247,14 +250,13 @@ _ON_CIRCLE = np.repeat(np.arange(CIRCLES), len(_ARCS))
 _FOOT, _WAY = ice_frame(_ON_CIRCLE, np.tile(_ARCS, CIRCLES))
 
 
-def _explained(marks: Marks, view: View, rig: Array, size: tuple[int, int]) -> float:
-    """Share of the pieces of the circles in the picture on which there are marks."""
-    pieces = _FOOT + _WAY * measures(rig)[_ON_CIRCLE, None]
-    x, y = project(pieces, view.vector, rig, size).T
+def _explained(pieces: Ints, view: View, rig: Array, size: tuple[int, int]) -> float:
+    """Share of the pieces of the circles in the picture that are among these."""
+    places = _FOOT + _WAY * measures(rig)[_ON_CIRCLE, None]
+    x, y = project(places, view.vector, rig, size).T
     w, h = size
     shown = int(((x > 0) & (y > 0) & (x < w - 1) & (y < h - 1)).sum())
-    marked = len(set(piece_of(marks)[marks.line < CIRCLES].tolist()))
-    return min(marked / max(shown, 1), 1.0)
+    return min(len(set(pieces.tolist())) / max(shown, 1), 1.0)
 
 
 def _spread(seen: Sequence[Seen]) -> list[Seen]:
