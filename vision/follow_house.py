@@ -29,6 +29,7 @@ from vision.outline import Rim
 from vision.picture import Picture, image_of
 from vision.placed import Placed, nobody
 from vision.pose import ANYWHERE, CIRCLES, OVERHEAD, R4, R8, Prior, View, camera, joined
+from vision.replay import EVERY, Glimpse, glimpse, is_nearer, is_replay
 
 Array = NDArray[np.float64]
 
@@ -95,6 +96,7 @@ class _Piece:
     key: Keyframe | None = None
     normals: Normals | None = None
     lost: int = 0
+    glimpses: list[Glimpse] = field(default_factory=list)
 
     @property
     def found(self) -> int:
@@ -135,8 +137,11 @@ class HouseFollower:
         piece = self._piece
         if piece is not None:
             seen = _next(piece, frame)
+            if seen is not None and piece.lost and self._is_elsewhere(piece, seen, frame):
+                seen, piece.lost = None, PATIENCE
             if seen is not None:
                 _add(piece, seen, frame.picture)
+                _remember(piece, seen, frame.picture)
                 _refine(piece, self._size)
                 self._waiting.clear()
                 return [(frame, self._provisional(piece, seen))]
@@ -150,6 +155,14 @@ class HouseFollower:
             return self._start(frame, house)
         self._waiting.append(frame)
         return []
+
+    def _is_elsewhere(self, piece: _Piece, seen: Seen, frame: Frame) -> bool:
+        """Whether a frame after a cut is a replay, or goes on with what was before a replay."""
+        now = glimpse(frame.picture, seen.view, piece.rig, frame.t)
+        others = [p.glimpses[-1] for p in self._pieces if p is not piece and p.glimpses]
+        return is_replay(now, piece.glimpses) or (
+            bool(piece.glimpses) and is_nearer(now, others, piece.glimpses[-1])
+        )
 
     def _find(self, frame: Frame) -> HouseFit | None:
         """Look for the house, now and then; the first is the one given, if one is."""
@@ -181,7 +194,7 @@ class HouseFollower:
 
     def _start(self, frame: Frame, house: HouseFit) -> list[tuple[Frame, Camera]]:
         """Begin a piece, or go on with one that shows the same; then follow it back."""
-        piece, view = self._same(house)
+        piece, view = self._same(house, frame)
         if piece is None:
             prior = OVERHEAD if house.overhead else ANYWHERE
             piece, view = _Piece(house.rig, prior, house.evidence.palette, house.edge), house.view
@@ -205,11 +218,17 @@ class HouseFollower:
         piece.picture, piece.key = frame.picture, None
         return [(f, self._provisional(piece, s)) for f, s in placed]
 
-    def _same(self, house: HouseFit) -> tuple[_Piece | None, View]:
-        """Find the piece whose camera explains a house as well, and its view in this frame."""
+    def _same(self, house: HouseFit, frame: Frame) -> tuple[_Piece | None, View]:
+        """Find the piece whose camera explains a house as well, and its view in this frame.
+
+        What that piece showed long before it was cut is shown again; it does not go on.
+        """
         marks = house.evidence.marks
-        for piece in reversed(self._pieces):
+        now = glimpse(frame.picture, house.view, house.rig, frame.t)
+        for piece in self._pieces:
             if not _alike(piece.palette, house.evidence.palette):
+                continue
+            if is_replay(now, piece.glimpses):
                 continue
             view = solve_view(marks, house.view, piece.rig, self._size, width=1e3, iterations=30)
             fit = solve_view(marks, view.view, piece.rig, self._size)
@@ -261,6 +280,12 @@ def follow_house(
 def _add(piece: _Piece, seen: Seen, picture: Picture) -> None:
     piece.seen.append(seen)
     piece.picture, piece.lost = picture, 0
+
+
+def _remember(piece: _Piece, seen: Seen, picture: Picture) -> None:
+    """Keep now and then what the house looks like."""
+    if seen.found and (not piece.glimpses or seen.t - piece.glimpses[-1].t > EVERY):
+        piece.glimpses.append(glimpse(picture, seen.view, piece.rig, seen.t))
 
 
 def _next(piece: _Piece, frame: Frame) -> Seen | None:

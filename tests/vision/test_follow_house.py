@@ -113,7 +113,8 @@ def test_jumps_of_the_picture_are_followed() -> None:
     track, frames = follow(path, duration=0.96)
     assert [c.frame for c in track.cameras] == list(range(frames))
     assert all(c.found for c in track.cameras)
-    assert worst(track, path) < 0.006
+    # Where it starts or stops within an exposure, the middle of the blur is not that of the time.
+    assert worst(track, path) < 0.008
 
 
 def test_what_is_fixed_to_the_ice_carries_the_camera() -> None:

@@ -1,0 +1,48 @@
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+
+from tests.synthetic import broadcast_camera, cached_clip, sample_scene
+from tests.vision.test_joint import SIZE
+from vision.clip import Frame, open_clip
+from vision.follow_house import HouseFollower
+
+RATE = 25
+
+
+@pytest.fixture(scope="module")
+def live() -> list[np.ndarray]:
+    """Pictures of a shot that runs through the house."""
+    file, _ = cached_clip(sample_scene(), broadcast_camera(), duration=3.0)
+    return [frame.image for frame in open_clip([file])]
+
+
+def frames(parts: Sequence[Sequence[np.ndarray]]) -> list[int]:
+    """Follow parts with crowds between them; the indices of the frames that have a camera."""
+    rng = np.random.default_rng(2)
+    crowd = rng.integers(0, 256, (8, *SIZE[::-1], 3), dtype=np.uint8)
+    pictures = [p for k, part in enumerate(parts) for p in ([*crowd] if k else []) + [*part]]
+    follower = HouseFollower(SIZE)
+    for k, picture in enumerate(pictures):
+        follower.look(Frame(k, k / RATE, picture))
+    track = follower.finish()
+    assert track is not None
+    return [c.frame for c in track.cameras]
+
+
+def test_what_goes_on_after_a_cut_belongs_to_the_shot(live: list[np.ndarray]) -> None:
+    assert frames([live[:45], live[53:]]) == [*range(45), *range(53, 75)]
+
+
+@pytest.mark.parametrize("start", [8, 21])
+def test_a_replay_does_not(live: list[np.ndarray], start: int) -> None:
+    assert frames([live, live[start : start + 30]]) == list(range(len(live)))
+
+
+def test_the_shot_may_go_on_after_a_replay(live: list[np.ndarray]) -> None:
+    first, second = live[:50], live[60:]
+    found = frames([first, live[6:26], second])
+    assert found == [*range(50), *range(50 + 36, 50 + 36 + len(second))]
