@@ -255,6 +255,17 @@ class _Bands:
         return np.asarray(radius, float), total.reshape(shape)
 
 
+@lru_cache(maxsize=8)
+def _design(rays: int, circles: int) -> tuple[Array, Array]:
+    """Change of each edge by shift and radii, one circle after the other; products of that."""
+    around = _around(rays)[1]
+    design = np.concatenate(
+        [np.hstack([around, np.tile(row, (rays, 1))]) for row in np.eye(circles)]
+    )
+    squares = design[:, :, None] * design[:, None, :]
+    return design, squares.reshape(len(design), -1)
+
+
 def fit_circles(
     rays: Rays,
     rims: Sequence[Rim],
@@ -280,12 +291,8 @@ def fit_circles(
     """
     n, circles = len(rays.inside), len(rims)
     expected = np.array([rim.radius for rim in rims])
-    around = _around(len(rays.angle))[1]
-    design = np.concatenate(
-        [np.hstack([around, np.tile(row, (len(around), 1))]) for row in np.eye(circles)]
-    )
+    design, squares = _design(len(rays.angle), circles)
     size = 2 + circles
-    squares = (design[:, :, None] * design[:, None, :]).reshape(len(design), size * size)
     prior = np.zeros((n, size, size))
     prior[:, range(size), range(size)] = 1e-9
     for k, radius in enumerate(expected.tolist()):

@@ -217,8 +217,10 @@ def tilts(camera: Camera, places: Array) -> Array:
     return np.asarray(np.hypot(away[:, 0], away[:, 1]) / camera.position[2])
 
 
-def _template(disc: Stone, radius: Array) -> Array:
+@lru_cache(maxsize=8)
+def _template(disc: Stone, effort: Effort) -> Array:
     """Weights of the radii in the mean over the cap less the mean over the granite."""
+    radius = _profile(disc, effort).radius[: effort.radii]
     cap = radius * (radius < 0.94 * disc.cap_radius)
     ring = radius * ((radius > 1.05 * disc.cap_radius) & (radius < 0.96 * disc.radius))
     return np.asarray(cap / cap.sum() - ring / ring.sum())
@@ -296,7 +298,7 @@ def _stones(
         colour=cap,
         visible=visible,
         evidence=clear - uneven - 0.5 * misfit,
-        response=worth.mean(1) @ _template(disc, radius),
+        response=worth.mean(1) @ _template(disc, effort),
         outline=fit.radii / np.array([disc.cap_radius, disc.radius]),
         handle=handle,
         worth=worth,
