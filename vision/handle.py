@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,6 +73,13 @@ def cap_spectrum(patch: NDArray[np.uint8], radii: Array) -> Complex:
     return np.asarray(spectrum * np.sqrt(radii / radii[-1])[:, None], np.complex64)
 
 
+@lru_cache(maxsize=64)
+def _offsets(reach: float) -> tuple[Array, NDArray[np.complex128]]:
+    """Angles up to `reach` either way, rad, and how they turn the harmonics."""
+    offset = np.linspace(-reach, reach, max(int(_GRID * reach / np.pi), 9))
+    return offset, np.exp(1j * HARMONICS[:, None] * offset)
+
+
 def angle_between(
     reference: Complex, spectrum: Complex, expected: float, reach: float
 ) -> tuple[float, float]:
@@ -103,9 +111,9 @@ def angles_between(
     cross = (np.conj(model) * seen).sum((2, 3)).astype(complex)
     energy = np.linalg.norm(model) * np.sqrt((np.abs(seen) ** 2).sum((1, 2, 3)))
     blank = energy <= 0
-    offset = np.linspace(-reach, reach, max(int(_GRID * reach / np.pi), 9))
+    offset, phases = _offsets(float(np.ceil(100 * reach)) / 100)
     near = cross * np.exp(1j * HARMONICS * expected[:, None])
-    value = (near @ np.exp(1j * HARMONICS[:, None] * offset)).real
+    value = (near @ phases).real
     angle = expected + offset[value.argmax(1)]
     for _ in range(4):  # Newton's method on a sum of cosines
         phase = cross * np.exp(1j * HARMONICS * angle[:, None])
