@@ -156,8 +156,13 @@ def learn(sightings: Sequence[Sighting], most_colours: int = 2) -> Appearance | 
 
 def colour_difference(first: Array, second: Array) -> float:
     """Difference of two cap colours, mostly of hue: lightness changes with the lamps."""
-    away = np.asarray(first, float) - np.asarray(second, float)
-    return float(np.sqrt(0.1 * away[0] ** 2 + away[1] ** 2 + away[2] ** 2))
+    return float(colour_differences(np.asarray(first)[None], np.asarray(second)[None])[0, 0])
+
+
+def colour_differences(first: Array, second: Array) -> Array:
+    """Differences of cap colours, shapes (m, 3) and (n, 3): shape (m, n)."""
+    away = np.asarray(first, float)[:, None] - np.asarray(second, float)
+    return np.asarray(np.sqrt(away**2 @ [0.1, 1.0, 1.0]))
 
 
 def _colour(samples: Array, floor: tuple[float, float, float]) -> Colour:

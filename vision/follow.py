@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from vision.appearance import colour_difference
+from vision.appearance import colour_differences
 from vision.sighting import Sighting
 
 Array = NDArray[np.float64]
@@ -192,22 +192,28 @@ def _assign(
     if not tracks or not sightings:
         return {}
     seen = np.array([(s.x, s.y) for s in sightings])
-    cost = np.full((len(tracks), len(sightings)), _FORBIDDEN)
     struck = _struck(tracks, t, radius, gate)
-    for row, track in enumerate(tracks):
-        wait = t - track.times[-1]
-        reach = min(gate.reach + gate.growth * wait, gate.most) * radius
-        place = struck[row] if row in struck else track.expected(t, gate.deceleration)
-        away = np.hypot(*(seen - place).T) / reach
-        # A stone that has been hit a moment ago is still near where it was.
-        near = np.hypot(*(seen - track._place).T) / reach
-        distance = np.minimum(away, near + 0.1)
-        unlike = np.array([colour_difference(track.colour, s.colour) for s in sightings])
-        ok = (distance < 1) & (unlike < gate.colours)
-        # Young tracks yield to old ones.
-        youth = 0.5 if len(track.frames) < gate.births else 0.0
-        value = distance**2 + (0.5 * unlike / gate.colours) ** 2 + youth
-        cost[row, ok] = value[ok]
+    waits = t - np.array([track.times[-1] for track in tracks])
+    reach = np.minimum(gate.reach + gate.growth * waits, gate.most)[:, None] * radius
+    expected = np.array(
+        [
+            struck[row] if row in struck else track.expected(t, gate.deceleration)
+            for row, track in enumerate(tracks)
+        ]
+    )
+    last = np.array([track._place for track in tracks])
+    away, near = (
+        np.hypot(*(seen - places[:, None]).transpose(2, 0, 1)) for places in (expected, last)
+    )
+    # A stone that has been hit a moment ago is still near where it was.
+    distance = np.minimum(away / reach, near / reach + 0.1)
+    unlike = colour_differences(
+        np.array([track.colour for track in tracks]), np.array([s.colour for s in sightings])
+    )
+    # Young tracks yield to old ones.
+    youth = np.array([0.5 if len(track.frames) < gate.births else 0.0 for track in tracks])
+    value = distance**2 + (0.5 * unlike / gate.colours) ** 2 + youth[:, None]
+    cost = np.where((distance < 1) & (unlike < gate.colours), value, _FORBIDDEN)
     rows, columns = linear_sum_assignment(cost)
     return {
         int(column): tracks[row]
