@@ -79,8 +79,8 @@ def _samples(disc: Stone) -> Array:
     return np.asarray(disc.radius * np.stack([x[inside], y[inside]], -1))
 
 
-def _pixels(camera: Camera, places: Array, disc: Stone) -> tuple[Array, Array]:
-    """Pixels of the samples about places, shape (n, m, 2), and px per metre, shape (n, 2, 2).
+def _pixels(camera: Camera, places: Array, disc: Stone) -> tuple[Array, Array, Array]:
+    """Pixels of the samples about places, (n, m, 2), of their middles, and px per metre, (n, 2, 2).
 
     Over a stone the camera is taken for linear: the same in both pictures.
     """
@@ -88,7 +88,7 @@ def _pixels(camera: Camera, places: Array, disc: Stone) -> tuple[Array, Array]:
     about = np.array([[0.0, 0.0], [reach, 0.0], [0.0, reach]])
     seen = camera.project(places[:, None] + about, disc.cap_height)
     scale = np.swapaxes(seen[:, 1:] - seen[:, :1], 1, 2) / reach
-    return seen[:, :1] + _samples(disc) @ np.swapaxes(scale, 1, 2), scale
+    return seen[:, :1] + _samples(disc) @ np.swapaxes(scale, 1, 2), seen[:, 0], scale
 
 
 def _lightness(picture: Picture, pixels: Array) -> Array:
@@ -108,7 +108,7 @@ def portraits(
     """
     if not seen:
         return []
-    pixels, _ = _pixels(camera, np.array([(s.x, s.y) for s in seen]), disc)
+    pixels, _, _ = _pixels(camera, np.array([(s.x, s.y) for s in seen]), disc)
     limit = np.array(camera.size) - 2.0
     whole = np.all((pixels > 1) & (pixels < limit), axis=(1, 2)).tolist()
     step = np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]])
@@ -140,7 +140,7 @@ def unchanged(
     if not known:
         return []
     places = np.array([(p.sighting.x, p.sighting.y) for p in known])
-    pixels, scale = _pixels(camera, places, disc)
+    pixels, middle, scale = _pixels(camera, places, disc)
     change = _lightness(picture, pixels) - np.array([p.lightness for p in known])
     found = (np.array([p.inverse for p in known]) @ change[..., None])[..., 0]
     rest = change - (np.array([p.design for p in known]) @ found[..., None])[..., 0]
@@ -148,7 +148,7 @@ def unchanged(
     left = np.sqrt((rest**2).mean(1))
     still = (left < np.array([p.most for p in known])) & (np.abs(shift).max(1) < MOST_SHIFT)
     moved = places + np.linalg.solve(scale, shift[..., None])[..., 0]
-    middle = camera.project(moved, disc.cap_height)
+    middle = middle + shift
     return [
         replace(p.sighting, x=x, y=y, pixel=(u, v), spectrum=None, measured=False) if ok else None
         for p, ok, (x, y), (u, v) in zip(
