@@ -65,6 +65,9 @@ FOLLOWING = Search(radius_px=6.5)
 ON_COURSE = 0.15
 """Within this many radii of where it is expected a stone need not be looked for."""
 
+SETTLED = 0.03
+"""Measured from within this many radii of its centre, a stone's place depends no more on where."""
+
 NEARBY = 0.35
 """How far from where it is expected a stone is measured, in radii."""
 
@@ -187,14 +190,25 @@ def look_at(
         One per place; None where there is no stone.
     """
     seen = measure(image, camera, places, appearance, disc)
-    right = seen.shift < ON_COURSE * disc.radius
-    out = _found(seen, seen.response, right, camera, disc, search)
+    settled = seen.shift < SETTLED * disc.radius
+    out = _found(seen, seen.response, settled, camera, disc, search)
+    # The edges that were chosen from beside the centre draw the circle towards there.
+    near = np.flatnonzero(~settled & (seen.shift < ON_COURSE * disc.radius) & seen.ok)
+    if len(near):
+        seen = measure(image, camera, seen.centre[near], appearance, disc)
+        settled = seen.shift < SETTLED * disc.radius
+        found = _found(seen, seen.response, settled, camera, disc, search)
+        for i, sighting in zip(near.tolist(), found, strict=True):
+            out[i] = sighting
     others = [i for i, sighting in enumerate(out) if sighting is None]
     if others:
         about, scores = seek_about(
             image, camera, places[others], appearance, disc,
             radius_px=search.radius_px, reach=NEARBY,
         )  # fmt: skip
+        seen = measure(image, camera, about, appearance, disc)
+        within = seen.ok & (seen.shift < NEARBY * disc.radius)
+        about = np.where(within[:, None], seen.centre, about)
         seen = measure(image, camera, about, appearance, disc)
         anywhere = np.ones(len(others), bool)
         found = _found(seen, scores, anywhere, camera, disc, search)

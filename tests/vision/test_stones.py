@@ -19,7 +19,7 @@ from vision.camera import Camera
 from vision.clip import open_clip
 from vision.sighting import Sighting
 from vision.stick import stick_camera
-from vision.stones import find_stones, plain_disc
+from vision.stones import find_stones, look_at, plain_disc
 
 RED, YELLOW, BLUE = (30, 24, 150), (20, 190, 220), (170, 80, 30)
 CAMERA = still_camera(px_per_m=140.0, target=(0.0, 0.6))
@@ -177,3 +177,20 @@ def test_real_stills(shared: Path) -> None:
     assert np.median(errors) < 0.006
     assert np.percentile(errors, 95) < 0.025
     assert false <= 4  # some stones are not in the list of those measured
+
+
+@pytest.mark.parametrize("aside", [0.01, 0.03, 0.045])
+def test_where_a_stone_is_expected_has_no_say_in_where_it_is(aside: float) -> None:
+    scene = scene_of([(0.2, 0.9, RED), (-0.4, 0.2, YELLOW), (1.0, 1.6, RED)])
+    image, camera = np.asarray(render_still(scene, CAMERA), np.uint8), camera_of(CAMERA, scene)
+    learned = learn(find_stones(image, camera))
+    true = np.array([(stone.start.x, stone.start.y) for stone in scene.stones])
+    found = {}
+    for turn in range(4):
+        way = aside * np.array([np.cos(np.pi * turn / 2), np.sin(np.pi * turn / 2)])
+        seen = look_at(image, camera, true + way, learned)
+        assert all(sighting is not None for sighting in seen)
+        found[turn] = np.array([(s.x, s.y) for s in seen if s is not None])
+    places = np.array(list(found.values()))
+    assert np.abs(places - places.mean(0)).max() < 0.002
+    assert np.abs(places - true).max() < 0.008
