@@ -46,7 +46,7 @@ SHARING = 20.0
 """Edge points of one frame that share an error of the paint, about 30° of a circle."""
 
 ENOUGH = 2.8
-"""A judgement at which no further hypothesis is tried: all of three circles, nearly."""
+"""A judgement at which nothing farther from the middle is tried: all of three circles, nearly."""
 
 ASIDE = 2.0
 """What a house loses when its centre is one picture's width aside: neighbours are at the sides."""
@@ -142,11 +142,12 @@ def _best(
 ) -> HouseFit | None:
     factor = min(WORK_WIDTH / image.shape[1], 1.0)
     fits: list[_Fitted] = []
-    for guess in hypotheses:
+    aside = [abs(guess.centre[0] - image.shape[1] / 2) for guess in hypotheses]
+    for k, guess in enumerate(hypotheses):
         fitted = _fit(small, _enlarged(guess, factor))
         if fitted is not None:
             fits.append(fitted)
-            if fitted.score > ENOUGH:
+            if fitted.score > ENOUGH and aside[k] <= min(aside[k:]):
                 break
     for fitted in sorted(fits, key=lambda fit: -fit.score):
         found = _refine(image, fitted, factor, frame, t)

@@ -100,6 +100,16 @@ def test_neighbours_are_not_taken() -> None:
     assert rms(errors(find_house(render_still(scene, path, 1.0)), path)) < 0.01
 
 
+@pytest.mark.parametrize("x", [-0.7, 0.7])
+def test_equal_houses_beside_it_are_not_taken(x: float) -> None:
+    # The house in the middle is the one with people over it, its neighbours are bare.
+    scene = sample_scene()
+    near = replace(scene.sheet, pitch=4.7, half_width=(2.2, 2.2))
+    scene = replace(scene, sheet=near, people=sweepers(scene, 2.0), paint=PAINTS["navy-orange"])
+    path = still_camera(position=(0.1, 0.2, 8.0), target=(x, 0.4), px_per_m=80)
+    assert rms(errors(find_house(render_still(scene, path, 1.0)), path)) < 0.01
+
+
 def test_no_house_is_no_house() -> None:
     rng = np.random.default_rng(0)
     bare = render_still(sample_scene(), still_camera(target=(0.0, 6.5)), 1.0)
