@@ -23,6 +23,7 @@ Image = NDArray[np.uint8]
 SQUASHES = np.array(
     [(1.0, 0.0), (0.88, 0.0), (0.75, 0.0), (0.62, 0.0), (0.5, 0.0), (0.4, 0.0)]
     + [(squash, turn) for squash in (0.8, 0.6, 0.45) for turn in (-0.35, 0.35)]
+    + [(0.65, -0.75), (0.65, 0.75)]
 )
 """Height over width of a circle's image, and how far its short axis leans from upright, rad."""
 
