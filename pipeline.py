@@ -14,7 +14,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from command.again import again
 from command.bars import Bars
@@ -24,6 +24,8 @@ from data.files import check_folder, relative_path, staged
 from data.inputs import IMAGE_SUFFIXES, find_inputs
 from data.progress import Progress, no_progress
 from data.sheet import HOUSE, STONE, House, Stone
+
+T = TypeVar("T")
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -494,6 +496,7 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
         stones=estimates.by_stone,
         posterior=None if drawn is None else summarise(drawn),
         teams={stone: team for stone, team in of_team.items() if team},
+        masses=masses or {},
     )
     cameras = camera_table(measured.cameras) if measured.cameras else None
     simulations = [as_tracks(table, model, of_team) for model, table in sampled.items()]
@@ -529,7 +532,7 @@ def _check_masses(masses: Mapping[str, float], stones: Sequence[str]) -> Mapping
 def as_tracks(
     simulated: pd.DataFrame | None, model: str, of_team: Mapping[str, str] | None = None
 ) -> pd.DataFrame:
-    """Table of ``simulation.csv`` from a sampled simulation: no errors, nothing seen."""
+    """Table of ``simulation.csv`` from a sampled simulation: nothing of it was seen."""
     from data.tracks import TRACK_COLUMNS, empty_tracks
 
     table = empty_tracks() if simulated is None else simulated.reindex(columns=list(TRACK_COLUMNS))
@@ -570,7 +573,13 @@ def run(
         Where the input cannot be used; then nothing is written.
     """
     folder = check_folder(out)
-    measured = measure(inputs or (sample_clip(),), settings, progress)
+    files = find_inputs(inputs or (sample_clip(),))
+    if folder is not None:
+        own = {folder.resolve() / name for name in WRITTEN}
+        lost = [path for path in files if path.resolve() in own]
+        if lost:
+            raise InputError(f"{lost[0]}: would be written over; name another folder with -o")
+    measured = measure(files, settings, progress)
     done = analyse(measured, settings)
     if folder is None:
         return done
@@ -684,7 +693,7 @@ def find_runs(names: Sequence[str | Path]) -> dict[str, Results]:
             raise InputError(f"{here}: no such file; name the folders of runs")
         found += [here] if here.exists() else below
     unique = dict.fromkeys(path.resolve() for path in found)
-    folders = _apart([path.parent.with_suffix(".run") for path in unique])
+    folders = _apart([path.parent.with_name(f"{path.parent.name}.run") for path in unique])
     return {name: Results.read(path) for name, path in zip(folders, unique, strict=True)}
 
 
@@ -832,17 +841,27 @@ def convert_each(
     return done
 
 
-def _write_project(measured: Measured, path: Path, over: str | Path | None) -> Measured:
-    """Write a project with what a run has left beside its tracks."""
+def _read_simulations(path: Path) -> dict[str, pd.DataFrame]:
+    """Read a ``simulation.csv``, model by model."""
     import pandas as pd
 
+    try:
+        table = pd.read_csv(path)
+        table = table.astype({"t": float, "x": float, "y": float, "stone": str})
+        return {str(model): rows for model, rows in table.groupby("model")}
+    except (ValueError, KeyError):
+        raise InputError(f"{path}: not a simulation.csv of this program") from None
+
+
+def _write_project(measured: Measured, path: Path, over: str | Path | None) -> Measured:
+    """Write a project with what a run has left beside its tracks."""
     from data.trk_write import plain_view, project_xml, write_trk, write_trz
 
     sightings, beside = measured.sightings, measured.files[0].parent
     simulated = beside / "simulation.csv"
     simulations = {}
     if measured.files[0].name == "tracks.csv" and simulated.is_file():
-        simulations = {str(m): table for m, table in pd.read_csv(simulated).groupby("model")}
+        simulations = _read_simulations(simulated)
     packed = path.suffix.lower() == ".trz"
     inside: dict[str, Path] = {}
     if over is None:
@@ -899,7 +918,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 2
     except KeyboardInterrupt:
         bars.close()
-        print("curlshot: stopped; nothing was written", file=sys.stderr)
+        print("curlshot: stopped; what was under way is not written", file=sys.stderr)
         return 130
     bars.close()
     try:
@@ -914,7 +933,7 @@ def _one_line(text: str) -> str:
     return " ".join(text.split())
 
 
-def _by_stone(option: str, pairs: Sequence[tuple[str, str]]) -> dict[str, str]:
+def _by_stone(option: str, pairs: Sequence[tuple[str, T]]) -> dict[str, T]:
     stones = [stone for stone, _ in pairs]
     doubled = [stone for stone in stones if stones.count(stone) > 1]
     if doubled:
@@ -931,7 +950,7 @@ def _settings(arguments: argparse.Namespace) -> Settings:
         house=known.get("house"),
         camera=known.get("camera"),
         radius=known.get("radius", STONE.radius),
-        masses=dict(known.get("mass", ())),
+        masses=_by_stone("--mass", known.get("mass", ())),
         length_unit=known.get("length_unit", "m"),
         angle_unit=known.get("angle_unit"),
         clip=known.get("clip", False),
@@ -1039,9 +1058,10 @@ def _do_estimate(arguments: argparse.Namespace, bars: Bars) -> str:
 
     settings, folder = _settings(arguments), _out(arguments, arguments.inputs[0])
     check_folder(folder)
+    odd = [path for path in find_inputs(arguments.inputs) if path.suffix.lower() not in TABLES]
+    if odd:
+        raise InputError(f"{odd[0]}: not a table of tracks; try curlshot run")
     measured = measure(arguments.inputs, settings, bars)
-    if measured.clip is not None:
-        raise InputError(f"{measured.files[0]}: not a table of tracks; try curlshot run")
     done = analyse(measured, settings)
     with staged(folder, replaces=_stale(folder, measured.files)) as stage:
         done.results.write(stage / "results.json")

@@ -70,14 +70,18 @@ def check_folder(out: str | Path | None) -> Path | None:
 
 @contextmanager
 def staged(folder: Path, replaces: Sequence[str] = ()) -> Iterator[Path]:
-    """Give a hidden folder beside `folder`; its content moves there if the block ends well.
+    """Give a hidden folder; its content moves to `folder` if the block ends well.
+
+    It lies in `folder` itself where that is there, which may be all that can be written to or a
+    disc of its own, else beside it.
 
     Files that were there under the same names are replaced, those named in `replaces` are
     removed, for they tell of an earlier run, and others are left alone.
     """
-    folder.parent.mkdir(parents=True, exist_ok=True)
+    around = folder if folder.is_dir() else folder.parent
+    around.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(
-        dir=folder.parent, prefix=f".{folder.name}-", ignore_cleanup_errors=True
+        dir=around, prefix=f".{folder.name}-", ignore_cleanup_errors=True
     ) as hidden:
         stage = Path(hidden)
         yield stage

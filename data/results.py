@@ -242,7 +242,8 @@ class Input:
 class Results:
     """All that a run found out; see `to_json` for the file's form.
 
-    ``teams`` has each stone's as in ``tracks.csv``; without those of which nothing is known.
+    ``masses`` has those given, in any unit, of all stones or none. ``teams`` has each stone's as in
+    ``tracks.csv``, without those of which nothing is known.
     """
 
     input: Input
@@ -260,6 +261,7 @@ class Results:
     curl: Told = field(default_factory=Told)
     stones: Mapping[str, StoneResult] = field(default_factory=dict)
     posterior: Posterior | None = None
+    masses: Mapping[str, float] = field(default_factory=dict)
     teams: Mapping[str, str] = field(default_factory=dict)
 
     def to_json(self) -> str:
@@ -312,6 +314,7 @@ class Results:
                     for name, item in raw.get("stones", {}).items()
                 },
                 posterior=(_made(Posterior, raw["posterior"]) if raw.get("posterior") else None),
+                masses={str(name): _length(mass) for name, mass in raw.get("masses", {}).items()},
                 teams={str(name): str(team) for name, team in raw.get("teams", {}).items()},
             )
         except OSError as error:
@@ -353,7 +356,7 @@ def _made(kind: type[_Made], item: Mapping[str, Any]) -> _Made:
 
 def _length(value: Any) -> float:
     if type(value) not in (int, float) or not 0 < value < math.inf:
-        raise TypeError("no length")
+        raise TypeError("no length nor mass")
     return float(value)
 
 

@@ -162,7 +162,10 @@ def _global(fit: GlobalFit | None, doubt: str | None) -> Method:
         rub = Told(*_pair(fit["stone_friction"]))
     elif "stone_friction" in fit.names:
         rub = Told(note="the shot tells no more of it than was known beforehand")
-    return Method(fit["restitution"], fit["friction"], rub, note=doubt)
+    known = {name: fit[name] for name in ("restitution", "friction") if fit.told(name)}
+    return Method(
+        known.get("restitution", Estimate()), known.get("friction", Estimate()), rub, note=doubt
+    )
 
 
 def _curl(fit: GlobalFit | None, doubt: str | None) -> Told:

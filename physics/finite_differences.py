@@ -80,10 +80,12 @@ def _restitution(
 
 
 def _velocity(trace: Trace, inside: NDArray[np.bool_]) -> tuple[Floats, float]:
-    """Mean of the finite differences, m/s, and the error that the noise of places gives it."""
+    """Mean of the finite differences, m/s, and the error that the noise of places gives it.
+
+    Each counts for the time it spans, as they do alike where frames follow each other evenly.
+    """
     t, xy, sd = trace.t[inside], trace.xy[inside], trace.sd[inside]
-    mean = np.mean(np.diff(xy, axis=0) / np.diff(t)[:, None], axis=0)
-    return mean, float(np.sqrt(2) * np.mean(sd) / (t[-1] - t[0]))
+    return (xy[-1] - xy[0]) / (t[-1] - t[0]), float(np.sqrt(2) * np.mean(sd) / (t[-1] - t[0]))
 
 
 def _friction(trace: Trace, start: float, end: float) -> Estimate:

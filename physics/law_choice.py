@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from data.results import Law
+from data.results import Estimate, Law
 from physics.global_fit import GlobalFit, fit_shots
 from physics.shot_model import Watched
 
@@ -62,7 +62,7 @@ def _with_others(best: GlobalFit, tried: Sequence[GlobalFit]) -> GlobalFit:
             _name(tried[k]),
             float(criteria[k] - criteria.min()),
             float(weights[k]),
-            tried[k]["friction"],
+            tried[k]["friction"] if tried[k].told("friction") else Estimate(),
         )
         for k in order
     )

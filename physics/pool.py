@@ -55,7 +55,8 @@ def pool(values: Sequence[float], stderrs: Sequence[float], prior_scatter: float
     values, stderrs : sequence of float, length n
         One per shot; standard errors above zero.
     prior_scatter : float
-        Scale of the half-normal prior of the scatter, in the unit of the values.
+        Scale of the half-normal prior of the scatter, in the unit of the values; that of the
+        values themselves where they lie wider.
 
     Returns
     -------
@@ -73,14 +74,16 @@ def pool(values: Sequence[float], stderrs: Sequence[float], prior_scatter: float
         raise ValueError("standard errors and the prior's scale are above zero")
     if not len(y):
         return Pooled(None, None, None, None, 0)
+    # Shots that differ by far more than the prior thought of are not to be argued away.
+    scale = max(prior_scatter, float(np.std(y, ddof=1))) if len(y) > 1 else prior_scatter
     # The integrand is smooth in the scatter, and none of it lies beyond a few prior scales.
-    tau = (np.arange(_GRID) + 0.5) * (_REACH * prior_scatter / _GRID)
+    tau = (np.arange(_GRID) + 0.5) * (_REACH * scale / _GRID)
     variance = s**2 + tau[:, None] ** 2
     weight = 1 / variance
     total = weight.sum(1)
     mean = (weight * y).sum(1) / total
     misfit = (weight * (y - mean[:, None]) ** 2).sum(1)
-    log = -0.5 * (np.log(variance).sum(1) + np.log(total) + misfit + (tau / prior_scatter) ** 2)
+    log = -0.5 * (np.log(variance).sum(1) + np.log(total) + misfit + (tau / scale) ** 2)
     share = np.exp(log - log.max())
     share /= share.sum()
     value = float(share @ mean)

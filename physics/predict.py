@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from data.errors import InputError
-from data.results import Collision, Estimate, SimulationScore
+from data.results import Collision, Estimate, Friction, SimulationScore
 from data.sheet import STONE
 from physics.curl import Curl, NoCurl
 from physics.estimate import Estimates
@@ -19,6 +19,7 @@ from physics.shot_model import curl as fitted_curl
 from physics.shot_model import ice as fitted_ice
 from physics.simulate import Shot, StoneStart, simulate
 from physics.spread import STATE, Doubt, draws, path_spread, simulated_hits
+from physics.watched import LITERATURE
 
 STONE_FRICTION = 0.05
 """Friction between two stones where the shot does not tell it: granite on granite, wet."""
@@ -183,11 +184,15 @@ def _doubt(tracks: pd.DataFrame, start: float, estimates: Estimates) -> Doubt:
         states[str(name)] = np.where([False, False, still, still, still], 0.0, errors)
         own = [hit.after[str(name)] for hit in estimates.collisions if name in hit.stones]
         spins[str(name)] = tuple(state.sd_omega or 0.0 for state in own)
-    mu = estimates.friction
+    e, mu = estimates.restitution, estimates.friction
+    if e.value is None:
+        e = LITERATURE.restitution
+    if mu.value is None:
+        mu = Friction(LITERATURE.friction.value, LITERATURE.friction.stderr)
     return Doubt(
         states,
         spins,
-        restitution=estimates.restitution.stderr or 0.0,
+        restitution=e.stderr or 0.0,
         stone_friction=between_stones(estimates).stderr or 0.0,
         friction=abs((mu.stderr or 0.0) / mu.value) if mu.value else 0.0,
     )

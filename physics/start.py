@@ -20,6 +20,7 @@ from physics.impact import Frictional
 from physics.motion import Motion, Path
 from physics.predict import FRICTION, RESTITUTION, STONE_FRICTION
 from physics.simulate import Shot, StoneStart
+from physics.watched import LITERATURE
 
 Array = NDArray[np.float64]
 
@@ -91,7 +92,11 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     rows = [_row(group, time, ice) for _, group in tracks.groupby("stone", sort=True)]
     table = pd.DataFrame(rows).reset_index(drop=True)
     stones = tuple(
-        StoneStart(str(row["stone"]), **{key: float(row[key]) for key in STATE})
+        StoneStart(
+            str(row["stone"]),
+            **{key: float(row[key]) for key in STATE},
+            mass=results.masses.get(str(row["stone"]), STONE.mass),
+        )
         for row in table.to_dict("records")
     )
     if not stones or max(math.hypot(stone.vx, stone.vy) for stone in stones) == 0:
@@ -119,7 +124,8 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     bounds = Bounds(1 if stone.vy > 0 else -1) if curling else None
     curl = FCV1Curl(turn=results.curl.value or 0.0) if curling else NoCurl()
     shot = Shot(tuple(moved), impact, ice, curl, results.radius, bounds)
-    return Start(shot, thrown, sd, e.stderr or 0.0, sd_friction, release, tuple(assumed))
+    sd_e = (LITERATURE.restitution if e.value is None else e).stderr or 0.0
+    return Start(shot, thrown, sd, sd_e, sd_friction, release, tuple(assumed))
 
 
 def speed_before(speed: Array, way: float, ice: IceLaw) -> Array:
@@ -194,7 +200,8 @@ def _ice(results: Results) -> tuple[IceLaw, float, list[str]]:
     """Return the ice, the relative error of its friction, and what is assumed."""
     friction = results.friction
     if friction.value is None or friction.value <= 0:
-        return Constant(FRICTION), 0.0, [f"friction not measured, {FRICTION} assumed"]
+        doubt = (LITERATURE.friction.stderr or 0.0) / FRICTION
+        return Constant(FRICTION), doubt, [f"friction not measured, {FRICTION} assumed"]
     sd = (friction.stderr or 0.0) / friction.value
     a, v_c, b = friction.a, friction.v_c, friction.b
     if friction.law == "fit" and a is not None and v_c is not None and b is not None:

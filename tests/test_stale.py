@@ -69,3 +69,25 @@ def test_tracks_stay_alone(folder):
 def test_a_failure_leaves_the_earlier_run(folder, tmp_path):
     assert pipeline.main(["estimate", str(tmp_path / "none.csv"), "-o", str(folder), "-q"]) == 2
     assert left(folder) == {*pipeline.WRITTEN, "notes.txt"}
+
+
+def test_a_run_does_not_write_over_its_own_input(folder, capsys):
+    tracks = folder / "tracks.csv"
+    before = tracks.read_bytes()
+    assert pipeline.main(["run", str(tracks), "-o", str(folder), "-q"]) == 2
+    assert "would be written over" in capsys.readouterr().err
+    assert tracks.read_bytes() == before
+
+
+def test_a_broken_simulation_beside_tracks_is_one_line(folder, tmp_path, capsys):
+    glide(folder / "tracks.csv")
+    for text in ("", "a,b\n1,2\n", "model,stone,t,x,y\nm,A,no,1,2\n"):
+        (folder / "simulation.csv").write_text(text, encoding="utf-8")
+        assert pipeline.main(["convert", str(folder / "tracks.csv"), str(tmp_path / "x.trk")]) == 2
+        assert "not a simulation.csv" in capsys.readouterr().err
+
+
+def test_a_mass_given_twice_is_refused(folder, tmp_path, capsys):
+    words = ["estimate", str(glide(tmp_path / "t.csv")), "-o", str(tmp_path / "o"), "-q"]
+    assert pipeline.main([*words, "--mass", "A=1", "--mass", "A=2"]) == 2
+    assert "given twice" in capsys.readouterr().err

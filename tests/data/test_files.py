@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from data.files import whole_file, write_text
+from data.files import staged, whole_file, write_text
 
 
 def names(folder: Path) -> list[str]:
@@ -58,3 +58,25 @@ def test_others_may_read_the_file(tmp_path: Path) -> None:
     finally:
         os.umask(old)
     assert stat.S_IMODE((tmp_path / "a.txt").stat().st_mode) == 0o644
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root may write all")
+def test_results_go_into_a_folder_whose_parent_is_not_ours(tmp_path: Path) -> None:
+    folder = tmp_path / "own"
+    folder.mkdir()
+    tmp_path.chmod(0o555)
+    try:
+        with staged(folder) as stage:
+            (stage / "a.txt").write_text("a", encoding="utf-8")
+    finally:
+        tmp_path.chmod(0o755)
+    assert [path.name for path in folder.iterdir()] == ["a.txt"]
+
+
+def test_results_are_gathered_within_a_folder_that_is_there(tmp_path: Path) -> None:
+    folder = tmp_path / "disc"
+    folder.mkdir()
+    with staged(folder) as stage:
+        assert stage.parent == folder  # which may be a disc of its own
+        (stage / "a.txt").write_text("a", encoding="utf-8")
+    assert [path.name for path in folder.iterdir()] == ["a.txt"]

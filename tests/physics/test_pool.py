@@ -74,3 +74,9 @@ def test_refuses_what_is_no_measurement(
 ) -> None:
     with pytest.raises(ValueError):
         pool(values, stderrs, scale)
+
+
+def test_shots_that_lie_wide_are_not_argued_together() -> None:
+    pooled = pool([0.10, 0.20, 0.15], [0.001] * 3, 0.0025)
+    assert pooled.stderr is not None and pooled.stderr > 0.025
+    assert pooled.scatter is not None and pooled.scatter > 0.03

@@ -212,3 +212,19 @@ def test_a_measured_shot_is_played_on_a_sheet() -> None:
 def test_throws_that_nobody_can_make(changes: Changes, message: str) -> None:
     with pytest.raises(InputError, match=message):
         changed(measured_start(*measured()), changes)
+
+
+def test_stones_keep_their_masses_when_they_are_thrown_again() -> None:
+    tracks, results = measured()
+    heavy = measured_start(tracks, replace(results, masses={"A": 2.0, "B": 1.0, "C": 1.0})).shot
+    assert [stone.mass for stone in heavy.stones] == [2.0, 1.0, 1.0]
+    (hit,) = simulate(heavy).hits
+    total = sum(mass * hit.after[name].vy for name, mass in (("A", 2.0), ("B", 1.0)))
+    assert total == pytest.approx(2.0 * hit.before["A"].vy, rel=1e-9)
+
+
+def test_what_is_assumed_is_not_known_exactly() -> None:
+    tracks, results = measured()
+    start = measured_start(tracks, replace(results, restitution=Estimate(), friction=Friction()))
+    assert start.sd_restitution == pytest.approx(0.06)
+    assert start.sd_friction == pytest.approx(0.003 / 0.0109)

@@ -100,3 +100,10 @@ def test_one_bad_clip_does_not_stop_the_others(
     assert main(["run", clips[1], clips[1], "-o", str(tmp_path / "none"), "-q"]) == 2
     assert "none of 2 clips" in capsys.readouterr().err
     assert not (tmp_path / "none").exists()
+
+
+def test_dots_in_names_of_folders_stay(tmp_path: Path) -> None:
+    for name in ("2026.01.05", "2026.01.06"):
+        (tmp_path / name).mkdir()
+        SHOT.write(tmp_path / name / "results.json")
+    assert list(find_runs([tmp_path])) == ["2026.01.05", "2026.01.06"]
