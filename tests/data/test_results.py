@@ -92,7 +92,7 @@ def test_the_form_of_the_file() -> None:
     assert set(raw) == {
         *("schema", "input", "restitution", "friction", "collisions", "glides"),
         *("simulations", "warnings", "radius", "predictions", "laws", "methods", "law_choice"),
-        *("curl", "stones", "posterior", "teams"),
+        *("curl", "stones", "posterior", "masses", "teams"),
     }
     assert raw["input"] == {
         "files": ["clip Ä.mp4"],
