@@ -226,7 +226,20 @@ def measure(
         measured = _import_tables(files, settings)
         refuse_no_discs(measured.sightings, settings.radius, ", ".join(map(str, files)))
         return measured
+    if not any(tables):
+        _refuse_table_options(files[0], settings)
     return _look_at_clip(files, settings, progress)
+
+
+def _refuse_table_options(path: Path, settings: Settings) -> None:
+    """Refuse to pass over what a person says about tables where a clip is measured."""
+    said = {"--names": settings.names, "--angles": settings.angles, "--tab": settings.tab}
+    said["--angle-unit"] = settings.angle_unit
+    given = [name for name, value in said.items() if value]
+    if settings.length_unit != "m":
+        given.append("--length-unit")
+    if given:
+        raise InputError(f"{path}: only tables take {', '.join(given)}; a clip is measured here")
 
 
 def _refuse_clip_options(path: Path, settings: Settings) -> None:

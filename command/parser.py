@@ -204,7 +204,7 @@ def _bare_command(commands: Any, name: str, summary: str, examples: str) -> argp
     parser: argparse.ArgumentParser = commands.add_parser(
         name,
         help=summary,
-        description=summary[0].upper() + summary[1:] + ".",
+        description=(summary[0].upper() + summary[1:] + ".").replace("?.", "?"),
         epilog=f"examples:\n{examples}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )

@@ -61,10 +61,10 @@ def amount(text: str) -> Amount:
 
 def speed(text: str) -> Amount:
     """Read a speed, m/s, or a factor such as ``1.1x``."""
-    read = amount(text)
-    if not 0 < read.value <= 10:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a speed in m/s, nor a factor as 1.1x")
-    return read
+    from physics.what_if import Amount
+
+    what = "a speed in m/s, 0 to 10, nor a factor as 1.1x"
+    return Amount(number(text.removesuffix("x"), 1e-6, 10.0, what), text.endswith("x"))
 
 
 def samples(text: str) -> int:

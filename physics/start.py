@@ -79,8 +79,8 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     -------
     Start
         The thrown stone, the fastest, is taken back by `BACK` on its way, or less where
-        another stone lies in it. If it is a curling stone, it is let go at the hog line, and
-        stones that leave the sheet are taken away.
+        another stone lies in it or moves too. If it is a curling stone, it is let go at the
+        hog line, and stones that leave the sheet are taken away.
 
     Raises
     ------
@@ -116,7 +116,9 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     stone = stones[thrown]
     speed = math.hypot(stone.vx, stone.vy)
     ahead = (stone.x * stone.vx + stone.y * stone.vy) / speed
-    way = _room(stones, thrown, results.radius) if results.collisions else 0.0
+    # With another one under way too, the measured moment is where both are known.
+    alone = sum(math.hypot(other.vx, other.vy) > 0 for other in stones) == 1
+    way = _room(stones, thrown, results.radius) if results.collisions and alone else 0.0
     moved = list(stones)
     moved[thrown] = _taken_back(stone, way, ice)
     curling = abs(results.radius / STONE.radius - 1) < 0.1

@@ -91,3 +91,10 @@ def test_a_mass_given_twice_is_refused(folder, tmp_path, capsys):
     words = ["estimate", str(glide(tmp_path / "t.csv")), "-o", str(tmp_path / "o"), "-q"]
     assert pipeline.main([*words, "--mass", "A=1", "--mass", "A=2"]) == 2
     assert "given twice" in capsys.readouterr().err
+
+
+def test_options_of_tables_are_refused_on_clips(tmp_path, capsys):
+    for words in (["--names", "A=x"], ["--length-unit", "cm"], ["--tab", "x"]):
+        command = ["run", str(pipeline.sample_clip()), "-o", str(tmp_path / "o"), "-q", *words]
+        assert pipeline.main(command) == 2
+        assert f"only tables take {words[0]}" in capsys.readouterr().err

@@ -68,6 +68,10 @@ ON_COURSE = 0.15
 SETTLED = 0.03
 """Measured from within this many radii of its centre, a stone's place depends no more on where."""
 
+CAP_OFF = 0.015
+"""How far, in radii, the middle of the edges of cap and granite may be off the stone's: real ones
+are lit from a side, bevelled and not mounted true. For rendered ones this is too cautious."""
+
 NEARBY = 0.35
 """How far from where it is expected a stone is measured, in radii."""
 
@@ -301,9 +305,9 @@ def placed_by(camera: Camera, seen: Sequence[Sighting], disc: Stone) -> list[Sig
 def _shared_errors(camera: Camera, places: Array, disc: Stone, scale: Array, tilt: Array) -> Array:
     """Give the standard errors that no filter averages out, m: camera, cap's edge and height."""
     rms = camera.rms_px if np.isfinite(camera.rms_px) else 0.3
-    edge = 0.0 if is_plain(disc) else 0.005 * disc.radius
+    edge = 0.0 if is_plain(disc) else CAP_OFF * disc.radius
     aslant = 0.04 * disc.cap_height * tilt
-    squares = (0.25 * rms / scale) ** 2 + edge**2 + aslant**2
+    squares = (0.35 * rms / scale) ** 2 + edge**2 + aslant**2
     if camera.error is None:
         return np.asarray(np.sqrt(squares))
     return np.asarray(np.sqrt(squares + camera.place_sd(places) ** 2))

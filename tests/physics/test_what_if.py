@@ -228,3 +228,16 @@ def test_what_is_assumed_is_not_known_exactly() -> None:
     start = measured_start(tracks, replace(results, restitution=Estimate(), friction=Friction()))
     assert start.sd_restitution == pytest.approx(0.06)
     assert start.sd_friction == pytest.approx(0.003 / 0.0109)
+
+
+def test_a_hit_of_two_moving_stones_is_met_again() -> None:
+    shot = replace(
+        HIT, stones=(StoneStart("A", -0.2, 3.0, 0.0, -1.8), StoneStart("B", -1.5, 1.05, 1.2, 0.1))
+    )
+    (hit,) = simulate(shot).hits
+    start = measured_start(*measured(shot))
+    (again,) = simulate(start.shot).hits
+    assert again.stones == hit.stones
+    for name, state in hit.after.items():
+        assert again.after[name].vx == pytest.approx(state.vx, abs=0.02)
+        assert again.after[name].vy == pytest.approx(state.vy, abs=0.02)
