@@ -279,10 +279,13 @@ def _import_tables(files: tuple[Path, ...], settings: Settings) -> Measured:
 
 
 def _look_at_clip(files: tuple[Path, ...], settings: Settings, progress: Progress) -> Measured:
+    from vision.stones import FOLLOWING, SEARCH
     from vision.track import tracks_of
     from vision.watch import Watch
 
-    watch = Watch(_disc(settings))
+    alone = len(files) == 1 and files[0].suffix.lower() in IMAGE_SUFFIXES
+    # A picture by itself has one chance.
+    watch = Watch(_disc(settings), SEARCH if alone else FOLLOWING)
 
     def look(frame: Frame, camera: Camera) -> None:
         if not watch.begun:
