@@ -218,7 +218,8 @@ def test_the_clip_or_the_marks(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert pipeline.main(["estimate", trz, *common]) == 0
     assert pipeline.main(["run", trz, "--clip", "--camera", trz, "--no-overlay", *common]) == 0
     assert (out / "report.html").exists()
-    assert pipeline.main(["run", str(out / "tracks.csv"), "--clip", *common]) == 2
+    other = ["-o", str(tmp_path / "other"), "-q"]
+    assert pipeline.main(["run", str(out / "tracks.csv"), "--clip", *other]) == 2
     assert "not a clip" in capsys.readouterr().err
     assert pipeline.main(["run", trz, "--camera", trz, *common]) == 2
     assert "only clips take --camera" in capsys.readouterr().err
