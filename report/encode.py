@@ -30,7 +30,7 @@ class Encoder:
             "libx264",
             rate=Fraction(fps or DEFAULT_IMAGE_FPS).limit_denominator(1001),
             options={
-                "preset": "superfast",
+                "preset": "ultrafast",
                 "crf": "24",
                 # A whole picture every half second: stepping back has little to decode again.
                 "g": str(max(round((fps or DEFAULT_IMAGE_FPS) / 2), 1)),
