@@ -231,6 +231,13 @@ def measure(
     return _look_at_clip(files, settings, progress)
 
 
+def _refuse_clips(files: Sequence[Path], command: str) -> None:
+    """Refuse what is no table of tracks, and say which command takes it."""
+    odd = [path for path in files if path.suffix.lower() not in TABLES]
+    if odd:
+        raise InputError(f"{odd[0]}: not a table of tracks; try curlshot {command}")
+
+
 def _refuse_table_options(path: Path, settings: Settings) -> None:
     """Refuse to pass over what a person says about tables where a clip is measured."""
     said = {"--names": settings.names, "--angles": settings.angles, "--tab": settings.tab}
@@ -804,9 +811,7 @@ def convert(
     path = Path(out)
     files = find_inputs(inputs)
     check_target(path, files)
-    odd = [file for file in files if file.suffix.lower() not in TABLES]
-    if odd:
-        raise InputError(f"{odd[0]}: not a table of tracks; try curlshot track")
+    _refuse_clips(files, "track")
     ending = path.suffix.lower()
     if over is not None and ending not in PROJECTS:
         raise InputError(f"{path}: only a .trk or .trz shows tracks over a clip (--over)")
@@ -1074,9 +1079,7 @@ def _do_estimate(arguments: argparse.Namespace, bars: Bars) -> str:
 
     settings, folder = _settings(arguments), _out(arguments, arguments.inputs[0])
     check_folder(folder)
-    odd = [path for path in find_inputs(arguments.inputs) if path.suffix.lower() not in TABLES]
-    if odd:
-        raise InputError(f"{odd[0]}: not a table of tracks; try curlshot run")
+    _refuse_clips(find_inputs(arguments.inputs), "run")
     measured = measure(arguments.inputs, settings, bars)
     done = analyse(measured, settings)
     with staged(folder, replaces=_stale(folder, measured.files)) as stage:

@@ -15,17 +15,12 @@ from physics.curl import Curl, NoCurl
 from physics.estimate import Estimates
 from physics.ice import Constant, IceLaw
 from physics.impact import Frictional, Impact, PointMass, RigidBody
+from physics.shot_model import STATE
 from physics.shot_model import curl as fitted_curl
 from physics.shot_model import ice as fitted_ice
 from physics.simulate import Shot, StoneStart, simulate
-from physics.spread import STATE, Doubt, draws, path_spread, simulated_hits
-from physics.watched import LITERATURE
-
-STONE_FRICTION = 0.05
-"""Friction between two stones where the shot does not tell it: granite on granite, wet."""
-
-RESTITUTION, FRICTION = 0.83, 0.0109
-"""What is assumed where the shot tells nothing; values of the 2018 Olympic final's study."""
+from physics.spread import Doubt, draws, path_spread, simulated_hits
+from physics.watched import FRICTION, LITERATURE, RESTITUTION, STONE_FRICTION
 
 MOVED = 0.05
 """Distance by which a stone must move to count in the score, m."""

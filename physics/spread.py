@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from data.errors import InputError
 from data.results import MeasuredState, SimulatedHit, StoneState
 from physics.ice import Constant, Fit, IceLaw
+from physics.shot_model import STATE
 from physics.simulate import Hit, Shot, Simulation, StoneStart, simulate
 
 Floats = NDArray[np.float64]
@@ -23,8 +24,6 @@ DRAWS = 32
 
 MOMENTS = 40
 """Times at which the spread of the paths is taken; between them it is interpolated."""
-
-STATE = ("x", "y", "vx", "vy", "omega")
 
 
 @dataclass(frozen=True)

@@ -18,13 +18,12 @@ from physics.curve import Curve, curve_for
 from physics.ice import Constant, Fit, IceLaw
 from physics.impact import Frictional
 from physics.motion import Motion, Path
-from physics.predict import FRICTION, RESTITUTION, STONE_FRICTION
+from physics.shot_model import STATE
 from physics.simulate import Shot, StoneStart
-from physics.watched import LITERATURE
+from physics.watched import FRICTION, LITERATURE, RESTITUTION, STONE_FRICTION
 
 Array = NDArray[np.float64]
 
-STATE = ("x", "y", "vx", "vy", "omega")
 BACK = 1.0
 """How far the thrown stone is taken back from its first hit, m, to have room for changes."""
 HOG_TO_TEE = SHEET.far_tee - SHEET.hog_line

@@ -59,8 +59,14 @@ class Priors:
     size: Estimate
 
 
+RESTITUTION, STONE_FRICTION, FRICTION = 0.83, 0.05, 0.0109
+"""What is assumed where a shot tells nothing."""
+
 LITERATURE = Priors(
-    Estimate(0.83, 0.06), Estimate(0.05, 0.05), Estimate(0.0109, 0.003), Estimate(1.0, 0.01)
+    Estimate(RESTITUTION, 0.06),
+    Estimate(STONE_FRICTION, 0.05),
+    Estimate(FRICTION, 0.003),
+    Estimate(1.0, 0.01),
 )
 """Priors of a shot of which nothing is known yet; sources at `Priors`."""
 

@@ -23,14 +23,11 @@ from tests.synthetic import (
     tilted_camera,
 )
 from tests.synthetic.travelling import Travelling
+from tests.vision.places import RINGS
 from vision.camera import Camera, apply_homography
 from vision.clip import open_clip
 from vision.follow_house import HouseFollower, HouseTrack, follow_house
 
-ANGLE = np.arange(16) * np.pi / 8
-RINGS = np.concatenate(
-    [r * np.stack([np.cos(ANGLE), np.sin(ANGLE)], axis=-1) for r in (1.829, 1.219, 0.61)]
-)
 SCENE = replace(sample_scene(), paint=PAINTS["navy-orange"])
 
 

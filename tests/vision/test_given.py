@@ -18,14 +18,11 @@ from tests.synthetic import (
     still_camera,
     tilted_camera,
 )
+from tests.vision.places import RINGS
 from vision.camera import Camera
 from vision.clip import Clip, open_clip
 from vision.given import GivenHouse, fit_given, follow_given, hypotheses
 
-ANGLE = np.arange(16) * np.pi / 8
-RINGS = np.concatenate(
-    [r * np.stack([np.cos(ANGLE), np.sin(ANGLE)], axis=-1) for r in (1.829, 1.219, 0.61)]
-)
 SCENE = replace(sample_scene(), paint=PAINTS["navy-orange"])
 SMALL = (640, 360)
 
