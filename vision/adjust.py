@@ -14,7 +14,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from vision.linear import Frame, Linear, by_rig, linearised
-from vision.pose import RIG_SIZE, VIEW_SIZE, Marks, Prior, View, joined
+from vision.paint import Marks, joined
+from vision.pose import VIEW_SIZE, View
+from vision.rig import RIG_SIZE, Prior
 
 Array = NDArray[np.float64]
 
@@ -44,7 +46,7 @@ class Solution:
     Attributes
     ----------
     rig : ndarray, shape (14,)
-        Shared part, in the order of `vision.pose.Prior`.
+        Shared part, in the order of `vision.rig.Prior`.
     views : tuple of View
         One per frame.
     rig_cov : ndarray, shape (14, 14)

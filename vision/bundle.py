@@ -22,17 +22,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from vision.adjust import VIEW_SD, WIDTH, inverse
 from vision.linear import Frame, Linear, by_measure, by_rig, linearised
-from vision.pose import (
-    CIRCLES,
-    FIXED,
-    POSITION,
-    RIG_SIZE,
-    VIEW_SIZE,
-    Marks,
-    Prior,
-    View,
-    joined,
-)
+from vision.paint import CIRCLES, FIXED, Marks, joined
+from vision.pose import VIEW_SIZE, View
+from vision.rig import POSITION, RIG_SIZE, Prior
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

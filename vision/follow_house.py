@@ -26,10 +26,12 @@ from vision.landmarks import Keyframe, keyframe, recognise
 from vision.marks import Evidence, measure_along
 from vision.normals import Normals, lay_out
 from vision.outline import Rim
+from vision.paint import CIRCLES, joined
 from vision.picture import Picture, image_of
 from vision.placed import Placed, nobody
-from vision.pose import ANYWHERE, CIRCLES, OVERHEAD, R4, R8, Prior, View, camera, joined
+from vision.pose import View, camera
 from vision.replay import EVERY, Glimpse, glimpse, is_nearer, is_replay
+from vision.rig import ANYWHERE, OVERHEAD, R4, R8, Prior
 
 Array = NDArray[np.float64]
 

@@ -24,8 +24,9 @@ from vision.flow import similarity
 from vision.follow_house import follow_house
 from vision.house import HouseFit, fit_house, start
 from vision.joint import HouseTrack, Seen, fit_clip
+from vision.paint import TWELVE, Marks, fixed, joined
 from vision.placed import Placed, nobody
-from vision.pose import TWELVE, Marks, View, camera, fixed, joined, turned
+from vision.pose import View, camera, turned
 from vision.rings import SQUASHES, Guess
 
 Array = NDArray[np.float64]

@@ -20,19 +20,10 @@ from vision.camera import Camera
 from vision.lines import sides, upright
 from vision.marks import Evidence, measure
 from vision.outline import Rim, find_rim
+from vision.paint import TWELVE
 from vision.picture import Image
-from vision.pose import (
-    ANYWHERE,
-    DOWN,
-    OVERHEAD,
-    TWELVE,
-    Prior,
-    View,
-    aim,
-    camera,
-    rescaled,
-    start_rig,
-)
+from vision.pose import DOWN, View, aim, camera, rescaled
+from vision.rig import ANYWHERE, OVERHEAD, Prior, start_rig
 from vision.rings import Guess, guesses
 
 Array = NDArray[np.float64]
@@ -76,7 +67,7 @@ class HouseFit:
     ----------
     camera : Camera
     view, rig : View, ndarray
-        The camera's parts (see `vision.pose`).
+        The camera's parts (see `vision.rig` and `vision.pose`).
     evidence : Evidence
         The marks it rests on.
     rms_px : float

@@ -21,28 +21,9 @@ from vision.bundle import ARC, LOST, NOISE_TRUST, Bundle, bundle, family, piece_
 from vision.camera import PARAMETERS, Camera, CameraError
 from vision.landmarks import Keyframe, replaced
 from vision.linear import Frame, by_measure, by_rig, linearised
-from vision.pose import (
-    CIRCLES,
-    FIXED,
-    K1,
-    K1_ZOOM,
-    K2,
-    POSITION,
-    R4,
-    R8,
-    RIG_SIZE,
-    VIEW_SIZE,
-    Marks,
-    Prior,
-    View,
-    camera,
-    ice_frame,
-    joined,
-    measures,
-    project,
-    turning,
-    zoom,
-)
+from vision.paint import CIRCLES, FIXED, Marks, ice_frame, joined, measures
+from vision.pose import VIEW_SIZE, View, camera, project, turning
+from vision.rig import K1, K1_ZOOM, K2, POSITION, R4, R8, RIG_SIZE, Prior, zoom
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vision.camera import Camera
+from vision.paint import FIXED, Marks, fixed
 from vision.picture import Image, Picture, Planes
-from vision.pose import FIXED, Marks, View, camera, fixed, project
+from vision.pose import View, camera, project
 
 Array = NDArray[np.float64]
 
@@ -86,7 +87,7 @@ def keyframe(
     view, cov : View, ndarray of shape (4, 4)
         Its view and that view's covariance.
     rig : ndarray
-        As in `vision.pose`.
+        As in `vision.rig`.
     drift : float
         Standard deviation of the places that the view itself rests on, m.
     """

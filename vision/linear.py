@@ -9,21 +9,9 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.pose import (
-    K1,
-    K1_ZOOM,
-    K2,
-    MEASURED,
-    POSITION,
-    RIG_SIZE,
-    VIEW_SIZE,
-    Marks,
-    ice_frame,
-    measures,
-    rotation_matrix,
-    turning,
-    zoom,
-)
+from vision.paint import MEASURED, Marks, ice_frame, measures
+from vision.pose import VIEW_SIZE, rotation_matrix, turning
+from vision.rig import K1, K1_ZOOM, K2, POSITION, RIG_SIZE, zoom
 
 Array = NDArray[np.float64]
 Value = TypeVar("Value", np.float64, np.bool_)

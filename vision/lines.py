@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import HOUSE, SHEET
-from vision.pose import SIDE_L, SIDE_R, View, project, turned
+from vision.pose import View, project, turned
+from vision.rig import SIDE_L, SIDE_R
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vision.normals import SAMPLES, THIN, Normals, Profiles, lay_out, profiles
+from vision.paint import CIRCLES, FIXED, TWELVE, Marks
 from vision.picture import Picture
-from vision.pose import CIRCLES, FIXED, TWELVE, Marks
 from vision.runs import Runs, smooth
 from vision.stripes import find_stripes
 
@@ -106,7 +106,7 @@ def measure(
     ----------
     picture : Picture
     view, rig : ndarray
-        Camera as in `vision.pose`.
+        Camera as in `vision.pose` and `vision.rig`.
     reach : float
         Half length of the normals, px.
     spacing, most : float, int

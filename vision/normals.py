@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import SHEET
-from vision.picture import Picture, colours_at
-from vision.pose import (
+from vision.paint import (
     BACK_LINE,
     CENTRE_LINE,
     CIRCLES,
@@ -19,8 +18,9 @@ from vision.pose import (
     TEE_LINE,
     ice_frame,
     measures,
-    project,
 )
+from vision.picture import Picture, colours_at
+from vision.pose import project
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -118,7 +118,7 @@ class Normals:
     kinds : dict of int to slice
         Which of the places lie on each kind of line.
     along : ndarray, shape (n,)
-        Where along its line, as in `vision.pose.Marks`.
+        Where along its line, as in `vision.paint.Marks`.
     point, normal : ndarray, shape (n, 2)
         Place in the picture and the unit normal there, px.
     reach : ndarray, shape (n,)

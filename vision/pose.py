@@ -1,142 +1,28 @@
 """A camera with a place: rotation and focal length per frame, the rest shared by a clip.
 
-The shared part (the rig) is an array: place of the camera, distortion, painted radii, sides of
-the sheet. With a frame's `View` it says where every point of the ice appears in the picture.
+With the shared part (`vision.rig`) a frame's `View` says where every point of the ice appears in
+the picture.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TypeVar
 
 import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
-from data.sheet import HOUSE, SHEET
 from vision.camera import Camera, CameraError
+from vision.rig import POSITION, distortion
 
 Array = NDArray[np.float64]
-Log = TypeVar("Log", float, Array)
-
-CIRCLES = 3
-TWELVE, EIGHT, FOUR, CENTRE_LINE, TEE_LINE, LEFT, RIGHT, BACK_LINE, HOG_LINE, FIXED = range(10)
-"""What a mark lies on: the three circles, the two lines through the tee, the sheet's sides, the
-lines across it behind and before the house; or a point of the ice whose place is known."""
 
 DOWN = np.diag([1.0, -1.0, -1.0])
 """Rotation of a camera that looks straight down with y up in the picture."""
 
-POSITION, K1, K1_ZOOM, K2, R8, R4, SIDE_L, SIDE_R = slice(0, 3), 3, 4, 5, 6, 7, 8, 9
-CENTRE_X, TEE_Y, BACK_Y, HOG_Y = 10, 11, 12, 13
-RIG_SIZE = 14
 VIEW_SIZE = 4
-
-
-@dataclass(frozen=True)
-class Marks:
-    """Edge points measured in one frame.
-
-    Attributes
-    ----------
-    line : ndarray of int, shape (n,)
-        What each point lies on (`TWELVE` … `FIXED`).
-    along : ndarray, shape (n,)
-        Angle on a circle, rad; the coordinate along a line, m; x of a fixed point, m.
-    pixel, normal : ndarray, shape (n, 2)
-        Measured place and the unit normal along which it was measured, px.
-    sd : ndarray, shape (n,)
-        Standard deviation along the normal, px.
-    across : ndarray, shape (n,), optional
-        y of a fixed point, m; without meaning for the other kinds. None where there are no fixed
-        points.
-    """
-
-    line: NDArray[np.int64]
-    along: Array
-    pixel: Array
-    normal: Array
-    sd: Array
-    across: Array | None = None
-
-    def __len__(self) -> int:
-        return len(self.line)
-
-    def pick(self, which: NDArray[np.bool_] | NDArray[np.int64]) -> Marks:
-        """Pick the marks for which `which` is True, or those of these indices."""
-        return Marks(
-            self.line[which],
-            self.along[which],
-            self.pixel[which],
-            self.normal[which],
-            self.sd[which],
-            None if self.across is None else self.across[which],
-        )
-
-
-def joined(parts: Sequence[Marks]) -> Marks:
-    """Join marks of several kinds into one."""
-    if not parts:
-        none = np.zeros((0, 2))
-        return Marks(np.zeros(0, np.int64), np.zeros(0), none, none.copy(), np.zeros(0))
-    return Marks(
-        np.concatenate([p.line for p in parts]),
-        np.concatenate([p.along for p in parts]),
-        np.concatenate([p.pixel for p in parts]),
-        np.concatenate([p.normal for p in parts]),
-        np.concatenate([p.sd for p in parts]),
-        None
-        if all(p.across is None for p in parts)
-        else np.concatenate([np.zeros(len(p)) if p.across is None else p.across for p in parts]),
-    )
-
-
-def fixed(ice: Array, pixel: Array, sd: ArrayLike) -> Marks:
-    """Points of the ice at known places, shape (n, 2), m, seen at pixels: two marks for each."""
-    count = len(ice)
-    return Marks(
-        np.full(2 * count, FIXED),
-        np.tile(ice[:, 0], 2),
-        np.tile(pixel, (2, 1)),
-        np.repeat(np.eye(2), count, axis=0),
-        np.tile(np.broadcast_to(np.asarray(sd, float), count), 2),
-        np.tile(ice[:, 1], 2),
-    )
-
-
-@dataclass(frozen=True)
-class Prior:
-    """Gaussian prior of the rig: mean and standard deviation, shape (14,) each.
-
-    Order: position x, y, z (m); k1, its change per unit of log focal length, k2; radii of the
-    8-ft and 4-ft edges (m); x of the left and the right side of the sheet, x of the centre line,
-    y of the tee line, of the back line and of the hog line (m).
-    """
-
-    mean: Array
-    sd: Array
-
-
-_LENS = ((-0.015, 0.05), (0.0, 0.05), (0.01, 0.02))  # k1, k1 by zoom, k2: broadcast lenses
-_RADII = ((1.2135, 0.005), (0.619, 0.006))  # measured on fourteen painted houses
-_SIDES = ((-2.35, 0.1), (2.35, 0.1))
-_CROSS = ((0.0, 0.008), (0.0, 0.008))  # a line may be two stripes, of which one is measured
-_ACROSS = ((-SHEET.back_line, 0.015), (SHEET.hog_line, 0.06))  # of a wide line one edge may be
-
-
-def _prior(*position: tuple[float, float]) -> Prior:
-    rows = np.array([*position, *_LENS, *_RADII, *_SIDES, *_CROSS, *_ACROSS])
-    return Prior(rows[:, 0].copy(), rows[:, 1].copy())
-
-
-OVERHEAD = _prior((0.0, 0.35), (0.0, 0.35), (8.5, 1.5))
-"""Broadcast cameras hang 6 to 11 m above the ice, within 0.5 m of plumb over the tee."""
-
-ANYWHERE = _prior((0.0, 8.0), (0.0, 12.0), (7.0, 5.0))
-"""A camera of which nothing is known but that it is above the ice."""
 
 
 @dataclass(frozen=True)
@@ -198,55 +84,6 @@ def _series(square: float) -> tuple[float, float, float]:
         return 1 - square / 6, 0.5 - square / 24, 1 / 6 - square / 120
     t = math.sqrt(square)
     return math.sin(t) / t, (1 - math.cos(t)) / square, (t - math.sin(t)) / (square * t)
-
-
-def ice_points(
-    line: NDArray[np.int64], along: ArrayLike, rig: Array, across: Array | None = None
-) -> Array:
-    """Places of marks on the ice, shape (n, 2), m."""
-    place, way = ice_frame(line, np.asarray(along, float), across)
-    return np.asarray(place + way * measures(rig)[line][:, None])
-
-
-MEASURED = np.array([-1, R8, R4, CENTRE_X, TEE_Y, SIDE_L, SIDE_R, BACK_Y, HOG_Y, -1])
-"""Per kind of mark the unknown of the rig that is its measure; −1 where that is known."""
-
-
-def measures(rig: Array) -> Array:
-    """List the measure of each kind of mark: radius of a circle or place of a line, m."""
-    return np.array([HOUSE.twelve_foot, *rig[MEASURED[1:-1]], 0.0])
-
-
-_FACTORS = np.zeros((4, 10))
-_FACTORS[0, :CIRCLES] = 1.0  # circles
-_FACTORS[1, [CENTRE_LINE, LEFT, RIGHT]] = 1.0  # lines along the sheet
-_FACTORS[2, [TEE_LINE, BACK_LINE, HOG_LINE]] = 1.0  # lines across it
-_FACTORS[3, FIXED] = 1.0
-
-
-def ice_frame(
-    line: NDArray[np.int64], along: Array, across: Array | None = None
-) -> tuple[Array, Array]:
-    """Foot of each mark and the direction in which its line's measure moves it, (n, 2) each."""
-    circle, lengthwise, crosswise, known = _FACTORS[:, line]
-    place, way = np.empty((len(line), 2)), np.empty((len(line), 2))
-    way[:, 0] = circle * np.cos(along) + lengthwise
-    way[:, 1] = circle * np.sin(along) + crosswise
-    place[:, 0] = (crosswise + known) * along
-    place[:, 1] = lengthwise * along
-    if across is not None:
-        place[:, 1] += known * across
-    return place, way
-
-
-def distortion(rig: Array, log_f: float, size: tuple[int, int]) -> tuple[float, float]:
-    """Radial terms k1, k2 at a focal length; k1 goes with the zoom."""
-    return float(rig[K1] + rig[K1_ZOOM] * zoom(log_f, size)), float(rig[K2])
-
-
-def zoom(log_f: Log, size: tuple[int, int]) -> Log:
-    """Log focal length over twice the picture's width: 0 in the midst of what is usual."""
-    return log_f - math.log(2.0 * size[0])
 
 
 def project(ice: Array, view: Array, rig: Array, size: tuple[int, int]) -> Array:
@@ -341,11 +178,3 @@ def rescaled(view: View, factor: float) -> View:
     vector = view.vector.copy()
     vector[3] += np.log(factor)
     return replace(view, vector=vector)
-
-
-def start_rig(prior: Prior, position: ArrayLike | None = None) -> Array:
-    """Start at the prior's mean, at another position if given."""
-    rig = prior.mean.copy()
-    if position is not None:
-        rig[POSITION] = position
-    return rig

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import HOUSE
-from vision.pose import OVERHEAD, R4, R8
+from vision.rig import OVERHEAD, R4, R8
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]

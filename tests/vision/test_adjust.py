@@ -6,21 +6,9 @@ import numpy as np
 
 from vision.adjust import solve, solve_view, solve_views
 from vision.linear import Frame
-from vision.pose import (
-    CENTRE_LINE,
-    FIXED,
-    OVERHEAD,
-    POSITION,
-    R4,
-    R8,
-    Marks,
-    View,
-    fixed,
-    ice_points,
-    joined,
-    project,
-    start_rig,
-)
+from vision.paint import CENTRE_LINE, FIXED, Marks, fixed, ice_points, joined
+from vision.pose import View, project
+from vision.rig import OVERHEAD, POSITION, R4, R8, start_rig
 
 SIZE = (1280, 720)
 SD = 0.3

@@ -14,7 +14,9 @@ from vision.clip import open_clip
 from vision.follow_house import follow_house
 from vision.joint import Seen, fit_clip
 from vision.landmarks import Keyframe
-from vision.pose import FIXED, OVERHEAD, TEE_LINE, TWELVE, Marks, View, start_rig
+from vision.paint import FIXED, TEE_LINE, TWELVE, Marks
+from vision.pose import View
+from vision.rig import OVERHEAD, start_rig
 
 SIZE = (1280, 720)
 SAMPLE = pipeline.sample_clip()

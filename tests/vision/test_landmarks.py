@@ -8,7 +8,9 @@ from tests.synthetic import Graphic, broadcast_camera, render_still, sample_scen
 from tests.synthetic.camera import CameraPath
 from vision.adjust import solve_view
 from vision.landmarks import keyframe, recognise, replaced
-from vision.pose import OVERHEAD, View, camera, fixed, project, start_rig
+from vision.paint import fixed
+from vision.pose import View, camera, project
+from vision.rig import OVERHEAD, start_rig
 
 SIZE = (1280, 720)
 PATH = broadcast_camera(start=0.0, end=6.0, target=((0.0, 4.2), (0.3, 3.4)), shake=0.0)

@@ -4,7 +4,9 @@ import numpy as np
 
 from tests.vision.test_adjust import SIZE, marks, true_rig, views
 from vision.linear import Frame, by_measure, by_rig, linearised
-from vision.pose import MEASURED, RIG_SIZE, VIEW_SIZE, joined
+from vision.paint import MEASURED, joined
+from vision.pose import VIEW_SIZE
+from vision.rig import RIG_SIZE
 
 
 def test_derivatives_are_those_of_the_residuals() -> None:

@@ -5,7 +5,8 @@ import pytest
 
 from tests.synthetic import PAINTS, Scene, render_still, still_camera
 from vision.lines import sides, upright
-from vision.pose import OVERHEAD, SIDE_L, SIDE_R, View, start_rig, turned
+from vision.pose import View, turned
+from vision.rig import OVERHEAD, SIDE_L, SIDE_R, start_rig
 
 SIZE = (960, 540)
 SCALE = 90.0

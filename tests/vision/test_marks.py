@@ -8,7 +8,9 @@ import pytest
 from tests.synthetic import PAINTS, Paint, render_still, sample_scene, still_camera
 from tests.synthetic.scene import Scene
 from vision.marks import NOISE_SD, measure
-from vision.pose import CENTRE_LINE, LEFT, OVERHEAD, RIGHT, TEE_LINE, View, start_rig
+from vision.paint import CENTRE_LINE, LEFT, RIGHT, TEE_LINE
+from vision.pose import View
+from vision.rig import OVERHEAD, start_rig
 
 SIZE = (960, 540)
 

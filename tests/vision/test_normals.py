@@ -5,7 +5,9 @@ import pytest
 
 from data.sheet import HOUSE
 from vision.normals import BLOCK, SAMPLES, THIN, lay_out, profiles
-from vision.pose import CIRCLES, OVERHEAD, TWELVE, aim, ice_points, project, start_rig
+from vision.paint import CIRCLES, TWELVE, ice_points
+from vision.pose import aim, project
+from vision.rig import OVERHEAD, start_rig
 
 SIZE = (1280, 720)
 POSITION = (0.1, -0.2, 8.5)

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from vision.normals import SAMPLES, Normals, lay_out
-from vision.pose import CENTRE_LINE, OVERHEAD, TEE_LINE, aim, start_rig
+from vision.paint import CENTRE_LINE, TEE_LINE
+from vision.pose import aim
+from vision.rig import OVERHEAD, start_rig
 from vision.stripes import find_stripes
 
 SIZE = (1280, 720)
