@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from data.sheet import STONE, Stone
 from vision.appearance import Appearance
 from vision.camera import Camera
-from vision.measure import EFFORT, Measures, is_plain, measure, scales, tilts
+from vision.measure import Measures, measure
+from vision.patch import EFFORT, is_plain, scales, tilts
 from vision.picture import Picture
 from vision.seek import Bounds, seek, seek_about
 from vision.sighting import Refusal, Sighting

@@ -17,8 +17,8 @@ from vision.camera import Camera
 from vision.clip import Clip
 from vision.follow import Gate, Track, follow
 from vision.handle import handle_angles
-from vision.measure import handle_radii, is_plain
 from vision.naming import names_by_motion
+from vision.patch import handle_radii, is_plain
 from vision.stones import FOLLOWING, Search
 from vision.watch import Watch
 

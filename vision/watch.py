@@ -22,7 +22,7 @@ from vision.camera import Camera
 from vision.clip import Frame
 from vision.handle import cap_spectrum
 from vision.lead import Lead
-from vision.measure import handle_radii, is_plain
+from vision.patch import handle_radii, is_plain
 from vision.seek import Bounds
 from vision.sighting import Sighting
 from vision.still import portraits, unchanged

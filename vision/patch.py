@@ -1,0 +1,111 @@
+"""The patch of a picture in which a disc is measured: its rays, and how the camera sees it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.sheet import Stone
+from vision.camera import Camera
+from vision.rays import Profile, joined, straight
+
+Array = NDArray[np.float64]
+
+HANDLE_HEIGHT = 0.15
+"""How high above the ice the handle's grip is seen, m."""
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How a place is measured. Lengths are shares of the disc's radius.
+
+    Attributes
+    ----------
+    rays, radii : int
+        Samples of the polar patch around a place.
+    inner, stone_outer, plain_outer : float
+        Where the rays begin, and how far they reach: a stone's surroundings say nothing, a
+        plain rim's do.
+    handle_rings, handle_inner, handle_outer : int, float, float
+        Rings of the picture by which the angle is told; the radii as shares of the cap's (or,
+        of a plain disc, of its own).
+    handle_edge : float
+        Share of the cap's radius up to which it shows nothing of its edge.
+    edge_reach : float
+        Distance from the circle up to which an edge may count.
+    most_tilt : float
+        Tangent of the view's angle to the vertical at which the granite's outline counts half.
+    rounds : int
+        How often the edges are chosen about the circle that they gave.
+    """
+
+    rays: int = 48
+    radii: int = 44
+    inner: float = 0.20
+    stone_outer: float = 1.06
+    plain_outer: float = 1.3
+    handle_rings: int = 8
+    handle_inner: float = 0.12
+    handle_outer: float = 0.86
+    handle_edge: float = 0.94
+    edge_reach: float = 0.035
+    most_tilt: float = 0.15
+    rounds: int = 2
+
+
+EFFORT = Effort()
+
+
+def is_plain(disc: Stone) -> bool:
+    """Say whether a disc has no cap that could be told from its rim."""
+    return disc.cap_radius <= 0
+
+
+@lru_cache(maxsize=8)
+def profile_of(disc: Stone, effort: Effort) -> Profile:
+    """Give the samples of the stone's top, then two for each ring of the handle's picture."""
+    if is_plain(disc):
+        inner, outer, size = (
+            effort.inner * disc.radius,
+            effort.plain_outer * disc.radius,
+            disc.radius,
+        )
+        top, grip = [(inner, 0.0), (outer, 0.0)], 0.0
+    else:
+        inner, outer = effort.inner * disc.radius, effort.stone_outer * disc.radius
+        size, edge, height = disc.cap_radius, 1.15 * disc.cap_radius, disc.cap_height
+        # The visible surface falls off towards the striking band, but not at the cap's edge:
+        # away from a slanting view the rays would draw that edge out, and the circle fitted
+        # to it would lie too near the camera.
+        top = [(inner, height), (edge, height), (disc.radius, 0.5 * height), (outer, 0.5 * height)]
+        grip = HANDLE_HEIGHT
+    low, high = effort.handle_inner * size, effort.handle_outer * size
+    rings = straight([(low, grip), (high, grip)], np.linspace(low, high, 2 * effort.handle_rings))
+    return joined(straight(top, np.linspace(inner, outer, effort.radii)), rings)
+
+
+def handle_radii(disc: Stone, effort: Effort = EFFORT) -> Array:
+    """Radii of the rings of the handle's picture, m, shape (rings,)."""
+    size = disc.radius if is_plain(disc) else disc.cap_radius
+    low, high = effort.handle_inner * size, effort.handle_outer * size
+    rings = np.linspace(low, high, 2 * effort.handle_rings)
+    return np.asarray(rings.reshape(-1, 2).mean(1))
+
+
+def scales(camera: Camera, places: Array) -> Array:
+    """Pixels per metre at places of the ice, shape (n, 2): root of the Jacobian's determinant."""
+    step = 1e-3 * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
+    p = camera.project(places[:, None] + step)
+    along, up = (p[:, 0] - p[:, 1]) / 2e-3, (p[:, 2] - p[:, 3]) / 2e-3
+    return np.asarray(np.sqrt(np.abs(along[:, 0] * up[:, 1] - along[:, 1] * up[:, 0])))
+
+
+def tilts(camera: Camera, places: Array) -> Array:
+    """Tangent of the angle between the view of places and the vertical; 0 where unknown."""
+    if camera.position is None or not np.isfinite(camera.position).all():
+        return np.zeros(len(places))
+    away = places - camera.position[:2]
+    return np.asarray(np.hypot(away[:, 0], away[:, 1]) / camera.position[2])

@@ -1,0 +1,132 @@
+"""Rays about places on the ice, sampled in the picture itself.
+
+All places of a picture are treated at once: every array begins with the axis of the places.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from vision.camera import Camera
+from vision.ice_map import lifted
+from vision.picture import Picture, colours_at
+
+Array = NDArray[np.float64]
+Floats = NDArray[np.float32]
+Bytes = NDArray[np.uint8]
+Bools = NDArray[np.bool_]
+
+_MOST_ROWS = 32000
+"""As many as cv2.remap takes at once."""
+
+
+@dataclass(frozen=True)
+class Rays:
+    """Colours on rays around n places, from the picture itself.
+
+    Attributes
+    ----------
+    bgr, lab : ndarray, shape (n, rays, radii, 3)
+        As blue, green, red and as L*a*b*, 8 bits each.
+    inside : ndarray of bool, shape (n, rays, radii)
+        Where the picture shows the place.
+    radius, angle : ndarray, shapes (radii,) and (rays,)
+        Distances from the centre, m; counter-clockwise from the x axis of the ice, rad.
+    """
+
+    bgr: Bytes
+    lab: Bytes
+    inside: Bools
+    radius: Array
+    angle: Array
+
+    def at(self, radius: float) -> Bools:
+        """Which rays show the place at this radius, shape (n, rays)."""
+        return np.asarray(self.inside[..., np.searchsorted(self.radius, radius)])
+
+
+@lru_cache(maxsize=8)
+def directions(rays: int) -> tuple[Array, Array]:
+    """Angles of so many rays, rad, and unit vectors along them, shape (rays, 2)."""
+    angle = np.arange(rays, dtype=np.float64) * (2 * np.pi / rays)
+    return angle, np.stack([np.cos(angle), np.sin(angle)], -1)
+
+
+@dataclass(frozen=True)
+class Profile:
+    """What lies along a ray: nodes at which the camera is evaluated, and samples between them.
+
+    Between nodes less than a stone's radius apart every camera is straight to 0.01 px.
+
+    Attributes
+    ----------
+    node_radius, node_height : ndarray, shape (nodes,)
+        Distances from the centre, and how high above the ice what is seen there lies, m.
+    radius : ndarray, shape (radii,)
+        Of the samples, m.
+    mix : ndarray, shape (nodes, radii)
+        What each node has to say at each sample.
+    """
+
+    node_radius: Array
+    node_height: Array
+    radius: Array
+    mix: Floats
+
+
+def straight(nodes: Sequence[tuple[float, float]], radius: Array) -> Profile:
+    """Profile through nodes (radius, height) joined by straight lines."""
+    node_radius, node_height = np.array(nodes, float).T
+    mix = [np.interp(radius, node_radius, row) for row in np.eye(len(node_radius))]
+    return Profile(node_radius, node_height, radius, np.array(mix, np.float32))
+
+
+def joined(first: Profile, second: Profile) -> Profile:
+    """Profile that has the samples of one and then those of the other."""
+    mix = np.zeros((len(first.mix) + len(second.mix), len(first.radius) + len(second.radius)))
+    mix[: len(first.mix), : len(first.radius)] = first.mix
+    mix[len(first.mix) :, len(first.radius) :] = second.mix
+    return Profile(
+        np.append(first.node_radius, second.node_radius),
+        np.append(first.node_height, second.node_height),
+        np.append(first.radius, second.radius),
+        np.asarray(mix, np.float32),
+    )
+
+
+def sample_rays(image: Picture, camera: Camera, places: Array, profile: Profile, rays: int) -> Rays:
+    """Sample the picture on rays around places on the ice.
+
+    Parameters
+    ----------
+    places : ndarray, shape (n, 2)
+        Centres, m.
+    profile : Profile
+        Of every ray.
+    rays : int
+        How many, counter-clockwise from the x axis.
+    """
+    angle, around = directions(rays)
+    nodes = places[:, None, None] + around[:, None] * profile.node_radius[:, None]
+    ends = camera.project(lifted(camera, nodes, profile.node_height)).astype(np.float32)
+    across, down = ends[..., 0] @ profile.mix, ends[..., 1] @ profile.mix
+    width, high = camera.size
+    if (ends.min((0, 1, 2)) >= 0).all() and (ends.max((0, 1, 2)) <= (width - 1, high - 1)).all():
+        inside = np.ones(across.shape, bool)
+    else:
+        inside = (across >= 0) & (down >= 0) & (across <= width - 1) & (down <= high - 1)
+    shape = (*across.shape, 3)
+    across, down = (a.reshape(-1, a.shape[-1]) for a in (across, down))
+    parts = [
+        colours_at(image, across[k : k + _MOST_ROWS], down[k : k + _MOST_ROWS])
+        for k in range(0, len(across), _MOST_ROWS)
+    ]
+    bgr = np.asarray(parts[0] if len(parts) == 1 else np.concatenate(parts), np.uint8)
+    lab = np.asarray(cv2.cvtColor(bgr, cv2.COLOR_BGR2LAB), np.uint8)
+    return Rays(bgr.reshape(shape), lab.reshape(shape), inside, profile.radius, angle)
