@@ -14,7 +14,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
 
 from vision.appearance import colour_differences
 from vision.sighting import Sighting
@@ -214,12 +213,20 @@ def _assign(
     youth = np.array([0.5 if len(track.frames) < gate.births else 0.0 for track in tracks])
     value = distance**2 + (0.5 * unlike / gate.colours) ** 2 + youth[:, None]
     cost = np.where((distance < 1) & (unlike < gate.colours), value, _FORBIDDEN)
-    rows, columns = linear_sum_assignment(cost)
-    return {
-        int(column): tracks[row]
-        for row, column in zip(rows, columns, strict=True)
-        if cost[row, column] < _FORBIDDEN
-    }
+    return {column: tracks[row] for row, column in _paired(cost)}
+
+
+def _paired(cost: Array) -> list[tuple[int, int]]:
+    """Rows and columns that together cost least, without the forbidden pairs."""
+    allowed = cost < _FORBIDDEN
+    if allowed.sum(0).max() < 2 and allowed.sum(1).max() < 2:  # no two claim the same
+        rows, columns = np.nonzero(allowed)
+    else:
+        from scipy.optimize import linear_sum_assignment
+
+        rows, columns = linear_sum_assignment(cost)
+    pairs = zip(rows.tolist(), columns.tolist(), strict=True)
+    return [pair for pair in pairs if allowed[pair]]
 
 
 def _struck(tracks: Sequence[Track], t: float, radius: float, gate: Gate) -> dict[int, Array]:

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from data.sheet import HOUSE
 from vision.adjust import solve
@@ -22,7 +21,7 @@ from vision.marks import Evidence, measure
 from vision.outline import Rim, find_rim
 from vision.paint import TWELVE
 from vision.picture import Image
-from vision.pose import DOWN, View, aim, camera, rescaled
+from vision.pose import DOWN, View, aim, camera, rescaled, rotation_vector
 from vision.rig import ANYWHERE, OVERHEAD, Prior, start_rig
 from vision.rings import Guess, guesses
 
@@ -198,7 +197,7 @@ def _aimed(guess: Guess, position: Array, size: tuple[int, int]) -> View:
     level = aim(middle + lean.T @ (guess.centre - middle), guess.scale, position, size)
     turn = np.eye(3)
     turn[:2, :2] = lean
-    vector = Rotation.from_matrix(turn @ level.rotation @ DOWN.T).as_rotvec()
+    vector = rotation_vector(turn @ level.rotation @ DOWN.T)
     return View(np.append(vector, level.vector[3]))
 
 

@@ -9,10 +9,10 @@ the edge.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import erfc, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import ndtr
 
 Array = NDArray[np.float64]
 
@@ -98,7 +98,7 @@ def _model(x: Array, unknown: Array) -> tuple[Array, Array]:
     edge, log_width, log_blur, paint, depth, ice = unknown
     width, blur = np.exp(log_width), np.exp(log_blur)
     u, v = (x - edge) / blur, (x - edge - width) / blur
-    within, beyond = ndtr(u), ndtr(v)
+    within, beyond = _normal(u), _normal(v)
     bell = np.exp(-0.5 * np.stack([u, v]) ** 2) / (np.sqrt(2 * np.pi) * blur)
     line = paint + depth
     value = ice + (line - ice) * within - depth * beyond
@@ -106,3 +106,8 @@ def _model(x: Array, unknown: Array) -> tuple[Array, Array]:
     by_blur = -(line - ice) * bell[0] * u * blur + depth * bell[1] * v * blur
     columns = [by_edge, depth * bell[1] * width, by_blur, within, within - beyond, 1 - within]
     return value, np.stack(columns, axis=-1)
+
+
+def _normal(deviates: Array) -> Array:
+    """Cumulative normal distribution; scipy's would take a tenth of a second to import."""
+    return np.array([0.5 * erfc(-deviate / sqrt(2)) for deviate in deviates.tolist()])

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial.transform import Rotation
 
 from vision.camera import Camera, CameraError
 from vision.rig import POSITION, distortion
@@ -154,20 +153,33 @@ def aim(centre: ArrayLike, scale: float, position: ArrayLike, size: tuple[int, i
     axis = np.cross([0.0, 0.0, 1.0], ray)
     angle = float(np.arctan2(np.linalg.norm(axis), ray[2]))
     turn = cv2.Rodrigues(axis / max(float(np.linalg.norm(axis)), 1e-12) * angle)[0]
-    vector = _rotation_vector(np.asarray(turn) @ look @ DOWN.T)
+    vector = rotation_vector(np.asarray(turn) @ look @ DOWN.T)
     return View(np.append(vector, np.log(f)))
 
 
-def _rotation_vector(matrix: Array) -> Array:
-    # Not by cv2.Rodrigues, which loses half the digits near the identity.
-    return np.asarray(Rotation.from_matrix(matrix).as_rotvec())
+def rotation_vector(matrix: Array) -> Array:
+    """Axis of a rotation matrix times its angle, rad, shape (3,).
+
+    By the quaternion, of which the matrix tells all products (Bar-Itzhack, 2000, J. Guid.
+    Control Dyn. 23, 1085): `cv2.Rodrigues` loses half the digits near the identity.
+    """
+    trace = float(np.trace(matrix))
+    products = np.empty((4, 4))
+    products[0, 0] = 1 + trace
+    products[0, 1:] = products[1:, 0] = (matrix - matrix.T)[[2, 0, 1], [1, 2, 0]]
+    products[1:, 1:] = matrix + matrix.T + (1 - trace) * np.eye(3)
+    quaternion = products[products.diagonal().argmax()]
+    quaternion = quaternion * np.copysign(1.0, quaternion[0])
+    size = float(np.linalg.norm(quaternion[1:]))
+    angle = 2 * float(np.arctan2(size, quaternion[0]))
+    return np.asarray(quaternion[1:] * (angle / size if size > 0 else 0.0))
 
 
 def turned(view: View, rig: Array, angle: float) -> tuple[View, Array]:
     """Turn the ice's axes by `angle` (rad, ccw); a picture of circles stays the same."""
     c, s = np.cos(angle), np.sin(angle)
     spin = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])
-    vector = _rotation_vector(view.rotation @ spin @ DOWN.T)
+    vector = rotation_vector(view.rotation @ spin @ DOWN.T)
     moved = rig.copy()
     moved[POSITION] = spin.T @ rig[POSITION]
     return View(np.append(vector, view.vector[3])), moved

@@ -3,8 +3,9 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
-from vision.pose import View, aim, camera, project, rescaled, turned
+from vision.pose import View, aim, camera, project, rescaled, rotation_vector, turned
 from vision.rig import ANYWHERE, OVERHEAD, POSITION, start_rig
 
 SIZE = (1280, 720)
@@ -71,3 +72,17 @@ def test_a_larger_picture_is_the_same_picture() -> None:
     small = project(circle(1.0), view.vector, rig, (640, 360))
     large = project(circle(1.0), rescaled(view, 2).vector, rig, (1280, 720))
     np.testing.assert_allclose((small + 0.5) * 2 - 0.5, large, atol=1e-9)
+
+
+@given(
+    axis=st.tuples(*3 * [st.floats(-1, 1)]).filter(lambda axis: np.linalg.norm(axis) > 1e-3),
+    angle=st.sampled_from([0.0, 1e-12, 1e-6, 0.3, 2.0, np.pi - 1e-6, np.pi - 1e-3]),
+)
+def test_a_rotation_vector_is_exact_near_the_identity_and_near_a_half_turn(
+    axis: tuple[float, float, float], angle: float
+) -> None:
+    vector = angle * np.array(axis) / np.linalg.norm(axis)
+
+    found = rotation_vector(Rotation.from_rotvec(vector).as_matrix())
+
+    np.testing.assert_allclose(found, vector, rtol=1e-8, atol=1e-15)
