@@ -15,10 +15,10 @@ class Bars:
 
     def __call__(self, what: str, done: int, total: int | None) -> None:
         """Show `done` of `total` steps of some work; see `data.progress.Progress`."""
-        from tqdm import tqdm
-
         if self.quiet:
             return
+        from tqdm import tqdm
+
         if what not in self.bars:
             self.close()
             self.bars[what] = tqdm(total=total, desc=what.ljust(16), file=sys.stderr, leave=True)

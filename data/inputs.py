@@ -11,6 +11,8 @@ from data.errors import InputError
 
 IMAGE_SUFFIXES = frozenset({".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp"})
 
+TABLE_SUFFIXES = frozenset({".csv", ".txt", ".tsv", ".dat", ".trk", ".trz", ".zip", ".parquet"})
+
 
 def find_inputs(names: Sequence[str | Path]) -> tuple[Path, ...]:
     """Files behind what a person names: files, globs, folders of pictures in natural order.

@@ -12,11 +12,12 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 MAY_IMPORT = {
     "data": set(),
-    "command": {"data", "physics"},
+    "command": {"data", "physics", "work"},
     "physics": {"data"},
     "vision": {"data", "physics"},
+    "work": {"data", "physics", "vision"},
     "report": {"data", "physics", "vision"},
-    "pipeline": {"command", "data", "physics", "vision", "report"},
+    "pipeline": {"command", "data", "physics", "vision", "work", "report"},
 }
 
 

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-import pipeline
 from command.again import MOST_FILES, again
+from command.arguments import settings_of
 from command.parser import command_line
-from pipeline import Settings
+from work.settings import Settings
 
 
 def words(files: list[Path], settings: Settings) -> list[str]:
@@ -32,7 +32,7 @@ def test_the_same_settings_come_back(settings):
     said = words([Path("/somewhere/my shot.mp4")], settings)
     assert said[:3] == ["curlshot", "run", "my shot.mp4"]
     arguments = command_line("1.0").parse_args(said[1:])
-    assert pipeline._settings(arguments) == settings
+    assert settings_of(arguments) == settings
 
 
 def test_many_pictures_are_named_by_their_folder():

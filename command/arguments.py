@@ -1,0 +1,58 @@
+"""What was said on the command line, as settings and folders."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TypeVar
+
+from data.errors import InputError
+from data.sheet import STONE
+from work.settings import Settings
+
+T = TypeVar("T")
+
+
+def settings_of(arguments: argparse.Namespace) -> Settings:
+    """Gather what was said of the input; a command takes some of the options only."""
+    known = vars(arguments)
+    return Settings(
+        fps=known.get("fps"),
+        frames=known.get("frames"),
+        stick=known.get("stick"),
+        house=known.get("house"),
+        camera=known.get("camera"),
+        radius=known.get("radius", STONE.radius),
+        masses=_by_stone("--mass", known.get("mass", ())),
+        length_unit=known.get("length_unit", "m"),
+        angle_unit=known.get("angle_unit"),
+        clip=known.get("clip", False),
+        tab=known.get("tab"),
+        names=_by_stone("--names", known.get("names", [])),
+        angles={s: Path(p) for s, p in _by_stone("--angles", known.get("angles", [])).items()},
+        overlay=not known.get("no_overlay", False),
+        restitution=known.get("restitution"),
+        friction=known.get("friction"),
+        samples=known.get("samples") or 0,
+        units=known.get("units", "m"),
+    )
+
+
+def out_folder(arguments: argparse.Namespace, first: str | Path) -> Path:
+    """Folder for the files: as given, else NAME-curlshot in the current folder."""
+    if arguments.out is not None:
+        return Path(arguments.out)
+    path = Path(first)
+    name = path.name if path.is_dir() else path.stem
+    plain = re.sub(r"[*?\[\]]", "", name)  # a glob's signs do not belong in a name
+    return Path(f"{plain or 'out'}-curlshot")
+
+
+def _by_stone(option: str, pairs: Sequence[tuple[str, T]]) -> dict[str, T]:
+    stones = [stone for stone, _ in pairs]
+    doubled = [stone for stone in stones if stones.count(stone) > 1]
+    if doubled:
+        raise InputError(f"{option}: {doubled[0]} is given twice")
+    return dict(pairs)

@@ -1,0 +1,155 @@
+"""Tracks, estimates and simulations from sightings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from data.errors import InputError, SceneError
+from data.sheet import House
+from work.measure import Measured
+from work.settings import Settings
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from data.results import Estimate, Results
+
+
+@dataclass(frozen=True)
+class Run:
+    """The outcome of a run.
+
+    Attributes
+    ----------
+    tracks : DataFrame
+        As ``tracks.csv``.
+    cameras : DataFrame or None
+        As ``camera.csv``; None for imported tracks.
+    results : data.results.Results
+        Estimates with errors, as ``results.json``.
+    simulations : DataFrame
+        As ``simulation.csv``: one column ``model``, else as the tracks.
+    out : Path or None
+        Where the files are.
+    house : House or None
+        The rings; None where the scene has no house.
+    posterior : DataFrame or None
+        As ``posterior.csv``: draws of restitution and frictions, where they were asked for.
+    """
+
+    tracks: pd.DataFrame
+    cameras: pd.DataFrame | None
+    results: Results
+    simulations: pd.DataFrame
+    out: Path | None = None
+    house: House | None = None
+    posterior: pd.DataFrame | None = None
+
+
+def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
+    """Tracks, estimates and simulations from sightings; writes nothing."""
+    import numpy as np
+    import pandas as pd
+
+    from data.results import Input, Results
+    from data.tracks import teams
+    from physics.contacts import find_contacts
+    from physics.estimate import estimate
+    from physics.forecast import predict
+    from physics.kalman import smooth
+    from physics.posterior import sample_posterior, summarise
+    from physics.predict import simulate_measured
+    from physics.watched import LITERATURE
+    from vision.camera import camera_table
+
+    sightings, radius = measured.sightings, settings.radius
+    if sightings.empty:
+        raise SceneError(f"{measured.files[0]}: no stone in view; nothing to measure")
+    masses = (
+        _check_masses(settings.masses, list(sightings["stone"].unique())) or measured.masses or None
+    )
+    contacts = find_contacts(sightings, radius)
+    tracks = smooth(sightings, contacts, radius=radius)
+    estimates = estimate(sightings, contacts, radius=radius, masses=masses)
+    sampled, scores, notes = simulate_measured(tracks, estimates, radius=radius, masses=masses)
+    predictions = predict(
+        sightings,
+        tracks,
+        estimates,
+        radius=radius,
+        masses=masses,
+        restitution=_assumed(settings.restitution, LITERATURE.restitution),
+        friction=_assumed(settings.friction, LITERATURE.friction),
+    )
+    of_team = teams(tracks)
+    drawn = sample_posterior(estimates, settings.samples, np.random.default_rng(0))
+    times = sightings["t"]
+    results = Results(
+        input=Input(
+            files=tuple(path.name for path in measured.files),
+            fps=measured.fps,
+            frames=measured.frames,
+            duration=float(times.max() - times.min()),
+        ),
+        restitution=estimates.restitution,
+        friction=estimates.friction,
+        collisions=estimates.collisions,
+        glides=estimates.glides,
+        simulations=scores,
+        warnings=tuple(dict.fromkeys((*measured.warnings, *estimates.warnings, *notes))),
+        radius=radius,
+        predictions=predictions,
+        laws=estimates.laws,
+        methods=estimates.methods,
+        law_choice=() if estimates.whole is None else estimates.whole.laws,
+        curl=estimates.curl,
+        stones=estimates.by_stone,
+        posterior=None if drawn is None else summarise(drawn),
+        teams={stone: team for stone, team in of_team.items() if team},
+        masses=masses or {},
+    )
+    cameras = camera_table(measured.cameras) if measured.cameras else None
+    simulations = [as_tracks(table, model, of_team) for model, table in sampled.items()]
+    return Run(
+        tracks,
+        cameras,
+        results,
+        pd.concat(simulations, ignore_index=True) if simulations else as_tracks(None, ""),
+        house=measured.house,
+        posterior=drawn,
+    )
+
+
+def _assumed(given: float | None, default: Estimate) -> Estimate:
+    """Return a law's number as given, then without doubt, or as the literature has it."""
+    from data.results import Estimate
+
+    return default if given is None else Estimate(given, 0.0)
+
+
+def _check_masses(masses: Mapping[str, float], stones: Sequence[str]) -> Mapping[str, float]:
+    """Refuse masses of some stones only, for the unit of the others would be open."""
+    names = ", ".join(sorted(stones))
+    unknown = sorted(set(masses) - set(stones))
+    if unknown:
+        raise InputError(f"mass of {', '.join(unknown)}: no such stone; there are {names}")
+    missing = sorted(set(stones) - set(masses)) if masses else []
+    if missing:
+        raise InputError(f"no mass of {', '.join(missing)}; give one for each of {names}, or none")
+    return masses
+
+
+def as_tracks(
+    simulated: pd.DataFrame | None, model: str, of_team: Mapping[str, str] | None = None
+) -> pd.DataFrame:
+    """Table of ``simulation.csv`` from a sampled simulation: nothing of it was seen."""
+    from data.tracks import TRACK_COLUMNS, empty_tracks
+
+    table = empty_tracks() if simulated is None else simulated.reindex(columns=list(TRACK_COLUMNS))
+    table["seen"] = 0
+    table["team"] = [(of_team or {}).get(str(name), "") for name in table["stone"]]
+    table.insert(0, "model", model)
+    return table

@@ -1,0 +1,121 @@
+"""A clip with its cameras: by its house, a stick, or as a person knows them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from data.errors import InputError
+from data.inputs import TABLE_SUFFIXES
+from data.progress import Progress
+from data.sheet import HOUSE, STONE, House, Stone
+from work.settings import Settings
+
+if TYPE_CHECKING:
+    from vision.camera import Camera
+    from vision.clip import Clip
+    from vision.joint import HouseTrack
+    from vision.placed import Placed
+
+SPREADSHEETS = frozenset({".ods", ".xls", ".xlsx"})
+
+
+@dataclass(frozen=True)
+class Filmed:
+    """A clip with its cameras, and what is known of the scene."""
+
+    clip: Clip
+    cameras: tuple[Camera, ...]
+    disc: Stone
+    house: House | None = None
+    warnings: tuple[str, ...] = ()
+
+
+def film(files: tuple[Path, ...], settings: Settings, progress: Progress, placed: Placed) -> Filmed:
+    """Open a clip, read it and find its cameras; `placed` is told of each frame on the way."""
+    clip, disc = _open_clip(files, settings), disc_of(settings)
+    if settings.stick is not None:
+        from vision.stick import stick_cameras
+
+        cameras = stick_cameras(clip, settings.stick, progress, placed)
+        filmed = Filmed(clip, cameras, disc)
+    elif settings.camera is not None:
+        cameras, notes = _given_cameras(clip, settings.camera, settings, progress, placed)
+        house = HOUSE if settings.radius == STONE.radius else None
+        filmed = Filmed(clip, cameras, disc, house, notes)
+    else:
+        followed = _follow(clip, settings, progress, placed)
+        house = House(*(float(radius) for radius in followed.radii))
+        filmed = Filmed(clip, followed.cameras, disc, house, followed.warnings)
+    check_size(settings.radius, filmed.cameras[0])
+    return filmed
+
+
+def _open_clip(files: tuple[Path, ...], settings: Settings) -> Clip:
+    """Open a video, pictures, or the clip of a Tracker project."""
+    from data.project import ENDINGS
+    from vision.clip import open_clip
+
+    kinds = [path.suffix.lower() for path in files]
+    if SPREADSHEETS.intersection(kinds):
+        raise InputError(f"{files[0]}: a spreadsheet; save it as CSV")
+    if not TABLE_SUFFIXES.intersection(kinds):
+        return open_clip(files, settings.fps, settings.frames)
+    if len(files) > 1 or kinds[0] not in ENDINGS:
+        odd = files[0] if kinds[0] not in ENDINGS else files[1]
+        raise InputError(f"{odd}: not a clip; name a video, pictures, or one Tracker project")
+    from vision.project_clip import open_project_clip
+
+    clip = open_project_clip(files[0], settings.tab, settings.frames)
+    if settings.fps is not None:
+        clip.warnings.append(f"{files[0]}: a project says how long frames last; --fps is ignored")
+    return clip
+
+
+def _given_cameras(
+    clip: Clip, path: Path, settings: Settings, progress: Progress, placed: Placed
+) -> tuple[tuple[Camera, ...], tuple[str, ...]]:
+    """Read the cameras of a table, or of a Tracker project."""
+    from data.project import ENDINGS
+
+    if path.suffix.lower() not in ENDINGS:
+        from vision.camera_file import given_cameras
+
+        return given_cameras(clip, path, progress, placed)
+    from data.project import read_project
+    from vision.project_clip import project_cameras
+
+    project = read_project(path, settings.tab)
+    return project_cameras(clip, project, settings.length_unit, progress, placed)
+
+
+def _follow(clip: Clip, settings: Settings, progress: Progress, placed: Placed) -> HouseTrack:
+    """Follow the house, from where a person says that it is or from where it is found."""
+    from vision.follow_house import follow_house
+    from vision.given import GivenHouse, follow_given
+
+    if settings.house is None:
+        return follow_house(clip, progress, placed=placed)
+    frame, *points = settings.house
+    return follow_given(clip, GivenHouse.of(points, frame), progress, placed)
+
+
+def check_size(radius: float, camera: Camera) -> None:
+    """Refuse discs that are no more than a dot, or more than the picture."""
+    pixels = radius * camera.scale_at((0.0, 0.0))
+    if not 1.5 < pixels < max(camera.size):
+        raise InputError(
+            f"discs of radius {radius:g} m would have {pixels:.2g} px in the picture; check"
+            " --radius, and --stick or --camera if given"
+        )
+
+
+def disc_of(settings: Settings) -> Stone:
+    """Say what is looked for: stones in a house or of their size, else plain discs."""
+    from vision.stones import plain_disc
+
+    sized_as_stones = settings.camera is None or settings.radius == STONE.radius
+    if settings.stick is None and sized_as_stones:
+        return replace(STONE, radius=settings.radius)
+    return plain_disc(settings.radius)

@@ -1,0 +1,126 @@
+"""Sightings of the stones, from a clip, pictures or tables of tracks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from data.errors import InputError
+from data.inputs import IMAGE_SUFFIXES, TABLE_SUFFIXES, find_inputs
+from data.progress import Progress, no_progress
+from data.sheet import HOUSE, STONE, House
+from work.film import check_size, disc_of, film
+from work.settings import Settings, refuse_clip_options, refuse_table_options
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from vision.camera import Camera
+    from vision.clip import Clip, Frame
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Sightings of the stones and where they come from."""
+
+    files: tuple[Path, ...]
+    sightings: pd.DataFrame
+    fps: float | None
+    frames: int
+    warnings: tuple[str, ...]
+    clip: Clip | None = None
+    cameras: tuple[Camera, ...] = ()
+    house: House | None = None
+    masses: Mapping[str, float] = field(default_factory=dict)
+
+
+def measure(
+    inputs: Sequence[str | Path],
+    settings: Settings = Settings(),
+    progress: Progress = no_progress,
+) -> Measured:
+    """Sightings of every stone, from a clip, pictures or a table of tracks.
+
+    Raises
+    ------
+    data.errors.CurlshotError
+        Where the input cannot be used; one line says why.
+    """
+    files = find_inputs(inputs)
+    tables = [path.suffix.lower() in TABLE_SUFFIXES for path in files]
+    if any(tables) and not settings.clip:
+        if not all(tables):
+            odd = files[tables.index(False)]
+            raise InputError(f"{odd}: tables of tracks and pictures do not mix; give one kind")
+        from data.discs import refuse_no_discs
+
+        refuse_clip_options(files[0], settings)
+        measured = import_tables(files, settings)
+        refuse_no_discs(measured.sightings, settings.radius, ", ".join(map(str, files)))
+        return measured
+    if not any(tables):
+        refuse_table_options(files[0], settings)
+    return _look_at_clip(files, settings, progress)
+
+
+def refuse_clips(files: Sequence[Path], command: str) -> None:
+    """Refuse what is no table of tracks, and say which command takes it."""
+    odd = [path for path in files if path.suffix.lower() not in TABLE_SUFFIXES]
+    if odd:
+        raise InputError(f"{odd[0]}: not a table of tracks; try curlshot {command}")
+
+
+def import_tables(files: tuple[Path, ...], settings: Settings) -> Measured:
+    """Read tables of tracks."""
+    from data.tracker import read_table
+
+    table = read_table(
+        files,
+        length_unit=settings.length_unit,
+        angle_unit=settings.angle_unit,
+        fps=settings.fps,
+        tab=settings.tab,
+        names=settings.names,
+        angles=settings.angles,
+    )
+    sightings = table.sightings
+    house = HOUSE if settings.radius == STONE.radius else None
+    return Measured(
+        files,
+        sightings,
+        table.fps,
+        sightings["t"].nunique(),
+        table.warnings,
+        house=house,
+        masses=table.masses,
+    )
+
+
+def _look_at_clip(files: tuple[Path, ...], settings: Settings, progress: Progress) -> Measured:
+    from vision.stones import FOLLOWING, SEARCH
+    from vision.track import tracks_of
+    from vision.watch import Watch
+
+    alone = len(files) == 1 and files[0].suffix.lower() in IMAGE_SUFFIXES
+    # A picture by itself has one chance.
+    watch = Watch(disc_of(settings), SEARCH if alone else FOLLOWING)
+
+    def look(frame: Frame, camera: Camera) -> None:
+        if not watch.begun:
+            check_size(settings.radius, camera)
+        watch.look(frame, camera)
+
+    seen = film(files, settings, progress, look)
+    stones = tracks_of(watch, seen.cameras)
+    return Measured(
+        files,
+        stones.sightings,
+        seen.clip.fps,
+        seen.clip.read,
+        (*seen.clip.warnings, *seen.warnings, *stones.warnings),
+        seen.clip,
+        seen.cameras,
+        seen.house,
+    )

@@ -1,0 +1,46 @@
+"""Folders of runs: one for each clip, and their results."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from data.errors import InputError
+
+if TYPE_CHECKING:
+    from data.results import Results
+
+
+def apart(clips: Sequence[Path]) -> dict[str, Path]:
+    """Name clips by their stems, by those of their folders too where stems are shared."""
+    named: dict[str, Path] = {}
+    stems = [clip.stem for clip in clips]
+    for number, clip in enumerate(clips):
+        name = clip.stem
+        if stems.count(name) > 1:
+            name = f"{clip.resolve().parent.name}-{name}"
+        named[name if name not in named else f"{name}-{number + 1}"] = clip
+    return named
+
+
+def find_runs(names: Sequence[str | Path]) -> dict[str, Results]:
+    """Read the results of runs: of their folders, of folders of such folders, or files.
+
+    Raises
+    ------
+    InputError
+        Where there are none, or one is no results.json.
+    """
+    from data.results import Results
+
+    found: list[Path] = []
+    for path in map(Path, names):
+        here = path / "results.json" if path.is_dir() else path
+        below = sorted(path.glob("*/results.json")) if path.is_dir() else []
+        if not here.exists() and not below:
+            raise InputError(f"{here}: no such file; name the folders of runs")
+        found += [here] if here.exists() else below
+    unique = dict.fromkeys(path.resolve() for path in found)
+    folders = apart([path.parent.with_name(f"{path.parent.name}.run") for path in unique])
+    return {name: Results.read(path) for name, path in zip(folders, unique, strict=True)}

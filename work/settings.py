@@ -1,0 +1,106 @@
+"""What a person may say about the input."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from data.errors import InputError
+from data.sheet import STONE
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What a person may say about the input.
+
+    Attributes
+    ----------
+    fps : float, optional
+        Rate of pictures, or of a table without times, 1/s.
+    frames : (int, int or None), optional
+        First and last frame of a clip to use, both included.
+    stick : (x1, y1, x2, y2, metres), optional
+        Calibration stick: two pixels and their distance, for a still camera and no house.
+    house : (frame, xc, yc, x1, y1, x2, y2), optional
+        The tee and two points on the outer edge of the 12-ft ring, px, in one frame (None: the
+        first), for a house that is not found by itself.
+    camera : Path, optional
+        Table as ``camera.csv`` with a known camera: one row, or one per frame; or a Tracker
+        project, whose coordinate system is the camera. With a radius
+        other than a curling stone's, the discs are looked for as plain ones on no house.
+    radius : float
+        Radius of the discs, m.
+    masses : mapping
+        Masses by stone, in any unit, where they are not all equal.
+    length_unit, angle_unit : str, optional
+        Units of tables.
+    clip : bool
+        Whether what a Tracker project's clip shows is measured, not what is marked in it.
+    tab : str, optional
+        Which tab of a Tracker project with several.
+    names : mapping
+        Names of stones to names of tracks in tables; empty for all tracks by their own names.
+    angles : mapping
+        Tables of the angles of stones, by stone.
+    overlay : bool
+        Whether the annotated clip is written.
+    restitution, friction : float, optional
+        What predictions assume beforehand; values of the literature by default.
+    samples : int
+        Draws of restitution and frictions from what the shot tells.
+    units : str
+        Of what coaches read: m or ft. All else is SI.
+
+    Raises
+    ------
+    InputError
+        More than one of stick, house and camera.
+    """
+
+    fps: float | None = None
+    frames: tuple[int, int | None] | None = None
+    stick: tuple[float, float, float, float, float] | None = None
+    house: tuple[int | None, float, float, float, float, float, float] | None = None
+    camera: Path | None = None
+    radius: float = STONE.radius
+    masses: Mapping[str, float] = field(default_factory=dict)
+    length_unit: str = "m"
+    angle_unit: str | None = None
+    clip: bool = False
+    tab: str | None = None
+    names: Mapping[str, str] = field(default_factory=dict)
+    angles: Mapping[str, Path] = field(default_factory=dict)
+    overlay: bool = True
+    restitution: float | None = None
+    friction: float | None = None
+    samples: int = 0
+    units: str = "m"
+
+    def __post_init__(self) -> None:
+        ways = {"--stick": self.stick, "--house": self.house, "--camera": self.camera}
+        given = [name for name, value in ways.items() if value is not None]
+        if len(given) > 1:
+            raise InputError(f"{' and '.join(given)} exclude each other; give one of them")
+
+
+def refuse_table_options(path: Path, settings: Settings) -> None:
+    """Refuse to pass over what a person says about tables where a clip is measured."""
+    said = {"--names": settings.names, "--angles": settings.angles, "--tab": settings.tab}
+    said["--angle-unit"] = settings.angle_unit
+    given = [name for name, value in said.items() if value]
+    if settings.length_unit != "m":
+        given.append("--length-unit")
+    if given:
+        raise InputError(f"{path}: only tables take {', '.join(given)}; a clip is measured here")
+
+
+def refuse_clip_options(path: Path, settings: Settings) -> None:
+    """Refuse to pass over what a person says about a clip where tracks are read."""
+    from data.project import ENDINGS
+
+    said = {"--stick": settings.stick, "--house": settings.house, "--camera": settings.camera}
+    given = [name for name, value in {**said, "--frames": settings.frames}.items() if value]
+    if given:
+        clip = "; add --clip to measure its clip" if path.suffix.lower() in ENDINGS else ""
+        raise InputError(f"{path}: only clips take {', '.join(given)}; tracks are read here{clip}")

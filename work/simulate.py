@@ -1,0 +1,95 @@
+"""A shot again, as it was measured or as a person writes it, and with what is changed."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from data.errors import InputError
+from work.analyse import as_tracks
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from physics.simulate import Simulation
+    from physics.start import Start
+    from physics.what_if import Changes
+
+MOST_SAMPLES = 1_000_000
+"""Of one simulated stone; more is a mistake in the rate."""
+
+
+def read_start(path: Path, folder: Path) -> Start:
+    """Read the shot to simulate: written by hand, or measured."""
+    from data.results import Results
+    from data.tracks import read_tracks
+    from physics.shot import read_shot
+    from physics.start import measured_start, written_start
+
+    if path.suffix.lower() != ".json":
+        return written_start(read_shot(path))
+    results = Results.read(path)
+    tracks = path.parent / "tracks.csv"
+    if not tracks.exists():
+        raise InputError(f"{tracks}: no such file; it belongs beside {path.name}")
+    if folder.resolve() == path.parent.resolve():
+        raise InputError(f"{folder}: holds the run itself; name another folder with -o")
+    return measured_start(read_tracks(tracks), results)
+
+
+def sampled(simulation: Simulation, fps: float, model: str) -> pd.DataFrame:
+    """Table as ``simulation.csv`` of a simulation until all is at rest, at `fps` and its end."""
+    import numpy as np
+
+    end = max((rest.t for rest in simulation.rest.values()), default=0.0)
+    if end * fps > MOST_SAMPLES:
+        raise InputError(
+            f"--fps {fps:g}: {end:.0f} s would be {end * fps:.1g} samples a"
+            f" stone; at most {MOST_SAMPLES:g}, please"
+        )
+    times = np.append(np.arange(0.0, end, 1 / fps), end)
+    return as_tracks(simulation.sample(times), model)
+
+
+def throw_often(
+    start: Start, changes: Changes, count: int, throw_sd: tuple[float, float] | None, source: str
+) -> tuple[pd.DataFrame, dict[str, Any]]:
+    """Throw a shot many times.
+
+    Parameters
+    ----------
+    start : Start
+        The shot, with the changes in it.
+    changes : Changes
+        What was changed.
+    count : int
+        How often it is thrown.
+    throw_sd : (float, float), optional
+        Scatter of speed, m/s, and direction, rad; `physics.what_if.THROW_SD` by default.
+    source : str
+        Name of the file that the shot is from.
+
+    Returns
+    -------
+    outcomes : DataFrame
+        See `physics.what_if.sample`.
+    content : dict
+        Of ``whatif.json``.
+    """
+    from physics.what_if import THROW_SD, Changes, odds, sample
+
+    speed, direction = throw_sd or THROW_SD
+    outcomes = sample(start, count, (speed, direction))
+    return outcomes, {
+        "schema": 1,
+        "input": source,
+        "thrown": start.shot.stones[start.thrown].name,
+        "changes": {
+            key: value for key, value in asdict(changes).items() if value != getattr(Changes, key)
+        },
+        "samples": count,
+        "throw_sd": {"speed": speed, "direction": direction},
+        "stones": {name: asdict(item) for name, item in odds(outcomes, start).items()},
+        "warnings": list(start.assumed),
+    }
