@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
@@ -176,14 +177,20 @@ def empty_tracks() -> pd.DataFrame:
 
 def write_table(table: pd.DataFrame, path: Path, columns: Sequence[str] | None = None) -> None:
     """Write a table as CSV, whole or not at all, nine significant digits, NaN as empty."""
-    with whole_file(path) as part:
-        table.to_csv(
-            part,
-            index=False,
-            columns=None if columns is None else list(columns),
-            float_format="%.9g",
-            lineterminator="\n",
-        )
+    names = list(table.columns) if columns is None else list(columns)
+    texts = [_texts(table[name]) for name in names]
+    with whole_file(path) as part, part.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(names)
+        writer.writerows(zip(*texts, strict=True))
+
+
+def _texts(column: pd.Series) -> list[str]:
+    """Values as they are written; `to_csv` takes ten times as long."""
+    if column.dtype.kind == "f":
+        return ["" if value != value else f"{value:.9g}" for value in column.tolist()]
+    missing = column.isna().tolist()
+    return ["" if gone else str(v) for gone, v in zip(missing, column.tolist(), strict=True)]
 
 
 def write_tracks(tracks: pd.DataFrame, path: Path) -> None:
