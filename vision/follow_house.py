@@ -202,9 +202,13 @@ def follow_house(
 def _left_out(best: Piece, pieces: Sequence[Piece], which: str) -> tuple[str, ...]:
     if len(pieces) == 1:
         return ()
-    first, last = best.seen[0].index, best.seen[-1].index
-    others = ", ".join(f"{p.seen[0].index} to {p.seen[-1].index}" for p in pieces if p is not best)
+    others = ", ".join(_span(piece) for piece in pieces if piece is not best)
     return (
         f"the house is shown in {len(pieces)} separate pieces; only {which} is used, frames"
-        f" {first} to {last}; left out: {others}",
+        f" {_span(best)}; left out: {others}",
     )
+
+
+def _span(piece: Piece) -> str:
+    first, last = piece.seen[0].index, piece.seen[-1].index
+    return f"{first}" if first == last else f"{first} to {last}"
