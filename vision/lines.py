@@ -118,11 +118,15 @@ def _cross_score(image: Image, view: View, rig: Array) -> Array:
     place = project(ice.reshape(-1, 2), view.vector, rig, size).reshape(ice.shape)
     with np.errstate(invalid="ignore"):
         inside = np.asarray(((place > 0) & (place < np.array(size) - 1)).all(-1))
-    ridge, known = _ridges(_colours(image, place).astype(np.float32), inside)
+    steps, known = _steps(_colours(image, place).astype(np.float32), inside)
     # A line is faint all the way, darker than ice and perhaps lighter than paint; stones, brooms
     # and print are strong here and there. So each ring's part of each ray counts on its own.
-    ridge = np.where(known[..., None], np.clip(ridge, -FAINT, FAINT), 0.0)
-    total = np.linalg.norm(np.add.reduceat(ridge, PARTS, axis=0), axis=-1)
+    steps = np.where(known[..., None], np.clip(steps, -FAINT, FAINT), 0.0)
+    left, right = np.add.reduceat(steps, PARTS, axis=1)
+    # A ray beside a line differs from one side only.
+    total = np.linalg.norm(
+        np.where(left * right > 0, np.minimum(np.abs(left), np.abs(right)), 0.0), axis=-1
+    )
     count = np.add.reduceat(known, PARTS, axis=0, dtype=int)
     score = np.where(count > LEAST_IN_PART, total / np.sqrt(np.maximum(count, 1)), 0.0)
     centre, tee = score.sum(0), score[:-1].sum(0)
@@ -136,25 +140,33 @@ def _cross_score(image: Image, view: View, rig: Array) -> Array:
     )
 
 
-def _ridges(colour: Floats, inside: Flags) -> tuple[Floats, Flags]:
-    """Contrast of rays, (places, rays, 3), to what is beside them; and where it is known."""
-    ridge, known = np.zeros_like(colour), inside.copy()
+def _steps(colour: Floats, inside: Flags) -> tuple[Floats, Flags]:
+    """Differences of rays, (places, rays, 3), from what is beside them, (2, places, rays, 3).
+
+    Also tells where they are known.
+    """
+    steps, known = np.zeros((2, *colour.shape), np.float32), inside.copy()
     reach = int(np.ceil(max(BESIDE) / ALONG[0] / STEP)) + 1
-    taps = [(a, 1 / len(ON)) for a in ON] + [(a, -1 / len(BESIDE)) for a in BESIDE]
     count = colour.shape[1]
+
+    def aside(around: Floats, distance: float) -> Floats:
+        step = int(np.floor(distance))
+        first, share = reach + step, np.float32(distance - step)
+        return (1 - share) * around[first : first + count] + share * around[
+            first + 1 : first + 1 + count
+        ]
+
     for k, distance in enumerate(ALONG):
         around, within = (
             np.concatenate([v[-reach:], v, v[:reach]]) for v in (colour[k], inside[k])
         )
-        for aside, weight in taps:
-            step = int(np.floor(aside / distance / STEP))
-            between = aside / distance / STEP - step
-            for first, share in ((reach + step, 1 - between), (reach + step + 1, between)):
-                ridge[k] += np.float32(weight * share) * around[first : first + count]
+        line = np.mean([aside(around, a / distance / STEP) for a in ON], axis=0)
+        for side, a in enumerate(BESIDE):
+            steps[side, k] = line - aside(around, a / distance / STEP)
         away = int(np.ceil(max(BESIDE) / distance / STEP))
         for first in (reach - away, reach + away):
             known[k] &= within[first : first + count]
-    return ridge, known
+    return steps, known
 
 
 def sides(image: Image, view: View, rig: Array) -> Array:

@@ -13,6 +13,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from data.sheet import HOUSE
 from vision.normals import BLOCK, LEAST_BLOCKS, SAMPLES, THIN, Normals, Profiles
 from vision.runs import Runs
 
@@ -22,15 +23,18 @@ Flags = NDArray[np.bool_]
 FAINT = 1.5
 """Grey levels that a thin line must stand out by to count half."""
 
-CLEAR = 0.6
-"""How clear a thin line must be all along, 1 for strong everywhere."""
+CLEAR, CLEAR_BEYOND = 0.6, 0.75
+"""How clear a thin line must be all along, or beyond the house if it ends there; 1 for strong
+everywhere."""
 
 STRIPES_SD = 0.025
 """Width of the bell that a thin line is smoothed with, m: two stripes become one."""
 
-CALM, LOUD = 12.0, 80.0
-"""Where the sides of a thin line differ by more, or it stands out by more, it is something else,
-grey levels."""
+SHOWN = 0.4
+"""How clear it is in a block that shows it."""
+
+CALM = 12.0
+"""Where the sides of a thin line differ by more it is something else, grey levels."""
 
 _END = SAMPLES // 5
 _ENDS = np.zeros((2, SAMPLES), np.float32)
@@ -93,7 +97,6 @@ def find_stripes(profile: Profiles, normals: Normals) -> Stripes:
     ends = _ENDS @ blocks
     flat = _LEVEL @ blocks
     calm = ((ends[:, 1] - ends[:, 0]) ** 2).sum(1) < CALM**2
-    calm &= np.abs(flat).max((1, 2)) < LOUD
     for part in kinds.values():
         scale = np.hypot(*(point[part.stop - 1] - point[part.start]))
         scale /= abs(along[part.stop - 1] - along[part.start])
@@ -122,22 +125,27 @@ def _paths(value: Profiles, along: Array, use: Flags) -> tuple[Array, Flags]:
     sample, good : ndarray, shape (lines, blocks)
         Where the profiles are highest near the path, and whether they show the line.
     """
-    count = use.sum(1)
+    beyond = use & (np.abs(along) > HOUSE.twelve_foot)
     share = along - along[:, :1]
     share /= share[:, -1:]
     path = np.round(_FROM + (_TO - _FROM) * share[:, None]).astype(np.int64)
     clear = value / (value.max(2, keepdims=True) + FAINT) * use[..., None]
     line, block = np.ogrid[: len(value), : value.shape[1]]
-    strength = clear[line[..., None], block, path].sum(2) / np.maximum(count, 1)[:, None]
+    course = clear[line[..., None], block, path]
+    strength = np.zeros(course.shape[:2], np.float32)
+    for part, least in ((use, CLEAR), (beyond, CLEAR_BEYOND)):
+        count = part.sum(1)[:, None]
+        mean = (course * part[:, None]).sum(2) / np.maximum(count, 1) / least
+        strength = np.maximum(strength, np.where(count >= LEAST_BLOCKS, mean, 0.0))
     best = strength.argmax(1)
     highest = strength.max(1)
     middle = path[line[:, 0], best]
-    near = value[line[..., None], block[..., None], middle[..., None] + np.arange(-2, 3)]
+    near = clear[line[..., None], block[..., None], middle[..., None] + np.arange(-2, 3)]
     top = near[..., 1:-1].argmax(2) + 1
     low, height, high = (near[line, block, top + aside] for aside in (-1, 0, 1))
     bend = np.maximum(2 * height - low - high, 1e-9)
-    good = use & (height > 0.4 * highest[:, None]) & (height >= low) & (height >= high)
-    good &= ((highest >= CLEAR) & (count >= LEAST_BLOCKS))[:, None]
+    good = use & (height > SHOWN) & (height >= low) & (height >= high)
+    good &= (highest >= 1)[:, None]
     good &= (good.sum(1) >= LEAST_BLOCKS)[:, None]
     return middle + top - 2 + 0.5 * (high - low) / bend, good
 

@@ -1,11 +1,12 @@
 from __future__ import annotations
 
+import cv2
 import numpy as np
 import pytest
 
 from tests.synthetic import PAINTS, Scene, render_still, still_camera
 from vision.lines import sides, upright
-from vision.pose import View, turned
+from vision.pose import View, project, turned
 from vision.rig import OVERHEAD, SIDE_L, SIDE_R, start_rig
 
 SIZE = (960, 540)
@@ -28,6 +29,18 @@ def picture(paint: str) -> np.ndarray:
 def test_lines_give_the_rotation(paint: str, angle: float) -> None:
     view, rig = turned(*level(), angle)
     found, _ = upright(picture(paint), view, rig)
+    assert abs(found.vector[2]) < np.radians(0.3)
+
+
+def test_black_lines_that_end_at_the_house_give_the_rotation() -> None:
+    view, rig = level()
+    image = np.full((SIZE[1], SIZE[0], 3), 230, np.uint8)
+    for ends in ([[0.0, -2.7], [0.0, 2.7]], [[-2.3, 0.0], [2.3, 0.0]]):
+        first, last = np.round(project(np.array(ends), view.vector, rig, SIZE)).astype(int)
+        cv2.line(image, first.tolist(), last.tolist(), (30, 30, 30), 2, cv2.LINE_AA)
+    tee = np.round(project(np.zeros((1, 2)), view.vector, rig, SIZE)[0]).astype(int)
+    cv2.circle(image, tee.tolist(), round(1.829 * SCALE), (120, 50, 40), -1, cv2.LINE_AA)
+    found, _ = upright(image, *turned(view, rig, 0.06))
     assert abs(found.vector[2]) < np.radians(0.3)
 
 

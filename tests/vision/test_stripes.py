@@ -3,6 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from data.sheet import HOUSE
 from vision.normals import SAMPLES, Normals, lay_out
 from vision.paint import CENTRE_LINE, TEE_LINE
 from vision.pose import aim
@@ -36,8 +37,8 @@ def line(normals: Normals, kind: int, depth: float, places: tuple[float, ...]) -
     return found
 
 
-@pytest.mark.parametrize("depth", [6.0, 40.0, -6.0])
-def test_a_faint_line_is_found_where_it_is(depth: float) -> None:
+@pytest.mark.parametrize("depth", [6.0, 40.0, 180.0, -6.0])
+def test_a_line_is_found_where_it_is(depth: float) -> None:
     normals, rng = laid_out(), np.random.default_rng(1)
     profile = ice(rng, len(normals.along)) + line(normals, CENTRE_LINE, depth, (1.5,))
     stripes = find_stripes(profile, normals)
@@ -46,6 +47,20 @@ def test_a_faint_line_is_found_where_it_is(depth: float) -> None:
     off = stripes.offset[part] - (1.5 + 0.3 * stripes.along[part])
     assert np.median(np.abs(off[stripes.good[part]])) < 0.35
     assert not stripes.good[stripes.kinds[TEE_LINE]].any()
+
+
+def test_a_line_that_ends_at_the_house_is_found_beyond_it() -> None:
+    normals, rng = laid_out(), np.random.default_rng(5)
+    profile, part = ice(rng, len(normals.along)), normals.kinds[CENTRE_LINE]
+    painted = line(normals, CENTRE_LINE, 60.0, (1.5,))
+    painted[part][np.abs(normals.along[part]) < HOUSE.twelve_foot] = 0
+    stripes = find_stripes(profile + painted, normals)
+    part = stripes.kinds[CENTRE_LINE]
+    shown = np.abs(stripes.along[part]) > HOUSE.twelve_foot
+    assert stripes.good[part][shown].mean() > 0.7
+    assert stripes.good[part][~shown].mean() < 0.2
+    off = stripes.offset[part] - (1.5 + 0.3 * stripes.along[part])
+    assert np.median(np.abs(off[stripes.good[part] & shown])) < 0.35
 
 
 def test_two_stripes_are_one_line_between_them() -> None:
