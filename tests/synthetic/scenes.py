@@ -100,6 +100,45 @@ def sample_camera() -> CameraPath:
     )
 
 
+def sample_variant(rng: np.random.Generator) -> tuple[Scene, CameraPath]:
+    """The sample's shot and camera otherwise: restitution, frictions, throw, spins, pan, zoom.
+
+    Where A meets B is kept to 15 mm across its way, so that B goes for C. The picture is the
+    sample's, 1280 × 720, or 1920 × 1080.
+    """
+    scene = sample_scene()
+    ice = Ice(b=float(rng.uniform(0.008, 0.013)), spin_decay=float(rng.choice([0.0, 0.02])))
+    impact = Impact(float(rng.uniform(0.75, 0.95)), float(rng.uniform(0.02, 0.12)))
+    speed, heading = float(rng.uniform(1.1, 2.0)), float(-np.pi / 2 + rng.normal(0.03, 0.02))
+    spin = float(rng.choice([-1, 1]) * rng.uniform(0.3, 2.2))
+    ahead, left = np.array(
+        [[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]]
+    )
+    # The sample's A passes B's middle 105 mm to the left at this point of its way.
+    place = np.array([-0.189, 0.629]) - 0.28 * ahead + rng.uniform(-0.12, -0.09) * left
+    thrown = _back(
+        (float(place[0]), float(place[1])), (float(speed * ahead[0]), float(speed * ahead[1])),
+        float(rng.uniform(0, 6)), spin, 1.12, ice,
+    )  # fmt: skip
+    first, *others = scene.stones
+    larger = float(rng.choice([1.0, 1.5]))
+    zoom = larger * rng.uniform(0.9, 1.1, 2)
+    camera = broadcast_camera(
+        size=(round(1280 * larger), round(720 * larger)),
+        position=(float(rng.uniform(-0.3, 0.3)), float(rng.uniform(-0.3, 0.3)), 9.0),
+        end=float(rng.uniform(3.0, 6.0)),
+        target=((0.05, 1.25), (0.1, float(rng.uniform(-0.6, 0.2)))),
+        px_per_m=(float(150 * zoom[0]), float(112 * zoom[1])),
+        k1=(-0.03, float(rng.uniform(-0.03, 0.02))),
+        k2=(0.02, 0.01),
+        shake=float(rng.uniform(0.0, 0.6)) * larger,
+        shake_phase=float(rng.uniform(0, 6)),
+    )
+    stones = (replace(first, start=thrown), *others)
+    seed = int(rng.integers(1 << 30))
+    return replace(scene, stones=stones, ice=ice, impact=impact, seed=seed), camera
+
+
 def random_scene(
     rng: np.random.Generator,
     *,
@@ -244,6 +283,7 @@ __all__ = [
     "red_stone",
     "sample_camera",
     "sample_scene",
+    "sample_variant",
     "sweepers",
     "yellow_stone",
 ]
