@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from command.again import again
-from command.arguments import out_folder, settings_of
+from command.arguments import out_folder, settings_of, what_if_folder
 from command.bars import Bars
 from command.guard import guarded, one_line
 from command.parser import command_line
@@ -29,7 +29,7 @@ from work.film import film
 from work.measure import Measured, measure, refuse_clips
 from work.runs import apart, find_runs
 from work.settings import Settings
-from work.simulate import read_start, sampled, throw_often
+from work.simulate import measured_shot, read_start, sampled, shot_file, throw_often
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -440,9 +440,10 @@ def _do_simulate(arguments: argparse.Namespace, bars: Bars) -> str:
     from physics.what_if import Changes, changed
     from report.summary import odds_text, simulation_json, simulation_text
 
-    folder = out_folder(arguments, arguments.shot)
+    shot = shot_file(arguments.shot)
+    folder = what_if_folder(arguments, shot)
     check_folder(folder)
-    start = read_start(arguments.shot, folder)
+    start = read_start(shot, folder)
     changes = Changes(
         arguments.restitution,
         arguments.friction,
@@ -455,15 +456,13 @@ def _do_simulate(arguments: argparse.Namespace, bars: Bars) -> str:
     table = sampled(simulation, arguments.fps, start.shot.impact.name)
     throws = arguments.samples
     if throws is None:
-        throws = MEASURED_THROWS if arguments.shot.suffix.lower() == ".json" else 0
+        throws = MEASURED_THROWS if measured_shot(shot) else 0
     outcome = simulation_json(simulation)
     lines = [simulation_text(simulation, folder / "simulation.csv")]
     with staged(folder, replaces=WHAT_IF) as stage:
         write_table(table, stage / "simulation.csv")
         if throws:
-            outcomes, odds = throw_often(
-                start, changes, throws, arguments.throw_sd, arguments.shot.name
-            )
+            outcomes, odds = throw_often(start, changes, throws, arguments.throw_sd, shot.name)
             _write_odds(stage, start, outcomes, odds)
             outcome = {"nominal": outcome, **odds}
             lines += odds_text(odds, [folder / name for name in WHAT_IF])

@@ -11,6 +11,7 @@ from typing import TypeVar
 from data.errors import InputError
 from data.sheet import STONE
 from work.settings import Settings
+from work.simulate import measured_shot
 
 T = TypeVar("T")
 
@@ -48,6 +49,13 @@ def out_folder(arguments: argparse.Namespace, first: str | Path) -> Path:
     name = path.name if path.is_dir() else path.stem
     plain = re.sub(r"[*?\[\]]", "", name)  # a glob's signs do not belong in a name
     return Path(f"{plain or 'out'}-curlshot")
+
+
+def what_if_folder(arguments: argparse.Namespace, shot: Path) -> Path:
+    """Folder for the simulation of a shot; of a measured one by default RUN-whatif."""
+    if arguments.out is not None or not measured_shot(shot):
+        return out_folder(arguments, shot)
+    return Path(f"{shot.resolve().parent.name.removesuffix('-curlshot')}-whatif")
 
 
 def _by_stone(option: str, pairs: Sequence[tuple[str, T]]) -> dict[str, T]:

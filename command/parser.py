@@ -154,15 +154,15 @@ def command_line(version: str) -> argparse.ArgumentParser:
         "  curlshot simulate SHOT.toml\n"
         "  curlshot simulate SHOT.toml --json --fps 50\n"
         "  curlshot simulate SHOT.toml --samples 2000           thrown 2000 times as players do\n"
-        "  curlshot simulate shot/results.json                  the measured shot, thrown again\n"
+        "  curlshot simulate shot-curlshot                      a measured shot, thrown again\n"
         "  curlshot simulate shot/results.json --aim-offset 0.05 --speed 1.1x -o wider\n"
         "                                                       what if: 5 cm to the left, faster\n"
         "  curlshot simulate shot/results.json --restitution 0.9 --friction 0.012 --spin -1.5\n"
         "\n"
-        "A measured shot (results.json with tracks.csv beside it) starts from the states before\n"
-        "its first hit. Samples are drawn from the measured uncertainties and from what players\n"
-        "are off by. They give outcomes.csv (where each stone ends in each sample), whatif.json\n"
-        "and spread.png, a plan view.\n"
+        "A measured shot (the folder of a run, or its results.json) starts from the states before\n"
+        "its first hit, and is written into RUN-whatif. Samples are drawn from the measured\n"
+        "uncertainties and from what players are off by. They give outcomes.csv (where each stone\n"
+        "ends in each sample), whatif.json and spread.png, a plan view.\n"
         "\n"
         "SHOT.toml:\n"
         "  [physics]                  # all optional\n"
@@ -183,7 +183,10 @@ def command_line(version: str) -> argparse.ArgumentParser:
         "  omega = 1.5708             # rigid-body also needs omega_after\n",
     )
     simulate_.add_argument(
-        "shot", metavar="SHOT", type=Path, help="SHOT.toml, or the results.json of a run"
+        "shot",
+        metavar="SHOT",
+        type=Path,
+        help="SHOT.toml, or the folder of a run, or its results.json",
     )
     simulate_.add_argument(
         "--fps", type=values.positive, default=25.0, help="samples per second (25)"

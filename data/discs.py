@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from data.columns import LENGTH_UNITS
+from data.columns import UNIT_NOT_SAID
 from data.errors import InputError
 from data.sheet import STONE
 
@@ -22,7 +22,9 @@ FASTEST_STONE = 6.0
 """m/s; the hardest takeouts leave the hand at 4 to 5."""
 
 
-def refuse_no_discs(sightings: pd.DataFrame, radius: float, source: str) -> None:
+def refuse_no_discs(
+    sightings: pd.DataFrame, radius: float, source: str, advice: str = UNIT_NOT_SAID
+) -> None:
     """Refuse tracks that discs of this radius cannot have.
 
     Parameters
@@ -33,6 +35,8 @@ def refuse_no_discs(sightings: pd.DataFrame, radius: float, source: str) -> None
         Of the discs, m.
     source : str
         What to call the tracks in messages.
+    advice : str
+        What may be wrong with the lengths.
 
     Raises
     ------
@@ -40,7 +44,7 @@ def refuse_no_discs(sightings: pd.DataFrame, radius: float, source: str) -> None
         Two discs lie in one another at several times, or a curling stone is faster than any.
     """
     if radius == STONE.radius:
-        _refuse_racing(sightings, source)
+        _refuse_racing(sightings, source, advice)
     places = sightings.pivot_table(index="t", columns="stone", values=["x", "y"])
     for one, other in combinations(sorted(sightings["stone"].unique()), 2):
         apart = np.hypot(
@@ -51,19 +55,18 @@ def refuse_no_discs(sightings: pd.DataFrame, radius: float, source: str) -> None
             raise InputError(
                 f"{source}: {one} and {other} come within {_length(inside.min())} of each other at"
                 f" t = {inside.idxmin():.3g} s, but discs of radius {radius:g} m are"
-                f" {_length(2 * radius)} wide: another length unit (--length-unit), another radius"
-                " (--radius), or not both are stones (--names)"
+                f" {_length(2 * radius)} wide: {advice}, another radius (--radius), or not both are"
+                " stones (--names)"
             )
 
 
-def _refuse_racing(sightings: pd.DataFrame, source: str) -> None:
+def _refuse_racing(sightings: pd.DataFrame, source: str, advice: str) -> None:
     for stone, rows in sightings.groupby("stone", sort=False):
         speed, t = top_speed(rows["t"].to_numpy(), rows[["x", "y"]].to_numpy())
         if speed > FASTEST_STONE:
             raise InputError(
                 f"{source}: {stone} moves at {speed:.1f} m/s at t = {t:.3g} s, faster than any"
-                f" curling stone: another length unit (--length-unit: {', '.join(LENGTH_UNITS)}), a"
-                " slipped mark, or other discs (--radius)"
+                f" curling stone: {advice}, a slipped mark, or other discs (--radius)"
             )
 
 

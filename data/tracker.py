@@ -17,7 +17,7 @@ import pandas as pd
 
 from data.angles import FASTEST_SPIN, attach, read_angles, spin_rate
 from data.clock import with_clock
-from data.columns import ANGLE_UNITS, LENGTH_UNITS
+from data.columns import ANGLE_UNITS, LENGTH_UNITS, UNIT_NOT_SAID, UNIT_SAID
 from data.discs import top_speed
 from data.errors import InputError
 from data.export import read_parquet
@@ -50,12 +50,15 @@ class Imported:
         Rate of the rows, 1/s; None where there is only one time.
     masses : mapping
         Masses by stone, as a project has them; empty where none, or not all, were set.
+    advice : str
+        What may be wrong with the lengths if they make no sense.
     """
 
     sightings: pd.DataFrame
     warnings: tuple[str, ...]
     fps: float | None
     masses: Mapping[str, float] = field(default_factory=dict)
+    advice: str = UNIT_NOT_SAID
 
 
 def read_table(
@@ -129,14 +132,16 @@ def read_table(
     table = pd.concat([file.tracks for file in files], ignore_index=True)
     table, rate = with_clock(table, [file.decimals for file in files])
     table = check_sightings(table, source)
-    warnings += _check_scale(table, source)
+    said = all(file.length_unit is not None for file in files)
+    advice = UNIT_SAID if said else UNIT_NOT_SAID
+    warnings += _check_scale(table, source, advice)
     for stone, path in (angles or {}).items():
         track = read_angles(path, angle_unit, fps)
         table, notes = attach(table, stone, track, str(path))
         warnings += [*track.warnings, *notes]
     masses = {stone: mass for file in files for stone, mass in file.masses.items()}
     masses, notes = _set_masses(masses, set(table["stone"]), source)
-    return Imported(table, tuple(dict.fromkeys(warnings + notes)), rate, masses)
+    return Imported(table, tuple(dict.fromkeys(warnings + notes)), rate, masses, advice)
 
 
 def _checked_parquet(path: Path) -> TrackFile:
@@ -226,21 +231,18 @@ def _spins_too_fast(tracks: pd.DataFrame) -> bool:
     return False
 
 
-def _check_scale(table: pd.DataFrame, source: str) -> list[str]:
+def _check_scale(table: pd.DataFrame, source: str, advice: str) -> list[str]:
     """Refuse or warn about places and speeds that no stone has."""
     xy = table[["x", "y"]].to_numpy(float)
     far = float(np.abs(xy).max())
     if far > FARTHEST:
-        raise InputError(
-            f"{source}: places up to {far:.3g} m from the origin: probably the wrong length unit"
-            f" (--length-unit: {', '.join(LENGTH_UNITS)})"
-        )
+        raise InputError(f"{source}: places up to {far:.3g} m from the origin: probably {advice}")
     for stone, rows in table.groupby("stone", sort=False):
         speed, t = top_speed(rows["t"].to_numpy(float), rows[["x", "y"]].to_numpy(float))
         if speed > FASTEST:
             raise InputError(
-                f"{source}: {stone} moves at {speed:.0f} m/s at t = {t:.3g} s: probably the wrong"
-                f" length unit (--length-unit: {', '.join(LENGTH_UNITS)}), or a slipped mark"
+                f"{source}: {stone} moves at {speed:.0f} m/s at t = {t:.3g} s: probably"
+                f" {advice}, or a slipped mark"
             )
     extent = float(np.ptp(xy, axis=0).max())
     if len(xy) > 1 and extent < SMALLEST:

@@ -83,7 +83,7 @@ def simulate_measured(
         friction = FRICTION
         warnings.append(f"simulation: friction not measured, {FRICTION} assumed")
     elif friction < 0:
-        warnings.append(f"simulation: friction came out as {friction:.4f}, 0 used")
+        warnings.append(f"simulation: friction came out as −{-friction:.4f}, 0 used")
     ice: IceLaw = Constant(max(friction, 0.0) or 1e-6)
     if estimates.friction.law == "fit" and estimates.whole is not None:
         ice = fitted_ice(estimates.whole.state())

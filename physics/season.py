@@ -19,6 +19,9 @@ HIT_COLUMNS = (
     "momentum_residual", "stderr_momentum", "energy_lost", "note",
 )  # fmt: skip
 
+POSSIBLE = {"restitution": (0.0, 1.0), "friction": (0.0, np.inf)}
+"""What e and μ of any shot lie between; a measured value may be off by its error."""
+
 
 def shots_table(season: Mapping[str, Results]) -> pd.DataFrame:
     """One row per shot: e and μ with their errors (`SHOT_COLUMNS`), NaN where not known."""

@@ -8,9 +8,11 @@ from typing import Any
 
 import pandas as pd
 
-from data.results import Results
+from data.results import Prediction, Results
 from data.sheet import House
+from physics.forecast import AFTER
 from physics.pool import Pooled
+from physics.season import POSSIBLE
 from physics.simulate import Simulation
 from report.numbers import count, plus_minus
 from report.tables import moving_stones, rest_table, shot_stone
@@ -89,6 +91,13 @@ def season_text(shots: pd.DataFrame, pooled: Mapping[str, Pooled]) -> list[str]:
         if mean.scatter is not None:
             text += f"; shot to shot {plus_minus(mean.scatter, mean.stderr_scatter)}"
         lines.append(text)
+        low, high = POSSIBLE[name]
+        lines += [
+            f"warning     {shot['shot']}: {sign} = {plus_minus(shot[name], shot[f'stderr_{name}'])}"
+            " cannot be; it counts in the mean with its error"
+            for shot in shots.to_dict("records")
+            if shot[name] < low or shot[name] > high
+        ]
     return lines
 
 
@@ -127,7 +136,7 @@ def summary(
         if guess.rmse is not None:
             lines.append(
                 f"predicted   {model}, from before the first hit, e and μ assumed:"
-                f" {unit.little(guess.rmse)} RMS off"
+                f" {unit.little(guess.rmse)} RMS off{_soon(guess, unit)}"
             )
     if house is not None:
         lines.append(f"shot stone  {_shot_stone(results, tracks, house, unit)}")
@@ -136,6 +145,16 @@ def summary(
         report = out / "report.html"
         lines.append(f"written     {report if report.exists() else out}")
     return "\n".join(lines)
+
+
+def _soon(guess: Prediction, unit: Unit) -> str:
+    """How far stones were off a while after the first hit, where they were seen."""
+    off = [
+        f"{stone} {unit.little(error)}"
+        for stone, error in guess.error_after.items()
+        if error is not None
+    ]
+    return f"; {AFTER} s after it {', '.join(off)}" if off else ""
 
 
 def _shot_stone(results: Results, tracks: pd.DataFrame, house: House, unit: Unit) -> str:

@@ -108,7 +108,9 @@ def test_summary_says_what_a_person_asks(sample: pipeline.Run) -> None:
         assert word in text
 
 
-def test_single_picture_gives_positions_only(tmp_path: Path) -> None:
+def test_single_picture_gives_positions_only(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     capture = cv2.VideoCapture(str(SAMPLE))
     capture.set(cv2.CAP_PROP_POS_FRAMES, 0)
     ok, image = capture.read()
@@ -122,6 +124,8 @@ def test_single_picture_gives_positions_only(tmp_path: Path) -> None:
     assert score.recall == 1
     assert score.rmse < 0.03
     assert done.tracks["vx"].isna().all()
+    assert pipeline.main(["simulate", str(tmp_path / "out")]) == 2
+    assert "no shot is known" in capsys.readouterr().err
     assert done.results.restitution.value is None
     assert done.results.friction.value is None
     assert done.results.warnings

@@ -60,6 +60,9 @@ def convert(
     if ending in PROJECTS:
         return _write_project(measured, path, over)
     WRITERS[ending](measured.sightings, path)
+    if ending == ".txt" and measured.sightings["team"].any():
+        note = f"{path}: Tracker's text has no column for teams; they are not in it"
+        return replace(measured, warnings=(*measured.warnings, note))
     return measured
 
 

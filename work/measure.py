@@ -17,6 +17,7 @@ from work.settings import Settings, refuse_clip_options, refuse_table_options
 if TYPE_CHECKING:
     import pandas as pd
 
+    from data.tracker import Imported
     from vision.camera import Camera
     from vision.clip import Clip, Frame
 
@@ -57,9 +58,10 @@ def measure(
         from data.discs import refuse_no_discs
 
         refuse_clip_options(files[0], settings)
-        measured = import_tables(files, settings)
-        refuse_no_discs(measured.sightings, settings.radius, ", ".join(map(str, files)))
-        return measured
+        table = _read(files, settings)
+        source = ", ".join(map(str, files))
+        refuse_no_discs(table.sightings, settings.radius, source, table.advice)
+        return _imported(files, table, settings)
     if not any(tables):
         refuse_table_options(files[0], settings)
     return _look_at_clip(files, settings, progress)
@@ -74,9 +76,13 @@ def refuse_clips(files: Sequence[Path], command: str) -> None:
 
 def import_tables(files: tuple[Path, ...], settings: Settings) -> Measured:
     """Read tables of tracks."""
+    return _imported(files, _read(files, settings), settings)
+
+
+def _read(files: tuple[Path, ...], settings: Settings) -> Imported:
     from data.tracker import read_table
 
-    table = read_table(
+    return read_table(
         files,
         length_unit=settings.length_unit,
         angle_unit=settings.angle_unit,
@@ -85,15 +91,16 @@ def import_tables(files: tuple[Path, ...], settings: Settings) -> Measured:
         names=settings.names,
         angles=settings.angles,
     )
-    sightings = table.sightings
-    house = HOUSE if settings.radius == STONE.radius else None
+
+
+def _imported(files: tuple[Path, ...], table: Imported, settings: Settings) -> Measured:
     return Measured(
         files,
-        sightings,
+        table.sightings,
         table.fps,
-        sightings["t"].nunique(),
+        table.sightings["t"].nunique(),
         table.warnings,
-        house=house,
+        house=HOUSE if settings.radius == STONE.radius else None,
         masses=table.masses,
     )
 

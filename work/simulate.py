@@ -20,14 +20,48 @@ MOST_SAMPLES = 1_000_000
 """Of one simulated stone; more is a mistake in the rate."""
 
 
+def shot_file(path: Path) -> Path:
+    """Return the file of a shot; of the folder of a run its results.
+
+    Raises
+    ------
+    InputError
+        A folder without any.
+    """
+    if not path.is_dir():
+        return path
+    results = path / "results.json"
+    if not results.is_file():
+        raise InputError(f"{results}: no such file; name a SHOT.toml or the folder of a run")
+    return results
+
+
+def measured_shot(path: Path) -> bool:
+    """Tell whether a shot was measured, not written by a person."""
+    return path.suffix.lower() == ".json"
+
+
 def read_start(path: Path, folder: Path) -> Start:
-    """Read the shot to simulate: written by hand, or measured."""
+    """Read the shot to simulate: written by hand, or measured.
+
+    Parameters
+    ----------
+    path : Path
+        SHOT.toml or results.json.
+    folder : Path
+        Where the simulation will be written.
+
+    Raises
+    ------
+    InputError
+        Where there is no shot in the files, or `folder` holds the measured one.
+    """
     from data.results import Results
     from data.tracks import read_tracks
     from physics.shot import read_shot
     from physics.start import measured_start, written_start
 
-    if path.suffix.lower() != ".json":
+    if not measured_shot(path):
         return written_start(read_shot(path))
     results = Results.read(path)
     tracks = path.parent / "tracks.csv"

@@ -76,6 +76,18 @@ def test_the_command_says_so_in_one_line(
     assert not (tmp_path / "out").exists()
 
 
+def test_no_length_unit_is_advised_where_the_file_says_its_own(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = shot(0.01)[["stone", "t", "x", "y"]].rename(columns={"x": "x (m)", "y": "y (m)"})
+    table.to_csv(tmp_path / "a.csv", index=False)
+    assert (
+        pipeline.main(["estimate", str(tmp_path / "a.csv"), "-o", str(tmp_path / "o"), "-q"]) == 2
+    )
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "calibration" in line and "--length-unit" not in line
+
+
 def test_real_discs_pass(shared: Path) -> None:
     """Air tables and motion capture, whose discs touch for long."""
     pucks = read_table([shared / "tracks" / "airtable_two_pucks.csv"], length_unit="cm")

@@ -68,6 +68,16 @@ def test_command_reads_folders_of_runs(tmp_path: Path, capsys: pytest.CaptureFix
     assert (out / "season.png").stat().st_size > 10_000
 
 
+def test_friction_below_zero_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name, value in (("good", 0.011), ("bad-one", -0.004)):
+        shot = replace(SHOT, friction=Friction(value, 0.001))
+        shot.write(tmp_path / name / "results.json")
+    assert main(["season", str(tmp_path), "-o", str(tmp_path / "out")]) == 0
+    warnings = [line for line in capsys.readouterr().out.splitlines() if "warning" in line]
+    assert len(warnings) == 1
+    assert "bad-one: μ = −0.0040 ± 0.0010 cannot be" in warnings[0]
+
+
 def test_runs_of_one_name_are_told_apart(tmp_path: Path) -> None:
     for parent in ("p", "q"):
         (tmp_path / parent / "shot").mkdir(parents=True)
