@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-
-import numpy as np
-from numpy.typing import NDArray
+from dataclasses import dataclass
+from math import hypot
 
 from vision.align import Complex
 from vision.handle import TURNING, angle_between
 from vision.sighting import Sighting
 from vision.still import Portrait
-
-Array = NDArray[np.float64]
 
 STEADY = 5
 """Sightings at one place that make a stone one at rest."""
@@ -27,13 +23,13 @@ class Lead:
 
     Attributes
     ----------
-    place, velocity : ndarray, shape (2,)
+    place, velocity : tuple of float
         m and m/s.
     t : float
         s.
     missed : bool
         Whether it was missed since.
-    anchor : ndarray, shape (2,)
+    anchor : tuple of float
         The place that it has not left lately, m.
     facing : ndarray, optional
         How its cap looked when it came there (`vision.handle.cap_spectrum`).
@@ -43,10 +39,10 @@ class Lead:
         Its picture when it was last measured, if it rests.
     """
 
-    place: Array
-    velocity: Array
+    place: tuple[float, float]
+    velocity: tuple[float, float]
     t: float
-    anchor: Array
+    anchor: tuple[float, float]
     missed: bool = False
     facing: Complex | None = None
     steady: int = 0
@@ -55,17 +51,18 @@ class Lead:
     @classmethod
     def to(cls, sighting: Sighting, t: float) -> Lead:
         """Lead to a stone of which nothing is known but one sighting."""
-        place = np.array([sighting.x, sighting.y])
-        return cls(place, np.zeros(2), t, place, facing=sighting.spectrum)
+        place = sighting.x, sighting.y
+        return cls(place, (0.0, 0.0), t, place, facing=sighting.spectrum)
 
     @property
     def rests(self) -> bool:
         """Whether the stone has been at one place for a while."""
         return self.steady >= STEADY
 
-    def at(self, t: float) -> Array:
+    def at(self, t: float) -> tuple[float, float]:
         """Where the stone is expected, m."""
-        return np.asarray(self.place + self.velocity * (t - self.t))
+        (x, y), (vx, vy), step = self.place, self.velocity, t - self.t
+        return x + vx * step, y + vy * step
 
     def on(self, sighting: Sighting, t: float, near: float, still: float) -> Lead:
         """Go on from a sighting; it corrects what was expected, unless the course has changed.
@@ -77,22 +74,20 @@ class Lead:
         still : float
             How far from its anchor it may be and rest, m.
         """
-        seen, expected, step = np.array([sighting.x, sighting.y]), self.at(t), t - self.t
-        stays = float(np.hypot(*(seen - self.anchor))) < still and not self._turned(sighting)
-        after = replace(
-            self,
-            t=t,
-            missed=False,
-            anchor=self.anchor if stays else seen,
-            facing=sighting.spectrum if not stays or self.facing is None else self.facing,
-            steady=self.steady + 1 if stays else 0,
-            portrait=None if sighting.measured or not stays else self.portrait,
-        )
-        away = seen - expected
-        if float(np.hypot(*away)) > near:
-            return replace(after, place=seen, velocity=(seen - self.place) / step)
-        velocity = self.velocity + 0.3 * away / step
-        return replace(after, place=expected + 0.6 * away, velocity=velocity)
+        x, y = sighting.x, sighting.y
+        (ahead_x, ahead_y), (vx, vy), step = self.at(t), self.velocity, t - self.t
+        away_x, away_y = x - ahead_x, y - ahead_y
+        if hypot(away_x, away_y) > near:
+            place, velocity = (x, y), ((x - self.place[0]) / step, (y - self.place[1]) / step)
+        else:
+            place = ahead_x + 0.6 * away_x, ahead_y + 0.6 * away_y
+            velocity = vx + 0.3 * away_x / step, vy + 0.3 * away_y / step
+        left = hypot(x - self.anchor[0], y - self.anchor[1])
+        if left < still and not self._turned(sighting):
+            facing = sighting.spectrum if self.facing is None else self.facing
+            portrait = None if sighting.measured else self.portrait
+            return Lead(place, velocity, t, self.anchor, False, facing, self.steady + 1, portrait)
+        return Lead(place, velocity, t, (x, y), False, sighting.spectrum)
 
     def _turned(self, sighting: Sighting) -> bool:
         """Whether the cap faces elsewhere than when it came to its place, as far as is seen."""

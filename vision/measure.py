@@ -1,4 +1,4 @@
-"""Discs measured where they are thought to be: all of one picture at once, on rays.
+"""Discs measured where they are thought to be: all of one or more pictures at once, on rays.
 
 Around each place the picture itself is sampled on rays. The edges of cap and granite (or the
 rim of a plain disc) give the centre, and what lies between them the evidence for a stone.
@@ -6,6 +6,7 @@ rim of a plain disc) give the centre, and what lies between them the evidence fo
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -14,11 +15,9 @@ from numpy.typing import NDArray
 
 from data.sheet import Stone
 from vision.appearance import Appearance, membership
-from vision.camera import Camera
 from vision.circles import Rim, falls_along, fit_circles, summed
 from vision.patch import EFFORT, HANDLE_HEIGHT, Effort, is_plain, profile_of, scales, tilts
-from vision.picture import Picture
-from vision.rays import Rays, sample_rays
+from vision.rays import Look, Rays, sample_rays
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
@@ -77,21 +76,21 @@ class Measures:
 
 
 def measure(
-    image: Picture,
-    camera: Camera,
-    places: Array,
+    looks: Sequence[Look],
     appearance: Appearance | None,
     disc: Stone,
     effort: Effort = EFFORT,
 ) -> Measures:
-    """Measure the discs at these places, shape (n, 2), m.
+    """Measure the discs at places of pictures.
 
     Parameters
     ----------
+    looks : sequence of Look
+        Pictures of one size and n places in all; the measures are in their order.
     appearance : Appearance or None
         What stones look like here; not used for a plain disc.
     """
-    sampled = sample_rays(image, camera, places, profile_of(disc, effort), effort.rays)
+    sampled = sample_rays(looks, profile_of(disc, effort), effort.rays)
     count = effort.radii
     rays = Rays(
         sampled.bgr[:, :, :count],
@@ -102,7 +101,9 @@ def measure(
     )
     pairs = sampled.lab[:, :, count:]
     handle = (pairs[:, :, ::2] >> 1) + (pairs[:, :, 1::2] >> 1)
-    scale, tilt = scales(camera, places), tilts(camera, places)
+    places = np.concatenate([look.places for look in looks])
+    scale = np.concatenate([scales(look.camera, look.places) for look in looks])
+    tilt = np.concatenate([tilts(look.camera, look.places) for look in looks])
     if is_plain(disc):
         return _plain(rays, handle, places, scale, tilt, disc, effort)
     assert appearance is not None

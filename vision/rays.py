@@ -1,6 +1,7 @@
 """Rays about places on the ice, sampled in the picture itself.
 
-All places of a picture are treated at once: every array begins with the axis of the places.
+All places of one or more pictures are treated at once: every array begins with the axis of the
+places.
 """
 
 from __future__ import annotations
@@ -27,8 +28,17 @@ _MOST_ROWS = 32000
 
 
 @dataclass(frozen=True)
+class Look:
+    """A picture, its camera, and places on its ice, shape (n, 2), m."""
+
+    picture: Picture
+    camera: Camera
+    places: Array
+
+
+@dataclass(frozen=True)
 class Rays:
-    """Colours on rays around n places, from the picture itself.
+    """Colours on rays around n places, from the pictures themselves.
 
     Attributes
     ----------
@@ -100,33 +110,40 @@ def joined(first: Profile, second: Profile) -> Profile:
     )
 
 
-def sample_rays(image: Picture, camera: Camera, places: Array, profile: Profile, rays: int) -> Rays:
-    """Sample the picture on rays around places on the ice.
+def sample_rays(looks: Sequence[Look], profile: Profile, rays: int) -> Rays:
+    """Sample pictures on rays around places on the ice.
 
     Parameters
     ----------
-    places : ndarray, shape (n, 2)
-        Centres, m.
+    looks : sequence of Look
+        Pictures of one size, each with the centres.
     profile : Profile
         Of every ray.
     rays : int
         How many, counter-clockwise from the x axis.
     """
     angle, around = directions(rays)
-    nodes = places[:, None, None] + around[:, None] * profile.node_radius[:, None]
-    ends = camera.project(lifted(camera, nodes, profile.node_height)).astype(np.float32)
+    spokes = around[:, None] * profile.node_radius[:, None]
+    projected = [
+        look.camera.project(
+            lifted(look.camera, look.places[:, None, None] + spokes, profile.node_height)
+        )
+        for look in looks
+    ]
+    ends = np.concatenate(projected).astype(np.float32)
     across, down = ends[..., 0] @ profile.mix, ends[..., 1] @ profile.mix
-    width, high = camera.size
+    width, high = looks[0].camera.size
     if (ends.min((0, 1, 2)) >= 0).all() and (ends.max((0, 1, 2)) <= (width - 1, high - 1)).all():
         inside = np.ones(across.shape, bool)
     else:
         inside = (across >= 0) & (down >= 0) & (across <= width - 1) & (down <= high - 1)
-    shape = (*across.shape, 3)
-    across, down = (a.reshape(-1, a.shape[-1]) for a in (across, down))
-    parts = [
-        colours_at(image, across[k : k + _MOST_ROWS], down[k : k + _MOST_ROWS])
-        for k in range(0, len(across), _MOST_ROWS)
-    ]
-    bgr = np.asarray(parts[0] if len(parts) == 1 else np.concatenate(parts), np.uint8)
-    lab = np.asarray(cv2.cvtColor(bgr, cv2.COLOR_BGR2LAB), np.uint8)
-    return Rays(bgr.reshape(shape), lab.reshape(shape), inside, profile.radius, angle)
+    bgr = np.empty((*across.shape, 3), np.uint8)
+    most, end = _MOST_ROWS // rays, 0
+    for look in looks:
+        begin, end = end, end + len(look.places)
+        for k in range(begin, end, most):
+            part = slice(k, min(k + most, end))
+            x, y = (along[part].reshape(-1, along.shape[-1]) for along in (across, down))
+            bgr[part] = colours_at(look.picture, x, y).reshape(-1, *bgr.shape[1:])
+    lab = cv2.cvtColor(bgr.reshape(-1, *bgr.shape[2:]), cv2.COLOR_BGR2LAB).reshape(bgr.shape)
+    return Rays(bgr, np.asarray(lab, np.uint8), inside, profile.radius, angle)

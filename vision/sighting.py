@@ -21,7 +21,8 @@ class Sighting:
     sd_x, sd_y : float
         Standard error that is anew in each picture, m.
     sd_place : float
-        Standard error, per axis, that the sightings of a stone share, m.
+        Standard error, per axis, that the sightings of a stone share, m; NaN where it is not
+        told yet.
     colour : ndarray, shape (3,)
         Colour of the cap, L*a*b*.
     visible : float

@@ -127,31 +127,39 @@ def portraits(
 
 
 def unchanged(
-    picture: Picture, camera: Camera, known: Sequence[Portrait], disc: Stone
-) -> list[Sighting | None]:
-    """Look whether stones look in a picture as they did in their portraits.
+    views: Sequence[tuple[Picture, Camera]], known: Sequence[Portrait], disc: Stone
+) -> list[list[Sighting | None]]:
+    """Look whether stones look in pictures as they did in their portraits.
 
     Returns
     -------
-    list of Sighting or None
-        Sightings with the places by this picture, without a picture of the handle; None where
-        something has changed, or is in the way.
+    list of list of Sighting or None
+        For each picture and portrait the sighting with the place by this picture, without a
+        picture of the handle; None where something has changed, or is in the way.
     """
     if not known:
-        return []
+        return [[] for _ in views]
     places = np.array([(p.sighting.x, p.sighting.y) for p in known])
-    pixels, middle, scale = _pixels(camera, places, disc)
-    change = _lightness(picture, pixels) - np.array([p.lightness for p in known])
+    seen = [_pixels(camera, places, disc) for _, camera in views]
+    middle, scale = (np.array(each) for each in list(zip(*seen, strict=True))[1:])
+    lightness = [
+        _lightness(picture, pixels)
+        for (picture, _), (pixels, _, _) in zip(views, seen, strict=True)
+    ]
+    change = np.array(lightness) - np.array([p.lightness for p in known])
     found = (np.array([p.inverse for p in known]) @ change[..., None])[..., 0]
     rest = change - (np.array([p.design for p in known]) @ found[..., None])[..., 0]
-    shift = found[:, :2] / (1 + found[:, 2:3])  # gradients have changed with the contrast
-    left = np.sqrt((rest**2).mean(1))
-    still = (left < np.array([p.most for p in known])) & (np.abs(shift).max(1) < MOST_SHIFT)
+    shift = found[..., :2] / (1 + found[..., 2:3])  # gradients have changed with the contrast
+    left = np.sqrt((rest**2).mean(-1))
+    still = (left < np.array([p.most for p in known])) & (np.abs(shift).max(-1) < MOST_SHIFT)
     moved = places + np.linalg.solve(scale, shift[..., None])[..., 0]
-    middle = middle + shift
+    columns = (still.tolist(), moved.tolist(), (middle + shift).tolist())
     return [
-        replace(p.sighting, x=x, y=y, pixel=(u, v), spectrum=None, measured=False) if ok else None
-        for p, ok, (x, y), (u, v) in zip(
-            known, still.tolist(), moved.tolist(), middle.tolist(), strict=True
-        )
+        [
+            replace(p.sighting, x=x, y=y, pixel=(u, v), spectrum=None, measured=False)
+            if ok
+            else None
+            for p, ok, (x, y), (u, v) in zip(known, *row, strict=True)
+        ]
+        for row in zip(*columns, strict=True)
     ]

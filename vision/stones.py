@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import nan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,8 @@ from vision.camera import Camera
 from vision.measure import Measures, measure
 from vision.patch import EFFORT, is_plain, scales, tilts
 from vision.picture import Picture
-from vision.seek import Bounds, seek, seek_about
+from vision.rays import Look
+from vision.seek import Bounds, seek
 from vision.sighting import Refusal, Sighting
 
 Array = NDArray[np.float64]
@@ -63,18 +65,9 @@ FOLLOWING = Search(radius_px=6.5)
 """For a clip: a coarser map, for what one picture hides the next ones show."""
 
 
-ON_COURSE = 0.15
-"""Within this many radii of where it is expected a stone need not be looked for."""
-
-SETTLED = 0.03
-"""Measured from within this many radii of its centre, a stone's place depends no more on where."""
-
 CAP_OFF = 0.015
 """How far, in radii, the middle of the edges of cap and granite may be off the stone's: real ones
 are lit from a side, bevelled and not mounted true. For rendered ones this is too cautious."""
-
-NEARBY = 0.35
-"""How far from where it is expected a stone is measured, in radii."""
 
 
 @dataclass(frozen=True)
@@ -151,7 +144,8 @@ def search_picture(
     for effort in (replace(EFFORT, rounds=1), EFFORT):
         if not len(places):
             return Findings((), tuple(refused))
-        seen = measure(image, camera, places, sought.appearance, disc, effort)
+        looks = [Look(image, camera, places)]
+        seen = measure(looks, sought.appearance, disc, effort)
         faults = judge(seen, scores, disc, search)
         refused += [
             Refusal(float(places[i, 0]), float(places[i, 1]), float(seen.evidence[i]), fault)
@@ -164,80 +158,12 @@ def search_picture(
         stones = [
             with_samples(found, seen, i, disc)
             for i, found in zip(
-                chosen.tolist(), sightings(seen, chosen, camera, disc, scores), strict=True
+                chosen.tolist(), sightings(seen, looks, chosen, disc, scores), strict=True
             )
         ]
         scores = scores[good]
-    kept = _apart(stones, disc)
-    return Findings(kept, tuple(refused))
-
-
-def look_at(
-    image: Picture,
-    camera: Camera,
-    places: Array,
-    appearance: Appearance | None,
-    disc: Stone = STONE,
-    search: Search = FOLLOWING,
-) -> list[Sighting | None]:
-    """Measure stones where they are expected, without a search of the ice.
-
-    Parameters
-    ----------
-    places : ndarray, shape (n, 2)
-        Where on the ice, m.
-    appearance : Appearance or None
-        What stones look like here; not used for a plain disc.
-
-    Returns
-    -------
-    list of Sighting or None
-        One per place; None where there is no stone.
-    """
-    seen = measure(image, camera, places, appearance, disc)
-    settled = seen.shift < SETTLED * disc.radius
-    out = _found(seen, seen.response, settled, camera, disc, search)
-    # The edges that were chosen from beside the centre draw the circle towards there.
-    near = np.flatnonzero(~settled & (seen.shift < ON_COURSE * disc.radius) & seen.ok)
-    if len(near):
-        seen = measure(image, camera, seen.centre[near], appearance, disc)
-        settled = seen.shift < SETTLED * disc.radius
-        found = _found(seen, seen.response, settled, camera, disc, search)
-        for i, sighting in zip(near.tolist(), found, strict=True):
-            out[i] = sighting
-    others = [i for i, sighting in enumerate(out) if sighting is None]
-    if others:
-        about, scores = seek_about(
-            image, camera, places[others], appearance, disc,
-            radius_px=search.radius_px, reach=NEARBY,
-        )  # fmt: skip
-        seen = measure(image, camera, about, appearance, disc)
-        within = seen.ok & (seen.shift < NEARBY * disc.radius)
-        about = np.where(within[:, None], seen.centre, about)
-        seen = measure(image, camera, about, appearance, disc)
-        anywhere = np.ones(len(others), bool)
-        found = _found(seen, scores, anywhere, camera, disc, search)
-        for i, sighting in zip(others, found, strict=True):
-            out[i] = sighting
-    return out
-
-
-def _found(
-    seen: Measures,
-    scores: Array,
-    right: NDArray[np.bool_],
-    camera: Camera,
-    disc: Stone,
-    search: Search,
-) -> list[Sighting | None]:
-    """Give the sightings where places show stones and are the right ones, else None."""
-    out: list[Sighting | None] = [None] * len(scores)
-    faults = judge(seen, scores, disc, search)
-    chosen = [i for i, fault in enumerate(faults) if right[i] and not fault]
-    found = sightings(seen, np.array(chosen, np.intp), camera, disc, scores)
-    for i, sighting in zip(chosen, found, strict=True):
-        out[i] = sighting
-    return out
+    kept = placed_by(camera, _apart(stones, disc), disc)
+    return Findings(tuple(kept), tuple(refused))
 
 
 def whole_ice(camera: Camera, disc: Stone, search: Search) -> Bounds:
@@ -272,26 +198,30 @@ def judge(seen: Measures, scores: Array | float, disc: Stone, search: Search) ->
 
 
 def sightings(
-    seen: Measures, chosen: NDArray[np.intp], camera: Camera, disc: Stone, scores: Array
+    seen: Measures, looks: Sequence[Look], chosen: NDArray[np.intp], disc: Stone, scores: Array
 ) -> list[Sighting]:
-    """Sightings of the places chosen."""
+    """Sightings of the places chosen from those of the looks; what they share is not told yet."""
     evidence = seen.evidence if is_plain(disc) else seen.evidence + 0.5 * scores
-    pixels = camera.project(seen.centre, disc.cap_height)
-    shared = _shared_errors(camera, seen.centre, disc, seen.scale, seen.tilt)
+    ends = np.cumsum([0, *(len(look.places) for look in looks)])
+    parts = zip(looks, np.split(chosen, np.searchsorted(chosen, ends[1:-1])), strict=True)
+    pixels = [look.camera.project(seen.centre[i], disc.cap_height) for look, i in parts if len(i)]
+    columns = (
+        chosen, seen.centre[chosen], seen.sd[chosen], seen.visible[chosen], evidence[chosen],
+        seen.outline[chosen], np.concatenate([np.empty((0, 2)), *pixels]),
+    )  # fmt: skip
     return [
         Sighting(
-            x, y, sd_x, sd_y, float(shared[i]), seen.colour[i], float(seen.visible[i]),
-            float(evidence[i]), tuple(seen.outline[i].tolist()), seen.handle[i].copy(), (u, v),
+            x, y, sd_x, sd_y, nan, seen.colour[i], visible, score, tuple(outline),
+            seen.handle[i].copy(), (u, v),
         )
-        for i in chosen.tolist()
-        for (x, y), (sd_x, sd_y), (u, v) in [
-            (seen.centre[i].tolist(), seen.sd[i].tolist(), pixels[i].tolist())
-        ]
+        for i, (x, y), (sd_x, sd_y), visible, score, outline, (u, v) in zip(
+            *(column.tolist() for column in columns), strict=True
+        )
     ]  # fmt: skip
 
 
 def placed_by(camera: Camera, seen: Sequence[Sighting], disc: Stone) -> list[Sighting]:
-    """Give sightings the places that another camera of the same picture gives them."""
+    """Give sightings the places that a camera of their picture gives them, with what they share."""
     if not seen:
         return []
     places = camera.ice(np.array([sighting.pixel for sighting in seen]), disc.cap_height)
@@ -327,10 +257,10 @@ def with_samples(found: Sighting, seen: Measures, index: int, disc: Stone) -> Si
     )
 
 
-def _apart(found: Sequence[Sighting], disc: Stone) -> tuple[Sighting, ...]:
+def _apart(found: Sequence[Sighting], disc: Stone) -> list[Sighting]:
     """Keep the better of any two that overlap more than two discs can."""
     kept: list[Sighting] = []
     for item in sorted(found, key=lambda s: -s.score):
         if all(np.hypot(item.x - k.x, item.y - k.y) > 1.6 * disc.radius for k in kept):
             kept.append(item)
-    return tuple(kept)
+    return kept

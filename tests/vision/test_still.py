@@ -33,7 +33,7 @@ def known() -> list[Portrait]:
 @pytest.mark.parametrize("light", [0.85, 1.0, 1.1])
 def test_shifts_are_told_to_a_fraction_of_a_millimetre(known: list[Portrait], light: float) -> None:
     shift = np.array([0.002, -0.003])
-    found = unchanged(picture((0.002, -0.003), light), VIEW, known, STONE)
+    found = unchanged([(picture((0.002, -0.003), light), VIEW)], known, STONE)[0]
     for index, (sighting, portrait) in enumerate(zip(found, known, strict=True)):
         assert sighting is not None and not sighting.measured
         moved = np.array([sighting.x - portrait.sighting.x, sighting.y - portrait.sighting.y])
@@ -43,11 +43,11 @@ def test_shifts_are_told_to_a_fraction_of_a_millimetre(known: list[Portrait], li
 
 
 def test_what_moves_turns_or_is_covered_is_not_taken_for_the_same(known: list[Portrait]) -> None:
-    assert unchanged(picture((0.03, 0.0)), VIEW, known, STONE)[0] is None
+    assert unchanged([(picture((0.03, 0.0)), VIEW)], known, STONE)[0][0] is None
     covered = picture()
     u, v = known[1].sighting.pixel
     covered[round(v) : round(v) + 8, round(u) - 20 : round(u) + 20] = (40, 60, 200)
-    seen = unchanged(covered, VIEW, known, STONE)
+    seen = unchanged([(covered, VIEW)], known, STONE)[0]
     assert seen[1] is None
     assert seen[0] is not None and seen[2] is not None
 

@@ -17,9 +17,11 @@ from tests.synthetic.scenes import PAINTS
 from vision.appearance import any_stone, colour_difference, learn, membership
 from vision.camera import Camera
 from vision.clip import open_clip
+from vision.expected import look_about
+from vision.rays import Look
 from vision.sighting import Sighting
 from vision.stick import stick_camera
-from vision.stones import find_stones, look_at, plain_disc
+from vision.stones import find_stones, plain_disc
 
 RED, YELLOW, BLUE = (30, 24, 150), (20, 190, 220), (170, 80, 30)
 CAMERA = still_camera(px_per_m=140.0, target=(0.0, 0.6))
@@ -188,7 +190,7 @@ def test_where_a_stone_is_expected_has_no_say_in_where_it_is(aside: float) -> No
     found = {}
     for turn in range(4):
         way = aside * np.array([np.cos(np.pi * turn / 2), np.sin(np.pi * turn / 2)])
-        seen = look_at(image, camera, true + way, learned)
+        seen = look_about(Look(image, camera, true + way), learned)
         assert all(sighting is not None for sighting in seen)
         found[turn] = np.array([(s.x, s.y) for s in seen if s is not None])
     places = np.array(list(found.values()))

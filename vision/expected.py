@@ -1,0 +1,114 @@
+"""Stones measured where they are expected, in one picture or in several at once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.sheet import STONE, Stone
+from vision.appearance import Appearance
+from vision.measure import Measures, measure
+from vision.rays import Look
+from vision.seek import seek_about
+from vision.sighting import Sighting
+from vision.stones import FOLLOWING, Search, judge, sightings
+
+Array = NDArray[np.float64]
+
+ON_COURSE = 0.15
+"""Within this many radii of where it is expected a stone need not be looked for."""
+
+SETTLED = 0.03
+"""Measured from within this many radii of its centre, a stone's place depends no more on where."""
+
+NEARBY = 0.35
+"""How far from where it is expected a stone is measured, in radii."""
+
+
+def look_on_course(
+    looks: Sequence[Look],
+    appearance: Appearance | None,
+    disc: Stone = STONE,
+    search: Search = FOLLOWING,
+) -> list[Sighting | None]:
+    """Measure stones that have kept their course.
+
+    Parameters
+    ----------
+    looks : sequence of Look
+        Pictures, each with the places where stones are expected.
+    appearance : Appearance or None
+        What stones look like here; not used for a plain disc.
+
+    Returns
+    -------
+    list of Sighting or None
+        One per place, in their order; None where there is no stone.
+    """
+    seen = measure(looks, appearance, disc)
+    settled = seen.shift < SETTLED * disc.radius
+    out = _found(seen, looks, seen.response, settled, disc, search)
+    # The edges that were chosen from beside the centre draw the circle towards there.
+    near = np.flatnonzero(~settled & (seen.shift < ON_COURSE * disc.radius) & seen.ok)
+    if len(near):
+        looks = _moved(looks, seen.centre, near)
+        seen = measure(looks, appearance, disc)
+        settled = seen.shift < SETTLED * disc.radius
+        found = _found(seen, looks, seen.response, settled, disc, search)
+        for i, sighting in zip(near.tolist(), found, strict=True):
+            out[i] = sighting
+    return out
+
+
+def look_about(
+    look: Look, appearance: Appearance | None, disc: Stone = STONE, search: Search = FOLLOWING
+) -> list[Sighting | None]:
+    """Measure stones, also those that have left their course by a little: as `look_on_course`."""
+    out = look_on_course([look], appearance, disc, search)
+    others = [i for i, sighting in enumerate(out) if sighting is None]
+    if others:
+        about, scores = seek_about(
+            look.picture, look.camera, look.places[others], appearance, disc,
+            radius_px=search.radius_px, reach=NEARBY,
+        )  # fmt: skip
+        seen = measure([replace(look, places=about)], appearance, disc)
+        within = seen.ok & (seen.shift < NEARBY * disc.radius)
+        looks = [replace(look, places=np.where(within[:, None], seen.centre, about))]
+        seen = measure(looks, appearance, disc)
+        anywhere = np.ones(len(others), bool)
+        found = _found(seen, looks, scores, anywhere, disc, search)
+        for i, sighting in zip(others, found, strict=True):
+            out[i] = sighting
+    return out
+
+
+def _moved(looks: Sequence[Look], places: Array, chosen: NDArray[np.intp]) -> list[Look]:
+    """Look again at the chosen ones, at these places."""
+    ends = np.cumsum([len(look.places) for look in looks])
+    parts = np.split(chosen, np.searchsorted(chosen, ends[:-1]))
+    return [
+        replace(look, places=places[part])
+        for look, part in zip(looks, parts, strict=True)
+        if len(part)
+    ]
+
+
+def _found(
+    seen: Measures,
+    looks: Sequence[Look],
+    scores: Array,
+    right: NDArray[np.bool_],
+    disc: Stone,
+    search: Search,
+) -> list[Sighting | None]:
+    """Give the sightings where places show stones and are the right ones, else None."""
+    out: list[Sighting | None] = [None] * len(scores)
+    faults = judge(seen, scores, disc, search)
+    chosen = np.array([i for i, fault in enumerate(faults) if right[i] and not fault], np.intp)
+    found = sightings(seen, looks, chosen, disc, scores)
+    for i, sighting in zip(chosen.tolist(), found, strict=True):
+        out[i] = sighting
+    return out

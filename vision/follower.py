@@ -1,0 +1,266 @@
+"""Known stones through the pictures of a clip: each measured where it is expected to be.
+
+A stone that is not where it is expected, as after a hit, is sought nearby. What the next few
+pictures show of stones that keep their course, or their rest, is measured for all of these
+pictures at once, which costs a third of doing it picture by picture.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from math import hypot, inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.sheet import Stone
+from vision.appearance import Appearance
+from vision.camera import Camera
+from vision.clip import Frame
+from vision.expected import ON_COURSE, look_about, look_on_course
+from vision.handle import cap_spectrum
+from vision.lead import Lead
+from vision.patch import handle_radii
+from vision.rays import Look
+from vision.seek import Bounds
+from vision.sighting import Sighting
+from vision.still import portraits, unchanged
+from vision.stones import Search, search_picture
+
+Array = NDArray[np.float64]
+
+HANDLE_VISIBLE = 0.75
+"""Share of a stone that must be seen for its angle to be measured."""
+
+STILL = 0.03
+"""How far from where it rests a stone may be seen, in radii."""
+
+
+@dataclass(frozen=True)
+class Patience:
+    """How stones are followed.
+
+    Attributes
+    ----------
+    block : int
+        Pictures that are looked at together.
+    wait : float
+        Time for which a stone is still looked for where it is expected, s.
+    trust : float
+        Time from one measurement of a stone that looks unchanged to the next, s, unless a block
+        lasts longer.
+    reach : float
+        How far, in radii, a stone may be from where it is expected or from where it was.
+    """
+
+    block: int = 8
+    wait: float = 0.3
+    trust: float = 0.25
+    reach: float = 1.5
+
+
+PATIENCE = Patience()
+
+
+@dataclass(frozen=True)
+class View:
+    """A picture with its camera and the stones seen in it so far."""
+
+    frame: Frame
+    camera: Camera
+    sightings: list[Sighting] = field(default_factory=list)
+
+    @property
+    def places(self) -> Array:
+        """Of the stones, m, shape (n, 2)."""
+        return _places(self.sightings)
+
+
+@dataclass(frozen=True)
+class Follower:
+    """Follows stones of which it is known what they look like.
+
+    Attributes
+    ----------
+    appearance : Appearance or None
+        None for plain discs.
+    disc : Stone
+    search : Search
+    patience : Patience
+    """
+
+    appearance: Appearance | None
+    disc: Stone
+    search: Search
+    patience: Patience
+
+    def follow(self, views: Sequence[View], leads: Sequence[Lead]) -> list[Lead]:
+        """Add to views, one after the other, the stones to which leads point.
+
+        Returns
+        -------
+        list of Lead
+            Where those in the last view lead on to.
+        """
+        for begin in range(0, len(views), self.patience.block):
+            first, *others = views[begin : begin + self.patience.block]
+            leads = self._step(first, leads, ())
+            for view, seen in zip(others, self._ahead(others, leads), strict=True):
+                leads = self._step(view, leads, seen)
+        return list(leads)
+
+    def _step(self, view: View, leads: Sequence[Lead], ahead: Sequence[Sighting]) -> list[Lead]:
+        """Add to a view the stones to which leads point; some were measured ahead."""
+        if not leads:
+            return []
+        t = view.frame.t
+        apart = 1.6 * self.disc.radius
+        near, still = 0.15 * self.disc.radius, STILL * self.disc.radius
+        expected = [lead.at(t) for lead in leads]
+        found = self._measured(view, leads, expected, ahead)
+        going: list[tuple[Lead, Sighting | None]] = []
+        lost: list[Lead] = []
+        # The best first: of two leads to one stone, the other is lost.
+        for index in sorted(range(len(leads)), key=lambda i: -_score(found[i])):
+            lead, sighting = leads[index], found[index]
+            if _away(view.sightings, *expected[index]) < 0.5 * self.disc.radius:
+                continue  # it leads to a stone that is followed already
+            if sighting is None or _away(view.sightings, sighting.x, sighting.y) < apart:
+                lost.append(lead)
+                continue
+            view.sightings.append(sighting)
+            going.append((lead.on(sighting, t, near, still), sighting))
+        for lead in lost:
+            nearby = None if lead.missed else self._near(view, lead)
+            if nearby is not None:
+                view.sightings.append(nearby)
+                going.append((lead.on(nearby, t, near, still), nearby))
+            elif abs(t - lead.t) < self.patience.wait:
+                going.append((replace(lead, missed=True), None))
+        return self._portrayed(view, going)
+
+    def _ahead(self, views: Sequence[View], leads: Sequence[Lead]) -> list[list[Sighting]]:
+        """Measure at once what views show of stones that rest or keep their course."""
+        leads = [lead for lead in leads if not lead.missed]
+        if not views or not leads:
+            return [[] for _ in views]
+        resting = [(i, lead.portrait) for i, lead in enumerate(leads) if lead.portrait]
+        pictures = [(view.frame.picture, view.camera) for view in views]
+        alike = unchanged(pictures, [portrait for _, portrait in resting], self.disc)
+        out, looks = [], []
+        for view, seen in zip(views, alike, strict=True):
+            known = {i for (i, _), sighting in zip(resting, seen, strict=True) if sighting}
+            others = [lead.at(view.frame.t) for i, lead in enumerate(leads) if i not in known]
+            looks.append(
+                Look(view.frame.picture, view.camera, np.array(others, float).reshape(-1, 2))
+            )
+            out.append([sighting for sighting in seen if sighting])
+        if any(len(look.places) for look in looks):
+            measured = iter(look_on_course(looks, self.appearance, self.disc, self.search))
+            for seen, look in zip(out, looks, strict=True):
+                found = [next(measured) for _ in look.places]
+                seen.extend(self.reduced(sighting) for sighting in found if sighting)
+        return out
+
+    def _measured(
+        self,
+        view: View,
+        leads: Sequence[Lead],
+        expected: Sequence[tuple[float, float]],
+        ahead: Sequence[Sighting],
+    ) -> list[Sighting | None]:
+        """Look at each stone where it is expected; what rests and looks as it did, only briefly."""
+        picture, camera = view.frame.picture, view.camera
+        found: list[Sighting | None] = [
+            _nearest(ahead, *place, ON_COURSE * self.disc.radius) for place in expected
+        ]
+        resting = [
+            (index, lead.portrait)
+            for index, lead in enumerate(leads)
+            if not found[index]
+            and lead.portrait
+            and abs(view.frame.t - lead.portrait.t) < self.patience.trust
+        ]
+        (alike,) = unchanged([(picture, camera)], [portrait for _, portrait in resting], self.disc)
+        for (index, _), sighting in zip(resting, alike, strict=True):
+            found[index] = sighting
+        others = [index for index, sighting in enumerate(found) if sighting is None]
+        if others:
+            look = Look(picture, camera, np.array([expected[index] for index in others]))
+            measured = look_about(look, self.appearance, self.disc, self.search)
+            for index, sighting in zip(others, measured, strict=True):
+                found[index] = sighting and self.reduced(sighting)
+        return found
+
+    def _portrayed(self, view: View, going: Sequence[tuple[Lead, Sighting | None]]) -> list[Lead]:
+        """Take the portraits of the stones at rest that have just been measured."""
+        leads = [lead for lead, _ in going]
+        due = [
+            (index, sighting)
+            for index, (lead, sighting) in enumerate(going)
+            if lead.rests and sighting is not None and sighting.measured
+        ]
+        taken = portraits(
+            view.frame.picture, view.camera, view.frame.t, [s for _, s in due], self.disc
+        )
+        for (index, _), portrait in zip(due, taken, strict=True):
+            leads[index] = replace(leads[index], portrait=portrait)
+        return leads
+
+    def _near(self, view: View, lead: Lead) -> Sighting | None:
+        """Seek a stone that is not where it is expected about there and about its last place."""
+        either = np.array([lead.at(view.frame.t), lead.place])
+        reach = self.patience.reach * self.disc.radius
+        low, high = either.min(0) - reach - self.disc.radius, either.max(0) + reach
+        high = high + self.disc.radius
+        bounds = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
+        found = self.sought(view, bounds)
+        away = [min(float(np.hypot(*(place - e))) for e in either) for place in _places(found)]
+        if not away or min(away) > reach:
+            return None
+        return found[int(np.argmin(away))]
+
+    def sought(self, view: View, bounds: Bounds | None = None) -> list[Sighting]:
+        """Stones on a part of the ice, or on all of it, that were not seen in the view so far."""
+        found = search_picture(
+            view.frame.picture,
+            view.camera,
+            self.appearance,
+            self.disc,
+            self.search,
+            bounds,
+            view.places,
+        )
+        return [self.reduced(sighting) for sighting in found.stones]
+
+    def reduced(self, sighting: Sighting) -> Sighting:
+        """Reduce the pictures of a sighting to what the angle needs."""
+        seen_well = sighting.visible >= HANDLE_VISIBLE
+        radii = handle_radii(self.disc)
+        return replace(
+            sighting,
+            handle=np.empty((0, 0, 3), np.uint8),
+            spectrum=cap_spectrum(sighting.handle, radii) if seen_well else None,
+            cap_samples=np.empty((0, 3)),
+            granite_samples=np.empty((0, 3)),
+        )
+
+
+def _away(sightings: Sequence[Sighting], x: float, y: float) -> float:
+    """Distance from a place to the nearest of the stones seen, m."""
+    return min((hypot(s.x - x, s.y - y) for s in sightings), default=inf)
+
+
+def _nearest(sightings: Sequence[Sighting], x: float, y: float, reach: float) -> Sighting | None:
+    """Give the nearest of the stones seen within reach of a place."""
+    away = [hypot(s.x - x, s.y - y) for s in sightings]
+    return sightings[away.index(min(away))] if away and min(away) < reach else None
+
+
+def _score(sighting: Sighting | None) -> float:
+    return -1.0 if sighting is None else sighting.score
+
+
+def _places(sightings: Sequence[Sighting]) -> Array:
+    return np.array([(s.x, s.y) for s in sightings]).reshape(-1, 2)
