@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 from numpy.typing import NDArray
 
 from data.sheet import STONE
@@ -133,33 +133,56 @@ def check_figure(
     Figure
         The average is sharp, and the lines lie on the paint, where the camera was followed well.
     """
-    rows = -(-len(looks) // COLUMNS)
     reasons = sorted({place.reason for look in looks for place in look.refused})
     with styled():
-        figure = new_figure(16, 2.45 * rows + 4.6)
-        parts: Any = figure.subfigures(2, 1, height_ratios=(2.45 * rows, 4.6))
-        upper, foot = parts
+        if len(cameras) == 1:
+            figure = new_figure(16, 6.0)
+            parts: Any = figure.subfigures(1, 2, width_ratios=(1.9, 1))
+            upper, right = parts
+            _frames(upper, looks, rings, radius, reasons, columns=1)
+            _average(right.subplots(), looks, rings)
+        else:
+            columns = min(len(looks), COLUMNS)
+            tall = 2.45 * COLUMNS / columns * -(-len(looks) // columns)
+            figure = new_figure(16, tall + 4.6)
+            parts = figure.subfigures(2, 1, height_ratios=(tall, 4.6))
+            upper, foot = parts
+            _frames(upper, looks, rings, radius, reasons, columns)
+            left, right = foot.subfigures(1, 2, width_ratios=(1, 2.2))
+            _average(left.subplots(), looks, rings)
+            _residuals(right.subplots(2, 1, sharex=True), cameras)
         figure.suptitle(title, x=0.01, ha="left", weight="bold", fontsize=12)
-        axes = upper.subplots(rows, COLUMNS, squeeze=False).ravel()
-        for ax, look in zip(axes, looks, strict=False):
-            _show(ax, _drawn(look, rings, radius, reasons))
-            where = "" if look.camera.found else ", carried"
-            ax.set_title(f"frame {look.frame.index}, {look.frame.t:.2f} s{where}", fontsize=8)
-        for ax in axes[len(looks) :]:
-            ax.axis("off")
-        if reasons:
-            key = "; ".join(f"{number} {text}" for number, text in enumerate(reasons, 1))
-            upper.supxlabel(f"stones taken: green; refused: red, since {key}", fontsize=9)
-        left, right = foot.subfigures(1, 2, width_ratios=(1, 2.2))
-        _average(left.subplots(), looks, rings)
-        _residuals(right.subplots(2, 1, sharex=True), cameras)
     return figure
 
 
-def _drawn(look: Look, rings: Sequence[float], radius: float, reasons: Sequence[str]) -> Image:
-    """Draw the model on a copy of the frame, reduced to the size of the sheet."""
+def _frames(
+    part: SubFigure,
+    looks: Sequence[Look],
+    rings: Sequence[float],
+    radius: float,
+    reasons: Sequence[str],
+    columns: int,
+) -> None:
+    """Show the frames with the model on them, and what the numbers at refused places mean."""
+    width = PICTURE_WIDTH * min(COLUMNS // columns, 2)
+    axes = part.subplots(-(-len(looks) // columns), columns, squeeze=False).ravel()
+    for ax, look in zip(axes, looks, strict=False):
+        _show(ax, _drawn(look, rings, radius, reasons, width))
+        where = "" if look.camera.found else ", carried"
+        ax.set_title(f"frame {look.frame.index}, {look.frame.t:.2f} s{where}", fontsize=8)
+    for ax in axes[len(looks) :]:
+        ax.axis("off")
+    key = "; ".join(f"{number} {text}" for number, text in enumerate(reasons, 1))
+    refused = f"; refused: red, since {key if len(reasons) > 1 else reasons[0]}" if reasons else ""
+    part.supxlabel(f"stones taken: green{refused}", fontsize=9)
+
+
+def _drawn(
+    look: Look, rings: Sequence[float], radius: float, reasons: Sequence[str], width: int
+) -> Image:
+    """Draw the model on a copy of the frame, reduced to a width on the sheet, px."""
     image = look.frame.image.copy()
-    thickness = max(round(image.shape[1] / PICTURE_WIDTH), 1)
+    thickness = max(round(image.shape[1] / width), 1)
     lines = ice_lines(rings)
     for colour, some in ((_RINGS, lines[: len(rings)]), (_LINES, lines[len(rings) :])):
         draw_lines(image, look.camera, some, colour, thickness, edge=False)
@@ -170,17 +193,28 @@ def _drawn(look: Look, rings: Sequence[float], radius: float, reasons: Sequence[
     for place in look.refused:
         outline = np.array([place.x, place.y]) + radius * _CIRCLE
         draw_lines(image, look.camera, [outline], _REFUSED, thickness, height)
+    for place in numbered(look.refused, 2 * radius) if len(reasons) > 1 else ():
         at = look.camera.project(np.array([place.x + radius, place.y]), height)
         cv2.putText(
             image, str(reasons.index(place.reason) + 1), (int(at[0]) + 4, int(at[1])),
             cv2.FONT_HERSHEY_SIMPLEX, 0.5 * thickness, _REFUSED, thickness, cv2.LINE_AA,
         )  # fmt: skip
-    factor = PICTURE_WIDTH / image.shape[1]
+    factor = width / image.shape[1]
     if factor >= 1:
         return image
     return np.asarray(
         cv2.resize(image, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA), np.uint8
     )
+
+
+def numbered(refused: Sequence[Refusal], apart: float) -> list[Refusal]:
+    """Choose the refused places that get a number: one of those that lie on one another."""
+    chosen: list[Refusal] = []
+    for place in refused:
+        near = [item for item in chosen if np.hypot(item.x - place.x, item.y - place.y) < apart]
+        if all(item.reason != place.reason for item in near):
+            chosen.append(place)
+    return chosen
 
 
 def _show(ax: Axes, image: Image) -> None:
@@ -206,7 +240,7 @@ def _average(ax: Axes, looks: Sequence[Look], rings: Sequence[float]) -> None:
         top, left = max(top, 0), max(left, 0)
         layer[top : top + part.shape[0], left : left + part.shape[1]] = part
         layers.append(layer)
-    ax.set_title("median from above: sharp if followed well")
+    ax.set_title("from above" if len(looks) == 1 else "median from above: sharp if followed well")
     if layers:
         stack = np.stack(layers)
         shown = np.isfinite(stack).any(0)

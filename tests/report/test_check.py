@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from pipeline import main, sample_clip
-from report.check import Look, check_figure, frames_to_show
+from report.check import Look, check_figure, frames_to_show, numbered
 from vision.camera import Camera
 from vision.clip import Frame
 from vision.sighting import Refusal
@@ -65,6 +65,22 @@ def test_the_model_is_drawn_where_the_camera_puts_it() -> None:
     assert ((refused[..., 2] > 150) & (refused[..., 0] < 120)).any()
     words = " ".join(part.get_supxlabel() for part in figure.subfigs)
     assert "a broom" in words
+
+
+def test_a_single_picture_is_large_and_has_no_course_in_time() -> None:
+    look = Look(Frame(5, 0.2, house_picture()), camera(5), ())
+    figure = check_figure([look], table(1, 0), (1.829,))
+    picture, above = (ax for part in figure.subfigs for ax in part.axes)
+    figure.draw_without_rendering()
+    assert picture.get_window_extent().width > 1.5 * above.get_window_extent().width
+    assert above.get_title() == "from above"
+
+
+def test_numbers_of_reasons_do_not_lie_on_one_another() -> None:
+    close = [Refusal(0.5 + 0.05 * k, 0.5, 0.3, "a broom") for k in range(4)]
+    other = [Refusal(0.6, 0.5, 0.3, "too small"), Refusal(1.5, 0.5, 0.3, "a broom")]
+    chosen = numbered([*close, *other], 0.29)
+    assert chosen == [close[0], *other]
 
 
 def test_the_average_is_sharp_only_if_the_camera_was_followed() -> None:
