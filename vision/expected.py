@@ -63,26 +63,19 @@ def look_on_course(
     return out
 
 
-def look_about(
+def look_beside(
     look: Look, appearance: Appearance | None, disc: Stone = STONE, search: Search = FOLLOWING
 ) -> list[Sighting | None]:
-    """Measure stones, also those that have left their course by a little: as `look_on_course`."""
-    out = look_on_course([look], appearance, disc, search)
-    others = [i for i, sighting in enumerate(out) if sighting is None]
-    if others:
-        about, scores = seek_about(
-            look.picture, look.camera, look.places[others], appearance, disc,
-            radius_px=search.radius_px, reach=NEARBY,
-        )  # fmt: skip
-        seen = measure([replace(look, places=about)], appearance, disc)
-        within = seen.ok & (seen.shift < NEARBY * disc.radius)
-        looks = [replace(look, places=np.where(within[:, None], seen.centre, about))]
-        seen = measure(looks, appearance, disc)
-        anywhere = np.ones(len(others), bool)
-        found = _found(seen, looks, scores, anywhere, disc, search)
-        for i, sighting in zip(others, found, strict=True):
-            out[i] = sighting
-    return out
+    """Measure stones that have left their course by a little: as `look_on_course`."""
+    about, scores = seek_about(
+        look.picture, look.camera, look.places, appearance, disc,
+        radius_px=search.radius_px, reach=NEARBY,
+    )  # fmt: skip
+    seen = measure([replace(look, places=about)], appearance, disc)
+    within = seen.ok & (seen.shift < NEARBY * disc.radius)
+    looks = [replace(look, places=np.where(within[:, None], seen.centre, about))]
+    seen = measure(looks, appearance, disc)
+    return _found(seen, looks, scores, np.ones(len(scores), bool), disc, search)
 
 
 def _moved(looks: Sequence[Look], places: Array, chosen: NDArray[np.intp]) -> list[Look]:

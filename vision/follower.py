@@ -18,10 +18,8 @@ from data.sheet import Stone
 from vision.appearance import Appearance
 from vision.camera import Camera
 from vision.clip import Frame
-from vision.expected import ON_COURSE, look_about, look_on_course
-from vision.handle import cap_spectrum
+from vision.expected import ON_COURSE, look_beside, look_on_course
 from vision.lead import Lead
-from vision.patch import handle_radii
 from vision.rays import Look
 from vision.seek import Bounds
 from vision.sighting import Sighting
@@ -29,9 +27,6 @@ from vision.still import portraits, unchanged
 from vision.stones import Search, search_picture
 
 Array = NDArray[np.float64]
-
-HANDLE_VISIBLE = 0.75
-"""Share of a stone that must be seen for its angle to be measured."""
 
 STILL = 0.03
 """How far from where it rests a stone may be seen, in radii."""
@@ -56,7 +51,7 @@ class Patience:
 
     block: int = 8
     wait: float = 0.3
-    trust: float = 0.25
+    trust: float = 0.5
     reach: float = 1.5
 
 
@@ -148,19 +143,18 @@ class Follower:
         resting = [(i, lead.portrait) for i, lead in enumerate(leads) if lead.portrait]
         pictures = [(view.frame.picture, view.camera) for view in views]
         alike = unchanged(pictures, [portrait for _, portrait in resting], self.disc)
-        out, looks = [], []
+        out: list[list[Sighting]] = []
+        looks = []
         for view, seen in zip(views, alike, strict=True):
             known = {i for (i, _), sighting in zip(resting, seen, strict=True) if sighting}
             others = [lead.at(view.frame.t) for i, lead in enumerate(leads) if i not in known]
-            looks.append(
-                Look(view.frame.picture, view.camera, np.array(others, float).reshape(-1, 2))
-            )
             out.append([sighting for sighting in seen if sighting])
+            looks.append(Look(view.frame.picture, view.camera, _array(others)))
         if any(len(look.places) for look in looks):
             measured = iter(look_on_course(looks, self.appearance, self.disc, self.search))
-            for seen, look in zip(out, looks, strict=True):
+            for seen_so_far, look in zip(out, looks, strict=True):
                 found = [next(measured) for _ in look.places]
-                seen.extend(self.reduced(sighting) for sighting in found if sighting)
+                seen_so_far += [sighting for sighting in found if sighting]
         return out
 
     def _measured(
@@ -187,10 +181,16 @@ class Follower:
             found[index] = sighting
         others = [index for index, sighting in enumerate(found) if sighting is None]
         if others:
-            look = Look(picture, camera, np.array([expected[index] for index in others]))
-            measured = look_about(look, self.appearance, self.disc, self.search)
-            for index, sighting in zip(others, measured, strict=True):
-                found[index] = sighting and self.reduced(sighting)
+            look = Look(picture, camera, _array([expected[index] for index in others]))
+            seen = look_on_course([look], self.appearance, self.disc, self.search)
+            for index, sighting in zip(others, seen, strict=True):
+                found[index] = sighting
+        astray = [index for index in others if not (found[index] or leads[index].missed)]
+        if astray:
+            look = Look(picture, camera, _array([expected[index] for index in astray]))
+            seen = look_beside(look, self.appearance, self.disc, self.search)
+            for index, sighting in zip(astray, seen, strict=True):
+                found[index] = sighting
         return found
 
     def _portrayed(self, view: View, going: Sequence[tuple[Lead, Sighting | None]]) -> list[Lead]:
@@ -232,19 +232,7 @@ class Follower:
             bounds,
             view.places,
         )
-        return [self.reduced(sighting) for sighting in found.stones]
-
-    def reduced(self, sighting: Sighting) -> Sighting:
-        """Reduce the pictures of a sighting to what the angle needs."""
-        seen_well = sighting.visible >= HANDLE_VISIBLE
-        radii = handle_radii(self.disc)
-        return replace(
-            sighting,
-            handle=np.empty((0, 0, 3), np.uint8),
-            spectrum=cap_spectrum(sighting.handle, radii) if seen_well else None,
-            cap_samples=np.empty((0, 3)),
-            granite_samples=np.empty((0, 3)),
-        )
+        return [sighting.without_samples() for sighting in found.stones]
 
 
 def _away(sightings: Sequence[Sighting], x: float, y: float) -> float:
@@ -263,4 +251,8 @@ def _score(sighting: Sighting | None) -> float:
 
 
 def _places(sightings: Sequence[Sighting]) -> Array:
-    return np.array([(s.x, s.y) for s in sightings]).reshape(-1, 2)
+    return _array([(s.x, s.y) for s in sightings])
+
+
+def _array(places: Sequence[tuple[float, float]]) -> Array:
+    return np.array(places, float).reshape(-1, 2)

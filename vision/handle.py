@@ -59,17 +59,17 @@ def cap_spectrum(patch: NDArray[np.uint8], radii: Array) -> Complex:
 
     Parameters
     ----------
-    patch : ndarray, shape (rays, rings, channels)
+    patch : ndarray, shape (..., rays, rings, channels)
         Colours on rays counter-clockwise from the x axis.
     radii : ndarray, shape (rings,)
         Radii of the rings, m.
 
     Returns
     -------
-    ndarray, shape (orders, rings, channels)
+    ndarray, shape (..., orders, rings, channels)
         Of the orders `vision.align.ORDERS`. Rings weigh as their length does.
     """
-    spectrum = np.fft.rfft(patch.astype(np.float32), axis=0)[ORDERS] / patch.shape[0]
+    spectrum = np.fft.rfft(patch.astype(np.float32), axis=-3)[..., ORDERS, :, :] / patch.shape[-3]
     return np.asarray(spectrum * np.sqrt(radii / radii[-1])[:, None], np.complex64)
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +11,10 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
-class Sighting:
+_NONE = np.empty((0, 3))
+
+
+class Sighting(NamedTuple):
     """One stone seen in one picture.
 
     Attributes
@@ -31,15 +34,13 @@ class Sighting:
         Evidence that it is a stone: 1.5 is little, 3 is much.
     outline : tuple of float
         Radii found for cap and granite (or the rim alone), as shares of the nominal ones.
-    handle : ndarray, shape (rays, rings, 3)
-        L*a*b* around the centre, counter-clockwise from the x axis of the ice, at the
-        height of the handle.
     pixel : tuple of float
         Where the picture shows the middle of the cap, px.
     cap_samples, granite_samples : ndarray, shape (n, 3)
         Colours of the cap and of the granite, for learning.
     spectrum : ndarray or None
-        What is kept of the handle's picture to measure the angle (`vision.handle.cap_spectrum`).
+        How the cap looked around its centre (`vision.handle.cap_spectrum`); None where too little
+        of it was seen to tell its angle.
     measured : bool
         Whether its edges were measured in this picture; else it looked as when they last were.
     """
@@ -52,13 +53,16 @@ class Sighting:
     colour: Array
     visible: float
     score: float
-    outline: tuple[float, ...] = field(repr=False)
-    handle: NDArray[np.uint8] = field(repr=False)
-    pixel: tuple[float, float] = (float("nan"), float("nan"))
-    cap_samples: Array = field(repr=False, default_factory=lambda: np.empty((0, 3)))
-    granite_samples: Array = field(repr=False, default_factory=lambda: np.empty((0, 3)))
-    spectrum: NDArray[np.complex64] | None = field(repr=False, default=None)
+    outline: tuple[float, ...]
+    pixel: tuple[float, float]
+    spectrum: NDArray[np.complex64] | None = None
+    cap_samples: Array = _NONE
+    granite_samples: Array = _NONE
     measured: bool = True
+
+    def without_samples(self) -> Sighting:
+        """Leave out what only learning needs."""
+        return self._replace(cap_samples=_NONE, granite_samples=_NONE)
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ light. Where anything else has changed, nothing is said.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -156,7 +156,7 @@ def unchanged(
     columns = (still.tolist(), moved.tolist(), (middle + shift).tolist())
     return [
         [
-            replace(p.sighting, x=x, y=y, pixel=(u, v), spectrum=None, measured=False)
+            p.sighting._replace(x=x, y=y, pixel=(u, v), spectrum=None, measured=False)
             if ok
             else None
             for p, ok, (x, y), (u, v) in zip(known, *row, strict=True)

@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 from data.sheet import STONE, Stone
 from vision.appearance import Appearance
 from vision.camera import Camera
+from vision.handle import cap_spectrum
 from vision.measure import Measures, measure
-from vision.patch import EFFORT, is_plain, scales, tilts
+from vision.patch import EFFORT, handle_radii, is_plain, scales, tilts
 from vision.picture import Picture
 from vision.rays import Look
 from vision.seek import Bounds, seek
@@ -64,6 +65,9 @@ SEARCH = Search()
 FOLLOWING = Search(radius_px=6.5)
 """For a clip: a coarser map, for what one picture hides the next ones show."""
 
+
+HANDLE_VISIBLE = 0.75
+"""Share of a stone that must be seen for its angle to be measured."""
 
 CAP_OFF = 0.015
 """How far, in radii, the middle of the edges of cap and granite may be off the stone's: real ones
@@ -139,7 +143,6 @@ def search_picture(
         new = np.hypot(*(places[:, None] - known).transpose(2, 0, 1)).min(1) > 1.6 * disc.radius
         places, scores = places[new], scores[new]
     refused: list[Refusal] = []
-    stones: list[Sighting] = []
     # The second time from the centre that the first has found, roughly.
     for effort in (replace(EFFORT, rounds=1), EFFORT):
         if not len(places):
@@ -152,18 +155,14 @@ def search_picture(
             for i, fault in enumerate(faults)
             if fault
         ]
-        good = np.array([not fault for fault in faults], bool)
-        places = seen.centre[good]
-        chosen = np.flatnonzero(good)
-        stones = [
-            with_samples(found, seen, i, disc)
-            for i, found in zip(
-                chosen.tolist(), sightings(seen, looks, chosen, disc, scores), strict=True
-            )
-        ]
-        scores = scores[good]
-    kept = placed_by(camera, _apart(stones, disc), disc)
-    return Findings(tuple(kept), tuple(refused))
+        chosen = np.array([i for i, fault in enumerate(faults) if not fault], np.intp)
+        responses, places, scores = scores, seen.centre[chosen], scores[chosen]
+    found = sightings(seen, looks, chosen, disc, responses)
+    stones = [
+        with_samples(sighting, seen, i, disc)
+        for i, sighting in zip(chosen.tolist(), found, strict=True)
+    ]
+    return Findings(tuple(placed_by(camera, _apart(stones, disc), disc)), tuple(refused))
 
 
 def whole_ice(camera: Camera, disc: Stone, search: Search) -> Bounds:
@@ -205,17 +204,18 @@ def sightings(
     ends = np.cumsum([0, *(len(look.places) for look in looks)])
     parts = zip(looks, np.split(chosen, np.searchsorted(chosen, ends[1:-1])), strict=True)
     pixels = [look.camera.project(seen.centre[i], disc.cap_height) for look, i in parts if len(i)]
+    spectra = cap_spectrum(seen.handle[chosen], handle_radii(disc))
     columns = (
-        chosen, seen.centre[chosen], seen.sd[chosen], seen.visible[chosen], evidence[chosen],
+        seen.centre[chosen], seen.sd[chosen], seen.visible[chosen], evidence[chosen],
         seen.outline[chosen], np.concatenate([np.empty((0, 2)), *pixels]),
     )  # fmt: skip
     return [
         Sighting(
-            x, y, sd_x, sd_y, nan, seen.colour[i], visible, score, tuple(outline),
-            seen.handle[i].copy(), (u, v),
+            x, y, sd_x, sd_y, nan, colour, visible, score, tuple(outline), (u, v),
+            spectrum.copy() if visible >= HANDLE_VISIBLE else None,
         )
-        for i, (x, y), (sd_x, sd_y), visible, score, outline, (u, v) in zip(
-            *(column.tolist() for column in columns), strict=True
+        for colour, spectrum, (x, y), (sd_x, sd_y), visible, score, outline, (u, v) in zip(
+            seen.colour[chosen], spectra, *(column.tolist() for column in columns), strict=True
         )
     ]  # fmt: skip
 
@@ -228,7 +228,7 @@ def placed_by(camera: Camera, seen: Sequence[Sighting], disc: Stone) -> list[Sig
     scale, tilt = scales(camera, places), tilts(camera, places)
     shared = _shared_errors(camera, places, disc, scale, tilt)
     return [
-        replace(sighting, x=x, y=y, sd_place=sd)
+        sighting._replace(x=x, y=y, sd_place=sd)
         for sighting, (x, y), sd in zip(seen, places.tolist(), shared.tolist(), strict=True)
     ]
 
@@ -250,8 +250,7 @@ def with_samples(found: Sighting, seen: Measures, index: int, disc: Stone) -> Si
     cap = (worth > 0.3) & (radius < 0.88 * disc.cap_radius)
     ring = (radius > 1.10 * disc.cap_radius) & (radius < 0.97 * disc.radius)
     granite = (worth < -0.3) & ring
-    return replace(
-        found,
+    return found._replace(
         cap_samples=lab[cap][::7].astype(float),
         granite_samples=lab[granite][::5].astype(float),
     )

@@ -17,7 +17,7 @@ from tests.synthetic.scenes import PAINTS
 from vision.appearance import any_stone, colour_difference, learn, membership
 from vision.camera import Camera
 from vision.clip import open_clip
-from vision.expected import look_about
+from vision.expected import look_beside, look_on_course
 from vision.rays import Look
 from vision.sighting import Sighting
 from vision.stick import stick_camera
@@ -190,7 +190,8 @@ def test_where_a_stone_is_expected_has_no_say_in_where_it_is(aside: float) -> No
     found = {}
     for turn in range(4):
         way = aside * np.array([np.cos(np.pi * turn / 2), np.sin(np.pi * turn / 2)])
-        seen = look_about(Look(image, camera, true + way), learned)
+        look = Look(image, camera, true + way)
+        seen = look_beside(look, learned) if aside > 0.02 else look_on_course([look], learned)
         assert all(sighting is not None for sighting in seen)
         found[turn] = np.array([(s.x, s.y) for s in seen if s is not None])
     places = np.array(list(found.values()))
