@@ -73,7 +73,7 @@ def test_a_single_picture_is_large_and_has_no_course_in_time() -> None:
     picture, above = (ax for part in figure.subfigs for ax in part.axes)
     figure.draw_without_rendering()
     assert picture.get_window_extent().width > 1.5 * above.get_window_extent().width
-    assert above.get_title() == "from above"
+    assert above.get_title("left") == "from above"
 
 
 def test_numbers_of_reasons_do_not_lie_on_one_another() -> None:
