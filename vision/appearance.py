@@ -16,7 +16,7 @@ from vision.sighting import Sighting
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
 
-CONVINCING = 1.9
+CONVINCING = 1.4
 """Evidence from which a sighting teaches what stones look like."""
 
 

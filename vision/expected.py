@@ -50,14 +50,14 @@ def look_on_course(
     """
     seen = measure(looks, appearance, disc)
     settled = seen.shift < SETTLED * disc.radius
-    out = _found(seen, looks, seen.response, settled, disc, search)
+    out = _found(seen, looks, settled, disc, search)
     # The edges that were chosen from beside the centre draw the circle towards there.
     near = np.flatnonzero(~settled & (seen.shift < ON_COURSE * disc.radius) & seen.ok)
     if len(near):
         looks = _moved(looks, seen.centre, near)
         seen = measure(looks, appearance, disc)
         settled = seen.shift < SETTLED * disc.radius
-        found = _found(seen, looks, seen.response, settled, disc, search)
+        found = _found(seen, looks, settled, disc, search)
         for i, sighting in zip(near.tolist(), found, strict=True):
             out[i] = sighting
     return out
@@ -67,7 +67,7 @@ def look_beside(
     look: Look, appearance: Appearance | None, disc: Stone = STONE, search: Search = FOLLOWING
 ) -> list[Sighting | None]:
     """Measure stones that have left their course by a little: as `look_on_course`."""
-    about, scores = seek_about(
+    about = seek_about(
         look.picture, look.camera, look.places, appearance, disc,
         radius_px=search.radius_px, reach=NEARBY,
     )  # fmt: skip
@@ -75,7 +75,7 @@ def look_beside(
     within = seen.ok & (seen.shift < NEARBY * disc.radius)
     looks = [replace(look, places=np.where(within[:, None], seen.centre, about))]
     seen = measure(looks, appearance, disc)
-    return _found(seen, looks, scores, np.ones(len(scores), bool), disc, search)
+    return _found(seen, looks, np.ones(len(about), bool), disc, search)
 
 
 def _moved(looks: Sequence[Look], places: Array, chosen: NDArray[np.intp]) -> list[Look]:
@@ -92,16 +92,15 @@ def _moved(looks: Sequence[Look], places: Array, chosen: NDArray[np.intp]) -> li
 def _found(
     seen: Measures,
     looks: Sequence[Look],
-    scores: Array,
     right: NDArray[np.bool_],
     disc: Stone,
     search: Search,
 ) -> list[Sighting | None]:
     """Give the sightings where places show stones and are the right ones, else None."""
-    out: list[Sighting | None] = [None] * len(scores)
-    faults = judge(seen, scores, disc, search)
+    out: list[Sighting | None] = [None] * len(right)
+    faults = judge(seen, disc, replace(search, least_evidence=search.least_again))
     chosen = np.array([i for i, fault in enumerate(faults) if right[i] and not fault], np.intp)
-    found = sightings(seen, looks, chosen, disc, scores)
+    found = sightings(seen, looks, chosen, disc)
     for i, sighting in zip(chosen.tolist(), found, strict=True):
         out[i] = sighting
     return out

@@ -44,9 +44,7 @@ class Measures:
     visible : ndarray, shape (n,)
         Share of the circle that was seen.
     evidence : ndarray, shape (n,)
-        For a stone 0 to about 3.5, for a plain disc 0 to 1.
-    response : ndarray, shape (n,)
-        Mean worth of the cap less that of the granite around it, 0 to 2; 0 for a plain disc.
+        For a stone 0 to about 3, for a plain disc 0 to 1.
     outline : ndarray, shape (n, circles)
         Radii found, as shares of the nominal ones.
     handle : ndarray, shape (n, rays, rings, 3)
@@ -66,7 +64,6 @@ class Measures:
     colour: Array
     visible: Array
     evidence: Array
-    response: Array
     outline: Array
     handle: Bytes
     worth: Floats
@@ -183,8 +180,8 @@ def _stones(
     uneven = np.sqrt(((light - level[:, None]) ** 2 * stony).sum(1) / count) / 40
     misfit = ((fit.radii[:, 0] / cap_radius - 1) / (0.06 + appearance.slack)) ** 2
     visible = (stony & at_cap).mean(1)
-    clear = fit.shares.sum(1) + 0.5 * visible / np.maximum(at_cap.mean(1), 0.3)
     enough = (of_cap.mean((1, 2)) > 0.03) & (of_ring.mean((1, 2)) > 0.03)
+    response = worth.mean(1) @ _template(disc, effort)
     # What displaces the edges of one side is made good by the other side, if that is seen.
     hidden = 0.04 * disc.radius * (1 - visible)
     return Measures(
@@ -194,8 +191,7 @@ def _stones(
         sd=_errors(fit.covariance, pixel, hidden),
         colour=cap,
         visible=visible,
-        evidence=clear - uneven - 0.5 * misfit,
-        response=worth.mean(1) @ _template(disc, effort),
+        evidence=fit.shares.sum(1) - uneven - 0.5 * misfit + 0.5 * response,
         outline=fit.radii / np.array([disc.cap_radius, disc.radius]),
         handle=handle,
         worth=worth,
@@ -229,7 +225,6 @@ def _plain(
         colour=_mean_of(rays.lab.astype(np.float32), within.astype(np.float32)),
         visible=fit.shares[:, 0] * at_rim.mean(1),
         evidence=fit.shares[:, 0],
-        response=np.zeros(n),
         outline=fit.radii / disc.radius,
         handle=handle,
         worth=np.zeros(within.shape, np.float32),

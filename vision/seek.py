@@ -29,13 +29,14 @@ Bounds = tuple[float, float, float, float]
 
 MOST_PLACES = 60
 
+LEAST_IN_VIEW = 0.4
+
 
 @dataclass(frozen=True)
 class Candidates:
-    """Places that may be discs, strongest first: (n, 2) in m, and their responses, (n,)."""
+    """Places that may be discs, strongest first: (n, 2) in m."""
 
     places: Array
-    scores: Array
     appearance: Appearance | None
 
 
@@ -64,7 +65,7 @@ def seek(
     least : float
         Response, 0 to 2, from which a place is given.
     """
-    none = Candidates(np.empty((0, 2)), np.empty(0), appearance)
+    none = Candidates(np.empty((0, 2)), appearance)
     scale = radius_px / disc.radius
     ice = rectify(image, camera, bounds, scale=scale, height=disc.cap_height)
     if ice is None or not ice.valid.any():
@@ -75,7 +76,7 @@ def seek(
     response = _response(ice, appearance, disc)
     # Nearer than stones can be: paint of the cap's colour beside a stone may answer more strongly.
     peaks = _peaks(response, least, 1.1 * radius_px)
-    return Candidates(ice.place(peaks[:, 1], peaks[:, 0]), peaks[:, 2], appearance)
+    return Candidates(ice.place(peaks[:, 1], peaks[:, 0]), appearance)
 
 
 def seek_about(
@@ -87,7 +88,7 @@ def seek_about(
     *,
     radius_px: float,
     reach: float,
-) -> tuple[Array, Array]:
+) -> Array:
     """Look for one disc about each of a few places, all at once.
 
     Parameters
@@ -99,8 +100,8 @@ def seek_about(
 
     Returns
     -------
-    places, scores : ndarray, shapes (n, 2) and (n,)
-        Where the response is strongest, and the response.
+    ndarray, shape (n, 2)
+        Where the response is strongest, m.
     """
     scale, span = radius_px / disc.radius, int(np.ceil(reach * radius_px))
     half = span + int(np.ceil(radius_px)) + 3
@@ -119,8 +120,8 @@ def seek_about(
     inner = response[:, half - span : half + span + 1, half - span : half + span + 1]
     best = inner.reshape(len(places), -1).argmax(1)
     row, column = (index + half - span for index in np.unravel_index(best, inner.shape[1:]))
-    shift, height = _summit(response, np.arange(len(places)), row, column)
-    return places + (np.stack([column, -row], 1) + shift * [1, -1] + [-half, half]) / scale, height
+    shift = _summit(response, np.arange(len(places)), row, column)
+    return places + (np.stack([column, -row], 1) + shift * [1, -1] + [-half, half]) / scale
 
 
 @lru_cache(maxsize=16)
@@ -146,11 +147,21 @@ def _stone_response(ice: IceMap, appearance: Appearance, disc: Stone) -> Floats:
     worth = membership(ice.image, appearance) * ice.valid
     unit = ice.scale
     size = int(np.ceil(disc.radius * unit))
-    kernel = _annulus(0.0, 0.94 * disc.cap_radius * unit, size) - _annulus(
-        1.05 * disc.cap_radius * unit, 0.96 * disc.radius * unit, size
-    )
+    cap = _annulus(0.0, 0.94 * disc.cap_radius * unit, size)
+    ring = _annulus(1.05 * disc.cap_radius * unit, 0.96 * disc.radius * unit, size)
+    if ice.valid.all():
+        return _filtered(worth, cap - ring)
+    valid = ice.valid.astype(np.float32)
+    parts = [
+        _filtered(worth, kernel) / np.maximum(_filtered(valid, kernel), LEAST_IN_VIEW)
+        for kernel in (cap, ring)
+    ]
+    return np.asarray(parts[0] - parts[1], np.float32)
+
+
+def _filtered(values: Floats, kernel: Floats) -> Floats:
     return np.asarray(
-        cv2.filter2D(worth, cv2.CV_32F, kernel, borderType=cv2.BORDER_CONSTANT), np.float32
+        cv2.filter2D(values, cv2.CV_32F, kernel, borderType=cv2.BORDER_CONSTANT), np.float32
     )
 
 
@@ -191,7 +202,7 @@ def _far_apart(
 
 
 def _peaks(response: Floats, least: float, spacing_px: float) -> Array:
-    """Local maxima, strongest first: row, column (to a fraction) and height, shape (n, 3)."""
+    """Local maxima, strongest first: row and column to a fraction, shape (n, 2)."""
     reach = 2 * int(0.5 * spacing_px) + 1
     shape = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (reach, reach))
     smooth = cv2.GaussianBlur(response, (0, 0), 0.7)
@@ -201,16 +212,15 @@ def _peaks(response: Floats, least: float, spacing_px: float) -> Array:
     height = smooth[row, column].astype(float)
     order = _far_apart(np.stack([row, column], 1), np.argsort(-height), spacing_px)[:MOST_PLACES]
     row, column = row[order], column[order]
-    shift, height = _summit(
-        np.asarray(smooth[None], np.float32), np.zeros(len(row), np.intp), row, column
-    )
-    return np.stack([row + shift[:, 1], column + shift[:, 0], height], 1)
+    one = np.zeros(len(row), np.intp)
+    shift = _summit(np.asarray(smooth[None], np.float32), one, row, column)
+    return np.stack([row, column], 1) + shift[:, ::-1]
 
 
 def _summit(
     maps: Floats, index: NDArray[np.intp], row: NDArray[np.intp], column: NDArray[np.intp]
-) -> tuple[Array, Array]:
-    """Shift (n, 2), columns and rows, from pixels of maps to the summits there; the heights."""
+) -> Array:
+    """Shift (n, 2), columns and rows, from pixels of maps to the summits there."""
     height = maps[index, row, column].astype(float)
     shifts = []
     for before, after in (
@@ -220,4 +230,4 @@ def _summit(
         bend = 2 * height - before - after
         shift = np.where(bend > 1e-6, 0.5 * (after - before) / np.maximum(bend, 1e-6), 0.0)
         shifts.append(np.clip(shift, -0.5, 0.5))
-    return np.stack(shifts, 1), height
+    return np.stack(shifts, 1)

@@ -31,7 +31,7 @@ class Sighting(NamedTuple):
     visible : float
         Share of the circle that was seen, 0 to 1.
     score : float
-        Evidence that it is a stone: 1.5 is little, 3 is much.
+        Evidence that it is a stone: 1 is little, 2.5 is much.
     outline : tuple of float
         Radii found for cap and granite (or the rim alone), as shares of the nominal ones.
     pixel : tuple of float

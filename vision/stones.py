@@ -43,7 +43,9 @@ class Search:
     least_visible : float
         Share of the rays that must look like a stone.
     least_evidence, least_rim : float
-        Least evidence for a stone (0 to about 3.5) and for a plain disc (0 to 1).
+        Least evidence for a stone (0 to about 3) and for a plain disc (0 to 1).
+    least_again : float
+        Least evidence for a stone where one was seen a moment ago.
     most_shift : float
         Farther than this from where the response peaks, in radii of cap or disc, lies no centre.
     """
@@ -54,7 +56,8 @@ class Search:
     radius_px: float = 11.6
     least_score: float = 0.45
     least_visible: float = 0.30
-    least_evidence: float = 1.4
+    least_evidence: float = 1.05
+    least_again: float = 0.7
     least_rim: float = 0.6
     most_shift: float = 0.35
 
@@ -138,26 +141,27 @@ def search_picture(
         image, camera, appearance, disc, area,
         radius_px=search.radius_px, least=search.least_score,
     )  # fmt: skip
-    places, scores = sought.places, sought.scores
+    places = sought.places
     if known is not None and len(known) and len(places):
         new = np.hypot(*(places[:, None] - known).transpose(2, 0, 1)).min(1) > 1.6 * disc.radius
-        places, scores = places[new], scores[new]
+        places = places[new]
     refused: list[Refusal] = []
     # The second time from the centre that the first has found, roughly.
-    for effort in (replace(EFFORT, rounds=1), EFFORT):
+    rough = replace(search, least_evidence=search.least_again), replace(EFFORT, rounds=1)
+    for least, effort in (rough, (search, EFFORT)):
         if not len(places):
             return Findings((), tuple(refused))
         looks = [Look(image, camera, places)]
         seen = measure(looks, sought.appearance, disc, effort)
-        faults = judge(seen, scores, disc, search)
+        faults = judge(seen, disc, least)
         refused += [
             Refusal(float(places[i, 0]), float(places[i, 1]), float(seen.evidence[i]), fault)
             for i, fault in enumerate(faults)
             if fault
         ]
         chosen = np.array([i for i, fault in enumerate(faults) if not fault], np.intp)
-        responses, places, scores = scores, seen.centre[chosen], scores[chosen]
-    found = sightings(seen, looks, chosen, disc, responses)
+        places = seen.centre[chosen]
+    found = sightings(seen, looks, chosen, disc)
     stones = [
         with_samples(sighting, seen, i, disc)
         for i, sighting in zip(chosen.tolist(), found, strict=True)
@@ -175,10 +179,9 @@ def whole_ice(camera: Camera, disc: Stone, search: Search) -> Bounds:
     return x0, x1, y0, y1
 
 
-def judge(seen: Measures, scores: Array | float, disc: Stone, search: Search) -> list[str]:
+def judge(seen: Measures, disc: Stone, search: Search) -> list[str]:
     """Say of each place why it shows no stone; an empty text where it does."""
     plain = is_plain(disc)
-    evidence = seen.evidence if plain else seen.evidence + 0.5 * scores
     least = search.least_rim if plain else search.least_evidence
     size = disc.radius if plain else disc.cap_radius
     faults = np.full(len(seen.ok), "", dtype=object)
@@ -187,7 +190,7 @@ def judge(seen: Measures, scores: Array | float, disc: Stone, search: Search) ->
         beside = np.abs(seen.centre[:, 0]) > search.x_max - 0.4 * disc.radius
     for wrong, why in (
         (beside, "beside the sheet"),
-        (evidence < least, "too little of a stone about it"),
+        (seen.evidence < least, "too little of a stone about it"),
         (seen.shift > search.most_shift * size, "its edges are those of something else"),
         (seen.visible < search.least_visible, "hardly any of it is seen"),
         (~seen.ok, "no cap with granite around it" if not plain else "no circle of that size"),
@@ -197,16 +200,15 @@ def judge(seen: Measures, scores: Array | float, disc: Stone, search: Search) ->
 
 
 def sightings(
-    seen: Measures, looks: Sequence[Look], chosen: NDArray[np.intp], disc: Stone, scores: Array
+    seen: Measures, looks: Sequence[Look], chosen: NDArray[np.intp], disc: Stone
 ) -> list[Sighting]:
     """Sightings of the places chosen from those of the looks; what they share is not told yet."""
-    evidence = seen.evidence if is_plain(disc) else seen.evidence + 0.5 * scores
     ends = np.cumsum([0, *(len(look.places) for look in looks)])
     parts = zip(looks, np.split(chosen, np.searchsorted(chosen, ends[1:-1])), strict=True)
     pixels = [look.camera.project(seen.centre[i], disc.cap_height) for look, i in parts if len(i)]
     spectra = cap_spectrum(seen.handle[chosen], handle_radii(disc))
     columns = (
-        seen.centre[chosen], seen.sd[chosen], seen.visible[chosen], evidence[chosen],
+        seen.centre[chosen], seen.sd[chosen], seen.visible[chosen], seen.evidence[chosen],
         seen.outline[chosen], np.concatenate([np.empty((0, 2)), *pixels]),
     )  # fmt: skip
     return [

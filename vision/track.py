@@ -91,7 +91,7 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
         As `track_stones`.
     """
     disc = watch.disc
-    gate = Gate(least_score=0.85 if is_plain(disc) else 1.45)
+    gate = Gate(least_score=0.85 if is_plain(disc) else 1.1)
     tracks = follow(watch.finish(cameras), disc.radius, gate)
     moved, rest = names_by_motion(tracks, disc.radius)
     names = order_of_motion(dict(moved), rest)

@@ -14,14 +14,14 @@ from tests.synthetic.clip import describe, render_still
 from tests.synthetic.physics import Start
 from tests.synthetic.scene import Colour, Graphic, Person, Scene, Stone
 from tests.synthetic.scenes import PAINTS
-from vision.appearance import any_stone, colour_difference, learn, membership
+from vision.appearance import CONVINCING, any_stone, colour_difference, learn, membership
 from vision.camera import Camera
 from vision.clip import open_clip
 from vision.expected import look_beside, look_on_course
 from vision.rays import Look
 from vision.sighting import Sighting
 from vision.stick import stick_camera
-from vision.stones import find_stones, plain_disc
+from vision.stones import FOLLOWING, SEARCH, Search, find_stones, plain_disc
 
 RED, YELLOW, BLUE = (30, 24, 150), (20, 190, 220), (170, 80, 30)
 CAMERA = still_camera(px_per_m=140.0, target=(0.0, 0.6))
@@ -41,9 +41,9 @@ def scene_of(places: list[tuple[float, float, Colour]], **more: object) -> Scene
     return replace(Scene(stones=stones), **more)  # type: ignore[arg-type]
 
 
-def look(scene: Scene, path: CameraPath = CAMERA) -> tuple[Sighting, ...]:
+def look(scene: Scene, path: CameraPath = CAMERA, search: Search = SEARCH) -> tuple[Sighting, ...]:
     image = np.asarray(render_still(scene, path), np.uint8)
-    return find_stones(image, camera_of(path, scene))
+    return find_stones(image, camera_of(path, scene), search=search)
 
 
 def misses(found: tuple[Sighting, ...], scene: Scene) -> NDArray[np.float64]:
@@ -110,11 +110,15 @@ def test_stones_of_the_neighbouring_sheet_are_left_out() -> None:
     assert [(round(s.x, 1), round(s.y, 1)) for s in found] == [(0.0, 1.0)]
 
 
-def test_a_stone_cut_by_the_edge_of_the_picture_is_found_in_its_place() -> None:
+@pytest.mark.parametrize("search", [SEARCH, FOLLOWING], ids=["one picture", "a clip"])
+@pytest.mark.parametrize("inside", [0.02, 0.0])
+def test_a_stone_cut_by_the_edge_of_the_picture_is_found_in_its_place(
+    inside: float, search: Search
+) -> None:
     path = still_camera(px_per_m=140.0, target=(0.0, 0.0))
     bottom = float(camera_of(path, scene_of([])).ice(np.array([640.0, 719.5]), 0.12)[1])
-    scene = scene_of([(0.3, bottom + 0.02, YELLOW), (0.0, 1.0, YELLOW)])
-    found = look(scene, path)
+    scene = scene_of([(0.3, bottom + inside, YELLOW), (0.0, 1.0, YELLOW)])
+    found = look(scene, path, search)
     assert len(found) == 2
     assert misses(found, scene).max() < 0.015
     assert 0.3 < min(s.visible for s in found) < 0.8
@@ -169,7 +173,9 @@ def test_real_stills(shared: Path) -> None:
         matrix = np.array(still["homography"])
         camera = Camera(0, 0.0, matrix, size, still["k1"], still["k2"], position=place)
         found = find_stones(picture.image, camera)
-        found = find_stones(picture.image, camera, learn([s for s in found if s.score > 1.9]))
+        found = find_stones(
+            picture.image, camera, learn([s for s in found if s.score > CONVINCING])
+        )
         true = np.array([(s["x"], s["y"]) for s in still["stones"]])
         apart = np.hypot(
             *(true[:, None] - np.array([(s.x, s.y) for s in found])[None]).transpose(2, 0, 1)
@@ -197,3 +203,13 @@ def test_where_a_stone_is_expected_has_no_say_in_where_it_is(aside: float) -> No
     places = np.array(list(found.values()))
     assert np.abs(places - places.mean(0)).max() < 0.002
     assert np.abs(places - true).max() < 0.008
+
+
+def test_a_stone_seen_a_moment_ago_needs_less_evidence() -> None:
+    scene = scene_of([(0.2, 0.9, RED), (-0.4, 0.2, YELLOW)])
+    image, camera = np.asarray(render_still(scene, CAMERA), np.uint8), camera_of(CAMERA, scene)
+    known = find_stones(image, camera)
+    strict = Search(least_evidence=1 + max(stone.score for stone in known))
+    assert find_stones(image, camera, search=strict) == ()
+    looks = [Look(image, camera, np.array([(stone.x, stone.y) for stone in known]))]
+    assert None not in look_on_course(looks, learn(known), search=strict)
