@@ -8,17 +8,19 @@ the edge is where the profile crosses half way. Thin lines are left to `vision.s
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.normals import SAMPLES, THIN, Normals, Profiles, lay_out, profiles
+from vision.normals import BLOCK, SAMPLES, THIN, Normals, Profiles, lay_out, profiles
 from vision.paint import CIRCLES, FIXED, TWELVE, Marks
 from vision.picture import Picture
-from vision.runs import Runs, smooth
-from vision.stripes import find_stripes
+from vision.runs import Curves, Runs, smooth
+from vision.stripes import Blocks, find_stripes
 
 Array = NDArray[np.float64]
+Index = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 MIN_CONTRAST = 10.0
@@ -58,10 +60,10 @@ class Evidence:
         Fraction of each circle that has an edge of the circle's own two colours.
     palette : ndarray, shape (9, 2, 3)
         Colours on either side of each kind of edge; NaN where none was made out.
-    rim : ndarray, shape (n, 33)
+    rim : ndarray, shape (SAMPLES, n)
         Profiles across the 12-ft edge, from ice (−0.5) to paint (0.5).
     crossing : ndarray, shape (n,)
-        Samples at which the marks on it are.
+        Samples at which the marks on it are; NaN where there is none.
     step : float
         Distance of the samples, px.
     """
@@ -77,7 +79,8 @@ class Evidence:
     @property
     def profile(self) -> Array:
         """Mean profile across the 12-ft edge about the marks, shape (33,); NaN where unknown."""
-        return _mean_profile(self.rim, self.crossing)
+        seen = np.isfinite(self.crossing)
+        return _mean_profile(self.rim.T[seen], self.crossing[seen])
 
     @property
     def support(self) -> Array:
@@ -122,110 +125,168 @@ def measure(
     """
     h, w = picture.shape[:2]
     normals = lay_out(view, rig, (w, h), reach=reach, spacing=spacing, most=most, lines=lines)
-    return measure_along(picture, normals, least_sd=least_sd, palette=palette, level=level)
+    return measure_along(
+        picture, normals, normals.point, least_sd=least_sd, palette=palette, level=level
+    )
 
 
 def measure_along(
     picture: Picture,
     normals: Normals,
+    point: Array,
     *,
     least_sd: float = EDGE_SD,
     palette: Array | None = None,
     level: float = 0.0,
 ) -> Evidence:
-    """Measure circles and lines along given normals; see `measure`."""
-    colours = profiles(picture, normals)
-    wide = {kind: part for kind, part in normals.kinds.items() if kind not in THIN}
-    count = max((part.stop for part in wide.values()), default=0)
+    """Measure circles and lines along normals that stand at `point` now, (2, n); see `measure`."""
+    places, wide = _places(normals), normals.wide
+    colours = profiles(picture, normals, point)
     if palette is None:
-        palette = np.full((FIXED, 2, colours.shape[2]), np.nan)
-    value, good, found = _steps(colours[:count], wide, palette)
-    shift = np.zeros(count)
-    shift[wide.get(TWELVE, slice(0))] = level
-    sample, crossed = _crossings(value - shift.astype(np.float32)[:, None])
+        palette = np.full((FIXED, 2, len(colours)), np.nan)
+    value, good, found = _steps(colours[..., :wide], places, palette)
+    rim = places.kinds.get(TWELVE, slice(0))
+    value[:, rim] -= np.float32(level)
+    sample, crossed = _crossings(value)
     good &= crossed
-    rim = np.flatnonzero(good[wide.get(TWELVE, slice(0))])
-    stripes = find_stripes(colours, normals)
-    # Both together: edges and, behind them, blocks of thin lines.
-    kinds = wide | {
-        kind: slice(part.start + count, part.stop + count) for kind, part in stripes.kinds.items()
-    }
-    along = np.append(normals.along[:count], stripes.along)
-    point = np.concatenate([normals.point[:count], stripes.point])
-    normal = np.concatenate([normals.normal[:count], stripes.normal])
-    offset = np.append((sample / (SAMPLES // 2) - 1) * normals.reach[:count], stripes.offset)
-    good = np.append(good, stripes.good)
+    offset = (sample / (SAMPLES // 2) - 1) * normals.reach[:wide]
+    stripes, shown = find_stripes(colours[..., wide:], places.blocks)
+    offset, good = np.append(offset, stripes), np.append(good, shown)
     covered = np.zeros(CIRCLES)
     sd = np.full(len(good), least_sd)
-    straight = []
-    for kind, part in kinds.items():
-        shown = good[part]
-        if kind < CIRCLES:
+    for kind in range(CIRCLES):
+        if kind in places.kinds:
+            part = places.kinds[kind]
+            shown = good[part]
             covered[kind] = normals.visible[kind] * shown.mean()
             sd[part] = max(_scatter(offset[part][shown]), least_sd)
-        elif kind in THIN or shown.sum() >= max(LEAST_ON_LINE, LEAST_SHARE * len(shown)):
-            straight.append(part)
-        else:
-            good[part] = False
-    if straight:
-        runs = Runs.of(straight)
-        shown = good[runs.index] & runs.real
-        left, spread = smooth(along[runs.index], offset[runs.index], shown, least_sd)
-        good[runs.index[runs.real]] = left[runs.real]
-        sd[runs.index] = spread[:, None]
-    line = np.repeat(list(kinds), [part.stop - part.start for part in kinds.values()])
-    marks = Marks(line, along, point + normal * offset[:, None], normal, sd).pick(good)
-    step = 2 * float(normals.reach[0]) / (SAMPLES - 1) if count else 0.0
-    return Evidence(marks, normals.visible, covered, found, value[rim], sample[rim], step)
+    if len(places.least):
+        index, real = places.runs.index, places.runs.real
+        shown = good[index] & real
+        shown &= (shown.sum(1) >= places.least)[:, None]
+        left, spread = smooth(places.curves, offset[index], shown, least_sd)
+        good[index[real]] = left[real]
+        sd[index] = spread[:, None]
+    middles = point[:, wide:].reshape(2, -1, BLOCK).mean(2)
+    pixel = (np.append(point[:, :wide], middles, axis=1) + places.normal * offset).T
+    marks = Marks(places.line, places.along, pixel, places.normal.T, sd).pick(good)
+    step = 2 * float(normals.reach[0]) / (SAMPLES - 1) if wide else 0.0
+    crossing = np.where(good[rim], sample[rim], np.nan)
+    return Evidence(
+        marks, normals.visible, covered, found, value[:, rim] + np.float32(level), crossing, step
+    )
 
 
-def _steps(
-    profile: Profiles, kinds: dict[int, slice], known: Array
-) -> tuple[Profiles, Flags, Array]:
+@dataclass(frozen=True, eq=False)
+class _Places:
+    """Where marks may be: normals across wide lines and circles, and blocks of thin lines.
+
+    Attributes
+    ----------
+    kinds : dict of int to slice
+        Which of the places lie on each kind of line.
+    line, along, normal : ndarray, shapes (n,), (n,) and (2, n)
+        As in `vision.paint.Marks`.
+    blocks : Blocks
+        Those of thin lines.
+    runs, curves : Runs, Curves
+        The places along each straight line, and curves through them.
+    least : ndarray, shape (lines,)
+        How many of them must show it.
+    starts : ndarray
+        First of each kind of line that is no thin one.
+    """
+
+    kinds: dict[int, slice]
+    line: Index
+    along: Array
+    normal: Array
+    blocks: Blocks
+    runs: Runs
+    curves: Curves
+    least: Array
+    starts: Index
+
+
+@lru_cache(maxsize=2)
+def _places(normals: Normals) -> _Places:
+    wide, blocks = normals.wide, Blocks.of(normals)
+    kinds = {kind: part for kind, part in normals.kinds.items() if kind not in THIN}
+    starts = np.array([part.start for part in kinds.values()], np.int64)
+    kinds |= {
+        kind: slice(wide + part.start, wide + part.stop) for kind, part in blocks.kinds.items()
+    }
+    along = np.append(normals.along[:wide], blocks.along)
+    straight = {kind: part for kind, part in kinds.items() if kind >= CIRCLES}
+    runs = Runs.of(list(straight.values()))
+    return _Places(
+        kinds,
+        np.repeat(list(kinds), [part.stop - part.start for part in kinds.values()]),
+        along,
+        np.append(normals.normal[:, :wide], blocks.normal, axis=1),
+        blocks,
+        runs,
+        Curves.along(along[runs.index]),
+        np.array(
+            [
+                0.0 if kind in THIN else max(LEAST_ON_LINE, LEAST_SHARE * (part.stop - part.start))
+                for kind, part in straight.items()
+            ]
+        ),
+        starts,
+    )
+
+
+def _steps(profile: Profiles, places: _Places, known: Array) -> tuple[Profiles, Flags, Array]:
     """Put profiles on the scale from the one side (−0.5) to the other (0.5).
 
     Returns
     -------
-    value : ndarray, shape (n, SAMPLES)
+    value : ndarray, shape (SAMPLES, n)
     good : ndarray of bool, shape (n,)
         Whether the profile shows the edge.
     palette : ndarray, shape (9, 2, 3)
         Colours on either side of each kind of edge.
     """
     ends = _ENDS @ profile
-    sides = np.empty_like(ends)
-    for kind, part in kinds.items():
-        learned = np.isfinite(known[kind, 0, 0])
-        sides[part] = known[kind] if learned else np.sort(ends[part], axis=0)[len(ends[part]) // 2]
+    line = places.line[: ends.shape[2]]
+    sides = known.T.astype(np.float32)[..., line]
+    for kind, part in places.kinds.items():
+        if kind not in THIN and not np.isfinite(known[kind, 0, 0]):
+            sides[..., part] = np.sort(ends[..., part], axis=2)[
+                ..., [(part.stop - part.start) // 2]
+            ]
     difference = sides[:, 1] - sides[:, 0]
-    square = (difference**2).sum(1)
+    square = (difference * difference).sum(0)
     # Each side looks like the line's own two colours; light may vary, hue may not.
     tolerance = np.maximum(0.25 * square, 12.0**2)
-    good = (((ends - sides) ** 2).sum(2) < tolerance[:, None]).all(1)
-    axis = difference @ SHARPNESS
-    axis /= np.maximum((axis * difference).sum(1), 1.0)[:, None]
-    height = (ends @ axis[..., None])[..., 0]
-    strength = height[:, 1] - height[:, 0]
+    off = ends - sides
+    good = ((off * off).sum(0) < tolerance).all(0)
+    axis = SHARPNESS @ difference
+    axis /= np.maximum((axis * difference).sum(0), 1.0)
+    low, high = (ends * axis[:, None]).sum(0)
+    strength = high - low
     good &= (strength > 0.5) & (strength < 1.6) & (square > MIN_CONTRAST**2)
-    value = (profile @ axis[..., None])[..., 0] - height.mean(1)[:, None]
+    value = (profile * axis[:, None]).sum(0) - 0.5 * (low + high)
     palette = np.full(known.shape, np.nan)
-    for kind, part in kinds.items():
-        shown = good[part]
-        if shown.any():
-            total = shown.astype(np.float32) @ ends[part].reshape(len(shown), -1)
-            palette[kind] = (total / shown.sum()).reshape(palette.shape[1:])
+    if len(line):
+        count = np.add.reduceat(good, places.starts, dtype=np.int64)
+        total = np.add.reduceat(ends * good, places.starts, axis=2)
+        seen = count > 0
+        palette[line[places.starts[seen]]] = (total[..., seen] / count[seen]).T
     return value, good, palette
 
 
 def _crossings(value: Profiles) -> tuple[Array, Flags]:
     """Find where profiles rise through 0, in samples, and whether they do."""
-    rising = (value[:, 1:-2] < 0) & (value[:, 2:-1] >= 0)
+    below = value[1:-1] < 0
+    rising = below[:-1] > below[1:]
     # Of several crossings the steepest is the edge, the others are noise or print.
-    slope = np.where(rising, value[:, 3:] - value[:, :-3], 0.0)
-    best = slope.argmax(1) + 1
-    row = np.arange(len(value))
-    good = slope[row, best - 1] > 0
-    low, high = value[row, best], value[row, best + 1]
+    slope = (value[3:] - value[:-3]) * rising
+    best = slope.argmax(0) + 1
+    column = np.arange(value.shape[1])
+    good = slope[best - 1, column] > 0
+    low, high = value[best, column], value[best + 1, column]
     return best + (low / np.where(good, low - high, 1.0)).astype(np.float64), good
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ from vision.paint import (
     ice_frame,
     measures,
 )
-from vision.picture import Picture, colours_at
+from vision.picture import Picture, channels_at
 from vision.pose import project
 
 Array = NDArray[np.float64]
@@ -107,54 +107,67 @@ def _neighbours() -> tuple[Index, Index]:
 _AHEAD, _BEHIND = _neighbours()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Normals:
-    """Places on the lines, all inside the picture.
+    """Places on the lines, all inside the picture for which they were laid out.
 
     Attributes
     ----------
-    at : ndarray of int, shape (n,)
-        Which of all places that may be measured they are.
     kinds : dict of int to slice
-        Which of the places lie on each kind of line.
+        Which of the places lie on each kind of line: thin lines come last.
+    line : ndarray of int, shape (n,)
+        The kind of each.
     along : ndarray, shape (n,)
         Where along its line, as in `vision.paint.Marks`.
-    point, normal : ndarray, shape (n, 2)
-        Place in the picture and the unit normal there, px.
+    foot, way : ndarray, shape (2, n)
+        Where it is on the ice, as in `vision.paint.ice_frame`.
+    point : ndarray, shape (2, n)
+        Where it was in the picture, px.
+    normal : ndarray, shape (2, n)
+        The unit normal there.
     reach : ndarray, shape (n,)
         Half length to be looked at, px.
     visible : ndarray, shape (3,)
         Fraction of each circle inside the picture.
-    samples : ndarray of float32, shape (2, n, SAMPLES)
+    samples : ndarray of float32, shape (2, SAMPLES, n)
         From the place to the samples along the normal, x and y, px.
     """
 
-    at: Index
     kinds: dict[int, slice]
+    line: Index
     along: Array
+    foot: Array
+    way: Array
     point: Array
     normal: Array
     reach: Array
     visible: Array
     samples: Profiles
 
-    def moved(self, view: Array, rig: Array, size: tuple[int, int]) -> Normals | None:
-        """Give the same normals in a picture taken a little later.
+    @property
+    def wide(self) -> int:
+        """How many come before those of thin lines."""
+        thin = (self.kinds[kind].start for kind in THIN if kind in self.kinds)
+        return min(thin, default=len(self.line))
+
+    def moved(self, view: Array, rig: Array, size: tuple[int, int]) -> Array | None:
+        """Tell where they are in a picture taken a little later, px, shape (2, n).
 
         Returns
         -------
-        Normals or None
+        ndarray or None
             None where they have moved so far that they must be laid out anew.
         """
-        if not len(self.at):
+        if not self.kinds:
             return None
-        measure = measures(rig)[_LINE[self.at]]
-        point = project((_FOOT[:, self.at] + _WAY[:, self.at] * measure).T, view, rig, size)
-        low, high = point.min(0) - self.reach[0], point.max(0) + self.reach[0]
-        near = np.abs(point - self.point).max() < MOST_MOVED * size[0]
-        if not (near and low.min() > 0 and (high < np.array(size) - 1).all()):
-            return None
-        return replace(self, point=point)
+        places = self.foot + self.way * measures(rig)[self.line]
+        point = project(places.T, view, rig, size).T
+        reach, most = self.reach[0], MOST_MOVED * size[0]
+        low, high = point.min(1), point.max(1)
+        near = np.abs(point - self.point).max() < most
+        if near and low.min() > reach and (high < np.array(size) - 1 - reach).all():
+            return point
+        return None
 
 
 def lay_out(
@@ -199,9 +212,12 @@ def lay_out(
     reaches[thin] = np.maximum(reach, LINE_REACH * scale[thin])
     reaches[hog] = np.minimum(reach, BAND * scale[hog])
     normal, reaches = np.stack([down[at], -across[at]]) / length[at], np.repeat(reaches, counts)
-    samples = (normal * reaches).astype(np.float32)[..., None] * _SHARES
+    samples = _SHARES[:, None] * (normal * reaches).astype(np.float32)[:, None]
     visible = shown[:CIRCLES] / _COUNTS[:CIRCLES]
-    return Normals(at, kinds, _ALONG[at], place[at], normal.T, reaches, visible, samples)
+    return Normals(
+        kinds, _LINE[at], _ALONG[at], _FOOT[:, at], _WAY[:, at], place.T[:, at], normal, reaches,
+        visible, samples,
+    )  # fmt: skip
 
 
 def _thinned(inside: Flags, wanted: Index, groups: int) -> Flags:
@@ -218,9 +234,9 @@ def _thinned(inside: Flags, wanted: Index, groups: int) -> Flags:
     )
 
 
-def profiles(picture: Picture, normals: Normals) -> Profiles:
-    """Colours along the normals, shape (n, SAMPLES, 3)."""
+def profiles(picture: Picture, normals: Normals, point: Array) -> Profiles:
+    """Colours along the normals at these places, (2, n), px; shape (3, SAMPLES, n)."""
     if not normals.kinds:
-        return np.zeros((0, SAMPLES, 3), np.float32)
-    x, y = normals.point.T.astype(np.float32)[..., None] + normals.samples
-    return np.asarray(colours_at(picture, x, y), np.float32)
+        return np.zeros((3, SAMPLES, 0), np.float32)
+    x, y = point.astype(np.float32)[:, None] + normals.samples
+    return channels_at(picture, x, y)

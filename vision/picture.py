@@ -82,6 +82,16 @@ class Planes:
 
     def at(self, x: Floats, y: Floats) -> Image:
         """Colours (BGR) at places, px, shape (rows, columns, 3): see `colours_at`."""
+        return np.asarray(cv2.transform(cv2.merge(self._coded(x, y)), self.to_bgr), np.uint8)
+
+    def channels(self, x: Floats, y: Floats) -> Floats:
+        """Colours at places, px, shape (3, rows, columns): see `channels_at`."""
+        coded = np.array(self._coded(x, y), np.float32).reshape(3, -1)
+        mixed = self.to_bgr.astype(np.float32)
+        return np.asarray(mixed[:, :3] @ coded + mixed[:, 3:]).reshape(3, *x.shape)
+
+    def _coded(self, x: Floats, y: Floats) -> tuple[Image, Image, Image]:
+        """Luma and both chromas at places, px, shape (rows, columns) each."""
         luma = cv2.remap(self.luma, x, y, cv2.INTER_LINEAR)
         # A sample of colour stands in the middle of the pixels that share it.
         x, y = (self.share * along + 0.5 * (self.share - 1) for along in (x, y))
@@ -89,7 +99,7 @@ class Planes:
             cv2.remap(plane, x, y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
             for plane in (self.blue, self.red)
         )
-        return np.asarray(cv2.transform(cv2.merge([luma, blue, red]), self.to_bgr), np.uint8)
+        return np.asarray(luma, np.uint8), np.asarray(blue, np.uint8), np.asarray(red, np.uint8)
 
     def reduced(self, times: int) -> Planes:
         """Give the picture so many times smaller, each pixel the mean of what it covers."""
@@ -155,6 +165,17 @@ def colours_at(picture: Picture, x: Floats, y: Floats) -> Image:
     if isinstance(picture, Planes):
         return picture.at(x, y)
     return np.asarray(cv2.remap(picture, x, y, cv2.INTER_LINEAR), np.uint8)
+
+
+def channels_at(picture: Picture, x: Floats, y: Floats) -> Floats:
+    """Colours (blue, green, red) at places in a picture, a table for each, (3, rows, columns).
+
+    As `colours_at`, but neither rounded nor held between 0 and 255 if it was decoded.
+    """
+    if isinstance(picture, Planes):
+        return picture.channels(x, y)
+    found = cv2.remap(picture, x, y, cv2.INTER_LINEAR)
+    return np.ascontiguousarray(np.moveaxis(found, -1, 0), np.float32)
 
 
 def lightness_at(picture: Picture, x: Floats, y: Floats) -> Image:

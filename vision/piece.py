@@ -197,10 +197,10 @@ class Piece:
     def _settle(self, frame: Frame, view: View) -> Seen | None:
         """Refine a predicted view on the rings; None where they are not there."""
         for _ in range(3):
-            normals = self._laid(view)
+            normals, point = self._laid(view)
             if not _enough(self.rig, normals.visible, normals.visible):
                 return None
-            evidence = self._measured(frame.picture, normals)
+            evidence = self._measured(frame.picture, normals, point)
             if not _enough(self.rig, evidence.visible, evidence.covered):
                 return None
             fit = solve_view(
@@ -219,18 +219,19 @@ class Piece:
         self._cov = fit.cov
         return Seen(frame.index, frame.t, view, evidence.marks.pick(fit.inliers), True)
 
-    def _laid(self, view: View) -> Normals:
-        """Give the normals for a view: those of the frame before, if they have not moved far."""
-        normals = self._normals and self._normals.moved(view.vector, self.rig, self.size)
-        if normals is None:
-            reach = max(REACH * self.size[0], LEAST_REACH)
-            normals = lay_out(view.vector, self.rig, self.size, reach=reach, most=MOST_NORMALS)
-            self._normals = normals
-        return normals
+    def _laid(self, view: View) -> tuple[Normals, Array]:
+        """Give normals and where they stand: those of the frame before, if not far from there."""
+        if self._normals is not None:
+            point = self._normals.moved(view.vector, self.rig, self.size)
+            if point is not None:
+                return self._normals, point
+        reach = max(REACH * self.size[0], LEAST_REACH)
+        self._normals = lay_out(view.vector, self.rig, self.size, reach=reach, most=MOST_NORMALS)
+        return self._normals, self._normals.point
 
-    def _measured(self, picture: Picture, normals: Normals) -> Evidence:
+    def _measured(self, picture: Picture, normals: Normals, point: Array) -> Evidence:
         return measure_along(
-            picture, normals, least_sd=MARK_SD, palette=self.palette, level=self.edge.level
+            picture, normals, point, least_sd=MARK_SD, palette=self.palette, level=self.edge.level
         )
 
     def _carried(self, frame: Frame) -> Seen | None:
@@ -251,7 +252,7 @@ class Piece:
         if seen is not None:
             self._key = None
             return seen
-        lines = self._measured(frame.picture, self._laid(view)).marks
+        lines = self._measured(frame.picture, *self._laid(view)).marks
         marks = joined([landmarks, lines.pick(lines.line >= CIRCLES)])
         fit = solve_view(marks, view, self.rig, self.size, view_sd=(1, 1, 0.02, 0.1))
         if len(landmarks) < len(key.ice):  # half of its corners are gone: two marks each

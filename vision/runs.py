@@ -16,6 +16,10 @@ APART = 2.5
 """Standard deviations from a smooth curve beyond which an offset is left out."""
 
 _TERMS = 3
+_DIAGONAL = np.eye(_TERMS)
+_LEAST_POINTS = np.array([-1, 3, 5])
+"""A term of the curve takes part if there are more points."""
+
 _HELD = 1e9
 
 
@@ -37,18 +41,45 @@ class Runs:
     @classmethod
     def of(cls, parts: Sequence[slice]) -> Runs:
         """Make a table of these parts of a list; none of them may be empty."""
-        start, stop = np.array([(part.start, part.stop) for part in parts]).T[..., None]
-        index = start + np.arange((stop - start).max())
+        ends = np.array([(part.start, part.stop) for part in parts], np.int64).reshape(-1, 2)
+        start, stop = ends.T[..., None]
+        index = start + np.arange((stop - start).max(initial=1))
         return cls(np.minimum(index, stop - 1), index < stop)
 
 
-def smooth(along: Array, offset: Array, good: Flags, least_sd: float) -> tuple[Flags, Array]:
+@dataclass(frozen=True)
+class Curves:
+    """Parabolas that may run along lines.
+
+    Attributes
+    ----------
+    terms : ndarray, shape (runs, 3, longest)
+        Their values where each line was measured.
+    squares : ndarray, shape (runs, longest, 9)
+        Products of any two of them.
+    """
+
+    terms: Array
+    squares: Array
+
+    @classmethod
+    def along(cls, along: Array) -> Curves:
+        """Prepare curves through these places along each line, m, shape (runs, longest)."""
+        s = along - along.mean(1, keepdims=True)
+        s /= np.maximum(np.ptp(s, axis=1, keepdims=True), 1e-9)
+        terms = np.stack([np.ones_like(s), s, s * s], axis=1)
+        squares = terms[:, :, None] * terms[:, None]
+        return cls(terms, squares.reshape(len(s), _TERMS**2, s.shape[1]).swapaxes(1, 2))
+
+
+def smooth(curves: Curves, offset: Array, good: Flags, least_sd: float) -> tuple[Flags, Array]:
     """Leave out what lies off smooth curves through offsets; what is ragged counts less.
 
     Parameters
     ----------
-    along, offset : ndarray, shape (runs, longest)
-        Place along each line, m, and how far aside its image was found, px.
+    curves : Curves
+    offset : ndarray, shape (runs, longest)
+        How far aside the image of each line was found, px.
     good : ndarray of bool, shape (runs, longest)
         What is looked at.
     least_sd : float
@@ -59,21 +90,19 @@ def smooth(along: Array, offset: Array, good: Flags, least_sd: float) -> tuple[F
     keep, sd : ndarray, shapes (runs, longest) and (runs,)
         What is left, and its standard deviation in each run, px.
     """
-    s = along - along.mean(1, keepdims=True)
-    s /= np.maximum(np.ptp(s, axis=1, keepdims=True), 1e-9)
-    terms = np.stack([np.ones_like(s), s, s * s], axis=1)
-    offset, keep = offset[..., None], good
+    runs = len(offset)
+    pull, keep = curves.terms * offset[:, None], good
     for _ in range(2):
+        use = keep.astype(np.float64)[..., None]
         count = keep.sum(1)
-        weighted = terms * keep[:, None]
         # Few points do not bend a line: two for each term of the curve.
-        held = np.where(count[:, None] // 2 > np.arange(_TERMS), 1e-9, _HELD)
-        held[:, 0] = 1e-9
-        normal = weighted @ terms.swapaxes(1, 2) + held[:, None] * np.eye(_TERMS)
-        curve = np.linalg.solve(normal, weighted @ offset)
-        away = np.abs(offset - terms.swapaxes(1, 2) @ curve)[..., 0]
+        held = np.where(count[:, None] > _LEAST_POINTS, 1e-9, _HELD)
+        normal = (use.swapaxes(1, 2) @ curves.squares).reshape(runs, _TERMS, _TERMS)
+        normal += held[:, None] * _DIAGONAL
+        curve = np.linalg.solve(normal, pull @ use)
+        away = np.abs(offset - (curve.swapaxes(1, 2) @ curves.terms)[:, 0])
         ranked = np.sort(np.where(keep, away, np.inf), axis=1)
-        middle = ranked[np.arange(len(ranked)), np.maximum(count // 2, 0)]
+        middle = ranked[np.arange(runs), count // 2]
         sd = np.maximum(1.5 * np.where(count > 0, middle, 0.0), least_sd)
         keep = good & (away < APART * sd[:, None])
     return keep, sd

@@ -18,6 +18,7 @@ from vision.normals import BLOCK, LEAST_BLOCKS, SAMPLES, THIN, Normals, Profiles
 from vision.runs import Runs
 
 Array = NDArray[np.float64]
+Index = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 FAINT = 1.5
@@ -43,111 +44,139 @@ _SLANT = (np.arange(SAMPLES, dtype=np.float32) - SAMPLES // 2) / (SAMPLES - _END
 _LEVEL = np.eye(SAMPLES, dtype=np.float32) - np.stack([0.5 - _SLANT, 0.5 + _SLANT], 1) @ _ENDS
 """Takes the straight course from end to end off a profile."""
 
+_CLEAR = np.array([CLEAR, CLEAR_BEYOND], np.float32)
+_ASIDE = np.arange(-1, 2)
+
 _TURNS = np.arange(_END, SAMPLES - _END, 2)
 _FROM, _TO = (ends.reshape(-1, 1) for ends in np.meshgrid(_TURNS, _TURNS, indexing="ij"))
 """Samples at which straight paths begin and end."""
 
 
-@dataclass(frozen=True)
-class Stripes:
-    """Blocks of normals across thin lines.
+@dataclass(frozen=True, eq=False)
+class Blocks:
+    """Blocks of neighbouring normals across thin lines.
 
     Attributes
     ----------
     kinds : dict of int to slice
         Which of the blocks lie on each kind of line.
-    along, offset : ndarray, shape (n,)
-        Middle along the line, m, and how far along the normal the line is, px.
-    point, normal : ndarray, shape (n, 2)
-        Middle of the block and its unit normal, px.
-    good : ndarray of bool, shape (n,)
-        Whether the line was made out.
+    along : ndarray, shape (n,)
+        Middle along the line, m.
+    normal : ndarray, shape (2, n)
+        Mean unit normal.
+    reach : ndarray, shape (n,)
+        Half length to be looked at, px.
+    mean : ndarray of float32, shape (normals, n)
+        Takes the means over the blocks.
+    bells : list of ndarray, shape (SAMPLES, SAMPLES)
+        Smooth the profiles across each line until two stripes are one.
+    runs : Runs
+        The blocks along each line.
+    beyond : ndarray of bool, shape (lines, longest)
+        Which of the blocks along each line lie beyond the house.
+    path : ndarray of int, shape (lines, paths, longest)
+        Where straight paths across each line's profiles run in a list of all of these.
     """
 
     kinds: dict[int, slice]
     along: Array
-    offset: Array
-    point: Array
     normal: Array
-    good: Flags
+    reach: Array
+    mean: Profiles
+    bells: list[Profiles]
+    runs: Runs
+    beyond: Flags
+    path: Index
+
+    @classmethod
+    def of(cls, normals: Normals) -> Blocks:
+        """Make blocks of the normals across thin lines."""
+        first = normals.wide
+        parts = {kind: normals.kinds[kind] for kind in THIN if kind in normals.kinds}
+        kinds = {
+            kind: slice((part.start - first) // BLOCK, (part.stop - first) // BLOCK)
+            for kind, part in parts.items()
+        }
+        along, normal, point = (
+            values[..., first:].reshape(*values.shape[:-1], -1, BLOCK).mean(-1)
+            for values in (normals.along, normals.normal, normals.point)
+        )
+        reach = normals.reach[first::BLOCK]
+        mean = np.repeat(np.eye(len(along)) / BLOCK, BLOCK, axis=0).astype(np.float32)
+        bells = []
+        for part in kinds.values():
+            ends = [part.start, part.stop - 1]
+            scale = np.hypot(*np.diff(point[:, ends])[:, 0]) / abs(np.diff(along[ends])[0])
+            step = 2 * reach[part.start] / (SAMPLES - 1)
+            bells.append(_bell(round(4 * STRIPES_SD * scale / step) / 4))
+        runs = Runs.of(list(kinds.values()))
+        rows = along[runs.index]
+        share = rows - rows[:, :1]
+        share /= share[:, -1:]
+        path = np.round(_FROM + (_TO - _FROM) * share[:, None]).astype(np.int64)
+        path += SAMPLES * np.arange(share.size).reshape(share.shape)[:, None]
+        beyond = np.abs(rows) > HOUSE.twelve_foot
+        return cls(kinds, along, normal, reach, mean, bells, runs, beyond, path)
 
 
-def find_stripes(profile: Profiles, normals: Normals) -> Stripes:
+def find_stripes(profile: Profiles, blocks: Blocks) -> tuple[Array, Flags]:
     """Measure the thin lines.
 
     Parameters
     ----------
-    profile : ndarray, shape (n, SAMPLES, channels)
-        Along all of the normals.
+    profile : ndarray, shape (channels, SAMPLES, normals)
+        Along the normals across thin lines.
+    blocks : Blocks
+
+    Returns
+    -------
+    offset, good : ndarray, shape (n,)
+        How far along its normal each block shows the line, px, and whether it does.
     """
-    parts = {kind: normals.kinds[kind] for kind in THIN if kind in normals.kinds}
-    if not parts:
-        none = np.zeros((0, 2))
-        return Stripes({}, np.zeros(0), np.zeros(0), none, none, np.zeros(0, bool))
-    begin = min(part.start for part in parts.values())
-    kinds = {
-        kind: slice((part.start - begin) // BLOCK, (part.stop - begin) // BLOCK)
-        for kind, part in parts.items()
-    }
-    along = normals.along[begin:].reshape(-1, BLOCK).mean(1)
-    point = normals.point[begin:].reshape(-1, BLOCK, 2).mean(1)
-    normal = normals.normal[begin:].reshape(-1, BLOCK, 2).mean(1)
-    step = 2 * normals.reach[begin::BLOCK] / (SAMPLES - 1)
-    blocks = profile[begin:].reshape(-1, BLOCK, *profile.shape[1:]).mean(1)
-    ends = _ENDS @ blocks
-    flat = _LEVEL @ blocks
-    calm = ((ends[:, 1] - ends[:, 0]) ** 2).sum(1) < CALM**2
-    for part in kinds.values():
-        scale = np.hypot(*(point[part.stop - 1] - point[part.start]))
-        scale /= abs(along[part.stop - 1] - along[part.start])
-        flat[part] = _bell(round(4 * STRIPES_SD * scale / step[part.start]) / 4) @ flat[part]
+    offset, good = np.zeros(len(blocks.along)), np.zeros(len(blocks.along), bool)
+    if not blocks.kinds:
+        return offset, good
+    means = profile @ blocks.mean
+    ends, flat = _ENDS @ means, _LEVEL @ means
+    calm = ((ends[:, 1] - ends[:, 0]) ** 2).sum(0) < CALM**2
+    for part, bell in zip(blocks.kinds.values(), blocks.bells, strict=True):
+        flat[..., part] = bell @ flat[..., part]
     # Darker than the ice, perhaps lighter than the paint: only the size of the deviation counts.
-    value = np.sqrt((flat * flat).sum(2))
-    runs = Runs.of(list(kinds.values()))
-    sample, good = _paths(value[runs.index], along[runs.index], calm[runs.index] & runs.real)
-    offset, found = np.zeros(len(along)), np.zeros(len(along), bool)
-    offset[runs.index[runs.real]] = sample[runs.real]
-    found[runs.index[runs.real]] = good[runs.real]
-    return Stripes(kinds, along, step * (offset - SAMPLES // 2), point, normal, found)
+    value = np.sqrt((flat * flat).sum(0)).T
+    index, real = blocks.runs.index, blocks.runs.real
+    sample, shown = _paths(value[index], blocks, calm[index] & real)
+    offset[index[real]] = sample[real] / (SAMPLES // 2) - 1
+    good[index[real]] = shown[real]
+    return offset * blocks.reach, good
 
 
-def _paths(value: Profiles, along: Array, use: Flags) -> tuple[Array, Flags]:
+def _paths(value: Profiles, blocks: Blocks, use: Flags) -> tuple[Array, Flags]:
     """Find the straight paths across profiles along which they are highest.
 
     Parameters
     ----------
-    value : ndarray, shape (lines, blocks, SAMPLES)
-    along : ndarray, shape (lines, blocks)
-    use : ndarray of bool, shape (lines, blocks)
+    value : ndarray, shape (lines, longest, SAMPLES)
+    blocks : Blocks
+    use : ndarray of bool, shape (lines, longest)
 
     Returns
     -------
-    sample, good : ndarray, shape (lines, blocks)
+    sample, good : ndarray, shape (lines, longest)
         Where the profiles are highest near the path, and whether they show the line.
     """
-    beyond = use & (np.abs(along) > HOUSE.twelve_foot)
-    share = along - along[:, :1]
-    share /= share[:, -1:]
-    path = np.round(_FROM + (_TO - _FROM) * share[:, None]).astype(np.int64)
-    clear = value / (value.max(2, keepdims=True) + FAINT) * use[..., None]
-    line, block = np.ogrid[: len(value), : value.shape[1]]
-    course = clear[line[..., None], block, path]
-    strength = np.zeros(course.shape[:2], np.float32)
-    for part, least in ((use, CLEAR), (beyond, CLEAR_BEYOND)):
-        count = part.sum(1)[:, None]
-        mean = (course * part[:, None]).sum(2) / np.maximum(count, 1) / least
-        strength = np.maximum(strength, np.where(count >= LEAST_BLOCKS, mean, 0.0))
-    best = strength.argmax(1)
-    highest = strength.max(1)
-    middle = path[line[:, 0], best]
-    near = clear[line[..., None], block[..., None], middle[..., None] + np.arange(-2, 3)]
-    top = near[..., 1:-1].argmax(2) + 1
-    low, height, high = (near[line, block, top + aside] for aside in (-1, 0, 1))
+    clear = (value / (value.max(2, keepdims=True) + FAINT) * use[..., None]).ravel()
+    part = np.stack([use, use & blocks.beyond], axis=2).astype(np.float32)
+    count = part.sum(1, keepdims=True)
+    part *= (count >= LEAST_BLOCKS) / (np.maximum(count, 1) * _CLEAR)
+    strength = (clear[blocks.path] @ part).max(2)
+    path = blocks.path[np.arange(len(use)), strength.argmax(1)]
+    top = path + clear[path[..., None] + _ASIDE].argmax(2) - 1
+    low, height, high = clear[top - 1], clear[top], clear[top + 1]
     bend = np.maximum(2 * height - low - high, 1e-9)
     good = use & (height > SHOWN) & (height >= low) & (height >= high)
-    good &= (highest >= 1)[:, None]
+    good &= (strength.max(1) >= 1)[:, None]
     good &= (good.sum(1) >= LEAST_BLOCKS)[:, None]
-    return middle + top - 2 + 0.5 * (high - low) / bend, good
+    return top % SAMPLES + 0.5 * (high - low) / bend, good
 
 
 @lru_cache(maxsize=256)

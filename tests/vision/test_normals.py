@@ -27,16 +27,16 @@ def rig() -> np.ndarray:
 @pytest.mark.parametrize("centre", [(640.0, 380.0), (100.0, 900.0)])
 def test_normals_stand_on_their_lines_inside_the_picture(centre: tuple[float, float]) -> None:
     normals = lay_out(view(centre), rig(), SIZE, reach=REACH, most=48)
-    line = np.repeat(list(normals.kinds), [p.stop - p.start for p in normals.kinds.values()])
-    places = [ice_points(line, normals.along + step, rig()) for step in (-1e-4, 0.0, 1e-4)]
+    along = normals.along
+    places = [ice_points(normals.line, along + step, rig()) for step in (-1e-4, 0.0, 1e-4)]
     before, here, after = (project(place, view(centre), rig(), SIZE) for place in places)
-    np.testing.assert_allclose(here, normals.point, atol=1e-9)
+    np.testing.assert_allclose(here, normals.point.T, atol=1e-9)
     tangent = after - before
     tangent /= np.linalg.norm(tangent, axis=1)[:, None]
-    np.testing.assert_allclose(np.linalg.norm(normals.normal, axis=1), 1)
-    assert np.abs((tangent * normals.normal).sum(1)).max() < 0.02
+    np.testing.assert_allclose(np.linalg.norm(normals.normal, axis=0), 1)
+    assert np.abs((tangent.T * normals.normal).sum(0)).max() < 0.02
     assert (normals.point > REACH).all()
-    assert (normals.point < np.array(SIZE) - 1 - REACH).all()
+    assert (np.array(SIZE) - 1 - REACH > normals.point.T).all()
 
 
 def test_there_are_as_many_as_wanted_evenly_spread() -> None:
@@ -57,7 +57,8 @@ def test_what_is_seen_of_each_circle_is_told() -> None:
     assert normals.visible[:CIRCLES] == pytest.approx(0.5, abs=0.06)
     away = lay_out(view((640.0, 6000.0)), rig(), SIZE, reach=REACH, lines=False)
     assert not away.kinds
-    assert profiles(np.zeros((SIZE[1], SIZE[0], 3), np.uint8), away).shape == (0, SAMPLES, 3)
+    black = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
+    assert profiles(black, away, away.point).shape == (3, SAMPLES, 0)
 
 
 def test_normals_move_with_the_picture_until_they_leave_it() -> None:
@@ -65,9 +66,10 @@ def test_normals_move_with_the_picture_until_they_leave_it() -> None:
     later = view((643.0, 376.0))
     moved = normals.moved(later, rig(), SIZE)
     assert moved is not None
-    ring = moved.kinds[TWELVE]
-    there = HOUSE.twelve_foot * np.stack([np.cos(moved.along[ring]), np.sin(moved.along[ring])], 1)
-    np.testing.assert_allclose(moved.point[ring], project(there, later, rig(), SIZE), atol=1e-9)
+    ring = normals.along[normals.kinds[TWELVE]]
+    there = HOUSE.twelve_foot * np.stack([np.cos(ring), np.sin(ring)], 1)
+    now = moved[:, normals.kinds[TWELVE]].T
+    np.testing.assert_allclose(now, project(there, later, rig(), SIZE), atol=1e-9)
     assert normals.moved(view((700.0, 380.0)), rig(), SIZE) is None
     edge = lay_out(view((640.0, 0.0)), rig(), SIZE, reach=REACH, lines=False)
     assert edge.moved(view((640.0, -5.0)), rig(), SIZE) is None
@@ -78,7 +80,8 @@ def test_profiles_are_read_along_the_normals() -> None:
     x, y = np.meshgrid(np.arange(SIZE[0]), np.arange(SIZE[1]))
     image = np.stack([x / 6, y / 6, np.full_like(x, 100.0)], axis=-1).astype(np.uint8)
     share = np.linspace(-1, 1, SAMPLES)[:, None]
-    at = normals.point[:, None] + (normals.normal * normals.reach[:, None])[:, None] * share
-    found = profiles(image, normals)
-    np.testing.assert_allclose(found[..., :2], at / 6, atol=1.6)
-    np.testing.assert_array_equal(found[..., 2], 100)
+    shift = np.array([[2.5], [-1.25]])
+    at = (normals.point + shift)[:, None] + (normals.normal * normals.reach)[:, None] * share
+    found = profiles(image, normals, normals.point + shift)
+    np.testing.assert_allclose(found[:2], at / 6, atol=1.6)
+    np.testing.assert_array_equal(found[2], 100)

@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from vision.clip import open_clip
-from vision.picture import Planes, colours_at, image_of, reduced
+from vision.picture import Planes, channels_at, colours_at, image_of, reduced
 
 WIDTH, HEIGHT = 96, 64
 
@@ -103,3 +103,11 @@ def test_a_smaller_picture_shows_the_same(tmp_path: Path, times: int) -> None:
     assert smaller.shape == whole.shape == (HEIGHT // times, WIDTH // times, 3)
     seen = colours_at(smaller, x + 0.6, y + 0.3).astype(float)
     assert np.abs(seen - colours_at(whole, x + 0.6, y + 0.3)).mean() < 4.0
+
+
+def test_channels_are_the_colours_unrounded(tmp_path: Path) -> None:
+    planes = first(write(tmp_path / "clip.mp4", smooth_picture(), "yuv420p"))
+    x, y = (place[2:-2, 2:-2] + np.float32(0.3) for place in everywhere(planes.shape))
+    for picture in (planes, planes.image):
+        seen = np.moveaxis(channels_at(picture, x, y), 0, -1)
+        assert np.abs(seen - colours_at(picture, x, y)).max() <= 0.51

@@ -8,7 +8,7 @@ from vision.normals import SAMPLES, Normals, lay_out
 from vision.paint import CENTRE_LINE, TEE_LINE
 from vision.pose import aim
 from vision.rig import OVERHEAD, start_rig
-from vision.stripes import find_stripes
+from vision.stripes import Blocks, find_stripes
 
 SIZE = (1280, 720)
 POSITION = (0.0, 0.0, 8.5)
@@ -24,67 +24,73 @@ def laid_out() -> Normals:
 def ice(rng: np.random.Generator, count: int) -> np.ndarray:
     """Colours of noisy ice along normals, a little lighter on one side."""
     level = 215.0 + np.linspace(-3, 3, SAMPLES)[:, None]
-    return (level + rng.normal(0, 2, (count, SAMPLES, 3))).astype(np.float32)
+    return (level + rng.normal(0, 2, (3, SAMPLES, count))).astype(np.float32)
 
 
 def line(normals: Normals, kind: int, depth: float, places: tuple[float, ...]) -> np.ndarray:
     """A line's share of the colours: darker by `depth` where it is, px off the middle."""
-    x = np.linspace(-REACH, REACH, SAMPLES)
-    found = np.zeros((len(normals.along), SAMPLES, 1), np.float32)
+    x = np.linspace(-REACH, REACH, SAMPLES)[:, None]
+    found = np.zeros((SAMPLES, len(normals.along)), np.float32)
     for place in places:
-        off = place + 0.3 * normals.along[normals.kinds[kind], None]
-        found[normals.kinds[kind], :, 0] -= depth * np.exp(-0.5 * ((x - off) / 1.2) ** 2)
+        off = place + 0.3 * normals.along[normals.kinds[kind]]
+        found[:, normals.kinds[kind]] -= depth * np.exp(-0.5 * ((x - off) / 1.2) ** 2)
     return found
+
+
+def stripes(profile: np.ndarray, normals: Normals) -> tuple[Blocks, np.ndarray, np.ndarray]:
+    """Blocks, and what is found in profiles along all normals."""
+    blocks = Blocks.of(normals)
+    return blocks, *find_stripes(profile[..., normals.wide :], blocks)
 
 
 @pytest.mark.parametrize("depth", [6.0, 40.0, 180.0, -6.0])
 def test_a_line_is_found_where_it_is(depth: float) -> None:
     normals, rng = laid_out(), np.random.default_rng(1)
     profile = ice(rng, len(normals.along)) + line(normals, CENTRE_LINE, depth, (1.5,))
-    stripes = find_stripes(profile, normals)
-    part = stripes.kinds[CENTRE_LINE]
-    assert stripes.good[part].mean() > 0.7
-    off = stripes.offset[part] - (1.5 + 0.3 * stripes.along[part])
-    assert np.median(np.abs(off[stripes.good[part]])) < 0.35
-    assert not stripes.good[stripes.kinds[TEE_LINE]].any()
+    blocks, offset, good = stripes(profile, normals)
+    part = blocks.kinds[CENTRE_LINE]
+    assert good[part].mean() > 0.7
+    off = offset[part] - (1.5 + 0.3 * blocks.along[part])
+    assert np.median(np.abs(off[good[part]])) < 0.35
+    assert not good[blocks.kinds[TEE_LINE]].any()
 
 
 def test_a_line_that_ends_at_the_house_is_found_beyond_it() -> None:
     normals, rng = laid_out(), np.random.default_rng(5)
-    profile, part = ice(rng, len(normals.along)), normals.kinds[CENTRE_LINE]
+    profile = ice(rng, len(normals.along))
     painted = line(normals, CENTRE_LINE, 60.0, (1.5,))
-    painted[part][np.abs(normals.along[part]) < HOUSE.twelve_foot] = 0
-    stripes = find_stripes(profile + painted, normals)
-    part = stripes.kinds[CENTRE_LINE]
-    shown = np.abs(stripes.along[part]) > HOUSE.twelve_foot
-    assert stripes.good[part][shown].mean() > 0.7
-    assert stripes.good[part][~shown].mean() < 0.2
-    off = stripes.offset[part] - (1.5 + 0.3 * stripes.along[part])
-    assert np.median(np.abs(off[stripes.good[part] & shown])) < 0.35
+    painted[:, np.abs(normals.along) < HOUSE.twelve_foot] = 0
+    blocks, offset, good = stripes(profile + painted, normals)
+    part = blocks.kinds[CENTRE_LINE]
+    shown = np.abs(blocks.along[part]) > HOUSE.twelve_foot
+    assert good[part][shown].mean() > 0.7
+    assert good[part][~shown].mean() < 0.2
+    off = offset[part] - (1.5 + 0.3 * blocks.along[part])
+    assert np.median(np.abs(off[good[part] & shown])) < 0.35
 
 
 def test_two_stripes_are_one_line_between_them() -> None:
     normals, rng = laid_out(), np.random.default_rng(2)
     profile = ice(rng, len(normals.along)) + line(normals, TEE_LINE, 30.0, (-1.4, 2.4))
-    stripes = find_stripes(profile, normals)
-    part = stripes.kinds[TEE_LINE]
-    off = stripes.offset[part] - (0.5 + 0.3 * stripes.along[part])
-    assert stripes.good[part].mean() > 0.7
-    assert abs(np.median(off[stripes.good[part]])) < 0.6
+    blocks, offset, good = stripes(profile, normals)
+    part = blocks.kinds[TEE_LINE]
+    off = offset[part] - (0.5 + 0.3 * blocks.along[part])
+    assert good[part].mean() > 0.7
+    assert abs(np.median(off[good[part]])) < 0.6
 
 
 def test_bare_ice_and_edges_of_paint_are_no_lines() -> None:
     normals, rng = laid_out(), np.random.default_rng(3)
     bare = ice(rng, len(normals.along))
-    assert not find_stripes(bare, normals).good.any()
+    assert not stripes(bare, normals)[2].any()
     paint = bare.copy()
     paint[:, SAMPLES // 2 :] -= 90
-    assert not find_stripes(paint, normals).good.any()
+    assert not stripes(paint, normals)[2].any()
 
 
 def test_without_lines_in_view_there_is_nothing() -> None:
     view, rig = aim((640.0, 360.0), 130.0, POSITION, SIZE), start_rig(OVERHEAD, POSITION)
     circles = lay_out(view.vector, rig, SIZE, reach=REACH, lines=False)
-    found = find_stripes(ice(np.random.default_rng(4), len(circles.along)), circles)
-    assert not found.kinds
-    assert len(found.good) == 0
+    blocks, _, good = stripes(ice(np.random.default_rng(4), len(circles.along)), circles)
+    assert not blocks.kinds
+    assert len(good) == 0
