@@ -110,4 +110,4 @@ def test_channels_are_the_colours_unrounded(tmp_path: Path) -> None:
     x, y = (place[2:-2, 2:-2] + np.float32(0.3) for place in everywhere(planes.shape))
     for picture in (planes, planes.image):
         seen = np.clip(np.moveaxis(channels_at(picture, x, y), 0, -1), 0, 255)
-        assert np.abs(seen - colours_at(picture, x, y)).max() <= 0.51
+        assert np.abs(seen - colours_at(picture, x, y)).max() < 1
