@@ -71,41 +71,26 @@ def likeness(runs: Sequence[tuple[Floats, int]]) -> float:
     level = sum(float(np.sum(r * r)) for r, _ in runs) / sum(r.size for r, _ in runs)
     if level <= 0:
         return 1.0
-    alike: list[tuple[float, float, int]] = []
+    lags = np.arange(1, LONGEST)
+    seen, lost, size = np.zeros(len(lags)), np.zeros(len(lags)), np.zeros(len(lags))
+    for residuals, parameters in runs:
+        count, columns = residuals.shape
+        products = np.where(lags <= LAGS * count / parameters, (count - lags) * columns, 0)
+        size += products
+        lost += products * parameters / count
+        seen += np.where(products > 0, _products(residuals, len(lags)), 0.0)
+    told = size > 0
+    seen, lost, size = seen[told] / level / size[told], lost[told] / size[told], size[told]
     ratio = 1.0
     for _ in range(4):
-        total = 1.0
-        for lag in range(1, LONGEST):
-            if lag > len(alike):
-                further = _alike(runs, lag, level)
-                if further is None:
-                    break
-                alike.append(further)
-            seen, lost, size = alike[lag - 1]
-            correlation = seen + ratio * lost
-            if correlation < 2 / np.sqrt(size):
-                break
-            total += 2 * correlation
-        ratio = max(1.0, total)
+        correlation = seen + ratio * lost
+        weak = np.append(correlation < 2 / np.sqrt(size), True)
+        ratio = max(1.0, 1.0 + 2 * float(correlation[: int(weak.argmax())].sum()))
     return ratio
 
 
-def _alike(
-    runs: Sequence[tuple[Floats, int]], lag: int, level: float
-) -> tuple[float, float, int] | None:
-    """Correlation of residuals a lag apart, as seen and as lost to the fit; None if no longer told.
-
-    Returns
-    -------
-    seen, lost : float
-        The second in units of the long-run variance over the variance.
-    size : int
-        How many products it is the mean of.
-    """
-    usable = [(r, p) for r, p in runs if lag <= LAGS * len(r) / p]
-    if not usable:
-        return None
-    size = sum(r[lag:].size for r, _ in usable)
-    seen = sum(float(np.vdot(r[lag:], r[:-lag])) for r, _ in usable) / level
-    lost = sum(p / len(r) * r[lag:].size for r, p in usable)
-    return seen / size, lost / size, size
+def _products(residuals: Floats, most: int) -> Floats:
+    """Sum the products of residuals 1, 2 … `most` apart (by Fourier transforms)."""
+    length = len(residuals) + most
+    power = np.abs(np.fft.rfft(residuals, length, axis=0)) ** 2
+    return np.asarray(np.fft.irfft(power.sum(1), length)[1 : most + 1])

@@ -29,6 +29,10 @@ FEWEST = 4
 STILL = 25.0
 """Squared normalised shift of a mean place, two axes, below which it is no trace of a motion."""
 
+PLACE = 0.002
+"""Places that are all this near to their median, m, are one, whatever their errors: those of a
+camera that wanders are alike in all frames."""
+
 OUTLIER = 16.0
 """Squared normalised error, two axes, at which a sample costs no more."""
 
@@ -104,6 +108,8 @@ def _at_one_place(xy: Floats, sd: Floats) -> bool:
     look for breaks. A break would show in the mean place over one of the stretches of
     `FEWEST` sightings and of twice, four times … as many.
     """
+    if np.abs(xy - np.median(xy, axis=0)).max() < PLACE:
+        return True
     weights = 1 / _variance(sd)
     total = np.concatenate([[0.0], np.cumsum(weights)])
     centre = weights @ xy / total[-1]
