@@ -107,12 +107,13 @@ class Camera:
             return p.copy()
         c, radius = self._centre_and_radius
         d = (p - c) / radius
-        rd = np.sqrt((d**2).sum(-1, keepdims=True))
+        rd = np.sqrt((d * d).sum(-1, keepdims=True))
         r = rd.copy()
-        for _ in range(8):
-            f = r * (1 + self.k1 * r**2 + self.k2 * r**4) - rd
-            slope = 1 + 3 * self.k1 * r**2 + 5 * self.k2 * r**4
-            r = r - f / np.where(np.abs(slope) < 0.1, 0.1, slope)
+        for _ in range(6):
+            r2 = r * r
+            far = self.k2 * r2
+            slope = 1 + r2 * (3 * self.k1 + 5 * far)
+            r -= (r * (1 + r2 * (self.k1 + far)) - rd) / np.where(np.abs(slope) < 0.1, 0.1, slope)
         scale = np.divide(r, rd, out=np.ones_like(r), where=rd > 1e-12)
         return np.asarray(c + radius * d * scale)
 
@@ -202,7 +203,7 @@ class Camera:
         by_point[..., 0, 0] = by_point[..., 1, 1] = lens
         by_point[..., 2] = -q / p[..., 2:]
         moved = np.empty((*xy.shape[:-1], 2, PARAMETERS))
-        moved[..., :3] = np.cross(by_point, -p[..., None, :])
+        moved[..., :3] = by_point @ _crossing(-p)
         moved[..., 3] = q
         moved[..., 4:7] = -by_point @ rotation
         r2 = (q**2).sum(-1, keepdims=True)
@@ -218,6 +219,15 @@ class Camera:
         p = self.project(np.array([[x + step, y], [x - step, y], [x, y + step], [x, y - step]]))
         jacobian = np.stack([p[0] - p[1], p[2] - p[3]], axis=1) / (2 * step)
         return float(np.sqrt(abs(np.linalg.det(jacobian))))
+
+
+def _crossing(vectors: Array) -> Array:
+    """Matrices, shape (..., 3, 3), by which rows are multiplied to be crossed with vectors."""
+    out = np.zeros((*vectors.shape, 3))
+    x, y, z = np.moveaxis(vectors, -1, 0)
+    out[..., 0, 1], out[..., 0, 2], out[..., 1, 2] = -z, y, -x
+    out[..., 1, 0], out[..., 2, 0], out[..., 2, 1] = z, -y, x
+    return out
 
 
 def apply_homography(matrix: Array, points: ArrayLike) -> Array:

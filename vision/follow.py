@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from math import hypot, inf, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,8 @@ from vision.appearance import colour_differences
 from vision.sighting import Sighting
 
 Array = NDArray[np.float64]
+
+Pair = tuple[float, float]
 
 _FORBIDDEN = 1e6
 
@@ -80,49 +83,54 @@ class Track:
     times: list[float] = field(default_factory=list)
     sightings: list[Sighting] = field(default_factory=list)
     colour: Array = field(default_factory=lambda: np.zeros(3))
-    _place: Array = field(default_factory=lambda: np.zeros(2))
-    _velocity: Array = field(default_factory=lambda: np.zeros(2))
-    _covariance: Array = field(default_factory=lambda: np.zeros((2, 2)))
+    _place: Pair = (0.0, 0.0)
+    _velocity: Pair = (0.0, 0.0)
+    _covariance: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     @property
     def speed(self) -> float:
         """Speed at the last sighting, m/s; 0 where it cannot be told from 0."""
-        speed = float(np.hypot(*self._velocity))
-        return speed if speed > 3 * float(np.sqrt(self._covariance[1, 1])) else 0.0
+        speed = hypot(*self._velocity)
+        return speed if speed > 3 * sqrt(self._covariance[2]) else 0.0
 
-    def expected(self, t: float, deceleration: float) -> Array:
+    def expected(self, t: float, deceleration: float) -> Pair:
         """Place at time t if nothing hits it: it glides on, slows down and stops."""
         speed = self.speed
         if speed == 0:
             return self._place
-        wait = min(t - self.times[-1], speed / deceleration if deceleration > 0 else np.inf)
-        path = speed * wait - 0.5 * deceleration * wait**2
-        return np.asarray(self._place + self._velocity / speed * path)
+        wait = min(t - self.times[-1], speed / deceleration if deceleration > 0 else inf)
+        path = wait - 0.5 * deceleration * wait**2 / speed
+        (x, y), (vx, vy) = self._place, self._velocity
+        return x + vx * path, y + vy * path
 
     def add(self, frame: int, t: float, sighting: Sighting, radius: float) -> None:
         """Take in a sighting: a filter of constant velocity that starts anew at a hit."""
-        seen = np.array([sighting.x, sighting.y])
+        x, y = sighting.x, sighting.y
         noise = sighting.sd_x * sighting.sd_y + (0.004 * radius) ** 2
-        colour = np.asarray(sighting.colour, float)
+        any_speed = (10 * radius) ** 2
         if not self.times:
-            self._place, self._velocity = seen, np.zeros(2)
-            self._covariance = np.diag([noise, (10 * radius) ** 2])
-            self.colour = colour
+            self._place, self._covariance = (x, y), (noise, 0.0, any_speed)
+            self.colour = np.asarray(sighting.colour, float)
         else:
             step = t - self.times[-1]
-            move = np.array([[1.0, step], [0.0, 1.0]])
-            jolt = (2.0 * radius) ** 2 * np.array([[step**3 / 3, step**2 / 2], [step**2 / 2, step]])
-            predicted = move @ self._covariance @ move.T + jolt
-            innovation = seen - (self._place + self._velocity * step)
-            if (innovation**2).sum() > 25 * (predicted[0, 0] + noise):
-                predicted[1, 1] += (10 * radius) ** 2
-                predicted[0, 0] += (10 * radius * step) ** 2
-                predicted[0, 1] = predicted[1, 0] = predicted[0, 1] + (10 * radius) ** 2 * step
-            gain = predicted[:, 0] / (predicted[0, 0] + noise)
-            self._place = self._place + self._velocity * step + gain[0] * innovation
-            self._velocity = self._velocity + gain[1] * innovation
-            self._covariance = predicted - np.outer(gain, predicted[0])
-            self.colour = self.colour + 0.1 * (colour - self.colour)
+            (ahead_x, ahead_y), (vx, vy), (p00, p01, p11) = (
+                self._place, self._velocity, self._covariance,
+            )  # fmt: skip
+            ahead_x, ahead_y = ahead_x + vx * step, ahead_y + vy * step
+            jolt = (2.0 * radius) ** 2 * step
+            p00 += step * (2 * p01 + step * p11) + jolt * step**2 / 3
+            p01 += step * p11 + jolt * step / 2
+            p11 += jolt
+            away_x, away_y = x - ahead_x, y - ahead_y
+            if away_x**2 + away_y**2 > 25 * (p00 + noise):
+                p00 += any_speed * step**2
+                p01 += any_speed * step
+                p11 += any_speed
+            gain, rate = p00 / (p00 + noise), p01 / (p00 + noise)
+            self._place = ahead_x + gain * away_x, ahead_y + gain * away_y
+            self._velocity = vx + rate * away_x, vy + rate * away_y
+            self._covariance = p00 - gain * p00, p01 - gain * p01, p11 - rate * p01
+            self.colour = self.colour + 0.1 * (sighting.colour - self.colour)
         self.frames.append(frame)
         self.times.append(t)
         self.sightings.append(sighting)
@@ -236,8 +244,10 @@ def _struck(tracks: Sequence[Track], t: float, radius: float, gate: Gate) -> dic
     the push along the line of their centres.
     """
     places = np.array([track._place for track in tracks])
-    ways = np.array([track._velocity * (track.speed > 0) for track in tracks])
+    ways = np.array([track._velocity if track.speed > 0 else (0.0, 0.0) for track in tracks])
     since = np.array([track.times[-1] for track in tracks])
+    if not ways.any():
+        return {}
     known = np.array([len(track.times) >= gate.births for track in tracks])
     first, second = np.triu_indices(len(tracks), 1)
     start = np.maximum(since[first], since[second])
