@@ -6,7 +6,7 @@ of the circles they explain; the best is refined at full resolution, with the li
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import cv2
@@ -19,9 +19,9 @@ from vision.camera import Camera
 from vision.lines import sides, upright
 from vision.marks import Evidence, measure
 from vision.outline import Rim, find_rim
-from vision.paint import TWELVE
 from vision.picture import Image
 from vision.pose import DOWN, View, aim, camera, rescaled, rotation_vector
+from vision.proof import is_house, worth
 from vision.rig import ANYWHERE, OVERHEAD, Prior, start_rig
 from vision.rings import Guess, guesses
 
@@ -43,16 +43,6 @@ ASIDE = 2.0
 
 ROUGH = 0.5
 """What a house loses per pixel of residual in the small picture."""
-
-WHOLE = 0.6
-"""Share of what is visible of a circle that is nearly all of it, with people over it."""
-
-UNPAINTED = ((0.72, 1.1), (1.32, 1.7), (1.95, 6.0))
-"""From where to where there is no edge of a circle, m; the third holds the rings of a house of
-which the 4-ft circle and the button were taken for all."""
-
-LEAST_STEP, WHOLE_AROUND = 20.0, 0.7
-"""Grey levels by which an edge stands out, and its share of a circle, for one that is there."""
 
 TILT_GAIN = 8.0
 """By how much the log likelihood must rise for a camera that does not hang over the tee."""
@@ -99,7 +89,11 @@ def find_house(image: Image, *, frame: int = 0, t: float = 0.0) -> HouseFit | No
     """
     factor = min(WORK_WIDTH / image.shape[1], 1.0)
     small = _reduced(image)
-    return _best(image, small, [_enlarged(g, 1 / factor) for g in _guesses(small)], frame, t)
+    hypotheses = [_enlarged(g, 1 / factor) for g in _guesses(small)]
+    for found in _fits(image, small, hypotheses, frame, t):
+        if is_house(image, found.evidence, found.view, found.rig, found.camera):
+            return found
+    return None
 
 
 def fit_house(
@@ -112,7 +106,7 @@ def fit_house(
     HouseFit or None
         From the hypothesis that explains most; None where the edges bear out none of them.
     """
-    return _best(image, _reduced(image), hypotheses, frame, t)
+    return next(_fits(image, _reduced(image), hypotheses, frame, t), None)
 
 
 def _reduced(image: Image) -> Image:
@@ -127,9 +121,10 @@ def _enlarged(guess: Guess, factor: float) -> Guess:
     return replace(guess, centre=(guess.centre + 0.5) * factor - 0.5, scale=guess.scale * factor)
 
 
-def _best(
+def _fits(
     image: Image, small: Image, hypotheses: Sequence[Guess], frame: int, t: float
-) -> HouseFit | None:
+) -> Iterator[HouseFit]:
+    """Fit hypotheses: what they become, that which explains most first."""
     factor = min(WORK_WIDTH / image.shape[1], 1.0)
     fits: list[_Fitted] = []
     aside = [abs(guess.centre[0] - image.shape[1] / 2) for guess in hypotheses]
@@ -142,8 +137,7 @@ def _best(
     for fitted in sorted(fits, key=lambda fit: -fit.score):
         found = _refine(image, fitted, factor, frame, t)
         if found is not None:
-            return found
-    return None
+            yield found
 
 
 @dataclass(frozen=True)
@@ -168,10 +162,10 @@ def _fit(image: Image, guess: Guess) -> _Fitted | None:
             return None
         solution = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
         view, rig, rms = solution.views[0], solution.rig, float(solution.rms[0])
-    worth = judge(measure(image, view.vector, rig, reach=5.0, spacing=4, lines=False))
+    explained = worth(measure(image, view.vector, rig, reach=5.0, spacing=4, lines=False))
     aside = ASIDE * abs(guess.centre[0] / size[0] - 0.5)
-    score = worth - aside - ROUGH * float(np.nan_to_num(rms, nan=9.0))
-    return _Fitted(view, rig, score) if worth > 0 else None
+    score = explained - aside - ROUGH * float(np.nan_to_num(rms, nan=9.0))
+    return _Fitted(view, rig, score) if explained > 0 else None
 
 
 def _guesses(image: Image) -> list[Guess]:
@@ -201,43 +195,6 @@ def _aimed(guess: Guess, position: Array, size: tuple[int, int]) -> View:
     return View(np.append(vector, level.vector[3]))
 
 
-def judge(evidence: Evidence) -> float:
-    """How much of a house this is, up to 3.5; 0 where it is none."""
-    support, covered = evidence.support, evidence.covered
-    if covered[0] < 0.12 or support[0] < 0.35:
-        return 0.0
-    seen = evidence.visible > 0.05
-    # Edges of other things rarely stand as 3 : 2; where there are but 3 : 1, they must be whole
-    # and what is around them ice.
-    inner = support[1] > 0.3 or (support[2] > 0.3 and not seen[1])
-    ice = evidence.palette[TWELVE, 0]
-    if not inner and (min(support[0], support[2]) < WHOLE or ice.min() < max(0.6 * ice.max(), 80)):
-        return 0.0
-    return float(covered.sum() + 0.5 * support[seen].mean())
-
-
-def _is_target(image: Image, found: Camera) -> bool:
-    """Whether there are whole circles where a house has none: between its own or around them."""
-    angle = np.linspace(0, 2 * np.pi, 72, endpoint=False)
-    way = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    for first, last in UNPAINTED:
-        radius = np.exp(np.arange(np.log(first), np.log(last), 0.01))
-        place = found.project(radius[:, None, None] * way)
-        seen = np.asarray(((place > 0) & (place < np.array(found.size) - 1)).all(-1))
-        x, y = place.astype(np.float32).transpose(2, 0, 1)
-        colour = cv2.remap(image, x, y, cv2.INTER_LINEAR).astype(float)
-        within = seen[8:] & seen[:-8]
-        step = (colour[8:] - colour[:-8]) * within[..., None]
-        count = np.maximum(within.sum(1), 1)
-        usual = step.sum(1) / count[:, None]
-        square = (usual**2).sum(-1)
-        alike = (step * usual[:, None]).sum(-1) > 0.5 * square[:, None]
-        whole = (alike & within).sum(1) > WHOLE_AROUND * count
-        if (whole & (square > LEAST_STEP**2) & (count > 0.5 * len(angle))).any():
-            return True
-    return False
-
-
 def _refine(image: Image, best: _Fitted, factor: float, frame: int, t: float) -> HouseFit | None:
     """Fit at full resolution: the circles, then with the lines."""
     size = (image.shape[1], image.shape[0])
@@ -264,6 +221,6 @@ def _refine(image: Image, best: _Fitted, factor: float, frame: int, t: float) ->
         edge = find_rim(evidence.profile, evidence.step)
     rms = float(fit.rms[0])
     found = camera(view, rig, size, frame=frame, t=t, rms_px=rms)
-    if judge(evidence) == 0 or _is_target(image, found):
+    if worth(evidence) == 0:
         return None
     return HouseFit(found, view, rig, evidence, rms, overhead, edge)

@@ -39,6 +39,9 @@ STEP = np.radians(0.25)
 QUARTER_STEPS = 360
 """Rays in a quarter turn."""
 
+NEAR = 6
+"""Rays on either side of an axis among which its line is looked for."""
+
 ALONG = np.arange(0.2, 2.6, 0.04)
 """Where the rays are sampled, m from the tee."""
 
@@ -85,6 +88,14 @@ def upright(image: Image, view: View, rig: Array) -> tuple[View, Array]:
     if _strength(image, *sideways) > _strength(image, *level) + SURE_STEP:
         return sideways
     return level
+
+
+def clearness(image: Image, view: View, rig: Array) -> float:
+    """Tell how much more the lines along the axes stand out than any others through the tee."""
+    score, middle = _cross_score(image, view, rig), QUARTER_STEPS // 2
+    score -= np.median(score)
+    others = np.delete(score, np.arange(middle - 2 * NEAR, middle + 2 * NEAR + 1))
+    return float(score[middle - NEAR : middle + NEAR + 1].max() / max(others.max(), 1e-9))
 
 
 def _strength(image: Image, view: View, rig: Array) -> float:

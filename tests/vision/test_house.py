@@ -171,6 +171,18 @@ def test_real_stills_agree_with_cameras_measured_by_hand(shared: Path) -> None:
     assert np.median(np.concatenate(every)) < 0.004
 
 
+@pytest.mark.parametrize("spokes", [0, 5, 7])
+def test_a_wheel_is_no_house(spokes: int) -> None:
+    image = np.full((720, 1280, 3), 225, np.uint8)
+    centre, radius = (600, 350), 300
+    for share, colour in ((1.0, (35, 35, 35)), (0.664, (40, 140, 120)), (0.6, (200, 200, 200))):
+        cv2.circle(image, centre, round(share * radius), colour, -1, cv2.LINE_AA)
+    for angle in 0.2 + 2 * np.pi * np.arange(spokes) / max(spokes, 1):
+        end = np.round(centre + 0.6 * radius * np.array([np.cos(angle), np.sin(angle)])).astype(int)
+        cv2.line(image, centre, end.tolist(), (110, 60, 60), 14, cv2.LINE_AA)
+    assert find_house(image) is None
+
+
 def test_real_close_ups_are_refused(shared: Path) -> None:
     known = json.loads((shared / "frames/stills.json").read_text())
     for negative in known["negatives"]:

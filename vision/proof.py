@@ -1,0 +1,96 @@
+"""Whether circles that fit a house are one: by what else a house shows, and what it does not."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from vision.camera import Camera
+from vision.lines import clearness
+from vision.marks import Evidence
+from vision.paint import EIGHT, TWELVE
+from vision.picture import Image
+from vision.pose import View
+
+Array = NDArray[np.float64]
+
+WHOLE = 0.6
+"""Share of what is visible of a circle that is nearly all of it, with people over it."""
+
+LEAST_SUPPORT = 0.3
+"""The same for an inner circle that is there at all."""
+
+UNPAINTED = ((0.72, 1.1), (1.32, 1.7), (1.95, 6.0))
+"""From where to where there is no edge of a circle, m; the third holds the rings of a house of
+which the 4-ft circle and the button were taken for all."""
+
+LEAST_STEP, WHOLE_AROUND = 20.0, 0.7
+"""Grey levels by which an edge stands out, and its share of a circle, for one that is there."""
+
+BARE = 0.35
+"""How far what is within the 8-ft circle may be from the ice's colour and be bare, in steps from
+ice to paint."""
+
+CROSSED = 2.3
+"""How much more centre and tee line must stand out than other lines through the tee to prove a
+house; spokes of a wheel do by up to 2."""
+
+
+def worth(evidence: Evidence) -> float:
+    """How much of a house this is, up to 3.5; 0 where it is none."""
+    support, covered = evidence.support, evidence.covered
+    if covered[0] < 0.12 or support[0] < 0.35:
+        return 0.0
+    seen = evidence.visible > 0.05
+    # Edges of other things rarely stand as 3 : 2; where there are but 3 : 1, they must be whole
+    # and what is around them ice.
+    inner = support[1] > LEAST_SUPPORT or (support[2] > LEAST_SUPPORT and not seen[1])
+    ice = evidence.palette[TWELVE, 0]
+    if not inner and (min(support[0], support[2]) < WHOLE or ice.min() < max(0.6 * ice.max(), 80)):
+        return 0.0
+    return float(covered.sum() + 0.5 * support[seen].mean())
+
+
+def is_house(image: Image, evidence: Evidence, view: View, rig: Array, found: Camera) -> bool:
+    """Say whether circles that fit belong to a house, not to a target, a wheel or an eye.
+
+    Three circles with bare ice between the paint, or the lines through the tee, tell it.
+
+    Parameters
+    ----------
+    image : ndarray of uint8, shape (h, w, 3)
+    evidence : Evidence
+        Of the circles, as fitted.
+    view, rig, found : View, ndarray, Camera
+        The camera.
+    """
+    ice, paint = evidence.palette[TWELVE]
+    within = evidence.palette[EIGHT, 1]
+    bare = bool(np.linalg.norm(within - ice) < BARE * np.linalg.norm(paint - ice))
+    ringed = bare and evidence.support.min() > WHOLE
+    if not ringed and clearness(image, view, rig) < CROSSED:
+        return False
+    return not _is_target(image, found)
+
+
+def _is_target(image: Image, found: Camera) -> bool:
+    """Whether there are whole circles where a house has none: between its own or around them."""
+    angle = np.linspace(0, 2 * np.pi, 72, endpoint=False)
+    way = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    for first, last in UNPAINTED:
+        radius = np.exp(np.arange(np.log(first), np.log(last), 0.01))
+        place = found.project(radius[:, None, None] * way)
+        seen = np.asarray(((place > 0) & (place < np.array(found.size) - 1)).all(-1))
+        x, y = place.astype(np.float32).transpose(2, 0, 1)
+        colour = cv2.remap(image, x, y, cv2.INTER_LINEAR).astype(float)
+        within = seen[8:] & seen[:-8]
+        step = (colour[8:] - colour[:-8]) * within[..., None]
+        count = np.maximum(within.sum(1), 1)
+        usual = step.sum(1) / count[:, None]
+        square = (usual**2).sum(-1)
+        alike = (step * usual[:, None]).sum(-1) > 0.5 * square[:, None]
+        whole = (alike & within).sum(1) > WHOLE_AROUND * count
+        if (whole & (square > LEAST_STEP**2) & (count > 0.5 * len(angle))).any():
+            return True
+    return False
