@@ -203,7 +203,7 @@ def _whole(
     if watched is None or not watched.hits:
         return None, None
     try:
-        fit = fit_with_chosen_laws([watched])
+        fit = fit_with_chosen_laws(watched)
     except InputError as error:
         return None, f"whole shot: cannot be simulated ({error}); values beside the hits used"
     if not fit.settled or not fit.hits_as_seen:

@@ -51,8 +51,8 @@ class GlobalFit:
     cov : (n, n) array
         Their covariance, enlarged for residuals that are too big or alike from frame to frame
         and for what places share.
-    prior_sd : (n,) array
-        What was known of each beforehand; infinite where nothing.
+    prior_mean, prior_sd : (n,) array
+        What was known of each beforehand; 0 and infinite where nothing.
     fixed : mapping
         Unknowns that were held, and at what.
     shots : tuple of Watched
@@ -74,6 +74,7 @@ class GlobalFit:
     names: tuple[str, ...]
     values: Floats
     cov: Floats
+    prior_mean: Floats
     prior_sd: Floats
     fixed: Mapping[str, float]
     shots: tuple[Watched, ...]
@@ -248,6 +249,7 @@ class _Problem:
             self.names,
             at,
             cov + self._shared_error(residuals, slopes, cov),
+            self.mean,
             self.sd,
             dict(self.fixed),
             tuple(self.shots),

@@ -10,52 +10,84 @@ from numpy.typing import NDArray
 
 from data.results import Estimate, Law
 from physics.global_fit import GlobalFit, fit_shots
-from physics.shot_model import Watched
+from physics.shot_model import V_C, Watched
 
-STRAIGHT = {"slope": 0.0, "turn": 0.0}
+STRAIGHT = {"slope": 0.0, "v_c": V_C, "turn": 0.0}
 """Constant friction and no curl: what a shot is fitted with first."""
 
 STICKING = {"stone_friction": 2.0}
 """Stones that stop sliding on each other before they part: any greater friction does the same."""
 
 
-def fit_with_chosen_laws(shots: Sequence[Watched]) -> GlobalFit:
-    """Fit shots with the laws that the sightings ask for.
+def fit_with_chosen_laws(shot: Watched) -> GlobalFit:
+    """Fit a shot with the laws that the sightings ask for.
 
     Friction that depends on the speed and curl are each taken up, and friction between stones
-    is kept as an unknown, where the sightings are the more probable for it: minus twice the
-    logarithm of that probability, by Laplace's method, is the criterion (Kass and Raftery,
-    1995, J. Am. Stat. Assoc. 90, 773). Otherwise the stones stick.
+    is kept as an unknown, where the sightings are the more probable for it. Otherwise the
+    friction is constant, the paths are straight, the stones stick.
 
-    What the other choices of laws would give is in the errors: each adds the square of its
-    difference, weighted by its probability (Buckland et al., 1997, Biometrics 53, 603).
+    What the other choices of laws would give is in the errors, each by its probability
+    (Buckland et al., 1997, Biometrics 53, 603).
     """
     held = dict(STRAIGHT)
-    best = fit_shots(shots, fixed=held)
-    tried = [best]
-    for name in STRAIGHT:
+    best = fit_shots([shot], fixed=held)
+    tried, criteria, least = [best], [0.0], 0.0
+    for name in ("slope", "turn"):
         fewer = {key: value for key, value in held.items() if key != name}
-        more = fit_shots(shots, fixed=fewer, start=_start(best))
+        more = fit_shots([shot], fixed=fewer, start=_start(best))
+        if not more.settled:
+            continue
+        criteria.append(least + _against(more, name))
+        if name == "slope":  # only where there is some is there a knee to be found
+            del fewer["v_c"]
+            bent = fit_shots([shot], fixed=fewer, start=_start(more))
+            more = bent if bent.settled else more
         tried.append(more)
-        if more.settled and _criterion(more, more.inflation) < _criterion(best, more.inflation):
-            best, held = more, fewer
-    if any(shot.hits for shot in shots):
-        stuck = fit_shots(shots, fixed=held | STICKING, start=_start(best))
-        tried.append(stuck)
-        if stuck.settled and _criterion(stuck, best.inflation) < _criterion(best, best.inflation):
-            best = stuck
-    return _with_others(best, [fit for fit in tried if fit.settled or fit is best])
+        if criteria[-1] < least:
+            best, held, least = more, fewer, criteria[-1]
+    if shot.hits:
+        stuck = fit_shots([shot], fixed=held | STICKING, start=_start(best))
+        if stuck.settled:
+            tried.append(stuck)
+            noise = best.inflation
+            criteria.append(least + _criterion(stuck, noise) - _criterion(best, noise))
+            if criteria[-1] < least:
+                best = stuck
+    return _with_others(best, tried, np.array(criteria))
 
 
-def _with_others(best: GlobalFit, tried: Sequence[GlobalFit]) -> GlobalFit:
-    """Put what the fits with other laws say into the errors of the best one."""
-    criteria = np.array([_criterion(fit, best.inflation) for fit in tried])
+def _against(fit: GlobalFit, name: str) -> float:
+    """Twice the log of how much more probable the sightings are if an unknown is 0.
+
+    It is the density of what the fit tells of the unknown over that of what was known of it
+    beforehand, both at 0 (Dickey, 1971, Annals of Mathematical Statistics 42, 204). So an error
+    that places share counts as it does in the unknown's own error, and what a bent map of the
+    ice makes of a straight path is not taken for curl.
+    """
+    k = fit.names.index(name)
+    told = -(fit.values[k] ** 2 / fit.cov[k, k] + np.log(fit.cov[k, k]))
+    known = -((fit.prior_mean[k] / fit.prior_sd[k]) ** 2 + 2 * np.log(fit.prior_sd[k]))
+    return float(told - known)
+
+
+def _with_others(
+    best: GlobalFit, tried: Sequence[GlobalFit], criteria: NDArray[np.float64]
+) -> GlobalFit:
+    """Put what the fits with other laws say into the errors of the best one.
+
+    Every variance becomes the mean over the fits of their own and of the square of their
+    difference from the best.
+    """
     weights = np.exp(-0.5 * (criteria - criteria.min()))
     weights /= weights.sum()
-    between = np.zeros_like(best.cov)
+    between, variance = np.zeros_like(best.cov), np.zeros(len(best.cov))
     for fit, weight in zip(tried, weights.tolist(), strict=True):
-        off = _difference(fit, best)
+        values, own = _told_by(fit, best)
+        off = values - best.values
         between += weight * np.outer(off, off)
+        variance += weight * (own + off * off)
+    cov = best.cov + between
+    scale = np.sqrt(variance / np.diag(cov))
     order = np.argsort(criteria, kind="stable").tolist()
     laws = tuple(
         Law(
@@ -66,15 +98,17 @@ def _with_others(best: GlobalFit, tried: Sequence[GlobalFit]) -> GlobalFit:
         )
         for k in order
     )
-    return replace(best, cov=best.cov + between, laws=laws)
+    return replace(best, cov=cov * np.outer(scale, scale), laws=laws)
 
 
-def _difference(fit: GlobalFit, best: GlobalFit) -> NDArray[np.float64]:
-    """How far the unknowns of a fit lie from those of the best one; 0 where it holds them."""
-    values = dict(zip(fit.names, fit.values.tolist(), strict=True))
-    return np.array(
-        [values.get(name, own) - own for name, own in zip(best.names, best.values, strict=True)]
-    )
+def _told_by(fit: GlobalFit, best: GlobalFit) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Values and variances of the best fit's unknowns in another; its own where that holds them."""
+    values, variance = best.values.copy(), np.diag(best.cov).copy()
+    for k, name in enumerate(best.names):
+        if name in fit.names:
+            rank = fit.names.index(name)
+            values[k], variance[k] = fit.values[rank], fit.cov[rank, rank]
+    return values, variance
 
 
 def _name(fit: GlobalFit) -> str:
@@ -95,7 +129,10 @@ def _start(fit: GlobalFit) -> dict[str, float]:
 
 
 def _criterion(fit: GlobalFit, noise: float) -> float:
-    """Minus twice the log probability of the sightings, but for what all fits share."""
+    """Minus twice the log probability of the sightings, but for what all fits share.
+
+    By Laplace's method (Kass and Raftery, 1995, J. Am. Stat. Assoc. 90, 773).
+    """
     known = fit.prior_sd[np.isfinite(fit.prior_sd)]
     sd = np.sqrt(np.diag(fit.cov))  # apart, for determinants leave what numbers can hold
     volume = float(np.linalg.slogdet(fit.cov / np.outer(sd, sd))[1]) + 2 * np.sum(np.log(sd))

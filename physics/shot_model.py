@@ -21,8 +21,7 @@ from physics.traces import Trace
 Floats = NDArray[np.float64]
 
 V_C = 0.064
-"""v_c in μ(v) = a / (v + v_c) + b, m/s: no track tells it, so it is that of FCV1 (Uehara and
-Ito, 2021)."""
+"""v_c in μ(v) = a / (v + v_c) + b, m/s, of FCV1 (Uehara and Ito, 2021)."""
 
 STATE: tuple[str, ...] = ("x", "y", "vx", "vy", "omega")
 
@@ -35,9 +34,9 @@ class Unknown:
     ----------
     name : str
         ``restitution``, ``stone_friction`` (μ_s between stones), ``friction`` (of the ice at
-        1 m/s), ``slope`` (a in μ(v) = a / (v + v_c) + b, m/s), ``turn`` (of the path at 1 m/s,
-        rad/s), ``size`` (distance at contact over two radii), or a state at the start such as
-        ``A.x``, ``A.y``, ``A.vx``, ``A.vy`` and ``A.omega``.
+        1 m/s), ``slope`` and ``v_c`` (a and v_c in μ(v) = a / (v + v_c) + b, m/s), ``turn`` (of
+        the path at 1 m/s, rad/s), ``size`` (distance at contact over two radii), or a state at
+        the start such as ``A.x``, ``A.y``, ``A.vx``, ``A.vy`` and ``A.omega``.
     guess : float
         Where a fit sets out from.
     low, high : float
@@ -147,8 +146,8 @@ class Watched:
 
 def ice(values: Mapping[str, float]) -> Fit:
     """Return the ice law μ(v) = a / (v + v_c) + b with the friction at 1 m/s and a as given."""
-    slope = values.get("slope", 0.0)
-    return Fit(a=slope, v_c=V_C, b=max(values["friction"] - slope / (1 + V_C), 1e-6))
+    a, v_c = values.get("slope", 0.0), values.get("v_c", V_C)
+    return Fit(a=a, v_c=v_c, b=max(values["friction"] - a / (1 + v_c), 1e-6))
 
 
 def curl(values: Mapping[str, float], loss: float = FCV1Curl.loss) -> Curl:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from data.results import Estimate
 from data.sheet import STONE
 from physics.shot_fit import ShotFit
-from physics.shot_model import SpinSeen, Unknown, Watched
+from physics.shot_model import V_C, SpinSeen, Unknown, Watched
 from physics.spins import spin_on
 from physics.traces import Trace
 
@@ -28,9 +28,9 @@ SLIDING = 0.02
 """Friction between two stones that a fit sets out from: low, so that they slide. Once they
 stick, more of it changes nothing and no slope leads back."""
 
-SLOPE, TURN = Estimate(0.001, 0.0015), Estimate(0.0, 0.01)
-"""What is known of a in μ(v) = a / (v + v_c) + b, m/s (0 in the constant law, 0.002 in FCV1, some
-0.0035 in Penner's), and of the turn of a path at 1 m/s, rad/s (0.0082 in FCV1)."""
+SLOPE, KNEE, TURN = Estimate(0.001, 0.0015), Estimate(V_C, 0.04), Estimate(0.0, 0.01)
+"""What is known of a and v_c in μ(v) = a / (v + v_c) + b, m/s (a is 0 in the constant law, 0.002
+in FCV1, some 0.0035 in Penner's), and of the turn of a path at 1 m/s, rad/s (0.0082 in FCV1)."""
 
 LEAST_GAP = 2.0
 """Time between two hits of one stone from which on its spin is seen twice, s."""
@@ -150,6 +150,7 @@ def watch(
         Unknown("stone_friction", SLIDING, 0.0, 2.0, priors.stone_friction),
         Unknown("friction", _mean(priors.friction), 1e-5, 1.0, priors.friction),
         Unknown("slope", 0.0, 0.0, 0.02, SLOPE),
+        Unknown("v_c", V_C, 0.005, 0.5, KNEE),
         Unknown("turn", 0.0, -0.1, 0.1, TURN),
         Unknown("size", 1.0, 0.7, 1.3, priors.size),
     )

@@ -7,6 +7,7 @@ from data.errors import InputError
 from physics.contacts import find_contacts
 from physics.estimate import POOR_FIT, estimate
 from physics.global_fit import GlobalFit, fit_shots
+from physics.law_choice import STRAIGHT
 from tests.physics.watch import RADIUS, hit_motion, watch
 from tests.synthetic.physics import Ice, Impact, Start, simulate
 
@@ -34,7 +35,7 @@ def test_the_laws_and_their_errors() -> None:
 
 def test_held_unknowns_stay_and_shared_ones_are_one() -> None:
     shots = [whole(seed=seed).shots[0] for seed in (1, 2)]
-    fixed = {"friction": 0.0109, "slope": 0.0, "turn": 0.0}
+    fixed = {"friction": 0.0109, **STRAIGHT}
     fit = fit_shots(shots, fixed=fixed, shared=("restitution", "stone_friction"))
     assert fit.settled
     assert fit["friction"].value == 0.0109
