@@ -7,6 +7,7 @@ their number. Triggs et al., 2000, Bundle adjustment: a modern synthesis, LNCS 1
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -33,7 +34,12 @@ _STRAIGHT = 0.001
 """Over such a turn (rad) or change of log focal length residuals are straight to 0.003 px."""
 
 REWEIGHTINGS = 4
-"""Rounds of weights for one linearisation of a view."""
+"""Most rounds of weights for one linearisation of a view."""
+
+_FINE = 1e-5
+"""A change of a view, rad, with which weights hardly change: 0.02 px."""
+
+_DIAGONAL = np.arange(VIEW_SIZE)
 
 _DONE = 1e-4
 """Relative fall of the cost below which a fit has converged."""
@@ -74,8 +80,9 @@ class ViewSolution:
     Attributes
     ----------
     view : View
-    cov : ndarray, shape (4, 4)
-        Covariance of the view, the shared part taken as known and the marks as independent.
+    information : ndarray, shape (4, 4)
+        Inverse covariance of the view, the shared part taken as known and the marks as
+        independent.
     rms : float
         Residual of the inlying marks, px; NaN where there are none.
     inliers : ndarray of bool, shape (n,)
@@ -85,10 +92,15 @@ class ViewSolution:
     """
 
     view: View
-    cov: Array
+    information: Array
     rms: float
     inliers: NDArray[np.bool_]
     cost: float
+
+    @property
+    def cov(self) -> Array:
+        """Covariance of the view, shape (4, 4)."""
+        return inverse(self.information)
 
 
 def inverse(matrix: Array) -> Array:
@@ -98,14 +110,15 @@ def inverse(matrix: Array) -> Array:
 
 def _loss(r: Array, width: float) -> Array:
     """Cauchy loss of each residual in standard deviations."""
-    return 0.5 * width**2 * np.log1p((r / width) ** 2)
+    relative = (1 / width) * r
+    return 0.5 * width**2 * np.log1p(relative * relative)
 
 
 def _spread(r: Array, sd: Array, width: float) -> tuple[float, NDArray[np.bool_]]:
     """Root mean square of the inlying residuals, px, and which these are."""
     good = np.abs(r) < width
     px = (r * sd)[good]
-    return float(np.sqrt(np.mean(px**2))) if len(px) else float("nan"), good
+    return math.sqrt(px @ px / len(px)) if len(px) else math.nan, good
 
 
 def solve_view(
@@ -175,9 +188,10 @@ def solve_views(
     weighted = at.by_view / (1 + (residual / width) ** 2)
     found = []
     for k, part in enumerate(frame.parts):
-        normal = weighted[:, part] @ at.by_view[:, part].T + np.diag(hold + 1e-9)
+        information = weighted[:, part] @ at.by_view[:, part].T
+        information[_DIAGONAL, _DIAGONAL] += hold + 1e-9
         rms, inliers = _spread(residual[part], frame.sd[part], width)
-        found.append(ViewSolution(View(now[k]), inverse(normal), rms, inliers, float(cost[k])))
+        found.append(ViewSolution(View(now[k]), information, rms, inliers, float(cost[k])))
     return found
 
 
@@ -189,15 +203,18 @@ def _descent(
     Returns the steps, and the residuals and the costs after them. Weights are worked out anew a
     few times: that costs a tenth of linearising anew.
     """
-    step, residual = np.zeros_like(away), at.residual
-    held = hold * np.eye(VIEW_SIZE) + 1e-9 * np.eye(VIEW_SIZE)
+    step, residual, scale = np.zeros_like(away), at.residual, 1 / width
     for _ in range(REWEIGHTINGS):
-        weighted = at.by_view / (1 + (residual / width) ** 2)
+        last, relative = step, scale * residual
+        weighted = at.by_view / (1 + relative * relative)
         normal = np.array([weighted[:, p] @ at.by_view[:, p].T for p in frame.parts])
         right = np.array([weighted[:, p] @ at.residual[p] for p in frame.parts]) + hold * away
-        normal += held + damping[:, None, None] * normal * np.eye(VIEW_SIZE)
+        normal[:, _DIAGONAL, _DIAGONAL] *= 1 + damping[:, None]
+        normal[:, _DIAGONAL, _DIAGONAL] += hold + 1e-9
         step = -np.asarray(np.linalg.solve(normal, right[..., None]))[..., 0]
-        residual = at.residual + (frame.each(step.T) * at.by_view).sum(0)
+        residual = at.residual + frame.product(step, at.by_view)
+        if np.abs(step - last).max() < _FINE:
+            break
     cost = frame.summed(_loss(residual, width)) + 0.5 * (away + step) ** 2 @ hold
     return step, residual, cost
 

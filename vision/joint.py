@@ -233,8 +233,8 @@ _FOOT, _WAY = ice_frame(_ON_CIRCLE, np.tile(_ARCS, CIRCLES))
 
 def _explained(pieces: Ints, view: View, rig: Array, size: tuple[int, int]) -> float:
     """Share of the pieces of the circles in the picture that are among these."""
-    places = _FOOT + _WAY * measures(rig)[_ON_CIRCLE, None]
-    x, y = project(places, view.vector, rig, size).T
+    places = _FOOT + _WAY * measures(rig)[_ON_CIRCLE]
+    x, y = project(places.T, view.vector, rig, size).T
     w, h = size
     shown = int(((x > 0) & (y > 0) & (x < w - 1) & (y < h - 1)).sum())
     return min(len(set(pieces.tolist())) / max(shown, 1), 1.0)

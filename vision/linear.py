@@ -38,16 +38,14 @@ class Frame:
         self.sd = marks.sd
         self.line = marks.line
         self.counts = [len(marks)] if counts is None else list(counts)
-        self.number = np.repeat(np.arange(len(self.counts)), self.counts)
         ends = np.cumsum(self.counts).tolist()
         self.parts = [slice(end - n, end) for end, n in zip(ends, self.counts, strict=True)]
-        place, way = ice_frame(marks.line, marks.along, marks.across)
+        foot, self.way = ice_frame(marks.line, marks.along, marks.across)
         self.foot = np.zeros((3, len(marks)))
-        self.way = np.ascontiguousarray(way.T)
-        self.foot[:2] = place.T + self.way * offset
+        self.foot[:2] = foot + self.way * offset
         normal = marks.normal.T / marks.sd
-        middle = np.array([(size[0] - 1) / 2, (size[1] - 1) / 2])
-        self.target = ((marks.pixel - middle).T * normal).sum(0)
+        x, y = marks.pixel.T
+        self.target = (x - (size[0] - 1) / 2) * normal[0] + (y - (size[1] - 1) / 2) * normal[1]
         self.normal = normal * self.radius
 
     def points(self, rig: Array) -> Array:
@@ -60,11 +58,18 @@ class Frame:
         """Give every mark its frame's value, (..., frames) to (..., n); alone, it is broadcast."""
         return values if len(self.parts) == 1 else np.repeat(values, self.counts, axis=-1)
 
+    def product(self, steps: Array, by_view: Array) -> Array:
+        """Change of each mark's residual, (n,), with its frame's step of the view, (frames, 4)."""
+        if len(self.parts) == 1:
+            return np.asarray(steps[0] @ by_view)
+        return np.asarray((self.each(steps.T) * by_view).sum(0))
+
     def summed(self, values: Array) -> Array:
         """Sum up each frame's marks, (n,) to (frames,)."""
         if len(self.parts) == 1:
             return np.asarray(values.sum(keepdims=True))
-        return np.bincount(self.number, values, len(self.parts)).astype(np.float64)
+        number = np.repeat(np.arange(len(self.parts)), self.counts)
+        return np.bincount(number, values, len(self.parts)).astype(np.float64)
 
     def turned(self, matrices: Sequence[Array], columns: Array) -> Array:
         """Multiply the columns of every frame, (3, n), by its matrix, (3, 3)."""

@@ -158,7 +158,7 @@ def measure_along(
         if kind in places.kinds:
             part = places.kinds[kind]
             shown = good[part]
-            covered[kind] = normals.visible[kind] * shown.mean()
+            covered[kind] = normals.visible[kind] * np.count_nonzero(shown) / len(shown)
             sd[part] = max(_scatter(offset[part][shown]), least_sd)
     if len(places.least):
         index, real = places.runs.index, places.runs.real

@@ -84,7 +84,7 @@ _COUNTS = np.array([len(along) for _, along in _CANDIDATES])
 _STARTS = np.cumsum(_COUNTS) - _COUNTS
 _ALONG = np.concatenate([along for _, along in _CANDIDATES])
 _LINE = np.repeat(_KINDS, _COUNTS)
-_FOOT, _WAY = (np.ascontiguousarray(v.T) for v in ice_frame(_LINE, _ALONG))
+_FOOT, _WAY = ice_frame(_LINE, _ALONG)
 
 # Candidates are kept by groups: on a thin line a block, else one alone.
 _GROUP = np.where(np.isin(_KINDS, THIN), BLOCK, 1)
@@ -196,7 +196,9 @@ def lay_out(
     shown = np.add.reduceat(inside, _STARTS[:upto], dtype=np.int64)
     span = np.add.reduceat(np.where(inside, length, 0.0), _STARTS[:upto]) / 2
     scale = span / np.maximum(shown * _SPACING[:upto], 1e-9)
-    wanted = np.where(_GROUP[:upto] > 1, min(most // 6, MOST_BLOCKS), min(most // 2, MOST_STEPS))
+    wanted = np.where(
+        _GROUP[:upto] > 1, min(most // 4, MOST_BLOCKS), min(3 * most // 4, MOST_STEPS)
+    )
     wanted[:CIRCLES] = np.clip(span[:CIRCLES] / spacing, 12, most)
     kept = _thinned(inside, wanted, groups)
     at = np.flatnonzero(np.repeat(kept, _GROUP_SIZE[:groups]))

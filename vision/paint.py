@@ -94,8 +94,8 @@ def ice_points(
     line: NDArray[np.int64], along: ArrayLike, rig: Array, across: Array | None = None
 ) -> Array:
     """Places of marks on the ice, shape (n, 2), m."""
-    place, way = ice_frame(line, np.asarray(along, float), across)
-    return np.asarray(place + way * measures(rig)[line][:, None])
+    foot, way = ice_frame(line, np.asarray(along, float), across)
+    return np.asarray(foot + way * measures(rig)[line]).T
 
 
 MEASURED = np.array([-1, R8, R4, CENTRE_X, TEE_Y, SIDE_L, SIDE_R, BACK_Y, HOG_Y, -1])
@@ -104,7 +104,10 @@ MEASURED = np.array([-1, R8, R4, CENTRE_X, TEE_Y, SIDE_L, SIDE_R, BACK_Y, HOG_Y,
 
 def measures(rig: Array) -> Array:
     """List the measure of each kind of mark: radius of a circle or place of a line, m."""
-    return np.array([HOUSE.twelve_foot, *rig[MEASURED[1:-1]], 0.0])
+    found = np.zeros(len(MEASURED))
+    found[TWELVE] = HOUSE.twelve_foot
+    found[1:-1] = rig[MEASURED[1:-1]]
+    return found
 
 
 _FACTORS = np.zeros((4, 10))
@@ -117,13 +120,13 @@ _FACTORS[3, FIXED] = 1.0
 def ice_frame(
     line: NDArray[np.int64], along: Array, across: Array | None = None
 ) -> tuple[Array, Array]:
-    """Foot of each mark and the direction in which its line's measure moves it, (n, 2) each."""
+    """Foot of each mark and the direction in which its line's measure moves it, (2, n) each."""
     circle, lengthwise, crosswise, known = _FACTORS[:, line]
-    place, way = np.empty((len(line), 2)), np.empty((len(line), 2))
-    way[:, 0] = circle * np.cos(along) + lengthwise
-    way[:, 1] = circle * np.sin(along) + crosswise
-    place[:, 0] = (crosswise + known) * along
-    place[:, 1] = lengthwise * along
+    foot, way = np.empty((2, len(line))), np.empty((2, len(line)))
+    way[0] = circle * np.cos(along) + lengthwise
+    way[1] = circle * np.sin(along) + crosswise
+    foot[0] = (crosswise + known) * along
+    foot[1] = lengthwise * along
     if across is not None:
-        place[:, 1] += known * across
-    return place, way
+        foot[1] += known * across
+    return foot, way

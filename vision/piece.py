@@ -22,7 +22,7 @@ from vision.landmarks import Keyframe, keyframe, recognise
 from vision.marks import Evidence, measure_along
 from vision.normals import Normals, lay_out
 from vision.outline import Rim
-from vision.paint import CIRCLES, Marks, joined
+from vision.paint import CIRCLES, FIXED, Marks, joined
 from vision.picture import Picture
 from vision.pose import View, camera
 from vision.replay import EVERY, Glimpse, glimpse
@@ -30,7 +30,7 @@ from vision.rig import R4, R8, Prior
 
 Array = NDArray[np.float64]
 
-MOST_NORMALS = 48
+MOST_NORMALS = 32
 """Normals on each circle."""
 
 REACH, LEAST_REACH = 0.007, 6.0
@@ -84,6 +84,8 @@ class Piece:
         The frames so far.
     glimpses : list of Glimpse
         What the house looked like now and then.
+    found : int
+        How many of them fixed their camera themselves.
     lost : int
         Frames since the last that was followed.
     """
@@ -95,16 +97,12 @@ class Piece:
     edge: Rim
     seen: list[Seen] = field(default_factory=list)
     glimpses: list[Glimpse] = field(default_factory=list)
+    found: int = 0
     lost: int = 0
     _picture: Picture | None = None
-    _cov: Array = field(default_factory=lambda: np.zeros((4, 4)))
+    _fit: ViewSolution | None = None
     _key: Keyframe | None = None
     _normals: Normals | None = None
-
-    @property
-    def found(self) -> int:
-        """Number of frames that fixed their camera themselves."""
-        return sum(s.found for s in self.seen)
 
     def follow(self, frame: Frame) -> Seen | None:
         """Follow into one more frame; None where the house is not to be seen, nor its ice."""
@@ -117,6 +115,7 @@ class Piece:
     def add(self, seen: Seen, picture: Picture) -> None:
         """Take in a frame that was followed."""
         self.seen.append(seen)
+        self.found += seen.found
         self._picture, self.lost = picture, 0
 
     def remember(self, picture: Picture) -> None:
@@ -216,7 +215,7 @@ class Piece:
         new = np.isfinite(evidence.palette)
         mixed = (1 - LEARNING) * self.palette + LEARNING * evidence.palette
         self.palette = np.where(known & new, mixed, np.where(known, self.palette, evidence.palette))
-        self._cov = fit.cov
+        self._fit = fit
         return Seen(frame.index, frame.t, view, evidence.marks.pick(fit.inliers), True)
 
     def _laid(self, view: View) -> tuple[Normals, Array]:
@@ -238,7 +237,8 @@ class Piece:
         """Place a frame that does not show the rings by points of the ice that are known."""
         last = self.seen[-1]
         if self._key is None and self._picture is not None:
-            self._key = keyframe(last.index, self._picture, last.view, self.rig, self._cov)
+            cov = np.zeros((4, 4)) if self._fit is None else self._fit.cov
+            self._key = keyframe(last.index, self._picture, last.view, self.rig, cov)
         key = self._key
         if key is None or key.drift > MOST_DRIFT:
             return None
@@ -263,11 +263,8 @@ class Piece:
 def _explained(evidence: Evidence, fit: ViewSolution) -> Array:
     """Part of each circle that is covered by edges which the view explains."""
     line = evidence.marks.line
-    share = [
-        float(fit.inliers[line == kind].mean()) if (line == kind).any() else 0.0
-        for kind in range(CIRCLES)
-    ]
-    return evidence.covered * share
+    on, good = (np.bincount(line[which], minlength=FIXED)[:CIRCLES] for which in (..., fit.inliers))
+    return np.asarray(evidence.covered * good / np.maximum(on, 1))
 
 
 def _enough(rig: Array, visible: Array, covered: Array) -> bool:
