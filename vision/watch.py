@@ -12,8 +12,6 @@ from collections import deque
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from data.sheet import STONE, Stone
 from vision.appearance import CONVINCING, Appearance, colour_difference, learn
 from vision.camera import Camera
@@ -35,19 +33,14 @@ class Pace:
     Attributes
     ----------
     memory : int
-        Pictures that are kept to learn from and to follow stones back through.
+        Pictures that are kept to learn from and to follow stones back through; when so many are
+        new, the last of them is searched.
     lesson : int
         Each how manieth of them is looked at to learn what the stones look like.
-    every : float
-        Least time from one search of all the ice to the next, s.
-    colours : float
-        Least time from one search for stones of any colour to the next, s.
     """
 
     memory: int = 24
     lesson: int = 8
-    every: float = 0.4
-    colours: float = 0.8
 
 
 class Watch:
@@ -72,8 +65,7 @@ class Watch:
         self._waiting: list[View] = []
         self._recent: deque[View] = deque(maxlen=pace.memory)
         self._leads: list[Lead] = []
-        self._searched = -np.inf
-        self._checked = -np.inf
+        self._since = pace.memory
         self._seen: list[tuple[int, float, Camera, list[Sighting]]] = []
 
     def look(self, frame: Frame, camera: Camera) -> None:
@@ -101,6 +93,8 @@ class Watch:
             left out. Else the cameras stand with which the frames were looked at.
         """
         self._catch_up()
+        if self._since and self._recent:
+            self._search_for_new(self._recent[-1])
         final = {frame: camera for frame, _, camera, _ in self._seen}
         if cameras is not None:
             final = {camera.frame: camera for camera in cameras}
@@ -144,22 +138,25 @@ class Watch:
         if self._knows:
             self._leads = self._follower.follow(views, self._leads)
         self._recent.extend(views)
-        view = views[-1]
-        if view.frame.t - self._searched >= self._pace.every:
-            self._searched = view.frame.t
-            self._look_for_colours(view)
-            fresh = self._follower.sought(view)
-            view.sightings.extend(fresh)
-            leads = [Lead.to(sighting, view.frame.t) for sighting in fresh]
-            self._leads += leads
-            if self._knows:
-                self._follower.follow([*self._recent][-2::-1], leads)
+        self._since += len(views)
+        if self._since >= self._pace.memory:
+            self._search_for_new(views[-1])
+
+    def _search_for_new(self, view: View) -> None:
+        """Search all the ice; follow what is found back through the last pictures."""
+        self._since = 0
+        self._look_for_colours(view)
+        fresh = self._follower.sought(view)
+        view.sightings.extend(fresh)
+        leads = [Lead.to(sighting, view.frame.t) for sighting in fresh]
+        self._leads += leads
+        if self._knows:
+            self._follower.follow([*self._recent][-2::-1], leads)
 
     def _look_for_colours(self, view: View) -> None:
-        """See now and then whether there are stones of a colour that is not known yet."""
-        if self.appearance is None or view.frame.t - self._checked < self._pace.colours:
+        """See whether there are stones of a colour that is not known yet."""
+        if self.appearance is None:
             return
-        self._checked = view.frame.t
         caps = [cap.mean for cap in self.appearance.caps]
         if any(
             min(colour_difference(cap, stone.colour) for cap in caps) > UNLIKE
