@@ -59,7 +59,7 @@ class Frictional:
         slip = dot(np.asarray(v1, float) - np.asarray(v2, float), t) + radius * (w1 + w2)
         stick = -slip * reduced_mass(m1, m2) / (1 + 1 / self.inertia)
         limit = self.stone_friction * np.maximum(along, 0.0)
-        aside = np.clip(stick, -limit, limit)
+        aside = np.minimum(np.maximum(stick, -limit), limit)
         after = kick(v1, v2, w1, w2, along[..., None] * n - aside[..., None] * t, m1, m2)
         turn = aside / (self.inertia * radius)
         return after._replace(w1=w1 + turn / m1, w2=w2 + turn / m2)

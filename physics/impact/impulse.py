@@ -19,10 +19,13 @@ class After(NamedTuple):
     w2: Array
 
 
+_QUARTER_TURN = np.array([-1.0, 1.0])
+
+
 def tangent(normal: ArrayLike) -> Array:
     """Return the unit tangents z × n of normals, shape (..., 2)."""
     n = np.asarray(normal, float)
-    return np.stack([-n[..., 1], n[..., 0]], axis=-1)
+    return np.asarray(n[..., ::-1] * _QUARTER_TURN)
 
 
 def reduced_mass(mass1: ArrayLike, mass2: ArrayLike) -> Array:
