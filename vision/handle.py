@@ -5,8 +5,13 @@ A cap is described by its angular harmonics on rings about the centre. Turning t
 is the maximum of their circular cross-correlation, found to a fraction of a sample. Every
 frame is measured against the mean of all frames, so errors do not add up along the clip.
 The mean over the angle (k = 0) says nothing; k = 1 is left out because a centre that is
-slightly off and light from one side look like it. The handle stands above the cap, so its
-picture may also be shifted: `vision.align` finds the shift with the last bit of the angle.
+slightly off and light from one side look like it.
+
+The handle stands above the cap, and seen aslant its picture is shifted: what turns about the
+stone's axis in a picture unrolled at one height does not at another. What is seen best may be
+the grip, or its foot and the shade about it on the cap. So the cap is unrolled at both heights,
+and that is believed at which a stone's pictures are most alike. `vision.align` finds what shift
+is left with the last bit of the angle.
 """
 
 from __future__ import annotations
@@ -61,8 +66,8 @@ def cap_spectrum(patch: NDArray[np.uint8], radii: Array) -> Complex:
     ----------
     patch : ndarray, shape (..., rays, rings, channels)
         Colours on rays counter-clockwise from the x axis.
-    radii : ndarray, shape (rings,)
-        Radii of the rings, m.
+    radii : ndarray
+        Radii of the rings, m; they begin anew where the cap was unrolled at several heights.
 
     Returns
     -------
@@ -70,7 +75,8 @@ def cap_spectrum(patch: NDArray[np.uint8], radii: Array) -> Complex:
         Of the orders `vision.align.ORDERS`. Rings weigh as their length does.
     """
     spectrum = np.fft.rfft(patch.astype(np.float32), axis=-3)[..., ORDERS, :, :] / patch.shape[-3]
-    return np.asarray(spectrum * np.sqrt(radii / radii[-1])[:, None], np.complex64)
+    weight = np.resize(np.sqrt(radii / radii[-1]), patch.shape[-2])
+    return np.asarray(spectrum * weight[:, None], np.complex64)
 
 
 @lru_cache(maxsize=64)
@@ -138,9 +144,10 @@ def handle_angles(
     times : ndarray, shape (n,)
         s, increasing.
     spectra : sequence of ndarray or None
-        From `cap_spectrum`; None where the cap is not seen well.
+        From `cap_spectrum`, the heights at which the cap was unrolled side by side along the
+        rings; None where the cap is not seen well.
     radii : ndarray, shape (rings,)
-        Of the rings of the spectra, m.
+        Of the rings at one height, m.
 
     Returns
     -------
@@ -148,25 +155,48 @@ def handle_angles(
         rad; NaN where it cannot be told.
     """
     theta, sd = np.full(len(times), np.nan), np.full(len(times), np.nan)
-    seen = [index for index in range(len(times)) if spectra[index] is not None]
+    seen = np.array([index for index, item in enumerate(spectra) if item is not None], np.intp)
     if len(seen) < 2:  # an angle is against another picture of the same stone
         return theta, sd
     pictures = np.array([spectra[index] for index in seen])
-    angles = _followed(times[seen], pictures, turning)
-    known = np.isfinite(angles)
-    for _ in range(turning.rounds):
-        reference = turned(pictures[known], -angles[known]).mean(0)
-        angles[known], likeness = angles_between(reference, pictures[known], angles[known], 0.2)
-    good = likeness > turning.least_likeness
+    heights = np.split(pictures, pictures.shape[2] // len(radii), axis=2)
+    best = max((_matched(times[seen], part, turning) for part in heights), key=_alike)
+    good = best.likeness > turning.least_likeness
     if good.sum() < 0.5 * len(seen):
         # Most frames do not look like the mean: there is nothing on the cap to go by.
         return theta, sd
-    told = np.flatnonzero(known)[good]
-    fit = align(pictures[told], angles[told], radii, turning.shift)
-    rows = np.array(seen)[told]
+    fit = align(best.pictures[good], best.angles[good], radii, turning.shift)
+    rows = seen[good]
     theta[rows], sd[rows] = fit.angle, fit.sd
     sd *= _jitter(times, theta, sd)
     return theta - theta[rows[0]], sd
+
+
+@dataclass(frozen=True)
+class _Matched:
+    """Pictures of one height, their angles against their mean, and how like it they are."""
+
+    pictures: Complex
+    angles: Array
+    likeness: Array
+
+
+def _alike(matched: _Matched) -> float:
+    """Sum over the pictures of what share of them the mean picture explains."""
+    return float((matched.likeness**2).sum())
+
+
+def _matched(times: Array, pictures: Complex, turning: Turning) -> _Matched:
+    """Turn pictures of one height onto their mean."""
+    angles = _followed(times, pictures, turning)
+    likeness = np.zeros(len(times))
+    known = np.isfinite(angles)
+    for _ in range(turning.rounds):
+        reference = turned(pictures[known], -angles[known]).mean(0)
+        angles[known], likeness[known] = angles_between(
+            reference, pictures[known], angles[known], 0.2
+        )
+    return _Matched(pictures, angles, likeness)
 
 
 def _followed(times: Array, pictures: Complex, turning: Turning) -> Array:

@@ -16,7 +16,16 @@ from numpy.typing import NDArray
 from data.sheet import Stone
 from vision.appearance import Appearance, membership
 from vision.circles import Rim, falls_along, fit_circles, summed
-from vision.patch import EFFORT, HANDLE_HEIGHT, Effort, is_plain, profile_of, scales, tilts
+from vision.patch import (
+    EFFORT,
+    HANDLE_HEIGHT,
+    Effort,
+    handle_radii,
+    is_plain,
+    profile_of,
+    scales,
+    tilts,
+)
 from vision.rays import Look, Rays, sample_rays
 
 Array = NDArray[np.float64]
@@ -48,8 +57,8 @@ class Measures:
     outline : ndarray, shape (n, circles)
         Radii found, as shares of the nominal ones.
     handle : ndarray, shape (n, rays, rings, 3)
-        What is around the centre at the height of the handle, L*a*b*; 0 where it shows more
-        than the cap.
+        What is around the centre, L*a*b*: at the height of the handle, 0 where it shows more
+        than the cap, and beside it, for a stone, at the height of the cap.
     worth : ndarray, shape (n, rays, radii)
         What the samples of `rays` may be: 1 cap, −1 granite, 0 neither.
     rays : Rays
@@ -108,7 +117,16 @@ def measure(
     # it show its edge, which stays while the stone turns: they are blanked.
     within = effort.handle_edge * disc.cap_radius - (HANDLE_HEIGHT - disc.cap_height) * tilt
     handle *= (sampled.radius[count + 1 :: 2] < within[:, None])[:, None, :, None]
+    handle = np.concatenate([handle, _rings(rays, handle_radii(disc, effort))], axis=2)
     return _stones(rays, handle, places, scale, tilt, appearance, disc, effort)
+
+
+def _rings(rays: Rays, radii: Array) -> Bytes:
+    """Give what the rays show on rings; 0 where they do not reach as far inwards."""
+    outer = np.searchsorted(rays.radius, radii)
+    seen = (rays.lab[:, :, outer - 1] >> 1) + (rays.lab[:, :, outer] >> 1)
+    seen[:, :, outer == 0] = 0
+    return np.asarray(seen)
 
 
 @lru_cache(maxsize=8)

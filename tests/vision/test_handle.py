@@ -80,6 +80,21 @@ def test_a_stone_never_seen_well_has_no_angle() -> None:
     assert np.isnan(theta).all()
 
 
+@pytest.mark.parametrize("first", [True, False])
+def test_the_height_is_believed_at_which_the_pictures_agree(first: bool) -> None:
+    rng = np.random.default_rng(5)
+    times = np.arange(50) / 25
+    true = 0.3 + 1.2 * times
+    right = [spectrum(a, rng) for a in true]
+    # At another height part of what is seen turns, part stays.
+    wrong = [(spectrum(a, rng) + spectrum(0.0, rng)) / 2 for a in true]
+    seen = [
+        np.concatenate([r, w] if first else [w, r], 1) for r, w in zip(right, wrong, strict=True)
+    ]
+    theta, sd = handle_angles(times, seen, RADII)
+    assert np.abs(theta - (true - true[0])).max() < 5 * np.nanmax(sd)
+
+
 def test_a_handle_seen_beside_its_place_is_not_taken_for_turned() -> None:
     # A camera that moves on sees the handle, which stands above the cap, shifted by millimetres.
     rng = np.random.default_rng(3)
