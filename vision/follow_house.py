@@ -79,6 +79,11 @@ class HouseFollower:
             seen = piece.follow(frame)
             if seen is not None and piece.lost and self._is_elsewhere(piece, seen, frame):
                 seen, piece.lost = None, PATIENCE
+            if seen is not None and piece.missed > PATIENCE:
+                # Carried on through a dissolve, say: what is fixed to the ice is not it.
+                house = self._find(frame)
+                if house is not None:
+                    return self._start(frame, house)
             if seen is not None:
                 piece.add(seen, frame.picture)
                 piece.remember(frame.picture)
