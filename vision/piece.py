@@ -88,6 +88,8 @@ class Piece:
         How many of them fixed their camera themselves.
     lost : int
         Frames since the last that was followed.
+    missed : int
+        Frames in a row that were carried to where rings should be in view, and are not.
     """
 
     size: tuple[int, int]
@@ -99,6 +101,7 @@ class Piece:
     glimpses: list[Glimpse] = field(default_factory=list)
     found: int = 0
     lost: int = 0
+    missed: int = 0
     _picture: Picture | None = None
     _fit: ViewSolution | None = None
     _key: Keyframe | None = None
@@ -107,10 +110,10 @@ class Piece:
     def follow(self, frame: Frame) -> Seen | None:
         """Follow into one more frame; None where the house is not to be seen, nor its ice."""
         seen = self._settle(frame, self._predicted(frame))
-        if seen is not None:
-            self._key = None
-            return seen
-        return self._carried(frame)
+        if seen is None:
+            return self._carried(frame)
+        self._key, self.missed = None, 0
+        return seen
 
     def add(self, seen: Seen, picture: Picture) -> None:
         """Take in a frame that was followed."""
@@ -250,9 +253,12 @@ class Piece:
         ).view
         seen = self._settle(frame, view)
         if seen is not None:
-            self._key = None
+            self._key, self.missed = None, 0
             return seen
-        lines = self._measured(frame.picture, *self._laid(view)).marks
+        normals, point = self._laid(view)
+        expected = _enough(self.rig, normals.visible, normals.visible)
+        self.missed = self.missed + 1 if expected else 0
+        lines = self._measured(frame.picture, normals, point).marks
         marks = joined([landmarks, lines.pick(lines.line >= CIRCLES)])
         fit = solve_view(marks, view, self.rig, self.size, view_sd=(1, 1, 0.02, 0.1))
         if len(landmarks) < len(key.ice):  # half of its corners are gone: two marks each
