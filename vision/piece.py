@@ -45,6 +45,9 @@ WIDTH = 6.0
 SETTLED = 0.4
 """Correction below which the edges need not be measured anew, half lengths of the normals."""
 
+RAGGED = 0.1
+"""Residual beyond which edges were taken for each other, half lengths of the normals."""
+
 LEAST_ARC = 1.2
 """Length of circle that must be seen to fix a view, m."""
 
@@ -209,10 +212,11 @@ class Piece:
                 evidence.marks, view, self.rig, self.size, view_sd=FREE, width=WIDTH, iterations=6
             )
             shift = np.abs(fit.view.vector - view.vector)
-            view = fit.view
-            if shift[:3].max() * view.focal < SETTLED * REACH * self.size[0]:
+            view, reach = fit.view, REACH * self.size[0]
+            ragged = not fit.rms < RAGGED * reach
+            if shift[:3].max() * view.focal < SETTLED * reach and not ragged:
                 break
-        if not _enough(self.rig, evidence.visible, _explained(evidence, fit)):
+        if ragged or not _enough(self.rig, evidence.visible, _explained(evidence, fit)):
             return None
         known = np.isfinite(self.palette)
         new = np.isfinite(evidence.palette)
