@@ -1,14 +1,18 @@
 """What tracking costs: ``python -m benchmarks.cost [CLIP.mp4 ...]`` from the root.
 
 CPU time, all threads, of the whole of ``curlshot track`` against that of decoding the same clip
-with OpenCV alone, in the same run, with its parts and the most memory held. Without a clip, one
-is rendered: 12 s of 1080 lines with eight stones, two sweepers and a camera that pans and zooms.
+with OpenCV alone, in the same run: of either as a process of its own, with the start of Python
+and the most memory held, and within one, with its parts. Without a clip, one is rendered: 12 s of
+1080 lines with eight stones, two sweepers and a camera that pans and zooms. What memory a clip of
+three times the length takes is told by ``--lengths``.
 """
 
 from __future__ import annotations
 
 import argparse
-import resource
+import os
+import subprocess
+import sys
 import tempfile
 import time
 from collections import defaultdict
@@ -42,11 +46,38 @@ PARTS = {
 """Parts of the work and the functions that do it; none calls another."""
 
 
-def long_clip() -> Path:
+DECODE = """
+import sys, cv2
+capture = cv2.VideoCapture(sys.argv[1])
+while capture.read()[0]:
+    pass
+"""
+
+TRACK = "import sys, pipeline; sys.exit(pipeline.main(['track', *sys.argv[1:]]))"
+
+
+def long_clip(size: tuple[int, int] = (1920, 1080), duration: float = 12.0) -> Path:
     scene = random_scene(np.random.default_rng(11), resting=7)
-    scene = replace(scene, people=sweepers(scene, 12.0))
-    view = broadcast_camera(size=(1920, 1080), end=6.0, px_per_m=(190.0, 147.0))
-    return cached_clip(scene, view, fps=30.0, duration=12.0)[0]
+    scene = replace(scene, people=sweepers(scene, duration))
+    scale = size[0] / 1920
+    view = broadcast_camera(size=size, end=6.0, px_per_m=(190.0 * scale, 147.0 * scale))
+    return cached_clip(scene, view, fps=30.0, duration=duration)[0]
+
+
+def process(code: str, *arguments: str) -> tuple[float, float]:
+    """CPU time of a process of Python, s, and the most memory that it held, MB."""
+    command = [sys.executable, "-c", code, *arguments]
+    child = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+    _, status, used = os.wait4(child.pid, 0)
+    child.returncode = os.waitstatus_to_exitcode(status)
+    assert child.returncode == 0
+    return used.ru_utime + used.ru_stime, used.ru_maxrss / 1024
+
+
+def tracked(clip: Path) -> tuple[float, float]:
+    """As `process`, of ``curlshot track``."""
+    with tempfile.TemporaryDirectory() as folder:
+        return process(TRACK, str(clip), "-q", "-o", folder)
 
 
 def decoded(clip: Path) -> int:
@@ -78,13 +109,22 @@ def timed(spent: dict[str, float]) -> Iterator[None]:
         yield
 
 
-def rows(clip: Path, repeats: int) -> pd.DataFrame:
+def whole(clip: Path, repeats: int) -> pd.DataFrame:
+    """Time both as processes of their own, in turn."""
+    runs = [(*process(DECODE, str(clip)), *tracked(clip)) for _ in range(repeats)]
+    alone, alone_mb, whole, whole_mb = np.min(runs, axis=0)
+    table = pd.DataFrame({"s": [alone, whole], "MB": [alone_mb, whole_mb]})
+    table.index = pd.Index(["process: decoding by OpenCV", "process: curlshot track"])
+    return table
+
+
+def parts(clip: Path, repeats: int) -> pd.DataFrame:
     """Time all of it a few times; of each part the least, for the machine may be busy."""
     runs: list[dict[str, float]] = []
     for _ in range(repeats):
         spent: dict[str, float] = defaultdict(float)
         start = time.process_time()
-        frames = decoded(clip)
+        decoded(clip)
         alone = time.process_time() - start
         with tempfile.TemporaryDirectory() as folder, timed(spent):
             start = time.process_time()
@@ -92,24 +132,33 @@ def rows(clip: Path, repeats: int) -> pd.DataFrame:
             whole = time.process_time() - start
         assert code == 0
         parts = {**spent, "decoding, tables, the rest": whole - sum(spent.values())}
-        runs.append({"decoding by OpenCV alone": alone, "curlshot track": whole, **parts})
-    table = pd.DataFrame(runs).min().to_frame("s")
-    table["ms/frame"] = 1e3 * table["s"] / frames
-    table["times decoding"] = table["s"] / table["s"].iloc[0]
-    return table
+        runs.append({"decoding by OpenCV": alone, "curlshot track": whole, **parts})
+    return pd.DataFrame(runs).min().to_frame("s")
+
+
+def relative(table: pd.DataFrame, frames: int) -> pd.DataFrame:
+    """Add the time per frame, and that of the first row's."""
+    table.insert(1, "ms/frame", 1e3 * table["s"] / frames)
+    table.insert(2, "times decoding", table["s"] / table["s"].iloc[0])
+    return table.round(2).fillna("")
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("clips", nargs="*", type=Path)
     parser.add_argument("--repeats", type=int, default=3)
+    parser.add_argument("--lengths", action="store_true", help="memory by length of the clip only")
     arguments = parser.parse_args()
+    if arguments.lengths:
+        for duration in (12.0, 36.0):
+            _, held = tracked(long_clip((1280, 720), duration))
+            print(f"{duration:.0f} s of 720 lines: {held:.0f} MB at most")
+        return
     for clip in arguments.clips or [long_clip()]:
-        decoded(clip)  # from now on the file is at hand
+        frames = decoded(clip)  # from now on the file is at hand
         print(clip)
-        print(rows(clip, arguments.repeats).round(2).to_string())
-    held = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    print(f"{held:.0f} MB at most")
+        for table in (whole(clip, arguments.repeats), parts(clip, arguments.repeats)):
+            print(relative(table, frames).to_string())
 
 
 if __name__ == "__main__":
