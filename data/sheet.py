@@ -56,3 +56,8 @@ class Stone:
 HOUSE = House()
 SHEET = Sheet()
 STONE = Stone()
+
+
+def curling_size(radius: float) -> bool:
+    """Whether discs of that radius, m, have the size of curling stones."""
+    return abs(radius / STONE.radius - 1) < 0.1

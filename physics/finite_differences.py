@@ -2,7 +2,9 @@
 
 Velocities are means of finite differences over a window on either side of a hit, the normal
 goes through the centres as they were last seen before it, and friction is what brings a stone
-from its velocity after a hit to rest in the time that it takes.
+from its velocity after a hit to rest in the time that it takes. That velocity is the mean over
+the window, half a window after the hit: the friction comes out low by half the window over the
+time to rest, as the study's does.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.results import Estimate, Friction, Glide
-from data.sheet import GRAVITY, STONE
+from data.sheet import GRAVITY, curling_size
 from physics.shot_fit import Deceleration, ShotFit
 from physics.traces import PLACE_REACH, Trace
 
@@ -44,7 +44,7 @@ def measure_glides(
     """
     glides, values, cov = _each(fit, known, radius)
     friction, spread = _pooled(values, cov)
-    usual = USUAL if abs(radius / STONE.radius - 1) < 0.1 else ANY
+    usual = USUAL if curling_size(radius) else ANY
     mean, sd = float(usual.value or 0.0), float(usual.stderr or 0.0)
     if friction.value is not None and friction.stderr is not None:
         measured, error = friction.value * GRAVITY, max(friction.stderr * GRAVITY, 1e-6)

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from data.errors import InputError
 from physics.bounds import all_leave_at
+from physics.curl import Curl
 from physics.ice import IceLaw
 from physics.paths import CurveTable, Index, Paths
 from physics.simulate import PRESSED, SIMULTANEOUS, SLOW, TOUCHING, Shot, check_shot, simulate
@@ -86,6 +87,7 @@ def simulate_many(
     states: States,
     *,
     ice: Sequence[IceLaw] = (),
+    curl: Sequence[Curl] = (),
     vary: Mapping[str, ArrayLike] | None = None,
 ) -> Outcomes:
     """Simulate many variants of a shot; each ends as `simulate` ends it, to 1e-6 m.
@@ -96,8 +98,8 @@ def simulate_many(
         Names and masses of the stones, and the laws where they are not varied.
     states : States
         Where the stones begin in each variant.
-    ice : sequence of IceLaw, optional
-        One for each variant; equal laws share their work.
+    ice, curl : sequence of IceLaw and of Curl, optional
+        One for each variant; equal pairs share their work.
     vary : mapping, optional
         Parameter of the model of impact to its value in each variant.
 
@@ -121,13 +123,15 @@ def simulate_many(
         raise ValueError(f"states must have the shape (variants, {len(shot.stones)})")
     if any(value.shape != (variants,) for value in parameters.values()):
         raise ValueError(f"parameters must have the shape ({variants},)")
-    if ice and len(ice) != variants:
-        raise ValueError(f"{len(ice)} laws of ice for {variants} variants")
+    for name, given in (("ice", ice), ("curl", curl)):
+        if given and len(given) != variants:
+            raise ValueError(f"{len(given)} laws of {name} for {variants} variants")
     if not all(np.isfinite(v).all() for v in (*columns.values(), *parameters.values())):
         raise InputError("shot: a variant has a number that is not finite")
-    laws = list(dict.fromkeys(ice)) or [shot.ice]
+    pairs = list(zip(ice or [shot.ice] * variants, curl or [shot.curl] * variants, strict=True))
+    laws = list(dict.fromkeys(pairs))
     rank = {law: k for k, law in enumerate(laws)}
-    law = np.array([rank[item] for item in ice] if ice else [0] * variants, np.intp)
+    law = np.array([rank[pair] for pair in pairs], np.intp)
     size = variants, stones
     out = Outcomes(
         np.zeros(size), np.zeros(size), np.zeros(size, np.int64), np.zeros(size, np.bool_)
@@ -154,7 +158,7 @@ class _Batch:
         self,
         shot: Shot,
         states: States,
-        laws: Sequence[IceLaw],
+        laws: Sequence[tuple[IceLaw, Curl]],
         law: Index,
         vary: Mapping[str, Array],
     ) -> None:
@@ -162,7 +166,7 @@ class _Batch:
         count, self.stones = states.x.shape
         self.mass = np.array([stone.mass for stone in shot.stones])
         self.spins_after = _spins_after(shot)
-        table = CurveTable(laws, shot.curl, _top(shot, states))
+        table = CurveTable(laws, _top(shot, states))
         self.paths = Paths(table, np.repeat(law, self.stones))
         place = np.stack([states.x, states.y], axis=-1)
         velocity = np.stack([states.vx, states.vy], axis=-1)
@@ -400,9 +404,8 @@ class _Batch:
         impact: Any = self.shot.impact
         if self.vary:
             impact = replace(impact, **{key: float(value[s]) for key, value in self.vary.items()})
-        done = simulate(
-            replace(self.shot, stones=stones, impact=impact, ice=self.laws[self.law[s]])
-        )
+        ice, curl = self.laws[self.law[s]]
+        done = simulate(replace(self.shot, stones=stones, impact=impact, ice=ice, curl=curl))
         for k, stone in enumerate(stones):
             rest = done.rest[stone.name]
             self.now[s, k, :2], self.in_play[s, k] = (rest.x, rest.y), rest.in_play

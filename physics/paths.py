@@ -20,28 +20,26 @@ SPEED, ALONG, ASIDE, TURN, STRAIGHT, LOSS = range(6)
 
 
 class CurveTable:
-    """The curves of several ices, one below the other.
+    """The curves of several laws, one below the other.
 
     Parameters
     ----------
-    laws : sequence of IceLaw
-        The ices; a law is named by its place in this sequence.
-    curl : Curl
-        Of all of them.
+    laws : sequence of (IceLaw, Curl)
+        Ices and how stones curl on them; a pair is named by its place in this sequence.
     top : float
         Speed that no stone exceeds, m/s.
 
     Attributes
     ----------
-    pivot : float
-        Loss of spin of a stone that turns on the spot, rad/s²; infinite where the law takes
+    pivot : ndarray, shape (laws,)
+        Loss of spin of a stone that turns on the spot, rad/s²; infinite where a law takes
         none, for a stone that stops then has lost all.
     """
 
-    def __init__(self, laws: Sequence[IceLaw], curl: Curl, top: float) -> None:
-        curves = [curve_for(law, curl, float(np.nextafter(top, np.inf))) for law in laws]
-        pivot = float(curl.spin_loss(0.0))
-        self.pivot = pivot if pivot > 0 else np.inf
+    def __init__(self, laws: Sequence[tuple[IceLaw, Curl]], top: float) -> None:
+        curves = [curve_for(*law, float(np.nextafter(top, np.inf))) for law in laws]
+        pivot = np.array([float(curl.spin_loss(0.0)) for _, curl in laws])
+        self.pivot = np.where(pivot > 0, pivot, np.inf)
         self._nodes = len(curves[0].tau)
         # Nodes lie evenly in a power of the speed, whatever the law.
         self._speed = curves[0].speed
@@ -121,7 +119,7 @@ class Paths:
     """
 
     def __init__(self, table: CurveTable, law: Index) -> None:
-        """Nothing is laid yet; `law` holds the place of each stone's ice in the table."""
+        """Nothing is laid yet; `law` holds the place of each stone's laws in the table."""
         count = len(law)
         self._table, self._law = table, law
         self.stop = np.zeros(count)
@@ -180,8 +178,9 @@ class Paths:
         """Spins at the times t, rad/s, shape (n,)."""
         left = self.stop[which] - t
         omega = self._omega[which]
-        lost = self._loss[which] - self._table.loss(self._law[which], np.maximum(left, 0.0))
-        lost[left < 0] -= self._table.pivot * left[left < 0]
+        law = self._law[which]
+        lost = self._loss[which] - self._table.loss(law, np.maximum(left, 0.0))
+        lost[left < 0] -= (self._table.pivot[law] * left)[left < 0]
         return np.asarray(np.sign(omega) * np.maximum(np.abs(omega) - lost, 0.0))
 
 

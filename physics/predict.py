@@ -9,18 +9,14 @@ import numpy as np
 import pandas as pd
 
 from data.errors import InputError
-from data.results import Collision, Estimate, Friction, SimulationScore
+from data.results import SimulationScore
 from data.sheet import STONE
-from physics.curl import Curl, NoCurl
 from physics.estimate import Estimates
-from physics.ice import Constant, IceLaw
 from physics.impact import Frictional, Impact, PointMass, RigidBody
+from physics.laws import Laws, measured_laws
 from physics.shot_model import STATE
-from physics.shot_model import curl as fitted_curl
-from physics.shot_model import ice as fitted_ice
 from physics.simulate import Shot, StoneStart, simulate
 from physics.spread import Doubt, draws, path_spread, simulated_hits
-from physics.watched import FRICTION, LITERATURE, RESTITUTION, STONE_FRICTION
 
 MOVED = 0.05
 """Distance by which a stone must move to count in the score, m."""
@@ -77,22 +73,13 @@ def simulate_measured(
     if not estimates.collisions:
         warnings.append("simulation: no hit, the stones only glide")
     stones = _states(tracks, start, estimates, masses or {})
-    models, notes = _models(estimates, stones, warnings)
-    friction = estimates.friction.value
-    if friction is None:
-        friction = FRICTION
-        warnings.append(f"simulation: friction not measured, {FRICTION} assumed")
-    elif friction < 0:
-        warnings.append(f"simulation: friction came out as −{-friction:.4f}, 0 used")
-    ice: IceLaw = Constant(max(friction, 0.0) or 1e-6)
-    if estimates.friction.law == "fit" and estimates.whole is not None:
-        ice = fitted_ice(estimates.whole.state())
-    curl: Curl = NoCurl()
-    if estimates.whole is not None:
-        curl = fitted_curl(estimates.whole.state())
+    laws = measured_laws(estimates, radius)
+    models, notes = _models(laws, estimates, stones)
+    told = ("restitution", "friction") if estimates.collisions else ("friction",)
+    warnings += [f"simulation: {laws.assumed[name]}" for name in told if name in laws.assumed]
     clock = tracks.groupby("frame", sort=True)["t"].first()
     clock = clock[clock >= start]
-    doubt = _doubt(tracks, start, estimates)
+    doubt = _doubt(tracks, start, estimates, laws)
     ends = explained_until(tracks, estimates, start)
     warnings += [
         f"simulation: {name} is compared until {end:.2f} s; neither ice nor a hit in view"
@@ -107,7 +94,7 @@ def simulate_measured(
             scores[name] = SimulationScore(None, {}, notes[name])
             continue
         try:
-            shot = Shot(stones, impact, ice, curl, radius)
+            shot = Shot(stones, impact, laws.ice, laws.curl, radius)
             run = simulate(shot)
         except InputError as error:
             scores[name] = SimulationScore(None, {}, f"cannot be simulated: {error}")
@@ -124,7 +111,7 @@ def simulate_measured(
 
 
 def _start_time(tracks: pd.DataFrame, estimates: Estimates) -> float:
-    """Time of the last frame before the first hit, or of the first frame that moves."""
+    """Time of the last frame before the first hit, or without a hit of the first frame."""
     times = np.unique(tracks["t"].to_numpy(float))
     if not estimates.collisions:
         return float(times[0])
@@ -168,7 +155,7 @@ def _states(
     return tuple(out)
 
 
-def _doubt(tracks: pd.DataFrame, start: float, estimates: Estimates) -> Doubt:
+def _doubt(tracks: pd.DataFrame, start: float, estimates: Estimates, laws: Laws) -> Doubt:
     """Collect the standard errors of start and laws; stones at rest have those of places alone."""
     states, spins = {}, {}
     for name, group in tracks.groupby("stone", sort=True):
@@ -179,17 +166,12 @@ def _doubt(tracks: pd.DataFrame, start: float, estimates: Estimates) -> Doubt:
         states[str(name)] = np.where([False, False, still, still, still], 0.0, errors)
         own = [hit.after[str(name)] for hit in estimates.collisions if name in hit.stones]
         spins[str(name)] = tuple(state.sd_omega or 0.0 for state in own)
-    e, mu = estimates.restitution, estimates.friction
-    if e.value is None:
-        e = LITERATURE.restitution
-    if mu.value is None:
-        mu = Friction(LITERATURE.friction.value, LITERATURE.friction.stderr)
     return Doubt(
         states,
         spins,
-        restitution=e.stderr or 0.0,
-        stone_friction=between_stones(estimates).stderr or 0.0,
-        friction=abs((mu.stderr or 0.0) / mu.value) if mu.value else 0.0,
+        restitution=laws.restitution.stderr or 0.0,
+        stone_friction=laws.stone_friction.stderr or 0.0,
+        friction=laws.sd_friction,
     )
 
 
@@ -198,26 +180,17 @@ def _or_zero(value: float) -> float:
 
 
 def _models(
-    estimates: Estimates, stones: tuple[StoneStart, ...], warnings: list[str]
+    laws: Laws, estimates: Estimates, stones: tuple[StoneStart, ...]
 ) -> tuple[dict[str, Impact | None], dict[str, str]]:
     """Build the three models, None with a note where one cannot run."""
-    restitution = estimates.restitution.value
-    if restitution is None:
-        restitution = RESTITUTION
-        if estimates.collisions:
-            warnings.append(f"simulation: restitution not measured, {RESTITUTION} assumed")
     notes: dict[str, str] = {}
-    told = between_stones(estimates)
-    stone_friction = told.value
-    if stone_friction is None:
-        stone_friction = max([STONE_FRICTION, *(_rub(hit) for hit in estimates.collisions)])
-        how = "at least about" if stone_friction > STONE_FRICTION else "assumed to be"
-        if estimates.collisions:
-            notes["frictional"] = f"friction between the stones {how} {stone_friction:.2g}"
+    if estimates.collisions and "stone_friction" in laws.assumed:
+        notes["frictional"] = laws.assumed["stone_friction"]
+    e, rubbing = laws.restitution.value or 0.0, laws.stone_friction.value or 0.0
     out: dict[str, Impact | None] = {
-        "point-mass": PointMass(restitution),
-        "rigid-body": RigidBody(restitution),
-        "frictional": Frictional(restitution, stone_friction),
+        "point-mass": PointMass(e),
+        "rigid-body": RigidBody(e),
+        "frictional": Frictional(e, rubbing),
     }
     hit_stones = {stone for hit in estimates.collisions for stone in hit.stones}
     blind = [s.name for s in stones if s.name in hit_stones and s.omega_after is None]
@@ -225,35 +198,6 @@ def _models(
         out["rigid-body"] = None
         notes["rigid-body"] = f"needs the spin after the hit of {', '.join(blind)}"
     return out, notes
-
-
-def between_stones(estimates: Estimates) -> Estimate:
-    """Friction between the stones: of the whole shot if it tells it, else of its hits."""
-    if estimates.whole is not None and estimates.whole.told("stone_friction"):
-        return estimates.whole["stone_friction"]
-    told = [
-        (hit.stone_friction, hit.stderr_stone_friction)
-        for hit in estimates.collisions
-        if hit.stone_friction is not None and hit.stderr_stone_friction
-    ]
-    if not told:
-        return Estimate()
-    values, errors = np.array(told, float).T
-    weights = errors**-2
-    return Estimate(float(weights @ values / weights.sum()), float(weights.sum() ** -0.5))
-
-
-def _rub(hit: Collision) -> float:
-    """Tangential over normal impulse of a hit: the friction between the stones is no less.
-
-    Where they stop sliding on each other before they part, any greater friction does the same.
-    """
-    first, second = hit.stones
-    (a, b), (c, d) = ((s[first], s[second]) for s in (hit.before, hit.after))
-    jump = (d.vx - b.vx - c.vx + a.vx, d.vy - b.vy - c.vy + a.vy)
-    push = jump[0] * hit.normal[0] + jump[1] * hit.normal[1]
-    rub = jump[1] * hit.normal[0] - jump[0] * hit.normal[1]
-    return abs(rub / push) if hit.note is None and push > 0 else 0.0
 
 
 def explained_until(tracks: pd.DataFrame, estimates: Estimates, start: float) -> dict[str, float]:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.results import Estimate
-from data.sheet import STONE
+from data.sheet import STONE, curling_size
 from physics.curl import Curl, FCV1Curl, NoCurl
 from physics.ice import Fit
 from physics.impact import Frictional
@@ -112,7 +112,7 @@ class Watched:
         )
         impact = Frictional(values["restitution"], values["stone_friction"], self.inertia)
         radius = self.radius * values.get("size", 1.0)
-        curling = abs(self.radius / STONE.radius - 1) < 0.1
+        curling = curling_size(self.radius)
         bend = curl(values) if curling else curl(values, loss=0.0)
         return Shot(stones, impact, ice(values), bend, radius)
 

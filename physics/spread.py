@@ -52,8 +52,8 @@ class Doubt:
 def draws(shot: Shot, doubt: Doubt, count: int = DRAWS, seed: int = 0) -> list[Simulation]:
     """Simulate a shot many times with all that is doubtful drawn from normal distributions.
 
-    What is drawn is independent. Draws in which stones would begin inside each other are left
-    out.
+    What is drawn is independent, of places also what they share. Draws that cannot be simulated
+    are left out.
     """
     rng = np.random.default_rng(seed)
     out = []

@@ -11,16 +11,16 @@ from numpy.typing import NDArray
 
 from data.errors import InputError
 from data.results import Results
-from data.sheet import SHEET, STONE
+from data.sheet import SHEET, STONE, curling_size
 from physics.bounds import Bounds
-from physics.curl import FCV1Curl, NoCurl
+from physics.curl import NoCurl
 from physics.curve import Curve, curve_for
-from physics.ice import Constant, Fit, IceLaw
+from physics.ice import IceLaw
 from physics.impact import Frictional
+from physics.laws import measured_laws
 from physics.motion import Motion, Path
 from physics.shot_model import STATE
 from physics.simulate import Shot, StoneStart
-from physics.watched import FRICTION, LITERATURE, RESTITUTION, STONE_FRICTION
 
 Array = NDArray[np.float64]
 
@@ -42,8 +42,9 @@ class Start:
         Rank of the thrown stone.
     sd : ndarray, shape (stones, 5)
         Standard errors of x, y, vx, vy, omega of each stone.
-    sd_restitution, sd_friction : float
-        Standard errors of restitution and, relative to it, of the ice's friction.
+    sd_restitution, sd_stone_friction, sd_friction, sd_turn : float
+        Standard errors of restitution, of the friction between stones, of the ice's friction
+        relative to it, and of the turn of the paths at 1 m/s, rad/s.
     release : float
         Distance that the thrown stone has come since it was let go, m.
     assumed : tuple of str
@@ -54,7 +55,9 @@ class Start:
     thrown: int
     sd: Array
     sd_restitution: float = 0.0
+    sd_stone_friction: float = 0.0
     sd_friction: float = 0.0
+    sd_turn: float = 0.0
     release: float = 0.0
     assumed: tuple[str, ...] = ()
 
@@ -86,9 +89,9 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     InputError
         Where no stone moves.
     """
-    ice, sd_friction, assumed = _ice(results)
+    laws = measured_laws(results, results.radius)
     time = _time(tracks, results)
-    rows = [_row(group, time, ice) for _, group in tracks.groupby("stone", sort=True)]
+    rows = [_row(group, time, laws.ice) for _, group in tracks.groupby("stone", sort=True)]
     table = pd.DataFrame(rows).reset_index(drop=True)
     stones = tuple(
         StoneStart(
@@ -104,14 +107,7 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     # A stone at rest is known to rest.
     sd[[stone.vx == stone.vy == 0 for stone in stones], 2:] = 0.0
     thrown = _fastest(stones)
-    e = results.restitution
-    if e.value is None:
-        assumed.append(f"restitution not measured, {RESTITUTION} assumed")
-    told = _between_stones(results)
-    impact = Frictional(
-        min(max(RESTITUTION if e.value is None else e.value, 0.0), 1.0),
-        STONE_FRICTION if told is None else max(told, 0.0),
-    )
+    impact = Frictional(laws.restitution.value or 0.0, laws.stone_friction.value or 0.0)
     stone = stones[thrown]
     speed = math.hypot(stone.vx, stone.vy)
     ahead = (stone.x * stone.vx + stone.y * stone.vy) / speed
@@ -119,14 +115,21 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     alone = sum(math.hypot(other.vx, other.vy) > 0 for other in stones) == 1
     way = _room(stones, thrown, results.radius) if results.collisions and alone else 0.0
     moved = list(stones)
-    moved[thrown] = _taken_back(stone, way, ice)
-    curling = abs(results.radius / STONE.radius - 1) < 0.1
+    moved[thrown] = _taken_back(stone, way, laws.ice)
+    curling = curling_size(results.radius)
     release = max(HOG_TO_TEE + ahead - way, 0.0) if curling else 0.0
     bounds = Bounds(1 if stone.vy > 0 else -1) if curling else None
-    curl = FCV1Curl(turn=results.curl.value or 0.0) if curling else NoCurl()
-    shot = Shot(tuple(moved), impact, ice, curl, results.radius, bounds)
-    sd_e = (LITERATURE.restitution if e.value is None else e).stderr or 0.0
-    return Start(shot, thrown, sd, sd_e, sd_friction, release, tuple(assumed))
+    return Start(
+        Shot(tuple(moved), impact, laws.ice, laws.curl, results.radius, bounds),
+        thrown,
+        sd,
+        laws.restitution.stderr or 0.0,
+        laws.stone_friction.stderr or 0.0,
+        laws.sd_friction,
+        laws.sd_turn,
+        release,
+        tuple(laws.assumed.values()),
+    )
 
 
 def speed_before(speed: Array, way: float, ice: IceLaw) -> Array:
@@ -185,29 +188,8 @@ def _row(group: pd.DataFrame, time: float, ice: IceLaw) -> pd.Series:
     return row
 
 
-def _between_stones(results: Results) -> float | None:
-    """Friction between the stones, of the whole shot if it tells it, else the mean of its hits."""
-    if results.laws is not None and "stone_friction" in results.laws.names:
-        return results.laws.values[results.laws.names.index("stone_friction")]
-    told = [hit.stone_friction for hit in results.collisions if hit.stone_friction is not None]
-    return float(np.mean(told)) if told else None
-
-
 def _fastest(stones: tuple[StoneStart, ...]) -> int:
     return max(range(len(stones)), key=lambda k: math.hypot(stones[k].vx, stones[k].vy))
-
-
-def _ice(results: Results) -> tuple[IceLaw, float, list[str]]:
-    """Return the ice, the relative error of its friction, and what is assumed."""
-    friction = results.friction
-    if friction.value is None or friction.value <= 0:
-        doubt = (LITERATURE.friction.stderr or 0.0) / FRICTION
-        return Constant(FRICTION), doubt, [f"friction not measured, {FRICTION} assumed"]
-    sd = (friction.stderr or 0.0) / friction.value
-    a, v_c, b = friction.a, friction.v_c, friction.b
-    if friction.law == "fit" and a is not None and v_c is not None and b is not None:
-        return Fit(a, v_c, b), sd, []
-    return Constant(friction.value), sd, []
 
 
 def _taken_back(stone: StoneStart, way: float, ice: IceLaw) -> StoneStart:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.results import Estimate
-from data.sheet import STONE
+from data.sheet import STONE, curling_size
 from physics.shot_fit import ShotFit
 from physics.shot_model import V_C, SpinSeen, Unknown, Watched
 from physics.spins import spin_on
@@ -77,7 +77,7 @@ def loose_priors(radius: float) -> Priors:
     Only the friction is that of curling ice where the discs have the size of curling stones:
     half a second of a glide does not tell it, and velocities at a hit depend on it.
     """
-    curling = abs(radius / STONE.radius - 1) < 0.1
+    curling = curling_size(radius)
     return Priors(
         restitution=Estimate(0.8, 1.0),
         stone_friction=Estimate(0.1, 0.3),

@@ -13,6 +13,7 @@ from scipy.special import ndtri
 
 from data.errors import InputError
 from data.sheet import GRAVITY, HOUSE
+from physics.curl import Curl, FCV1Curl
 from physics.ice import IceLaw
 from physics.many import States, simulate_many
 from physics.simulate import StoneStart
@@ -25,7 +26,7 @@ THROW_SD = (0.0076, 0.0018)
 FASTEST_THROW, MOST_SPIN = 10.0, 20.0
 """Speed (m/s) and spin (rad/s) beyond which a throw is a mistake."""
 LAWS = 64
-"""Equally likely values that stand for the friction's distribution: equal ices share work."""
+"""Equally likely pairs of the ice's friction and of its curl: equal ones share work."""
 
 
 @dataclass(frozen=True)
@@ -129,8 +130,8 @@ def sample(
 ) -> pd.DataFrame:
     """Simulate a shot many times, each a little off.
 
-    States, restitution and friction are drawn from their standard errors, speed and direction
-    of the throw from what players are off by; their errors grow on the way to the start.
+    States, restitution, frictions and curl are drawn from their standard errors, speed and
+    direction of the throw from what players are off by; their errors grow on the way to the start.
 
     Parameters
     ----------
@@ -154,20 +155,19 @@ def sample(
     places = States.of(shot, count)
     for item, sd in zip(fields(places), start.sd.T, strict=True):
         getattr(places, item.name)[:] += sd * rng.standard_normal((count, len(sd)))
-    # Each friction as often as the others, in random order.
-    steps = ndtri((np.arange(LAWS) + 0.5) / LAWS)
     rank = rng.permutation(np.arange(count) % LAWS)
-    factors = np.maximum(1 + start.sd_friction * steps, 0.1)
-    laws = [Scaled(shot.ice, float(factor)) for factor in factors]
+    pairs = _laws(start, rng)
     _throw(start, places, throw_sd, rng)
     vary = {}
-    if start.sd_restitution > 0:
-        e = float(getattr(shot.impact, "restitution"))  # noqa: B009 - not every model has one
-        vary["restitution"] = np.clip(
-            e + start.sd_restitution * rng.standard_normal(count), 0.0, 1.0
-        )
-    ice = [laws[r] for r in rank.tolist()] if start.sd_friction > 0 else []
-    done = simulate_many(shot, places, ice=ice, vary=vary)
+    for name, sd, top in (
+        ("restitution", start.sd_restitution, 1.0),
+        ("stone_friction", start.sd_stone_friction, np.inf),
+    ):
+        if sd > 0:  # which says that the model has it
+            mean = float(getattr(shot.impact, name))
+            vary[name] = np.clip(mean + sd * rng.standard_normal(count), 0.0, top)
+    ice, curl = ([pair[k] for pair in (pairs[r] for r in rank)] for k in range(2))
+    done = simulate_many(shot, places, ice=ice, curl=curl, vary=vary)
     names = [stone.name for stone in shot.stones]
     return pd.DataFrame(
         {
@@ -179,6 +179,20 @@ def sample(
             "in_play": done.in_play.ravel().astype(int),
         }
     )
+
+
+def _laws(start: Start, rng: np.random.Generator) -> list[tuple[IceLaw, Curl]]:
+    """Return as many equally likely pairs of ice and curl, or the one that is known."""
+    shot, steps = start.shot, ndtri((np.arange(LAWS) + 0.5) / LAWS)
+    ice: list[IceLaw] = [shot.ice] * LAWS
+    curl: list[Curl] = [shot.curl] * LAWS
+    if start.sd_friction > 0:
+        factors = np.maximum(1 + start.sd_friction * steps, 0.1)
+        ice = [Scaled(shot.ice, factor) for factor in factors.tolist()]
+    if start.sd_turn > 0 and isinstance(shot.curl, FCV1Curl):
+        turns = shot.curl.turn + start.sd_turn * rng.permutation(steps)
+        curl = [replace(shot.curl, turn=turn) for turn in turns.tolist()]
+    return list(zip(ice, curl, strict=True))
 
 
 def odds(outcomes: pd.DataFrame, start: Start) -> dict[str, Odds]:

@@ -11,7 +11,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from data.results import Results
-from data.sheet import STONE, House
+from data.sheet import House, curling_size
 from report import figures, tables
 
 
@@ -85,7 +85,7 @@ def pictures(
             partial(figures.hit_figure, collision, rank, radius),
         )
     if any(glide.friction is not None for glide in results.glides):
-        curling = abs(radius / STONE.radius - 1) < 0.1
+        curling = curling_size(radius)
         yield Picture(
             "friction",
             "Friction of each glide, two standard errors either side, over the speeds that it"

@@ -86,6 +86,8 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
     )
     of_team = teams(tracks)
     drawn = sample_posterior(estimates, settings.samples, np.random.default_rng(0))
+    if settings.samples and drawn is None:
+        notes = (*notes, "no samples: the shot tells neither restitution nor friction")
     times = sightings["t"]
     results = Results(
         input=Input(

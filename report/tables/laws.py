@@ -5,7 +5,7 @@ from __future__ import annotations
 import pandas as pd
 
 from data.results import Results
-from data.sheet import STONE
+from data.sheet import curling_size
 
 LITERATURE = {
     "restitution": (0.83, 0.06, None, None, "Barnes et al., Icarus (granite spheres)"),
@@ -24,7 +24,7 @@ def law_table(results: Results) -> pd.DataFrame:
     DataFrame
         ``quantity, symbol, value, stderr, literature, stderr_literature, low, high, source``.
     """
-    curling = abs(results.radius / STONE.radius - 1) < 0.1
+    curling = curling_size(results.radius)
     laws = results.laws
     rows: list[dict[str, object]] = [
         {"quantity": "coefficient of restitution", "symbol": "e", **vars(results.restitution)},

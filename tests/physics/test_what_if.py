@@ -11,7 +11,7 @@ from data.errors import InputError
 from data.results import Collision, Estimate, Friction, Input, MeasuredState, Results
 from data.sheet import GRAVITY
 from physics.bounds import Bounds
-from physics.curl import NoCurl
+from physics.curl import FCV1Curl, NoCurl
 from physics.ice import FCV1, Constant, Penner
 from physics.impact import Frictional, PointMass
 from physics.simulate import Shot, StoneStart, simulate
@@ -38,10 +38,14 @@ def measured(shot: Shot = HIT) -> tuple[pd.DataFrame, Results]:
     for key in ("x", "y", "theta", "vx", "vy", "omega"):
         tracks[f"sd_{key}"] = 0.004
     tracks["seen"] = 1
-    one = MeasuredState(0, 0, 0, 0)
-    collision = Collision(
-        hit.t, 0.001, hit.stones, hit.normal, 0.8, 0.02, {"A": one}, {"B": one}, stone_friction=0.05
+    before, after = (
+        {name: MeasuredState(s.x, s.y, s.vx, s.vy, s.omega) for name, s in side.items()}
+        for side in (hit.before, hit.after)
     )
+    collision = Collision(
+        hit.t, 0.001, hit.stones, hit.normal, 0.8, 0.02, before, after,
+        stone_friction=0.05, stderr_stone_friction=0.01,
+    )  # fmt: skip
     results = Results(
         Input(("clip.mp4",), 25.0, 150, 6.0),
         Estimate(0.8, 0.02),
@@ -77,7 +81,7 @@ def test_what_was_not_measured_is_assumed_aloud() -> None:
     tracks, results = measured()
     blind = replace(results, restitution=Estimate(), friction=Friction(), collisions=())
     start = measured_start(tracks, blind)
-    assert len(start.assumed) == 2
+    assert len(start.assumed) == 3
     still = tracks.assign(vx=0.0, vy=0.0)
     with pytest.raises(InputError, match="no stone moves"):
         measured_start(still, results)
@@ -155,6 +159,24 @@ def test_restitution_is_drawn_where_it_is_not_known() -> None:
     assert way.std() / way.mean() == pytest.approx(2 * 0.03 / 1.8, rel=0.1)
     assert hit.stones == ("A", "B")
     assert sample(start, 5).equals(sample(start, 5))
+
+
+def test_friction_between_stones_and_curl_are_drawn_where_they_are_not_known() -> None:
+    glancing = replace(HIT, impact=Frictional(0.8, 0.05), bounds=None)
+    start = replace(written_start(glancing), sd_stone_friction=0.01)
+    b = sample(start, 600, (0.0, 0.0)).query("stone == 'B'")
+    (hit,) = simulate(glancing).hits
+    # A rub μ_s turns B's velocity by atan μ_s.
+    away = np.arctan2(b["y"] - hit.before["B"].y, b["x"] - hit.before["B"].x)
+    assert away.std() == pytest.approx(0.01, rel=0.1)
+    stone = StoneStart("A", 0, 0, 0, 2.0, 1.0)
+    alone = Shot((stone,), ice=Constant(MU), curl=FCV1Curl(turn=0.008, loss=0.0))
+    out = sample(Start(alone, 0, np.zeros((1, 5)), sd_turn=0.001), 2000, (0.0, 0.0))
+    bent, straight = (
+        simulate(replace(alone, curl=FCV1Curl(turn=turn, loss=0.0))).rest["A"].x
+        for turn in (0.009, 0.008)
+    )
+    assert out["x"].std() == pytest.approx(abs(bent - straight), rel=0.05)
 
 
 def test_odds_count() -> None:
