@@ -11,7 +11,9 @@ from data.errors import InputError
 
 IMAGE_SUFFIXES = frozenset({".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp"})
 
-TABLE_SUFFIXES = frozenset({".csv", ".txt", ".tsv", ".dat", ".trk", ".trz", ".zip", ".parquet"})
+PROJECT_SUFFIXES = frozenset({".trk", ".trz", ".zip"})
+
+TABLE_SUFFIXES = PROJECT_SUFFIXES | {".csv", ".txt", ".tsv", ".dat", ".parquet"}
 
 
 def find_inputs(names: Sequence[str | Path]) -> tuple[Path, ...]:

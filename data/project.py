@@ -14,9 +14,6 @@ from data.osp_xml import LARGEST, Thing, parse
 from data.trk import Project
 from data.trk_read import project_of
 
-ENDINGS = frozenset({".trk", ".trz", ".zip"})
-"""Of the names of projects."""
-
 MOST_ENTRIES = 100_000
 """Files in an archive; a clip of single pictures has thousands."""
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from data.errors import InputError
-from data.inputs import TABLE_SUFFIXES
+from data.inputs import PROJECT_SUFFIXES, TABLE_SUFFIXES
 from data.progress import Progress
 from data.sheet import HOUSE, STONE, House, Stone
 from work.settings import Settings
@@ -54,7 +54,6 @@ def film(files: tuple[Path, ...], settings: Settings, progress: Progress, placed
 
 def _open_clip(files: tuple[Path, ...], settings: Settings) -> Clip:
     """Open a video, pictures, or the clip of a Tracker project."""
-    from data.project import ENDINGS
     from vision.clip import open_clip
 
     kinds = [path.suffix.lower() for path in files]
@@ -62,8 +61,8 @@ def _open_clip(files: tuple[Path, ...], settings: Settings) -> Clip:
         raise InputError(f"{files[0]}: a spreadsheet; save it as CSV")
     if not TABLE_SUFFIXES.intersection(kinds):
         return open_clip(files, settings.fps, settings.frames)
-    if len(files) > 1 or kinds[0] not in ENDINGS:
-        odd = files[0] if kinds[0] not in ENDINGS else files[1]
+    if len(files) > 1 or kinds[0] not in PROJECT_SUFFIXES:
+        odd = files[0] if kinds[0] not in PROJECT_SUFFIXES else files[1]
         raise InputError(f"{odd}: not a clip; name a video, pictures, or one Tracker project")
     from vision.project_clip import open_project_clip
 
@@ -77,9 +76,7 @@ def _given_cameras(
     clip: Clip, path: Path, settings: Settings, progress: Progress, placed: Placed
 ) -> tuple[tuple[Camera, ...], tuple[str, ...]]:
     """Read the cameras of a table, or of a Tracker project."""
-    from data.project import ENDINGS
-
-    if path.suffix.lower() not in ENDINGS:
+    if path.suffix.lower() not in PROJECT_SUFFIXES:
         from vision.camera_file import given_cameras
 
         return given_cameras(clip, path, progress, placed)

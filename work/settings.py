@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from data.errors import InputError
+from data.inputs import PROJECT_SUFFIXES
 from data.sheet import STONE
 
 
@@ -97,10 +98,8 @@ def refuse_table_options(path: Path, settings: Settings) -> None:
 
 def refuse_clip_options(path: Path, settings: Settings) -> None:
     """Refuse to pass over what a person says about a clip where tracks are read."""
-    from data.project import ENDINGS
-
     said = {"--stick": settings.stick, "--house": settings.house, "--camera": settings.camera}
     given = [name for name, value in {**said, "--frames": settings.frames}.items() if value]
     if given:
-        clip = "; add --clip to measure its clip" if path.suffix.lower() in ENDINGS else ""
+        clip = "; add --clip to measure its clip" if path.suffix.lower() in PROJECT_SUFFIXES else ""
         raise InputError(f"{path}: only clips take {', '.join(given)}; tracks are read here{clip}")
