@@ -22,10 +22,13 @@ from physics.fit import fit_shot
 from physics.glides import FREE, measure_glides, stop_time
 from physics.rate_filter import filtered
 from physics.shot_fit import ShotFit
-from physics.stretch import START_SD, Filter, Model, Stretch
+from physics.stretch import JUMP_SD, START_SD, Filter, Model, Stretch
 from physics.traces import Trace, traces
 
 Floats = NDArray[np.float64]
+
+UNTOLD = 0.5 * JUMP_SD[1]
+"""Standard deviation of a spin that nothing is known of, rad/s."""
 
 
 def smooth(
@@ -53,8 +56,9 @@ def smooth(
     -------
     DataFrame
         `data.tracks.TRACK_COLUMNS`. ``seen`` is 0 in rows at which other stones were seen
-        but not this one, or at which its sighting was refused as an outlier. Angles are
-        NaN where the stone's angle was never seen, velocities where it was seen once. The
+        but not this one, or at which its sighting was refused as an outlier. Angles and spins
+        are NaN where the stone's angle was not seen from one hit to the next, velocities where
+        it was seen once. The
         standard deviations of places include what the sightings share (``sd_place``).
     """
     known = traces(sightings)
@@ -100,7 +104,7 @@ def _track(
     place, rest, idle, speed = _modes(trace.stone, t, fit)
     z = np.column_stack([trace.xy[row], trace.theta[row]])
     z[~sighted] = np.nan
-    sd = np.column_stack([trace.sd[row], trace.sd_theta[row]]) * np.sqrt(model.noise)
+    sd = np.column_stack([trace.sd[row] * np.sqrt(model.noise), trace.sd_theta[row]])
     mean, spread = np.full((len(t), 6), np.nan), np.full((len(t), 6), np.nan)
     seen = np.zeros(len(t), dtype=int)
     part = np.searchsorted(np.asarray(hits, float), t, side="right")
@@ -115,8 +119,10 @@ def _track(
     spread[:, :2] = np.hypot(spread[:, :2], trace.sd_place[row][:, None])
     size = np.hypot(mean[:, 2], mean[:, 3])
     spread[:, 2:4] = np.hypot(spread[:, 2:4], (trace.sd_scale[row] * size)[:, None])
+    untold = spread[:, 5] > UNTOLD
     if not np.isfinite(trace.theta).any():
-        mean[:, 4:], spread[:, 4:] = np.nan, np.nan
+        untold[:] = True
+    mean[untold, 4:], spread[untold, 4:] = np.nan, np.nan
     if len(trace.t) == 1:
         # One look tells a place and an angle, but nothing of motion.
         mean[:, [2, 3, 5]], spread[:, [2, 3, 5]] = np.nan, np.nan

@@ -44,6 +44,11 @@ def turned(spectra: Complex, angles: Array) -> Complex:
     return np.asarray(spectra * phase[:, :, None, None], np.complex64)
 
 
+def rings_seen(spectra: Complex) -> NDArray[np.bool_]:
+    """Which rings of the pictures (n, orders, rings, channels) are seen, shape (n, rings)."""
+    return np.asarray(spectra.any((1, 3)))
+
+
 def align(spectra: Complex, angles: Array, radii: Array, sd_shift: float) -> Alignment:
     """Turn and shift pictures of a cap onto their mean.
 
@@ -58,7 +63,7 @@ def align(spectra: Complex, angles: Array, radii: Array, sd_shift: float) -> Ali
     sd_shift : float
         Standard deviation of the shifts, m, per axis.
     """
-    seen = np.abs(spectra).max((1, 3)) > 0
+    seen = rings_seen(spectra)
     weight = np.sqrt(radii / radii[-1])
     often = np.maximum(seen.sum(0), 1)[:, None]
     angle, shift = angles.astype(float), np.zeros((len(angles), 2))

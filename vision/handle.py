@@ -23,11 +23,17 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.align import HARMONICS, ORDERS, Array, Complex, align, turned
+from vision.align import HARMONICS, ORDERS, Array, Complex, align, rings_seen, turned
 
 _GRID = 1440
-_LASTING = 0.05
-"""Pictures nearer in time err alike, s."""
+BLOCKS = (0.04, 0.08, 0.16, 0.32)
+"""Times over which angles are averaged to see how they scatter, s."""
+
+CAUTION = 1.25
+"""How much larger errors are than the scatter over those times tells, for some last longer."""
+
+SPREAD = 0.3
+"""How far angles must spread for light and turning cap to be told apart by half, rad."""
 
 
 @dataclass(frozen=True)
@@ -115,7 +121,8 @@ def angles_between(
     """
     model, seen = reference[1:-1], spectra[:, 1:-1]
     cross = (np.conj(model) * seen).sum((2, 3)).astype(complex)
-    energy = np.linalg.norm(model) * np.sqrt((np.abs(seen) ** 2).sum((1, 2, 3)))
+    shown = rings_seen(seen) @ (np.abs(model) ** 2).sum((0, 2))
+    energy = np.sqrt(shown * (np.abs(seen) ** 2).sum((1, 2, 3)))
     blank = energy <= 0
     offset, phases = _offsets(float(np.ceil(100 * reach)) / 100)
     near = cross * np.exp(1j * HARMONICS * expected[:, None])
@@ -191,48 +198,89 @@ def _matched(times: Array, pictures: Complex, turning: Turning) -> _Matched:
     angles = _followed(times, pictures, turning)
     likeness = np.zeros(len(times))
     known = np.isfinite(angles)
+    shown = rings_seen(pictures)[:, None, :, None]
+    own = pictures
     for _ in range(turning.rounds):
-        reference = turned(pictures[known], -angles[known]).mean(0)
-        angles[known], likeness[known] = angles_between(
-            reference, pictures[known], angles[known], 0.2
-        )
-    return _Matched(pictures, angles, likeness)
+        reference = _mean(turned(own[known], -angles[known]), shown[known])
+        angles[known], likeness[known] = angles_between(reference, own[known], angles[known], 0.2)
+        own = (pictures - unturned(pictures[known], angles[known], shown[known])) * shown
+    return _Matched(own, angles, likeness)
+
+
+def _mean(pictures: Complex, shown: NDArray[np.bool_]) -> Complex:
+    """Mean of pictures (n, orders, rings, channels), each ring over those that show it."""
+    return np.asarray(pictures.sum(0) / np.maximum(shown.sum(0), 1), np.complex64)
+
+
+def unturned(pictures: Complex, angles: Array, shown: NDArray[np.bool_]) -> Complex:
+    """Part of the pictures of a turning cap that does not turn with it: light and shadow.
+
+    Least squares on each harmonic, F(t) = S + R exp(−i k θ(t)), S held near 0 as far as the
+    angles differ too little to tell the two apart.
+
+    Parameters
+    ----------
+    pictures : ndarray, shape (n, orders, rings, channels)
+    angles : ndarray, shape (n,)
+        How they are turned, rad.
+    shown : ndarray of bool, shape (n, 1, rings, 1)
+        Which rings are seen; the others are 0.
+
+    Returns
+    -------
+    ndarray, shape (orders, rings, channels)
+    """
+    phase = np.exp(-1j * ORDERS * angles[:, None])[:, :, None, None]
+    along, back = _mean(phase * shown, shown), _mean(pictures * phase.conj(), shown)
+    share = 1 - np.abs(along) ** 2
+    return np.asarray(
+        (_mean(pictures, shown) - along * back) / (share + (SPREAD * ORDERS[:, None, None]) ** 2),
+        np.complex64,
+    )
 
 
 def _followed(times: Array, pictures: Complex, turning: Turning) -> Array:
-    """Angles from picture to picture, each against the running mean; NaN where unlike it."""
+    """Angles from picture to picture, each against the running mean; NaN where unlike it.
+
+    From the first of the pictures that show most, onwards and then back.
+    """
     angles = np.full(len(times), np.nan)
-    angles[0] = 0.0
-    mean = pictures[0].copy()
-    before, spin, weight = 0, 0.0, 1.0
-    for index in range(1, len(times)):
-        wait = times[index] - times[before]
-        reach = min(turning.reach + turning.most_spin * wait, 1.5)
-        expected = float(angles[before] + spin * wait)
-        angle, likeness = angle_between(mean, pictures[index], expected, reach)
-        if not likeness > turning.least_likeness:
-            continue
-        spin += 0.3 * ((angle - angles[before]) / wait - spin)
-        angles[index], before = angle, index
-        weight += 1.0
-        mean += (turned(pictures[index : index + 1], np.array([-angle]))[0] - mean) / min(
-            weight, 30.0
-        )
+    begin = int(rings_seen(pictures).sum(1).argmax())
+    angles[begin] = 0.0
+    mean, weight = pictures[begin].copy(), 1.0
+    for way in (range(begin + 1, len(times)), range(begin - 1, -1, -1)):
+        before, spin = begin, 0.0
+        for index in way:
+            wait = times[index] - times[before]
+            reach = min(turning.reach + turning.most_spin * abs(wait), 1.5)
+            expected = float(angles[before] + spin * wait)
+            angle, likeness = angle_between(mean, pictures[index], expected, reach)
+            if not likeness > turning.least_likeness:
+                continue
+            spin += 0.3 * ((angle - angles[before]) / wait - spin)
+            angles[index], before = angle, index
+            weight = min(weight + 1.0, 30.0)
+            mean += (turned(pictures[index : index + 1], np.array([-angle]))[0] - mean) / weight
     return angles
 
 
 def _jitter(times: Array, theta: Array, sd: Array) -> float:
     """How many times larger than claimed the errors are, at least 1.
 
-    By the scatter of angles about a steady turning in three frames in a row. Errors that last
-    for longer (light, the handle's shadow) make it a quarter more, and pictures in quick
-    succession share them.
+    By how the means of three blocks of frames in a row scatter about a steady turning (Allan's
+    variance), for blocks of several lengths: light and shadow err alike for a while.
     """
     step = np.diff(times)
-    bend = theta[2:] - 2 * theta[1:-1] + theta[:-2]
-    steady = np.isfinite(bend) & (np.abs(step[1:] - step[:-1]) < 0.2 * step[:-1])
-    alike = float(np.sqrt(max(_LASTING / np.median(step), 1.0)))
-    if steady.sum() < 5:
-        return alike
-    scatter = 1.4826 * float(np.median(np.abs(bend[steady]))) / np.sqrt(6)
-    return float(alike * max(1.25 * scatter / max(float(np.nanmedian(sd)), 1e-6), 1.0))
+    usual = float(np.median(step))
+    uneven = np.cumsum(np.abs(step - usual) > 0.2 * usual)
+    worst = 1.0
+    for size in {max(round(lasting / usual), 1) for lasting in BLOCKS}:
+        mean = np.convolve(theta, np.full(size, 1 / size), "valid")
+        bend = mean[2 * size :] - 2 * mean[size:-size] + mean[: -2 * size]
+        claimed = np.convolve(sd**2, np.full(3 * size, 2 / size**2), "valid")
+        steady = uneven[3 * size - 2 :] == np.append(0, uneven)[: len(bend)]
+        ratio = np.abs(bend[steady]) / np.sqrt(claimed[steady])
+        ratio = ratio[np.isfinite(ratio)]
+        if len(ratio) >= 5:
+            worst = max(worst, CAUTION * 1.4826 * float(np.median(ratio)))
+    return worst

@@ -52,6 +52,8 @@ class Measures:
         Of cap or disc, L*a*b*.
     visible : ndarray, shape (n,)
         Share of the circle that was seen.
+    uncovered : ndarray, shape (n,)
+        Share of the rays on which the cap was seen, whatever is around it.
     evidence : ndarray, shape (n,)
         For a stone 0 to about 3, for a plain disc 0 to 1.
     outline : ndarray, shape (n, circles)
@@ -72,6 +74,7 @@ class Measures:
     sd: Array
     colour: Array
     visible: Array
+    uncovered: Array
     evidence: Array
     outline: Array
     handle: Bytes
@@ -107,6 +110,8 @@ def measure(
     )
     pairs = sampled.lab[:, :, count:]
     handle = (pairs[:, :, ::2] >> 1) + (pairs[:, :, 1::2] >> 1)
+    # A ring that leaves the picture tells no angle.
+    handle *= np.all(sampled.inside[:, :, count + 1 :: 2], axis=1)[:, None, :, None]
     places = np.concatenate([look.places for look in looks])
     scale = np.concatenate([scales(look.camera, look.places) for look in looks])
     tilt = np.concatenate([tilts(look.camera, look.places) for look in looks])
@@ -122,10 +127,10 @@ def measure(
 
 
 def _rings(rays: Rays, radii: Array) -> Bytes:
-    """Give what the rays show on rings; 0 where they do not reach as far inwards."""
+    """Give what the rays show on rings; 0 where these are not wholly in the picture."""
     outer = np.searchsorted(rays.radius, radii)
     seen = (rays.lab[:, :, outer - 1] >> 1) + (rays.lab[:, :, outer] >> 1)
-    seen[:, :, outer == 0] = 0
+    seen *= (np.all(rays.inside[:, :, outer], axis=1) & (outer > 0))[:, None, :, None]
     return np.asarray(seen)
 
 
@@ -209,6 +214,7 @@ def _stones(
         sd=_errors(fit.covariance, pixel, hidden),
         colour=cap,
         visible=visible,
+        uncovered=(capped & at_cap).mean(1),
         evidence=fit.shares.sum(1) - uneven - 0.5 * misfit + 0.5 * response,
         outline=fit.radii / np.array([disc.cap_radius, disc.radius]),
         handle=handle,
@@ -235,13 +241,15 @@ def _plain(
     rim = Rim(steps, at_rim, at_rim, disc.radius, 0.06 * disc.radius, 12.0, np.ones(n))
     fit = fit_circles(rays, (rim,), 0.03, effort.edge_reach, 0.25 * pixel, effort.rounds)
     within = rays.inside & (rays.radius < 0.8 * disc.radius)
+    visible = fit.shares[:, 0] * at_rim.mean(1)
     return Measures(
         ok=fit.ok,
         centre=places + fit.shift,
         shift=np.hypot(fit.shift[:, 0], fit.shift[:, 1]),
         sd=_errors(fit.covariance, pixel, np.zeros(n)),
         colour=_mean_of(rays.lab.astype(np.float32), within.astype(np.float32)),
-        visible=fit.shares[:, 0] * at_rim.mean(1),
+        visible=visible,
+        uncovered=visible,
         evidence=fit.shares[:, 0],
         outline=fit.radii / disc.radius,
         handle=handle,

@@ -69,8 +69,8 @@ FOLLOWING = Search(radius_px=6.5)
 """For a clip: a coarser map, for what one picture hides the next ones show."""
 
 
-HANDLE_VISIBLE = 0.75
-"""Share of a stone that must be seen for its angle to be measured."""
+UNCOVERED = 0.75
+"""Share of a cap that must be seen for its angle to be measured."""
 
 CAP_OFF = 0.015
 """How far, in radii, the middle of the edges of cap and granite may be off the stone's: real ones
@@ -210,13 +210,14 @@ def sightings(
     columns = (
         seen.centre[chosen], seen.sd[chosen], seen.visible[chosen], seen.evidence[chosen],
         seen.outline[chosen], np.concatenate([np.empty((0, 2)), *pixels]),
+        seen.uncovered[chosen] >= UNCOVERED,
     )  # fmt: skip
     return [
         Sighting(
             x, y, sd_x, sd_y, nan, colour, visible, score, tuple(outline), (u, v),
-            spectrum.copy() if visible >= HANDLE_VISIBLE else None,
+            spectrum.copy() if told else None,
         )
-        for colour, spectrum, (x, y), (sd_x, sd_y), visible, score, outline, (u, v) in zip(
+        for colour, spectrum, (x, y), (sd_x, sd_y), visible, score, outline, (u, v), told in zip(
             seen.colour[chosen], spectra, *(column.tolist() for column in columns), strict=True
         )
     ]  # fmt: skip
