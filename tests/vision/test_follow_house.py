@@ -103,6 +103,17 @@ def test_nothing_wrong_is_fitted_to_a_dissolve() -> None:
     assert max(rms(c, path.at(c.t).project(ice)) for c in track.cameras) < 0.01
 
 
+def test_a_dissolve_from_another_camera_s_house_ends_its_piece() -> None:
+    """The score box stays where it is, as if the camera stood still."""
+    path = still_camera(target=(0.1, 0.6), px_per_m=100)
+    other = tilted_camera(1.1, height=3.0, px_per_m=110)
+    score = Graphic(60, 500, row=60)
+    cut = Cut(-1.0, 0.6, other, dissolve=0.3)
+    track, frames = follow(path, duration=2.0, cuts=(cut,), graphics=(score,))
+    assert {c.frame for c in track.cameras} == set(range(33, frames))
+    assert worst(track, path) < 0.005
+
+
 def test_jumps_of_the_picture_are_followed() -> None:
     places = ((0.0, 0.5), (0.5, 0.3), (-0.3, 0.9), (0.4, 1.1), (0.0, -0.2), (0.2, 0.8))
     keys = [Key(0.16 * k + dt, x, y, 100) for k, (x, y) in enumerate(places) for dt in (0, 0.12)]
