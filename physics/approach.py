@@ -10,7 +10,12 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+from numpy.typing import NDArray
+
 from physics.motion import Path, Point
+
+Array = NDArray[np.float64]
 
 BEYOND = 1.02
 """Share of the time to a contact, were velocities kept, after which to look: stones are slowed."""
@@ -140,3 +145,29 @@ def _crossing(a: Path, b: Path, low: float, high: float, reach: float) -> float:
             return new
         t = new
     return t
+
+
+def all_nearest(start: Array, end: Array) -> Array:
+    """Distances of the origin from segments between offsets, shape (n,); see `_nearest`."""
+    x, y = start[:, 0], start[:, 1]
+    dx, dy = end[:, 0] - x, end[:, 1] - y
+    square = dx * dx + dy * dy
+    s = np.clip(-(x * dx + y * dy) / np.where(square > 0, square, 1.0), 0.0, 1.0)
+    return np.asarray(np.hypot(x + s * dx, y + s * dy))
+
+
+def all_slack(a0: Array, a1: Array, b0: Array, b1: Array, step: Array) -> Array:
+    """Bound on how far two stones can be from where their chords say, m.
+
+    See `_slack`; here the first of the two moves.
+    """
+    turn = np.abs(a1[:, 3] - a0[:, 3])
+    chord = np.hypot(a1[:, 0] - a0[:, 0], a1[:, 1] - a0[:, 1])
+    alone = chord / 2 * np.tan(np.minimum(turn, 1.0) / 2)
+    both = step / 4 * (_spreads(a0, a1) + _spreads(b0, b1))
+    return np.where((b0[:, 2] == 0) & (turn < 1), alone, both)
+
+
+def _spreads(p0: Array, p1: Array) -> Array:
+    """Bounds on the diameters of the sets of velocities between two points of paths."""
+    return np.asarray(p0[:, 2] - p1[:, 2] + p0[:, 2] * np.abs(p1[:, 3] - p0[:, 3]))

@@ -18,11 +18,11 @@ from data.sheet import STONE
 from physics.by_stone import results_by_stone
 from physics.contacts import Contact
 from physics.finite_differences import by_finite_differences
-from physics.global_fit import GlobalFit
 from physics.law_choice import fit_with_chosen_laws
 from physics.local import Local, estimate_locally
 from physics.shot_model import ice
 from physics.watched import loose_priors, watch
+from physics.whole_fit import GlobalFit
 
 POOR_FIT = 30.0
 """Mean square of residuals against errors from which a simulated shot is not the one seen."""

@@ -16,13 +16,14 @@ from physics.contacts import cut_all
 from physics.estimate import Estimates
 from physics.fit import fit_shot
 from physics.glides import FREE
-from physics.global_fit import GlobalFit, fit_shots
+from physics.global_fit import fit_shots
 from physics.impact import Frictional, Impact, PointMass
 from physics.law_choice import STRAIGHT
 from physics.predict import explained_until, score
 from physics.simulate import Simulation, simulate
 from physics.traces import traces
 from physics.watched import LITERATURE, watch
+from physics.whole_fit import GlobalFit
 
 Floats = NDArray[np.float64]
 

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.results import Estimate, Law
-from physics.global_fit import GlobalFit, fit_shots
+from physics.global_fit import fit_shots
 from physics.shot_model import V_C, Watched
+from physics.whole_fit import GlobalFit
 
 STRAIGHT = {"slope": 0.0, "v_c": V_C, "turn": 0.0}
 """Constant friction and no curl: what a shot is fitted with first."""

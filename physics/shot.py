@@ -14,7 +14,7 @@ from typing import Any
 from data.errors import InputError
 from physics.bounds import Bounds
 from physics.registry import models, parameters_of
-from physics.simulate import FARTHEST, FASTEST, Shot, StoneStart
+from physics.simulation import FARTHEST, FASTEST, Shot, StoneStart
 
 RADIUS = 0.145
 """Radius of a stone where the file gives none, m."""

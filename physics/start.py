@@ -20,7 +20,7 @@ from physics.impact import Frictional
 from physics.laws import measured_laws
 from physics.motion import Motion, Path
 from physics.shot_model import STATE
-from physics.simulate import Shot, StoneStart
+from physics.simulation import Shot, StoneStart
 
 Array = NDArray[np.float64]
 

@@ -16,7 +16,7 @@ from data.sheet import GRAVITY, HOUSE
 from physics.curl import Curl, FCV1Curl
 from physics.ice import IceLaw
 from physics.many import States, simulate_many
-from physics.simulate import StoneStart
+from physics.simulation import StoneStart
 from physics.start import Start, speed_before
 
 Array = NDArray[np.float64]

@@ -13,7 +13,7 @@ from data.sheet import House
 from physics.forecast import AFTER
 from physics.pool import Pooled
 from physics.season import POSSIBLE
-from physics.simulate import Simulation
+from physics.simulation import Simulation
 from report.numbers import count, plus_minus
 from report.tables import moving_stones, rest_table, shot_stone
 from report.units import METRES, Unit

@@ -12,7 +12,7 @@ import pandas as pd
 from data.results import Results
 from data.sheet import GRAVITY
 from physics.registry import models
-from physics.simulate import StoneStart
+from physics.simulation import StoneStart
 from physics.start import measured_start
 from report.playback import shot_values
 

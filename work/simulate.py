@@ -12,7 +12,7 @@ from work.analyse import as_tracks
 if TYPE_CHECKING:
     import pandas as pd
 
-    from physics.simulate import Simulation
+    from physics.simulation import Simulation
     from physics.start import Start
     from physics.what_if import Changes
 

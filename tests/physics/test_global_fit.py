@@ -6,8 +6,9 @@ import pytest
 from data.errors import InputError
 from physics.contacts import find_contacts
 from physics.estimate import POOR_FIT, estimate
-from physics.global_fit import GlobalFit, fit_shots
+from physics.global_fit import fit_shots
 from physics.law_choice import STRAIGHT
+from physics.whole_fit import GlobalFit
 from tests.physics.watch import RADIUS, hit_motion, watch
 from tests.synthetic.physics import Ice, Impact, Start, simulate
 

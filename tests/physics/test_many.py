@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from data.errors import InputError
+from physics.batch import FEW
 from physics.curl import FCV1Curl, NoCurl
 from physics.ice import FCV1, Constant, IceLaw
 from physics.impact import Frictional, Impact, PointMass, RigidBody
-from physics.many import FEW, Outcomes, States, simulate_many
+from physics.many import Outcomes, States, simulate_many
 from physics.simulate import Shot, Simulation, StoneStart, simulate
 
 R = 0.145
