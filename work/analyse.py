@@ -68,8 +68,8 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
     sightings, radius = measured.sightings, settings.radius
     if sightings.empty:
         raise SceneError(
-            f"{measured.files[0]}: no stone was found on the sheet; curlshot check shows which house"
-            " was taken, and --house points at another"
+            f"{measured.files[0]}: no stone was found; curlshot check shows where the house was"
+            " taken to be, and --house points at another"
         )
     masses = (
         _check_masses(settings.masses, list(sightings["stone"].unique())) or measured.masses or None
