@@ -18,6 +18,7 @@ from command.arguments import out_folder, settings_of, what_if_folder
 from command.bars import Bars
 from command.guard import guarded, one_line
 from command.parser import command_line
+from command.threads import use_one_thread
 from data.errors import CurlshotError, InputError
 from data.files import check_folder, staged
 from data.inputs import IMAGE_SUFFIXES, TABLE_SUFFIXES, find_inputs
@@ -305,6 +306,7 @@ def _painted(house: House) -> tuple[float, ...]:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Entry point of the command; returns its exit code (0 well, 2 a person's mistake)."""
+    use_one_thread()
     arguments = command_line(VERSION).parse_args(argv)
     bars = Bars(quiet=arguments.quiet)
     return guarded(lambda: WORK[arguments.command](arguments, bars), bars)

@@ -29,6 +29,7 @@ import numpy as np
 import pandas as pd
 
 import pipeline
+from command.threads import LIMITS
 from tests.synthetic.camera import broadcast_camera
 from tests.synthetic.clip import cached_clip
 from tests.synthetic.scenes import random_scene, sweepers
@@ -67,7 +68,8 @@ def long_clip(size: tuple[int, int] = (1920, 1080), duration: float = 12.0) -> P
 def process(code: str, *arguments: str) -> tuple[float, float]:
     """CPU time of a process of Python, s, and the most memory that it held, MB."""
     command = [sys.executable, "-c", code, *arguments]
-    child = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+    clean = {name: value for name, value in os.environ.items() if name not in LIMITS}
+    child = subprocess.Popen(command, stdout=subprocess.DEVNULL, env=clean)
     _, status, used = os.wait4(child.pid, 0)
     child.returncode = os.waitstatus_to_exitcode(status)
     assert child.returncode == 0
