@@ -19,6 +19,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from math import ceil, nan, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -95,9 +96,17 @@ def _offsets(reach: float) -> tuple[Array, NDArray[np.complex128]]:
 def angle_between(
     reference: Complex, spectrum: Complex, expected: float, reach: float
 ) -> tuple[float, float]:
-    """Angle by which one cap is turned against a reference: `angles_between` of one."""
-    angle, likeness = angles_between(reference, spectrum[None], np.array([expected]), reach)
-    return float(angle[0]), float(likeness[0])
+    """Angle by which one cap is turned against a reference: `angles_between` of one, to 1 mrad."""
+    model, seen = reference[1:-1], spectrum[1:-1]
+    cross = (model.conj() * seen).sum((1, 2)) * np.exp(1j * HARMONICS * expected)
+    shown = model[:, seen.any((0, 2))].ravel()
+    energy = sqrt(np.vdot(shown, shown).real * np.vdot(seen, seen).real)
+    if not energy:
+        return nan, 0.0
+    offset, phases = _offsets(ceil(100 * reach) / 100)
+    value = (cross @ phases).real
+    best = int(value.argmax())
+    return expected + float(offset[best]), float(value[best]) / energy
 
 
 def angles_between(
@@ -124,7 +133,7 @@ def angles_between(
     shown = rings_seen(seen) @ (np.abs(model) ** 2).sum((0, 2))
     energy = np.sqrt(shown * (np.abs(seen) ** 2).sum((1, 2, 3)))
     blank = energy <= 0
-    offset, phases = _offsets(float(np.ceil(100 * reach)) / 100)
+    offset, phases = _offsets(ceil(100 * reach) / 100)
     near = cross * np.exp(1j * HARMONICS * expected[:, None])
     value = (near @ phases).real
     angle = expected + offset[value.argmax(1)]
