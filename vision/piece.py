@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 MOST_NORMALS = 32
 """Normals on each circle."""
 
-REACH, LEAST_REACH = 0.007, 6.0
+REACH, LEAST_REACH = 0.006, 6.0
 """Half length of the normals in widths of the picture, and the least, px."""
 
 MARK_SD = 0.2
@@ -45,14 +45,12 @@ WIDTH = 6.0
 SETTLED = 0.4
 """Correction below which the edges need not be measured anew, half lengths of the normals."""
 
-RAGGED = 0.1
-"""Residual beyond which edges were taken for each other, half lengths of the normals."""
-
 LEAST_ARC = 1.2
 """Length of circle that must be seen to fix a view, m."""
 
-LEAST_SUPPORT = 0.3
-"""Of the circles that are in the picture, this part must be seen."""
+LEAST_SUPPORT, GOOD_SUPPORT = 0.3, 0.5
+"""Of the circles that are in the picture, this part must be seen; where it is less than the
+second, edges of others may have been taken for theirs, and are measured anew."""
 
 LEARNING = 0.1
 """How fast the colours of the edges are learned anew."""
@@ -212,11 +210,11 @@ class Piece:
                 evidence.marks, view, self.rig, self.size, view_sd=FREE, width=WIDTH, iterations=6
             )
             shift = np.abs(fit.view.vector - view.vector)
-            view, reach = fit.view, REACH * self.size[0]
-            ragged = not fit.rms < RAGGED * reach
-            if shift[:3].max() * view.focal < SETTLED * reach and not ragged:
+            view, explained = fit.view, _explained(evidence, fit)
+            settled = shift[:3].max() * view.focal < SETTLED * REACH * self.size[0]
+            if settled and _enough(self.rig, evidence.visible, explained, GOOD_SUPPORT):
                 break
-        if ragged or not _enough(self.rig, evidence.visible, _explained(evidence, fit)):
+        if not _enough(self.rig, evidence.visible, explained):
             return None
         known = np.isfinite(self.palette)
         new = np.isfinite(evidence.palette)
@@ -277,8 +275,8 @@ def _explained(evidence: Evidence, fit: ViewSolution) -> Array:
     return np.asarray(evidence.covered * good / np.maximum(on, 1))
 
 
-def _enough(rig: Array, visible: Array, covered: Array) -> bool:
+def _enough(rig: Array, visible: Array, covered: Array, least: float = LEAST_SUPPORT) -> bool:
     """Whether so much of the circles is covered, of what is visible, that they fix a view."""
     around = 2 * np.pi * np.array([HOUSE.twelve_foot, rig[R8], rig[R4]])
     arc, whole = float(covered @ around), float(visible @ around)
-    return arc > LEAST_ARC and arc > LEAST_SUPPORT * whole
+    return arc > LEAST_ARC and arc > least * whole
