@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 MOST_NORMALS = 32
 """Normals on each circle."""
 
-REACH, LEAST_REACH = 0.006, 6.0
+REACH, LEAST_REACH = 0.007, 6.0
 """Half length of the normals in widths of the picture, and the least, px."""
 
 MARK_SD = 0.2
