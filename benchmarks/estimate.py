@@ -1,10 +1,10 @@
 """Whether the estimates are as sharp, as honest and as fast as they should be: one table.
 
-Run from the repository root: ``python -m benchmarks.estimate [--draws 60] [--local 200]``. Shots
-are drawn at random over noise (3 mm, 1 cm), frames a second (25, 30, 60), closing speeds (0.3 to
-3 m/s), time in view on either side of a hit (0.5 to 3 s), one to three hits, restitution, ice
-and friction between the stones. They are moved by the small-step program in tests/synthetic,
-which shares no code with the library.
+Run from the repository root: ``python -m benchmarks.estimate [--draws 60] [--local 200]
+[--first 0]``. Shots are drawn at random over noise (3 mm, 1 cm), frames a second (25, 30, 60),
+closing speeds (0.3 to 3 m/s), time in view on either side of a hit (0.5 to 3 s), one to three
+hits, restitution, ice and friction between the stones. They are moved by the small-step program
+in tests/synthetic, which shares no code with the library.
 """
 
 from __future__ import annotations
@@ -137,15 +137,15 @@ def honesty(name: str, values: Floats, errors: Floats, truth: Floats) -> list[Ro
     ]
 
 
-def estimates(whole: int, local: int) -> list[Row]:
+def estimates(whole: int, local: int, first: int) -> list[Row]:
     """Estimates of many random shots: `whole` of them by both ways, further ones locally."""
     found: list[tuple[Draw, Estimates]] = [
         (shot, estimate(shot.seen, find_contacts(shot.seen, RADIUS), radius=RADIUS))
-        for shot in draws(whole)
+        for shot in draws(whole, first)
     ]
     beside: list[tuple[Draw, Local]] = [(shot, done.local) for shot, done in found] + [
         (shot, estimate_locally(shot.seen, find_contacts(shot.seen, RADIUS), radius=RADIUS))
-        for shot in draws(local - whole, whole)
+        for shot in draws(local - whole, first + whole)
     ]
     hits = [len(done.collisions) == shot.hits for shot, done in beside]
 
@@ -241,10 +241,11 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--draws", type=int, default=60, help="shots fitted as a whole")
     parser.add_argument("--local", type=int, default=200, help="shots in all")
+    parser.add_argument("--first", type=int, default=0, help="seed of the first shot")
     arguments = parser.parse_args()
     begin = time.process_time()
     rows = [
-        *estimates(arguments.draws, max(arguments.local, arguments.draws)),
+        *estimates(arguments.draws, max(arguments.local, arguments.draws), arguments.first),
         *sharpness(),
         *speed(),
     ]
