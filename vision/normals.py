@@ -30,7 +30,7 @@ Profiles = NDArray[np.float32]
 THIN = (CENTRE_LINE, TEE_LINE, BACK_LINE)
 """Lines a centimetre or two wide; all others are edges between two colours."""
 
-SAMPLES = 33
+SAMPLES = 25
 """Samples along a normal; odd, the middle one at the point itself."""
 
 _SHARES = np.linspace(-1.0, 1.0, SAMPLES, dtype=np.float32)
@@ -47,7 +47,7 @@ BLOCK = 6
 MOST_BLOCKS, MOST_STEPS = 18, 40
 """Most marks of a thin line, and of the edge of a wide one."""
 
-MOST_MOVED = 0.01
+MOST_MOVED = 0.03
 """How far the same normals may move from where they were laid out, in widths of the picture."""
 
 LEAST, LEAST_BLOCKS = 8, 3
