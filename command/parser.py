@@ -7,7 +7,15 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from command import values
-from data.sheet import STONE
+from command.options import (
+    assumption_options,
+    clip_options,
+    disc_options,
+    tab_option,
+    table_options,
+    units_option,
+    what_if_options,
+)
 
 
 class _Parser(argparse.ArgumentParser):
@@ -58,16 +66,16 @@ def command_line(version: str) -> argparse.ArgumentParser:
         "  curlshot run old/tracks.csv                      earlier tracks\n",
     )
     run_.add_argument("inputs", nargs="*", metavar="INPUT", help="clip, pictures or tables")
-    _clip_options(run_)
-    _table_options(run_)
-    _tab_option(run_)
+    clip_options(run_)
+    table_options(run_)
+    tab_option(run_)
     run_.add_argument(
         "--clip",
         action="store_true",
         help="measure the clip of a Tracker project, not what is marked in it",
     )
-    _assumption_options(run_)
-    _units_option(run_)
+    assumption_options(run_)
+    units_option(run_)
     run_.add_argument(
         "--no-overlay", action="store_true", help="do not write the annotated clip overlay.mp4"
     )
@@ -80,8 +88,8 @@ def command_line(version: str) -> argparse.ArgumentParser:
         "  curlshot track shot.mp4 --camera earlier/camera.csv\n",
     )
     track_.add_argument("inputs", nargs="+", metavar="CLIP", help="a video or pictures")
-    _clip_options(track_)
-    _tab_option(track_)
+    clip_options(track_)
+    tab_option(track_)
 
     check_ = _command(
         commands,
@@ -91,8 +99,8 @@ def command_line(version: str) -> argparse.ArgumentParser:
         "  curlshot check shot.mp4 --house 640,360,460,360,640,180\n",
     )
     check_.add_argument("inputs", nargs="+", metavar="CLIP", help="a video or pictures")
-    _clip_options(check_)
-    _tab_option(check_)
+    clip_options(check_)
+    tab_option(check_)
 
     estimate_ = _command(
         commands,
@@ -102,11 +110,11 @@ def command_line(version: str) -> argparse.ArgumentParser:
         "  curlshot estimate pucks.csv --length-unit cm --radius 0.035 --mass 1=32 --mass 2=30\n",
     )
     estimate_.add_argument("inputs", nargs="+", metavar="TRACKS", help="tables of tracks")
-    _disc_options(estimate_)
-    _table_options(estimate_)
-    _tab_option(estimate_)
-    _assumption_options(estimate_)
-    _units_option(estimate_)
+    disc_options(estimate_)
+    table_options(estimate_)
+    tab_option(estimate_)
+    assumption_options(estimate_)
+    units_option(estimate_)
     estimate_.add_argument("--fps", type=values.positive, help="rate of a table without times, 1/s")
 
     season_ = _command(
@@ -143,8 +151,8 @@ def command_line(version: str) -> argparse.ArgumentParser:
         " file of its own for each IN",
     )
     convert_.add_argument("--over", metavar="CLIP", help="the clip that a project shows")
-    _table_options(convert_)
-    _tab_option(convert_)
+    table_options(convert_)
+    tab_option(convert_)
     convert_.add_argument("--fps", type=values.positive, help="rate of a table without times, 1/s")
 
     simulate_ = _command(
@@ -192,7 +200,7 @@ def command_line(version: str) -> argparse.ArgumentParser:
         "--fps", type=values.positive, default=25.0, help="samples per second (25)"
     )
     simulate_.add_argument("--json", action="store_true", help="print the outcome as JSON")
-    _what_if_options(simulate_)
+    what_if_options(simulate_)
     return parser
 
 
@@ -213,148 +221,3 @@ def _bare_command(commands: Any, name: str, summary: str, examples: str) -> argp
     )
     parser.add_argument("-q", "--quiet", action="store_true", help="no progress bars")
     return parser
-
-
-def _disc_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--radius",
-        type=values.positive,
-        default=STONE.radius,
-        metavar="METRES",
-        help=f"radius of the discs ({STONE.radius}: a curling stone)",
-    )
-    parser.add_argument(
-        "--mass",
-        type=values.mass,
-        action="append",
-        default=[],
-        metavar="STONE=MASS",
-        help="mass of a disc, where they are not all equal (any unit)",
-    )
-
-
-def _clip_options(parser: argparse.ArgumentParser) -> None:
-    _disc_options(parser)
-    parser.add_argument("--fps", type=values.positive, help="rate of pictures, 1/s (25)")
-    parser.add_argument(
-        "--frames",
-        type=values.frame_range,
-        metavar="FIRST:LAST",
-        help="frames to use, both included",
-    )
-    parser.add_argument(
-        "--stick",
-        type=values.stick,
-        metavar="X1,Y1,X2,Y2,METRES",
-        help="calibration stick for a still camera without a house: two pixels, their distance",
-    )
-    parser.add_argument(
-        "--house",
-        type=values.house,
-        metavar="FRAME:XC,YC,X1,Y1,X2,Y2",
-        help="where the house is, if it is not found: the tee and two points on the outer edge of"
-        " the 12-ft ring, px, in that frame (FRAME: may be left out: the first)",
-    )
-    parser.add_argument(
-        "--camera",
-        type=Path,
-        metavar="CAMERA",
-        help="a known camera, as a run's camera.csv: one row for a still camera, or one per frame;"
-        " or a Tracker project, for its calibration",
-    )
-
-
-def _what_if_options(parser: argparse.ArgumentParser) -> None:
-    change = parser.add_argument_group("what if")
-    change.add_argument(
-        "--restitution", type=values.fraction, metavar="E", help="e of the hits, 0 to 1"
-    )
-    change.add_argument(
-        "--friction", type=values.friction, metavar="MU", help="μ of the ice at 1 m/s, 0.001 to 0.1"
-    )
-    change.add_argument(
-        "--aim-offset",
-        type=values.offset,
-        default=0.0,
-        metavar="METRES",
-        help="move the way of the thrown stone to its left, or right if negative, m",
-    )
-    change.add_argument(
-        "--speed",
-        type=values.speed,
-        metavar="V",
-        help="of the thrown stone: m/s, or a factor as 1.1x",
-    )
-    change.add_argument(
-        "--spin",
-        type=values.amount,
-        metavar="W",
-        help="of the thrown stone: rad/s, or a factor as 0.5x",
-    )
-    change.add_argument(
-        "--samples",
-        type=values.samples,
-        metavar="N",
-        help=f"throw it N times, at most {values.MOST_THROWS} (1000 for a results.json, else 0)",
-    )
-    change.add_argument(
-        "--throw-sd",
-        type=values.throw_sd,
-        metavar="V,A",
-        help="what players are off by when they let go: m/s, rad (0.0076,0.0018)",
-    )
-
-
-def _assumption_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--restitution",
-        type=values.fraction,
-        metavar="E",
-        help="e that predictions assume (0.83 ± 0.06)",
-    )
-    parser.add_argument(
-        "--friction",
-        type=values.friction,
-        metavar="MU",
-        help="μ that predictions assume (0.0109 ± 0.003)",
-    )
-    parser.add_argument(
-        "--samples",
-        type=values.samples,
-        metavar="N",
-        help="draw e, μ and the friction between stones N times from what the shot tells:"
-        " posterior.csv, quantiles in results.json",
-    )
-
-
-def _units_option(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--units", choices=("m", "ft"), default="m", help="of what coaches read (m); all else is SI"
-    )
-
-
-def _tab_option(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--tab", metavar="NAME", help="of a Tracker project with several tabs")
-
-
-def _table_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--length-unit", choices=("m", "cm", "mm", "in", "ft"), default="m", help="of tables (m)"
-    )
-    parser.add_argument("--angle-unit", choices=("rad", "deg"), help="of tables")
-    parser.add_argument(
-        "--names",
-        type=values.pair,
-        action="append",
-        default=[],
-        metavar="STONE=TRACK",
-        help='which tracks are stones, e.g. --names A="mass A" --names B="mass B" (all)',
-    )
-    parser.add_argument(
-        "--angles",
-        type=values.pair,
-        action="append",
-        default=[],
-        metavar="STONE=FILE",
-        help="how a stone is turned: an export of a point of its edge about its centre",
-    )
