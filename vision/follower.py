@@ -43,8 +43,8 @@ class Patience:
     wait : float
         Time for which a stone is still looked for where it is expected, s.
     trust : float
-        Time from one measurement of a stone that looks unchanged to the next, s, unless a block
-        lasts longer.
+        Time from one measurement of a stone that looks unchanged to the next, s; it is due when
+        a block begins.
     reach : float
         How far, in radii, a stone may be from where it is expected or from where it was.
     """
@@ -99,9 +99,8 @@ class Follower:
             Where those in the last view lead on to.
         """
         for begin in range(0, len(views), self.patience.block):
-            first, *others = views[begin : begin + self.patience.block]
-            leads = self._step(first, leads, ())
-            for view, seen in zip(others, self._ahead(others, leads), strict=True):
+            block = views[begin : begin + self.patience.block]
+            for view, seen in zip(block, self._ahead(block, leads), strict=True):
                 leads = self._step(view, leads, seen)
         return list(leads)
 
@@ -138,23 +137,28 @@ class Follower:
     def _ahead(self, views: Sequence[View], leads: Sequence[Lead]) -> list[list[Sighting]]:
         """Measure at once what views show of stones that rest or keep their course."""
         leads = [lead for lead in leads if not lead.missed]
-        if not views or not leads:
+        if not leads:
             return [[] for _ in views]
-        resting = [(i, lead.portrait) for i, lead in enumerate(leads) if lead.portrait]
+        known = {i: lead.portrait for i, lead in enumerate(leads) if lead.portrait}
         pictures = [(view.frame.picture, view.camera) for view in views]
-        alike = unchanged(pictures, [portrait for _, portrait in resting], self.disc)
-        out: list[list[Sighting]] = []
+        alike = [
+            {i: sighting for i, sighting in zip(known, seen, strict=True) if sighting}
+            for seen in unchanged(pictures, list(known.values()), self.disc)
+        ]
+        # Now and then even what looks unchanged is measured.
+        for i, portrait in known.items():
+            if abs(views[0].frame.t - portrait.t) >= self.patience.trust:
+                alike[0].pop(i, None)
+        out = [list(seen.values()) for seen in alike]
         looks = []
         for view, seen in zip(views, alike, strict=True):
-            known = {i for (i, _), sighting in zip(resting, seen, strict=True) if sighting}
-            others = [lead.at(view.frame.t) for i, lead in enumerate(leads) if i not in known]
-            out.append([sighting for sighting in seen if sighting])
+            others = [lead.at(view.frame.t) for i, lead in enumerate(leads) if i not in seen]
             looks.append(Look(view.frame.picture, view.camera, _array(others)))
         if any(len(look.places) for look in looks):
             measured = iter(look_on_course(looks, self.appearance, self.disc, self.search))
-            for seen_so_far, look in zip(out, looks, strict=True):
+            for so_far, look in zip(out, looks, strict=True):
                 found = [next(measured) for _ in look.places]
-                seen_so_far += [sighting for sighting in found if sighting]
+                so_far += [sighting for sighting in found if sighting]
         return out
 
     def _measured(
@@ -164,30 +168,19 @@ class Follower:
         expected: Sequence[tuple[float, float]],
         ahead: Sequence[Sighting],
     ) -> list[Sighting | None]:
-        """Look at each stone where it is expected; what rests and looks as it did, only briefly."""
-        picture, camera = view.frame.picture, view.camera
+        """Look at each stone where it is expected, unless it was measured ahead."""
         found: list[Sighting | None] = [
             _nearest(ahead, *place, ON_COURSE * self.disc.radius) for place in expected
         ]
-        resting = [
-            (index, lead.portrait)
-            for index, lead in enumerate(leads)
-            if not found[index]
-            and lead.portrait
-            and abs(view.frame.t - lead.portrait.t) < self.patience.trust
-        ]
-        (alike,) = unchanged([(picture, camera)], [portrait for _, portrait in resting], self.disc)
-        for (index, _), sighting in zip(resting, alike, strict=True):
-            found[index] = sighting
         others = [index for index, sighting in enumerate(found) if sighting is None]
         if others:
-            look = Look(picture, camera, _array([expected[index] for index in others]))
+            look = Look(view.frame.picture, view.camera, _array([expected[i] for i in others]))
             seen = look_on_course([look], self.appearance, self.disc, self.search)
             for index, sighting in zip(others, seen, strict=True):
                 found[index] = sighting
         astray = [index for index in others if not (found[index] or leads[index].missed)]
         if astray:
-            look = Look(picture, camera, _array([expected[index] for index in astray]))
+            look = Look(view.frame.picture, view.camera, _array([expected[i] for i in astray]))
             seen = look_beside(look, self.appearance, self.disc, self.search)
             for index, sighting in zip(astray, seen, strict=True):
                 found[index] = sighting
