@@ -78,7 +78,7 @@ class Evidence:
 
     @property
     def profile(self) -> Array:
-        """Mean profile across the 12-ft edge about the marks, shape (SAMPLES,); NaN where unknown."""
+        """Mean profile across the 12-ft edge about the marks, (SAMPLES,); NaN where unknown."""
         seen = np.isfinite(self.crossing)
         return _mean_profile(self.rim.T[seen], self.crossing[seen])
 
