@@ -37,7 +37,8 @@ from tests.synthetic.people import hidden
 from vision.camera import Camera
 from vision.clip import open_clip
 from vision.follow_house import HouseFollower
-from vision.house import HouseFit, find_house
+from vision.house import find_house
+from vision.house_fit import HouseFit
 
 Array = NDArray[np.float64]
 

@@ -25,7 +25,8 @@ from data.sheet import HOUSE
 from vision.camera import Camera, apply_homography
 from vision.clip import open_clip
 from vision.follow_house import follow_house
-from vision.house import HouseFit, find_house
+from vision.house import find_house
+from vision.house_fit import HouseFit
 
 ROOT = Path(__file__).resolve().parents[1]
 

@@ -19,7 +19,8 @@ from data.progress import Progress, no_progress
 from vision.adjust import solve_view
 from vision.camera import Camera
 from vision.clip import Clip, Frame
-from vision.house import HouseFit, find_house
+from vision.house import find_house
+from vision.house_fit import HouseFit
 from vision.joint import HouseTrack, Seen, fit_clip
 from vision.picture import image_of
 from vision.piece import Piece

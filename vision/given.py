@@ -22,7 +22,8 @@ from vision.camera import Camera
 from vision.clip import Clip, Frame, Image
 from vision.flow import similarity
 from vision.follow_house import follow_house
-from vision.house import HouseFit, fit_house, start
+from vision.house import fit_house
+from vision.house_fit import HouseFit, start
 from vision.joint import HouseTrack, Seen, fit_clip
 from vision.paint import TWELVE, Marks, fixed, joined
 from vision.placed import Placed, nobody

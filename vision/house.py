@@ -7,22 +7,17 @@ of the circles they explain; the best is refined at full resolution, with the li
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import HOUSE
-from vision.adjust import solve
-from vision.camera import Camera
-from vision.lines import sides, upright
-from vision.marks import Evidence, measure
-from vision.outline import Rim, find_rim
+from vision.house_fit import HouseFit, RoughFit, fit_roughly, refine, start
 from vision.picture import Image
-from vision.pose import DOWN, View, aim, camera, rescaled, rotation_vector
-from vision.proof import is_house, worth
-from vision.rig import ANYWHERE, OVERHEAD, Prior, start_rig
+from vision.pose import rescaled
+from vision.proof import is_house
+from vision.rig import ANYWHERE, POSITION
 from vision.rings import Guess, guesses
 
 Array = NDArray[np.float64]
@@ -32,47 +27,16 @@ WORK_WIDTH = 640
 
 GUESS_WIDTH = 320
 """Width of the picture in which they are made, px."""
-SHARING = 20.0
-"""Edge points of one frame that share an error of the paint, about 30° of a circle."""
 
 ENOUGH = 2.8
 """A judgement at which nothing farther from the middle is tried: all of three circles, nearly."""
 
-ASIDE = 2.0
-"""What a house loses when its centre is one picture's width aside: neighbours are at the sides."""
+SPACINGS = (4.7, 5.0, 4.4)
+"""How far apart the houses of neighbouring sheets may be, m: the width of a sheet (4.42 to 5.00 m
+by the rules of World Curling), within what a fit reaches."""
 
-ROUGH = 0.5
-"""What a house loses per pixel of residual in the small picture."""
-
-TILT_GAIN = 8.0
-"""By how much the log likelihood must rise for a camera that does not hang over the tee."""
-
-
-@dataclass(frozen=True)
-class HouseFit:
-    """The house in one picture.
-
-    Attributes
-    ----------
-    camera : Camera
-    view, rig : View, ndarray
-        The camera's parts (see `vision.rig` and `vision.pose`).
-    evidence : Evidence
-        The marks it rests on.
-    rms_px : float
-    overhead : bool
-        Whether it looks like a camera that hangs over the tee.
-    edge : Rim
-        Where the 12-ft circle ends in the profiles across it.
-    """
-
-    camera: Camera
-    view: View
-    rig: Array
-    evidence: Evidence
-    rms_px: float
-    overhead: bool
-    edge: Rim
+LEAST_NEARER = 0.05
+"""By what share of the picture's width a house beside must be nearer to its middle."""
 
 
 def find_house(image: Image, *, frame: int = 0, t: float = 0.0) -> HouseFit | None:
@@ -85,15 +49,49 @@ def find_house(image: Image, *, frame: int = 0, t: float = 0.0) -> HouseFit | No
     Returns
     -------
     HouseFit or None
-        The most complete house; None where no house can be made out.
+        The most complete house, or a complete one on the sheet beside that is nearer to the
+        middle of the picture; None where no house can be made out.
     """
     factor = min(WORK_WIDTH / image.shape[1], 1.0)
     small = _reduced(image)
     hypotheses = [_enlarged(g, 1 / factor) for g in _guesses(small)]
     for found in _fits(image, small, hypotheses, frame, t):
-        if is_house(image, found.evidence, found.view, found.rig, found.camera):
-            return found
+        if _is_house(image, found):
+            return _middle_most(image, small, found)
     return None
+
+
+def _is_house(image: Image, found: HouseFit) -> bool:
+    return is_house(image, found.evidence, found.view, found.rig, found.camera)
+
+
+def _middle_most(image: Image, small: Image, found: HouseFit) -> HouseFit:
+    """Give a complete house nearer to the middle on the sheet beside, where there is one."""
+    factor = small.shape[1] / image.shape[1]
+    for beside in _beside(small, found, factor):
+        if beside.score > ENOUGH:
+            other = refine(image, beside, factor, found.camera.frame, found.camera.t)
+            if other is not None and _is_house(image, other):
+                return other
+    return found
+
+
+def _beside(small: Image, found: HouseFit, factor: float) -> Iterator[RoughFit]:
+    """Fit the houses beside the one found that are nearer to the middle of the picture."""
+    width = found.camera.size[0]
+    offsets = np.array([side * apart for apart in SPACINGS for side in (-1, 1)])
+    centres = found.camera.project(np.stack([offsets, 0 * offsets], -1))
+    ends = found.camera.project(np.stack([offsets + 0.5, 0 * offsets], -1))
+    own = float(found.camera.project(np.zeros((1, 2)))[0, 0])
+    for offset, centre, end in zip(offsets.tolist(), centres, ends, strict=True):
+        if abs(centre[0] - width / 2) < abs(own - width / 2) - LEAST_NEARER * width:
+            rig = found.rig.copy()
+            rig[POSITION] -= offset, 0.0, 0.0
+            scale = 2 * factor * float(np.hypot(*(end - centre)))
+            view = rescaled(found.view, factor)
+            fitted = fit_roughly(small, view, rig, ANYWHERE, scale, float(factor * centre[0]))
+            if fitted is not None:
+                yield fitted
 
 
 def fit_house(
@@ -126,46 +124,20 @@ def _fits(
 ) -> Iterator[HouseFit]:
     """Fit hypotheses: what they become, that which explains most first."""
     factor = min(WORK_WIDTH / image.shape[1], 1.0)
-    fits: list[_Fitted] = []
+    fits: list[RoughFit] = []
     aside = [abs(guess.centre[0] - image.shape[1] / 2) for guess in hypotheses]
     for k, guess in enumerate(hypotheses):
-        fitted = _fit(small, _enlarged(guess, factor))
+        here = _enlarged(guess, factor)
+        camera_there = start(here, (small.shape[1], small.shape[0]))
+        fitted = fit_roughly(small, *camera_there, here.scale, float(here.centre[0]))
         if fitted is not None:
             fits.append(fitted)
             if fitted.score > ENOUGH and aside[k] <= min(aside[k:]):
                 break
     for fitted in sorted(fits, key=lambda fit: -fit.score):
-        found = _refine(image, fitted, factor, frame, t)
+        found = refine(image, fitted, factor, frame, t)
         if found is not None:
             yield found
-
-
-@dataclass(frozen=True)
-class _Fitted:
-    """A hypothesis after the fit, in the small picture."""
-
-    view: View
-    rig: Array
-    score: float
-
-
-def _fit(image: Image, guess: Guess) -> _Fitted | None:
-    """Fit a camera to the circles of a small picture, starting from a hypothesis."""
-    size = (image.shape[1], image.shape[0])
-    view, rig, prior = start(guess, size)
-    thickness = guess.scale * (HOUSE.twelve_foot - HOUSE.eight_foot)
-    rms = np.nan
-    for share in (0.3, 0.2, 0.15):
-        reach = max(share * thickness, 3.0)
-        evidence = measure(image, view.vector, rig, reach=reach, spacing=4, lines=False)
-        if len(evidence.marks) < 30:
-            return None
-        solution = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
-        view, rig, rms = solution.views[0], solution.rig, float(solution.rms[0])
-    explained = worth(measure(image, view.vector, rig, reach=5.0, spacing=4, lines=False))
-    aside = ASIDE * abs(guess.centre[0] / size[0] - 0.5)
-    score = explained - aside - ROUGH * float(np.nan_to_num(rms, nan=9.0))
-    return _Fitted(view, rig, score) if explained > 0 else None
 
 
 def _guesses(image: Image) -> list[Guess]:
@@ -173,54 +145,3 @@ def _guesses(image: Image) -> list[Guess]:
     factor = min(GUESS_WIDTH / image.shape[1], 1.0)
     small = cv2.resize(image, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA)
     return [_enlarged(guess, 1 / factor) for guess in guesses(np.asarray(small, np.uint8))]
-
-
-def start(guess: Guess, size: tuple[int, int]) -> tuple[View, Array, Prior]:
-    """Give the camera over the tee or, if circles look foreshortened, one anywhere: view, rig."""
-    down = guess.foreshortening
-    prior = OVERHEAD if down == 1 else ANYWHERE
-    position = prior.mean[2] * np.array([0.0, -np.sqrt(1 - down**2), down])
-    return _aimed(guess, position, size), start_rig(prior, position), prior
-
-
-def _aimed(guess: Guess, position: Array, size: tuple[int, int]) -> View:
-    """View of a camera that has the tee where the guess has it, and leans as it says."""
-    middle = np.array([(size[0] - 1) / 2, (size[1] - 1) / 2])
-    c, s = np.cos(guess.lean), np.sin(guess.lean)
-    lean = np.array([[c, s], [-s, c]])
-    level = aim(middle + lean.T @ (guess.centre - middle), guess.scale, position, size)
-    turn = np.eye(3)
-    turn[:2, :2] = lean
-    vector = rotation_vector(turn @ level.rotation @ DOWN.T)
-    return View(np.append(vector, level.vector[3]))
-
-
-def _refine(image: Image, best: _Fitted, factor: float, frame: int, t: float) -> HouseFit | None:
-    """Fit at full resolution: the circles, then with the lines."""
-    size = (image.shape[1], image.shape[0])
-    view, rig = rescaled(best.view, 1 / factor), best.rig
-    circles = measure(image, view.vector, rig, reach=max(4 / factor, 6.0), lines=False)
-    if len(circles.marks) < 30:
-        return None
-    fits = {
-        kind: solve([circles.marks], [view], rig, size, prior=prior, sharing=SHARING)
-        for kind, prior in ((True, OVERHEAD), (False, ANYWHERE))
-    }
-    overhead = (fits[True].cost - fits[False].cost) / SHARING < TILT_GAIN
-    view, rig = fits[overhead].views[0], fits[overhead].rig
-    view, rig = upright(image, view, rig)
-    rig = sides(image, view, rig)
-    prior = OVERHEAD if overhead else ANYWHERE
-    edge = Rim()
-    for reach in (8.0, 6.0):
-        evidence = measure(image, view.vector, rig, reach=reach, level=edge.level)
-        if len(evidence.marks) < 30:
-            return None
-        fit = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
-        view, rig = fit.views[0], fit.rig
-        edge = find_rim(evidence.profile, evidence.step)
-    rms = float(fit.rms[0])
-    found = camera(view, rig, size, frame=frame, t=t, rms_px=rms)
-    if worth(evidence) == 0:
-        return None
-    return HouseFit(found, view, rig, evidence, rms, overhead, edge)

@@ -16,7 +16,7 @@ from data.sheet import HOUSE
 from vision.adjust import ViewSolution, solve, solve_view
 from vision.camera import Camera
 from vision.clip import Frame
-from vision.house import SHARING
+from vision.house_fit import SHARING
 from vision.joint import Seen
 from vision.landmarks import Keyframe, keyframe, recognise
 from vision.marks import Evidence, measure_along

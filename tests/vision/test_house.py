@@ -20,7 +20,8 @@ from tests.synthetic import (
     tilted_camera,
 )
 from vision.camera import Camera
-from vision.house import HouseFit, find_house
+from vision.house import find_house
+from vision.house_fit import HouseFit
 
 SIZE = (1280, 720)
 ANGLE = np.arange(16) * np.pi / 8
@@ -108,6 +109,16 @@ def test_equal_houses_beside_it_are_not_taken(x: float) -> None:
     scene = replace(scene, sheet=near, people=sweepers(scene, 2.0), paint=PAINTS["navy-orange"])
     path = still_camera(position=(0.1, 0.2, 8.0), target=(x, 0.4), px_per_m=80)
     assert rms(errors(find_house(render_still(scene, path, 1.0)), path)) < 0.01
+
+
+@pytest.mark.parametrize("side", [-1, 1])
+def test_the_house_in_the_middle_is_taken_by_a_camera_aside(side: int) -> None:
+    # The houses beside are whole and bare, one of them is larger.
+    scene = sample_scene()
+    near = replace(scene.sheet, pitch=4.8, half_width=(2.2, 2.2))
+    scene = replace(scene, sheet=near, people=sweepers(scene, 2.0))
+    path = still_camera(position=(4.9 * side, -9.0, 7.4), target=(0.2, 0.3), px_per_m=60)
+    assert rms(errors(find_house(render_still(scene, path, 1.0)), path)) < 0.02
 
 
 def test_no_house_is_no_house() -> None:

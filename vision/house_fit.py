@@ -1,0 +1,145 @@
+"""A camera fitted to the circles and lines of a house in one picture.
+
+First to the circles alone, roughly, from a hypothesis of where the house is; then at full
+resolution, with the lines, whether or not the camera hangs over the tee.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.sheet import HOUSE
+from vision.adjust import solve
+from vision.camera import Camera
+from vision.lines import sides, upright
+from vision.marks import Evidence, measure
+from vision.outline import Rim, find_rim
+from vision.picture import Image
+from vision.pose import DOWN, View, aim, camera, rescaled, rotation_vector
+from vision.proof import worth
+from vision.rig import ANYWHERE, OVERHEAD, Prior, start_rig
+from vision.rings import Guess
+
+Array = NDArray[np.float64]
+
+SHARING = 20.0
+"""Edge points of one frame that share an error of the paint, about 30° of a circle."""
+
+ASIDE = 2.0
+"""What a house loses when its centre is one picture's width aside: neighbours are at the sides."""
+
+ROUGH = 0.5
+"""What a house loses per pixel of residual in the small picture."""
+
+TILT_GAIN = 8.0
+"""By how much the log likelihood must rise for a camera that does not hang over the tee."""
+
+
+@dataclass(frozen=True)
+class HouseFit:
+    """The house in one picture.
+
+    Attributes
+    ----------
+    camera : Camera
+    view, rig : View, ndarray
+        The camera's parts (see `vision.rig` and `vision.pose`).
+    evidence : Evidence
+        The marks it rests on.
+    rms_px : float
+    overhead : bool
+        Whether it looks like a camera that hangs over the tee.
+    edge : Rim
+        Where the 12-ft circle ends in the profiles across it.
+    """
+
+    camera: Camera
+    view: View
+    rig: Array
+    evidence: Evidence
+    rms_px: float
+    overhead: bool
+    edge: Rim
+
+
+@dataclass(frozen=True)
+class RoughFit:
+    """A hypothesis after the fit, in the small picture."""
+
+    view: View
+    rig: Array
+    score: float
+
+
+def fit_roughly(
+    image: Image, view: View, rig: Array, prior: Prior, scale: float, centre: float
+) -> RoughFit | None:
+    """Fit a camera to the circles of a small picture, px per m large and `centre` px aside."""
+    size = (image.shape[1], image.shape[0])
+    thickness = scale * (HOUSE.twelve_foot - HOUSE.eight_foot)
+    rms = np.nan
+    for share in (0.3, 0.2, 0.15):
+        reach = max(share * thickness, 3.0)
+        evidence = measure(image, view.vector, rig, reach=reach, spacing=4, lines=False)
+        if len(evidence.marks) < 30:
+            return None
+        solution = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
+        view, rig, rms = solution.views[0], solution.rig, float(solution.rms[0])
+    explained = worth(measure(image, view.vector, rig, reach=5.0, spacing=4, lines=False))
+    aside = ASIDE * abs(centre / size[0] - 0.5)
+    score = explained - aside - ROUGH * float(np.nan_to_num(rms, nan=9.0))
+    return RoughFit(view, rig, score) if explained > 0 else None
+
+
+def start(guess: Guess, size: tuple[int, int]) -> tuple[View, Array, Prior]:
+    """Give the camera over the tee or, if circles look foreshortened, one anywhere: view, rig."""
+    down = guess.foreshortening
+    prior = OVERHEAD if down == 1 else ANYWHERE
+    position = prior.mean[2] * np.array([0.0, -np.sqrt(1 - down**2), down])
+    return _aimed(guess, position, size), start_rig(prior, position), prior
+
+
+def _aimed(guess: Guess, position: Array, size: tuple[int, int]) -> View:
+    """View of a camera that has the tee where the guess has it, and leans as it says."""
+    middle = np.array([(size[0] - 1) / 2, (size[1] - 1) / 2])
+    c, s = np.cos(guess.lean), np.sin(guess.lean)
+    lean = np.array([[c, s], [-s, c]])
+    level = aim(middle + lean.T @ (guess.centre - middle), guess.scale, position, size)
+    turn = np.eye(3)
+    turn[:2, :2] = lean
+    vector = rotation_vector(turn @ level.rotation @ DOWN.T)
+    return View(np.append(vector, level.vector[3]))
+
+
+def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) -> HouseFit | None:
+    """Fit at full resolution: the circles, then with the lines."""
+    size = (image.shape[1], image.shape[0])
+    view, rig = rescaled(best.view, 1 / factor), best.rig
+    circles = measure(image, view.vector, rig, reach=max(4 / factor, 6.0), lines=False)
+    if len(circles.marks) < 30:
+        return None
+    fits = {
+        kind: solve([circles.marks], [view], rig, size, prior=prior, sharing=SHARING)
+        for kind, prior in ((True, OVERHEAD), (False, ANYWHERE))
+    }
+    overhead = (fits[True].cost - fits[False].cost) / SHARING < TILT_GAIN
+    view, rig = fits[overhead].views[0], fits[overhead].rig
+    view, rig = upright(image, view, rig)
+    rig = sides(image, view, rig)
+    prior = OVERHEAD if overhead else ANYWHERE
+    edge = Rim()
+    for reach in (8.0, 6.0):
+        evidence = measure(image, view.vector, rig, reach=reach, level=edge.level)
+        if len(evidence.marks) < 30:
+            return None
+        fit = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
+        view, rig = fit.views[0], fit.rig
+        edge = find_rim(evidence.profile, evidence.step)
+    rms = float(fit.rms[0])
+    found = camera(view, rig, size, frame=frame, t=t, rms_px=rms)
+    if worth(evidence) == 0:
+        return None
+    return HouseFit(found, view, rig, evidence, rms, overhead, edge)
