@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from physics.normal_equations import inverse_of_blocks
 from physics.residuals import huber_weights, inflation
 from physics.segments import Piece
 from physics.shot_fit import Deceleration, Meeting, ShotFit
@@ -157,7 +158,7 @@ class _Solver:
             self._assign()
             data, right = self._data()
             rules, rules_right = self._rules()
-            cov = _inverse(data + rules, self.blocks)
+            cov = inverse_of_blocks(data + rules, self.blocks)
             new = cov @ (right + rules_right)
             step = new - self.theta
             for k in range(len(self.meetings)):
@@ -345,29 +346,6 @@ class _Solver:
             if len(piece.samples)
         ]
         return inflation(runs, sum(run.size for run, _ in runs) - parameters, self.still)
-
-
-def _inverse(normal: Floats, blocks: Sequence[NDArray[np.int64]]) -> Floats:
-    """Inverse of a matrix made of blocks, block by block."""
-    out = np.zeros_like(normal)
-    for block in blocks:
-        at = np.ix_(block, block)
-        out[at] = _inverse_block(normal[at])
-    return out
-
-
-def _inverse_block(normal: Floats) -> Floats:
-    """Inverse of a matrix that is positive but for rounding, its rows of very different size."""
-    size = 1.0 / np.sqrt(np.diag(normal))
-    scaled = normal * size[:, None] * size[None, :]
-    try:
-        root = np.linalg.solve(np.linalg.cholesky(scaled), np.eye(len(scaled)))
-        inverse = root.T @ root
-    except np.linalg.LinAlgError:
-        values, vectors = np.linalg.eigh(scaled)
-        inverse = (vectors / np.maximum(values, 1e-12)) @ vectors.T
-    out: Floats = inverse * size[:, None] * size[None, :]
-    return out
 
 
 def _with_samples(piece: Piece, samples: NDArray[np.int64]) -> Piece:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from data.errors import InputError
 from data.results import Estimate
+from physics.normal_equations import inverse
 from physics.residuals import HUBER, huber_weights, inflation
 from physics.shot_model import Unknown, Watched
 from physics.traces import PLACE_REACH
@@ -115,7 +116,7 @@ class _Problem:
             residuals = [self._residuals(rank, at) for rank in range(len(self.shots))]
         slopes = self._slopes(at, residuals)
         normal, _ = self._normal(at, residuals, slopes)
-        cov = _inverse(normal)
+        cov = inverse(normal)
         return GlobalFit(
             self.names,
             at,
@@ -139,7 +140,7 @@ class _Problem:
         slopes = self._slopes(at, residuals)
         for _ in range(iterations):
             normal, right = self._normal(at, residuals, slopes)
-            step = _inverse(normal + damping * np.diag(np.diag(normal))) @ right
+            step = inverse(normal + damping * np.diag(np.diag(normal))) @ right
             new = np.clip(at + step, self.low, self.high)
             there = [self._residuals(rank, new) for rank in range(len(self.shots))]
             new_cost = self._cost(new, there)
@@ -263,12 +264,3 @@ def _huber(residuals: Floats) -> float:
 def _or(prior: Estimate | None, key: str, default: float) -> float:
     value = None if prior is None else getattr(prior, key)
     return default if value is None else float(value)
-
-
-def _inverse(normal: Floats) -> Floats:
-    """Inverse of a positive matrix, its rows of very different size; singular ones too."""
-    size = np.sqrt(np.maximum(np.diag(normal), 1e-30))
-    values, vectors = np.linalg.eigh(normal / size[:, None] / size[None, :])
-    inverse = (vectors / np.maximum(values, 1e-12)) @ vectors.T
-    out: Floats = inverse / size[:, None] / size[None, :]
-    return out
