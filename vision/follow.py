@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vision.appearance import colour_differences
+from vision.assign import assign
 from vision.sighting import Sighting
 
 Array = NDArray[np.float64]
@@ -228,13 +229,8 @@ def _paired(cost: Array) -> list[tuple[int, int]]:
     """Rows and columns that together cost least, without the forbidden pairs."""
     allowed = cost < _FORBIDDEN
     if allowed.sum(0).max() < 2 and allowed.sum(1).max() < 2:  # no two claim the same
-        rows, columns = np.nonzero(allowed)
-    else:
-        from scipy.optimize import linear_sum_assignment
-
-        rows, columns = linear_sum_assignment(cost)
-    pairs = zip(rows.tolist(), columns.tolist(), strict=True)
-    return [pair for pair in pairs if allowed[pair]]
+        return [(int(row), int(column)) for row, column in np.argwhere(allowed)]
+    return [pair for pair in assign(cost) if allowed[pair]]
 
 
 def _struck(tracks: Sequence[Track], t: float, radius: float, gate: Gate) -> dict[int, Array]:
