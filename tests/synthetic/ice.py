@@ -139,8 +139,14 @@ def _paint_sheet(canvas: _Canvas, sheet: Sheet, paint: Paint, x: float) -> None:
     canvas.box(left - sheet.border_width, right + sheet.border_width, low, high, sheet.border)
     canvas.box(left, right, low, high, sheet.ice)
     colours = (paint.twelve, paint.eight, paint.four, paint.button)
-    for radius, colour in zip(paint.radii, colours, strict=True):
-        canvas.disc(x, 0.0, radius, colour)
+    for which, (radius, colour) in enumerate(zip(paint.radii, colours, strict=True)):
+        within = radius
+        if paint.outline is not None and which < 3:
+            # Not over the edge of the paint: what both cover in part would lie too far out.
+            outside = radius + (paint.outline_at + 0.5) * paint.outline_width
+            canvas.disc(x, 0.0, outside, paint.outline)
+            within = outside - paint.outline_width
+        canvas.disc(x, 0.0, within, colour)
     inner = paint.radii[3]
     for low_side, high_side in _stripes(sheet):
         for y0, y1 in ((low, -inner), (inner, high)):
@@ -149,12 +155,6 @@ def _paint_sheet(canvas: _Canvas, sheet: Sheet, paint: Paint, x: float) -> None:
         canvas.box(x + inner, right, low_side, high_side, sheet.line)
         canvas.box(left, right, low_side - BACK_LINE, high_side - BACK_LINE, sheet.line)
     canvas.box(left, right, HOG_LINE, HOG_LINE + HOG_WIDTH, sheet.hog_line)
-    if paint.outline is not None:
-        for radius in paint.radii[:3]:
-            inside, outside = (
-                radius + (paint.outline_at + side) * paint.outline_width for side in (-0.5, 0.5)
-            )
-            canvas.ring(x, 0.0, inside, outside, paint.outline)
     if paint.logo:
         canvas.word(Mark(paint.logo, x, 0.0, inner * 0.42, paint.logo_colour))
     for mark in sheet.marks:
