@@ -22,18 +22,21 @@ from vision.pose import View, camera, project
 
 Array = NDArray[np.float64]
 
-WIDTH = 640
-"""Width of the small pictures, px."""
+WIDEST = 800
+"""Width of the small pictures at most, px: a picture is halved until it is as small."""
 
-MOST_CORNERS = 150
+MOST_CORNERS = 100
 APART = 10
 """Corners of a keyframe, and their least distance, px of the small picture."""
 
 CORNER_SD = 0.3
 """Standard deviation of a recognised corner per axis, px of the small picture."""
 
-WINDOW, LEVELS = (15, 15), 3
+WINDOW, LEVELS = (15, 15), 2
 """Window and levels of the pyramid in which a corner is followed."""
+
+ENOUGH = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 12, 0.02)
+"""When it has been followed: steps at most, and the last step, px of the small picture."""
 
 LEAST_CORNERS = 12
 LEAST_SHARE = 0.35
@@ -148,10 +151,10 @@ def recognise(key: Keyframe, picture: Picture, view: View, rig: Array) -> Marks 
     warped = cv2.warpPerspective(key.grey, warp, shown, borderMode=cv2.BORDER_REPLICATE)
     before = cv2.perspectiveTransform(start[:, None], warp)
     after, ok, _ = cv2.calcOpticalFlowPyrLK(
-        warped, grey, before, before.copy(), winSize=WINDOW, maxLevel=LEVELS
+        warped, grey, before, before.copy(), winSize=WINDOW, maxLevel=LEVELS, criteria=ENOUGH
     )
     back, ok_back, _ = cv2.calcOpticalFlowPyrLK(
-        grey, warped, after, before.copy(), winSize=WINDOW, maxLevel=LEVELS
+        grey, warped, after, before.copy(), winSize=WINDOW, maxLevel=LEVELS, criteria=ENOUGH
     )
     one, two = before[:, 0].astype(np.float64), after[:, 0].astype(np.float64)
     good = np.flatnonzero(
@@ -184,15 +187,15 @@ def replaced(marks: Marks, key: Keyframe, now: Camera) -> Marks:
 
 
 def _small(picture: Picture) -> Image:
+    """Halve the lightness of a picture until it is small: halving is quicker than any other."""
     if isinstance(picture, Planes):
-        return _resized(picture.luma)
-    return np.asarray(cv2.cvtColor(_resized(picture), cv2.COLOR_BGR2GRAY), np.uint8)
-
-
-def _resized(image: Image) -> Image:
-    factor = WIDTH / image.shape[1]
-    small = cv2.resize(image, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA)
-    return np.asarray(small, np.uint8)
+        grey = picture.luma
+    else:
+        grey = np.asarray(cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY), np.uint8)
+    while grey.shape[1] > WIDEST:
+        half = (grey.shape[1] // 2, grey.shape[0] // 2)
+        grey = np.asarray(cv2.resize(grey, half, interpolation=cv2.INTER_AREA), np.uint8)
+    return grey
 
 
 def _large(small: Array, factor: float) -> Array:

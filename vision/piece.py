@@ -187,10 +187,10 @@ class Piece:
     def _predicted(self, frame: Frame) -> View:
         """View at constant velocity."""
         last = self.seen[-1]
-        if len(self.seen) < 2 or not (last.found and self.seen[-2].found):
+        if len(self.seen) < 2:
             return last.view
         before = self.seen[-2]
-        if abs(last.index - before.index) > 2:
+        if last.key is not before.key or abs(last.index - before.index) > 2:
             return last.view
         ahead = (frame.t - last.t) / (last.t - before.t)
         if not 0 < ahead < 3:
@@ -240,18 +240,18 @@ class Piece:
 
     def _carried(self, frame: Frame) -> Seen | None:
         """Place a frame that does not show the rings by points of the ice that are known."""
-        last = self.seen[-1]
+        last, view = self.seen[-1], self._predicted(frame)
         if self._key is None and self._picture is not None:
             cov = np.zeros((4, 4)) if self._fit is None else self._fit.cov
             self._key = keyframe(last.index, self._picture, last.view, self.rig, cov)
         key = self._key
         if key is None or key.drift > MOST_DRIFT:
             return None
-        landmarks = recognise(key, frame.picture, last.view, self.rig)
+        landmarks = recognise(key, frame.picture, view, self.rig)
         if landmarks is None:
             return None
         view = solve_view(
-            landmarks, last.view, self.rig, self.size, width=10.0, view_sd=np.full(4, np.inf)
+            landmarks, view, self.rig, self.size, width=10.0, view_sd=np.full(4, np.inf)
         ).view
         seen = self._settle(frame, view)
         if seen is not None:
