@@ -37,10 +37,13 @@ class Pace:
         new, the last of them is searched.
     lesson : int
         Each how manieth of them is looked at to learn what the stones look like.
+    doubt : int
+        The same where these show a stone, but none that convinces.
     """
 
     memory: int = 24
     lesson: int = 8
+    doubt: int = 2
 
 
 class Watch:
@@ -122,16 +125,23 @@ class Watch:
         self._waiting = []
 
     def _learn(self, views: Iterable[View]) -> None:
-        for view in list(views)[:: -self._pace.lesson]:
-            self._lessons += self._convincing(view)
+        views = list(views)[::-1]
+        found = self._of_any_colour(views[:: self._pace.lesson])
+        if found and not _convincing(found):
+            # A stone far away convinces in some pictures only.
+            found = self._of_any_colour(views[1 :: self._pace.doubt])
+        self._lessons += _convincing(found)
         self.appearance = learn(self._lessons)
 
-    def _convincing(self, view: View) -> list[Sighting]:
-        """Stones of any colour that were not seen in a view so far."""
-        found = search_picture(
-            view.frame.picture, view.camera, None, self.disc, self._search, None, view.places
-        )
-        return [stone for stone in found.stones if stone.score > CONVINCING]
+    def _of_any_colour(self, views: Iterable[View]) -> list[Sighting]:
+        """Stones of any colour that were not seen in the views so far."""
+        return [
+            stone
+            for view in views
+            for stone in search_picture(
+                view.frame.picture, view.camera, None, self.disc, self._search, None, view.places
+            ).stones
+        ]
 
     def _see(self, views: Sequence[View]) -> None:
         """Follow what is known through views, and search the last of them if it is time."""
@@ -160,6 +170,10 @@ class Watch:
         caps = [cap.mean for cap in self.appearance.caps]
         if any(
             min(colour_difference(cap, stone.colour) for cap in caps) > UNLIKE
-            for stone in self._convincing(view)
+            for stone in _convincing(self._of_any_colour([view]))
         ):
             self._learn(self._recent)
+
+
+def _convincing(found: Iterable[Sighting]) -> list[Sighting]:
+    return [stone for stone in found if stone.score > CONVINCING]

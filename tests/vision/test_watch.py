@@ -32,6 +32,19 @@ def test_a_stone_found_late_is_followed_back_also_one_of_a_new_colour(
     assert counts == [3] * since + [4] * (50 - since)
 
 
+def test_a_stone_that_convinces_in_some_pictures_only_is_learned_from_these() -> None:
+    clear = picture(AT_REST[:1])
+    camera = camera_of(CAMERA, scene_of(AT_REST[:1]))
+    x, y = camera.project(np.array([AT_REST[0][:2]]), 0.12)[0].astype(int)
+    covered = clear.copy()
+    covered[y - 60 : y + 60, x - 60 : x + 1] = (60, 90, 60)
+    watch = Watch()
+    for index in range(24):
+        # Of the pictures looked at first, every eighth, none is clear.
+        watch.look(Frame(index, index / 25, clear if index in (2, 10, 20) else covered), camera)
+    assert [len(sightings) for _, _, sightings in watch.finish()] == [1] * 24
+
+
 def test_a_stone_that_jumps_is_found_again_at_once() -> None:
     here, there = picture(AT_REST), picture([(0.3, 0.07, RED), *AT_REST[1:]])
     watch, camera = Watch(), camera_of(CAMERA, scene_of(AT_REST))
