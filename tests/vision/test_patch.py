@@ -1,0 +1,36 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from data.sheet import STONE
+from vision.patch import EFFORT, handle_radii, is_plain, profile_of, scales, tilts
+from vision.pose import View, camera
+from vision.rig import OVERHEAD, start_rig
+from vision.stones import plain_disc
+
+HEIGHT, FOCAL = 8.0, 1200.0
+RIG = start_rig(OVERHEAD, (0.0, 0.0, HEIGHT))
+RIG[3:6] = 0
+DOWN = camera(View(np.array([0.0, 0.0, 0.0, np.log(FOCAL)])), RIG, (1280, 720))
+PLACES = np.array([[0.0, 0.0], [1.5, 0.0], [3.0, -4.0]])
+
+
+def test_a_camera_straight_above_shows_all_places_at_one_scale() -> None:
+    np.testing.assert_allclose(scales(DOWN, PLACES), FOCAL / HEIGHT, rtol=1e-6)
+
+
+def test_views_slant_by_the_place_off_the_camera_s_foot() -> None:
+    np.testing.assert_allclose(tilts(DOWN, PLACES), [0, 1.5 / HEIGHT, 5 / HEIGHT])
+    np.testing.assert_array_equal(tilts(replace(DOWN, position=None), PLACES), 0)
+
+
+def test_rays_cover_the_cap_and_its_granite() -> None:
+    profile = profile_of(STONE, EFFORT)
+    top = profile.radius[: EFFORT.radii]
+    assert top[0] < 0.5 * STONE.cap_radius and top[-1] > STONE.radius
+    assert (handle_radii(STONE) < STONE.cap_radius).all()
+    disc = plain_disc(0.03)
+    assert is_plain(disc) and not is_plain(STONE)
+    assert profile_of(disc, EFFORT).node_height.max() == 0
