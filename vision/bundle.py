@@ -40,10 +40,10 @@ _BINS = 1000
 
 FAMILIES = 3
 
-PAINT_SD = np.array([0.002, 0.002, 1.0])
+PAINT_SD = np.array([0.001, 0.002, 1.0])
 """What is expected of the paint of circles and of lines, m; fixed points have none."""
 
-PAINT_TRUST = 6.0
+PAINT_TRUST = 3.0
 """Pieces of paint that this expectation is worth."""
 
 NOISE_TRUST = 10.0

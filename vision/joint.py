@@ -40,9 +40,9 @@ LONG_RANGE = 2.3
 """Errors of paint and outline are alike over longer stretches than single pieces and marks tell:
 so much larger than these say are the standard errors, as cameras known otherwise show."""
 
-YARDSTICK_SD = 0.0010
-"""How well the outer edge of the 12-ft circle is made out, m: an outline 5 to 10 mm wide, little
-darker than the paint, goes unseen and displaces the edge by a tenth of its width."""
+YARDSTICK_PX = 0.14
+"""How well the outer edge of the 12-ft circle is made out, px: an outline that is little darker
+than the paint goes unseen and draws the edge outwards."""
 
 UNTOLD = 0.7
 """Share of its prior standard deviation above which the camera's height counts as assumed."""
@@ -122,10 +122,11 @@ def fit_clip(seen: Sequence[Seen], rig: Array, prior: Prior, size: tuple[int, in
     shared, _ = bundle([s.marks for s in chosen], times, [s.view for s in chosen], rig, size, prior)
     cameras = _fit_frames(seen, shared, size)
     sd = LONG_RANGE * np.sqrt(np.diag(shared.cov)[:RIG_SIZE])
+    yardstick = float(np.mean([_yardstick(s.view, shared.rig) for s in chosen]))
     return HouseTrack(
         tuple(cameras),
         np.array([HOUSE.twelve_foot, *shared.rig[[R8, R4]]]),
-        np.array([YARDSTICK_SD, sd[R8], sd[R4]]),
+        np.array([yardstick, sd[R8], sd[R4]]),
         sd[POSITION],
         _warnings(seen, cameras, prior, shared.rig, sd),
     )
@@ -197,7 +198,7 @@ def fit_frames(seen: Sequence[Seen], shared: Bundle, size: tuple[int, int]) -> l
         error = CameraError(
             common @ spread @ common.T,
             LONG_RANGE**2 * noisier[k] * own @ cov @ own.T,
-            YARDSTICK_SD / HOUSE.twelve_foot,
+            _yardstick(fit.view, rig) / HOUSE.twelve_foot,
             0.0 if s.key is None else s.key.drift,
         )
         rms = fit.rms if s.found else float("nan")
@@ -211,6 +212,11 @@ def fit_frames(seen: Sequence[Seen], shared: Bundle, size: tuple[int, int]) -> l
             )
         )  # fmt: skip
     return found
+
+
+def _yardstick(view: View, rig: Array) -> float:
+    """Tell how well the 12-ft circle's radius is made out, m."""
+    return YARDSTICK_PX * float(np.linalg.norm(rig[POSITION])) / view.focal
 
 
 def _parameters(view: Array, rig: Array, size: tuple[int, int]) -> Array:
