@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from physics.fit_rules import meeting_rules, slowing
 from physics.normal_equations import inverse_of_blocks
 from physics.residuals import huber_weights, inflation
 from physics.segments import Piece
@@ -22,22 +23,8 @@ from physics.traces import Trace
 Floats = NDArray[np.float64]
 
 
-DISTANCE_SD = 0.015
-"""How well two radii are known as the distance at contact (scale, shape), relative."""
-
-MOMENTUM_SD = 0.0015
-"""How well momentum is known to be kept (local scale, masses), relative to the speeds."""
-
 FARTHEST = 100.0
 """Longest step of any state (SI units), so that a fit of nonsense ends."""
-
-DOUBT = 2.5
-"""Normalised violation beyond which distance and momentum are no longer believed."""
-
-
-SLOW, SLOWEST = 0.015, 0.06
-"""What the deceleration of a slow stone may differ from the others', m²/s³, and the speed (m/s)
-at which that grows no more: FCV1's (Uehara and Ito, 2021), whose friction has such a term."""
 
 STILL_SD = 1e-5
 """How still a stone at rest lies, m/s and m/s²."""
@@ -250,6 +237,7 @@ class _Solver:
     def _rules(self) -> tuple[Floats, Floats]:
         """Set up the normal equations of what is known besides the sightings."""
         normal, right = np.zeros((self.size, self.size)), np.zeros(self.size)
+        first = 6 * len(self.pieces)
         for i, piece in enumerate(self.pieces):
             place, speed, change = ([6 * i + k, 6 * i + 3 + k] for k in range(3))
             normal[place, place] += 1e-8
@@ -258,85 +246,21 @@ class _Solver:
                 normal[change, change] += STILL_SD**-2
                 continue
             normal[speed, speed] += 1e-3
-            turn, mean = self._slowing(self.theta[speed])
+            turn, mean = slowing(self.theta[speed], self.prior)
             normal[np.ix_(change, change)] += turn
             right[change] += turn @ mean
         for k in range(len(self.meetings)):
-            rows, values, sd = self._meeting(k)
+            meeting = self.meetings[k]
+            ranks = [self.sides[k, stone] for stone in meeting.stones]
+            masses = np.array([self.masses.get(stone, 1.0) for stone in meeting.stones])
+            rows, values, sd = meeting_rules(
+                self.theta, first + k, self.origins, meeting, ranks, self.radius,
+                masses if self.momentum else None,
+            )  # fmt: skip
             weighted = rows / sd[:, None] ** 2
             normal += weighted.T @ rows
             right += weighted.T @ (rows @ self.theta - values)
         return normal, right
-
-    def _slowing(self, speed: Floats) -> tuple[Floats, Floats]:
-        """Precision and mean of a piece's acceleration, given its direction of motion."""
-        size = float(np.hypot(*speed))
-        if size < 0.02:
-            return np.eye(2) / (self.prior.along**2 + self.prior.mean**2), np.zeros(2)
-        along = speed / size
-        across = np.array([-along[1], along[0]])
-        # The slower a stone the more it is slowed, by all ice laws but the constant one.
-        width = max(self.prior.along, SLOW / (size + SLOWEST))
-        precision = (
-            np.outer(along, along) / width**2 + np.outer(across, across) / self.prior.across**2
-        )
-        return precision, -self.prior.mean * along
-
-    def _meeting(self, k: int) -> tuple[Floats, Floats, Floats]:
-        """Linearise the rules at one meeting: derivatives, values, standard deviations."""
-        meeting = self.meetings[k]
-        at = 6 * len(self.pieces) + k
-        t = self.theta[at]
-        rows: list[Floats] = []
-        values: list[float] = []
-        sd: list[float] = []
-
-        def rule(value: float, width: float) -> Floats:
-            row = np.zeros(self.size)
-            rows.append(row)
-            values.append(value)
-            sd.append(width)
-            return row
-
-        def state(i: int) -> tuple[Floats, Floats, Floats, Floats, Floats]:
-            tau = t - self.origins[i]
-            x = self.theta[6 * i : 6 * i + 6].reshape(2, 3)
-            one, slope = np.array([1.0, tau, 0.5 * tau * tau]), np.array([0.0, 1.0, tau])
-            return x @ one, x @ slope, x[:, 2], one, slope
-
-        rule(t - meeting.t, 2 * meeting.looseness)[at] = 1.0
-        ranks = [self.sides[k, stone] for stone in meeting.stones]
-        states = [(state(i), state(j)) for i, j in ranks]
-        for (i, j), (old, new) in zip(ranks, states, strict=True):
-            for axis in range(2):
-                row = rule(new[0][axis] - old[0][axis], 1e-3 * self.radius)
-                row[6 * j + 3 * axis : 6 * j + 3 * axis + 3] = new[3]
-                row[6 * i + 3 * axis : 6 * i + 3 * axis + 3] = -old[3]
-                row[at] = new[1][axis] - old[1][axis]
-        apart = states[1][0][0] - states[0][0][0]
-        distance = max(float(np.hypot(*apart)), 1e-9)
-        normal = apart / distance
-        row = rule(distance - 2 * self.radius, DISTANCE_SD * 2 * self.radius)
-        for sign, (i, _), (old, _) in zip((-1.0, 1.0), ranks, states, strict=True):
-            for axis in range(2):
-                row[6 * i + 3 * axis : 6 * i + 3 * axis + 3] = sign * normal[axis] * old[3]
-            row[at] += sign * float(normal @ old[1])
-        if self.momentum:
-            masses = np.array([self.masses.get(stone, 1.0) for stone in meeting.stones])
-            masses = masses / masses.mean()
-            speed = sum(float(np.hypot(*old[1])) for old, _ in states)
-            for axis in range(2):
-                change = [float(new[1][axis] - old[1][axis]) for old, new in states]
-                row = rule(float(masses @ change), MOMENTUM_SD * speed + 1e-4)
-                for mass, (i, j), (old, new) in zip(masses, ranks, states, strict=True):
-                    row[6 * j + 3 * axis : 6 * j + 3 * axis + 3] += mass * new[4]
-                    row[6 * i + 3 * axis : 6 * i + 3 * axis + 3] -= mass * old[4]
-                    row[at] += mass * float(new[2][axis] - old[2][axis])
-        # A rule that the sightings contradict has less of a say (Cauchy weights).
-        width = np.array(sd)
-        doubt = np.abs(values) / (DOUBT * width)
-        doubt[: 1 + 2 * len(ranks)] = 0.0
-        return np.array(rows), np.array(values), width * np.sqrt(1 + doubt**2)
 
     def _excess(self, parameters: float) -> float:
         """Factor for residuals larger than stated, and alike from frame to frame."""
