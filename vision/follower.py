@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from math import hypot, inf
+from math import dist, hypot, inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,8 +28,18 @@ from vision.stones import Search, search_picture
 
 Array = NDArray[np.float64]
 
+Place = tuple[float, float]
+
+Glimpse = tuple[Place, Sighting]
+"""Where a stone was expected some pictures before, and what was seen there."""
+
 STILL = 0.03
 """How far from where it rests a stone may be seen, in radii."""
+
+
+DOUBTFUL = 0.6
+"""Share of the evidence of a moment ago below which a stone may rather be beside where it is
+expected, as after a hit."""
 
 
 @dataclass(frozen=True)
@@ -104,7 +114,7 @@ class Follower:
                 leads = self._step(view, leads, seen)
         return list(leads)
 
-    def _step(self, view: View, leads: Sequence[Lead], ahead: Sequence[Sighting]) -> list[Lead]:
+    def _step(self, view: View, leads: Sequence[Lead], ahead: Sequence[Glimpse]) -> list[Lead]:
         """Add to a view the stones to which leads point; some were measured ahead."""
         if not leads:
             return []
@@ -134,7 +144,7 @@ class Follower:
                 going.append((replace(lead, missed=True), None))
         return self._portrayed(view, going)
 
-    def _ahead(self, views: Sequence[View], leads: Sequence[Lead]) -> list[list[Sighting]]:
+    def _ahead(self, views: Sequence[View], leads: Sequence[Lead]) -> list[list[Glimpse]]:
         """Measure at once what views show of stones that rest or keep their course."""
         leads = [lead for lead in leads if not lead.missed]
         if not leads:
@@ -149,41 +159,42 @@ class Follower:
         for i, portrait in known.items():
             if abs(views[0].frame.t - portrait.t) >= self.patience.trust:
                 alike[0].pop(i, None)
-        out = [list(seen.values()) for seen in alike]
+        out: list[list[Glimpse]] = []
         looks = []
         for view, seen in zip(views, alike, strict=True):
-            others = [lead.at(view.frame.t) for i, lead in enumerate(leads) if i not in seen]
+            expected = [lead.at(view.frame.t) for lead in leads]
+            others = [place for i, place in enumerate(expected) if i not in seen]
+            out.append([(expected[i], sighting) for i, sighting in seen.items()])
             looks.append(Look(view.frame.picture, view.camera, _array(others)))
         if any(len(look.places) for look in looks):
             measured = iter(look_on_course(looks, self.appearance, self.disc, self.search))
             for so_far, look in zip(out, looks, strict=True):
-                found = [next(measured) for _ in look.places]
-                so_far += [sighting for sighting in found if sighting]
+                found = [((x, y), next(measured)) for x, y in look.places.tolist()]
+                so_far += [(place, sighting) for place, sighting in found if sighting]
         return out
 
     def _measured(
-        self,
-        view: View,
-        leads: Sequence[Lead],
-        expected: Sequence[tuple[float, float]],
-        ahead: Sequence[Sighting],
+        self, view: View, leads: Sequence[Lead], expected: Sequence[Place], ahead: Sequence[Glimpse]
     ) -> list[Sighting | None]:
         """Look at each stone where it is expected, unless it was measured ahead."""
-        found: list[Sighting | None] = [
-            _nearest(ahead, *place, ON_COURSE * self.disc.radius) for place in expected
-        ]
+        reach = ON_COURSE * self.disc.radius
+        found = [_glimpsed(ahead, place, reach) for place in expected]
         others = [index for index, sighting in enumerate(found) if sighting is None]
         if others:
             look = Look(view.frame.picture, view.camera, _array([expected[i] for i in others]))
             seen = look_on_course([look], self.appearance, self.disc, self.search)
             for index, sighting in zip(others, seen, strict=True):
                 found[index] = sighting
-        astray = [index for index in others if not (found[index] or leads[index].missed)]
+        astray = [
+            index
+            for index, (lead, sighting) in enumerate(zip(leads, found, strict=True))
+            if not lead.missed and _score(sighting) < DOUBTFUL * lead.score
+        ]
         if astray:
             look = Look(view.frame.picture, view.camera, _array([expected[i] for i in astray]))
             seen = look_beside(look, self.appearance, self.disc, self.search)
             for index, sighting in zip(astray, seen, strict=True):
-                found[index] = sighting
+                found[index] = max(found[index], sighting, key=_score)
         return found
 
     def _portrayed(self, view: View, going: Sequence[tuple[Lead, Sighting | None]]) -> list[Lead]:
@@ -233,10 +244,10 @@ def _away(sightings: Sequence[Sighting], x: float, y: float) -> float:
     return min((hypot(s.x - x, s.y - y) for s in sightings), default=inf)
 
 
-def _nearest(sightings: Sequence[Sighting], x: float, y: float, reach: float) -> Sighting | None:
-    """Give the nearest of the stones seen within reach of a place."""
-    away = [hypot(s.x - x, s.y - y) for s in sightings]
-    return sightings[away.index(min(away))] if away and min(away) < reach else None
+def _glimpsed(ahead: Sequence[Glimpse], place: Place, reach: float) -> Sighting | None:
+    """Give what was measured ahead from within reach of a place, and nearest to it."""
+    away = [dist(place, start) for start, _ in ahead]
+    return ahead[away.index(min(away))][1] if away and min(away) < reach else None
 
 
 def _score(sighting: Sighting | None) -> float:
@@ -247,5 +258,5 @@ def _places(sightings: Sequence[Sighting]) -> Array:
     return _array([(s.x, s.y) for s in sightings])
 
 
-def _array(places: Sequence[tuple[float, float]]) -> Array:
+def _array(places: Sequence[Place]) -> Array:
     return np.array(places, float).reshape(-1, 2)

@@ -27,6 +27,8 @@ class Lead:
         m and m/s.
     t : float
         s.
+    score : float
+        Evidence that it is a stone, when it was last seen.
     missed : bool
         Whether it was missed since.
     anchor : tuple of float
@@ -43,6 +45,7 @@ class Lead:
     velocity: tuple[float, float]
     t: float
     anchor: tuple[float, float]
+    score: float
     missed: bool = False
     facing: Complex | None = None
     steady: int = 0
@@ -52,7 +55,7 @@ class Lead:
     def to(cls, sighting: Sighting, t: float) -> Lead:
         """Lead to a stone of which nothing is known but one sighting."""
         place = sighting.x, sighting.y
-        return cls(place, (0.0, 0.0), t, place, facing=sighting.spectrum)
+        return cls(place, (0.0, 0.0), t, place, sighting.score, facing=sighting.spectrum)
 
     @property
     def rests(self) -> bool:
@@ -82,12 +85,19 @@ class Lead:
         else:
             place = ahead_x + 0.6 * away_x, ahead_y + 0.6 * away_y
             velocity = vx + 0.3 * away_x / step, vy + 0.3 * away_y / step
-        left = hypot(x - self.anchor[0], y - self.anchor[1])
-        if left < still and not self._turned(sighting):
-            facing = sighting.spectrum if self.facing is None else self.facing
-            portrait = None if sighting.measured else self.portrait
-            return Lead(place, velocity, t, self.anchor, False, facing, self.steady + 1, portrait)
-        return Lead(place, velocity, t, (x, y), False, sighting.spectrum)
+        left, score = hypot(x - self.anchor[0], y - self.anchor[1]), sighting.score
+        if left >= still or self._turned(sighting):
+            return Lead(place, velocity, t, (x, y), score, facing=sighting.spectrum)
+        return Lead(
+            place,
+            velocity,
+            t,
+            self.anchor,
+            score,
+            facing=sighting.spectrum if self.facing is None else self.facing,
+            steady=self.steady + 1,
+            portrait=None if sighting.measured else self.portrait,
+        )
 
     def _turned(self, sighting: Sighting) -> bool:
         """Whether the cap faces elsewhere than when it came to its place, as far as is seen."""
