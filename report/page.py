@@ -261,7 +261,7 @@ def _cautions(results: Results) -> list[str]:
     notes = [
         f"hit {rank} ({c.stones[0]} on {c.stones[1]}): {c.note}"
         for rank, c in enumerate(results.collisions, 1)
-        if c.note
+        if c.note and not any(text.endswith(c.note) for text in results.warnings)
     ]
     models = [f"{name}: {score.note}" for name, score in results.simulations.items() if score.note]
     return list(dict.fromkeys([*results.warnings, *notes, *models]))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,7 +15,8 @@ from work.settings import Settings
 if TYPE_CHECKING:
     import pandas as pd
 
-    from data.results import Estimate, Results
+    from data.results import Collision, Estimate, Results
+    from physics.contacts import Contact
 
 
 @dataclass(frozen=True)
@@ -75,8 +76,8 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
         _check_masses(settings.masses, list(sightings["stone"].unique())) or measured.masses or None
     )
     contacts = find_contacts(sightings, radius)
-    tracks = smooth(sightings, contacts, radius=radius)
     estimates = estimate(sightings, contacts, radius=radius, masses=masses)
+    tracks = smooth(sightings, _timed(contacts, estimates.collisions), radius=radius)
     sampled, scores, notes = simulate_measured(tracks, estimates, radius=radius, masses=masses)
     predictions = predict(
         sightings,
@@ -126,6 +127,16 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
         house=measured.house,
         posterior=drawn,
     )
+
+
+def _timed(contacts: Sequence[Contact], hits: Sequence[Collision]) -> list[Contact]:
+    """Contacts at the times that are reported of their hits: tracks are to break where they do."""
+    out = []
+    for contact in contacts:
+        times = [hit.t for hit in hits if set(hit.stones) == set(contact.stones)]
+        nearest = min(times, key=lambda t: abs(t - contact.t), default=contact.t)
+        out.append(replace(contact, t=nearest))
+    return out
 
 
 def _assumed(given: float | None, default: Estimate) -> Estimate:
