@@ -1,8 +1,7 @@
 """Edges of the painted circles and lines, measured along their normals at sub-pixel precision.
 
-Nothing is known about colours. Beside each line the colour on either side is learned: given from
-the frames before, else the median along it; a normal counts where both sides look like that, and
-the edge is where the profile crosses half way. Thin lines are left to `vision.stripes`.
+Circles, the sheet's sides and wide lines are edges between two colours (`vision.edges`); of thin
+lines the middle is measured (`vision.stripes`). What is ragged counts less.
 """
 
 from __future__ import annotations
@@ -13,6 +12,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from vision.edges import crossings, steps
 from vision.normals import BLOCK, SAMPLES, THIN, Normals, Profiles, lay_out, profiles
 from vision.paint import CIRCLES, FIXED, TWELVE, Marks
 from vision.picture import Picture
@@ -23,28 +23,14 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
-MIN_CONTRAST = 10.0
-"""Least difference of the two sides of an edge, grey levels."""
-
 EDGE_SD = 0.45
 """Standard deviation of an edge point with the errors of paint that neighbours share, px."""
 
 NOISE_SD = 0.1
 """Least standard deviation of an edge point by itself, px."""
 
-_TO_CHROMA = np.array([[0.114, 0.587, 0.299], [0.5, -0.331, -0.169], [-0.081, -0.419, 0.5]])
-_WORTH = np.array([1.0, 0.25, 0.25])
-
-SHARPNESS = np.asarray(_TO_CHROMA.T * _WORTH @ _TO_CHROMA, np.float32)
-"""How much colours (blue, green, red) tell of where an edge is: most cameras and films keep what
-is not brightness (ITU-R BT.601) at half the resolution."""
-
 LEAST_ON_LINE, LEAST_SHARE = 8, 0.3
 """Edge points that the side of the sheet or a wide line must have, and the share of normals."""
-
-_END = SAMPLES // 4
-_ENDS = np.zeros((2, SAMPLES), np.float32)
-_ENDS[0, :_END] = _ENDS[1, -_END:] = 1 / _END
 
 
 @dataclass(frozen=True)
@@ -144,10 +130,10 @@ def measure_along(
     colours = profiles(picture, normals, point)
     if palette is None:
         palette = np.full((FIXED, 2, len(colours)), np.nan)
-    value, good, found = _steps(colours[..., :wide], places, palette)
+    value, good, found = steps(colours[..., :wide], normals, palette)
     rim = places.kinds.get(TWELVE, slice(0))
     value[:, rim] -= np.float32(level)
-    sample, crossed = _crossings(value)
+    sample, crossed = crossings(value)
     good &= crossed
     offset = (sample / (SAMPLES // 2) - 1) * normals.reach[:wide]
     stripes, shown = find_stripes(colours[..., wide:], places.blocks)
@@ -193,8 +179,6 @@ class _Places:
         The places along each straight line, and curves through them.
     least : ndarray, shape (lines,)
         How many of them must show it.
-    starts : ndarray
-        First of each kind of line that is no thin one.
     """
 
     kinds: dict[int, slice]
@@ -205,14 +189,12 @@ class _Places:
     runs: Runs
     curves: Curves
     least: Array
-    starts: Index
 
 
 @lru_cache(maxsize=2)
 def _places(normals: Normals) -> _Places:
     wide, blocks = normals.wide, Blocks.of(normals)
     kinds = {kind: part for kind, part in normals.kinds.items() if kind not in THIN}
-    starts = np.array([part.start for part in kinds.values()], np.int64)
     kinds |= {
         kind: slice(wide + part.start, wide + part.stop) for kind, part in blocks.kinds.items()
     }
@@ -233,61 +215,7 @@ def _places(normals: Normals) -> _Places:
                 for kind, part in straight.items()
             ]
         ),
-        starts,
     )
-
-
-def _steps(profile: Profiles, places: _Places, known: Array) -> tuple[Profiles, Flags, Array]:
-    """Put profiles on the scale from the one side (−0.5) to the other (0.5).
-
-    Returns
-    -------
-    value : ndarray, shape (SAMPLES, n)
-    good : ndarray of bool, shape (n,)
-        Whether the profile shows the edge.
-    palette : ndarray, shape (9, 2, 3)
-        Colours on either side of each kind of edge.
-    """
-    ends = _ENDS @ profile
-    line = places.line[: ends.shape[2]]
-    sides = known.T.astype(np.float32)[..., line]
-    for kind, part in places.kinds.items():
-        if kind not in THIN and not np.isfinite(known[kind, 0, 0]):
-            sides[..., part] = np.sort(ends[..., part], axis=2)[
-                ..., [(part.stop - part.start) // 2]
-            ]
-    difference = sides[:, 1] - sides[:, 0]
-    square = (difference * difference).sum(0)
-    # Each side looks like the line's own two colours; light may vary, hue may not.
-    tolerance = np.maximum(0.25 * square, 12.0**2)
-    off = ends - sides
-    good = ((off * off).sum(0) < tolerance).all(0)
-    axis = SHARPNESS @ difference
-    axis /= np.maximum((axis * difference).sum(0), 1.0)
-    low, high = (ends * axis[:, None]).sum(0)
-    strength = high - low
-    good &= (strength > 0.5) & (strength < 1.6) & (square > MIN_CONTRAST**2)
-    value = (profile * axis[:, None]).sum(0) - 0.5 * (low + high)
-    palette = np.full(known.shape, np.nan)
-    if len(line):
-        count = np.add.reduceat(good, places.starts, dtype=np.int64)
-        total = np.add.reduceat(ends * good, places.starts, axis=2)
-        seen = count > 0
-        palette[line[places.starts[seen]]] = (total[..., seen] / count[seen]).T
-    return value, good, palette
-
-
-def _crossings(value: Profiles) -> tuple[Array, Flags]:
-    """Find where profiles rise through 0, in samples, and whether they do."""
-    below = value[1:-1] < 0
-    rising = below[:-1] > below[1:]
-    # Of several crossings the steepest is the edge, the others are noise or print.
-    slope = (value[3:] - value[:-3]) * rising
-    best = slope.argmax(0) + 1
-    column = np.arange(value.shape[1])
-    good = slope[best - 1, column] > 0
-    low, high = value[best, column], value[best + 1, column]
-    return best + (low / np.where(good, low - high, 1.0)).astype(np.float64), good
 
 
 def _mean_profile(value: Profiles, middle: Array) -> Array:
