@@ -17,26 +17,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 
 from vision.adjust import VIEW_SD, WIDTH, inverse
 from vision.linear import Frame, Linear, by_measure, by_rig, linearised
-from vision.paint import CIRCLES, FIXED, Marks, joined
+from vision.paint import Marks, joined
 from vision.pose import VIEW_SIZE, View
 from vision.rig import POSITION, RIG_SIZE, Prior
+from vision.shared import BINS, Bundle, family, piece_of, polynomials
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
-
-ARC = np.radians(15.0)
-"""Length of a piece of a circle, rad."""
-
-PIECE = 0.4
-"""Length of a piece of a line, m."""
-
-_BINS = 1000
-"""Pieces a line may have; the identity of a piece is its line's number times this, plus its own."""
 
 FAMILIES = 3
 
@@ -69,78 +60,6 @@ ROUNDS = 4
 """Estimates of paint and noise, each followed by a fit."""
 
 
-@dataclass(frozen=True)
-class Bundle:
-    """What frames share.
-
-    Attributes
-    ----------
-    rig : ndarray, shape (14,)
-    travel : ndarray, shape (d, 3)
-        Coefficients of the camera's motion; none if it stays where it is.
-    span : tuple of float
-        First and last time of the frames, s.
-    pieces : ndarray of int, shape (c,)
-        Identities of the pieces of paint, ascending (see `piece_of`).
-    offset : ndarray, shape (c,)
-        How far each lies off its line, m.
-    cov : ndarray, shape (14 + 3 d + c, 14 + 3 d + c)
-        Covariance of rig, travel and offsets.
-    noise : ndarray, shape (3,)
-        Standard deviation of a single mark on a circle, on a line, of a fixed point, in stated
-        ones.
-    """
-
-    rig: Array
-    travel: Array
-    span: tuple[float, float]
-    pieces: Ints
-    offset: Array
-    cov: Array
-    noise: Array
-
-    def moved(self, t: Array) -> Array:
-        """How far the camera is from the rig's place at these times, shape (n, 3), m."""
-        return _basis(t, self.span, len(self.travel)) @ self.travel
-
-    def cov_at(self, t: float) -> Array:
-        """Covariance of rig and offsets at a time, shape (14 + c, 14 + c)."""
-        count = len(self.travel)
-        if not count:
-            return self.cov
-        others = [k for k in range(len(self.cov)) if not RIG_SIZE <= k < RIG_SIZE + 3 * count]
-        onto = np.eye(len(self.cov))[others]
-        basis = _basis(np.array([t]), self.span, count)[0]
-        onto[POSITION, RIG_SIZE : RIG_SIZE + 3 * count] = np.kron(basis, np.eye(3))
-        return np.asarray(onto @ self.cov @ onto.T)
-
-    def offsets(self, marks: Marks) -> tuple[Array, Ints]:
-        """Offset of the paint under each mark, m, and the place of its piece; 0, −1 if unseen."""
-        wanted = piece_of(marks)
-        at = np.minimum(np.searchsorted(self.pieces, wanted), len(self.pieces) - 1)
-        known = self.pieces[at] == wanted
-        return np.where(known, self.offset[at], 0.0), np.where(known, at, -1)
-
-
-def piece_of(marks: Marks) -> Ints:
-    """Identity of the piece of paint that each mark lies on."""
-    length = np.where(marks.line < CIRCLES, ARC, PIECE)
-    number = np.floor(marks.along / length).astype(np.int64) + _BINS // 2
-    return np.asarray(marks.line * _BINS + np.clip(number, 0, _BINS - 1))
-
-
-def family(line: Ints) -> Ints:
-    """Tell circles (0), lines (1) and fixed points (2) apart."""
-    return np.asarray((line >= CIRCLES).astype(np.int64) + (line == FIXED), np.int64)
-
-
-def _basis(t: Array, span: tuple[float, float], degree: int) -> Array:
-    """Legendre polynomials of the 1st to this degree over a span of time, shape (n, degree)."""
-    first, last = span
-    share = np.clip(2 * (t - first) / max(last - first, 1e-9) - 1, -1, 1)
-    return np.asarray(legendre.legvander(share, degree)[:, 1:])
-
-
 def bundle(
     frames: Sequence[Marks],
     times: Sequence[float],
@@ -168,13 +87,13 @@ def bundle(
     prior : Prior
     """
     span = times[0], times[-1]
-    still = _Problem(frames, _basis(np.array(times), span, 0), views, size, prior, view_sd)
+    still = _Problem(frames, polynomials(np.array(times), span, 0), views, size, prior, view_sd)
     start = np.array([v.vector for v in views])
     state = _State(rig, np.zeros((0, 3)), np.zeros(len(still.pieces)), start)
     problem, found = still, still.learn(state, PAINT_SD, np.ones(FAMILIES))
     if len(frames) >= LEAST_FRAMES:
         moving = _Problem(
-            frames, _basis(np.array(times), span, DEGREE), views, size, prior, view_sd
+            frames, polynomials(np.array(times), span, DEGREE), views, size, prior, view_sd
         )
         state, _, paint, noise = found
         state = replace(state, travel=np.zeros((DEGREE, 3)))
@@ -227,7 +146,7 @@ class _Problem:
         self.kind = family(marks.line)
         identity = piece_of(marks)
         self.pieces, self.piece = np.unique(identity, return_inverse=True)
-        self.family = family(self.pieces // _BINS)
+        self.family = family(self.pieces // BINS)
         number = np.repeat(np.arange(len(frames)), self.frame.counts)
         changes = (np.diff(identity, prepend=-1) != 0) | (np.diff(number, prepend=-1) != 0)
         self.first = np.flatnonzero(changes)
@@ -352,30 +271,3 @@ class _Problem:
         squares = np.bincount(kinds, w * residual**2, FAMILIES) / LOST
         free = np.maximum(most - taken, 0.2 * most)
         return fresh, np.sqrt((squares + NOISE_TRUST) / (free + NOISE_TRUST))
-
-
-def sensitivity(
-    by_view: Array, by_shared: Array, by_offset: Array, cov: Array, piece: Ints, shared: int
-) -> Array:
-    """How a view follows rig and offsets when fitted with these held, shape (4, shared).
-
-    Parameters
-    ----------
-    by_view : ndarray, shape (4, n)
-        Derivatives of a frame's residuals, times their weights.
-    by_shared, by_offset : ndarray, shapes (14, n) and (n,)
-        Derivatives by the rig, and by a shift of the paint under the mark.
-    cov : ndarray, shape (4, 4)
-        Of the view.
-    piece : ndarray of int, shape (n,)
-        Which offset is that of the paint under the mark; −1 for none.
-    shared : int
-        How many rig and offsets are.
-    """
-    found = np.zeros((VIEW_SIZE, shared))
-    found[:, :RIG_SIZE] = by_view @ by_shared.T
-    known = piece >= 0
-    mixed = (by_view * by_offset)[:, known]
-    for row, values in zip(found, mixed, strict=True):
-        row[RIG_SIZE:] = np.bincount(piece[known], values, shared - RIG_SIZE)
-    return -cov @ found
