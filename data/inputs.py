@@ -30,7 +30,9 @@ def find_inputs(names: Sequence[str | Path]) -> tuple[Path, ...]:
         if path.is_dir():
             pictures = [p for p in path.iterdir() if p.suffix.lower() in IMAGE_SUFFIXES]
             if not pictures:
-                raise InputError(f"{path}: no pictures in this folder")
+                raise InputError(
+                    f"{path}: no pictures in this folder; clips are named as {path / '*.mp4'}"
+                )
             found += sorted(pictures, key=_natural)
         elif path.exists():
             found.append(path)
