@@ -19,11 +19,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from vision.adjust import VIEW_SD, WIDTH, inverse
 from vision.linear import Frame, Linear, by_measure, by_rig, linearised
 from vision.paint import Marks, joined
 from vision.pose import VIEW_SIZE, View
+from vision.resection import VIEW_SD
 from vision.rig import POSITION, RIG_SIZE, Prior
+from vision.robust import WIDTH, inverse
 from vision.shared import BINS, Bundle, family, piece_of, polynomials
 
 Array = NDArray[np.float64]

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from data.errors import SceneError
 from data.progress import Progress, no_progress
-from vision.adjust import solve_view
 from vision.camera import Camera
 from vision.clip import Clip, Frame
 from vision.house import find_house
@@ -27,6 +26,7 @@ from vision.piece import Piece
 from vision.placed import Placed, nobody
 from vision.pose import View
 from vision.replay import glimpse, is_nearer, is_replay
+from vision.resection import solve_view
 from vision.rig import ANYWHERE, OVERHEAD
 
 Array = NDArray[np.float64]

@@ -16,14 +16,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import HOUSE
-from vision.adjust import WIDTH, inverse, solve_views
 from vision.bundle import LOST, NOISE_TRUST, bundle
 from vision.camera import PARAMETERS, Camera, CameraError
 from vision.landmarks import Keyframe, replaced
 from vision.linear import Frame, by_measure, by_rig, linearised
 from vision.paint import CIRCLES, FIXED, Marks, ice_frame, joined, measures
 from vision.pose import VIEW_SIZE, View, camera, project, turning
+from vision.resection import solve_views
 from vision.rig import K1, K1_ZOOM, K2, POSITION, R4, R8, RIG_SIZE, Prior, zoom
+from vision.robust import WIDTH, inverse
 from vision.shared import ARC, Bundle, family, piece_of, sensitivity
 
 Array = NDArray[np.float64]

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import HOUSE
-from vision.adjust import ViewSolution, solve, solve_view
+from vision.adjust import solve
 from vision.camera import Camera
 from vision.clip import Frame
 from vision.house_fit import SHARING
@@ -26,6 +26,7 @@ from vision.paint import CIRCLES, FIXED, Marks, joined
 from vision.picture import Picture
 from vision.pose import View, camera
 from vision.replay import EVERY, Glimpse, glimpse
+from vision.resection import ViewSolution, solve_view
 from vision.rig import R4, R8, Prior
 
 Array = NDArray[np.float64]

@@ -8,7 +8,6 @@ import pytest
 import pipeline
 from tests.synthetic.camera import Lens
 from tests.synthetic.camera import View as TrueView
-from vision.adjust import solve_view
 from vision.camera import Camera
 from vision.clip import open_clip
 from vision.follow_house import follow_house
@@ -16,6 +15,7 @@ from vision.joint import Seen, fit_clip
 from vision.landmarks import Keyframe
 from vision.paint import FIXED, TEE_LINE, TWELVE, Marks
 from vision.pose import View
+from vision.resection import solve_view
 from vision.rig import OVERHEAD, start_rig
 
 SIZE = (1280, 720)

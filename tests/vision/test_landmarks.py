@@ -6,10 +6,10 @@ import numpy as np
 
 from tests.synthetic import Graphic, broadcast_camera, render_still, sample_scene
 from tests.synthetic.camera import CameraPath
-from vision.adjust import solve_view
 from vision.landmarks import keyframe, recognise, replaced
 from vision.paint import fixed
 from vision.pose import View, camera, project
+from vision.resection import solve_view
 from vision.rig import OVERHEAD, start_rig
 
 SIZE = (1280, 720)
