@@ -38,14 +38,15 @@ def fit_with_chosen_laws(shot: Watched) -> GlobalFit:
         more = fit_shots([shot], fixed=fewer, start=_start(best))
         if not more.settled:
             continue
-        criteria.append(least + _against(more, name))
-        if name == "slope":  # only where there is some is there a knee to be found
-            del fewer["v_c"]
-            bent = fit_shots([shot], fixed=fewer, start=_start(more))
-            more = bent if bent.settled else more
+        criterion = least + _against(more, name)
+        if criterion < least:
+            if name == "slope":  # where friction falls there is a knee to be found
+                del fewer["v_c"]
+                bent = fit_shots([shot], fixed=fewer, start=_start(more))
+                more = bent if bent.settled else more
+            best, held, least = more, fewer, criterion
         tried.append(more)
-        if criteria[-1] < least:
-            best, held, least = more, fewer, criteria[-1]
+        criteria.append(criterion)
     if shot.hits:
         stuck = fit_shots([shot], fixed=held | STICKING, start=_start(best))
         if stuck.settled:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from data.errors import InputError
 from data.results import MeasuredState, SimulatedHit, StoneState
-from physics.ice import Constant, Fit, IceLaw
+from physics.laws import Scaled
 from physics.shot_model import STATE
 from physics.simulate import Hit, Shot, Simulation, StoneStart, simulate
 
@@ -133,7 +133,7 @@ def _drawn(shot: Shot, doubt: Doubt, rng: np.random.Generator) -> Shot:
             laws[name] = float(np.clip(value, 0.0, top))
     impact: Any = replace(shot.impact, **laws)  # type: ignore[type-var]
     factor = max(1.0 + doubt.friction * rng.standard_normal(), 0.1)
-    return replace(shot, stones=stones, impact=impact, ice=_scaled(shot.ice, factor))
+    return replace(shot, stones=stones, impact=impact, ice=Scaled(shot.ice, factor))
 
 
 def _moved(stone: StoneStart, doubt: Doubt, rng: np.random.Generator) -> StoneStart:
@@ -146,14 +146,6 @@ def _moved(stone: StoneStart, doubt: Doubt, rng: np.random.Generator) -> StoneSt
             (np.array(after) + np.array(errors) * rng.standard_normal(len(errors))).tolist()
         )
     return replace(stone, **dict(zip(STATE, moved.tolist(), strict=True)), omega_after=after)
-
-
-def _scaled(ice: IceLaw, factor: float) -> IceLaw:
-    if isinstance(ice, Constant):
-        return Constant(ice.friction * factor)
-    if isinstance(ice, Fit):
-        return Fit(ice.a * factor, ice.v_c, ice.b * factor)
-    return ice
 
 
 def _keyed(hits: Sequence[Hit]) -> Iterator[tuple[tuple[frozenset[str], int], Hit]]:

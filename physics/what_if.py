@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from data.errors import InputError
 from data.sheet import GRAVITY, HOUSE
 from physics.curl import Curl, FCV1Curl
 from physics.ice import IceLaw
+from physics.laws import Scaled
 from physics.many import States, simulate_many
 from physics.simulation import StoneStart
 from physics.start import Start, speed_before
@@ -27,23 +28,6 @@ FASTEST_THROW, MOST_SPIN = 10.0, 20.0
 """Speed (m/s) and spin (rad/s) beyond which a throw is a mistake."""
 LAWS = 64
 """Equally likely pairs of the ice's friction and of its curl: equal ones share work."""
-
-
-@dataclass(frozen=True)
-class Scaled:
-    """A law of the ice with all its friction multiplied by a factor."""
-
-    law: IceLaw
-    factor: float
-
-    @property
-    def name(self) -> str:
-        """Name of the law."""
-        return self.law.name
-
-    def deceleration(self, speed: ArrayLike) -> Array:
-        """Deceleration, m/s²."""
-        return np.asarray(self.factor * self.law.deceleration(speed))
 
 
 @dataclass(frozen=True)
