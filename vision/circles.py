@@ -64,6 +64,8 @@ class Fits:
     radii : ndarray, shape (n, circles)
     covariance : ndarray, shape (n, 2, 2)
         Of the shift, m².
+    rms : ndarray, shape (n,)
+        Root of the mean square distance of the edges from the circles, m.
     shares : ndarray, shape (n, circles)
         Rays that agree, of those in the picture.
     """
@@ -72,6 +74,7 @@ class Fits:
     shift: Array
     radii: Array
     covariance: Array
+    rms: Array
     shares: Array
 
 
@@ -215,7 +218,8 @@ def fit_circles(
     covariance = np.linalg.inv(normal)[:, :2, :2] * spread[:, None, None]
     agree = (fits & inside).reshape(n, circles, -1).sum(-1)
     shares = agree / np.maximum(inside.reshape(n, circles, -1).sum(-1), 1)
-    return Fits(count >= 8, solution[:, :2], expected + solution[:, 2:], covariance, shares)
+    radii = expected + solution[:, 2:]
+    return Fits(count >= 8, solution[:, :2], radii, covariance, rms, shares)
 
 
 def _median(values: Array, use: Bools) -> Array:

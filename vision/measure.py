@@ -33,6 +33,9 @@ Floats = NDArray[np.float32]
 Bytes = NDArray[np.uint8]
 Bools = NDArray[np.bool_]
 
+PIXELS = 0.17
+"""What the edges of a true circle lie off it for being pictured in pixels, px."""
+
 
 @dataclass(frozen=True)
 class Measures:
@@ -56,6 +59,8 @@ class Measures:
         Share of the rays on which the cap was seen, whatever is around it.
     evidence : ndarray, shape (n,)
         For a stone 0 to about 3, for a plain disc 0 to 1.
+    bend : ndarray, shape (n,)
+        How far the edges lie from circles, root mean square beyond what pixels do, m.
     outline : ndarray, shape (n, circles)
         Radii found, as shares of the nominal ones.
     handle : ndarray, shape (n, rays, rings, 3)
@@ -76,6 +81,7 @@ class Measures:
     visible: Array
     uncovered: Array
     evidence: Array
+    bend: Array
     outline: Array
     handle: Bytes
     worth: Floats
@@ -216,6 +222,7 @@ def _stones(
         visible=visible,
         uncovered=(capped & at_cap).mean(1),
         evidence=fit.shares.sum(1) - uneven - 0.5 * misfit + 0.5 * response,
+        bend=_bend(fit.rms, pixel),
         outline=fit.radii / np.array([disc.cap_radius, disc.radius]),
         handle=handle,
         worth=worth,
@@ -251,6 +258,7 @@ def _plain(
         visible=visible,
         uncovered=visible,
         evidence=fit.shares[:, 0],
+        bend=_bend(fit.rms, pixel),
         outline=fit.radii / disc.radius,
         handle=handle,
         worth=np.zeros(within.shape, np.float32),
@@ -258,6 +266,10 @@ def _plain(
         scale=scale,
         tilt=tilt,
     )
+
+
+def _bend(rms: Array, pixel: Array) -> Array:
+    return np.asarray(np.sqrt(np.maximum(rms**2 - (PIXELS * pixel) ** 2, 0)))
 
 
 def _errors(covariance: Array, pixel: Array, hidden: Array) -> Array:

@@ -24,8 +24,8 @@ class Sighting(NamedTuple):
     sd_x, sd_y : float
         Standard error that is anew in each picture, m.
     sd_place : float
-        Standard error, per axis, that the sightings of a stone share, m; NaN where it is not
-        told yet.
+        Standard error, per axis, that the sightings of a stone share by the camera and the height
+        of the cap, m; NaN where it is not told yet.
     colour : ndarray, shape (3,)
         Colour of the cap, L*a*b*.
     visible : float
@@ -34,6 +34,8 @@ class Sighting(NamedTuple):
         Evidence that it is a stone: 1 is little, 2.5 is much.
     outline : tuple of float
         Radii found for cap and granite (or the rim alone), as shares of the nominal ones.
+    bend : float
+        How far the edges lie from circles, root mean square beyond what pixels do, m.
     pixel : tuple of float
         Where the picture shows the middle of the cap, px.
     cap_samples, granite_samples : ndarray, shape (n, 3)
@@ -54,6 +56,7 @@ class Sighting(NamedTuple):
     visible: float
     score: float
     outline: tuple[float, ...]
+    bend: float
     pixel: tuple[float, float]
     spectrum: NDArray[np.complex64] | None = None
     cap_samples: Array = _NONE

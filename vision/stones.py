@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import nan
+from math import hypot, nan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,7 @@ from vision.measure import Measures, measure
 from vision.patch import EFFORT, handle_radii, is_plain, scales, tilts
 from vision.picture import Picture
 from vision.rays import Look
+from vision.roundness import edge_error
 from vision.seek import Bounds, seek
 from vision.sighting import Refusal, Sighting
 
@@ -65,16 +66,12 @@ class Search:
 SEARCH = Search()
 """For a single picture, which has one chance."""
 
-FOLLOWING = Search(radius_px=6.5)
+FOLLOWING = Search(radius_px=6.5, least_score=0.3)
 """For a clip: a coarser map, for what one picture hides the next ones show."""
 
 
 UNCOVERED = 0.75
 """Share of a cap that must be seen for its angle to be measured."""
-
-CAP_OFF = 0.015
-"""How far, in radii, the middle of the edges of cap and granite may be off the stone's: real ones
-are lit from a side, bevelled and not mounted true. For rendered ones this is too cautious."""
 
 
 @dataclass(frozen=True)
@@ -115,7 +112,9 @@ def find_stones(
     tuple of Sighting
         Strongest first; no two nearer than discs can be.
     """
-    return search_picture(image, camera, appearance, disc, search).stones
+    found = search_picture(image, camera, appearance, disc, search).stones
+    edge = edge_error([[stone] for stone in found])
+    return tuple(stone._replace(sd_place=hypot(stone.sd_place, edge)) for stone in found)
 
 
 def search_picture(
@@ -209,17 +208,17 @@ def sightings(
     spectra = cap_spectrum(seen.handle[chosen], handle_radii(disc))
     columns = (
         seen.centre[chosen], seen.sd[chosen], seen.visible[chosen], seen.evidence[chosen],
-        seen.outline[chosen], np.concatenate([np.empty((0, 2)), *pixels]),
+        seen.outline[chosen], seen.bend[chosen], np.concatenate([np.empty((0, 2)), *pixels]),
         seen.uncovered[chosen] >= UNCOVERED,
     )  # fmt: skip
+    rows = zip(seen.colour[chosen], spectra, *(column.tolist() for column in columns), strict=True)
     return [
         Sighting(
-            x, y, sd_x, sd_y, nan, colour, visible, score, tuple(outline), (u, v),
+            x, y, sd_x, sd_y, nan, colour, visible, score, tuple(outline), bend, (u, v),
             spectrum.copy() if told else None,
         )
-        for colour, spectrum, (x, y), (sd_x, sd_y), visible, score, outline, (u, v), told in zip(
-            seen.colour[chosen], spectra, *(column.tolist() for column in columns), strict=True
-        )
+        for colour, spectrum, (x, y), (sd_x, sd_y), visible, score, outline, bend, (u, v), told
+        in rows
     ]  # fmt: skip
 
 
@@ -237,11 +236,10 @@ def placed_by(camera: Camera, seen: Sequence[Sighting], disc: Stone) -> list[Sig
 
 
 def _shared_errors(camera: Camera, places: Array, disc: Stone, scale: Array, tilt: Array) -> Array:
-    """Give the standard errors that no filter averages out, m: camera, cap's edge and height."""
+    """Give the standard errors that no filter averages out, m: by camera and height of the cap."""
     rms = camera.rms_px if np.isfinite(camera.rms_px) else 0.3
-    edge = 0.0 if is_plain(disc) else CAP_OFF * disc.radius
-    aslant = 0.04 * disc.cap_height * tilt
-    squares = (0.35 * rms / scale) ** 2 + edge**2 + aslant**2
+    aslant = 0.02 * disc.cap_height * tilt
+    squares = (0.35 * rms / scale) ** 2 + aslant**2
     if camera.error is None:
         return np.asarray(np.sqrt(squares))
     return np.asarray(np.sqrt(squares + camera.place_sd(places) ** 2))

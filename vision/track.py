@@ -19,6 +19,7 @@ from vision.follow import Gate, Track, follow
 from vision.handle import handle_angles
 from vision.naming import names_by_motion
 from vision.patch import handle_radii, is_plain
+from vision.roundness import edge_error
 from vision.stones import FOLLOWING, Search
 from vision.watch import Watch
 
@@ -101,14 +102,15 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
         empty = pd.DataFrame({name: pd.Series(dtype=float) for name in SIGHTING_COLUMNS})
         empty = empty.astype({"stone": str, "frame": int, "team": str})
         return StoneTracks(empty, ("no stones were found on the ice",))
+    edge = edge_error([track.sightings for track in tracks])
     table = pd.concat(
-        [_rows(name, track, disc) for name, track in named.items()], ignore_index=True
+        [_rows(name, track, disc, edge) for name, track in named.items()], ignore_index=True
     )
     table["team"] = table["stone"].map(_teams(named, watch.appearance))
     return StoneTracks(check_sightings(table, "the stones found"))
 
 
-def _rows(name: str, track: Track, disc: Stone) -> pd.DataFrame:
+def _rows(name: str, track: Track, disc: Stone, edge: float) -> pd.DataFrame:
     spectra: list[Complex | None] = [sighting.spectrum for sighting in track.sightings]
     theta, sd_theta = handle_angles(np.array(track.times), spectra, handle_radii(disc))
     seen = track.sightings
@@ -123,7 +125,7 @@ def _rows(name: str, track: Track, disc: Stone) -> pd.DataFrame:
             "sd_x": [item.sd_x for item in seen],
             "sd_y": [item.sd_y for item in seen],
             "sd_theta": sd_theta,
-            "sd_place": [item.sd_place for item in seen],
+            "sd_place": np.hypot([item.sd_place for item in seen], edge),
         }
     )
 

@@ -1,0 +1,38 @@
+"""How far the middle of a stone's edges may be off the stone: by how round they are.
+
+What displaces an edge (light from a side, a bevel, a highlight, a cap that is not mounted true)
+moves the middle of the circle and bends the circle too. That it is bent can be seen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from vision.sighting import Sighting
+
+WHOLE = 0.8
+"""Share of the circle that must be seen."""
+
+SHARE = 0.7
+"""How far the middle may be off, per axis, in roots of the mean square of what bends the circle."""
+
+USUAL = 0.002
+"""What bends the circles of stones where too little of them is seen, m."""
+
+
+def edge_error(stones: Iterable[Sequence[Sighting]]) -> float:
+    """Give the standard error, per axis, of places by the edges of cap and granite, m.
+
+    Parameters
+    ----------
+    stones : iterable of sequences of Sighting
+        The sightings of each stone; all stones of a clip are made and lit alike.
+    """
+    bends = [
+        float(np.median([s.bend for s in whole]))
+        for sightings in stones
+        if (whole := [s for s in sightings if s.visible > WHOLE])
+    ]
+    return SHARE * float(np.sqrt(np.mean(np.square([USUAL, *bends]))))
