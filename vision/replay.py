@@ -15,7 +15,7 @@ from vision.pose import View, project
 
 Array = NDArray[np.float64]
 
-CELLS, FINER = 48, 3
+CELLS, FINER = 48, 2
 """Cells of a glimpse along each side, and samples of which each is the mean."""
 
 EVERY = 0.2
@@ -54,8 +54,8 @@ def glimpse(picture: Picture, view: View, rig: Array, t: float) -> Glimpse:
     with np.errstate(invalid="ignore"):
         seen = (x > 0) & (y > 0) & (x < w - 1) & (y < h - 1)
     side = (CELLS * FINER, CELLS * FINER)
-    at = [np.nan_to_num(v, nan=-9.0).astype(np.float32).reshape(side) for v in (x, y)]
-    grey = lightness_at(picture, at[0], at[1]).astype(np.float64)
+    across, down = (np.where(seen, v, -9.0).astype(np.float32).reshape(side) for v in (x, y))
+    grey = lightness_at(picture, across, down).astype(np.float64)
     grey[~seen.reshape(side)] = np.nan
     return Glimpse(t, np.asarray(cv2.resize(grey, (CELLS, CELLS), interpolation=cv2.INTER_AREA)))
 
