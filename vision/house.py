@@ -31,6 +31,9 @@ GUESS_WIDTH = 320
 ENOUGH = 2.8
 """A judgement at which nothing farther from the middle is tried: all of three circles, nearly."""
 
+ENOUGH_BESIDE = 2.5
+"""The same for a house that lies just where a sheet beside has one; people stand on it."""
+
 SPACINGS = (4.7, 5.0, 4.4)
 """How far apart the houses of neighbouring sheets may be, m: the width of a sheet (4.42 to 5.00 m
 by the rules of World Curling), within what a fit reaches."""
@@ -69,7 +72,7 @@ def _middle_most(image: Image, small: Image, found: HouseFit) -> HouseFit:
     """Give a complete house nearer to the middle on the sheet beside, where there is one."""
     factor = small.shape[1] / image.shape[1]
     for beside in _beside(small, found, factor):
-        if beside.score > ENOUGH:
+        if beside.score > ENOUGH_BESIDE:
             other = refine(image, beside, factor, found.camera.frame, found.camera.t)
             if other is not None and _is_house(image, other):
                 return other
