@@ -38,11 +38,11 @@ TOGETHER = 16
 
 VIEW_SD = (np.inf, np.inf, 0.05, np.inf)
 
-LONG_RANGE = 2.3
+LONG_RANGE = 2.0
 """Errors of paint and outline are alike over longer stretches than single pieces and marks tell:
 so much larger than these say are the standard errors, as cameras known otherwise show."""
 
-YARDSTICK_PX = 0.14
+YARDSTICK_PX = 0.16
 """How well the outer edge of the 12-ft circle is made out, px: an outline that is little darker
 than the paint goes unseen and draws the edge outwards."""
 
