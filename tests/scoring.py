@@ -13,6 +13,9 @@ from scipy.optimize import linear_sum_assignment
 GATE = 0.15
 """Farther than this from every true stone, m, a sighting is false."""
 
+LONGEST = 5
+"""Frames for which a track may be false."""
+
 
 @dataclass(frozen=True)
 class TrackScore:
@@ -96,7 +99,6 @@ def score_tracks(
         int((group["name"] != group["name"].shift()).sum()) - 1
         for _, group in table.groupby("true")
     )
-    seen_names = rows["stone"].value_counts()
     must_find = truth[truth["visible"] >= visible]["stone"].unique()
     error = np.hypot(table["dx"], table["dy"])
     return TrackScore(
@@ -104,9 +106,7 @@ def score_tracks(
         missed=tuple(sorted(set(must_find) - set(table["true"]))),
         switches=switches,
         false_frames=false,
-        false_tracks=tuple(
-            name for name, count in false_by_name.items() if count > 0.5 * seen_names[name]
-        ),
+        false_tracks=tuple(name for name, count in false_by_name.items() if count > LONGEST),
         rmse=float(np.sqrt((error**2).mean())) if len(table) else float("nan"),
         bias=(float(table["dx"].mean()), float(table["dy"].mean())),
         within_two_sd=float((error < 2 * table["sd"]).mean()) if len(table) else float("nan"),

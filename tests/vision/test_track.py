@@ -6,9 +6,15 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from scipy.stats import chi2
 
 from data.sheet import STONE
 from data.tracks import SIGHTING_COLUMNS, teams
+from physics.contacts import find_contacts
+from physics.kalman import smooth
+from physics.rate_filter import filtered
+from physics.stretch import Estimates, Stretch
+from tests.physics.test_consistency import innovations
 from tests.scoring import score_tracks
 from vision.camera import Camera
 from vision.clip import open_clip
@@ -114,3 +120,29 @@ def test_pucks_on_a_dark_table(shared: Path) -> None:
     )
     assert np.hypot(*(before[0] - after[0])) < 0.03 * np.hypot(*before[0])
     assert np.nanmax(np.abs(np.diff(thrown["theta"]))) < 0.05
+
+
+def test_the_filter_is_no_surer_of_a_clip_than_it_may_be() -> None:
+    truth, cameras = sample_truth()
+    clip = open_clip([DATA / "sample.mp4"], frames=(0, 80))
+    seen = track_stones(clip, cameras).sightings
+    stretches: list[Stretch] = []
+
+    def spy(stretch: Stretch) -> Estimates:
+        stretches.append(stretch)
+        return filtered(stretch)
+
+    tracks = smooth(seen, find_contacts(seen, STONE.radius), radius=STONE.radius, run=spy)
+    square = np.concatenate([innovations(s, 6) for s in stretches if not s.rest.all()]) ** 2
+    for axis in range(3):
+        told = square[np.isfinite(square[:, axis]), axis]
+        # Errors that are alike from frame to frame are taken for larger ones that are not, so
+        # that there is no lower bound.
+        assert len(told) > 100
+        assert told.mean() < chi2.ppf(0.975, len(told)) / len(told)
+    true = truth.set_index(["stone", "frame"])
+    known = tracks.join(true.add_prefix("true_"), on=["stone", "frame"])
+    moving = known[np.hypot(known["true_vx"], known["true_vy"]) > 0.05]
+    for state in ("x", "y", "vx", "vy", "omega"):
+        pull = (moving[state] - moving[f"true_{state}"]) / moving[f"sd_{state}"]
+        assert (pull.abs() < 2).mean() > 0.9
