@@ -47,6 +47,8 @@ class Turning:
         How far from the expected angle a stone is looked for, rad.
     most_spin : float
         How much that reach grows per second without a sighting, rad/s.
+    lost : float
+        Time without a sighting after which a stone may be turned anyhow, s.
     least_likeness : float
         Correlation (0 to 1) with the stone's own picture below which nothing is said.
     rounds : int
@@ -58,6 +60,7 @@ class Turning:
 
     reach: float = 0.30
     most_spin: float = 3.0
+    lost: float = 1.0
     least_likeness: float = 0.45
     rounds: int = 3
     shift: float = 0.003
@@ -262,6 +265,8 @@ def _followed(times: Array, pictures: Complex, turning: Turning) -> Array:
         for index in way:
             wait = times[index] - times[before]
             reach = min(turning.reach + turning.most_spin * abs(wait), 1.5)
+            if abs(wait) > turning.lost:
+                reach = np.pi
             expected = float(angles[before] + spin * wait)
             angle, likeness = angle_between(mean, pictures[index], expected, reach)
             if not likeness > turning.least_likeness:

@@ -19,6 +19,7 @@ from vision.follow import Gate, Track, follow
 from vision.handle import handle_angles
 from vision.naming import names_by_motion
 from vision.patch import handle_radii, is_plain
+from vision.rejoin import rejoined
 from vision.roundness import edge_error
 from vision.stones import FOLLOWING, Search
 from vision.watch import Watch
@@ -93,7 +94,7 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
     """
     disc = watch.disc
     gate = Gate(least_score=0.85 if is_plain(disc) else 1.1)
-    tracks = follow(watch.finish(cameras), disc.radius, gate)
+    tracks = rejoined(follow(watch.finish(cameras), disc.radius, gate), disc.radius, gate)
     moved, rest = names_by_motion(tracks, disc.radius)
     names = order_of_motion(dict(moved), rest)
     named = {names[str(number)]: track for number, track in enumerate(tracks)}

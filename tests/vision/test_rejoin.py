@@ -1,0 +1,42 @@
+from __future__ import annotations
+
+import pytest
+
+from tests.vision.test_follow import RED, YELLOW, Place, R, clip
+from vision.follow import follow
+from vision.rejoin import rejoined
+
+LOST, BACK = 1.0, 2.6
+"""When the stone goes out of sight, and comes back, s."""
+
+
+def thrown(t: float) -> Place | None:
+    return (0.2, 3.0 - 1.4 * t) if t < LOST else None
+
+
+def coming_back(start: Place, vx: float = 0.35, vy: float = -0.3) -> object:
+    def path(t: float) -> Place | None:
+        """Hit at `start` when it was lost; it slows as stones do."""
+        way = t - LOST - 0.05 * (t - LOST) ** 2 / 0.46
+        return (start[0] + vx * way, start[1] + vy * way) if t > BACK else None
+
+    return path
+
+
+@pytest.mark.parametrize(
+    ("start", "colour", "stones"),
+    [
+        ((0.2, 1.6), RED, 1),
+        ((0.2, 1.6), YELLOW, 2),
+        ((-1.0, 2.5), RED, 2),
+    ],
+    ids=["it was hit there", "of the other team", "from elsewhere"],
+)
+def test_what_comes_back_from_where_a_stone_was_lost_is_that_stone(start, colour, stones) -> None:
+    frames = clip([thrown, coming_back(start)], colours=[RED, colour])  # type: ignore[list-item]
+    tracks = follow(frames, R)
+    assert len(tracks) == 2
+    joined = rejoined(tracks, R)
+    assert len(joined) == stones
+    assert sum(len(track.frames) for track in joined) == sum(len(seen) for _, _, seen in frames)
+    assert all(track.times == sorted(track.times) for track in joined)
