@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from data.sheet import STONE, Stone
 from vision.appearance import CONVINCING, Appearance, colour_difference, learn
@@ -20,7 +20,7 @@ from vision.follower import PATIENCE, Follower, Patience, View
 from vision.lead import Lead
 from vision.patch import is_plain
 from vision.sighting import Sighting
-from vision.stones import FOLLOWING, Search, placed_by, search_picture
+from vision.stones import FOLLOWING, SEARCH, Search, placed_by, search_picture
 
 UNLIKE = 30.0
 """Difference of cap colours (L*a*b* units) from which a colour is a new one."""
@@ -135,11 +135,13 @@ class Watch:
 
     def _of_any_colour(self, views: Iterable[View]) -> list[Sighting]:
         """Stones of any colour that were not seen in the views so far."""
+        # Too much on the ice answers faintly to any colour.
+        search = replace(self._search, least_score=SEARCH.least_score)
         return [
             stone
             for view in views
             for stone in search_picture(
-                view.frame.picture, view.camera, None, self.disc, self._search, None, view.places
+                view.frame.picture, view.camera, None, self.disc, search, None, view.places
             ).stones
         ]
 
