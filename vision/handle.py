@@ -215,6 +215,7 @@ def _matched(times: Array, pictures: Complex, turning: Turning) -> _Matched:
     for _ in range(turning.rounds):
         reference = _mean(turned(own[known], -angles[known]), shown[known])
         angles[known], likeness[known] = angles_between(reference, own[known], angles[known], 0.2)
+        known = np.isfinite(angles)  # some show nothing but light
         own = (pictures - unturned(pictures[known], angles[known], shown[known])) * shown
     return _Matched(own, angles, likeness)
 

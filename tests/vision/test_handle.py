@@ -140,3 +140,10 @@ def test_a_stone_that_comes_into_the_picture_is_told_by_what_is_seen_of_it() -> 
     assert np.isfinite(theta[10:]).all()
     assert np.nanmax(np.abs(theta - true - np.median(theta[10:] - true[10:]))) < 0.05
     assert np.nanmedian(sd[:10]) > np.median(sd[10:])
+
+
+def test_caps_that_show_nothing_tell_no_angle() -> None:
+    blank = np.zeros_like(spectrum(0.0))
+    theta, sd = handle_angles(np.arange(30) / 25, [blank] * 30, RADII)
+    assert np.isnan(theta).all()
+    assert np.isnan(sd).all()
