@@ -328,10 +328,10 @@ def _top(shot: Shot, states: States) -> float:
 
 def _spins_after(shot: Shot) -> Array:
     """Spins after the hits in their order, NaN where unknown, shape (stones, hits)."""
-    given = [
-        spins if isinstance(spins := stone.omega_after, tuple) and spins else (spins or math.nan,)
-        for stone in shot.stones
-    ]
+    given: list[tuple[float, ...]] = []
+    for stone in shot.stones:
+        after = () if stone.omega_after is None else stone.omega_after
+        given.append((after if isinstance(after, tuple) else (after,)) or (math.nan,))
     most = max(map(len, given))
     return np.array([[*spins, *[spins[-1]] * (most - len(spins))] for spins in given], float)
 

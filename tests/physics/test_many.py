@@ -94,13 +94,17 @@ def test_every_variant_has_its_own_ice_and_restitution() -> None:
     assert np.abs(again.y - out.y).max() > 0.1
 
 
-def test_masses_and_given_spins_count() -> None:
+@pytest.mark.parametrize("after", [(0.5, -0.2), 0.3, 0.0])
+def test_masses_and_given_spins_count(after: float | tuple[float, ...]) -> None:
     stones = tuple(
-        replace(stone, omega_after=(0.5, -0.2), mass=19.0 - k) for k, stone in enumerate(BOTH_MOVE)
+        replace(stone, omega_after=after, mass=19.0 - k) for k, stone in enumerate(BOTH_MOVE)
     )
     shot = Shot(stones, RigidBody(0.8), Constant(), NoCurl(), R)
     states = thrown(shot)
     assert_same(simulate_many(shot, states), one_by_one(shot, states))
+
+
+def test_the_rigid_body_model_asks_for_spins_after() -> None:
     blind = Shot(BOTH_MOVE, RigidBody(0.8), Constant(), NoCurl(), R)
     with pytest.raises(InputError, match="is hit but has no omega_after"):
         simulate_many(blind, thrown(blind))
