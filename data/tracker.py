@@ -120,6 +120,8 @@ def read_table(
             files.append(_checked_parquet(path))
         else:
             files.append(read_layout(path, fps))
+    if tab is not None and not any(map(is_project, paths)):
+        raise InputError(f"{paths[0]}: no Tracker project, which alone has tabs (--tab)")
     warnings = [text for file in files for text in file.warnings]
     files, notes = named_by_file(paths, files)
     warnings += notes

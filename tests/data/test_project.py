@@ -113,6 +113,9 @@ def test_first_tab_with_marks_is_used_unless_another_is_named(tmp_path: Path) ->
     assert set(read_table([path], tab="c").sightings["stone"]) == {"green"}
     with pytest.raises(InputError, match="no tab d; there is a, b, c"):
         read_table([path], tab="d")
+    table = put(tmp_path, "stone,t,x,y\nA,0,0,0\nA,1,0,1\n", "shot.csv")
+    with pytest.raises(InputError, match="no Tracker project"):
+        read_table([table], tab="a")
 
 
 def test_a_set_of_tabs_leads_to_its_projects(tmp_path: Path) -> None:
