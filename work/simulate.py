@@ -26,14 +26,12 @@ def shot_file(path: Path) -> Path:
     Raises
     ------
     InputError
-        A folder without any.
+        Where there is none.
     """
-    if not path.is_dir():
-        return path
-    results = path / "results.json"
-    if not results.is_file():
-        raise InputError(f"{results}: no such file; name a SHOT.toml or the folder of a run")
-    return results
+    file = path / "results.json" if path.is_dir() else path
+    if not file.exists():
+        raise InputError(f"{file}: no such file; name a SHOT.toml or the folder of a run")
+    return file
 
 
 def measured_shot(path: Path) -> bool:
