@@ -9,8 +9,8 @@ from command import values
 from data.sheet import STONE
 
 
-def disc_options(parser: argparse.ArgumentParser) -> None:
-    """Add what may be said of discs."""
+def radius_option(parser: argparse.ArgumentParser) -> None:
+    """Add the radius of the discs."""
     parser.add_argument(
         "--radius",
         type=values.positive,
@@ -18,6 +18,10 @@ def disc_options(parser: argparse.ArgumentParser) -> None:
         metavar="METRES",
         help=f"radius of the discs ({STONE.radius}: a curling stone)",
     )
+
+
+def mass_option(parser: argparse.ArgumentParser) -> None:
+    """Add the masses of the discs, for commands that tell their physics."""
     parser.add_argument(
         "--mass",
         type=values.mass,
@@ -30,7 +34,7 @@ def disc_options(parser: argparse.ArgumentParser) -> None:
 
 def clip_options(parser: argparse.ArgumentParser) -> None:
     """Add what may be said of a clip."""
-    disc_options(parser)
+    radius_option(parser)
     parser.add_argument("--fps", type=values.positive, help="rate of pictures, 1/s (25)")
     parser.add_argument(
         "--frames",
@@ -92,7 +96,7 @@ def what_if_options(parser: argparse.ArgumentParser) -> None:
         "--samples",
         type=values.samples,
         metavar="N",
-        help=f"throw it N times, at most {values.MOST_THROWS} (1000 for a results.json, else 0)",
+        help=f"throw it N times, at most {values.MOST_THROWS} (1000 for a measured shot, else 0)",
     )
     change.add_argument(
         "--throw-sd",

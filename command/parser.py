@@ -10,7 +10,8 @@ from command import values
 from command.options import (
     assumption_options,
     clip_options,
-    disc_options,
+    mass_option,
+    radius_option,
     tab_option,
     table_options,
     units_option,
@@ -67,6 +68,7 @@ def command_line(version: str) -> argparse.ArgumentParser:
     )
     run_.add_argument("inputs", nargs="*", metavar="INPUT", help="clip, pictures or tables")
     clip_options(run_)
+    mass_option(run_)
     table_options(run_)
     tab_option(run_)
     run_.add_argument(
@@ -110,7 +112,8 @@ def command_line(version: str) -> argparse.ArgumentParser:
         "  curlshot estimate pucks.csv --length-unit cm --radius 0.035 --mass 1=32 --mass 2=30\n",
     )
     estimate_.add_argument("inputs", nargs="+", metavar="TRACKS", help="tables of tracks")
-    disc_options(estimate_)
+    radius_option(estimate_)
+    mass_option(estimate_)
     table_options(estimate_)
     tab_option(estimate_)
     assumption_options(estimate_)
@@ -126,6 +129,7 @@ def command_line(version: str) -> argparse.ArgumentParser:
         "\n"
         "Shots differ by more than their errors: the mean comes with their scatter. Gives\n"
         "shots.csv, hits.csv, season.json and season.png.\n",
+        usual="season",
     )
     season_.add_argument("runs", nargs="+", metavar="RUN", help="folder of a run, or of runs")
 
@@ -189,6 +193,7 @@ def command_line(version: str) -> argparse.ArgumentParser:
         "  vx = 0.0\n"
         "  vy = 2.4\n"
         "  omega = 1.5708             # rigid-body also needs omega_after\n",
+        usual="NAME-curlshot; of a measured shot RUN-whatif",
     )
     simulate_.add_argument(
         "shot",
@@ -204,10 +209,12 @@ def command_line(version: str) -> argparse.ArgumentParser:
     return parser
 
 
-def _command(commands: Any, name: str, summary: str, examples: str) -> argparse.ArgumentParser:
-    """Add a command that writes a folder."""
+def _command(
+    commands: Any, name: str, summary: str, examples: str, usual: str = "NAME-curlshot"
+) -> argparse.ArgumentParser:
+    """Add a command that writes a folder, which has a `usual` name."""
     parser = _bare_command(commands, name, summary, examples)
-    parser.add_argument("-o", "--out", metavar="OUT", help="folder for the files (NAME-curlshot)")
+    parser.add_argument("-o", "--out", metavar="OUT", help=f"folder for the files ({usual})")
     return parser
 
 

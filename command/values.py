@@ -54,17 +54,25 @@ def amount(text: str) -> Amount:
     """Read a number, or a factor such as ``1.1x``."""
     from physics.what_if import Amount
 
-    relative = text.endswith("x")
-    what = "a number, or a factor such as 1.1x"
-    return Amount(number(text.removesuffix("x"), -20.0, 20.0, what), relative)
+    return Amount(*_or_factor(text, -20.0, 20.0, "a number, -20 to 20"))
 
 
 def speed(text: str) -> Amount:
     """Read a speed, m/s, or a factor such as ``1.1x``."""
     from physics.what_if import Amount
 
-    what = "a speed in m/s, 0 to 10, nor a factor as 1.1x"
-    return Amount(number(text.removesuffix("x"), 1e-6, 10.0, what), text.endswith("x"))
+    return Amount(*_or_factor(text, 1e-6, 10.0, "a speed above 0, at most 10 m/s"))
+
+
+def _or_factor(text: str, low: float, high: float, what: str) -> tuple[float, bool]:
+    """Read a number between two bounds, and whether it is a factor."""
+    value = text.removesuffix("x")
+    try:
+        return number(value, low, high, what), value != text
+    except argparse.ArgumentTypeError:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not {what}, nor a factor such as 1.1x, at most {high:g}x"
+        ) from None
 
 
 def samples(text: str) -> int:
