@@ -1,4 +1,4 @@
-"""The command ``curlshot`` and the order of the work, from Python as `run`, `track` and so on.
+"""The command ``curlshot`` and the order of the work, from Python as `run`, `check` and so on.
 
 Everything heavy is imported where it is used, so that ``curlshot --help`` answers at once.
 """
@@ -344,7 +344,7 @@ def _run_season(arguments: argparse.Namespace, clips: Sequence[Path], bars: Bars
         name, error = next(iter(failed.items()))
         raise InputError(f"none of {len(clips)} clips could be used; {name}: {error}")
     shots, means = season({name: run.results for name, run in done.items()}, folder)
-    failures = [f"{name:<24s} not used: {one_line(str(why))}" for name, why in failed.items()]
+    failures = [f"{name}   not used: {one_line(str(why))}" for name, why in failed.items()]
     return "\n".join([*season_text(shots, means), *failures, f"written     {folder}"])
 
 

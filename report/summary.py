@@ -78,8 +78,9 @@ def simulation_text(simulation: Simulation, path: Path) -> str:
 
 def season_text(shots: pd.DataFrame, pooled: Mapping[str, Pooled]) -> list[str]:
     """One line per shot, and what all say together."""
+    width = max((len(name) for name in shots["shot"]), default=0)
     lines = [
-        f"{shot['shot']:<24s} {count(int(shot['hits']), 'hit')}"
+        f"{shot['shot']:<{width}s}   {count(int(shot['hits']), 'hit')}"
         f"   e = {plus_minus(shot['restitution'], shot['stderr_restitution'])}"
         f"   μ = {plus_minus(shot['friction'], shot['stderr_friction'])}"
         for shot in shots.to_dict("records")
