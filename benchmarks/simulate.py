@@ -19,13 +19,15 @@ from importlib import import_module
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from physics.batch import States
 from physics.curl import FCV1Curl
 from physics.curve import CELLS, curve
 from physics.ice import FCV1
 from physics.impact import Frictional
-from physics.many import States, simulate_many
+from physics.many import simulate_many
 from physics.motion import Motion, Path
-from physics.simulate import Shot, StoneStart, simulate
+from physics.simulate import simulate
+from physics.simulation import Shot, StoneStart
 
 
 def single() -> Shot:

@@ -16,7 +16,8 @@ import pandas as pd
 from data.tracks import check_sightings
 from physics.contacts import find_contacts
 from physics.estimate import estimate
-from physics.simulate import Shot, StoneStart, simulate
+from physics.simulate import simulate
+from physics.simulation import Shot, StoneStart
 
 
 def made_up() -> pd.DataFrame:

@@ -20,7 +20,8 @@ from physics.global_fit import fit_shots
 from physics.impact import Frictional, Impact, PointMass
 from physics.law_choice import STRAIGHT
 from physics.predict import explained_until, score
-from physics.simulate import Simulation, simulate
+from physics.simulate import simulate
+from physics.simulation import Simulation
 from physics.traces import traces
 from physics.watched import LITERATURE, watch
 from physics.whole_fit import GlobalFit

@@ -19,8 +19,6 @@ from physics.curl import Curl
 from physics.ice import IceLaw
 from physics.simulation import Shot, check_shot
 
-__all__ = ["Outcomes", "States", "simulate_many"]
-
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 

@@ -15,7 +15,8 @@ from physics.estimate import Estimates
 from physics.impact import Frictional, Impact, PointMass, RigidBody
 from physics.laws import Laws, measured_laws
 from physics.shot_model import STATE
-from physics.simulate import Shot, StoneStart, simulate
+from physics.simulate import simulate
+from physics.simulation import Shot, StoneStart
 from physics.spread import Doubt, draws, path_spread, simulated_hits
 
 MOVED = 0.05

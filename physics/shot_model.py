@@ -15,7 +15,8 @@ from physics.curl import Curl, FCV1Curl, NoCurl
 from physics.ice import Fit
 from physics.impact import Frictional
 from physics.motion import Path
-from physics.simulate import Shot, Simulation, StoneStart, simulate
+from physics.simulate import simulate
+from physics.simulation import Shot, Simulation, StoneStart
 from physics.traces import Trace
 
 Floats = NDArray[np.float64]

@@ -19,9 +19,7 @@ from data.results import StoneState
 from physics.approach import first_contact
 from physics.bounds import leaves_at
 from physics.motion import Motion, Path, Point
-from physics.simulation import Hit, Rest, Shot, Simulation, StoneStart, check_shot
-
-__all__ = ["Hit", "Rest", "Shot", "Simulation", "StoneStart", "simulate"]
+from physics.simulation import Hit, Rest, Shot, Simulation, check_shot
 
 TOUCHING = 1e-9
 """Gap up to which two stones touch, m."""

@@ -15,7 +15,8 @@ from data.errors import InputError
 from data.results import MeasuredState, SimulatedHit, StoneState
 from physics.laws import Scaled
 from physics.shot_model import STATE
-from physics.simulate import Hit, Shot, Simulation, StoneStart, simulate
+from physics.simulate import simulate
+from physics.simulation import Hit, Shot, Simulation, StoneStart
 
 Floats = NDArray[np.float64]
 

@@ -13,10 +13,11 @@ from scipy.special import ndtri
 
 from data.errors import InputError
 from data.sheet import GRAVITY, HOUSE
+from physics.batch import States
 from physics.curl import Curl, FCV1Curl
 from physics.ice import IceLaw
 from physics.laws import Scaled
-from physics.many import States, simulate_many
+from physics.many import simulate_many
 from physics.simulation import StoneStart
 from physics.start import Start, speed_before
 

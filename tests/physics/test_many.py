@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 
 from data.errors import InputError
-from physics.batch import FEW
+from physics.batch import FEW, States
 from physics.curl import FCV1Curl, NoCurl
 from physics.ice import FCV1, Constant, IceLaw
 from physics.impact import Frictional, Impact, PointMass, RigidBody
-from physics.many import Outcomes, States, simulate_many
-from physics.simulate import Shot, Simulation, StoneStart, simulate
+from physics.many import Outcomes, simulate_many
+from physics.simulate import simulate
+from physics.simulation import Shot, Simulation, StoneStart
 
 R = 0.145
 COUNT = FEW + 12

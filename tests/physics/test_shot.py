@@ -13,7 +13,8 @@ from physics.curl import FCV1Curl, NoCurl
 from physics.ice import FCV1, Constant, Penner
 from physics.impact import Frictional, PointMass, RigidBody
 from physics.shot import read_shot
-from physics.simulate import Shot, StoneStart, simulate
+from physics.simulate import simulate
+from physics.simulation import Shot, StoneStart
 
 WHOLE = """
 [physics]

@@ -15,8 +15,8 @@ from data.sheet import GRAVITY
 from physics.curl import FCV1Curl, NoCurl
 from physics.ice import FCV1, Constant, IceLaw, Penner
 from physics.impact import Frictional, Impact, PointMass, RigidBody
-from physics.simulate import Hit, Shot, Simulation, StoneStart, simulate
-from physics.simulation import SIMULATION_COLUMNS
+from physics.simulate import simulate
+from physics.simulation import SIMULATION_COLUMNS, Hit, Shot, Simulation, StoneStart
 
 R = 0.145
 LAWS: list[IceLaw] = [Constant(), FCV1(), Penner()]

@@ -10,7 +10,8 @@ from physics.ice import Constant
 from physics.impact import Frictional, PointMass
 from physics.kalman import smooth
 from physics.predict import simulate_measured
-from physics.simulate import Shot, StoneStart, simulate
+from physics.simulate import simulate
+from physics.simulation import Shot, StoneStart
 from physics.spread import Doubt, draws, path_spread, simulated_hits
 from tests.physics.watch import RADIUS, hit_motion, watch
 

@@ -14,7 +14,8 @@ from physics.bounds import Bounds
 from physics.curl import FCV1Curl, NoCurl
 from physics.ice import FCV1, Constant, Penner
 from physics.impact import Frictional, PointMass
-from physics.simulate import Shot, StoneStart, simulate
+from physics.simulate import simulate
+from physics.simulation import Shot, StoneStart
 from physics.start import HOG_TO_TEE, Start, measured_start, speed_before, written_start
 from physics.what_if import Amount, Changes, changed, odds, sample
 

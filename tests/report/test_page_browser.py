@@ -17,8 +17,8 @@ from physics.curl import FCV1Curl
 from physics.ice import FCV1
 from physics.impact import Frictional, PointMass, RigidBody
 from physics.shot import read_shot
-from physics.simulate import Shot as Throw
 from physics.simulate import simulate
+from physics.simulation import Shot as Throw
 from physics.start import Start, measured_start
 from physics.what_if import Amount, Changes, changed
 from report.overlay import write_overlay

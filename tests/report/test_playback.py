@@ -13,7 +13,7 @@ from physics.bounds import Bounds
 from physics.curl import FCV1Curl
 from physics.ice import FCV1, Fit
 from physics.impact import PointMass
-from physics.simulate import Shot, StoneStart
+from physics.simulation import Shot, StoneStart
 from physics.start import measured_start
 from report.playback import STEPS, differences, playback, shot_values
 from report.trial import sliders, trial

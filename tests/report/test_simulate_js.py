@@ -15,7 +15,8 @@ from physics.bounds import Bounds
 from physics.curl import Curl, FCV1Curl, NoCurl
 from physics.ice import FCV1, Constant, Fit, IceLaw, Penner
 from physics.impact import Frictional, Impact, PointMass, RigidBody
-from physics.simulate import Shot, Simulation, StoneStart, simulate
+from physics.simulate import simulate
+from physics.simulation import Shot, Simulation, StoneStart
 from physics.start import written_start
 from physics.what_if import Amount, Changes, changed
 from report import page
