@@ -21,12 +21,6 @@ def data_significant(value: float | None, digits: int = 3, factor: float = 1.0) 
     return _element(value, significant(value * factor, digits))
 
 
-def data_pair(value: float | None, stderr: float | None) -> Markup:
-    """Write "value ± standard error", rounded together, with all digits kept for machines."""
-    first, second = parts(value, stderr)
-    return Markup(DASH) if value is None else exact(value, first, stderr, second)
-
-
 def exact(value: float, text: str, stderr: float | None, error: str | None) -> Markup:
     """Write a rounded value, and its rounded error if any, with all digits kept for machines."""
     first = _element(value, text)
