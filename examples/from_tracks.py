@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from data.sheet import STONE
 from data.tracks import check_sightings
 from physics.contacts import find_contacts
 from physics.estimate import estimate
@@ -28,7 +29,7 @@ def made_up() -> pd.DataFrame:
     return seen[["stone", "t", "x", "y"]]
 
 
-RADIUS = 0.145  # of the discs, m
+RADIUS = STONE.radius  # of the discs, m
 
 table = pd.read_csv(Path(sys.argv[1]) / "tracks.csv") if sys.argv[1:] else made_up()
 sightings = check_sightings(table)
