@@ -96,19 +96,7 @@ def _renumbered(cuts: Mapping[str, list[Piece]], gone: int) -> dict[str, list[Pi
         return k - 1 if k is not None and k > gone else k
 
     return {
-        name: [
-            Piece(
-                p.stone,
-                p.start,
-                p.end,
-                p.samples,
-                p.rest,
-                p.stops,
-                rank(p.opens),
-                rank(p.closes),
-            )
-            for p in run
-        ]
+        name: [replace(p, opens=rank(p.opens), closes=rank(p.closes)) for p in run]
         for name, run in cuts.items()
     }
 

@@ -9,6 +9,7 @@ in the unknowns but for the times of the hits, so a few Gauss-Newton steps find 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -275,13 +276,4 @@ class _Solver:
 def _with_samples(piece: Piece, samples: NDArray[np.int64]) -> Piece:
     if len(samples) == len(piece.samples):
         return piece
-    return Piece(
-        piece.stone,
-        piece.start,
-        piece.end,
-        samples,
-        piece.rest,
-        piece.stops,
-        piece.opens,
-        piece.closes,
-    )
+    return replace(piece, samples=samples)

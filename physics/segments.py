@@ -7,7 +7,7 @@ times at which a path stops being such a motion: a push, a wall, a stop, a chang
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -259,15 +259,8 @@ def _with_stops(path: Trace, run: list[Piece], radius: float) -> list[Piece]:
                 slow_end = float(np.hypot(*motion.last)) < 0.15 * radius + 0.12 + 3 * motion.stderr
             if slow_end:
                 samples = np.concatenate([last.samples, piece.samples])
-                out[-1] = Piece(
-                    piece.stone,
-                    last.start,
-                    piece.end,
-                    samples,
-                    last.rest,
-                    not last.rest,
-                    last.opens,
-                    piece.closes,
+                out[-1] = replace(
+                    last, end=piece.end, samples=samples, stops=not last.rest, closes=piece.closes
                 )
                 continue
         out.append(piece)

@@ -14,7 +14,7 @@ from data.sheet import STONE, curling_size
 from physics.curl import Curl, FCV1Curl, NoCurl
 from physics.ice import Fit
 from physics.impact import Frictional
-from physics.motion import Path
+from physics.motion import Motion, Path
 from physics.simulate import simulate
 from physics.simulation import Shot, Simulation, StoneStart
 from physics.traces import Trace
@@ -134,7 +134,7 @@ class Watched:
         """Seen less simulated spins over their standard errors, one for each of `spins`."""
         return np.array(
             [
-                (s.omega - _path(simulation.paths[s.stone], s.t - self.start).omega) / s.stderr
+                (s.omega - _at(simulation.paths[s.stone], s.t - self.start).omega) / s.stderr
                 for s in self.spins
             ]
         )
@@ -157,7 +157,8 @@ def curl(values: Mapping[str, float], loss: float = FCV1Curl.loss) -> Curl:
     return FCV1Curl(turn=turn, loss=loss) if turn or loss else NoCurl()
 
 
-def _path(paths: Sequence[Path], t: float):  # type: ignore[no-untyped-def]
+def _at(paths: Sequence[Path], t: float) -> Motion:
+    """State on a stone's paths at a time of the simulation, s."""
     k = bisect_right(paths, t, key=lambda path: path.start) - 1
     return paths[max(k, 0)].at(t)
 

@@ -116,7 +116,7 @@ def path_spread(others: Sequence[Simulation], times: Floats) -> pd.DataFrame:
     tables = []
     for stone, group in spread.groupby(level="stone"):
         at = group.index.get_level_values("t").to_numpy(float)
-        values = {sd: np.interp(times, at, group[name]) for name, sd in zip(STATE, columns)}  # noqa: B905
+        values = {f"sd_{name}": np.interp(times, at, group[name]) for name in STATE}
         tables.append(pd.DataFrame({"stone": stone, "t": times, **values}))
     return pd.concat(tables, ignore_index=True)
 
