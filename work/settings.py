@@ -28,8 +28,8 @@ class Settings:
         first), for a house that is not found by itself.
     camera : Path, optional
         Table as ``camera.csv`` with a known camera: one row, or one per frame; or a Tracker
-        project, whose coordinate system is the camera. With a radius
-        other than a curling stone's, the discs are looked for as plain ones on no house.
+        project, whose coordinate system is the camera. With a radius other than a curling
+        stone's, the discs are looked for as plain ones on no house.
     radius : float
         Radius of the discs, m.
     masses : mapping
