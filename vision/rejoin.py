@@ -32,6 +32,8 @@ def rejoined(tracks: Sequence[Track], radius: float, gate: Gate = GATE) -> list[
         In order of birth.
     radius : float
         Of the discs, m.
+    gate : Gate
+        When a sighting may belong to a track.
 
     Returns
     -------
@@ -42,9 +44,7 @@ def rejoined(tracks: Sequence[Track], radius: float, gate: Gate = GATE) -> list[
     for track in tracks:
         before = [other for other in out if _goes_on(other, track, radius, gate)]
         if len(before) == 1:
-            before[0].frames += track.frames
-            before[0].times += track.times
-            before[0].sightings += track.sightings
+            before[0].go_on(track)
         else:
             out.append(track)
     return out

@@ -10,6 +10,10 @@ LOST, BACK = 1.0, 2.6
 """When the stone goes out of sight, and comes back, s."""
 
 
+RESTS = 3.6
+"""When it has come to rest, s."""
+
+
 def thrown(t: float) -> Place | None:
     return (0.2, 3.0 - 1.4 * t) if t < LOST else None
 
@@ -40,3 +44,22 @@ def test_what_comes_back_from_where_a_stone_was_lost_is_that_stone(start, colour
     assert len(joined) == stones
     assert sum(len(track.frames) for track in joined) == sum(len(seen) for _, _, seen in frames)
     assert all(track.times == sorted(track.times) for track in joined)
+
+
+def test_a_stone_that_came_back_and_rests_does_not_go_on() -> None:
+    way = coming_back((0.2, 1.6))
+
+    def resting(t: float) -> Place | None:
+        return way(min(t, RESTS)) if BACK < t < 5.0 else None
+
+    def another(t: float) -> Place | None:
+        x, y = way(RESTS)
+        return (x + 0.5 * (t - 5.0), y + 0.9 * (t - 5.0)) if t > 6.0 else None
+
+    tracks = follow(clip([thrown, resting, another], seconds=8.0), R)
+    first, rest, new = tracks
+    assert first.speed > 1.0 and rest.speed == 0.0
+    joined = rejoined(tracks, R)
+    assert [track.times[0] for track in joined] == [0.0, new.times[0]]
+    assert joined[0].times[-1] == rest.times[-1]
+    assert joined[0].speed == 0.0
