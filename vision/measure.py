@@ -69,8 +69,6 @@ class Measures:
     worth : ndarray, shape (n, rays, radii)
         What the samples of `rays` may be: 1 cap, −1 granite, 0 neither.
     rays : Rays
-    scale, tilt : ndarray, shape (n,)
-        Of the view there: px per metre, and tangent of its angle to the vertical.
     """
 
     ok: Bools
@@ -86,8 +84,6 @@ class Measures:
     handle: Bytes
     worth: Floats
     rays: Rays
-    scale: Array
-    tilt: Array
 
 
 def measure(
@@ -122,7 +118,7 @@ def measure(
     scale = np.concatenate([scales(look.camera, look.places) for look in looks])
     tilt = np.concatenate([tilts(look.camera, look.places) for look in looks])
     if is_plain(disc):
-        return _plain(rays, handle, places, scale, tilt, disc, effort)
+        return _plain(rays, handle, places, scale, disc, effort)
     assert appearance is not None
     # Behind the plane of the handle a slanting view shows the cap displaced. Rings that leave
     # it show its edge, which stays while the stone turns: they are blanked.
@@ -227,8 +223,6 @@ def _stones(
         handle=handle,
         worth=worth,
         rays=rays,
-        scale=scale,
-        tilt=tilt,
     )
 
 
@@ -237,7 +231,6 @@ def _plain(
     handle: Bytes,
     places: Array,
     scale: Array,
-    tilt: Array,
     disc: Stone,
     effort: Effort,
 ) -> Measures:
@@ -263,8 +256,6 @@ def _plain(
         handle=handle,
         worth=np.zeros(within.shape, np.float32),
         rays=rays,
-        scale=scale,
-        tilt=tilt,
     )
 
 
