@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from vision.linear import Frame, Linear, by_rig, linearised
 from vision.paint import Marks, joined
@@ -60,9 +60,7 @@ def solve(
     size: tuple[int, int],
     *,
     prior: Prior,
-    view_sd: ArrayLike = VIEW_SD,
     sharing: float = 1.0,
-    width: float = WIDTH,
     iterations: int = 12,
 ) -> Solution:
     """Fit cameras to the marks of one or more frames.
@@ -71,36 +69,32 @@ def solve(
     ----------
     frames : sequence of Marks
     views : sequence of View
-        Start values, one per frame, and the centres of the weak prior `view_sd`.
+        Start values, one per frame, and the centres of a weak prior (`VIEW_SD`).
     rig : ndarray, shape (14,)
         Start values of the shared part.
     size : tuple of int
         Width and height of the picture, px.
     prior : Prior
         Of the shared part.
-    view_sd : array_like, shape (4,)
-        Standard deviation of each view about its start.
     sharing : float
         How many marks share one error (of paint, of the lens): so much less do they weigh
         against the rig's prior.
-    width : float
-        Width of the Cauchy loss in standard deviations.
     """
     every = Frame(joined(frames), size, counts=[len(m) for m in frames])
     held = sharing / prior.sd**2
-    hold = 1 / np.asarray(view_sd, float) ** 2
+    hold = 1 / np.square(VIEW_SD)
     start = np.array([v.vector for v in views])
 
     def look(vs: Array, s: Array) -> tuple[Linear, float]:
         at = linearised(every, every.points(s), vs, s)
         value = float((held * (s - prior.mean) ** 2).sum() + (hold * (vs - start) ** 2).sum())
-        return at, 0.5 * value + float(loss(at.residual, width).sum())
+        return at, 0.5 * value + float(loss(at.residual, WIDTH).sum())
 
     now, shared, damping = start, rig, 1e-4
     at, cost = look(now, shared)
     schur = np.zeros((RIG_SIZE, RIG_SIZE))
     for _ in range(iterations):
-        weight = 1 / (1 + (at.residual / width) ** 2)
+        weight = 1 / (1 + (at.residual / WIDTH) ** 2)
         jv, js = at.by_view * weight, by_rig(every, at, now)
         schur = np.diag(held) + (js * weight) @ js.T
         right = held * (shared - prior.mean) + js @ (weight * at.residual)
@@ -127,7 +121,7 @@ def solve(
         damping = max(damping / 10, 1e-9)
         if done:
             break
-    left = [spread(at.residual[part], every.sd[part], width) for part in every.parts]
+    left = [spread(at.residual[part], every.sd[part], WIDTH) for part in every.parts]
     return Solution(
         shared,
         tuple(View(v) for v in now),

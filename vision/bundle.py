@@ -17,7 +17,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from vision.linear import Frame, Linear, by_measure, by_rig, linearised
 from vision.paint import Marks, joined
@@ -68,8 +68,6 @@ def bundle(
     rig: Array,
     size: tuple[int, int],
     prior: Prior,
-    *,
-    view_sd: ArrayLike = VIEW_SD,
 ) -> tuple[Bundle, tuple[View, ...]]:
     """Fit what frames share, and their views.
 
@@ -80,7 +78,7 @@ def bundle(
     times : sequence of float
         Of the frames, s, ascending.
     views : sequence of View
-        Start values, one per frame, and the centres of the weak prior `view_sd`.
+        Start values, one per frame, and the centres of a weak prior (`VIEW_SD`).
     rig : ndarray, shape (14,)
         Start values of the shared part.
     size : tuple of int
@@ -88,14 +86,12 @@ def bundle(
     prior : Prior
     """
     span = times[0], times[-1]
-    still = _Problem(frames, polynomials(np.array(times), span, 0), views, size, prior, view_sd)
+    still = _Problem(frames, polynomials(np.array(times), span, 0), views, size, prior)
     start = np.array([v.vector for v in views])
     state = _State(rig, np.zeros((0, 3)), np.zeros(len(still.pieces)), start)
     problem, found = still, still.learn(state, PAINT_SD, np.ones(FAMILIES))
     if len(frames) >= LEAST_FRAMES:
-        moving = _Problem(
-            frames, polynomials(np.array(times), span, DEGREE), views, size, prior, view_sd
-        )
+        moving = _Problem(frames, polynomials(np.array(times), span, DEGREE), views, size, prior)
         state, _, paint, noise = found
         state = replace(state, travel=np.zeros((DEGREE, 3)))
         if moving.gain(state, paint, noise) > MOVES:
@@ -139,7 +135,6 @@ class _Problem:
         views: Sequence[View],
         size: tuple[int, int],
         prior: Prior,
-        view_sd: ArrayLike,
     ) -> None:
         ordered = [m.pick(np.argsort(piece_of(m), kind="stable")) for m in frames]
         marks = joined(ordered)
@@ -160,7 +155,7 @@ class _Problem:
         self.of_piece[np.arange(len(self.first)), self.piece[self.first]] = 1.0
         self.prior = prior
         self.start = np.array([v.vector for v in views])
-        self.hold = 1 / np.asarray(view_sd, float) ** 2
+        self.hold = 1 / np.square(VIEW_SD)
 
     def see(self, state: _State) -> Linear:
         """Linearise all frames."""

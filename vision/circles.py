@@ -23,6 +23,9 @@ Bools = NDArray[np.bool_]
 _EDGE_WIDTH = 0.010
 """Half the width of what is taken for one edge, m; at least two samples, at most four."""
 
+_SMOOTH = 1.6
+"""Standard deviation of the Gaussian whose derivative tells how much falls, steps."""
+
 
 @dataclass(frozen=True)
 class Rim:
@@ -230,18 +233,16 @@ def _median(values: Array, use: Bools) -> Array:
     return np.asarray(np.where(count > 0, middle, 0.0))
 
 
-def falls_along(values: Floats | Bytes, width: float = 1.6) -> Floats:
+def falls_along(values: Floats | Bytes) -> Floats:
     """Negative derivative along the radius, lightly smoothed, per step of the radius.
 
     Parameters
     ----------
     values : ndarray, shape (n, rays, radii, channels)
-    width : float
-        Standard deviation of the Gaussian whose derivative is taken, steps.
     """
-    half = int(np.ceil(3 * width))
+    half = int(np.ceil(3 * _SMOOTH))
     x = np.arange(-half, half + 1, dtype=np.float32)
-    slope = np.exp(-0.5 * (x / np.float32(width)) ** 2) * x
+    slope = np.exp(-0.5 * (x / np.float32(_SMOOTH)) ** 2) * x
     slope /= (slope * x).sum()
     across = np.exp(-0.5 * (np.arange(-2, 3, dtype=np.float32) / 0.6) ** 2)
     flat = values.reshape(-1, *values.shape[-2:])

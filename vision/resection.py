@@ -70,7 +70,6 @@ def solve_view(
     size: tuple[int, int],
     *,
     view_sd: ArrayLike = VIEW_SD,
-    offset: Array | float = 0.0,
     width: float = WIDTH,
     iterations: int = 12,
 ) -> ViewSolution:
@@ -86,12 +85,10 @@ def solve_view(
         Width and height of the picture, px.
     view_sd : array_like, shape (4,)
         Standard deviation of the view about its start.
-    offset : ndarray, shape (n,), optional
-        How far the paint under each mark lies off its line, m.
     width : float
         Width of the Cauchy loss in standard deviations.
     """
-    frame = Frame(marks, size, offset)
+    frame = Frame(marks, size)
     return solve_views(frame, [view], rig, view_sd=view_sd, width=width, iterations=iterations)[0]
 
 
