@@ -26,9 +26,6 @@ Flags = NDArray[np.bool_]
 EDGE_SD = 0.45
 """Standard deviation of an edge point with the errors of paint that neighbours share, px."""
 
-NOISE_SD = 0.1
-"""Least standard deviation of an edge point by itself, px."""
-
 LEAST_ON_LINE, LEAST_SHARE = 8, 0.3
 """Edge points that the side of the sheet or a wide line must have, and the share of normals."""
 

@@ -90,14 +90,6 @@ def fixed(ice: Array, pixel: Array, sd: ArrayLike) -> Marks:
     )
 
 
-def ice_points(
-    line: NDArray[np.int64], along: ArrayLike, rig: Array, across: Array | None = None
-) -> Array:
-    """Places of marks on the ice, shape (n, 2), m."""
-    foot, way = ice_frame(line, np.asarray(along, float), across)
-    return np.asarray(foot + way * measures(rig)[line]).T
-
-
 MEASURED = np.array([-1, R8, R4, CENTRE_X, TEE_Y, SIDE_L, SIDE_R, BACK_Y, HOG_Y, -1])
 """Per kind of mark the unknown of the rig that is its measure; −1 where that is known."""
 

@@ -1,10 +1,10 @@
-"""Cameras whose marks are known."""
+"""Cameras whose marks are known, and where marks lie."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from vision.paint import FIXED, Marks, ice_points
+from vision.paint import FIXED, Marks, ice_frame, measures
 from vision.pose import View, project
 from vision.rig import OVERHEAD, R4, R8, start_rig
 
@@ -18,6 +18,14 @@ def true_rig() -> np.ndarray:
     rig[R8], rig[R4] = 1.2105, 0.6235
     rig[8:] = -2.38, 2.36, 0.002, -0.001, -1.822, 6.45
     return rig
+
+
+def ice_points(
+    line: np.ndarray, along: np.ndarray, rig: np.ndarray, across: np.ndarray | None = None
+) -> np.ndarray:
+    """Places of marks on the ice, shape (n, 2), m."""
+    foot, way = ice_frame(line, along, across)
+    return (foot + way * measures(rig)[line]).T
 
 
 def marks(rng: np.random.Generator, view: np.ndarray, rig: np.ndarray, noise: float) -> Marks:

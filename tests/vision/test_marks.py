@@ -7,12 +7,15 @@ import pytest
 
 from tests.synthetic import PAINTS, Paint, render_still, sample_scene, still_camera
 from tests.synthetic.scene import Scene
-from vision.marks import NOISE_SD, measure
+from vision.marks import measure
 from vision.paint import CENTRE_LINE, LEFT, RIGHT, TEE_LINE
 from vision.pose import View
 from vision.rig import OVERHEAD, start_rig
 
 SIZE = (960, 540)
+
+NOISE_SD = 0.1
+"""Least standard deviation of an edge point by itself, px."""
 
 
 def scene(paint: Paint) -> Scene:

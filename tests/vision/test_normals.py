@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from data.sheet import HOUSE
+from tests.vision.cameras import ice_points
 from vision.normals import BLOCK, SAMPLES, THIN, lay_out, profiles
-from vision.paint import CIRCLES, TWELVE, ice_points
+from vision.paint import CIRCLES, TWELVE
 from vision.pose import aim, project
 from vision.rig import OVERHEAD, start_rig
 

@@ -2,7 +2,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from vision.paint import EIGHT, FIXED, TEE_LINE, TWELVE, Marks, fixed, ice_points, joined
+from tests.vision.cameras import ice_points
+from vision.paint import EIGHT, FIXED, TEE_LINE, TWELVE, Marks, fixed, joined
 from vision.rig import OVERHEAD, start_rig
 
 
