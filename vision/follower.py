@@ -36,7 +36,6 @@ Glimpse = tuple[Place, Sighting]
 STILL = 0.03
 """How far from where it rests a stone may be seen, in radii."""
 
-
 DOUBTFUL = 0.6
 """Share of the evidence of a moment ago below which a stone may rather be beside where it is
 expected, as after a hit."""
@@ -102,6 +101,13 @@ class Follower:
 
     def follow(self, views: Sequence[View], leads: Sequence[Lead]) -> list[Lead]:
         """Add to views, one after the other, the stones to which leads point.
+
+        Parameters
+        ----------
+        views : sequence of View
+            In the order of the clip, or against it.
+        leads : sequence of Lead
+            To stones of the picture before.
 
         Returns
         -------

@@ -77,7 +77,23 @@ class RoughFit:
 def fit_roughly(
     image: Image, view: View, rig: Array, prior: Prior, scale: float, centre: float
 ) -> RoughFit | None:
-    """Fit a camera to the circles of a small picture, px per m large and `centre` px aside."""
+    """Fit a camera to the circles of a small picture.
+
+    Parameters
+    ----------
+    image : ndarray of uint8, shape (h, w, 3)
+    view, rig, prior : View, ndarray, Prior
+        Where to begin, and what is known of the rig.
+    scale : float
+        Size of the house, px per m.
+    centre : float
+        Where its middle is, px from the picture's left.
+
+    Returns
+    -------
+    RoughFit or None
+        None where the edges do not bear it out.
+    """
     size = (image.shape[1], image.shape[0])
     thickness = scale * (HOUSE.twelve_foot - HOUSE.eight_foot)
     rms = np.nan
@@ -95,7 +111,7 @@ def fit_roughly(
 
 
 def start(guess: Guess, size: tuple[int, int]) -> tuple[View, Array, Prior]:
-    """Give the camera over the tee or, if circles look foreshortened, one anywhere: view, rig."""
+    """Start over the tee or, if circles look foreshortened, anywhere: view, rig and its prior."""
     down = guess.foreshortening
     prior = OVERHEAD if down == 1 else ANYWHERE
     position = prior.mean[2] * np.array([0.0, -np.sqrt(1 - down**2), down])
@@ -115,7 +131,22 @@ def _aimed(guess: Guess, position: Array, size: tuple[int, int]) -> View:
 
 
 def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) -> HouseFit | None:
-    """Fit at full resolution: the circles, then with the lines."""
+    """Fit at full resolution: the circles, then with the lines.
+
+    Parameters
+    ----------
+    image : ndarray of uint8, shape (h, w, 3)
+    best : RoughFit
+        In a picture `factor` times as large.
+    factor : float
+    frame, t : int, float
+        Index and time, s, of the picture.
+
+    Returns
+    -------
+    HouseFit or None
+        None where the edges do not bear it out.
+    """
     size = (image.shape[1], image.shape[0])
     view, rig = rescaled(best.view, 1 / factor), best.rig
     circles = measure(image, view.vector, rig, reach=max(4 / factor, 6.0), lines=False)

@@ -15,7 +15,6 @@ Floats = NDArray[np.float32]
 Flags = NDArray[np.bool_]
 Image = NDArray[np.uint8]
 
-
 FAINT = 6.0
 """Grey levels beyond which a stronger contrast says no more about a thin line."""
 

@@ -180,9 +180,22 @@ def lay_out(
     most: int = 360,
     lines: bool = True,
 ) -> Normals:
-    """Places to measure: on the circles every `spacing` px, at most `most`; and on the lines.
+    """Places to measure in a picture.
 
-    Where `most` is small there are fewer on the lines as well.
+    Parameters
+    ----------
+    view, rig : ndarray
+        Camera as in `vision.pose` and `vision.rig`.
+    size : tuple of int
+        Width and height of the picture, px.
+    reach : float
+        Half length of the normals, px; across thin lines it is longer where these need it.
+    spacing : float
+        Distance of neighbouring places on a circle, px.
+    most : int
+        Places on a circle; where it is small there are fewer on the lines as well.
+    lines : bool
+        Whether the lines are laid out beside the circles.
     """
     upto = len(_KINDS) if lines else CIRCLES
     count, groups = int(_COUNTS[:upto].sum()), int(_GROUPS[:upto].sum())

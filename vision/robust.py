@@ -1,4 +1,4 @@
-"""What the robust fits of cameras have in common: the Cauchy loss, and what lies within reach."""
+"""What the robust fits of cameras share: the Cauchy loss, what lies within reach, inverses."""
 
 from __future__ import annotations
 

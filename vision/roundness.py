@@ -19,7 +19,7 @@ SHARE = 0.7
 """How far the middle may be off, per axis, in roots of the mean square of what bends the circle."""
 
 USUAL = 0.002
-"""What bends the circles of stones where too little of them is seen, m."""
+"""What bends a stone's circle as a rule, m: it counts as one stone more."""
 
 
 def edge_error(stones: Iterable[Sequence[Sighting]]) -> float:

@@ -28,8 +28,10 @@ Floats = NDArray[np.float32]
 Bounds = tuple[float, float, float, float]
 
 MOST_PLACES = 60
+"""Places that are given of one picture, the strongest."""
 
 LEAST_IN_VIEW = 0.4
+"""Share of cap or ring of which at least the mean is taken: less in view counts less."""
 
 
 @dataclass(frozen=True)

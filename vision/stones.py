@@ -69,7 +69,6 @@ SEARCH = Search()
 FOLLOWING = Search(radius_px=6.5, least_score=0.3)
 """For a clip: a coarser map, for what one picture hides the next ones show."""
 
-
 UNCOVERED = 0.75
 """Share of a cap that must be seen for its angle to be measured."""
 

@@ -62,6 +62,8 @@ def track_stones(
         Size of the stones, or `plain_disc(radius)` for other discs.
     progress : Progress
         Told how far it is.
+    search : Search
+        Where stones are sought and what they must show.
 
     Returns
     -------

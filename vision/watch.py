@@ -53,6 +53,12 @@ class Watch:
     ----------
     disc : Stone
         Size of the stones, or `vision.stones.plain_disc`.
+    search : Search
+        Where stones are sought and what they must show.
+    pace : Pace
+        How often all of the ice is searched.
+    patience : Patience
+        How known stones are followed.
     """
 
     def __init__(
