@@ -115,10 +115,7 @@ def parts(places: Array, error: Array) -> Array:
 
 def stated_sd(camera: Camera, places: Array) -> Array:
     """Stated standard error along x and y of each place, shape (n, 2), m."""
-    covariance = getattr(camera, "place_cov", None)
-    if covariance is None:
-        return np.repeat(camera.place_sd(places)[:, None], 2, axis=1)
-    return np.asarray(np.sqrt(np.diagonal(covariance(places), axis1=-2, axis2=-1)))
+    return np.asarray(np.sqrt(np.diagonal(camera.place_cov(places), axis1=-2, axis2=-1)))
 
 
 def longest_shot(main: NDArray[np.bool_]) -> NDArray[np.bool_]:

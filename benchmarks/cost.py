@@ -46,7 +46,6 @@ PARTS = {
 }
 """Parts of the work and the functions that do it; none calls another."""
 
-
 DECODE = """
 import sys, cv2
 capture = cv2.VideoCapture(sys.argv[1])

@@ -66,9 +66,10 @@ def _spread(simulations: pd.DataFrame) -> dict[str, float]:
 
 def _places(errors: Mapping[str, float | None], stated: Mapping[str, float | None]) -> str:
     """Errors of places and, in brackets, the stated ones, cm."""
+    known = {stone: np.nan if off is None else off for stone, off in errors.items()}
     return " ".join(
-        f"{stone} {100 * (off or 0.0):.1f} ({100 * (stated.get(stone) or np.nan):.1f})"
-        for stone, off in errors.items()
+        f"{stone} {100 * off:.1f} ({100 * (stated.get(stone) or np.nan):.1f})"
+        for stone, off in known.items()
     )
 
 
