@@ -171,7 +171,7 @@ class Piece:
             placed.append((earlier, seen))
         placed.reverse()
         self.seen = [*before, *(seen for _, seen in placed)]
-        self._picture, self._key = frame.picture, None
+        self._picture, self._key, self.missed = frame.picture, None, 0
         return placed
 
     def looks_like(self, palette: Array) -> bool:
