@@ -27,6 +27,8 @@ from numpy.typing import NDArray
 from vision.align import HARMONICS, ORDERS, Array, Complex, align, rings_seen, turned
 
 _GRID = 1440
+"""Angles of a whole turn that are tried."""
+
 BLOCKS = (0.04, 0.08, 0.16, 0.32)
 """Times over which angles are averaged to see how they scatter, s."""
 
@@ -99,7 +101,7 @@ def _offsets(reach: float) -> tuple[Array, NDArray[np.complex128]]:
 def angle_between(
     reference: Complex, spectrum: Complex, expected: float, reach: float
 ) -> tuple[float, float]:
-    """Angle by which one cap is turned against a reference: `angles_between` of one, to 1 mrad."""
+    """Angle by which one cap is turned against a reference: `angles_between` of one, to 2 mrad."""
     model, seen = reference[1:-1], spectrum[1:-1]
     cross = (model.conj() * seen).sum((1, 2)) * np.exp(1j * HARMONICS * expected)
     shown = model[:, seen.any((0, 2))].ravel()
