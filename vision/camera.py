@@ -189,6 +189,11 @@ class Camera:
         """Change of what a pixel is mapped to by the camera's parameters, shape (..., 2, 9).
 
         The pixel stays: what the parameters move in the picture, the place must move back.
+
+        Raises
+        ------
+        ValueError
+            The camera's place is not known.
         """
         if self.position is None:
             raise ValueError("the camera's place is not known")

@@ -177,6 +177,10 @@ def fit_circles(
 
     Parameters
     ----------
+    rays : Rays
+        About n places.
+    rims : sequence of Rim
+        The circles, from the innermost to the outermost.
     slack, reach : float
         Standard deviation of the radii, and distance from the circle up to which an edge may
         count, as shares of the radius.

@@ -42,6 +42,10 @@ def look_on_course(
         Pictures, each with the places where stones are expected.
     appearance : Appearance or None
         What stones look like here; not used for a plain disc.
+    disc : Stone
+        Size of the stones, or `vision.stones.plain_disc`.
+    search : Search
+        What they must show.
 
     Returns
     -------

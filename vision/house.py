@@ -48,6 +48,8 @@ def find_house(image: Image, *, frame: int = 0, t: float = 0.0) -> HouseFit | No
     Parameters
     ----------
     image : ndarray of uint8, shape (h, w, 3)
+    frame, t : int, float
+        Index and time, s, of the picture.
 
     Returns
     -------
@@ -100,7 +102,15 @@ def _beside(small: Image, found: HouseFit, factor: float) -> Iterator[RoughFit]:
 def fit_house(
     image: Image, hypotheses: Sequence[Guess], *, frame: int = 0, t: float = 0.0
 ) -> HouseFit | None:
-    """Fit a house to a picture from hypotheses of where it is, in px of that picture.
+    """Fit a house to a picture from hypotheses of where it is.
+
+    Parameters
+    ----------
+    image : ndarray of uint8, shape (h, w, 3)
+    hypotheses : sequence of Guess
+        In px of that picture.
+    frame, t : int, float
+        Index and time, s, of the picture.
 
     Returns
     -------

@@ -37,6 +37,7 @@ TOGETHER = 16
 """Frames whose views are fitted in one go."""
 
 VIEW_SD = (np.inf, np.inf, 0.05, np.inf)
+"""How far a view may lie from the provisional one: the roll is free where no line is seen."""
 
 LONG_RANGE = 2.0
 """Errors of paint and outline are alike over longer stretches than single pieces and marks tell:

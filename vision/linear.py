@@ -110,7 +110,11 @@ def linearised(frame: Frame, points: Array, views: Array, rig: Array) -> Linear:
 
     Parameters
     ----------
+    frame : Frame
+    points : ndarray, shape (3, n)
+        Places of the marks relative to the camera, m.
     views : ndarray, shape (4,) or (frames, 4)
+    rig : ndarray, shape (14,)
     """
     views = views.reshape(-1, VIEW_SIZE)
     rotations = [rotation_matrix(view) for view in views]

@@ -100,6 +100,10 @@ def measure(
         Pictures of one size and n places in all; the measures are in their order.
     appearance : Appearance or None
         What stones look like here; not used for a plain disc.
+    disc : Stone
+        Size of the discs.
+    effort : Effort
+        How each place is measured.
     """
     sampled = sample_rays(looks, profile_of(disc, effort), effort.rays)
     count = effort.radii

@@ -151,6 +151,14 @@ class Piece:
     ) -> list[tuple[Frame, Seen]]:
         """Begin, or go on after a gap, at a frame of known view and marks.
 
+        Parameters
+        ----------
+        frame : Frame
+        view, marks : View, Marks
+            Of its house, as found.
+        waiting : sequence of Frame
+            Those before it, in order.
+
         Returns
         -------
         list of (Frame, Seen)

@@ -86,7 +86,23 @@ def _series(square: float) -> tuple[float, float, float]:
 
 
 def project(ice: Array, view: Array, rig: Array, size: tuple[int, int]) -> Array:
-    """Ice points, shape (n, 2), to pixels; points behind the camera go to infinity."""
+    """Ice points to pixels.
+
+    Parameters
+    ----------
+    ice : ndarray, shape (n, 2)
+        Places on the ice, m.
+    view : ndarray, shape (4,)
+        A `View`'s vector.
+    rig : ndarray, shape (14,)
+    size : tuple of int
+        Width and height of the picture, px.
+
+    Returns
+    -------
+    ndarray, shape (n, 2)
+        NaN behind the camera.
+    """
     rotation = rotation_matrix(view)
     p = rotation[:, :2] @ ice.T - (rotation @ rig[POSITION])[:, None]  # rows: fast for many points
     z = np.where(p[2] > 1e-3, p[2], np.nan)

@@ -101,6 +101,15 @@ def portraits(
 ) -> list[Portrait | None]:
     """Take the pictures of stones that were measured in a picture.
 
+    Parameters
+    ----------
+    picture, camera, t : Picture, Camera, float
+        The picture, its camera and its time, s.
+    seen : sequence of Sighting
+        The stones.
+    disc : Stone
+        Their size.
+
     Returns
     -------
     list of Portrait or None

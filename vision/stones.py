@@ -200,7 +200,18 @@ def judge(seen: Measures, disc: Stone, search: Search) -> list[str]:
 def sightings(
     seen: Measures, looks: Sequence[Look], chosen: NDArray[np.intp], disc: Stone
 ) -> list[Sighting]:
-    """Sightings of the places chosen from those of the looks; what they share is not told yet."""
+    """Give sightings of places that were measured; what they share is not told yet.
+
+    Parameters
+    ----------
+    seen : Measures
+    looks : sequence of Look
+        What was measured, in the same order.
+    chosen : ndarray of int
+        Which of the places, ascending.
+    disc : Stone
+        Size of the discs.
+    """
     ends = np.cumsum([0, *(len(look.places) for look in looks)])
     parts = zip(looks, np.split(chosen, np.searchsorted(chosen, ends[1:-1])), strict=True)
     pixels = [look.camera.project(seen.centre[i], disc.cap_height) for look, i in parts if len(i)]
@@ -237,7 +248,7 @@ def placed_by(camera: Camera, seen: Sequence[Sighting], disc: Stone) -> list[Sig
 def _shared_errors(camera: Camera, places: Array, disc: Stone, scale: Array, tilt: Array) -> Array:
     """Give the standard errors that no filter averages out, m: by camera and height of the cap."""
     rms = camera.rms_px if np.isfinite(camera.rms_px) else 0.3
-    aslant = 0.02 * disc.cap_height * tilt
+    aslant = 0.03 * disc.cap_height * tilt
     squares = (0.35 * rms / scale) ** 2 + aslant**2
     if camera.error is None:
         return np.asarray(np.sqrt(squares))
