@@ -337,7 +337,7 @@ def _sides(hit: dict[str, Any]) -> dict[str, Any]:
     """Read who hit whom, and their states before and after."""
     first, second = hit["stones"]
     states = {
-        when: {name: _made(MeasuredState, state) for name, state in hit[when].items()}
+        when: {name: _made(MeasuredState, hit[when][name]) for name in (first, second)}
         for when in ("before", "after")
     }
     return {"stones": (first, second), **states}

@@ -192,6 +192,7 @@ def test_damaged_results_are_read_or_refused(tmp_path: Path, key: str, value: ob
         (("collisions", 0, "t"), None),
         (("collisions", 0, "stone_friction"), "1.5"),
         (("collisions", 0, "before", "A", "vx"), "fast"),
+        (("collisions", 0, "stones"), ["A", "Q"]),
         (("friction", "stderr"), "x"),
         (("restitution", "value"), True),
         (("glides", 0, "t0"), []),
@@ -199,7 +200,7 @@ def test_damaged_results_are_read_or_refused(tmp_path: Path, key: str, value: ob
         (("radius",), "0.1455"),
     ],
 )
-def test_what_is_no_number_is_refused(
+def test_what_is_no_number_or_no_stone_is_refused(
     path: tuple[str | int, ...], value: object, tmp_path: Path
 ) -> None:
     content = json.loads(RESULTS.to_json())
