@@ -32,7 +32,7 @@ _GRID = 1440
 BLOCKS = (0.04, 0.08, 0.16, 0.32)
 """Times over which angles are averaged to see how they scatter, s."""
 
-CAUTION = 1.25
+CAUTION = 1.4
 """How much larger errors are than the scatter over those times tells, for some last longer."""
 
 SPREAD = 0.3

@@ -73,6 +73,11 @@ UNCOVERED = 0.75
 """Share of a cap that must be seen for its angle to be measured."""
 
 
+ASLANT = 0.025
+"""Standard error of how high the rim of a cap is seen, as a share of its height: a wall or a
+rounded rim is seen on the near side only."""
+
+
 @dataclass(frozen=True)
 class Findings:
     """What a search of one picture gave: the stones, strongest first, and what was refused."""
@@ -248,7 +253,7 @@ def placed_by(camera: Camera, seen: Sequence[Sighting], disc: Stone) -> list[Sig
 def _shared_errors(camera: Camera, places: Array, disc: Stone, scale: Array, tilt: Array) -> Array:
     """Give the standard errors that no filter averages out, m: by camera and height of the cap."""
     rms = camera.rms_px if np.isfinite(camera.rms_px) else 0.3
-    aslant = 0.03 * disc.cap_height * tilt
+    aslant = ASLANT * disc.cap_height * tilt
     squares = (0.35 * rms / scale) ** 2 + aslant**2
     if camera.error is None:
         return np.asarray(np.sqrt(squares))
