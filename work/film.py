@@ -10,7 +10,7 @@ from data.errors import InputError
 from data.inputs import PROJECT_SUFFIXES, TABLE_SUFFIXES
 from data.progress import Progress
 from data.sheet import HOUSE, STONE, House, Stone
-from work.settings import Settings
+from work.settings import Settings, refuse_table_options
 
 if TYPE_CHECKING:
     from vision.camera import Camera
@@ -35,6 +35,7 @@ class Filmed:
 def film(files: tuple[Path, ...], settings: Settings, progress: Progress, placed: Placed) -> Filmed:
     """Open a clip, read it and find its cameras; `placed` is told of each frame on the way."""
     clip, disc = _open_clip(files, settings), disc_of(settings)
+    refuse_table_options(files[0], settings)
     if settings.stick is not None:
         from vision.stick import stick_cameras
 

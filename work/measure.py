@@ -12,7 +12,7 @@ from data.inputs import IMAGE_SUFFIXES, TABLE_SUFFIXES, find_inputs
 from data.progress import Progress, no_progress
 from data.sheet import HOUSE, STONE, House
 from work.film import check_size, disc_of, film
-from work.settings import Settings, refuse_clip_options, refuse_table_options
+from work.settings import Settings, refuse_clip_options
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -62,8 +62,6 @@ def measure(
         source = ", ".join(map(str, files))
         refuse_no_discs(table.sightings, settings.radius, source, table.advice)
         return _imported(files, table, settings)
-    if not any(tables):
-        refuse_table_options(files[0], settings)
     return _look_at_clip(files, settings, progress)
 
 

@@ -86,12 +86,17 @@ class Settings:
 
 
 def refuse_table_options(path: Path, settings: Settings) -> None:
-    """Refuse to pass over what a person says about tables where a clip is measured."""
-    said = {"--names": settings.names, "--angles": settings.angles, "--tab": settings.tab}
+    """Refuse to pass over what a person says about tables where a clip is measured.
+
+    Tabs and lengths of a project count there too, be it the clip's own or the camera's.
+    """
+    said: dict[str, object] = {"--names": settings.names, "--angles": settings.angles}
     said["--angle-unit"] = settings.angle_unit
+    sources = [path] if settings.camera is None else [path, settings.camera]
+    if not any(source.suffix.lower() in PROJECT_SUFFIXES for source in sources):
+        said["--tab"] = settings.tab
+        said["--length-unit"] = None if settings.length_unit == "m" else settings.length_unit
     given = [name for name, value in said.items() if value]
-    if settings.length_unit != "m":
-        given.append("--length-unit")
     if given:
         raise InputError(f"{path}: only tables take {', '.join(given)}; a clip is measured here")
 
