@@ -19,6 +19,9 @@ Floats = NDArray[np.float32]
 CONVINCING = 1.4
 """Evidence from which a sighting teaches what stones look like."""
 
+MOST_COLOURS = 2
+"""Cap colours of a clip: two teams play."""
+
 
 @dataclass(frozen=True)
 class Colour:
@@ -111,7 +114,7 @@ def _any_stone(white: int) -> Appearance:
     return Appearance((cap - granite).astype(np.float32))
 
 
-def learn(sightings: Sequence[Sighting], most_colours: int = 2) -> Appearance | None:
+def learn(sightings: Sequence[Sighting]) -> Appearance | None:
     """Learn the cap colours and the granite of a clip from sightings in many frames.
 
     Caps are grouped by their colour; groups that are rare beside the others are left out.
@@ -130,7 +133,7 @@ def learn(sightings: Sequence[Sighting], most_colours: int = 2) -> Appearance | 
         else:
             groups.append([sighting])
     groups.sort(key=len, reverse=True)
-    groups = [group for group in groups[:most_colours] if len(group) >= 0.08 * len(groups[0])]
+    groups = [group for group in groups[:MOST_COLOURS] if len(group) >= 0.08 * len(groups[0])]
     if not groups:
         return None
     caps = tuple(

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from data.sheet import STONE, Stone
-from vision.appearance import CONVINCING, Appearance, colour_difference, learn
+from vision.appearance import CONVINCING, MOST_COLOURS, Appearance, colour_difference, learn
 from vision.camera import Camera
 from vision.clip import Frame
 from vision.follower import PATIENCE, Follower, Patience, View
@@ -163,24 +163,38 @@ class Watch:
     def _search_for_new(self, view: View) -> None:
         """Search all the ice; follow what is found back through the last pictures."""
         self._since = 0
-        self._look_for_colours(view)
-        fresh = self._follower.sought(view)
-        view.sightings.extend(fresh)
+        fresh = self._find(view)
+        if self._look_for_colours(view):
+            fresh += self._find(view)
         leads = [Lead.to(sighting, view.frame.t) for sighting in fresh]
         self._leads += leads
         if self._knows:
             self._follower.follow([*self._recent][-2::-1], leads)
 
-    def _look_for_colours(self, view: View) -> None:
-        """See whether there are stones of a colour that is not known yet."""
+    def _find(self, view: View) -> list[Sighting]:
+        """Add to a view the stones of known colours that were not seen in it so far."""
+        fresh = self._follower.sought(view)
+        view.sightings.extend(fresh)
+        return fresh
+
+    def _look_for_colours(self, view: View) -> bool:
+        """See whether there are stones of a colour that is not known yet, and learn it."""
         if self.appearance is None:
-            return
+            return False
         caps = [cap.mean for cap in self.appearance.caps]
-        if any(
+        shown = {
+            min(range(len(caps)), key=lambda i: colour_difference(caps[i], stone.colour))
+            for stone in view.sightings
+        }
+        if len(shown) == MOST_COLOURS:
+            return False  # one more would take the place of one that is on the ice
+        new = any(
             min(colour_difference(cap, stone.colour) for cap in caps) > UNLIKE
             for stone in _convincing(self._of_any_colour([view]))
-        ):
+        )
+        if new:
             self._learn(self._recent)
+        return new
 
 
 def _convincing(found: Iterable[Sighting]) -> list[Sighting]:

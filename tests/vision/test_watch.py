@@ -32,6 +32,19 @@ def test_a_stone_found_late_is_followed_back_also_one_of_a_new_colour(
     assert counts == [3] * since + [4] * (50 - since)
 
 
+def test_a_third_colour_does_not_take_the_place_of_one_on_the_ice() -> None:
+    places = [*AT_REST, (-0.3, -0.5, YELLOW), (0.5, 0.9, BLUE)]
+    image, camera = picture(places), camera_of(CAMERA, scene_of(places))
+    watch = Watch()
+    learned = set()
+    for index in range(150):
+        watch.look(Frame(index, index / 25, image), camera)
+        if watch.appearance is not None:
+            learned.add(tuple(cap.name for cap in watch.appearance.caps))
+    assert len(learned) == 1
+    assert [len(sightings) for _, _, sightings in watch.finish()] == [4] * 150
+
+
 def test_a_stone_that_convinces_in_some_pictures_only_is_learned_from_these() -> None:
     clear = picture(AT_REST[:1])
     camera = camera_of(CAMERA, scene_of(AT_REST[:1]))
