@@ -78,9 +78,9 @@ class Thing:
             raise InputError(f"{self.cls}: {name} is no whole number ({number:g})")
         return int(number)
 
-    def true(self, name: str, default: bool = False) -> bool:
-        """Give a property's truth value."""
-        return self.text(name, str(default).lower()) == "true"
+    def true(self, name: str) -> bool:
+        """Give a property's truth value; false where there is none."""
+        return self.text(name, "false") == "true"
 
     def thing(self, name: str) -> Thing | None:
         """Give the object, array or collection of that name, if there is one."""

@@ -97,7 +97,6 @@ def estimate(
     *,
     radius: float,
     masses: Mapping[str, float] | None = None,
-    friction_expected: bool = True,
     inertia: float = STONE.inertia,
 ) -> Estimates:
     """Estimate restitution, friction and the state of the stones at each hit.
@@ -112,15 +111,10 @@ def estimate(
         Of the discs, m.
     masses : mapping, optional
         Stone to mass in any unit; equal where absent.
-    friction_expected : bool
-        Whether to warn when no glide gives a friction.
     inertia : float
         k in I = k m R²; decides whether a contact can have slid throughout.
     """
-    local = estimate_locally(
-        sightings, contacts,
-        radius=radius, masses=masses, friction_expected=friction_expected, inertia=inertia,
-    )  # fmt: skip
+    local = estimate_locally(sightings, contacts, radius=radius, masses=masses, inertia=inertia)
     restitution, friction = local.restitution, local.friction
     fitted, doubt = _whole(local, radius, masses or {}, inertia)
     whole = fitted if doubt is None else None

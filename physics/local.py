@@ -67,7 +67,6 @@ def estimate_locally(
     *,
     radius: float,
     masses: Mapping[str, float] | None = None,
-    friction_expected: bool = True,
     inertia: float = STONE.inertia,
 ) -> Local:
     """Estimate restitution and friction from the paths beside the hits.
@@ -92,7 +91,7 @@ def estimate_locally(
         )  # fmt: skip
 
     glides, friction, prior = measure_glides(fit(pieces, FREE), known, radius)
-    friction, warnings = _checked(friction, glides, prior, friction_expected)
+    friction, warnings = _checked(friction, glides, prior)
     if not meetings:
         warnings.append("restitution: no hit seen")
         return Local(Estimate(), friction, (), glides, tuple(warnings))
@@ -107,13 +106,12 @@ def estimate_locally(
 
 
 def _checked(
-    friction: Friction, glides: Sequence[Glide], prior: Deceleration, expected: bool
+    friction: Friction, glides: Sequence[Glide], prior: Deceleration
 ) -> tuple[Friction, list[str]]:
     """Return the friction of the glides if it can be one, and what is odd about it."""
     value, stderr = friction.value, friction.stderr
     if value is None or stderr is None:
-        missing = "friction: no stone glides freely for long enough to tell it"
-        return friction, [missing] if expected else []
+        return friction, ["friction: no stone glides freely for long enough to tell it"]
     if value + 2 * stderr < 0:
         return Friction(), [
             f"friction: the stones gain speed (μ = {value:.3f} ± {stderr:.3f}), so these are no"

@@ -117,10 +117,9 @@ class Watched:
         bend = curl(values) if curling else curl(values, loss=0.0)
         return Shot(stones, impact, ice(values), bend, radius)
 
-    def replay(self, values: Mapping[str, float], until: float | None = None) -> Simulation:
-        """Simulate the shot up to a time of the clip; to the last sighting if None."""
-        end = (self.end if until is None else until) - self.start
-        return simulate(self.shot(values), until=end)
+    def replay(self, values: Mapping[str, float]) -> Simulation:
+        """Simulate the shot up to its last sighting."""
+        return simulate(self.shot(values), until=self.end - self.start)
 
     def residuals(self, simulation: Simulation) -> list[Floats]:
         """Sighted less simulated places over their standard deviations, (n, 2) per stone."""

@@ -160,7 +160,7 @@ class Simulation:
         return table.loc[there, list(SIMULATION_COLUMNS)].reset_index(drop=True)
 
 
-def check_shot(shot: Shot, source: str = "shot") -> None:
+def check_shot(shot: Shot) -> None:
     """Say all that is wrong with a shot in one InputError; see `simulate`."""
     faults: list[str] = []
     names = [stone.name for stone in shot.stones]
@@ -189,7 +189,7 @@ def check_shot(shot: Shot, source: str = "shot") -> None:
         if one.x == two.x and one.y == two.y:
             faults.append(f"stones {one.name} and {two.name} lie on the same place")
     if faults:
-        raise InputError(f"{source}: {'; '.join(faults)}")
+        raise InputError(f"shot: {'; '.join(faults)}")
 
 
 _NUMBERS = ("x", "y", "vx", "vy", "omega", "theta", "mass")

@@ -92,9 +92,9 @@ class GlobalFit:
         numbers = self.values if values is None else values
         return own_values(rank, len(self.shots), self.names, numbers, self.fixed, self.shots[rank])
 
-    def simulation(self, rank: int = 0, until: float | None = None) -> Simulation:
-        """Return the fitted shot."""
-        return self.shots[rank].replay(self.state(rank), until)
+    def simulation(self, rank: int = 0) -> Simulation:
+        """Return the fitted shot, up to its last sighting."""
+        return self.shots[rank].replay(self.state(rank))
 
     @property
     def hits_as_seen(self) -> bool:
