@@ -257,7 +257,7 @@ def _shared_errors(camera: Camera, places: Array, disc: Stone, scale: Array, til
     squares = (0.35 * rms / scale) ** 2 + aslant**2
     if camera.error is None:
         return np.asarray(np.sqrt(squares))
-    return np.asarray(np.sqrt(squares + camera.place_sd(places) ** 2))
+    return np.asarray(np.sqrt(squares + camera.place_sd(places, disc.cap_height) ** 2))
 
 
 def with_samples(found: Sighting, seen: Measures, index: int, disc: Stone) -> Sighting:

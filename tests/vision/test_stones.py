@@ -15,7 +15,7 @@ from tests.synthetic.physics import Start
 from tests.synthetic.scene import Colour, Graphic, Person, Scene, Stone
 from tests.synthetic.scenes import PAINTS
 from vision.appearance import CONVINCING, any_stone, colour_difference, learn, membership
-from vision.camera import Camera
+from vision.camera import Camera, CameraError
 from vision.clip import open_clip
 from vision.expected import look_beside, look_on_course
 from vision.rays import Look
@@ -83,6 +83,20 @@ def test_errors_are_within_what_is_claimed(caps: tuple[Colour, Colour]) -> None:
     claimed = np.median([np.hypot(np.hypot(s.sd_x, s.sd_y), 2**0.5 * s.sd_place) for s in found])
     assert np.sqrt((error**2).mean()) < 2 * claimed
     assert claimed < 0.006
+
+
+def test_a_camera_whose_height_is_not_known_misplaces_caps_more_than_the_ice() -> None:
+    # Height and focal length that grow together leave what lies on the ice where it is.
+    scene, plumb = scene_of([(1.6, 1.0, RED)]), (0.1, 0.6)
+    path = still_camera(position=(*plumb, 8.0), target=plumb, px_per_m=140.0)
+    camera, z, sd = camera_of(path, scene), 8.0, 0.5
+    unknown = np.array([0, 0, 0, sd / z, 0, 0, sd, 0, 0])
+    error = CameraError(np.outer(unknown, unknown), np.zeros((9, 9)))
+    image = np.asarray(render_still(scene, path), np.uint8)
+    known, doubted = (find_stones(image, c)[0] for c in (camera, replace(camera, error=error)))
+    off = STONE.cap_height * sd / z**2 * np.hypot(1.6 - plumb[0], 1.0 - plumb[1])
+    added = np.sqrt(2 * (doubted.sd_place**2 - known.sd_place**2))
+    assert added == pytest.approx(off, rel=0.1)
 
 
 def test_a_slanting_view_does_not_draw_stones_towards_the_camera() -> None:
