@@ -9,9 +9,9 @@ package pooltool-billiards is installed, two balls and a break by it stand besid
 
 from __future__ import annotations
 
+import argparse
 import math
 import statistics
-import sys
 import time
 from collections.abc import Callable
 from importlib import import_module
@@ -162,4 +162,8 @@ def main(repeats: int) -> None:
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 20)
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
+    parser.add_argument(
+        "repeats", nargs="?", type=int, default=20, help="of which the least counts"
+    )
+    main(parser.parse_args().repeats)
