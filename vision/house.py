@@ -57,12 +57,12 @@ def find_house(image: Image, *, frame: int = 0, t: float = 0.0) -> HouseFit | No
         The most complete house, or a complete one on the sheet beside that is nearer to the
         middle of the picture; None where no house can be made out.
     """
-    factor = min(WORK_WIDTH / image.shape[1], 1.0)
-    small = _reduced(image)
-    hypotheses = [_enlarged(g, 1 / factor) for g in _guesses(small)]
-    for found in _fits(image, small, hypotheses, frame, t):
+    small, factor = _reduced(image, WORK_WIDTH)
+    half, share = _reduced(small, GUESS_WIDTH)
+    hypotheses = [_enlarged(_enlarged(guess, 1 / share), 1 / factor) for guess in guesses(half)]
+    for found in _fits(image, small, factor, hypotheses, frame, t):
         if _is_house(image, found):
-            return _middle_most(image, small, found)
+            return _middle_most(image, small, factor, found)
     return None
 
 
@@ -70,10 +70,9 @@ def _is_house(image: Image, found: HouseFit) -> bool:
     return is_house(image, found.evidence, found.view, found.rig, found.camera)
 
 
-def _middle_most(image: Image, small: Image, found: HouseFit) -> HouseFit:
+def _middle_most(image: Image, small: Image, factor: float, found: HouseFit) -> HouseFit:
     """Give a complete house nearer to the middle on the sheet beside, where there is one."""
-    factor = small.shape[1] / image.shape[1]
-    for beside in _beside(small, found, factor):
+    for beside in _beside(small, factor, found):
         if beside.score > ENOUGH_BESIDE:
             other = refine(image, beside, factor, found.camera.frame, found.camera.t)
             if other is not None and _is_house(image, other):
@@ -81,7 +80,7 @@ def _middle_most(image: Image, small: Image, found: HouseFit) -> HouseFit:
     return found
 
 
-def _beside(small: Image, found: HouseFit, factor: float) -> Iterator[RoughFit]:
+def _beside(small: Image, factor: float, found: HouseFit) -> Iterator[RoughFit]:
     """Fit the houses beside the one found that are nearer to the middle of the picture."""
     width = found.camera.size[0]
     offsets = np.array([side * apart for apart in SPACINGS for side in (-1, 1)])
@@ -117,14 +116,14 @@ def fit_house(
     HouseFit or None
         From the hypothesis that explains most; None where the edges bear out none of them.
     """
-    return next(_fits(image, _reduced(image), hypotheses, frame, t), None)
+    return next(_fits(image, *_reduced(image, WORK_WIDTH), hypotheses, frame, t), None)
 
 
-def _reduced(image: Image) -> Image:
-    """Make the picture in which hypotheses are fitted."""
-    factor = min(WORK_WIDTH / image.shape[1], 1.0)
+def _reduced(image: Image, width: int) -> tuple[Image, float]:
+    """Shrink a picture to a width, where it is wider, and say by what factor."""
+    factor = min(width / image.shape[1], 1.0)
     small = cv2.resize(image, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA)
-    return np.asarray(small, np.uint8)
+    return np.asarray(small, np.uint8), factor
 
 
 def _enlarged(guess: Guess, factor: float) -> Guess:
@@ -133,10 +132,14 @@ def _enlarged(guess: Guess, factor: float) -> Guess:
 
 
 def _fits(
-    image: Image, small: Image, hypotheses: Sequence[Guess], frame: int, t: float
+    image: Image,
+    small: Image,
+    factor: float,
+    hypotheses: Sequence[Guess],
+    frame: int,
+    t: float,
 ) -> Iterator[HouseFit]:
     """Fit hypotheses: what they become, that which explains most first."""
-    factor = min(WORK_WIDTH / image.shape[1], 1.0)
     fits: list[RoughFit] = []
     aside = [abs(guess.centre[0] - image.shape[1] / 2) for guess in hypotheses]
     for k, guess in enumerate(hypotheses):
@@ -151,10 +154,3 @@ def _fits(
         found = refine(image, fitted, factor, frame, t)
         if found is not None:
             yield found
-
-
-def _guesses(image: Image) -> list[Guess]:
-    """Look for rings in a picture of half the size."""
-    factor = min(GUESS_WIDTH / image.shape[1], 1.0)
-    small = cv2.resize(image, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA)
-    return [_enlarged(guess, 1 / factor) for guess in guesses(np.asarray(small, np.uint8))]
