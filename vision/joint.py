@@ -67,7 +67,6 @@ class HouseTrack:
         One per frame in which the house is known, in order; found is False where carried.
     radii : ndarray, shape (3,)
         Radii of the painted 12-, 8- and 4-ft edges, m; the first is the yardstick.
-    radii_sd : ndarray, shape (3,)
     position_sd : ndarray, shape (3,)
         Standard deviation of the camera's place, m; of a moving one's mean place.
     warnings : tuple of str
@@ -75,7 +74,6 @@ class HouseTrack:
 
     cameras: tuple[Camera, ...]
     radii: Array
-    radii_sd: Array
     position_sd: Array
     warnings: tuple[str, ...]
 
@@ -125,11 +123,9 @@ def fit_clip(seen: Sequence[Seen], rig: Array, prior: Prior, size: tuple[int, in
     shared, _ = bundle([s.marks for s in chosen], times, [s.view for s in chosen], rig, size, prior)
     cameras = _fit_frames(seen, shared, size)
     sd = LONG_RANGE * np.sqrt(np.diag(shared.cov)[:RIG_SIZE])
-    yardstick = float(np.mean([_yardstick(s.view, shared.rig) for s in chosen]))
     return HouseTrack(
         tuple(cameras),
         np.array([HOUSE.twelve_foot, *shared.rig[[R8, R4]]]),
-        np.array([yardstick, sd[R8], sd[R4]]),
         sd[POSITION],
         _warnings(seen, cameras, prior, shared.rig, sd),
     )
