@@ -125,10 +125,18 @@ class Camera:
         Without a known position the height is ignored.
         """
         xy = np.asarray(ice, float)
-        if height and self.position is not None and np.isfinite(self.position).all():
-            away = height / (self.position[2] - height)
-            xy = xy + (xy - self.position[:2]) * away
-        return self.distort(apply_homography(self.homography, xy))
+        behind = self.behind(xy, height) if height else xy
+        return self.distort(apply_homography(self.homography, behind))
+
+    def behind(self, ice: Array, height: Array | float) -> Array:
+        """Ice points hidden behind points (x, y), shape (..., 2), that are `height` above the ice.
+
+        See `project`.
+        """
+        if self.position is None or not np.isfinite(self.position).all():
+            return ice
+        rise = np.asarray(height, float)[..., None]
+        return np.asarray(ice + (ice - self.position[:2]) * rise / (self.position[2] - rise))
 
     def ice(self, pixels: ArrayLike, height: float = 0.0) -> Array:
         """Pixels to the place (x, y), m, of what is seen there `height` above the ice."""
@@ -217,13 +225,13 @@ class Camera:
         moved[..., 8] = q * r2**2 / slope
         return np.asarray(-np.linalg.solve(by_point @ rotation[:, :2], moved))
 
-    def scale_at(self, ice: ArrayLike) -> float:
-        """Pixels per metre at an ice point: root of the determinant of the Jacobian."""
-        x, y = np.asarray(ice, float)
-        step = 1e-3
-        p = self.project(np.array([[x + step, y], [x - step, y], [x, y + step], [x, y - step]]))
-        jacobian = np.stack([p[0] - p[1], p[2] - p[3]], axis=1) / (2 * step)
-        return float(np.sqrt(abs(np.linalg.det(jacobian))))
+    def scale_at(self, ice: ArrayLike) -> Array:
+        """Pixels per metre at ice points, shape (..., 2): root of the Jacobian's determinant."""
+        step = 1e-3 * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
+        p = self.project(np.asarray(ice, float)[..., None, :] + step)
+        along, up = (p[..., 0, :] - p[..., 1, :]) / 2e-3, (p[..., 2, :] - p[..., 3, :]) / 2e-3
+        area = along[..., 0] * up[..., 1] - along[..., 1] * up[..., 0]
+        return np.asarray(np.sqrt(np.abs(area)))
 
 
 def _crossing(vectors: Array) -> Array:

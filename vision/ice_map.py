@@ -45,14 +45,6 @@ class IceMap:
         return np.stack([self.left + column / self.scale, self.top - row / self.scale], -1)
 
 
-def lifted(camera: Camera, ice: Array, height: Array | float) -> Array:
-    """Ice points hidden behind points (x, y), shape (..., 2), that are `height` above the ice."""
-    if camera.position is None or not np.isfinite(camera.position).all():
-        return ice
-    rise = np.asarray(height, float)[..., None]
-    return np.asarray(ice + (ice - camera.position[:2]) * rise / (camera.position[2] - rise))
-
-
 def rectify(
     image: Picture,
     camera: Camera,
@@ -83,7 +75,7 @@ def rectify(
     xs = np.arange(x0, x1 + cell / scale, cell / scale)
     ys = np.arange(y1, y0 - cell / scale, -cell / scale)
     ice = np.stack(np.meshgrid(xs, ys), -1)
-    ground = lifted(camera, ice, height)
+    ground = camera.behind(ice, height)
     depth = ground @ camera.homography[2, :2] + camera.homography[2, 2]
     nodes = np.full(ground.shape, -1e4)
     nodes[depth > 0.05] = camera.project(ground[depth > 0.05])

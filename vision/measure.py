@@ -23,7 +23,6 @@ from vision.patch import (
     handle_radii,
     is_plain,
     profile_of,
-    scales,
     tilts,
 )
 from vision.rays import Look, Rays, sample_rays
@@ -119,7 +118,7 @@ def measure(
     # A ring that leaves the picture tells no angle.
     handle *= np.all(sampled.inside[:, :, count + 1 :: 2], axis=1)[:, None, :, None]
     places = np.concatenate([look.places for look in looks])
-    scale = np.concatenate([scales(look.camera, look.places) for look in looks])
+    scale = np.concatenate([look.camera.scale_at(look.places) for look in looks])
     tilt = np.concatenate([tilts(look.camera, look.places) for look in looks])
     if is_plain(disc):
         return _plain(rays, handle, places, scale, disc, effort)

@@ -95,14 +95,6 @@ def handle_radii(disc: Stone, effort: Effort = EFFORT) -> Array:
     return np.asarray(rings.reshape(-1, 2).mean(1))
 
 
-def scales(camera: Camera, places: Array) -> Array:
-    """Pixels per metre at places of the ice, shape (n, 2): root of the Jacobian's determinant."""
-    step = 1e-3 * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
-    p = camera.project(places[:, None] + step)
-    along, up = (p[:, 0] - p[:, 1]) / 2e-3, (p[:, 2] - p[:, 3]) / 2e-3
-    return np.asarray(np.sqrt(np.abs(along[:, 0] * up[:, 1] - along[:, 1] * up[:, 0])))
-
-
 def tilts(camera: Camera, places: Array) -> Array:
     """Tangent of the angle between the view of places and the vertical; 0 where unknown."""
     if camera.position is None or not np.isfinite(camera.position).all():

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vision.camera import Camera
-from vision.ice_map import lifted
 from vision.picture import Picture, colours_at
 
 Array = NDArray[np.float64]
@@ -126,7 +125,7 @@ def sample_rays(looks: Sequence[Look], profile: Profile, rays: int) -> Rays:
     spokes = around[:, None] * profile.node_radius[:, None]
     projected = [
         look.camera.project(
-            lifted(look.camera, look.places[:, None, None] + spokes, profile.node_height)
+            look.camera.behind(look.places[:, None, None] + spokes, profile.node_height)
         )
         for look in looks
     ]

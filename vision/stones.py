@@ -19,7 +19,7 @@ from vision.appearance import Appearance
 from vision.camera import Camera
 from vision.handle import cap_spectrum
 from vision.measure import Measures, measure
-from vision.patch import EFFORT, handle_radii, is_plain, scales, tilts
+from vision.patch import EFFORT, handle_radii, is_plain, tilts
 from vision.picture import Picture
 from vision.rays import Look
 from vision.roundness import edge_error
@@ -242,7 +242,7 @@ def placed_by(camera: Camera, seen: Sequence[Sighting], disc: Stone) -> list[Sig
     if not seen:
         return []
     places = camera.ice(np.array([sighting.pixel for sighting in seen]), disc.cap_height)
-    scale, tilt = scales(camera, places), tilts(camera, places)
+    scale, tilt = camera.scale_at(places), tilts(camera, places)
     shared = _shared_errors(camera, places, disc, scale, tilt)
     return [
         sighting._replace(x=x, y=y, sd_place=sd)

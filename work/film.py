@@ -101,7 +101,7 @@ def _follow(clip: Clip, settings: Settings, progress: Progress, placed: Placed) 
 
 def check_size(radius: float, camera: Camera) -> None:
     """Refuse discs that are no more than a dot, or more than the picture."""
-    pixels = radius * camera.scale_at((0.0, 0.0))
+    pixels = radius * float(camera.scale_at((0.0, 0.0)))
     if not 1.5 < pixels < max(camera.size):
         raise InputError(
             f"discs of radius {radius:g} m would have {pixels:.2g} px in the picture; check"

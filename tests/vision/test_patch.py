@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from data.sheet import STONE
-from vision.patch import EFFORT, handle_radii, is_plain, profile_of, scales, tilts
+from vision.patch import EFFORT, handle_radii, is_plain, profile_of, tilts
 from vision.pose import View, camera
 from vision.rig import OVERHEAD, start_rig
 from vision.stones import plain_disc
@@ -18,7 +18,7 @@ PLACES = np.array([[0.0, 0.0], [1.5, 0.0], [3.0, -4.0]])
 
 
 def test_a_camera_straight_above_shows_all_places_at_one_scale() -> None:
-    np.testing.assert_allclose(scales(DOWN, PLACES), FOCAL / HEIGHT, rtol=1e-6)
+    np.testing.assert_allclose(DOWN.scale_at(PLACES), FOCAL / HEIGHT, rtol=1e-6)
 
 
 def test_views_slant_by_the_place_off_the_camera_s_foot() -> None:
