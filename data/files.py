@@ -77,12 +77,13 @@ def staged(folder: Path, replaces: Sequence[str] = ()) -> Iterator[Path]:
 
     Files that were there under the same names are replaced, those named in `replaces` are
     removed, for they tell of an earlier run, and others are left alone.
+
+    Raises
+    ------
+    InputError
+        Where nothing can be written.
     """
-    around = folder if folder.is_dir() else folder.parent
-    around.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(
-        dir=around, prefix=f".{folder.name}-", ignore_cleanup_errors=True
-    ) as hidden:
+    with _hidden(folder) as hidden:
         stage = Path(hidden)
         yield stage
         folder.mkdir(parents=True, exist_ok=True)
@@ -95,3 +96,17 @@ def staged(folder: Path, replaces: Sequence[str] = ()) -> Iterator[Path]:
                 target.unlink(missing_ok=True)
             if name in new:
                 (stage / name).replace(target)
+
+
+def _hidden(folder: Path) -> tempfile.TemporaryDirectory[str]:
+    """Make a folder with a name of its own in `folder`, or beside it where it is not there."""
+    around = folder if folder.is_dir() else folder.parent
+    try:
+        around.mkdir(parents=True, exist_ok=True)
+        return tempfile.TemporaryDirectory(
+            dir=around, prefix=f".{folder.name}-", ignore_cleanup_errors=True
+        )
+    except OSError as error:
+        raise InputError(
+            f"{folder}: cannot be written ({error.strerror}); name another folder with -o"
+        ) from None

@@ -17,7 +17,7 @@ from physics.registry import models, parameters_of
 from physics.simulation import FARTHEST, FASTEST, Shot, StoneStart
 
 RADIUS = 0.145
-"""Radius of a stone where the file gives none, m."""
+"""Radius of a stone where the file gives none, m: that of published simulators with `FCV1`."""
 
 LARGEST_OVERLAP = 0.2
 """How far two stones may overlap as placed, in radii: more is a mistake, less is measuring."""

@@ -87,7 +87,8 @@ def changed(start: Start, changes: Changes) -> Start:
     Raises
     ------
     InputError
-        Where the thrown stone would begin on top of another, or be faster than any.
+        Where the thrown stone would begin on top of another or off the sheet, or be faster
+        than any.
     """
     shot = start.shot
     if changes.restitution is not None:
@@ -100,6 +101,11 @@ def changed(start: Start, changes: Changes) -> Start:
     stones = list(shot.stones)
     stones[start.thrown] = stone = _thrown(stones[start.thrown], changes)
     if changes.aim_offset:
+        if shot.bounds is not None and shot.bounds.beyond(stone.x, stone.y, shot.radius) > 0:
+            raise InputError(
+                f"aim offset {changes.aim_offset:g} m: {stone.name} would begin off the sheet;"
+                " choose another"
+            )
         for other in stones:
             apart = math.dist((stone.x, stone.y), (other.x, other.y))
             if other is not stone and apart < 2 * shot.radius:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from data.errors import InputError
 from data.files import staged, whole_file, write_text
 
 
@@ -80,3 +81,11 @@ def test_results_are_gathered_within_a_folder_that_is_there(tmp_path: Path) -> N
         assert stage.parent == folder  # which may be a disc of its own
         (stage / "a.txt").write_text("a", encoding="utf-8")
     assert [path.name for path in folder.iterdir()] == ["a.txt"]
+
+
+def test_a_place_that_takes_no_files_is_named_and_not_the_hidden_folder(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    folder = tmp_path / "file" / "within" / "run"
+    message = rf"^{folder}: cannot be written \(.+\); name another folder"
+    with pytest.raises(InputError, match=message), staged(folder):
+        pass

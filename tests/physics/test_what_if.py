@@ -117,6 +117,8 @@ def test_changes_are_made_to_the_thrown_stone_and_the_laws() -> None:
             written_start(replace(HIT, stones=(HIT.stones[0], StoneStart("B", 0.6, 3.0)))),
             Changes(aim_offset=0.3),
         )
+    with pytest.raises(InputError, match="A would begin off the sheet"):
+        changed(written_start(replace(HIT, bounds=Bounds(-1))), Changes(aim_offset=2.1))
 
 
 def test_the_spread_of_a_lone_stone_is_that_of_its_throw() -> None:
