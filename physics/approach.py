@@ -47,9 +47,12 @@ def first_contact(
     while later:
         t1, a1, b1 = later[-1]
         step = t1 - t0
+        if _part(a0, a1, b0, b1):
+            t0, a0, b0 = later.pop()
+            continue
         slack = _slack(a0, a1, b0, b1, step)
         x0, y0, x1, y1 = b0.x - a0.x, b0.y - a0.y, b1.x - a1.x, b1.y - a1.y
-        if _nearest(x0, y0, x1, y1) - slack > reach or _part(a0, a1, b0, b1):
+        if _nearest(x0, y0, x1, y1) - slack > reach:
             t0, a0, b0 = later.pop()
             continue
         if slack < 1e-3 * reach and math.hypot(x1, y1) <= reach:
@@ -96,19 +99,29 @@ def _nearest(x0: float, y0: float, x1: float, y1: float) -> float:
 
 
 def _part(a0: Point, a1: Point, b0: Point, b1: Point) -> bool:
-    """Whether two stones only part between two moments, along the line between them at first."""
+    """Whether two stones only part between two moments, along the line between them at first.
+
+    On one ice the faster of two stones stays the faster: the other need not be slow to be left
+    behind.
+    """
     line = math.atan2(b0.y - a0.y, b0.x - a0.x)
-    return _least_rate(b0, b1, line) + _least_rate(a0, a1, line + math.pi) >= 0
+    least, most = _shares(b0, b1, line)[0], _shares(a0, a1, line)[1]
+    if b0.speed >= a0.speed and least >= max(most, 0.0):
+        return True
+    if a0.speed >= b0.speed and most <= min(least, 0.0):
+        return True
+    slowest = least * (b0.speed if least < 0 else b1.speed)
+    return slowest >= most * (a0.speed if most > 0 else a1.speed)
 
 
-def _least_rate(p0: Point, p1: Point, line: float) -> float:
-    """Bound from below on the velocity along a line between two points of a path, m/s."""
-    if p0.speed == 0:
-        return 0.0
-    # Between its ends the heading may come nearer to the line's opposite than at both of them.
-    bow = 1 - math.cos((p1.heading - p0.heading) / 2)
-    share = min(math.cos(p0.heading - line), math.cos(p1.heading - line)) - bow
-    return share * (p0.speed if share < 0 else p1.speed)
+def _shares(p0: Point, p1: Point, line: float) -> tuple[float, float]:
+    """Bounds on the part of a stone's speed that is along a line, between two points of a path."""
+    one, other = math.cos(p0.heading - line), math.cos(p1.heading - line)
+    # Between its ends the heading may come nearer to the line, or its opposite, than at both:
+    # 1 - cos(Δ/2) is less than Δ²/8.
+    turn = p1.heading - p0.heading
+    bow = turn * turn / 8
+    return (one - bow, other + bow) if one < other else (other - bow, one + bow)
 
 
 def _ahead(a: Point, b: Point, reach: float) -> float:

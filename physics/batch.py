@@ -15,6 +15,7 @@ from physics.approach import all_nearest, all_slack
 from physics.bounds import all_leave_at
 from physics.curl import Curl
 from physics.ice import IceLaw
+from physics.impact import resolve
 from physics.paths import CurveTable, Index, Paths
 from physics.simulate import PRESSED, SIMULTANEOUS, SLOW, TOUCHING, simulate
 from physics.simulation import Shot
@@ -245,9 +246,10 @@ class Batch:
         listed = closing > SLOW
         spins = self._spin_after(shots, i, w1, listed), self._spin_after(shots, j, w2, listed)
         m1, m2 = self.mass[i], self.mass[j]
-        after = self._impact(shots).resolve(
-            v1, v2, w1, w2, normal, self.shot.radius, mass1=m1, mass2=m2, spin_after=spins
-        )
+        after = resolve(
+            self._impact(shots), v1, v2, w1, w2, normal, self.shot.radius,
+            mass1=m1, mass2=m2, spin_after=spins,
+        )  # fmt: skip
         hit = closing > 0
         v1, v2 = np.where(hit[:, None], after.v1, v1), np.where(hit[:, None], after.v2, v2)
         w1, w2 = np.where(hit, after.w1, w1), np.where(hit, after.w2, w2)

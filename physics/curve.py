@@ -61,12 +61,15 @@ class Curve:
         Cubics of each cell in the order of `Cell`: speed; distance to rest along the last
         direction and aside of it; turning to rest; distance to rest along a straight path;
         spin lost; its integral over τ.
+    pivot : float
+        Loss of spin of a stone that turns on the spot, rad/s².
     """
 
     tau: Array
     speed: Array
     loss: Array
     coefficients: Array
+    pivot: float
 
     @cached_property
     def _nodes(self) -> tuple[list[float], list[float], list[float]]:
@@ -77,6 +80,11 @@ class Curve:
         """Cells as plain numbers, made when first asked for: a shot visits but a few."""
         return [None] * len(self.coefficients)
 
+    @cached_property
+    def _inner(self) -> list[float]:
+        """Nodes between two cells."""
+        return self._nodes[0][1:-1]
+
     def _cell(self, k: int) -> Cell:
         cell = self._cells[k]
         if cell is None:
@@ -86,8 +94,7 @@ class Curve:
 
     def cell_at(self, tau: float) -> Cell:
         """Return the cell that holds `tau` >= 0."""
-        nodes = self._nodes[0]
-        k = bisect_right(nodes, tau, 1, len(nodes) - 1) - 1
+        k = bisect_right(self._inner, tau)
         return self._cells[k] or self._cell(k)
 
     def cell(self, tau: float) -> tuple[Cell, float]:
@@ -178,7 +185,8 @@ def curve(ice: IceLaw, curl: Curl, top: float = LOWEST_TOP, cells: int = CELLS) 
         (loss, curl.spin_loss(moving)),
         (unwound, loss[1:]),
     )
-    return Curve(tau, v, loss, np.stack([_hermite(tau, *column) for column in columns], axis=1))
+    cubics = np.stack([_hermite(tau, *column) for column in columns], axis=1)
+    return Curve(tau, v, loss, cubics, float(curl.spin_loss(0.0)))
 
 
 def _hermite(tau: Array, value: Array, slope: Array) -> Array:

@@ -38,7 +38,7 @@ class CurveTable:
 
     def __init__(self, laws: Sequence[tuple[IceLaw, Curl]], top: float) -> None:
         curves = [curve_for(*law, float(np.nextafter(top, np.inf))) for law in laws]
-        pivot = np.array([float(curl.spin_loss(0.0)) for _, curl in laws])
+        pivot = np.array([curve.pivot for curve in curves])
         self.pivot = np.where(pivot > 0, pivot, np.inf)
         self._nodes = len(curves[0].tau)
         # Nodes lie evenly in a power of the speed, whatever the law.

@@ -9,15 +9,15 @@ the stones are; a hit gives two stones new paths.
 from __future__ import annotations
 
 import math
+from heapq import heappop, heappush
 from itertools import combinations
-
-import numpy as np
-from numpy.typing import ArrayLike
+from typing import NamedTuple
 
 from data.errors import InputError
 from data.results import StoneState
 from physics.approach import first_contact
 from physics.bounds import leaves_at
+from physics.impact import Before, Number
 from physics.motion import Motion, Path, Point
 from physics.simulation import Hit, Rest, Shot, Simulation, check_shot
 
@@ -64,6 +64,14 @@ def simulate(shot: Shot, *, until: float | None = None) -> Simulation:
     return _Run(shot).run(math.inf if until is None else until)
 
 
+class _Expected(NamedTuple):
+    """A contact to come: its time, or where that is not `exact` the earliest that it can be."""
+
+    t: float
+    pair: tuple[int, int]
+    exact: bool
+
+
 class _Run:
     """The state of a simulation under way."""
 
@@ -83,10 +91,10 @@ class _Run:
             (i, j): min(2 * shot.radius, math.dist((a.x, a.y), (b.x, b.y)))
             for (i, a), (j, b) in combinations(enumerate(shot.stones), 2)
         }
-        # Times of the contacts to come; earliest ones that can be, unless in `exact`.
-        self.contacts: dict[tuple[int, int], float] = {}
+        # The contacts to come by pair, and all that were ever expected by time.
+        self.contacts: dict[tuple[int, int], _Expected] = {}
+        self.queue: list[_Expected] = []
         self.here: dict[int, Point] = {}
-        self.exact: set[tuple[int, int]] = set()
         for k, stone in enumerate(shot.stones):
             if stone.vx or stone.vy:
                 self._look_ahead(k)
@@ -97,7 +105,7 @@ class _Run:
             pair = self._next_pair(until)
             if pair is None:
                 break
-            self.t = max(self.t, self.contacts[pair])
+            self.t = max(self.t, self.contacts[pair].t)
             self._hit(*pair)
             self.here.clear()
             for k in pair:
@@ -126,20 +134,24 @@ class _Run:
 
     def _look_ahead(self, k: int) -> None:
         """Bound the next contacts of stone `k`: stones only get slower until they meet."""
-        path = self.paths[k][-1]
-        a = self._now(k)
+        length = self.paths[k][-1].length
+        x, y, speed, _ = self._now(k)
         for other, paths in enumerate(self.paths):
             if other == k or other in self.gone:
                 continue
             pair = (k, other) if k < other else (other, k)
-            self.exact.discard(pair)
-            b = self._now(other)
-            gap = math.hypot(b.x - a.x, b.y - a.y) - self.reach[pair]
-            speed = a.speed + b.speed
-            if speed == 0 or gap > path.length + paths[-1].length:
+            there = self.here.get(other) or self._now(other)
+            gap = math.hypot(there.x - x, there.y - y) - self.reach[pair]
+            both = speed + there.speed
+            if both == 0 or gap > length + paths[-1].length:
                 self.contacts.pop(pair, None)
             else:
-                self.contacts[pair] = self.t + max(gap, 0.0) / speed
+                self._expect(self.t + gap / both if gap > 0 else self.t, pair, exact=False)
+
+    def _expect(self, t: float, pair: tuple[int, int], *, exact: bool) -> None:
+        """Take note of a contact to come in place of what was expected of the pair."""
+        self.contacts[pair] = expected = _Expected(t, pair, exact)
+        heappush(self.queue, expected)
 
     def _now(self, k: int) -> Point:
         """Where stone `k` is at present; asked for once for each of the others."""
@@ -150,26 +162,48 @@ class _Run:
 
     def _next_pair(self, until: float) -> tuple[int, int] | None:
         """Return the pair that meets next; None where none does by then."""
+        queue = self.queue
         while True:
-            first = min(self.contacts.values(), default=math.inf)
+            while queue and self.contacts.get(queue[0].pair) is not queue[0]:
+                heappop(queue)  # another one has taken its place
+            first = queue[0].t if queue else math.inf
             leaving = min(self.leaves)
             if leaving < math.inf and leaving <= min(first, until):
                 self._take_away(self.leaves.index(leaving))
                 continue
             if first > until or first == math.inf:
                 return None
-            due = [pair for pair, t in self.contacts.items() if t <= first + SIMULTANEOUS]
-            unknown = [pair for pair in due if pair not in self.exact]
-            if not unknown:
-                return min(due)
-            for pair in unknown:
-                self.contacts[pair] = self._next_contact(*pair)
-                self.exact.add(pair)
+            due = self._due(first + SIMULTANEOUS)
+            known = [expected for expected in due if expected.exact]
+            for expected in known:
+                heappush(queue, expected)
+            if len(known) == len(due):
+                return min(expected.pair for expected in known)
+            for _, pair, exact in due:
+                if not exact:
+                    self._find(pair)
+
+    def _due(self, until: float) -> list[_Expected]:
+        """Take from the queue what is still expected by then."""
+        out = []
+        while self.queue and self.queue[0].t <= until:
+            expected = heappop(self.queue)
+            if self.contacts.get(expected.pair) is expected:
+                out.append(expected)
+        return out
+
+    def _find(self, pair: tuple[int, int]) -> None:
+        """Find when a pair meets, if it does."""
+        t = self._next_contact(*pair)
+        if t < math.inf:
+            self._expect(t, pair, exact=True)
+        else:
+            del self.contacts[pair]
 
     def _take_away(self, k: int) -> None:
         """Take a stone that leaves the play off the sheet."""
         self.gone[k], self.leaves[k] = self.leaves[k], math.inf
-        self.contacts = {pair: t for pair, t in self.contacts.items() if k not in pair}
+        self.contacts = {pair: due for pair, due in self.contacts.items() if k not in pair}
 
     def _rest(self, k: int, until: float) -> Rest:
         """Place at which stone `k` came to rest, left the play or was at the end."""
@@ -211,12 +245,15 @@ class _Run:
             spins = (one.omega, two.omega)
             if listed:
                 spins = self._spin_after(i, one.omega), self._spin_after(j, two.omega)
-            after = shot.impact.resolve(
-                (one.vx, one.vy), (two.vx, two.vy), one.omega, two.omega, n, shot.radius,
-                mass1=first.mass, mass2=second.mass, spin_after=spins,
+            sliding = (two.vx - one.vx) * n[1] - (two.vy - one.vy) * n[0]
+            change = shot.impact.change(
+                Before(
+                    closing, sliding, one.omega, two.omega, first.mass, second.mass, shot.radius,
+                    spins,
+                )
             )  # fmt: skip
-            new_one = _changed(one, after.v1, after.w1)
-            new_two = _changed(two, after.v2, after.w2)
+            new_one = _changed(one, n, change.along1, change.aside1, change.w1)
+            new_two = _changed(two, n, change.along2, change.aside2, change.w2)
         else:
             new_one, new_two = one, two
         if listed:
@@ -257,9 +294,12 @@ def _closing(one: Motion, two: Motion) -> float:
     return ((one.vx - two.vx) * dx + (one.vy - two.vy) * dy) / math.hypot(dx, dy)
 
 
-def _changed(motion: Motion, velocity: ArrayLike, omega: ArrayLike) -> Motion:
-    vx, vy = np.asarray(velocity, float).tolist()
-    return motion._replace(vx=vx, vy=vy, omega=float(np.asarray(omega)))
+def _changed(
+    motion: Motion, n: tuple[float, float], along: Number, aside: Number, omega: Number
+) -> Motion:
+    """Motion with its velocity changed along a normal and aside of it, and a new spin."""
+    vx, vy = motion.vx + along * n[0] - aside * n[1], motion.vy + along * n[1] + aside * n[0]
+    return motion._replace(vx=float(vx), vy=float(vy), omega=float(omega))
 
 
 def _moved(motion: Motion, n: tuple[float, float], by: float) -> Motion:

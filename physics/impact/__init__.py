@@ -8,69 +8,30 @@ any leading shape.
 
 from __future__ import annotations
 
-from typing import Protocol
-
-from numpy.typing import ArrayLike
-
-from data.sheet import STONE
 from physics.impact.frictional import Frictional
-from physics.impact.impulse import After, normal_impulse, reduced_mass, tangent
+from physics.impact.impulse import (
+    After,
+    Before,
+    Change,
+    Impact,
+    Number,
+    reduced_mass,
+    resolve,
+    tangent,
+)
 from physics.impact.point_mass import PointMass
 from physics.impact.rigid_body import RigidBody
 
 __all__ = [
     "After",
+    "Before",
+    "Change",
     "Frictional",
     "Impact",
+    "Number",
     "PointMass",
     "RigidBody",
-    "normal_impulse",
     "reduced_mass",
+    "resolve",
     "tangent",
 ]
-
-
-class Impact(Protocol):
-    """What a hit does to two stones."""
-
-    @property
-    def name(self) -> str:
-        """Name of the model, as in files and on the command line."""
-        ...
-
-    @property
-    def needs_spin_after(self) -> bool:
-        """Whether `resolve` must be told the spins after the hit."""
-        ...
-
-    def resolve(
-        self,
-        v1: ArrayLike,
-        v2: ArrayLike,
-        w1: ArrayLike,
-        w2: ArrayLike,
-        normal: ArrayLike,
-        radius: float = STONE.radius,
-        *,
-        mass1: ArrayLike = 1.0,
-        mass2: ArrayLike = 1.0,
-        spin_after: tuple[ArrayLike, ArrayLike] | None = None,
-    ) -> After:
-        """Return velocities and spins after the hit.
-
-        Parameters
-        ----------
-        v1, v2 : array_like, shape (..., 2)
-            Velocities before, m/s; the stones must be closing, (v1 - v2)·n > 0.
-        w1, w2 : array_like, shape (...)
-            Spins before, rad/s.
-        normal : array_like, shape (..., 2)
-            Unit vector from stone 1 to stone 2.
-        radius : float
-            Radius of both, m.
-        mass1, mass2 : array_like
-            Masses in any one unit.
-        spin_after : tuple of array_like, optional
-            Spins after the hit, rad/s, for the models that do not find them.
-        """
-        ...

@@ -6,10 +6,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from data.sheet import STONE
-from physics.impact.impulse import After, dot, kick, normal_impulse, reduced_mass, tangent
+from physics.impact.impulse import Before, Change, Number, reduced_mass
 from physics.registry import parameter
 
 
@@ -37,29 +36,21 @@ class Frictional:
     name = "frictional"
     needs_spin_after = False
 
-    def resolve(
-        self,
-        v1: ArrayLike,
-        v2: ArrayLike,
-        w1: ArrayLike,
-        w2: ArrayLike,
-        normal: ArrayLike,
-        radius: float = STONE.radius,
-        *,
-        mass1: ArrayLike = 1.0,
-        mass2: ArrayLike = 1.0,
-        spin_after: tuple[ArrayLike, ArrayLike] | None = None,
-    ) -> After:
-        """See `Impact.resolve`; `spin_after` is of no concern."""
-        n = np.asarray(normal, float)
-        t = tangent(n)
-        m1, m2 = np.asarray(mass1, float), np.asarray(mass2, float)
-        w1, w2 = np.asarray(w1, float), np.asarray(w2, float)
-        along = normal_impulse(self.restitution, v1, v2, n, m1, m2)
-        slip = dot(np.asarray(v1, float) - np.asarray(v2, float), t) + radius * (w1 + w2)
-        stick = -slip * reduced_mass(m1, m2) / (1 + 1 / self.inertia)
-        limit = self.stone_friction * np.maximum(along, 0.0)
-        aside = np.minimum(np.maximum(stick, -limit), limit)
-        after = kick(v1, v2, w1, w2, along[..., None] * n - aside[..., None] * t, m1, m2)
+    def change(self, before: Before) -> Change:
+        """See `Impact.change`; spins after the hit are found, not asked for."""
+        _, _, w1, w2, m1, m2, radius, _ = before
+        mass = reduced_mass(before)
+        along = (1 + self.restitution) * before.closing * mass
+        slip = before.sliding + radius * (w1 + w2)
+        aside = _clipped(-slip * mass / (1 + 1 / self.inertia), self.stone_friction * along)
         turn = aside / (self.inertia * radius)
-        return after._replace(w1=w1 + turn / m1, w2=w2 + turn / m2)
+        return Change(
+            -along / m1, along / m2, aside / m1, -aside / m2, w1 + turn / m1, w2 + turn / m2
+        )
+
+
+def _clipped(value: Number, limit: Number) -> Number:
+    """Value within ± a limit."""
+    if isinstance(value, float) and isinstance(limit, float):
+        return min(max(value, -limit), limit)
+    return np.asarray(np.clip(value, -limit, limit))

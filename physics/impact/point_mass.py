@@ -4,11 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import ArrayLike
-
-from data.sheet import STONE
-from physics.impact.impulse import After, kick, normal_impulse
+from physics.impact.impulse import Before, Change, reduced_mass
 from physics.registry import parameter
 
 
@@ -28,20 +24,9 @@ class PointMass:
     name = "point-mass"
     needs_spin_after = False
 
-    def resolve(
-        self,
-        v1: ArrayLike,
-        v2: ArrayLike,
-        w1: ArrayLike,
-        w2: ArrayLike,
-        normal: ArrayLike,
-        radius: float = STONE.radius,
-        *,
-        mass1: ArrayLike = 1.0,
-        mass2: ArrayLike = 1.0,
-        spin_after: tuple[ArrayLike, ArrayLike] | None = None,
-    ) -> After:
-        """See `Impact.resolve`; `radius` and `spin_after` are of no concern."""
-        n = np.asarray(normal, float)
-        impulse = normal_impulse(self.restitution, v1, v2, n, mass1, mass2)
-        return kick(v1, v2, w1, w2, impulse[..., None] * n, mass1, mass2)
+    def change(self, before: Before) -> Change:
+        """See `Impact.change`; radius and spins after the hit are of no concern."""
+        impulse = (1 + self.restitution) * before.closing * reduced_mass(before)
+        return Change(
+            -impulse / before.mass1, impulse / before.mass2, 0.0, 0.0, before.w1, before.w2
+        )

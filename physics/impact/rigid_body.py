@@ -4,11 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import ArrayLike
-
-from data.sheet import STONE
-from physics.impact.impulse import After, kick, normal_impulse, tangent
+from physics.impact.impulse import Before, Change, reduced_mass
 from physics.registry import parameter
 
 
@@ -32,30 +28,17 @@ class RigidBody:
     name = "rigid-body"
     needs_spin_after = True
 
-    def resolve(
-        self,
-        v1: ArrayLike,
-        v2: ArrayLike,
-        w1: ArrayLike,
-        w2: ArrayLike,
-        normal: ArrayLike,
-        radius: float = STONE.radius,
-        *,
-        mass1: ArrayLike = 1.0,
-        mass2: ArrayLike = 1.0,
-        spin_after: tuple[ArrayLike, ArrayLike] | None = None,
-    ) -> After:
-        """See `Impact.resolve`; ValueError without `spin_after`."""
-        if spin_after is None:
+    def change(self, before: Before) -> Change:
+        """See `Impact.change`; ValueError without the spins after the hit."""
+        if before.spin_after is None:
             raise ValueError("the rigid-body model needs the spins after the hit")
-        n = np.asarray(normal, float)
-        impulse = normal_impulse(self.restitution, v1, v2, n, mass1, mass2)
-        after = kick(v1, v2, w1, w2, impulse[..., None] * n, mass1, mass2)
-        a1, a2 = np.asarray(spin_after[0], float), np.asarray(spin_after[1], float)
-        t = tangent(n)
-        return After(
-            after.v1 + (radius * (after.w1 - a1))[..., None] * t,
-            after.v2 - (radius * (after.w2 - a2))[..., None] * t,
-            a1,
-            a2,
+        w1, w2 = before.spin_after
+        impulse = (1 + self.restitution) * before.closing * reduced_mass(before)
+        return Change(
+            -impulse / before.mass1,
+            impulse / before.mass2,
+            before.radius * (before.w1 - w1),
+            -before.radius * (before.w2 - w2),
+            w1,
+            w2,
         )

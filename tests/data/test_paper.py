@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from data.paper import TABLES, table
 from data.sheet import GRAVITY, STONE
-from physics.impact import Frictional, PointMass
+from physics.impact import Frictional, PointMass, resolve
 
 Array = NDArray[np.float64]
 
@@ -65,7 +65,7 @@ def computed(which: int, e: float = 0.83) -> tuple[Array, Array]:
     """Velocities after a hit of point masses, from what Table 2 measured before it."""
     of = hit(2, which)
     n, _ = normal(which, HITS[which][2])
-    after = PointMass(e).resolve(of.v1, of.v2, 0.0, 0.0, n)
+    after = resolve(PointMass(e), of.v1, of.v2, 0.0, 0.0, n)
     return after.v1, after.v2
 
 
@@ -119,7 +119,7 @@ def test_table_4_is_right_for_the_stone_that_is_hit() -> None:
         assert np.abs(computed(which, 0.8345)[1] - printed).max() > 1e-3
     # The second hit takes B as measured, not as Table 4 has just computed it.
     n, _ = normal(2, 83)
-    simulated = PointMass(0.83).resolve(value(4, 54, "B", "vx", "vy"), (0.0, 0.0), 0.0, 0.0, n)
+    simulated = resolve(PointMass(0.83), value(4, 54, "B", "vx", "vy"), (0.0, 0.0), 0.0, 0.0, n)
     assert np.abs(simulated.v2 - value(4, 84, "C", "vx", "vy")).max() > 0.03
 
 
@@ -165,9 +165,10 @@ def test_spins_of_table_2_change_as_friction_between_the_stones_would_have_it() 
         np.testing.assert_allclose(np.subtract(spins[1], spins[0]), changes, atol=1e-3)
         of = hit(2, which)
         n, _ = normal(which, before)
-        ours = Frictional(0.83, stone_friction=1.0).resolve(of.v1, of.v2, *spins[0], n)
-        turn = float(ours.w1 - spins[0][0])
-        assert turn == pytest.approx(float(ours.w2 - spins[0][1]))
+        w1, w2 = spins[0]
+        ours = resolve(Frictional(0.83, stone_friction=1.0), of.v1, of.v2, w1, w2, n)
+        turn = float(ours.w1 - w1)
+        assert turn == pytest.approx(float(ours.w2 - w2))
         # Alike on both stones, of the sign and the size of a contact that sticks.
         assert np.sign(turn) == np.sign(changes[0]) == np.sign(changes[1])
         assert 0.5 < turn / np.mean(changes) < 0.8
