@@ -63,6 +63,8 @@ class Curve:
         spin lost; its integral over τ.
     pivot : float
         Loss of spin of a stone that turns on the spot, rad/s².
+    change : float
+        Greatest change of the velocity in a time, m/s².
     """
 
     tau: Array
@@ -70,6 +72,7 @@ class Curve:
     loss: Array
     coefficients: Array
     pivot: float
+    change: float
 
     @cached_property
     def _nodes(self) -> tuple[list[float], list[float], list[float]]:
@@ -186,7 +189,8 @@ def curve(ice: IceLaw, curl: Curl, top: float = LOWEST_TOP, cells: int = CELLS) 
         (unwound, loss[1:]),
     )
     cubics = np.stack([_hermite(tau, *column) for column in columns], axis=1)
-    return Curve(tau, v, loss, cubics, float(curl.spin_loss(0.0)))
+    change = np.hypot(ice.deceleration(moving), moving * curl.turn_rate(moving))
+    return Curve(tau, v, loss, cubics, float(curl.spin_loss(0.0)), float(change.max()))
 
 
 def _hermite(tau: Array, value: Array, slope: Array) -> Array:

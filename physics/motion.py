@@ -94,11 +94,13 @@ class Path:
         Distance along the path from start to stop, m.
     end : Point
         Where it stops.
+    change : float
+        Bound on the change of its velocity in a time, m/s².
     """
 
     __slots__ = (
         "_arc", "_curve", "_loss", "_motion", "_pivot", "_sense", "_spin", "_straight", "_tau",
-        "_tau_spin", "_unwound", "end", "length", "rest", "start", "stop",
+        "_tau_spin", "_unwound", "change", "end", "length", "rest", "start", "stop",
     )  # fmt: skip
 
     def __init__(self, start: float, motion: Motion, ice: IceLaw, curl: Curl) -> None:
@@ -110,6 +112,7 @@ class Path:
         self._motion = motion
         self._curve = curve_for(ice, curl, speed)
         self._tau = tau = self._curve.tau_at_speed(speed) if speed else 0.0
+        self.change = self._curve.change if speed else 0.0
         self.start, self.stop = start, start + tau
         cell, s = self._curve.cell(tau)
         self.length = cubic(cell.straight, s)

@@ -9,12 +9,11 @@ the stones are; a hit gives two stones new paths.
 from __future__ import annotations
 
 import math
-from heapq import heappop, heappush
 from itertools import combinations
-from typing import NamedTuple
 
 from data.errors import InputError
 from data.results import StoneState
+from physics.agenda import Agenda
 from physics.approach import first_contact
 from physics.bounds import leaves_at
 from physics.impact import Before, Number
@@ -64,12 +63,8 @@ def simulate(shot: Shot, *, until: float | None = None) -> Simulation:
     return _Run(shot).run(math.inf if until is None else until)
 
 
-class _Expected(NamedTuple):
-    """A contact to come: its time, or where that is not `exact` the earliest that it can be."""
-
-    t: float
-    pair: tuple[int, int]
-    exact: bool
+_Now = tuple[Point, float, float]
+"""Where a stone is, and its velocity, m/s."""
 
 
 class _Run:
@@ -81,7 +76,7 @@ class _Run:
         self.hits: list[Hit] = []
         self.hit_count = [0] * len(shot.stones)
         self.paths: list[list[Path]] = [[] for _ in shot.stones]
-        self.leaves = [math.inf] * len(shot.stones)
+        self.leaves: dict[int, float] = {}
         self.gone: dict[int, float] = {}
         for k, stone in enumerate(shot.stones):
             motion = Motion(stone.x, stone.y, stone.theta, stone.vx, stone.vy, stone.omega)
@@ -91,10 +86,8 @@ class _Run:
             (i, j): min(2 * shot.radius, math.dist((a.x, a.y), (b.x, b.y)))
             for (i, a), (j, b) in combinations(enumerate(shot.stones), 2)
         }
-        # The contacts to come by pair, and all that were ever expected by time.
-        self.contacts: dict[tuple[int, int], _Expected] = {}
-        self.queue: list[_Expected] = []
-        self.here: dict[int, Point] = {}
+        self.agenda = Agenda()
+        self.here: dict[int, _Now] = {}
         for k, stone in enumerate(shot.stones):
             if stone.vx or stone.vy:
                 self._look_ahead(k)
@@ -105,7 +98,7 @@ class _Run:
             pair = self._next_pair(until)
             if pair is None:
                 break
-            self.t = max(self.t, self.contacts[pair].t)
+            self.t = max(self.t, self.agenda.time(pair))
             self._hit(*pair)
             self.here.clear()
             for k in pair:
@@ -133,77 +126,68 @@ class _Run:
             self.leaves[k] = leaves_at(path, shot.bounds, shot.radius, hit=hit)
 
     def _look_ahead(self, k: int) -> None:
-        """Bound the next contacts of stone `k`: stones only get slower until they meet."""
-        length = self.paths[k][-1].length
-        x, y, speed, _ = self._now(k)
+        """Bound the next contacts of stone `k`.
+
+        Stones only get slower until they meet. And the rate at which two come nearer grows with
+        their accelerations at most: that they pass each other sideways adds to their distance.
+        """
+        path = self.paths[k][-1]
+        (x, y, speed, _), vx, vy = self._now(k)
         for other, paths in enumerate(self.paths):
             if other == k or other in self.gone:
                 continue
             pair = (k, other) if k < other else (other, k)
-            there = self.here.get(other) or self._now(other)
-            gap = math.hypot(there.x - x, there.y - y) - self.reach[pair]
-            both = speed + there.speed
-            if both == 0 or gap > length + paths[-1].length:
-                self.contacts.pop(pair, None)
+            ahead = paths[-1]
+            (x2, y2, speed2, _), vx2, vy2 = self.here.get(other) or self._now(other)
+            dx, dy = x2 - x, y2 - y
+            distance = math.hypot(dx, dy)
+            gap = distance - self.reach[pair]
+            fastest = speed + speed2
+            if fastest == 0 or gap > path.length + ahead.length:
+                self.agenda.drop(pair)
+                continue
+            rate = ((vx2 - vx) * dx + (vy2 - vy) * dy) / distance
+            change = path.change + ahead.change
+            if gap <= 0:
+                soonest = 2 * rate / change if rate > 0 else 0.0
             else:
-                self._expect(self.t + gap / both if gap > 0 else self.t, pair, exact=False)
+                root = math.sqrt(rate * rate + 2 * change * gap)
+                soonest = (root + rate) / change if rate > 0 else 2 * gap / (root - rate)
+                soonest = max(soonest, gap / fastest)
+            self.agenda.expect(self.t + soonest, pair, exact=False)
 
-    def _expect(self, t: float, pair: tuple[int, int], *, exact: bool) -> None:
-        """Take note of a contact to come in place of what was expected of the pair."""
-        self.contacts[pair] = expected = _Expected(t, pair, exact)
-        heappush(self.queue, expected)
-
-    def _now(self, k: int) -> Point:
+    def _now(self, k: int) -> _Now:
         """Where stone `k` is at present; asked for once for each of the others."""
-        point = self.here.get(k)
-        if point is None:
-            point = self.here[k] = self.paths[k][-1].point(self.t)
-        return point
+        now = self.here.get(k)
+        if now is None:
+            point = self.paths[k][-1].point(self.t)
+            _, _, speed, heading = point
+            now = point, speed * math.cos(heading), speed * math.sin(heading)
+            self.here[k] = now
+        return now
 
     def _next_pair(self, until: float) -> tuple[int, int] | None:
         """Return the pair that meets next; None where none does by then."""
-        queue = self.queue
         while True:
-            while queue and self.contacts.get(queue[0].pair) is not queue[0]:
-                heappop(queue)  # another one has taken its place
-            first = queue[0].t if queue else math.inf
-            leaving = min(self.leaves)
-            if leaving < math.inf and leaving <= min(first, until):
-                self._take_away(self.leaves.index(leaving))
-                continue
+            first = self.agenda.first()
+            if self.leaves:
+                k = min(self.leaves, key=self.leaves.__getitem__)
+                if self.leaves[k] <= min(first, until) and self.leaves[k] < math.inf:
+                    self._take_away(k)
+                    continue
             if first > until or first == math.inf:
                 return None
-            due = self._due(first + SIMULTANEOUS)
-            known = [expected for expected in due if expected.exact]
-            for expected in known:
-                heappush(queue, expected)
-            if len(known) == len(due):
-                return min(expected.pair for expected in known)
+            due = self.agenda.due(first + SIMULTANEOUS)
+            if all(exact for _, _, exact in due):
+                return min(pair for _, pair, _ in due)
             for _, pair, exact in due:
                 if not exact:
-                    self._find(pair)
-
-    def _due(self, until: float) -> list[_Expected]:
-        """Take from the queue what is still expected by then."""
-        out = []
-        while self.queue and self.queue[0].t <= until:
-            expected = heappop(self.queue)
-            if self.contacts.get(expected.pair) is expected:
-                out.append(expected)
-        return out
-
-    def _find(self, pair: tuple[int, int]) -> None:
-        """Find when a pair meets, if it does."""
-        t = self._next_contact(*pair)
-        if t < math.inf:
-            self._expect(t, pair, exact=True)
-        else:
-            del self.contacts[pair]
+                    self.agenda.expect(self._next_contact(*pair), pair, exact=True)
 
     def _take_away(self, k: int) -> None:
         """Take a stone that leaves the play off the sheet."""
-        self.gone[k], self.leaves[k] = self.leaves[k], math.inf
-        self.contacts = {pair: due for pair, due in self.contacts.items() if k not in pair}
+        self.gone[k] = self.leaves.pop(k)
+        self.agenda.drop_all_of(k)
 
     def _rest(self, k: int, until: float) -> Rest:
         """Place at which stone `k` came to rest, left the play or was at the end."""
@@ -218,7 +202,7 @@ class _Run:
         a, b = self.paths[i][-1], self.paths[j][-1]
         if a.stop <= self.t and b.stop <= self.t:
             return math.inf
-        pa, pb = self._now(i), self._now(j)
+        pa, pb = self._now(i)[0], self._now(j)[0]
         distance = math.dist(pa[:2], pb[:2])
         reach = self.reach[i, j]
         if distance - reach > a.length + b.length:
