@@ -22,6 +22,9 @@ CONVINCING = 1.4
 MOST_COLOURS = 2
 """Cap colours of a clip: two teams play."""
 
+UNLIKE = 30.0
+"""Difference of cap colours (L*a*b* units) from which they are two."""
+
 
 @dataclass(frozen=True)
 class Colour:
@@ -105,9 +108,12 @@ def _any_stone(white: int) -> Appearance:
     lab = _lab_of_table()
     chroma = np.hypot(lab[..., 1] - 128, lab[..., 2] - 128)
     light = lab[..., 0] / white
-    cap = np.clip((chroma - 28) / 14, 0, 1)
+    # Blue caps are the darkest, and dark colours are never as far from grey as light ones.
+    blue = np.clip((118 - lab[..., 2]) / 10, 0, 1)
+    vivid = chroma / (1 - blue * (1 - np.clip(light / 0.4, 0.6, 1)))
+    cap = np.clip((vivid - 28) / 14, 0, 1)
     granite = (
-        np.clip((36 - chroma) / 16, 0, 1)
+        np.clip((36 - vivid) / 16, 0, 1)
         * np.clip((light - 0.08) / 0.1, 0, 1)
         * np.clip((0.78 - light) / 0.1, 0, 1)
     )
@@ -127,7 +133,7 @@ def learn(sightings: Sequence[Sighting]) -> Appearance | None:
     groups: list[list[Sighting]] = []
     for sighting in sorted(sightings, key=lambda item: -item.score):
         for group in groups:
-            if colour_difference(group[0].colour, sighting.colour) < 30:
+            if colour_difference(group[0].colour, sighting.colour) < UNLIKE:
                 group.append(sighting)
                 break
         else:

@@ -3,9 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import hypot
 
 from data.sheet import STONE, Stone
-from vision.appearance import CONVINCING, learn
+from vision.appearance import (
+    CONVINCING,
+    MOST_COLOURS,
+    UNLIKE,
+    Appearance,
+    colour_difference,
+    learn,
+)
 from vision.camera import Camera
 from vision.clip import Image
 from vision.stones import Findings, search_picture
@@ -29,4 +37,21 @@ def glance(pictures: Sequence[tuple[Image, Camera]], disc: Stone = STONE) -> lis
     appearance = learn([s for found in first for s in found.stones if s.score > CONVINCING])
     if appearance is None:
         return first
-    return [search_picture(image, camera, appearance, disc) for image, camera in pictures]
+    again = [search_picture(image, camera, appearance, disc) for image, camera in pictures]
+    if len(appearance.caps) == MOST_COLOURS:
+        return again
+    return [
+        _with_strangers(known, other, appearance, disc)
+        for known, other in zip(again, first, strict=True)
+    ]
+
+
+def _with_strangers(known: Findings, other: Findings, look: Appearance, disc: Stone) -> Findings:
+    """Add stones of a colour of which none convinces to those of the colour that is known."""
+    strangers = [
+        stone
+        for stone in other.stones
+        if all(colour_difference(cap.mean, stone.colour) > UNLIKE for cap in look.caps)
+        and all(hypot(stone.x - s.x, stone.y - s.y) > 1.6 * disc.radius for s in known.stones)
+    ]
+    return Findings((*known.stones, *strangers), known.refused)

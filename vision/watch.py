@@ -13,7 +13,14 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from data.sheet import STONE, Stone
-from vision.appearance import CONVINCING, MOST_COLOURS, Appearance, colour_difference, learn
+from vision.appearance import (
+    CONVINCING,
+    MOST_COLOURS,
+    UNLIKE,
+    Appearance,
+    colour_difference,
+    learn,
+)
 from vision.camera import Camera
 from vision.clip import Frame
 from vision.follower import PATIENCE, Follower, Patience, View
@@ -21,9 +28,6 @@ from vision.lead import Lead
 from vision.patch import is_plain
 from vision.sighting import Sighting
 from vision.stones import FOLLOWING, SEARCH, Search, placed_by, search_picture
-
-UNLIKE = 30.0
-"""Difference of cap colours (L*a*b* units) from which a colour is a new one."""
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from tests.synthetic.clip import describe, render_still
 from tests.synthetic.physics import Start
 from tests.synthetic.scene import Colour, Graphic, Person, Scene, Stone
 from tests.synthetic.scenes import PAINTS
-from vision.appearance import CONVINCING, any_stone, colour_difference, learn, membership
+from vision.appearance import CONVINCING, colour_difference, learn
 from vision.camera import Camera, CameraError
 from vision.clip import open_clip
 from vision.expected import look_beside, look_on_course
@@ -148,14 +148,6 @@ def test_learned_colours_are_those_of_the_caps() -> None:
         assert min(np.abs(s - colour).max() for s in seen) < 60
     assert learn([]) is None
     assert colour_difference(learned.caps[0].mean, learned.caps[1].mean) > 60
-
-
-def test_worth_of_colours() -> None:
-    colours = np.array([[RED, YELLOW, (90, 95, 92), (215, 220, 215)]], np.uint8)
-    worth = membership(colours, any_stone(215.0))[0]
-    assert worth[:2].min() > 0.9
-    assert worth[2] < -0.9
-    assert abs(worth[3]) < 0.1
 
 
 def test_discs_of_which_only_the_radius_is_known() -> None:

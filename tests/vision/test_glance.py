@@ -1,0 +1,35 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from vision import glance as module
+from vision.camera import Camera
+from vision.glance import glance
+from vision.sighting import Sighting
+from vision.stones import Findings
+
+RED, BLUE = np.array([120.0, 190.0, 165.0]), np.array([50.0, 140.0, 92.0])
+
+
+def stone(x: float, colour: np.ndarray, score: float) -> Sighting:
+    around = np.zeros((20, 3))
+    return Sighting(
+        x, 0.0, 0.01, 0.01, 0.0, colour, 1.0, score, (1.0, 1.0), 0.0, (0.0, 0.0),
+        cap_samples=around + colour, granite_samples=around + np.array([90.0, 128.0, 128.0]),
+    )  # fmt: skip
+
+
+def test_a_stone_of_another_colour_stays_though_it_convinces_less(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    first = (
+        stone(0.0, RED, 2.0), stone(0.6, BLUE, 1.2), stone(1.2, RED, 1.1), stone(0.1, BLUE, 1.1),
+    )  # fmt: skip
+
+    def search(image: object, camera: object, appearance: object, disc: object) -> Findings:
+        return Findings(first if appearance is None else first[:1])
+
+    monkeypatch.setattr(module, "search_picture", search)
+    (found,) = glance([(np.zeros((4, 4, 3), np.uint8), Camera(0, 0.0, np.eye(3), (4, 4)))])
+    assert [s.x for s in found.stones] == [0.0, 0.6]
