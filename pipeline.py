@@ -360,20 +360,21 @@ def _do_season(arguments: argparse.Namespace, _: Bars) -> str:
 def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:
     from data.tracks import write_table, write_tracks
     from physics.contacts import find_contacts
-    from physics.kalman import smooth
+    from physics.kalman import smoothed
     from report.numbers import count
-    from vision.camera import camera_table
+    from vision.camera import camera_columns
 
     settings, folder = settings_of(arguments), out_folder(arguments, arguments.inputs[0])
     check_folder(folder)
     measured = measure(arguments.inputs, replace(settings, clip=True), bars)
-    contacts = find_contacts(measured.sightings, settings.radius)
-    tracks = smooth(measured.sightings, contacts, radius=settings.radius)
+    contacts = find_contacts(measured.table, settings.radius)
+    tracks = smoothed(measured.table, contacts, radius=settings.radius)
     with staged(folder, replaces=_stale(folder, measured.files)) as stage:
         write_tracks(tracks, stage / "tracks.csv")
-        write_table(camera_table(measured.cameras), stage / "camera.csv")
+        write_table(camera_columns(measured.cameras), stage / "camera.csv")
+    stones = set(tracks["stone"].tolist())
     lines = [
-        f"{count(tracks['stone'].nunique(), 'stone')} in {count(measured.frames, 'frame')}: "
+        f"{count(len(stones), 'stone')} in {count(measured.frames, 'frame')}: "
         f"{folder / 'tracks.csv'}, {folder / 'camera.csv'}"
     ]
     return "\n".join(lines + [f"warning: {text}" for text in measured.warnings])

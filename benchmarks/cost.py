@@ -42,7 +42,7 @@ PARTS = {
     "association": "vision.track.follow",
     "angles": "vision.track.handle_angles",
     "hits": "physics.contacts.find_contacts",
-    "filter": "physics.kalman.smooth",
+    "filter": "physics.kalman.smoothed",
 }
 """Parts of the work and the functions that do it; none calls another."""
 

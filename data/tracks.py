@@ -3,17 +3,41 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from data.errors import InputError
 from data.files import whole_file
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 Array = NDArray[np.float64]
+
+
+class Table(Protocol):
+    """Columns of one length by their names: a DataFrame, or a dict of arrays.
+
+    What is done on the way from a clip to its tracks asks for no more, for to import pandas takes
+    as long as to decode two seconds of a clip.
+    """
+
+    def __getitem__(self, name: str, /) -> Any:
+        """Give a column."""
+
+    def __iter__(self) -> Iterator[Any]:
+        """Give the names of the columns."""
+
+    def __contains__(self, name: object, /) -> bool:
+        """Say whether there is a column of that name."""
+
+
+Columns = dict[str, NDArray[Any]]
+"""A table as arrays."""
 
 TRACK_COLUMNS: tuple[str, ...] = (
     "stone", "frame", "t", "x", "y", "theta", "vx", "vy", "omega",
@@ -77,6 +101,8 @@ def check_sightings(table: pd.DataFrame, source: str = "tracks") -> pd.DataFrame
     InputError
         One line that lists every fault found.
     """
+    import pandas as pd
+
     missing = [name for name in ("stone", "t", "x", "y") if name not in table.columns]
     if missing:
         raise InputError(f"{source}: no column {', '.join(missing)}; needs stone, t, x, y")
@@ -110,6 +136,8 @@ def check_sightings(table: pd.DataFrame, source: str = "tracks") -> pd.DataFrame
 
 def _as_numbers(table: pd.DataFrame, name: str) -> tuple[Array, NDArray[np.bool_]]:
     """Numbers of a column, NaN where it has none, and which cells are neither."""
+    import pandas as pd
+
     none = np.zeros(len(table), bool)
     if name not in table.columns:
         return np.full(len(table), np.nan), none
@@ -160,40 +188,45 @@ def _disorder(stones: NDArray[np.object_], t: Array) -> list[str]:
     return faults
 
 
-def teams(table: pd.DataFrame) -> dict[str, str]:
+def teams(table: Table) -> dict[str, str]:
     """Team of each stone of a table with the columns ``stone`` and ``team``; "" where unknown."""
-    return {
-        str(stone): next((team for team in group if team), "")
-        for stone, group in table.groupby("stone", sort=False)["team"]
-    }
+    found: dict[str, str] = {}
+    for stone, team in zip(table["stone"], table["team"], strict=True):
+        found[str(stone)] = found.get(str(stone)) or team
+    return found
+
+
+def no_rows(columns: Sequence[str]) -> Columns:
+    """Return a table of sightings or tracks without rows."""
+    kinds = {"stone": str, "team": str, "frame": int, "seen": int}
+    return {name: np.empty(0, kinds.get(name, float)) for name in columns}
 
 
 def empty_tracks() -> pd.DataFrame:
     """Return a table of tracks without rows."""
-    return pd.DataFrame({name: pd.Series(dtype=float) for name in TRACK_COLUMNS}).astype(
-        {"stone": str, "frame": int, "seen": int, "team": str}
-    )
+    import pandas as pd
+
+    return pd.DataFrame(no_rows(TRACK_COLUMNS))
 
 
-def write_table(table: pd.DataFrame, path: Path, columns: Sequence[str] | None = None) -> None:
+def write_table(table: Table, path: Path, columns: Sequence[str] | None = None) -> None:
     """Write a table as CSV, whole or not at all, nine significant digits, NaN as empty."""
-    names = list(table.columns) if columns is None else list(columns)
-    texts = [_texts(table[name]) for name in names]
+    names = list(table) if columns is None else list(columns)
+    texts = [_texts(np.asarray(table[name])) for name in names]
     with whole_file(path) as part, part.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(names)
         writer.writerows(zip(*texts, strict=True))
 
 
-def _texts(column: pd.Series) -> list[str]:
+def _texts(column: NDArray[Any]) -> list[str]:
     """Values as they are written; `to_csv` takes ten times as long."""
     if column.dtype.kind == "f":
         return ["" if value != value else f"{value:.9g}" for value in column.tolist()]
-    missing = column.isna().tolist()
-    return ["" if gone else str(v) for gone, v in zip(missing, column.tolist(), strict=True)]
+    return ["" if value is None or value != value else str(value) for value in column.tolist()]
 
 
-def write_tracks(tracks: pd.DataFrame, path: Path) -> None:
+def write_tracks(tracks: Table, path: Path) -> None:
     """Write ``tracks.csv`` with `TRACK_COLUMNS` in their order."""
     write_table(tracks, path, TRACK_COLUMNS)
 
@@ -206,6 +239,8 @@ def read_tracks(path: Path) -> pd.DataFrame:
     InputError
         Where the file is missing or no such thing.
     """
+    import pandas as pd
+
     texts = {"stone": str, "team": str}
     numbers = {name: float for name in TRACK_COLUMNS if name not in (*texts, "frame", "seen")}
     try:

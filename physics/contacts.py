@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
+from data.tracks import Table
 from physics.fit import fit_shot
 from physics.segments import Piece, breaks, cut
 from physics.shot_fit import Deceleration, Encounter, Meeting, ShotFit
@@ -53,7 +53,7 @@ class Contact:
     normal: tuple[float, float]
 
 
-def find_contacts(sightings: pd.DataFrame, radius: float) -> tuple[Contact, ...]:
+def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
     """Find the hits between the stones of a table of sightings.
 
     Every approach of two stones to about 2R is a candidate. All are fitted at once as hits,
@@ -62,7 +62,7 @@ def find_contacts(sightings: pd.DataFrame, radius: float) -> tuple[Contact, ...]
 
     Parameters
     ----------
-    sightings : DataFrame
+    sightings : Table
         `data.tracks.SIGHTING_COLUMNS`.
     radius : float
         Of the discs, m.

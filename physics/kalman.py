@@ -11,12 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
-from data.tracks import TRACK_COLUMNS, empty_tracks, teams
+from data.tracks import TRACK_COLUMNS, Columns, Table, no_rows, teams
 from physics.contacts import Contact, cut_all
 from physics.fit import fit_shot
 from physics.glides import FREE, measure_glides, stop_time
@@ -25,6 +25,9 @@ from physics.shot_fit import ShotFit
 from physics.stretch import JUMP_SD, START_SD, Filter, Model, Stretch
 from physics.traces import Trace, traces
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 Floats = NDArray[np.float64]
 
 UNTOLD = 0.5 * JUMP_SD[1]
@@ -32,17 +35,30 @@ UNTOLD = 0.5 * JUMP_SD[1]
 
 
 def smooth(
-    sightings: pd.DataFrame,
+    sightings: Table,
     contacts: Sequence[Contact],
     *,
     radius: float,
     run: Filter = filtered,
 ) -> pd.DataFrame:
+    """Turn sightings into tracks, as a DataFrame: see `smoothed`."""
+    import pandas as pd
+
+    return pd.DataFrame(smoothed(sightings, contacts, radius=radius, run=run))
+
+
+def smoothed(
+    sightings: Table,
+    contacts: Sequence[Contact],
+    *,
+    radius: float,
+    run: Filter = filtered,
+) -> Columns:
     """Turn sightings into tracks: one row per stone and time from its first to its last.
 
     Parameters
     ----------
-    sightings : DataFrame
+    sightings : Table
         `data.tracks.SIGHTING_COLUMNS`; standard deviations are estimated where missing.
     contacts : sequence of Contact
         The hits; nothing on one side of a hit has a say on its other side.
@@ -54,7 +70,7 @@ def smooth(
 
     Returns
     -------
-    DataFrame
+    Columns
         `data.tracks.TRACK_COLUMNS`. ``seen`` is 0 in rows at which other stones were seen
         but not this one, or at which its sighting was refused as an outlier. Angles and spins
         are NaN where the stone's angle was not seen from one hit to the next, velocities where
@@ -63,17 +79,19 @@ def smooth(
     """
     known = traces(sightings)
     if not known:
-        return empty_tracks()
-    clock = sightings.groupby("t", sort=True)["frame"].first()
-    times, frames = clock.index.to_numpy(float), clock.to_numpy(int)
+        return no_rows(TRACK_COLUMNS)
+    times, first = np.unique(np.asarray(sightings["t"], float), return_index=True)
+    frames = np.asarray(sightings["frame"], int)[first]
     fit, model = _survey(known, contacts, radius)
     tables = []
     for name, trace in known.items():
         inside = (times >= trace.t[0]) & (times <= trace.t[-1])
         hits = sorted(c.t for c in contacts if name in c.stones)
         tables.append(_track(trace, times[inside], frames[inside], hits, fit, model, run))
-    tracks = pd.concat(tables, ignore_index=True)
-    return tracks.assign(team=tracks["stone"].map(teams(sightings)))[list(TRACK_COLUMNS)]
+    team = teams(sightings)
+    tracks = {name: np.concatenate([table[name] for table in tables]) for name in tables[0]}
+    tracks["team"] = np.array([team[stone] for stone in tracks["stone"].tolist()])
+    return {name: tracks[name] for name in TRACK_COLUMNS}
 
 
 def _survey(
@@ -97,7 +115,7 @@ def _track(
     fit: ShotFit,
     model: Model,
     run: Filter,
-) -> pd.DataFrame:
+) -> Columns:
     """Run the filter over one stone, hit to hit."""
     row = np.clip(np.searchsorted(trace.t, t), 0, len(trace.t) - 1)
     sighted = trace.t[row] == t
@@ -127,10 +145,9 @@ def _track(
         # One look tells a place and an angle, but nothing of motion.
         mean[:, [2, 3, 5]], spread[:, [2, 3, 5]] = np.nan, np.nan
     columns = ("x", "y", "vx", "vy", "theta", "omega")
-    table = {"stone": trace.stone, "frame": frames, "t": t, "seen": seen}
+    table = {"stone": np.full(len(t), trace.stone), "frame": frames, "t": t, "seen": seen}
     table |= {name: mean[:, i] for i, name in enumerate(columns)}
-    table |= {f"sd_{name}": spread[:, i] for i, name in enumerate(columns)}
-    return pd.DataFrame(table)
+    return table | {f"sd_{name}": spread[:, i] for i, name in enumerate(columns)}
 
 
 def _modes(

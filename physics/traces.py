@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
+
+from data.tracks import Table
 
 Floats = NDArray[np.float64]
 
@@ -62,7 +63,7 @@ class Trace:
         return np.asarray((self.t >= start) & (self.t < end))
 
 
-def traces(sightings: pd.DataFrame) -> dict[str, Trace]:
+def traces(sightings: Table) -> dict[str, Trace]:
     """Split a table of sightings by stone and give every place a standard deviation.
 
     Where the table has none it is estimated from how places scatter about local parabolas;
@@ -70,16 +71,21 @@ def traces(sightings: pd.DataFrame) -> dict[str, Trace]:
 
     Parameters
     ----------
-    sightings : DataFrame
+    sightings : Table
         `data.tracks.SIGHTING_COLUMNS`.
     """
     out: dict[str, Trace] = {}
-    for name, group in sightings.groupby("stone", sort=True):
-        texts = ("stone", "team")
-        columns = {key: group[key].to_numpy(float) for key in group.columns if key not in texts}
-        t, xy = columns["t"], np.column_stack([columns["x"], columns["y"]])
-        sd = np.column_stack([columns["sd_x"], columns["sd_y"]])
-        theta = columns["theta"].copy()
+    stones = np.asarray(sightings["stone"])
+    columns = {
+        name: np.asarray(sightings[name], float)
+        for name in ("t", "x", "y", "theta", "sd_x", "sd_y", "sd_theta", "sd_place")
+        if name in sightings
+    }
+    for name in np.unique(stones).tolist():
+        own = {key: values[stones == name] for key, values in columns.items()}
+        t, xy = own["t"], np.column_stack([own["x"], own["y"]])
+        sd = np.column_stack([own["sd_x"], own["sd_y"]])
+        theta = own["theta"]
         known = np.isfinite(theta)
         theta[known] = np.unwrap(theta[known])
         turned = theta[known][:, None]
@@ -89,8 +95,8 @@ def traces(sightings: pd.DataFrame) -> dict[str, Trace]:
             xy=xy,
             sd=_filled(t, xy, sd, SMALLEST_SD, 0.005),
             theta=theta,
-            sd_theta=_filled_angles(t[known], turned, columns["sd_theta"], known),
-            sd_place=np.nan_to_num(columns.get("sd_place", np.zeros(len(t)))),
+            sd_theta=_filled_angles(t[known], turned, own["sd_theta"], known),
+            sd_place=np.nan_to_num(own.get("sd_place", np.zeros(len(t)))),
         )
     return out
 

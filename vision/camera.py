@@ -4,10 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 from numpy.typing import ArrayLike, NDArray
+
+from data.tracks import Columns
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Array = NDArray[np.float64]
 
@@ -250,13 +255,21 @@ def apply_homography(matrix: Array, points: ArrayLike) -> Array:
     return np.asarray(q[..., :2] / q[..., 2:])
 
 
-def camera_table(cameras: Sequence[Camera]) -> pd.DataFrame:
+def camera_columns(cameras: Sequence[Camera]) -> Columns:
     """Table of ``camera.csv``, one row per frame, with `CAMERA_COLUMNS`."""
-    rows = []
-    for cam in cameras:
+    rows = np.empty((len(cameras), len(CAMERA_COLUMNS)))
+    for row, cam in zip(rows, cameras, strict=True):
         position = np.full(3, np.nan) if cam.position is None else cam.position
-        rows.append(
-            [cam.frame, cam.t, *cam.homography.ravel(), cam.k1, cam.k2, cam.f_px, *position,
-             cam.rms_px, int(cam.found)]
+        row[:] = (
+            cam.frame, cam.t, *cam.homography.ravel(), cam.k1, cam.k2, cam.f_px, *position,
+            cam.rms_px, cam.found,
         )  # fmt: skip
-    return pd.DataFrame(rows, columns=list(CAMERA_COLUMNS))
+    table: Columns = dict(zip(CAMERA_COLUMNS, rows.T, strict=True))
+    return table | {name: table[name].astype(int) for name in ("frame", "found")}
+
+
+def camera_table(cameras: Sequence[Camera]) -> pd.DataFrame:
+    """As `camera_columns`, as a DataFrame."""
+    import pandas as pd
+
+    return pd.DataFrame(camera_columns(cameras))

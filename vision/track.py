@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 
 from data.progress import Progress, no_progress
 from data.sheet import STONE, Stone
-from data.tracks import SIGHTING_COLUMNS, check_sightings, order_of_motion
+from data.tracks import SIGHTING_COLUMNS, Columns, no_rows, order_of_motion
 from vision.align import Complex
 from vision.appearance import Appearance, colour_difference
 from vision.camera import Camera
@@ -24,6 +25,9 @@ from vision.roundness import edge_error
 from vision.stones import FOLLOWING, Search
 from vision.watch import Watch
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 
 @dataclass(frozen=True)
 class StoneTracks:
@@ -31,15 +35,22 @@ class StoneTracks:
 
     Attributes
     ----------
-    sightings : DataFrame
-        With `SIGHTING_COLUMNS`; stones A, B, C … in the order in which they first move,
-        then those at rest by their distance to the tee.
+    table : Columns
+        With `SIGHTING_COLUMNS`, by stone and time; stones A, B, C … in the order in which they
+        first move, then those at rest by their distance to the tee.
     warnings : tuple of str
         What a person should know.
     """
 
-    sightings: pd.DataFrame
+    table: Columns
     warnings: tuple[str, ...] = ()
+
+    @cached_property
+    def sightings(self) -> pd.DataFrame:
+        """The same as a DataFrame."""
+        import pandas as pd
+
+        return pd.DataFrame(self.table)
 
 
 def track_stones(
@@ -100,37 +111,34 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
     moved, rest = names_by_motion(tracks, disc.radius)
     names = order_of_motion(dict(moved), rest)
     named = {names[str(number)]: track for number, track in enumerate(tracks)}
-    named = dict(sorted(named.items(), key=lambda item: (len(item[0]), item[0])))
     if not named:
-        empty = pd.DataFrame({name: pd.Series(dtype=float) for name in SIGHTING_COLUMNS})
-        empty = empty.astype({"stone": str, "frame": int, "team": str})
-        return StoneTracks(empty, ("no stones were found on the ice",))
+        return StoneTracks(no_rows(SIGHTING_COLUMNS), ("no stones were found on the ice",))
     edge = edge_error([track.sightings for track in tracks])
-    table = pd.concat(
-        [_rows(name, track, disc, edge) for name, track in named.items()], ignore_index=True
+    team = _teams(named, watch.appearance)
+    rows = [_rows(name, named[name], team[name], disc, edge) for name in sorted(named)]
+    return StoneTracks(
+        {name: np.concatenate([part[name] for part in rows]) for name in SIGHTING_COLUMNS}
     )
-    table["team"] = table["stone"].map(_teams(named, watch.appearance))
-    return StoneTracks(check_sightings(table, "the stones found"))
 
 
-def _rows(name: str, track: Track, disc: Stone, edge: float) -> pd.DataFrame:
+def _rows(name: str, track: Track, team: str, disc: Stone, edge: float) -> Columns:
     spectra: list[Complex | None] = [sighting.spectrum for sighting in track.sightings]
     theta, sd_theta = handle_angles(np.array(track.times), spectra, handle_radii(disc))
     seen = track.sightings
-    return pd.DataFrame(
-        {
-            "stone": name,
-            "frame": track.frames,
-            "t": track.times,
-            "x": [item.x for item in seen],
-            "y": [item.y for item in seen],
-            "theta": theta,
-            "sd_x": [item.sd_x for item in seen],
-            "sd_y": [item.sd_y for item in seen],
-            "sd_theta": sd_theta,
-            "sd_place": np.hypot([item.sd_place for item in seen], edge),
-        }
-    )
+    x, y, sd_x, sd_y, sd_place = np.array([item[:5] for item in seen]).T
+    return {
+        "stone": np.full(len(seen), name),
+        "frame": np.array(track.frames),
+        "t": np.array(track.times),
+        "x": x,
+        "y": y,
+        "theta": theta,
+        "sd_x": sd_x,
+        "sd_y": sd_y,
+        "sd_theta": sd_theta,
+        "sd_place": np.hypot(sd_place, edge),
+        "team": np.full(len(seen), team),
+    }
 
 
 def _teams(tracks: Mapping[str, Track], appearance: Appearance | None) -> dict[str, str]:

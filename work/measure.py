@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,7 @@ from data.errors import InputError
 from data.inputs import IMAGE_SUFFIXES, TABLE_SUFFIXES, find_inputs
 from data.progress import Progress, no_progress
 from data.sheet import HOUSE, STONE, House
+from data.tracks import Table
 from work.film import check_size, disc_of, film
 from work.settings import Settings, refuse_clip_options
 
@@ -27,7 +29,7 @@ class Measured:
     """Sightings of the stones and where they come from."""
 
     files: tuple[Path, ...]
-    sightings: pd.DataFrame
+    table: Table
     fps: float | None
     frames: int
     warnings: tuple[str, ...]
@@ -35,6 +37,13 @@ class Measured:
     cameras: tuple[Camera, ...] = ()
     house: House | None = None
     masses: Mapping[str, float] = field(default_factory=dict)
+
+    @cached_property
+    def sightings(self) -> pd.DataFrame:
+        """The table as a DataFrame."""
+        import pandas as pd
+
+        return pd.DataFrame(self.table)
 
 
 def measure(
@@ -121,7 +130,7 @@ def _look_at_clip(files: tuple[Path, ...], settings: Settings, progress: Progres
     stones = tracks_of(watch, seen.cameras)
     return Measured(
         files,
-        stones.sightings,
+        stones.table,
         seen.clip.fps,
         seen.clip.read,
         (*seen.clip.warnings, *seen.warnings, *stones.warnings),
