@@ -12,7 +12,6 @@ from data.errors import InputError
 from data.inputs import IMAGE_SUFFIXES, TABLE_SUFFIXES, find_inputs
 from data.progress import Progress, no_progress
 from data.sheet import HOUSE, STONE, House
-from data.tracks import Table
 from work.film import check_size, disc_of, film
 from work.settings import Settings, refuse_clip_options
 
@@ -20,6 +19,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from data.tracker import Imported
+    from data.tracks import Table
     from vision.camera import Camera
     from vision.clip import Clip, Frame
 
