@@ -239,6 +239,7 @@ class _Problem:
             damped = matrix.copy()
             damped.flat[:: len(right) + 1] *= 1 + damping
             ahead = state.moved(-np.asarray(np.linalg.solve(damped, right), np.float64))
+            ahead = self.settled(ahead, self.see(ahead), noise)
             looked = self.see(ahead)
             new = self.cost(ahead, looked, paint, noise)
             if not new <= cost:
@@ -250,6 +251,21 @@ class _Problem:
             if done:
                 break
         return state, inverse(matrix)
+
+    def settled(self, state: _State, at: Linear, noise: Array) -> _State:
+        """Let each view follow what it shares with the others, by a step of its own.
+
+        From overhead, height, focal length and tilt hardly tell themselves apart: a joint step
+        along the tangent of that valley would leave it where it bends.
+        """
+        w = 1 / (noise[self.kind] ** 2 + (at.residual / WIDTH) ** 2)
+        own = at.by_view * w
+        views = state.views.copy()
+        for k, part in enumerate(self.frame.parts):
+            matrix = own[:, part] @ at.by_view[:, part].T + np.diag(self.hold)
+            right = own[:, part] @ at.residual[part] + self.hold * (views[k] - self.start[k])
+            views[k] -= np.linalg.solve(matrix, right)
+        return replace(state, views=views)
 
     def spread(self, state: _State, cov: Array, paint: Array, noise: Array) -> tuple[Array, Array]:
         """Estimate the paint's and the marks' standard deviations anew."""

@@ -1,0 +1,44 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.vision.cameras import SIZE, marks, true_rig, views
+from vision.bundle import bundle
+from vision.pose import View
+from vision.resection import solve_view
+from vision.rig import OVERHEAD, POSITION, R4, R8, start_rig
+
+VIEWS = [View(np.array([0.19, -0.02 * k, 0.03, 7.1 + 0.01 * k])) for k in range(5)]
+
+
+@pytest.mark.parametrize("height", [6.5, 8.5, 12.0])
+def test_the_height_does_not_depend_on_where_the_fit_begins(height: float) -> None:
+    rng = np.random.default_rng(4)
+    rig = true_rig()
+    frames = [marks(rng, view.vector, rig, 0.1) for view in VIEWS]
+    start = start_rig(OVERHEAD, (0.0, 0.0, height))
+    begin = [
+        solve_view(seen, view, start, SIZE).view for seen, view in zip(frames, VIEWS, strict=True)
+    ]
+    found, fitted = bundle(frames, np.arange(len(VIEWS)) / 25, begin, start, SIZE, OVERHEAD)
+    sd = np.sqrt(np.diag(found.cov))
+    known = [*range(*POSITION.indices(3)), R8, R4]
+    assert (np.abs(found.rig - rig)[known] < 4 * sd[known]).all()
+    assert sd[2] < 0.2
+    for view, true in zip(fitted, VIEWS, strict=True):
+        assert abs(view.vector[3] - true.vector[3]) < 4 * sd[2] / rig[2]
+
+
+@pytest.mark.parametrize("speed", [0.0, 0.2])
+def test_a_camera_moves_only_if_the_marks_say_so(speed: float) -> None:
+    rng = np.random.default_rng(5)
+    times, frames = np.linspace(0.0, 1.0, 8), []
+    for t, view in zip(times, views(8), strict=True):
+        rig = true_rig()
+        rig[0] += speed * (t - 0.5)
+        frames.append(marks(rng, view.vector, rig, 0.1))
+    found, _ = bundle(frames, times, views(8), start_rig(OVERHEAD), SIZE, OVERHEAD)
+    assert bool(len(found.travel)) == bool(speed)
+    moved = found.moved(times)
+    np.testing.assert_allclose(moved[:, 0], speed * (times - 0.5), atol=0.02)
