@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from data.sheet import Stone
 from vision.appearance import Appearance, membership
-from vision.circles import Rim, falls_along, fit_circles, summed
+from vision.circles import fit_circles
 from vision.patch import (
     EFFORT,
     HANDLE_HEIGHT,
@@ -23,17 +23,15 @@ from vision.patch import (
     handle_radii,
     is_plain,
     profile_of,
-    tilts,
+    slants,
 )
-from vision.rays import Look, Rays, sample_rays
+from vision.rays import Look, Rays, directions, sample_rays
+from vision.rims import Rim, falls_along, summed
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
 Bytes = NDArray[np.uint8]
 Bools = NDArray[np.bool_]
-
-PIXELS = 0.17
-"""What the edges of a true circle lie off it for being pictured in pixels, px."""
 
 
 @dataclass(frozen=True)
@@ -58,8 +56,8 @@ class Measures:
         Share of the rays on which the cap was seen, whatever is around it.
     evidence : ndarray, shape (n,)
         For a stone 0 to about 3, for a plain disc 0 to 1.
-    bend : ndarray, shape (n,)
-        How far the edges lie from circles, root mean square beyond what pixels do, m.
+    bends : ndarray, shape (n, 6)
+        How the edge of cap or disc is bent (`vision.circles.Fits`), m.
     outline : ndarray, shape (n, circles)
         Radii found, as shares of the nominal ones.
     handle : ndarray, shape (n, rays, rings, 3)
@@ -78,7 +76,7 @@ class Measures:
     visible: Array
     uncovered: Array
     evidence: Array
-    bend: Array
+    bends: Array
     outline: Array
     handle: Bytes
     worth: Floats
@@ -119,16 +117,17 @@ def measure(
     handle *= np.all(sampled.inside[:, :, count + 1 :: 2], axis=1)[:, None, :, None]
     places = np.concatenate([look.places for look in looks])
     scale = np.concatenate([look.camera.scale_at(look.places) for look in looks])
-    tilt = np.concatenate([tilts(look.camera, look.places) for look in looks])
+    slant = np.concatenate([slants(look.camera, look.places) for look in looks])
     if is_plain(disc):
         return _plain(rays, handle, places, scale, disc, effort)
     assert appearance is not None
     # Behind the plane of the handle a slanting view shows the cap displaced. Rings that leave
     # it show its edge, which stays while the stone turns: they are blanked.
+    tilt = np.hypot(slant[:, 0], slant[:, 1])
     within = effort.handle_edge * disc.cap_radius - (HANDLE_HEIGHT - disc.cap_height) * tilt
     handle *= (sampled.radius[count + 1 :: 2] < within[:, None])[:, None, :, None]
     handle = np.concatenate([handle, _rings(rays, handle_radii(disc, effort))], axis=2)
-    return _stones(rays, handle, places, scale, tilt, appearance, disc, effort)
+    return _stones(rays, handle, places, scale, slant, appearance, disc, effort)
 
 
 def _rings(rays: Rays, radii: Array) -> Bytes:
@@ -159,7 +158,7 @@ def _stones(
     handle: Bytes,
     places: Array,
     scale: Array,
-    tilt: Array,
+    slant: Array,
     appearance: Appearance,
     disc: Stone,
     effort: Effort,
@@ -190,10 +189,13 @@ def _stones(
     stony = capped & greyed
     at_cap, at_rim = rays.at(cap_radius), rays.at(rim_radius)
     whole = np.ones(len(places))
-    cap_rim = Rim((falls @ along)[..., 0], stony, at_cap, cap_radius, 0.12 * cap_radius, 0.3, whole)
+    lean = np.maximum(-slant @ directions(effort.rays)[1].T, 0)
+    cap_rim = Rim(
+        (falls @ along)[..., 0], stony, at_cap, cap_radius, 0.12 * cap_radius, 0.3, whole, lean
+    )
     edges = np.sqrt((falls * falls) @ np.ones(3, np.float32))
     # Seen aslant, the granite's outline is not a circle of one height.
-    trust = 1 / (1 + (tilt / effort.most_tilt) ** 2)
+    trust = 1 / (1 + (slant**2).sum(1) / effort.most_tilt**2)
     granite_rim = Rim(edges, greyed, at_rim, rim_radius, 0.05 * rim_radius, 12.0, trust)
     pixel = 1 / scale
     fit = fit_circles(
@@ -221,7 +223,7 @@ def _stones(
         visible=visible,
         uncovered=(capped & at_cap).mean(1),
         evidence=fit.shares.sum(1) - uneven - 0.5 * misfit + 0.5 * response,
-        bend=_bend(fit.rms, pixel),
+        bends=fit.bends,
         outline=fit.radii / np.array([disc.cap_radius, disc.radius]),
         handle=handle,
         worth=worth,
@@ -254,7 +256,7 @@ def _plain(
         visible=visible,
         uncovered=visible,
         evidence=fit.shares[:, 0],
-        bend=_bend(fit.rms, pixel),
+        bends=fit.bends,
         outline=fit.radii / disc.radius,
         handle=handle,
         worth=np.zeros(within.shape, np.float32),
@@ -262,11 +264,7 @@ def _plain(
     )
 
 
-def _bend(rms: Array, pixel: Array) -> Array:
-    return np.asarray(np.sqrt(np.maximum(rms**2 - (PIXELS * pixel) ** 2, 0)))
-
-
 def _errors(covariance: Array, pixel: Array, hidden: Array) -> Array:
     # Half of the edges' misfit is the stone's own shape, which stays from picture to picture.
-    own = 0.5 * np.diagonal(covariance, axis1=1, axis2=2)
+    own = 0.5 * np.maximum(np.diagonal(covariance, axis1=1, axis2=2), 0)
     return np.asarray(np.sqrt(own + ((0.07 * pixel) ** 2 + hidden**2)[:, None]))

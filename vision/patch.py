@@ -95,9 +95,11 @@ def handle_radii(disc: Stone, effort: Effort = EFFORT) -> Array:
     return np.asarray(rings.reshape(-1, 2).mean(1))
 
 
-def tilts(camera: Camera, places: Array) -> Array:
-    """Tangent of the angle between the view of places and the vertical; 0 where unknown."""
+def slants(camera: Camera, places: Array) -> Array:
+    """Slant of the view of places, (n, 2): how far it goes aside per metre down; 0 where unknown.
+
+    Its length is the tangent of the angle to the vertical.
+    """
     if camera.position is None or not np.isfinite(camera.position).all():
-        return np.zeros(len(places))
-    away = places - camera.position[:2]
-    return np.asarray(np.hypot(away[:, 0], away[:, 1]) / camera.position[2])
+        return np.zeros((len(places), 2))
+    return np.asarray((places - camera.position[:2]) / camera.position[2])

@@ -15,10 +15,11 @@ from vision.sighting import Sighting
 WHOLE = 0.8
 """Share of the circle that must be seen."""
 
-SHARE = 0.7
-"""How far the middle may be off, per axis, in roots of the mean square of what bends the circle."""
+SHARE = 3.0
+"""How far the middle may be off, per axis, in root mean squares of the harmonics that bend the
+circle: what goes once around is larger than what goes around several times."""
 
-USUAL = 0.002
+USUAL = 0.0005
 """What bends a stone's circle as a rule, m: it counts as one stone more."""
 
 
@@ -30,9 +31,10 @@ def edge_error(stones: Iterable[Sequence[Sighting]]) -> float:
     stones : iterable of sequences of Sighting
         The sightings of each stone; all stones of a clip are made and lit alike.
     """
-    bends = [
-        float(np.median([s.bend for s in whole]))
+    lasting = [
+        np.median([s.bends for s in whole], axis=0)
         for sightings in stones
         if (whole := [s for s in sightings if s.visible > WHOLE])
     ]
-    return SHARE * float(np.sqrt(np.mean(np.square([USUAL, *bends]))))
+    squares = [USUAL**2, *(float(np.mean(bends**2)) for bends in lasting)]
+    return SHARE * float(np.sqrt(np.mean(squares)))

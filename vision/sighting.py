@@ -34,8 +34,8 @@ class Sighting(NamedTuple):
         Evidence that it is a stone: 1 is little, 2.5 is much.
     outline : tuple of float
         Radii found for cap and granite (or the rim alone), as shares of the nominal ones.
-    bend : float
-        How far the edges lie from circles, root mean square beyond what pixels do, m.
+    bends : tuple of float
+        How the edge of cap or disc is bent (`vision.circles.Fits`), m.
     pixel : tuple of float
         Where the picture shows the middle of the cap, px.
     cap_samples, granite_samples : ndarray, shape (n, 3)
@@ -56,7 +56,7 @@ class Sighting(NamedTuple):
     visible: float
     score: float
     outline: tuple[float, ...]
-    bend: float
+    bends: tuple[float, ...]
     pixel: tuple[float, float]
     spectrum: NDArray[np.complex64] | None = None
     cap_samples: Array = _NONE

@@ -19,7 +19,7 @@ from vision.appearance import Appearance
 from vision.camera import Camera
 from vision.handle import cap_spectrum
 from vision.measure import Measures, measure
-from vision.patch import EFFORT, handle_radii, is_plain, tilts
+from vision.patch import EFFORT, handle_radii, is_plain, slants
 from vision.picture import Picture
 from vision.rays import Look
 from vision.roundness import edge_error
@@ -73,7 +73,7 @@ UNCOVERED = 0.75
 """Share of a cap that must be seen for its angle to be measured."""
 
 
-ASLANT = 0.025
+ASLANT = 0.020
 """Standard error of how high the rim of a cap is seen, as a share of its height: a wall or a
 rounded rim is seen on the near side only."""
 
@@ -223,16 +223,16 @@ def sightings(
     spectra = cap_spectrum(seen.handle[chosen], handle_radii(disc))
     columns = (
         seen.centre[chosen], seen.sd[chosen], seen.visible[chosen], seen.evidence[chosen],
-        seen.outline[chosen], seen.bend[chosen], np.concatenate([np.empty((0, 2)), *pixels]),
+        seen.outline[chosen], seen.bends[chosen], np.concatenate([np.empty((0, 2)), *pixels]),
         seen.uncovered[chosen] >= UNCOVERED,
     )  # fmt: skip
     rows = zip(seen.colour[chosen], spectra, *(column.tolist() for column in columns), strict=True)
     return [
         Sighting(
-            x, y, sd_x, sd_y, nan, colour, visible, score, tuple(outline), bend, (u, v),
+            x, y, sd_x, sd_y, nan, colour, visible, score, tuple(outline), tuple(bends), (u, v),
             spectrum.copy() if told else None,
         )
-        for colour, spectrum, (x, y), (sd_x, sd_y), visible, score, outline, bend, (u, v), told
+        for colour, spectrum, (x, y), (sd_x, sd_y), visible, score, outline, bends, (u, v), told
         in rows
     ]  # fmt: skip
 
@@ -242,7 +242,7 @@ def placed_by(camera: Camera, seen: Sequence[Sighting], disc: Stone) -> list[Sig
     if not seen:
         return []
     places = camera.ice(np.array([sighting.pixel for sighting in seen]), disc.cap_height)
-    scale, tilt = camera.scale_at(places), tilts(camera, places)
+    scale, tilt = camera.scale_at(places), np.hypot(*slants(camera, places).T)
     shared = _shared_errors(camera, places, disc, scale, tilt)
     return [
         sighting._replace(x=x, y=y, sd_place=sd)

@@ -4,27 +4,13 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from vision.circles import Fits, Rim, falls_along, fit_circles, summed
-from vision.rays import Rays, directions
-
-RADIUS, RAYS = 0.14, 48
-STEPS = np.linspace(0.08, 0.20, 61)
+from tests.vision.test_rims import RADIUS, RAYS, rim_of
+from vision.circles import Fits, fit_circles
+from vision.rays import directions
 
 
-def rim_of(edge: np.ndarray, inside: np.ndarray) -> tuple[Rays, Rim]:
-    """Rays from one place on which the light goes out at these radii, shape (rays,), m."""
-    light = 200 / (1 + np.exp((STEPS - edge[:, None]) / 0.002))
-    lab = np.repeat(light[None, :, :, None], 3, axis=-1).astype(np.float32)
-    shown = np.repeat(inside[None, :, None], len(STEPS), axis=2)
-    bgr = lab.astype(np.uint8)
-    rays = Rays(bgr, bgr, shown, STEPS, directions(RAYS)[0])
-    use = inside[None]
-    fall = falls_along(lab)[..., 0]
-    return rays, Rim(fall, use, use, RADIUS, 0.02, 2.0, np.ones(1))
-
-
-def fitted(edge: np.ndarray, inside: np.ndarray) -> Fits:
-    rays, rim = rim_of(edge, inside)
+def fitted(edge: np.ndarray, inside: np.ndarray, lean: np.ndarray | None = None) -> Fits:
+    rays, rim = rim_of(edge, inside, lean)
     return fit_circles(rays, (rim,), slack=0.05, reach=0.035, noise=np.array([0.0005]))
 
 
@@ -60,8 +46,22 @@ def test_half_a_circle_is_known_less_well_across() -> None:
     assert not fitted(np.full(RAYS, RADIUS), inside).ok[0]
 
 
-def test_falls_are_slopes_downwards() -> None:
-    ramp = np.broadcast_to(100 - 2.5 * np.arange(40.0)[:, None], (1, 12, 40, 2))
-    falls = falls_along(ramp.astype(np.float32))
-    np.testing.assert_allclose(falls[:, :, 8:-8], 2.5, atol=1e-4)
-    np.testing.assert_array_equal(summed(np.ones((2, 3, 7), bool)), np.full((2, 3), 7.0))
+def test_a_wall_seen_on_the_near_side_does_not_draw_the_circle_there() -> None:
+    tilt, wall = 1.3, 0.007
+    seen = tilt * np.maximum(directions(RAYS)[1] @ [0.0, -1.0], 0)
+    edge, everywhere = RADIUS + wall * seen, np.ones(RAYS, bool)
+    assert fitted(edge, everywhere).shift[0, 1] < -0.004
+    fits = fitted(edge, everywhere, seen[None])
+    np.testing.assert_allclose(fits.shift[0], 0, atol=0.0015)
+    np.testing.assert_allclose(fits.radii[0, 0], RADIUS, atol=0.0015)
+    # From above, what is known of walls beforehand counts, and little depends on it.
+    above = fitted(np.full(RAYS, RADIUS), everywhere, 0.1 * seen[None] / tilt)
+    np.testing.assert_allclose(above.shift[0], 0, atol=0.0003)
+
+
+def test_bends_are_the_waves_of_the_edge_about_its_circle() -> None:
+    angle = directions(RAYS)[0]
+    edge = RADIUS + 0.002 * np.cos(3 * angle) - 0.001 * np.sin(2 * angle)
+    fits = fitted(edge, np.ones(RAYS, bool))
+    np.testing.assert_allclose(fits.bends[0], [0, 0.002, 0, -0.001, 0, 0], atol=0.0003)
+    np.testing.assert_allclose(fits.shift[0], 0, atol=0.0003)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from data.sheet import STONE
-from vision.patch import EFFORT, handle_radii, is_plain, profile_of, tilts
+from vision.patch import EFFORT, handle_radii, is_plain, profile_of, slants
 from vision.pose import View, camera
 from vision.rig import OVERHEAD, start_rig
 from vision.stones import plain_disc
@@ -22,8 +22,8 @@ def test_a_camera_straight_above_shows_all_places_at_one_scale() -> None:
 
 
 def test_views_slant_by_the_place_off_the_camera_s_foot() -> None:
-    np.testing.assert_allclose(tilts(DOWN, PLACES), [0, 1.5 / HEIGHT, 5 / HEIGHT])
-    np.testing.assert_array_equal(tilts(replace(DOWN, position=None), PLACES), 0)
+    np.testing.assert_allclose(slants(DOWN, PLACES), PLACES / HEIGHT, atol=1e-12)
+    np.testing.assert_array_equal(slants(replace(DOWN, position=None), PLACES), 0)
 
 
 def test_rays_cover_the_cap_and_its_granite() -> None:
