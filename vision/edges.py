@@ -34,59 +34,71 @@ def steps(profile: Profiles, normals: Normals, known: Array) -> tuple[Profiles, 
 
     Parameters
     ----------
-    profile : ndarray, shape (3, SAMPLES, n)
-        Along the first n of the normals, those across thin lines left out.
+    profile : ndarray, shape (..., 3, SAMPLES, n)
+        Along the first n of the normals, those across thin lines left out; in one or more
+        pictures.
     normals : Normals
     known : ndarray, shape (9, 2, 3)
         Colours on either side of each kind of edge in the frames before; NaN where not known.
 
     Returns
     -------
-    value : ndarray, shape (SAMPLES, n)
-    good : ndarray of bool, shape (n,)
+    value : ndarray, shape (..., SAMPLES, n)
+    good : ndarray of bool, shape (..., n)
         Whether the profile shows the edge.
-    palette : ndarray, shape (9, 2, 3)
+    palette : ndarray, shape (..., 9, 2, 3)
         Colours on either side of each kind of edge.
     """
     ends = _ENDS @ profile
-    line = normals.line[: ends.shape[2]]
+    line = normals.line[: ends.shape[-1]]
     kinds = {kind: part for kind, part in normals.kinds.items() if kind not in THIN}
     sides = known.T.astype(np.float32)[..., line]
-    for kind, part in kinds.items():
-        if not np.isfinite(known[kind, 0, 0]):
-            sides[..., part] = np.sort(ends[..., part], axis=2)[
-                ..., [(part.stop - part.start) // 2]
-            ]
-    difference = sides[:, 1] - sides[:, 0]
-    square = (difference * difference).sum(0)
+    new = [part for kind, part in kinds.items() if not np.isfinite(known[kind, 0, 0])]
+    if new:
+        sides = np.broadcast_to(sides, ends.shape).copy()
+    for part in new:
+        middle = (part.stop - part.start) // 2
+        sides[..., part] = np.sort(ends[..., part], axis=-1)[..., [middle]]
+    difference = sides[..., 1, :] - sides[..., 0, :]
+    square = (difference * difference).sum(-2)
     # Each side looks like the line's own two colours; light may vary, hue may not.
     tolerance = np.maximum(0.25 * square, 12.0**2)
     off = ends - sides
-    good = ((off * off).sum(0) < tolerance).all(0)
+    good = ((off * off).sum(-3) < tolerance[..., None, :]).all(-2)
     axis = SHARPNESS @ difference
-    axis /= np.maximum((axis * difference).sum(0), 1.0)
-    low, high = (ends * axis[:, None]).sum(0)
+    axis /= np.maximum((axis * difference).sum(-2, keepdims=True), 1.0)
+    axis = axis[..., None, :]
+    low, high = np.moveaxis((ends * axis).sum(-3), -2, 0)
     strength = high - low
     good &= (strength > 0.5) & (strength < 1.6) & (square > MIN_CONTRAST**2)
-    value = (profile * axis[:, None]).sum(0) - 0.5 * (low + high)
-    palette = np.full(known.shape, np.nan)
+    value = (profile * axis).sum(-3) - 0.5 * (low + high)[..., None, :]
+    palette = np.full((*good.shape[:-1], *known.shape), np.nan)
     if kinds:
         starts = np.array([part.start for part in kinds.values()])
-        count = np.add.reduceat(good, starts, dtype=np.int64)
-        total = np.add.reduceat(ends * good, starts, axis=2)
-        seen = count > 0
-        palette[line[starts[seen]]] = (total[..., seen] / count[seen]).T
+        count = np.add.reduceat(good, starts, axis=-1, dtype=np.int64)[..., None, None, :]
+        total = np.add.reduceat(ends * good[..., None, None, :], starts, axis=-1)
+        mean = np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0)
+        palette[..., line[starts], :, :] = np.moveaxis(mean, (-1, -2, -3), (-3, -2, -1))
     return value, good, palette
 
 
 def crossings(value: Profiles) -> tuple[Array, Flags]:
-    """Find where profiles rise through 0, in samples, and whether they do."""
-    below = value[1:-1] < 0
-    rising = below[:-1] > below[1:]
+    """Find where profiles rise through 0, in samples, and whether they do.
+
+    Parameters
+    ----------
+    value : ndarray, shape (..., SAMPLES, n)
+
+    Returns
+    -------
+    sample, good : ndarray, shape (..., n)
+    """
+    below = value[..., 1:-1, :] < 0
+    rising = below[..., :-1, :] > below[..., 1:, :]
     # Of several crossings the steepest is the edge, the others are noise or print.
-    slope = (value[3:] - value[:-3]) * rising
-    best = slope.argmax(0) + 1
-    column = np.arange(value.shape[1])
-    good = slope[best - 1, column] > 0
-    low, high = value[best, column], value[best + 1, column]
+    slope = (value[..., 3:, :] - value[..., :-3, :]) * rising
+    best = slope.argmax(-2)[..., None, :] + 1
+    low, high = (np.take_along_axis(value, at, -2)[..., 0, :] for at in (best, best + 1))
+    best = best[..., 0, :]
+    good = (low < 0) & (high >= 0)
     return best + (low / np.where(good, low - high, 1.0)).astype(np.float64), good

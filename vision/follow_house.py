@@ -62,40 +62,62 @@ class HouseFollower:
         self._first = first
         self._pieces: list[Piece] = []
         self._piece: Piece | None = None
+        self._ahead: list[Frame] = []
         self._waiting: deque[Frame] = deque(maxlen=LOOK_BACK)
         self._between = FIND_EVERY
         self._since_find = FIND_EVERY
 
     def look(self, frame: Frame) -> Sequence[tuple[Frame, Camera]]:
-        """Place one more frame.
+        """Take in one more frame; a few are placed together where they can be predicted.
 
         Returns
         -------
         sequence of (Frame, Camera)
-            Frames placed thereby, in order, with provisional cameras: as a rule this one;
-            after a find also those before it; none where no house is seen.
+            Frames placed thereby, in order, with provisional cameras: as a rule this one, or
+            some and this one; after a find also those before it; none where no house is seen.
         """
-        piece = self._piece
+        self._ahead.append(frame)
+        placed: list[tuple[Frame, Camera]] = []
+        while len(self._ahead) >= self._stride:
+            placed += self._go_on()
+        return placed
+
+    def catch_up(self) -> Sequence[tuple[Frame, Camera]]:
+        """Place the frames that still wait to be placed together with the next; as `look`."""
+        placed: list[tuple[Frame, Camera]] = []
+        while self._ahead:
+            placed += self._go_on()
+        return placed
+
+    @property
+    def _stride(self) -> int:
+        """How many frames are followed together."""
+        return 1 if self._piece is None or self._piece.lost else self._piece.stride
+
+    def _go_on(self) -> Sequence[tuple[Frame, Camera]]:
+        """Place the next frame, or the next few."""
+        piece, frames = self._piece, self._ahead[: self._stride]
+        frame = frames[0]
         if piece is not None:
-            seen = piece.follow(frame)
-            if seen is not None and piece.lost and self._is_elsewhere(piece, seen, frame):
-                seen, piece.lost = None, PATIENCE
-            if seen is not None and piece.missed > PATIENCE:
+            seen = piece.follow(frames)
+            if seen and piece.lost and self._is_elsewhere(piece, seen[0], frame):
+                seen, piece.lost = [], PATIENCE
+            if seen and piece.missed > PATIENCE:
                 # Carried on through a dissolve, say: what is fixed to the ice is not it.
                 house = self._find(frame)
                 if house is not None:
+                    del self._ahead[0]
                     return self._start(frame, house)
-            if seen is not None:
-                piece.add(seen, frame.picture)
-                piece.remember(frame.picture)
-                piece.refine()
+            if seen:
+                del self._ahead[: len(seen)]
                 self._waiting.clear()
-                return [(frame, piece.camera(piece.seen[-1]))]
+                return piece.take(frames[: len(seen)], seen)
             piece.lost += 1
             if piece.lost == 1:
                 self._since_find = self._between = FIND_EVERY
             if piece.lost > PATIENCE:
                 self._piece = None
+        del self._ahead[0]
         house = self._find(frame)
         if house is not None:
             return self._start(frame, house)
@@ -123,6 +145,7 @@ class HouseFollower:
 
     def finish(self) -> HouseTrack | None:
         """Fit what all frames of the shot share; None where no house was seen."""
+        self.catch_up()
         pieces = [p for p in self._pieces if p.found]
         if not pieces:
             return None
@@ -194,6 +217,8 @@ def follow_house(
         progress("house", count + 1, clip.expected)
         for seen, provisional in follower.look(frame):
             placed(seen, provisional)
+    for seen, provisional in follower.catch_up():
+        placed(seen, provisional)
     progress("camera", 0, 1)
     track = follower.finish()
     progress("camera", 1, 1)

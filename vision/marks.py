@@ -6,6 +6,7 @@ lines the middle is measured (`vision.stripes`). What is ragged counts less.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -13,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vision.edges import crossings, steps
-from vision.normals import BLOCK, SAMPLES, THIN, Normals, Profiles, lay_out, profiles
+from vision.normals import BLOCK, OUTSIDE, SAMPLES, THIN, Normals, Profiles, lay_out, profiles
 from vision.paint import CIRCLES, FIXED, TWELVE, Marks
 from vision.picture import Picture
 from vision.runs import Curves, Runs, smooth
@@ -25,6 +26,9 @@ Flags = NDArray[np.bool_]
 
 EDGE_SD = 0.45
 """Standard deviation of an edge point with the errors of paint that neighbours share, px."""
+
+LEAST_PAIRS = 3
+"""Neighbours on a circle that must both show it to tell how far their edges scatter."""
 
 LEAST_ON_LINE, LEAST_SHARE = 8, 0.3
 """Edge points that the side of the sheet or a wide line must have, and the share of normals."""
@@ -109,55 +113,70 @@ def measure(
     h, w = picture.shape[:2]
     normals = lay_out(view, rig, (w, h), reach=reach, spacing=spacing, most=most, lines=lines)
     return measure_along(
-        picture, normals, normals.point, least_sd=least_sd, palette=palette, level=level
-    )
+        [picture], normals, normals.standing[None], least_sd=least_sd, palette=palette, level=level
+    )[0]
 
 
 def measure_along(
-    picture: Picture,
+    pictures: Sequence[Picture],
     normals: Normals,
-    point: Array,
+    standing: Array,
     *,
     least_sd: float = EDGE_SD,
     palette: Array | None = None,
     level: float = 0.0,
-) -> Evidence:
-    """Measure circles and lines along normals that stand at `point` now, (2, n); see `measure`."""
+) -> list[Evidence]:
+    """Measure circles and lines in pictures along the same normals; see `measure`.
+
+    Parameters
+    ----------
+    pictures : sequence of Picture
+    normals : Normals
+    standing : ndarray, shape (pictures, 2, 2, n)
+        As `Normals.standing`, in each picture.
+    """
+    points = standing[:, 0]
     places, wide = _places(normals), normals.wide
-    colours = profiles(picture, normals, point)
+    colours = profiles(pictures, normals, points)
     if palette is None:
-        palette = np.full((FIXED, 2, len(colours)), np.nan)
+        palette = np.full((FIXED, 2, colours.shape[1]), np.nan)
     value, good, found = steps(colours[..., :wide], normals, palette)
     rim = places.kinds.get(TWELVE, slice(0))
-    value[:, rim] -= np.float32(level)
+    value[..., rim] -= np.float32(level)
     sample, crossed = crossings(value)
     good &= crossed
     offset = (sample / (SAMPLES // 2) - 1) * normals.reach[:wide]
-    stripes, shown = find_stripes(colours[..., wide:], places.blocks)
-    offset, good = np.append(offset, stripes), np.append(good, shown)
-    covered = np.zeros(CIRCLES)
-    sd = np.full(len(good), least_sd)
+    within = points[:, 0, wide::BLOCK] > OUTSIDE
+    stripes, shown = find_stripes(colours[..., wide:], places.blocks, within)
+    offset, good = np.append(offset, stripes, axis=-1), np.append(good, shown, axis=-1)
+    covered = np.zeros((len(good), CIRCLES))
+    sd = np.full(good.shape, least_sd)
     for kind in range(CIRCLES):
         if kind in places.kinds:
             part = places.kinds[kind]
-            shown = good[part]
-            covered[kind] = normals.visible[kind] * np.count_nonzero(shown) / len(shown)
-            sd[part] = max(_scatter(offset[part][shown]), least_sd)
+            shown = good[:, part]
+            covered[:, kind] = normals.visible[kind] * shown.mean(1)
+            sd[:, part] = np.maximum(_scatter(offset[:, part], shown), least_sd)[:, None]
     if len(places.least):
         index, real = places.runs.index, places.runs.real
-        shown = good[index] & real
-        shown &= (shown.sum(1) >= places.least)[:, None]
-        left, spread = smooth(places.curves, offset[index], shown, least_sd)
-        good[index[real]] = left[real]
-        sd[index] = spread[:, None]
-    middles = point[:, wide:].reshape(2, -1, BLOCK).mean(2)
-    pixel = (np.append(point[:, :wide], middles, axis=1) + places.normal * offset).T
-    marks = Marks(places.line, places.along, pixel, places.normal.T, sd).pick(good)
+        shown = good[:, index] & real
+        shown &= (shown.sum(2) >= places.least)[..., None]
+        left, spread = smooth(places.curves, offset[:, index], shown, least_sd)
+        good[:, index[real]] = left[:, real]
+        sd[:, index] = spread[..., None]
+    middles = standing[..., wide:].reshape(*standing.shape[:3], -1, BLOCK).mean(4)
+    place, normal = np.moveaxis(np.append(standing[..., :wide], middles, axis=3), 1, 0)
+    pixel = place + places.normal * offset[:, None]
     step = 2 * float(normals.reach[0]) / (SAMPLES - 1) if wide else 0.0
-    crossing = np.where(good[rim], sample[rim], np.nan)
-    return Evidence(
-        marks, normals.visible, covered, found, value[:, rim] + np.float32(level), crossing, step
-    )
+    crossing = np.where(good[:, rim], sample[:, rim], np.nan)
+    profile = value[..., rim] + np.float32(level)
+    return [
+        Evidence(
+            Marks(places.line, places.along, pixel[k].T, normal[k].T, sd[k]).pick(good[k]),
+            normals.visible, covered[k], found[k], profile[k], crossing[k], step,
+        )
+        for k in range(len(pictures))
+    ]  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -229,9 +248,10 @@ def _mean_profile(value: Profiles, middle: Array) -> Array:
     return np.asarray(np.divide(total, count, out=np.full(SAMPLES, np.nan), where=enough))
 
 
-def _scatter(offset: Array) -> float:
-    """Tell the standard deviation of single offsets from neighbours' differences; robust."""
-    if len(offset) < 4:
-        return EDGE_SD
-    steps = np.sort(np.abs(np.diff(offset)))
-    return 1.05 * float(steps[len(steps) // 2])
+def _scatter(offset: Array, shown: Flags) -> Array:
+    """Tell the standard deviation of single offsets in each row from neighbours' differences."""
+    both = shown[:, 1:] & shown[:, :-1]
+    steps = np.sort(np.where(both, np.abs(np.diff(offset)), np.inf), axis=1)
+    count = both.sum(1)
+    middle = np.take_along_axis(steps, count[:, None] // 2, 1)[:, 0]
+    return np.where(count < LEAST_PAIRS, EDGE_SD, 1.05 * middle)

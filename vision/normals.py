@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,8 +49,15 @@ BLOCK = 6
 MOST_BLOCKS, MOST_STEPS = 18, 40
 """Most marks of a thin line, and of the edge of a wide one."""
 
-MOST_MOVED = 0.03
-"""How far the same normals may move from where they were laid out, in widths of the picture."""
+MOST_MOVED, LEAST_LEFT = 0.03, 0.9
+"""How far the same normals may move from where they were laid out, in widths of the picture, and
+the least share of them that must then be in it."""
+
+_LITTLE = 1e-3
+"""A stretch over which every line is straight, m or rad."""
+
+OUTSIDE = -1e4
+"""Coordinate of what is no longer in the picture, px: nothing is seen there."""
 
 LEAST, LEAST_BLOCKS = 8, 3
 """Fewer normals than this are no line; of a thin line, fewer blocks."""
@@ -145,29 +154,52 @@ class Normals:
     samples: Profiles
 
     @property
+    def standing(self) -> Array:
+        """Places and unit normals in the picture for which they were laid out, (2, 2, n)."""
+        return np.stack([self.point, self.normal])
+
+    @cached_property
+    def beyond(self) -> tuple[Array, Array]:
+        """Foot and way of a place a little farther along the line of each."""
+        return ice_frame(self.line, self.along + _LITTLE)
+
+    @property
     def wide(self) -> int:
         """How many come before those of thin lines."""
         thin = (self.kinds[kind].start for kind in THIN if kind in self.kinds)
         return min(thin, default=len(self.line))
 
     def moved(self, view: Array, rig: Array, size: tuple[int, int]) -> Array | None:
-        """Tell where they are in a picture taken a little later, px, shape (2, n).
+        """Tell where they stand in a picture taken a little later.
+
+        Their samples still lie along the old directions. An edge is found there, too; but how far
+        it is from its place is told by the new ones: else turn and shift would mix.
 
         Returns
         -------
-        ndarray or None
-            None where they have moved so far that they must be laid out anew.
+        ndarray, shape (2, 2, n), or None
+            As `standing`; `OUTSIDE` where one has left the picture. None where they have moved so
+            far that they must be laid out anew.
         """
         if not self.kinds:
             return None
-        places = self.foot + self.way * measures(rig)[self.line]
-        point = project(places.T, view, rig, size).T
-        reach, most = self.reach[0], MOST_MOVED * size[0]
-        low, high = point.min(1), point.max(1)
-        near = np.abs(point - self.point).max() < most
-        if near and low.min() > reach and (high < np.array(size) - 1 - reach).all():
-            return point
-        return None
+        measure, count = measures(rig)[self.line], len(self.line)
+        (foot, way), (foot_on, way_on) = (self.foot, self.way), self.beyond
+        places = np.append(foot + way * measure, foot_on + way_on * measure, axis=1)
+        seen = project(places.T, view, rig, size).T
+        point, (across, down) = seen[:, :count], seen[:, count:] - seen[:, :count]
+        if not np.abs(point - self.point).max() < MOST_MOVED * size[0]:
+            return None
+        reach, (x, y), (w, h) = self.reach[0], point, size
+        inside = (x > reach) & (y > reach) & (x < w - 1 - reach) & (y < h - 1 - reach)
+        if not inside.all():
+            blocks = inside[self.wide :].reshape(-1, BLOCK)
+            inside[self.wide :] = np.repeat(blocks.all(1), BLOCK)
+            if inside.mean() < LEAST_LEFT:
+                return None
+            point[:, ~inside] = OUTSIDE
+        normal = np.stack([down, -across]) / np.sqrt(across * across + down * down)
+        return np.stack([point, normal])
 
 
 def lay_out(
@@ -249,9 +281,23 @@ def _thinned(inside: Flags, wanted: Index, groups: int) -> Flags:
     )
 
 
-def profiles(picture: Picture, normals: Normals, point: Array) -> Profiles:
-    """Colours along the normals at these places, (2, n), px; shape (3, SAMPLES, n)."""
-    if not normals.kinds:
-        return np.zeros((3, SAMPLES, 0), np.float32)
-    x, y = point.astype(np.float32)[:, None] + normals.samples
-    return channels_at(picture, x, y)
+def profiles(pictures: Sequence[Picture], normals: Normals, points: Array) -> Profiles:
+    """Colours along the normals at these places in pictures.
+
+    Parameters
+    ----------
+    pictures : sequence of Picture
+    normals : Normals
+    points : ndarray, shape (pictures, 2, n)
+        Where they are in each, px.
+
+    Returns
+    -------
+    ndarray, shape (pictures, 3, SAMPLES, n)
+    """
+    found = np.empty((len(pictures), 3, SAMPLES, points.shape[-1]), np.float32)
+    if normals.kinds:
+        places = points.astype(np.float32)[:, :, None] + normals.samples
+        for k, picture in enumerate(pictures):
+            found[k] = channels_at(picture, *places[k])
+    return found

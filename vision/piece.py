@@ -19,6 +19,7 @@ from vision.clip import Frame
 from vision.house_fit import SHARING
 from vision.joint import Seen
 from vision.landmarks import Keyframe, keyframe, recognise
+from vision.linear import Frame as MarksOfFrames
 from vision.marks import Evidence, measure_along
 from vision.normals import Normals, lay_out
 from vision.outline import Rim
@@ -26,7 +27,7 @@ from vision.paint import CIRCLES, FIXED, Marks, joined
 from vision.picture import Picture
 from vision.pose import View, camera
 from vision.replay import EVERY, Glimpse, glimpse
-from vision.resection import ViewSolution, solve_view
+from vision.resection import ViewSolution, solve_view, solve_views
 from vision.rig import R4, R8, Prior
 
 Array = NDArray[np.float64]
@@ -58,6 +59,12 @@ LEARNING = 0.1
 
 REFINE_AT = (8, 40, 160)
 """Numbers of frames at which what they share is fitted anew on the way."""
+
+ROUNDS = 3
+"""How often the edges of a frame are measured at most."""
+
+LONGEST_STRIDE = 4
+"""Most frames that are predicted and followed together: it costs half as much."""
 
 REFINE_FRAMES = 6
 
@@ -92,6 +99,8 @@ class Piece:
         Frames since the last that was followed.
     missed : int
         Frames in a row that were carried to where rings should be in view, and are not.
+    stride : int
+        How many frames may be followed together: the more, the better they are predicted.
     """
 
     size: tuple[int, int]
@@ -104,35 +113,58 @@ class Piece:
     found: int = 0
     lost: int = 0
     missed: int = 0
+    stride: int = 1
+    _refined: int = 0
     _picture: Picture | None = None
     _fit: ViewSolution | None = None
     _key: Keyframe | None = None
     _normals: Normals | None = None
 
-    def follow(self, frame: Frame) -> Seen | None:
-        """Follow into one more frame; None where the house is not to be seen, nor its ice."""
-        seen = self._settle(frame, self._predicted(frame))
-        if seen is None:
-            return self._carried(frame)
-        self._key, self.missed = None, 0
-        return seen
+    def follow(self, frames: Sequence[Frame]) -> list[Seen]:
+        """Follow into the next frames, of which there should be no more than `stride`.
 
-    def add(self, seen: Seen, picture: Picture) -> None:
-        """Take in a frame that was followed."""
+        Returns
+        -------
+        list of Seen
+            The first of them, as many as went well; none where the first shows neither the
+            house nor its ice.
+        """
+        seen = self._settle(frames, [self._predicted(frame) for frame in frames])
+        if seen:
+            self._key, self.missed = None, 0
+            return seen
+        self.stride = 1
+        carried = self._carried(frames[0])
+        return [] if carried is None else [carried]
+
+    def take(self, frames: Sequence[Frame], seen: Sequence[Seen]) -> list[tuple[Frame, Camera]]:
+        """Take in frames that were followed; give them back with provisional cameras."""
+        for frame, new in zip(frames, seen, strict=True):
+            self._add(new, frame.picture)
+            self._remember(frame.picture)
+        self._refine()
+        return [
+            (frame, self.camera(new))
+            for frame, new in zip(frames, self.seen[-len(frames) :], strict=True)
+        ]
+
+    def _add(self, seen: Seen, picture: Picture) -> None:
         self.seen.append(seen)
         self.found += seen.found
         self._picture, self.lost = picture, 0
 
-    def remember(self, picture: Picture) -> None:
+    def _remember(self, picture: Picture) -> None:
         """Keep now and then what the house looks like."""
         last = self.seen[-1]
         if last.found and (not self.glimpses or last.t - self.glimpses[-1].t > EVERY):
             self.glimpses.append(glimpse(picture, last.view, self.rig, last.t))
 
-    def refine(self) -> None:
+    def _refine(self) -> None:
         """Fit anew what the frames share, at first often, so that the way on is more precise."""
-        if not self.seen[-1].found or self.found not in REFINE_AT:
+        due = REFINE_AT[self._refined :]
+        if not due or not self.seen[-1].found or self.found < due[0]:
             return
+        self._refined += 1
         good = [s for s in self.seen if s.found]
         at = np.unique(np.round(np.linspace(0, len(good) - 1, REFINE_FRAMES)).astype(int))
         chosen = [good[i] for i in at]
@@ -165,18 +197,17 @@ class Piece:
             This frame and, before it, those to which it could be followed back through frames
             that wait, in order.
         """
-        before, self.seen, self._key = self.seen, [], None
-        first = self._settle(frame, view)
-        if first is None:
-            first = Seen(frame.index, frame.t, view, marks, True)
-        self.add(first, frame.picture)
+        before, self.seen, self._key, self.stride = self.seen, [], None, 1
+        settled = self._settle([frame], [view])
+        first = settled[0] if settled else Seen(frame.index, frame.t, view, marks, True)
+        self._add(first, frame.picture)
         placed = [(frame, first)]
-        for earlier in reversed(waiting):
-            seen = self.follow(earlier)
-            if seen is None:
-                break
-            self.add(seen, earlier.picture)
-            placed.append((earlier, seen))
+        left = [*reversed(waiting)]
+        while left and (followed := self.follow(left[: self.stride])):
+            for earlier, seen in zip(left, followed, strict=False):
+                self._add(seen, earlier.picture)
+                placed.append((earlier, seen))
+            del left[: len(followed)]
         placed.reverse()
         self.seen = [*before, *(seen for _, seen in placed)]
         self._picture, self._key, self.missed = frame.picture, None, 0
@@ -202,50 +233,95 @@ class Piece:
         if last.key is not before.key or abs(last.index - before.index) > 2:
             return last.view
         ahead = (frame.t - last.t) / (last.t - before.t)
-        if not 0 < ahead < 3:
+        if not 0 < ahead <= LONGEST_STRIDE:
             return last.view
         return View(last.view.vector + ahead * (last.view.vector - before.view.vector))
 
-    def _settle(self, frame: Frame, view: View) -> Seen | None:
-        """Refine a predicted view on the rings; None where they are not there."""
-        for _ in range(3):
-            normals, point = self._laid(view)
+    def _settle(self, frames: Sequence[Frame], views: Sequence[View]) -> list[Seen]:
+        """Refine predicted views on the rings; those of the first frames for which that goes."""
+        again = False
+        for _ in range(ROUNDS):
+            normals, standing = self._laid(views)
             if not _enough(self.rig, normals.visible, normals.visible):
-                return None
-            evidence = self._measured(frame.picture, normals, point)
-            if not _enough(self.rig, evidence.visible, evidence.covered):
-                return None
-            fit = solve_view(
-                evidence.marks, view, self.rig, self.size, view_sd=FREE, width=WIDTH, iterations=6
-            )
-            shift = np.abs(fit.view.vector - view.vector)
-            view, explained = fit.view, _explained(evidence, fit)
-            settled = shift[:3].max() * view.focal < SETTLED * REACH * self.size[0]
-            if settled and _enough(self.rig, evidence.visible, explained, GOOD_SUPPORT):
+                return []
+            evidence = self._measured([frame.picture for frame in frames], normals, standing)
+            seen = [_enough(self.rig, e.visible, e.covered) for e in evidence]
+            evidence = evidence[: [*seen, False].index(False)]
+            if not evidence:
+                return []
+            marks = [e.marks for e in evidence]
+            fits = solve_views(
+                MarksOfFrames(joined(marks), self.size, counts=[len(m) for m in marks]),
+                views[: len(marks)], self.rig, view_sd=FREE, width=WIDTH, iterations=6,
+            )  # fmt: skip
+            settled = [self._is_settled(*both) for both in zip(views, evidence, fits, strict=False)]
+            count = [*settled, False].index(False)
+            if count:
                 break
-        if not _enough(self.rig, evidence.visible, explained):
-            return None
-        known = np.isfinite(self.palette)
-        new = np.isfinite(evidence.palette)
-        mixed = (1 - LEARNING) * self.palette + LEARNING * evidence.palette
-        self.palette = np.where(known & new, mixed, np.where(known, self.palette, evidence.palette))
-        self._fit = fit
-        return Seen(frame.index, frame.t, view, evidence.marks.pick(fit.inliers), True)
+            frames, views, again = frames[:1], [fits[0].view], True
+        else:
+            if not _enough(self.rig, evidence[0].visible, _explained(evidence[0], fits[0])):
+                return []
+            count = 1
+        whole = count == len(frames) and not again
+        self.stride = min(2 * count, LONGEST_STRIDE) if whole else max(count // 2, 1)
+        self._fit = fits[count - 1]
+        self._learn(evidence[count - 1].palette, count)
+        return [
+            Seen(
+                frame.index,
+                frame.t,
+                fit.view,
+                e.marks.pick(fit.inliers),
+                True,
+            )
+            for frame, e, fit in zip(frames, evidence[:count], fits, strict=False)
+        ]
 
-    def _laid(self, view: View) -> tuple[Normals, Array]:
-        """Give normals and where they stand: those of the frame before, if not far from there."""
+    def _is_settled(self, before: View, evidence: Evidence, fit: ViewSolution) -> bool:
+        """Whether a view was predicted so well that the edges need not be measured anew."""
+        shift = np.abs(fit.view.vector - before.vector)[:3].max() * fit.view.focal
+        near = shift < SETTLED * REACH * self.size[0]
+        explained = _explained(evidence, fit)
+        return bool(near) and _enough(self.rig, evidence.visible, explained, GOOD_SUPPORT)
+
+    def _learn(self, palette: Array, frames: int) -> None:
+        """Take in the colours of the edges in the last of so many frames."""
+        kept = (1 - LEARNING) ** frames
+        mixed = kept * self.palette + (1 - kept) * palette
+        mixed = np.where(np.isfinite(mixed), mixed, palette)
+        self.palette = np.where(np.isfinite(mixed), mixed, self.palette)
+
+    def _laid(self, views: Sequence[View]) -> tuple[Normals, Array]:
+        """Give normals and where they stand in views: where they were laid out not far from there.
+
+        These may be fewer than the views; the first is among them.
+        """
         if self._normals is not None:
-            point = self._normals.moved(view.vector, self.rig, self.size)
-            if point is not None:
-                return self._normals, point
+            standing = self._moved(self._normals, views)
+            if standing:
+                return self._normals, np.array(standing)
         reach = max(REACH * self.size[0], LEAST_REACH)
-        self._normals = lay_out(view.vector, self.rig, self.size, reach=reach, most=MOST_NORMALS)
-        return self._normals, self._normals.point
+        normals = lay_out(views[0].vector, self.rig, self.size, reach=reach, most=MOST_NORMALS)
+        self._normals = normals
+        return normals, np.array([normals.standing, *self._moved(normals, views[1:])])
 
-    def _measured(self, picture: Picture, normals: Normals, point: Array) -> Evidence:
+    def _moved(self, normals: Normals, views: Sequence[View]) -> list[Array]:
+        found = []
+        for view in views:
+            point = normals.moved(view.vector, self.rig, self.size)
+            if point is None:
+                break
+            found.append(point)
+        return found
+
+    def _measured(
+        self, pictures: Sequence[Picture], normals: Normals, standing: Array
+    ) -> list[Evidence]:
         return measure_along(
-            picture, normals, point, least_sd=MARK_SD, palette=self.palette, level=self.edge.level
-        )
+            pictures[: len(standing)], normals, standing,
+            least_sd=MARK_SD, palette=self.palette, level=self.edge.level,
+        )  # fmt: skip
 
     def _carried(self, frame: Frame) -> Seen | None:
         """Place a frame that does not show the rings by points of the ice that are known."""
@@ -262,14 +338,14 @@ class Piece:
         view = solve_view(
             landmarks, view, self.rig, self.size, width=10.0, view_sd=np.full(4, np.inf)
         ).view
-        seen = self._settle(frame, view)
-        if seen is not None:
+        seen = self._settle([frame], [view])
+        if seen:
             self._key, self.missed = None, 0
-            return seen
-        normals, point = self._laid(view)
+            return seen[0]
+        normals, standing = self._laid([view])
         expected = _enough(self.rig, normals.visible, normals.visible)
         self.missed = self.missed + 1 if expected else 0
-        lines = self._measured(frame.picture, normals, point).marks
+        lines = self._measured([frame.picture], normals, standing)[0].marks
         marks = joined([landmarks, lines.pick(lines.line >= CIRCLES)])
         fit = solve_view(marks, view, self.rig, self.size, view_sd=(1, 1, 0.02, 0.1))
         if len(landmarks) < len(key.ice):  # half of its corners are gone: two marks each

@@ -78,31 +78,31 @@ def smooth(curves: Curves, offset: Array, good: Flags, least_sd: float) -> tuple
     Parameters
     ----------
     curves : Curves
-    offset : ndarray, shape (runs, longest)
-        How far aside the image of each line was found, px.
-    good : ndarray of bool, shape (runs, longest)
+    offset : ndarray, shape (..., runs, longest)
+        How far aside the image of each line was found, px, in one or more pictures.
+    good : ndarray of bool, shape (..., runs, longest)
         What is looked at.
     least_sd : float
         Least standard deviation, px.
 
     Returns
     -------
-    keep, sd : ndarray, shapes (runs, longest) and (runs,)
+    keep, sd : ndarray, shapes (..., runs, longest) and (..., runs)
         What is left, and its standard deviation in each run, px.
     """
-    runs = len(offset)
-    pull, keep = curves.terms * offset[:, None], good
+    runs = offset.shape[:-1]
+    pull, keep = curves.terms * offset[..., None, :], good
     for _ in range(2):
         use = keep.astype(np.float64)[..., None]
-        count = keep.sum(1)
+        count = keep.sum(-1)[..., None]
         # Few points do not bend a line: two for each term of the curve.
-        held = np.where(count[:, None] > _LEAST_POINTS, 1e-9, _HELD)
-        normal = (use.swapaxes(1, 2) @ curves.squares).reshape(runs, _TERMS, _TERMS)
-        normal += held[:, None] * _DIAGONAL
+        held = np.where(count > _LEAST_POINTS, 1e-9, _HELD)
+        normal = (use.swapaxes(-1, -2) @ curves.squares).reshape(*runs, _TERMS, _TERMS)
+        normal += held[..., None] * _DIAGONAL
         curve = np.linalg.solve(normal, pull @ use)
-        away = np.abs(offset - (curve.swapaxes(1, 2) @ curves.terms)[:, 0])
-        ranked = np.sort(np.where(keep, away, np.inf), axis=1)
-        middle = ranked[np.arange(runs), count // 2]
+        away = np.abs(offset - (curve.swapaxes(-1, -2) @ curves.terms)[..., 0, :])
+        ranked = np.sort(np.where(keep, away, np.inf), axis=-1)
+        middle = np.take_along_axis(ranked, count // 2, -1)
         sd = np.maximum(1.5 * np.where(count > 0, middle, 0.0), least_sd)
-        keep = good & (away < APART * sd[:, None])
-    return keep, sd
+        keep = good & (away < APART * sd)
+    return keep, sd[..., 0]

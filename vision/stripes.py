@@ -119,34 +119,37 @@ class Blocks:
         return cls(kinds, along, normal, reach, mean, bells, runs, beyond, path)
 
 
-def find_stripes(profile: Profiles, blocks: Blocks) -> tuple[Array, Flags]:
+def find_stripes(profile: Profiles, blocks: Blocks, within: Flags) -> tuple[Array, Flags]:
     """Measure the thin lines.
 
     Parameters
     ----------
-    profile : ndarray, shape (channels, SAMPLES, normals)
-        Along the normals across thin lines.
+    profile : ndarray, shape (..., channels, SAMPLES, normals)
+        Along the normals across thin lines, in one or more pictures.
     blocks : Blocks
+    within : ndarray of bool, shape (..., n)
+        Which blocks are in the picture.
 
     Returns
     -------
-    offset, good : ndarray, shape (n,)
+    offset, good : ndarray, shape (..., n)
         How far along its normal each block shows the line, px, and whether it does.
     """
-    offset, good = np.zeros(len(blocks.along)), np.zeros(len(blocks.along), bool)
+    shape = (*profile.shape[:-3], len(blocks.along))
+    offset, good = np.zeros(shape), np.zeros(shape, bool)
     if not blocks.kinds:
         return offset, good
     means = profile @ blocks.mean
     ends, flat = _ENDS @ means, _LEVEL @ means
-    calm = ((ends[:, 1] - ends[:, 0]) ** 2).sum(0) < CALM**2
+    calm = within & (((ends[..., 1, :] - ends[..., 0, :]) ** 2).sum(-2) < CALM**2)
     for part, bell in zip(blocks.kinds.values(), blocks.bells, strict=True):
         flat[..., part] = bell @ flat[..., part]
     # Darker than the ice, perhaps lighter than the paint: only the size of the deviation counts.
-    value = np.sqrt((flat * flat).sum(0)).T
+    value = np.swapaxes(np.sqrt((flat * flat).sum(-3)), -1, -2)
     index, real = blocks.runs.index, blocks.runs.real
-    sample, shown = _paths(value[index], blocks, calm[index] & real)
-    offset[index[real]] = sample[real] / (SAMPLES // 2) - 1
-    good[index[real]] = shown[real]
+    sample, shown = _paths(value[..., index, :], blocks, calm[..., index] & real)
+    offset[..., index[real]] = sample[..., real] / (SAMPLES // 2) - 1
+    good[..., index[real]] = shown[..., real]
     return offset * blocks.reach, good
 
 
@@ -155,27 +158,34 @@ def _paths(value: Profiles, blocks: Blocks, use: Flags) -> tuple[Array, Flags]:
 
     Parameters
     ----------
-    value : ndarray, shape (lines, longest, SAMPLES)
+    value : ndarray, shape (..., lines, longest, SAMPLES)
     blocks : Blocks
-    use : ndarray of bool, shape (lines, longest)
+    use : ndarray of bool, shape (..., lines, longest)
 
     Returns
     -------
-    sample, good : ndarray, shape (lines, longest)
+    sample, good : ndarray, shape (..., lines, longest)
         Where the profiles are highest near the path, and whether they show the line.
     """
-    clear = (value / (value.max(2, keepdims=True) + FAINT) * use[..., None]).ravel()
-    part = np.stack([use, use & blocks.beyond], axis=2).astype(np.float32)
-    count = part.sum(1, keepdims=True)
+    clear = (value / (value.max(-1, keepdims=True) + FAINT) * use[..., None]).reshape(
+        *use.shape[:-2], -1
+    )
+    part = np.stack([use, use & blocks.beyond], axis=-1).astype(np.float32)
+    count = part.sum(-2, keepdims=True)
     part *= (count >= LEAST_BLOCKS) / (np.maximum(count, 1) * _CLEAR)
-    strength = (clear[blocks.path] @ part).max(2)
-    path = blocks.path[np.arange(len(use)), strength.argmax(1)]
-    top = path + clear[path[..., None] + _ASIDE].argmax(2) - 1
-    low, height, high = clear[top - 1], clear[top], clear[top + 1]
+    strength = (clear[..., blocks.path] @ part).max(-1)
+    path = blocks.path[np.arange(use.shape[-2]), strength.argmax(-1)]
+
+    def at(sample: Index) -> Profiles:
+        flat = np.take_along_axis(clear, sample.reshape(*clear.shape[:-1], -1), -1)
+        return flat.reshape(sample.shape)
+
+    top = path + at(path[..., None] + _ASIDE).argmax(-1) - 1
+    low, height, high = at(top - 1), at(top), at(top + 1)
     bend = np.maximum(2 * height - low - high, 1e-9)
     good = use & (height > SHOWN) & (height >= low) & (height >= high)
-    good &= (strength.max(1) >= 1)[:, None]
-    good &= (good.sum(1) >= LEAST_BLOCKS)[:, None]
+    good &= (strength.max(-1) >= 1)[..., None]
+    good &= (good.sum(-1) >= LEAST_BLOCKS)[..., None]
     return top % SAMPLES + 0.5 * (high - low) / bend, good
 
 
@@ -184,4 +194,5 @@ def _bell(sd: float) -> Profiles:
     """Matrix that smooths profiles by a bell of `sd` samples, (SAMPLES, SAMPLES)."""
     away = np.arange(SAMPLES)[:, None] - np.arange(SAMPLES)
     weight = np.exp(-0.5 * (away / max(sd, 1.0)) ** 2)
-    return np.asarray(weight / weight.sum(1, keepdims=True), np.float32)
+    # Beyond the ends there is nothing: to scale it up there would draw a line outwards.
+    return np.asarray(weight / weight[SAMPLES // 2].sum(), np.float32)

@@ -170,6 +170,7 @@ def test_one_pass_gives_each_frame_once_and_in_order() -> None:
     clip = open_clip([file])
     follower = HouseFollower(clip.size)
     placed = [(f, c) for frame in clip for f, c in follower.look(frame)]
+    placed += follower.catch_up()
     assert [f.index for f, _ in placed] == list(range(len(truth.camera)))
     assert all(f.index == c.frame and f.t == c.t for f, c in placed)
     assert max(rms(c, path.at(c.t).project(np.c_[RINGS, np.zeros(len(RINGS))]))

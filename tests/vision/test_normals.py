@@ -5,7 +5,7 @@ import pytest
 
 from data.sheet import HOUSE
 from tests.vision.cameras import ice_points
-from vision.normals import BLOCK, SAMPLES, THIN, lay_out, profiles
+from vision.normals import BLOCK, OUTSIDE, SAMPLES, THIN, lay_out, profiles
 from vision.paint import CIRCLES, TWELVE
 from vision.pose import aim, project
 from vision.rig import OVERHEAD, start_rig
@@ -59,7 +59,7 @@ def test_what_is_seen_of_each_circle_is_told() -> None:
     away = lay_out(view((640.0, 6000.0)), rig(), SIZE, reach=REACH, lines=False)
     assert not away.kinds
     black = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
-    assert profiles(black, away, away.point).shape == (3, SAMPLES, 0)
+    assert profiles([black], away, away.point[None]).shape == (1, 3, SAMPLES, 0)
 
 
 def test_normals_move_with_the_picture_until_they_leave_it() -> None:
@@ -69,11 +69,16 @@ def test_normals_move_with_the_picture_until_they_leave_it() -> None:
     assert moved is not None
     ring = normals.along[normals.kinds[TWELVE]]
     there = HOUSE.twelve_foot * np.stack([np.cos(ring), np.sin(ring)], 1)
-    now = moved[:, normals.kinds[TWELVE]].T
-    np.testing.assert_allclose(now, project(there, later, rig(), SIZE), atol=1e-9)
+    now, normal = moved[..., normals.kinds[TWELVE]]
+    np.testing.assert_allclose(now.T, project(there, later, rig(), SIZE), atol=1e-9)
+    anew = lay_out(later, rig(), SIZE, reach=REACH, most=48, lines=False)
+    np.testing.assert_allclose(normal, anew.normal[:, anew.kinds[TWELVE]], atol=2e-3)
     assert normals.moved(view((700.0, 380.0)), rig(), SIZE) is None
     edge = lay_out(view((640.0, 0.0)), rig(), SIZE, reach=REACH, lines=False)
-    assert edge.moved(view((640.0, -5.0)), rig(), SIZE) is None
+    a_little = edge.moved(view((640.0, -5.0)), rig(), SIZE)
+    assert a_little is not None
+    assert 0 < (a_little[0] == OUTSIDE).mean() < 0.1
+    assert edge.moved(view((640.0, -30.0)), rig(), SIZE) is None
 
 
 def test_profiles_are_read_along_the_normals() -> None:
@@ -83,6 +88,6 @@ def test_profiles_are_read_along_the_normals() -> None:
     share = np.linspace(-1, 1, SAMPLES)[:, None]
     shift = np.array([[2.5], [-1.25]])
     at = (normals.point + shift)[:, None] + (normals.normal * normals.reach)[:, None] * share
-    found = profiles(image, normals, normals.point + shift)
+    (found,) = profiles([image], normals, (normals.point + shift)[None])
     np.testing.assert_allclose(found[:2], at / 6, atol=1.6)
     np.testing.assert_array_equal(found[2], 100)

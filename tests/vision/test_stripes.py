@@ -40,7 +40,8 @@ def line(normals: Normals, kind: int, depth: float, places: tuple[float, ...]) -
 def stripes(profile: np.ndarray, normals: Normals) -> tuple[Blocks, np.ndarray, np.ndarray]:
     """Blocks, and what is found in profiles along all normals."""
     blocks = Blocks.of(normals)
-    return blocks, *find_stripes(profile[..., normals.wide :], blocks)
+    within = np.ones(len(blocks.along), bool)
+    return blocks, *find_stripes(profile[..., normals.wide :], blocks, within)
 
 
 @pytest.mark.parametrize("depth", [6.0, 40.0, 180.0, -6.0])
@@ -94,3 +95,16 @@ def test_without_lines_in_view_there_is_nothing() -> None:
     blocks, _, good = stripes(ice(np.random.default_rng(4), len(circles.along)), circles)
     assert not blocks.kinds
     assert len(good) == 0
+
+
+@pytest.mark.parametrize("aside", [-3.5, 3.0])
+def test_a_line_far_from_the_middle_is_not_drawn_outwards(aside: float) -> None:
+    normals, rng = laid_out(), np.random.default_rng(3)
+    x = np.linspace(-REACH, REACH, SAMPLES)[:, None]
+    profile = ice(rng, len(normals.along))
+    dark = 40.0 * np.exp(-0.5 * ((x - aside) / 1.2) ** 2)
+    profile[..., normals.kinds[TEE_LINE]] -= dark.astype(np.float32)
+    blocks, offset, good = stripes(profile, normals)
+    part = blocks.kinds[TEE_LINE]
+    assert good[part].mean() > 0.7
+    assert abs(np.median(offset[part][good[part]]) - aside) < 0.15
