@@ -39,11 +39,11 @@ TOGETHER = 16
 VIEW_SD = (np.inf, np.inf, 0.05, np.inf)
 """How far a view may lie from the provisional one: the roll is free where no line is seen."""
 
-LONG_RANGE = 2.0
+LONG_RANGE = 1.5
 """Errors of paint and outline are alike over longer stretches than single pieces and marks tell:
 so much larger than these say are the standard errors, as cameras known otherwise show."""
 
-YARDSTICK_PX = 0.16
+YARDSTICK_PX = 0.12
 """How well the outer edge of the 12-ft circle is made out, px: an outline that is little darker
 than the paint goes unseen and draws the edge outwards."""
 
