@@ -224,8 +224,9 @@ def follow_house(
     progress("camera", 1, 1)
     if track is None:
         raise SceneError(
-            f"{clip.files[0]}: no house in view; point at it with --house, or for another scene"
-            " with a still camera use --stick X1,Y1,X2,Y2,METRES"
+            f"{clip.files[0]}: no house in view (it is known by two of its circles or more);"
+            " point at it with --house, or for another scene with a still camera use"
+            " --stick X1,Y1,X2,Y2,METRES"
         )
     return track
 

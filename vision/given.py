@@ -25,9 +25,10 @@ from vision.follow_house import follow_house
 from vision.house import fit_house
 from vision.house_fit import HouseFit, start
 from vision.joint import HouseTrack, Seen, fit_clip
+from vision.lines import y_up
 from vision.paint import TWELVE, Marks, fixed, joined
 from vision.placed import Placed, nobody
-from vision.pose import View, camera, turned
+from vision.pose import View, camera
 from vision.rings import SQUASHES, Guess
 
 Array = NDArray[np.float64]
@@ -187,7 +188,7 @@ def _as_given(
     """Take the three points for what they are, in all frames that show the same picture."""
     guess = hypotheses(house, clip.size)[0]
     view, rig, prior = start(guess, clip.size)
-    view, rig = _y_up(view, rig, clip.size)
+    view, rig = y_up(view, rig, clip.size)
     marks = _marks(house, view, rig, clip.size)
     track = fit_clip([Seen(frame.index, frame.t, view, marks, True)], rig, prior, clip.size)
     given = replace(track.cameras[0], rms_px=float("nan"), quality=0.0)
@@ -207,13 +208,6 @@ def _as_given(
     if len(cameras) < clip.read:
         note += f", and only the {len(cameras)} frames with the same picture are used"
     return replace(track, cameras=tuple(cameras), warnings=(note, *track.warnings))
-
-
-def _y_up(view: View, rig: Array, size: tuple[int, int]) -> tuple[View, Array]:
-    """Turn the axes so that y points up in the picture at the tee."""
-    tee, ahead = camera(view, rig, size).project([[0.0, 0.0], [0.0, 0.1]])
-    right, down = ahead - tee
-    return turned(view, rig, float(np.arctan2(right, -down)))
 
 
 def _marks(house: GivenHouse, view: View, rig: Array, size: tuple[int, int]) -> Marks:

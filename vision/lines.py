@@ -64,7 +64,7 @@ def upright(image: Image, view: View, rig: Array) -> tuple[View, Array]:
     They also tell the centre line from the tee line where the camera stands beside the sheet;
     y then points to the end of the sheet that is higher in the picture.
     """
-    view, rig = _level(view, rig, (image.shape[1], image.shape[0]))
+    view, rig = y_up(view, rig, (image.shape[1], image.shape[0]))
     score, turn = _cross_score(image, view, rig), STEP * (np.arange(QUARTER_STEPS) - 180)
     noise = float(np.median(score)) + 1e-9
     spread = float(np.median(np.abs(score - noise))) + 0.05 * noise
@@ -90,6 +90,14 @@ def upright(image: Image, view: View, rig: Array) -> tuple[View, Array]:
     return level
 
 
+def y_up(view: View, rig: Array, size: tuple[int, int]) -> tuple[View, Array]:
+    """Turn the ice's axes so that y points up in the picture at the tee."""
+    small = 0.1 * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    tee, *ends = project(small, view.vector, rig, size)
+    x, y = np.linalg.solve(np.column_stack([end - tee for end in ends]), [0.0, -1.0])
+    return turned(view, rig, float(np.arctan2(y, x)) - QUARTER)
+
+
 def clearness(image: Image, view: View, rig: Array) -> float:
     """Tell how much more the lines along the axes stand out than any others through the tee."""
     score, middle = _cross_score(image, view, rig), QUARTER_STEPS // 2
@@ -101,14 +109,6 @@ def clearness(image: Image, view: View, rig: Array) -> float:
 def _strength(image: Image, view: View, rig: Array) -> float:
     """Add up the steps at both sides of the sheet, grey levels."""
     return sum(step for _, _, step in _side_steps(image, view, rig))
-
-
-def _level(view: View, rig: Array, size: tuple[int, int]) -> tuple[View, Array]:
-    """Turn the ice's axes so that y points up in the picture: circles alone leave that open."""
-    small = 0.1 * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
-    tee, *ends = project(small, view.vector, rig, size)
-    x, y = np.linalg.solve(np.column_stack([end - tee for end in ends]), [0.0, -1.0])
-    return turned(view, rig, float(np.arctan2(y, x)) - QUARTER)
 
 
 def _upwards(image: Image, view: View, rig: Array) -> tuple[View, Array]:
