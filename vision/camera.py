@@ -159,10 +159,14 @@ class Camera:
         The homography is K [r1 r2 −R C] up to a factor.
         """
         c, _ = self._centre_and_radius
-        columns = self.homography[:, :2].copy()
-        columns[:2] = (columns[:2] - c[:, None] * columns[2]) / self.f_px
-        columns /= np.linalg.norm(columns[:, 0])
-        return np.column_stack([columns, np.cross(columns[:, 0], columns[:, 1])])
+        found = np.empty((3, 3))
+        found[:, :2] = self.homography[:, :2]
+        found[:2, :2] -= c[:, None] * found[2, :2]
+        found[:2, :2] /= self.f_px
+        found[:, :2] /= np.linalg.norm(found[:, 0])
+        a, b = found[:, 0], found[:, 1]
+        found[:, 2] = a[[1, 2, 0]] * b[[2, 0, 1]] - a[[2, 0, 1]] * b[[1, 2, 0]]
+        return found
 
     def place_cov(self, ice: ArrayLike, height: float = 0.0) -> Array:
         """Covariance of mapped points, shape (..., 2, 2), m²; zero where nothing is known of it.
@@ -176,9 +180,14 @@ class Camera:
         """
         if self.error is None:
             return np.zeros((*np.shape(ice), 2))
+        return self.own_place_cov(ice, height) + self.shared_place_cov(ice, height)
+
+    def own_place_cov(self, ice: ArrayLike, height: float = 0.0) -> Array:
+        """Part of `place_cov` that each frame has for itself, shape (..., 2, 2), m²."""
+        if self.error is None:
+            return np.zeros((*np.shape(ice), 2))
         by_camera = self.place_jacobian(ice, height)
-        own = by_camera @ self.error.own @ np.swapaxes(by_camera, -1, -2)
-        return np.asarray(own + self.shared_place_cov(ice, height))
+        return np.asarray(by_camera @ self.error.own @ np.swapaxes(by_camera, -1, -2))
 
     def shared_place_cov(self, ice: ArrayLike, height: float = 0.0) -> Array:
         """Part of `place_cov` that neighbouring frames share, shape (..., 2, 2), m²."""

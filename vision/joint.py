@@ -155,7 +155,7 @@ def _carried(seen: Seen, key: Keyframe, by: Camera) -> Seen:
         return replace(seen, marks=marks)
     known = marks.line == FIXED
     ice = np.stack([marks.along[known], marks.across[known]], axis=-1)
-    own = by.place_cov(ice) - by.shared_place_cov(ice)
+    own = by.own_place_cov(ice)
     square = float(np.trace(own, axis1=-2, axis2=-1).mean()) / 2
     drift = float(np.hypot(np.sqrt(square), by.error.drift))
     return replace(seen, marks=marks, key=replace(key, drift=drift))

@@ -143,24 +143,26 @@ def recognise(key: Keyframe, picture: Picture, view: View, rig: Array) -> Marks 
         near = np.flatnonzero(((expected > -0.2 * size) & (expected < 1.2 * size)).all(1))
     if len(near) < LEAST_CORNERS:
         return None
-    start, there = key.corners[near].astype(np.float32), expected[near].astype(np.float32)
-    warp, _ = cv2.findHomography(start, there)
-    if warp is None:
-        return None
+    corners, there = key.corners[near], expected[near]
+    warp = _affine(corners, there)
     shown = (grey.shape[1], grey.shape[0])
-    warped = cv2.warpPerspective(key.grey, warp, shown, borderMode=cv2.BORDER_REPLICATE)
-    before = cv2.perspectiveTransform(start[:, None], warp)
+    warped = cv2.warpAffine(key.grey, warp, shown, borderMode=cv2.BORDER_REPLICATE)
+    one = corners @ warp[:, :2].T + warp[:, 2]
+    before = one.astype(np.float32)
     after, ok, _ = cv2.calcOpticalFlowPyrLK(
-        warped, grey, before, before.copy(), winSize=WINDOW, maxLevel=LEVELS, criteria=ENOUGH
-    )
+        warped, grey, before, there.astype(np.float32), winSize=WINDOW, maxLevel=LEVELS,
+        criteria=ENOUGH, flags=cv2.OPTFLOW_USE_INITIAL_FLOW,
+    )  # fmt: skip
+    # What is the same is found again from there: it was there that one looked, so near at hand.
     back, ok_back, _ = cv2.calcOpticalFlowPyrLK(
-        grey, warped, after, before.copy(), winSize=WINDOW, maxLevel=LEVELS, criteria=ENOUGH
-    )
-    one, two = before[:, 0].astype(np.float64), after[:, 0].astype(np.float64)
+        grey, warped, after, before.copy(), winSize=WINDOW, maxLevel=0,
+        criteria=ENOUGH, flags=cv2.OPTFLOW_USE_INITIAL_FLOW,
+    )  # fmt: skip
+    two = after.astype(np.float64)
     good = np.flatnonzero(
         ((ok == 1) & (ok_back == 1)).ravel()
         & ((two > 3) & (two < size - 4)).all(1)
-        & (np.linalg.norm(back[:, 0] - one, axis=1) < 1.0)
+        & (np.abs(back - before).max(1) < 1.0)
     )
     if len(good) < LEAST_CORNERS:
         return None
@@ -170,10 +172,16 @@ def recognise(key: Keyframe, picture: Picture, view: View, rig: Array) -> Marks 
     kept = good[together.ravel() == 1]
     due = one @ motion[:, :2].T + motion[:, 2]
     count = int(((due > 3) & (due < size - 4)).all(1).sum())
-    cells = np.unique((two[kept] / size * CELLS).astype(int), axis=0)
+    cells = set((two[kept] / size * CELLS).astype(int) @ (1, CELLS[0]))
     if len(kept) < max(LEAST_CORNERS, LEAST_SHARE * count) or len(cells) < LEAST_CELLS:
         return None
     return fixed(key.ice[near[kept]], _large(two[kept], factor), CORNER_SD * factor)
+
+
+def _affine(start: Array, end: Array) -> Array:
+    """Affine motion from places to places, (n, 2) each, by least squares, shape (2, 3)."""
+    design = np.column_stack([start, np.ones(len(start))])
+    return np.asarray(np.linalg.solve(design.T @ design, design.T @ end).T)
 
 
 def replaced(marks: Marks, key: Keyframe, now: Camera) -> Marks:

@@ -299,7 +299,7 @@ class Piece:
         """
         if self._normals is not None:
             standing = self._moved(self._normals, views)
-            if standing:
+            if len(standing) == len(views):
                 return self._normals, np.array(standing)
         reach = max(REACH * self.size[0], LEAST_REACH)
         normals = lay_out(views[0].vector, self.rig, self.size, reach=reach, most=MOST_NORMALS)
@@ -338,12 +338,11 @@ class Piece:
         view = solve_view(
             landmarks, view, self.rig, self.size, width=10.0, view_sd=np.full(4, np.inf)
         ).view
-        seen = self._settle([frame], [view])
-        if seen:
-            self._key, self.missed = None, 0
-            return seen[0]
         normals, standing = self._laid([view])
         expected = _enough(self.rig, normals.visible, normals.visible)
+        if expected and (seen := self._settle([frame], [view])):
+            self._key, self.missed = None, 0
+            return seen[0]
         self.missed = self.missed + 1 if expected else 0
         lines = self._measured([frame.picture], normals, standing)[0].marks
         marks = joined([landmarks, lines.pick(lines.line >= CIRCLES)])
