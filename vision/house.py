@@ -67,7 +67,7 @@ def find_house(image: Image, *, frame: int = 0, t: float = 0.0) -> HouseFit | No
 
 
 def _is_house(image: Image, found: HouseFit) -> bool:
-    return is_house(image, found.evidence, found.view, found.rig, found.camera)
+    return is_house(image, found.evidence, found.view, found.rig)
 
 
 def _middle_most(image: Image, small: Image, factor: float, found: HouseFit) -> HouseFit:

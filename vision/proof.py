@@ -6,12 +6,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.camera import Camera
 from vision.lines import clearness
 from vision.marks import Evidence
 from vision.paint import EIGHT, TWELVE
 from vision.picture import Image
-from vision.pose import View
+from vision.pose import View, project
 
 Array = NDArray[np.float64]
 
@@ -52,7 +51,7 @@ def worth(evidence: Evidence) -> float:
     return float(covered.sum() + 0.5 * support[seen].mean())
 
 
-def is_house(image: Image, evidence: Evidence, view: View, rig: Array, found: Camera) -> bool:
+def is_house(image: Image, evidence: Evidence, view: View, rig: Array) -> bool:
     """Say whether circles that fit belong to a house, not to a target, a wheel or an eye.
 
     Three circles with bare ice between the paint, or the lines through the tee, tell it.
@@ -62,7 +61,7 @@ def is_house(image: Image, evidence: Evidence, view: View, rig: Array, found: Ca
     image : ndarray of uint8, shape (h, w, 3)
     evidence : Evidence
         Of the circles, as fitted.
-    view, rig, found : View, ndarray, Camera
+    view, rig : View, ndarray
         The camera.
     """
     ice, paint = evidence.palette[TWELVE]
@@ -71,18 +70,20 @@ def is_house(image: Image, evidence: Evidence, view: View, rig: Array, found: Ca
     ringed = bare and evidence.support.min() > WHOLE
     if not ringed and clearness(image, view, rig) < CROSSED:
         return False
-    return not _is_target(image, found)
+    return not _is_target(image, view, rig)
 
 
-def _is_target(image: Image, found: Camera) -> bool:
+def _is_target(image: Image, view: View, rig: Array) -> bool:
     """Whether there are whole circles where a house has none: between its own or around them."""
     angle = np.linspace(0, 2 * np.pi, 72, endpoint=False)
     way = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    size = (image.shape[1], image.shape[0])
     for first, last in UNPAINTED:
         radius = np.exp(np.arange(np.log(first), np.log(last), 0.01))
-        place = found.project(radius[:, None, None] * way)
-        seen = np.asarray(((place > 0) & (place < np.array(found.size) - 1)).all(-1))
-        x, y = place.astype(np.float32).transpose(2, 0, 1)
+        ice = (radius[:, None, None] * way).reshape(-1, 2)
+        place = project(ice, view.vector, rig, size).reshape(len(radius), len(angle), 2)
+        seen = np.asarray(((place > 0) & (place < np.array(size) - 1)).all(-1))
+        x, y = np.where(seen[..., None], place, 0.0).astype(np.float32).transpose(2, 0, 1)
         colour = cv2.remap(image, x, y, cv2.INTER_LINEAR).astype(float)
         within = seen[8:] & seen[:-8]
         step = (colour[8:] - colour[:-8]) * within[..., None]
