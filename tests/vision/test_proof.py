@@ -9,11 +9,49 @@ import pytest
 from tests.synthetic import PAINTS, render_still, sample_scene, tilted_camera
 from vision.house import find_house
 from vision.house_fit import HouseFit
+from vision.marks import Evidence, measure
 from vision.picture import Image
-from vision.pose import project
+from vision.pose import View, project
 from vision.proof import is_house, worth
+from vision.rig import OVERHEAD, start_rig
 
 SCENE = replace(sample_scene(), paint=PAINTS["navy-orange"])
+
+SIZE = (960, 540)
+SCALE, FINE = 90.0, 4
+ICE, BLUE, RED = (232, 230, 228), (170, 80, 30), (50, 40, 200)
+HOUSE = ((1.829, BLUE), (1.2135, ICE), (0.619, RED))
+
+
+def level() -> tuple[View, np.ndarray]:
+    rig = start_rig(OVERHEAD, (0.0, 0.0, 9.0))
+    rig[3:6] = 0
+    return View(np.array([0.0, 0.0, 0.0, np.log(SCALE * 9)])), rig
+
+
+def drawn(
+    circles: tuple[tuple[float, tuple[int, int, int]], ...],
+    ground: tuple[int, int, int] = ICE,
+    cross: bool = True,
+) -> Image:
+    """Discs about the middle of a picture, the largest first, and lines through it."""
+    image = np.full((FINE * SIZE[1], FINE * SIZE[0], 3), ground, np.uint8)
+    middle = (FINE * SIZE[0] // 2, FINE * SIZE[1] // 2)
+    for radius, colour in circles:
+        cv2.circle(image, middle, round(FINE * SCALE * radius), colour, -1)
+    if cross:
+        cv2.line(image, (0, middle[1]), (FINE * SIZE[0], middle[1]), (60, 60, 60), FINE)
+        cv2.line(image, (middle[0], 0), (middle[0], FINE * SIZE[1]), (60, 60, 60), FINE)
+    return np.asarray(cv2.resize(image, SIZE, interpolation=cv2.INTER_AREA), np.uint8)
+
+
+def seen(image: Image) -> Evidence:
+    view, rig = level()
+    return measure(image, view.vector, rig, reach=6.0)
+
+
+def proved(image: Image) -> bool:
+    return is_house(image, seen(image), *level())
 
 
 @pytest.fixture(scope="module")
@@ -44,3 +82,29 @@ def test_a_circle_more_than_a_house_has_makes_a_target(low: tuple[Image, HouseFi
     target = picture.copy()
     cv2.polylines(target, [np.round(line).astype(np.int32)], True, (30, 200, 230), 6)
     assert not is_house(target, found.evidence, found.view, found.rig)
+
+
+def test_a_house_is_worth_most() -> None:
+    whole, few, none = (worth(seen(drawn(rings))) for rings in (HOUSE, HOUSE[::2], ()))
+    assert 3.0 < whole <= 3.5
+    assert 0 < few < whole
+    assert none == 0
+
+
+def test_two_circles_of_which_none_is_the_second_need_ice_around_them() -> None:
+    assert worth(seen(drawn(HOUSE[::2]))) > 0
+    assert worth(seen(drawn(HOUSE[::2], ground=(60, 60, 60)))) == 0
+    assert worth(seen(drawn(HOUSE[:1]))) == 0
+
+
+@pytest.mark.parametrize("cross", [True, False])
+def test_bare_ice_between_the_paint_or_the_lines_prove_it(cross: bool) -> None:
+    assert proved(drawn(HOUSE, cross=cross))
+    painted = ((1.829, BLUE), (1.2135, (60, 160, 60)), (0.619, RED))
+    assert proved(drawn(painted, cross=cross)) == cross
+
+
+@pytest.mark.parametrize("radius", [0.9, 1.5, 2.5])
+def test_a_circle_where_a_house_has_none_disproves_it(radius: float) -> None:
+    more = sorted((*HOUSE, (radius, (90, 140, 60))), reverse=True)
+    assert not proved(drawn(tuple(more)))
