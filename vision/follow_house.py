@@ -18,6 +18,7 @@ from data.errors import SceneError
 from data.progress import Progress, no_progress
 from vision.camera import Camera
 from vision.clip import Clip, Frame
+from vision.edge_tracker import EdgeTracker
 from vision.house import find_house
 from vision.house_fit import HouseFit
 from vision.joint import HouseTrack, Seen, fit_clip
@@ -26,7 +27,6 @@ from vision.piece import Piece
 from vision.placed import Placed, nobody
 from vision.pose import View
 from vision.replay import glimpse, is_nearer, is_replay
-from vision.resection import solve_view
 from vision.rig import ANYWHERE, OVERHEAD
 
 Array = NDArray[np.float64]
@@ -40,9 +40,6 @@ LOOK_BACK = 30
 
 PATIENCE = 12
 """Frames in a row that may fail before following gives up and only finding is left."""
-
-SAME_RMS_PX = 0.3
-"""How much worse another piece's camera may explain a house that it shows as well, px."""
 
 
 class HouseFollower:
@@ -92,7 +89,7 @@ class HouseFollower:
     @property
     def _stride(self) -> int:
         """How many frames are followed together."""
-        return 1 if self._piece is None or self._piece.lost else self._piece.stride
+        return 1 if self._piece is None or self._piece.lost else self._piece.edges.stride
 
     def _go_on(self) -> Sequence[tuple[Frame, Camera]]:
         """Place the next frame, or the next few."""
@@ -161,7 +158,8 @@ class HouseFollower:
         piece, view = self._same(house, frame)
         if piece is None:
             prior = OVERHEAD if house.overhead else ANYWHERE
-            piece = Piece(self._size, house.rig, prior, house.evidence.palette, house.edge)
+            edges = EdgeTracker(self._size, house.evidence.palette, house.edge)
+            piece = Piece(self._size, house.rig, prior, edges)
             view = house.view
             self._pieces.append(piece)
         self._piece = piece
@@ -174,18 +172,15 @@ class HouseFollower:
 
         What that piece showed long before it was cut is shown again; it does not go on.
         """
-        marks = house.evidence.marks
         now = glimpse(frame.picture, house.view, house.rig, frame.t)
         for piece in self._pieces:
-            if not piece.looks_like(house.evidence.palette):
+            if not piece.edges.looks_like(house.evidence.palette):
                 continue
             if is_replay(now, piece.glimpses):
                 continue
-            view = solve_view(marks, house.view, piece.rig, self._size, width=1e3, iterations=30)
-            fit = solve_view(marks, view.view, piece.rig, self._size)
-            enough = fit.inliers.sum() > 0.8 * len(marks)
-            if enough and fit.rms < 1.3 * house.rms_px + SAME_RMS_PX:
-                return piece, fit.view
+            view = piece.explains(house)
+            if view is not None:
+                return piece, view
         return None, house.view
 
 

@@ -3,6 +3,7 @@ from __future__ import annotations
 import numpy as np
 
 from vision.clip import Frame
+from vision.edge_tracker import EdgeTracker
 from vision.outline import Rim
 from vision.paint import FIXED, joined
 from vision.piece import Piece
@@ -16,7 +17,8 @@ POSITION = (0.0, 0.0, 8.5)
 def test_a_house_that_was_found_ends_the_row_of_frames_that_missed_it() -> None:
     rig = start_rig(OVERHEAD, POSITION)
     view = aim((320.0, 180.0), 75.0, POSITION, SIZE)
-    piece = Piece(SIZE, rig, OVERHEAD, np.full((FIXED, 2, 3), np.nan), Rim())
+    edges = EdgeTracker(SIZE, np.full((FIXED, 2, 3), np.nan), Rim())
+    piece = Piece(SIZE, rig, OVERHEAD, edges)
     bare = [Frame(i, i / 25, np.full((SIZE[1], SIZE[0], 3), 230, np.uint8)) for i in range(3)]
     piece.missed = 20
     placed = piece.enter(bare[2], view, joined([]), bare[:2])

@@ -1,0 +1,218 @@
+"""Views refined on the edges of a house: predicted, measured along normals, fitted.
+
+Frames that can be predicted are measured and fitted together: most of what one costs is the same
+for several.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.sheet import HOUSE
+from vision import linear
+from vision.clip import Frame
+from vision.joint import Seen
+from vision.marks import Evidence, measure_along
+from vision.normals import Normals, lay_out
+from vision.outline import Rim
+from vision.paint import CIRCLES, FIXED, Marks, joined
+from vision.picture import Picture
+from vision.pose import View
+from vision.resection import ViewSolution, solve_views
+from vision.rig import R4, R8
+
+Array = NDArray[np.float64]
+
+MOST_NORMALS = 32
+"""Normals on each circle."""
+
+REACH, LEAST_REACH = 0.007, 6.0
+"""Half length of the normals in widths of the picture, and the least, px."""
+
+MARK_SD = 0.2
+"""Least standard deviation of a mark, px."""
+
+WIDTH = 6.0
+"""Width of the robust loss, in standard deviations, while the shared part is provisional."""
+
+SETTLED = 0.4
+"""Correction below which the edges need not be measured anew, half lengths of the normals."""
+
+ROUNDS = 3
+"""How often the edges of a frame are measured at most."""
+
+LEAST_ARC = 1.2
+"""Length of circle that must be seen to fix a view, m."""
+
+LEAST_SUPPORT, GOOD_SUPPORT = 0.3, 0.5
+"""Of the circles that are in the picture, this part must be seen; where it is less than the
+second, edges of others may have been taken for theirs, and are measured anew."""
+
+LEARNING = 0.1
+"""How fast the colours of the edges are learned anew."""
+
+LONGEST_STRIDE = 4
+"""Most frames that are followed together."""
+
+FREE = (np.inf, np.inf, 0.02, np.inf)
+"""How far a view may be turned from its prediction: the roll is free where no line is seen."""
+
+
+@dataclass
+class EdgeTracker:
+    """What is known of the edges of a house, from frame to frame.
+
+    Attributes
+    ----------
+    size : tuple of int
+        Width and height of the pictures, px.
+    palette : ndarray, shape (9, 2, 3)
+        Colours on either side of each kind of edge.
+    edge : Rim
+        Where the 12-ft circle ends in the profiles across it.
+    stride : int
+        How many frames may be followed together: the more, the better they are predicted.
+    fit : ViewSolution, optional
+        The last one.
+    """
+
+    size: tuple[int, int]
+    palette: Array
+    edge: Rim
+    stride: int = 1
+    fit: ViewSolution | None = None
+    _normals: Normals | None = None
+
+    def settle(self, frames: Sequence[Frame], views: Sequence[View], rig: Array) -> list[Seen]:
+        """Refine predicted views.
+
+        Parameters
+        ----------
+        frames, views : sequences of Frame and View
+            One or more frames, and where they are expected.
+        rig : ndarray, shape (14,)
+
+        Returns
+        -------
+        list of Seen
+            The first of the frames, as many as went well; none where the first does not show
+            enough of the circles.
+        """
+        again = False
+        for _ in range(ROUNDS):
+            normals, standing = self._laid(views, rig)
+            if not _enough(rig, normals.visible, normals.visible):
+                return []
+            evidence = self._measured([frame.picture for frame in frames], normals, standing)
+            evidence = evidence[: _leading([_enough(rig, e.visible, e.covered) for e in evidence])]
+            if not evidence:
+                return []
+            fits = self._fitted([e.marks for e in evidence], views, rig)
+            settled = [
+                self._is_settled(*each, rig) for each in zip(views, evidence, fits, strict=False)
+            ]
+            count = _leading(settled)
+            if count:
+                break
+            frames, views, again = frames[:1], [fits[0].view], True
+        else:
+            if not _enough(rig, evidence[0].visible, _explained(evidence[0], fits[0])):
+                return []
+            count = 1
+        whole = count == len(frames) and not again
+        self.stride = min(2 * count, LONGEST_STRIDE) if whole else max(count // 2, 1)
+        self.fit = fits[count - 1]
+        self._learn(evidence[count - 1].palette, count)
+        return [
+            Seen(frame.index, frame.t, fit.view, e.marks.pick(fit.inliers), True)
+            for frame, e, fit in zip(frames, evidence[:count], fits, strict=False)
+        ]
+
+    def expects(self, view: View, rig: Array) -> bool:
+        """Whether a view should show enough of the circles to be refined."""
+        visible = self._laid([view], rig)[0].visible
+        return _enough(rig, visible, visible)
+
+    def lines(self, picture: Picture, view: View, rig: Array) -> Marks:
+        """Measure the straight lines near where a view has them."""
+        marks = self._measured([picture], *self._laid([view], rig))[0].marks
+        return marks.pick(marks.line >= CIRCLES)
+
+    def looks_like(self, palette: Array) -> bool:
+        """Whether the circles have the same colours in a palette, as far as both know them."""
+        contrast = np.linalg.norm(self.palette[:CIRCLES, 0] - self.palette[:CIRCLES, 1], axis=1)
+        away = np.linalg.norm(self.palette[:CIRCLES] - palette[:CIRCLES], axis=2).max(1)
+        known = np.isfinite(contrast) & np.isfinite(away)
+        return bool((away[known] < 0.5 * contrast[known]).all())
+
+    def _laid(self, views: Sequence[View], rig: Array) -> tuple[Normals, Array]:
+        """Give normals and where they stand in views, of which at least the first has them."""
+        if self._normals is not None:
+            standing = self._moved(self._normals, views, rig)
+            if len(standing) == len(views):
+                return self._normals, np.array(standing)
+        reach = max(REACH * self.size[0], LEAST_REACH)
+        normals = lay_out(views[0].vector, rig, self.size, reach=reach, most=MOST_NORMALS)
+        self._normals = normals
+        return normals, np.array([normals.standing, *self._moved(normals, views[1:], rig)])
+
+    def _moved(self, normals: Normals, views: Sequence[View], rig: Array) -> list[Array]:
+        """Give where normals stand in the first of the views, up to one that is too far away."""
+        found = []
+        for view in views:
+            standing = normals.moved(view.vector, rig, self.size)
+            if standing is None:
+                break
+            found.append(standing)
+        return found
+
+    def _measured(
+        self, pictures: Sequence[Picture], normals: Normals, standing: Array
+    ) -> list[Evidence]:
+        return measure_along(
+            pictures[: len(standing)], normals, standing,
+            least_sd=MARK_SD, palette=self.palette, level=self.edge.level,
+        )  # fmt: skip
+
+    def _fitted(
+        self, marks: Sequence[Marks], views: Sequence[View], rig: Array
+    ) -> list[ViewSolution]:
+        frames = linear.Frame(joined(marks), self.size, counts=[len(m) for m in marks])
+        start = views[: len(marks)]
+        return solve_views(frames, start, rig, view_sd=FREE, width=WIDTH, iterations=6)
+
+    def _is_settled(self, before: View, evidence: Evidence, fit: ViewSolution, rig: Array) -> bool:
+        """Whether a view was predicted so well that the edges need not be measured anew."""
+        shift = np.abs(fit.view.vector - before.vector)[:3].max() * fit.view.focal
+        near = bool(shift < SETTLED * REACH * self.size[0])
+        return near and _enough(rig, evidence.visible, _explained(evidence, fit), GOOD_SUPPORT)
+
+    def _learn(self, palette: Array, frames: int) -> None:
+        """Take in the colours of the edges in the last of so many frames."""
+        kept = (1 - LEARNING) ** frames
+        mixed = kept * self.palette + (1 - kept) * palette
+        mixed = np.where(np.isfinite(mixed), mixed, palette)
+        self.palette = np.where(np.isfinite(mixed), mixed, self.palette)
+
+
+def _leading(good: Sequence[bool]) -> int:
+    """Count those before the first that is False."""
+    return [*good, False].index(False)
+
+
+def _explained(evidence: Evidence, fit: ViewSolution) -> Array:
+    """Part of each circle that is covered by edges which the view explains."""
+    line = evidence.marks.line
+    on, good = (np.bincount(line[which], minlength=FIXED)[:CIRCLES] for which in (..., fit.inliers))
+    return np.asarray(evidence.covered * good / np.maximum(on, 1))
+
+
+def _enough(rig: Array, visible: Array, covered: Array, least: float = LEAST_SUPPORT) -> bool:
+    """Whether so much of the circles is covered, of what is visible, that they fix a view."""
+    around = 2 * np.pi * np.array([HOUSE.twelve_foot, rig[R8], rig[R4]])
+    arc, whole = float(covered @ around), float(visible @ around)
+    return arc > LEAST_ARC and arc > least * whole
