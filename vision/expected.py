@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 ON_COURSE = 0.15
 """Within this many radii of where it is expected a stone need not be looked for."""
 
-SETTLED = 0.03
+SETTLED = 0.02
 """Measured from within this many radii of its centre, a stone's place depends no more on where."""
 
 NEARBY = 0.35

@@ -18,7 +18,7 @@ from data.sheet import Stone
 from vision.appearance import Appearance
 from vision.camera import Camera
 from vision.clip import Frame
-from vision.expected import ON_COURSE, look_beside, look_on_course
+from vision.expected import ON_COURSE, SETTLED, look_beside, look_on_course
 from vision.lead import Lead
 from vision.rays import Look
 from vision.seek import Bounds
@@ -30,8 +30,8 @@ Array = NDArray[np.float64]
 
 Place = tuple[float, float]
 
-Glimpse = tuple[Place, Sighting]
-"""Where a stone was expected some pictures before, and what was seen there."""
+Glimpse = tuple[Place, Sighting | None]
+"""Where a stone was expected some pictures before, and what was seen there, if one was."""
 
 STILL = 0.03
 """How far from where it rests a stone may be seen, in radii."""
@@ -152,10 +152,11 @@ class Follower:
 
     def _ahead(self, views: Sequence[View], leads: Sequence[Lead]) -> list[list[Glimpse]]:
         """Measure at once what views show of stones that rest or keep their course."""
-        leads = [lead for lead in leads if not lead.missed]
         if not leads:
             return [[] for _ in views]
-        known = {i: lead.portrait for i, lead in enumerate(leads) if lead.portrait}
+        known = {
+            i: lead.portrait for i, lead in enumerate(leads) if lead.portrait and not lead.missed
+        }
         pictures = [(view.frame.picture, view.camera) for view in views]
         alike = [
             {i: sighting for i, sighting in zip(known, seen, strict=True) if sighting}
@@ -175,17 +176,20 @@ class Follower:
         if any(len(look.places) for look in looks):
             measured = iter(look_on_course(looks, self.appearance, self.disc, self.search))
             for so_far, look in zip(out, looks, strict=True):
-                found = [((x, y), next(measured)) for x, y in look.places.tolist()]
-                so_far += [(place, sighting) for place, sighting in found if sighting]
+                so_far += [((x, y), next(measured)) for x, y in look.places.tolist()]
         return out
 
     def _measured(
         self, view: View, leads: Sequence[Lead], expected: Sequence[Place], ahead: Sequence[Glimpse]
     ) -> list[Sighting | None]:
         """Look at each stone where it is expected, unless it was measured ahead."""
-        reach = ON_COURSE * self.disc.radius
-        found = [_glimpsed(ahead, place, reach) for place in expected]
-        others = [index for index, sighting in enumerate(found) if sighting is None]
+        glimpses = [_nearest(ahead, place) for place in expected]
+        found = [seen if away < ON_COURSE * self.disc.radius else None for away, seen in glimpses]
+        others = [
+            index
+            for index, (away, _) in enumerate(glimpses)
+            if found[index] is None and away > SETTLED * self.disc.radius
+        ]
         if others:
             look = Look(view.frame.picture, view.camera, _array([expected[i] for i in others]))
             seen = look_on_course([look], self.appearance, self.disc, self.search)
@@ -250,10 +254,10 @@ def _away(sightings: Sequence[Sighting], x: float, y: float) -> float:
     return min((hypot(s.x - x, s.y - y) for s in sightings), default=inf)
 
 
-def _glimpsed(ahead: Sequence[Glimpse], place: Place, reach: float) -> Sighting | None:
-    """Give what was measured ahead from within reach of a place, and nearest to it."""
-    away = [dist(place, start) for start, _ in ahead]
-    return ahead[away.index(min(away))][1] if away and min(away) < reach else None
+def _nearest(ahead: Sequence[Glimpse], place: Place) -> tuple[float, Sighting | None]:
+    """Give what was measured ahead nearest to a place, and how far from it, m."""
+    away = [(dist(place, start), seen) for start, seen in ahead]
+    return min(away, key=lambda glimpse: glimpse[0], default=(inf, None))
 
 
 def _score(sighting: Sighting | None) -> float:

@@ -13,6 +13,9 @@ from vision.still import Portrait
 STEADY = 5
 """Sightings at one place that make a stone one at rest."""
 
+DECELERATION = 0.1
+"""Of a stone on ice, about, m/s²."""
+
 TURNED = 0.06
 """A cap that has turned by more spins on the spot, rad."""
 
@@ -64,8 +67,17 @@ class Lead:
 
     def at(self, t: float) -> tuple[float, float]:
         """Where the stone is expected, m."""
-        (x, y), (vx, vy), step = self.place, self.velocity, t - self.t
-        return x + vx * step, y + vy * step
+        slower, step = self._slowed(t)
+        (x, y), (vx, vy), mean = self.place, self.velocity, 0.5 * (1 + slower)
+        return x + mean * vx * step, y + mean * vy * step
+
+    def _slowed(self, t: float) -> tuple[float, float]:
+        """Tell what share of its velocity is left by then, and how long it moves till then, s."""
+        lasts = hypot(*self.velocity) / DECELERATION
+        if not lasts:
+            return 1.0, 0.0
+        step = min(max(t - self.t, -lasts), lasts)
+        return 1 - step / lasts, step
 
     def on(self, sighting: Sighting, t: float, near: float, still: float) -> Lead:
         """Go on from a sighting; it corrects what was expected, unless the course has changed.
@@ -78,7 +90,8 @@ class Lead:
             How far from its anchor it may be and rest, m.
         """
         x, y = sighting.x, sighting.y
-        (ahead_x, ahead_y), (vx, vy), step = self.at(t), self.velocity, t - self.t
+        (ahead_x, ahead_y), step, (slower, _) = self.at(t), t - self.t, self._slowed(t)
+        vx, vy = slower * self.velocity[0], slower * self.velocity[1]
         away_x, away_y = x - ahead_x, y - ahead_y
         if hypot(away_x, away_y) > near:
             place, velocity = (x, y), ((x - self.place[0]) / step, (y - self.place[1]) / step)

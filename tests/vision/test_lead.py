@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.vision.test_follow import sighting
-from vision.lead import STEADY, Lead
+from vision.lead import DECELERATION, STEADY, Lead
 
 NEAR, STILL = 0.02, 0.004
 
@@ -53,3 +53,14 @@ def test_a_cap_that_turns_on_the_spot_does_not_rest() -> None:
             seen = sighting((0.3, 0.2))._replace(spectrum=facing(spin * t))
             lead = lead.on(seen, t, NEAR, STILL)
         assert lead.rests is rests
+
+
+@pytest.mark.parametrize("t", [0.3, -0.3])
+def test_a_lead_expects_the_ice_to_slow_a_stone(t: float) -> None:
+    place = Lead((0.0, 0.0), (0.0, -2.0), 0.0, (0.0, 0.0), 2.0).at(t)
+    np.testing.assert_allclose(place, (0.0, -2.0 * t + 0.5 * DECELERATION * t**2))
+
+
+def test_a_lead_expects_no_stone_to_turn_back() -> None:
+    crawling = Lead((0.0, 0.0), (0.01, 0.0), 0.0, (0.0, 0.0), 2.0)
+    assert crawling.at(5.0) == crawling.at(0.1) == pytest.approx((0.5 * 0.01**2 / DECELERATION, 0))
