@@ -120,6 +120,24 @@ def _any_stone(white: int) -> Appearance:
     return Appearance((cap - granite).astype(np.float32))
 
 
+def any_grey_stone(white: float = 210.0) -> Appearance:
+    """Appearance of stones in a recording without colours: caps darker or lighter than granite.
+
+    Parameters
+    ----------
+    white : float
+        Lightness L* of the white ice in the picture, 0 to 255.
+    """
+    return _any_grey_stone(round(white))
+
+
+@lru_cache(maxsize=32)
+def _any_grey_stone(white: int) -> Appearance:
+    light = _lab_of_table()[..., 0] / white
+    granite = np.clip((light - 0.3) / 0.1, 0, 1) * np.clip((0.78 - light) / 0.1, 0, 1)
+    return Appearance((1 - 2 * granite).astype(np.float32))
+
+
 def learn(sightings: Sequence[Sighting]) -> Appearance | None:
     """Learn the cap colours and the granite of a clip from sightings in many frames.
 

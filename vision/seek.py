@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import Stone
-from vision.appearance import Appearance, any_stone, membership
+from vision.appearance import Appearance, any_grey_stone, any_stone, membership
 from vision.camera import Camera
 from vision.ice_map import IceMap, rectify
 from vision.picture import Picture, colours_at
@@ -29,6 +29,9 @@ Bounds = tuple[float, float, float, float]
 
 MOST_PLACES = 60
 """Places that are given of one picture, the strongest."""
+
+VIVID = 36.0
+"""Distance from grey, L*a*b* units, from which a colour may be that of a cap."""
 
 LEAST_IN_VIEW = 0.4
 """Share of cap or ring of which at least the mean is taken: less in view counts less."""
@@ -73,12 +76,21 @@ def seek(
     if ice is None or not ice.valid.any():
         return none
     if appearance is None and disc.cap_radius > 0:
-        light = cv2.cvtColor(ice.image, cv2.COLOR_BGR2LAB)[..., 0]
-        appearance = any_stone(max(float(np.percentile(light[ice.valid], 75)), 60.0))
+        appearance = _unknown(ice, disc)
     response = _response(ice, appearance, disc)
     # Nearer than stones can be: paint of the cap's colour beside a stone may answer more strongly.
     peaks = _peaks(response, least, 1.1 * radius_px)
     return Candidates(ice.place(peaks[:, 1], peaks[:, 0]), appearance)
+
+
+def _unknown(ice: IceMap, disc: Stone) -> Appearance:
+    """What stones may look like on a piece of ice, before any is known."""
+    lab = cv2.cvtColor(ice.image, cv2.COLOR_BGR2LAB)[ice.valid].astype(np.int32)
+    white = max(float(np.percentile(lab[:, 0], 75)), 60.0)
+    vivid = int((((lab[:, 1:] - 128) ** 2).sum(1) > VIVID**2).sum())
+    if vivid < 0.5 * np.pi * (disc.cap_radius * ice.scale) ** 2:
+        return any_grey_stone(white)  # not one cap of any colour is in view
+    return any_stone(white)
 
 
 def seek_about(

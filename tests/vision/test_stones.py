@@ -118,6 +118,21 @@ def test_people_logos_and_empty_ice_are_no_stones() -> None:
     assert look(scene_of([], people=(person,), graphics=(Graphic(),))) == ()
 
 
+def without_colours(scene: Scene, path: CameraPath = CAMERA) -> NDArray[np.uint8]:
+    grey = cv2.cvtColor(np.asarray(render_still(scene, path), np.uint8), cv2.COLOR_BGR2GRAY)
+    return np.repeat(grey[..., None], 3, axis=2)
+
+
+def test_in_a_picture_without_colours_caps_lighter_or_darker_than_granite_are_found() -> None:
+    scene = scene_of([(0.3, 0.2, RED), (-0.35, 0.3, YELLOW), (1.4, 0.6, RED), (0.1, 2.4, YELLOW)])
+    found = find_stones(without_colours(scene), camera_of(CAMERA, scene))
+    assert len(found) == len(scene.stones)
+    assert misses(found, scene).max() < 0.010
+    person = Person(((0.0, 0.5, 0.2, 1.0),))
+    empty = scene_of([], people=(person,), graphics=(Graphic(),))
+    assert find_stones(without_colours(empty), camera_of(CAMERA, empty)) == ()
+
+
 def test_stones_of_the_neighbouring_sheet_are_left_out() -> None:
     scene = scene_of([(0.0, 1.0, RED), (3.2, 1.0, RED), (-3.0, 0.2, YELLOW)])
     found = look(scene, still_camera(px_per_m=90.0))
