@@ -18,8 +18,8 @@ from data.errors import InputError
 from data.results import Estimate
 from physics.normal_equations import inverse
 from physics.residuals import HUBER, huber_weights, inflation
+from physics.shared_error import shared_error
 from physics.shot_model import Unknown, Watched
-from physics.traces import PLACE_REACH
 from physics.whole_fit import GlobalFit, own_values
 
 Floats = NDArray[np.float64]
@@ -32,9 +32,6 @@ SPIN_STEP = 1e-3
 
 SETTLED = 0.02
 """Change in standard errors below which a fit has come to its end."""
-
-GROUPS = 400
-"""Most groups of neighbouring sightings per axis whose shared error is followed up."""
 
 
 def fit_shots(
@@ -117,10 +114,16 @@ class _Problem:
         slopes = self._slopes(at, residuals)
         normal, _ = self._normal(at, residuals, slopes)
         cov = inverse(normal)
+        shared = [
+            shared_error(
+                shot.traces, np.concatenate(places), by_place, cov, _weights(places) / self.noise
+            )
+            for shot, (places, _), (by_place, _) in zip(self.shots, residuals, slopes, strict=True)
+        ]
         return GlobalFit(
             self.names,
             at,
-            cov + self._shared_error(residuals, slopes, cov),
+            cov + sum(shared),
             self.mean,
             self.sd,
             dict(self.fixed),
@@ -213,37 +216,6 @@ class _Problem:
             normal += by_spin.T @ (turned[:, None] * by_spin)
             right -= by_spin.T @ (turned * spins)
         return normal, right
-
-    def _shared_error(
-        self,
-        residuals: Sequence[tuple[list[Floats], Floats]],
-        slopes: Sequence[tuple[Floats, Floats]],
-        cov: Floats,
-    ) -> Floats:
-        """Covariance of the unknowns that what places share gives them.
-
-        A map of the ice is wrong alike at places near each other: by a field of the size
-        `sd_place` whose correlation falls with the distance d as exp(-d² / 2 L²), L being
-        `PLACE_REACH`. The unknowns follow such an error as they follow the sightings.
-        """
-        out = np.zeros_like(cov)
-        for shot, (places, _), (by_place, _) in zip(self.shots, residuals, slopes, strict=True):
-            sd = np.concatenate([trace.sd for trace in shot.traces.values()])
-            size = np.concatenate([trace.sd_place for trace in shot.traces.values()])
-            if not size.any():
-                continue
-            xy = np.concatenate([trace.xy for trace in shot.traces.values()])
-            weights = _weights(places) / self.noise
-            gain = (-(cov @ by_place.T) * weights).reshape(len(cov), -1, 2) / sd * size[:, None]
-            edges = np.linspace(0, len(xy), min(GROUPS, len(xy)), endpoint=False).astype(int)
-            counts = np.diff(np.append(edges, len(xy)))
-            middle = np.add.reduceat(xy, edges) / counts[:, None]
-            apart = middle[:, None] - middle[None]
-            alike = np.exp(-np.sum(apart**2, axis=2) / (2 * PLACE_REACH**2))
-            for axis in range(2):
-                sums = np.add.reduceat(gain[:, :, axis], edges, axis=1)
-                out += sums @ alike @ sums.T
-        return out
 
 
 def _flat(places: Sequence[Floats]) -> Floats:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from data.results import Estimate, Law
 from physics.global_fit import fit_shots
-from physics.shot_model import V_C, Watched
+from physics.shot_model import V_C, Watched, penner
 from physics.whole_fit import GlobalFit
 
 STRAIGHT = {"slope": 0.0, "v_c": V_C, "turn": 0.0}
@@ -28,7 +28,8 @@ def fit_with_chosen_laws(shot: Watched) -> GlobalFit:
     friction is constant, the paths are straight, the stones stick.
 
     What the other choices of laws would give is in the errors, each by its probability
-    (Buckland et al., 1997, Biometrics 53, 603).
+    (Buckland et al., 1997, Biometrics 53, 603). So is what Penner's law gives where friction
+    falls: the one that is reported follows any ice but not to the last per cent.
     """
     held = dict(STRAIGHT)
     best = fit_shots([shot], fixed=held)
@@ -47,12 +48,17 @@ def fit_with_chosen_laws(shot: Watched) -> GlobalFit:
             best, held, least = more, fewer, criterion
         tried.append(more)
         criteria.append(criterion)
+    if "slope" not in held:
+        even = {"slope": 0.0, "v_c": V_C, **held}
+        rooted = fit_shots([replace(shot, ice=penner)], fixed=even, start=_start(best))
+        if rooted.settled:
+            tried.append(rooted)
+            criteria.append(least + _beside(rooted, best))
     if shot.hits:
         stuck = fit_shots([shot], fixed=held | STICKING, start=_start(best))
         if stuck.settled:
             tried.append(stuck)
-            noise = best.inflation
-            criteria.append(least + _criterion(stuck, noise) - _criterion(best, noise))
+            criteria.append(least + _beside(stuck, best))
             if criteria[-1] < least:
                 best = stuck
     return _with_others(best, tried, np.array(criteria))
@@ -116,6 +122,8 @@ def _told_by(fit: GlobalFit, best: GlobalFit) -> tuple[NDArray[np.float64], NDAr
 def _name(fit: GlobalFit) -> str:
     """Return the laws of a fit in words."""
     ice = "constant" if "slope" in fit.fixed else "fit"
+    if fit.shots[0].ice is penner:
+        ice = "penner"
     curl = "none" if "turn" in fit.fixed else "fcv1"
     hits = "stones stick" if "stone_friction" in fit.fixed else "stones slide"
     return f"ice {ice}, curl {curl}, {hits}"
@@ -128,6 +136,11 @@ def _start(fit: GlobalFit) -> dict[str, float]:
     """
     values = dict(zip(fit.names, fit.values.tolist(), strict=True))
     return {name: value for name, value in values.items() if "stone_friction" not in name}
+
+
+def _beside(fit: GlobalFit, best: GlobalFit) -> float:
+    """Twice the log of how much more probable the best fit makes the sightings than another."""
+    return _criterion(fit, best.inflation) - _criterion(best, best.inflation)
 
 
 def _criterion(fit: GlobalFit, noise: float) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from data.results import Estimate
 from data.sheet import STONE, curling_size
 from physics.curl import Curl, FCV1Curl, NoCurl
-from physics.ice import Fit
+from physics.ice import Fit, IceLaw, Penner
 from physics.impact import Frictional
 from physics.motion import Motion, Path
 from physics.simulate import simulate
@@ -63,6 +63,17 @@ class SpinSeen:
     stderr: float
 
 
+def ice(values: Mapping[str, float]) -> Fit:
+    """Return the ice law μ(v) = a / (v + v_c) + b with the friction at 1 m/s and a as given."""
+    a, v_c = values.get("slope", 0.0), values.get("v_c", V_C)
+    return Fit(a=a, v_c=v_c, b=max(values["friction"] - a / (1 + v_c), 1e-6))
+
+
+def penner(values: Mapping[str, float]) -> Penner:
+    """Return Penner's law of the ice with the friction at 1 m/s as given."""
+    return Penner(max(values["friction"], 1e-6))
+
+
 @dataclass(frozen=True)
 class Watched:
     """What one shot showed, and the unknowns that it depends on.
@@ -85,6 +96,8 @@ class Watched:
         Stone to mass in any unit; equal where absent.
     inertia : float
         k in I = k m R².
+    ice : callable
+        From values of the unknowns to the law of the ice: `ice` or `penner`.
     """
 
     traces: Mapping[str, Trace]
@@ -95,6 +108,7 @@ class Watched:
     radius: float = STONE.radius
     masses: Mapping[str, float] = field(default_factory=dict)
     inertia: float = STONE.inertia
+    ice: Callable[[Mapping[str, float]], IceLaw] = ice
 
     @property
     def end(self) -> float:
@@ -115,7 +129,7 @@ class Watched:
         radius = self.radius * values.get("size", 1.0)
         curling = curling_size(self.radius)
         bend = curl(values) if curling else curl(values, loss=0.0)
-        return Shot(stones, impact, ice(values), bend, radius)
+        return Shot(stones, impact, self.ice(values), bend, radius)
 
     def replay(self, values: Mapping[str, float]) -> Simulation:
         """Simulate the shot up to its last sighting."""
@@ -142,12 +156,6 @@ class Watched:
         """Whether the simulated hits are those that were seen, in their order."""
         found = [tuple(sorted(hit.stones)) for hit in simulation.hits]
         return found == [tuple(pair) for pair in self.hits]
-
-
-def ice(values: Mapping[str, float]) -> Fit:
-    """Return the ice law μ(v) = a / (v + v_c) + b with the friction at 1 m/s and a as given."""
-    a, v_c = values.get("slope", 0.0), values.get("v_c", V_C)
-    return Fit(a=a, v_c=v_c, b=max(values["friction"] - a / (1 + v_c), 1e-6))
 
 
 def curl(values: Mapping[str, float], loss: float = FCV1Curl.loss) -> Curl:

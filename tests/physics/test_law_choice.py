@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 
@@ -74,3 +76,22 @@ def test_the_friction_of_slow_stones_on_falling_ice_is_as_uncertain_as_it_says()
         assert found.law == "fit"
         pulls.append((float(found.value or 0) - ice.friction(1.0)) / float(found.stderr or 0))
     assert max(map(abs, pulls)) < 3
+
+
+@dataclass(frozen=True)
+class Rooted(Ice):
+    """Penner's ice: friction falls with the root of the speed."""
+
+    def friction(self, speed: float) -> float:
+        return self.b * max(speed, 1e-3) ** -0.5
+
+
+def test_ice_of_another_law_is_recognised_and_counts_in_the_errors() -> None:
+    """What a / (v + v_c) + b makes of such ice is off at 1 m/s by more than noise explains."""
+    found = measure(Rooted(b=0.008))
+    assert found.whole is not None
+    assert found.whole.laws[0].name.startswith("ice penner")
+    assert found.whole.laws[0].weight > 0.9
+    assert found.friction.stderr is not None
+    assert abs(float(found.friction.value or 0) - 0.008) < 2.5 * found.friction.stderr
+    assert found.friction.stderr < 0.05 * 0.008
