@@ -19,7 +19,7 @@ from vision.edge_tracker import LONGEST_STRIDE, EdgeTracker
 from vision.house_fit import SHARING, HouseFit
 from vision.joint import Seen
 from vision.landmarks import Keyframe, keyframe, recognise
-from vision.paint import Marks, joined
+from vision.paint import CENTRE_LINE, EIGHT, FOUR, TEE_LINE, TWELVE, Marks, joined
 from vision.picture import Picture
 from vision.pose import View, camera
 from vision.replay import EVERY, Glimpse, glimpse
@@ -149,6 +149,8 @@ class Piece:
         them and the house as well.
         """
         marks = house.evidence.marks
+        # Of a wide line, the other edge may have been found this time.
+        marks = marks.pick(np.isin(marks.line, (TWELVE, EIGHT, FOUR, CENTRE_LINE, TEE_LINE)))
         near = solve_view(marks, house.view, self.rig, self.size, width=1e3, iterations=30)
         found = Seen(house.camera.frame, house.camera.t, near.view, marks, True)
         joint = self._joint([*self._spread(), found])
