@@ -84,7 +84,7 @@ def seek(
 
 
 def _unknown(ice: IceMap, disc: Stone) -> Appearance:
-    """What stones may look like on a piece of ice, before any is known."""
+    """Say what stones may look like on a piece of ice, before any is known."""
     lab = cv2.cvtColor(ice.image, cv2.COLOR_BGR2LAB)[ice.valid].astype(np.int32)
     white = max(float(np.percentile(lab[:, 0], 75)), 60.0)
     vivid = int((((lab[:, 1:] - 128) ** 2).sum(1) > VIVID**2).sum())
