@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -54,9 +55,17 @@ def breaks(t: Floats, xy: Floats, sd: Floats) -> list[float]:
     list of float
         Times between the last sample of one segment and the first of the next, s.
     """
-    n = len(t)
+    # The same paths are asked for again: for hits, for what moves, for the filter.
+    return list(_breaks(np.column_stack([t, xy, sd]).tobytes()))
+
+
+@lru_cache(maxsize=64)
+def _breaks(samples: bytes) -> tuple[float, ...]:
+    """As `breaks`, of rows of time, place and standard deviations."""
+    t, xy, sd = np.split(np.frombuffer(samples).reshape(-1, 5), [1, 3], axis=1)
+    t, n = t[:, 0], len(t)
     if n < 6 or _at_one_place(xy, sd):
-        return []
+        return ()
     variance = _variance(sd)
     best = np.full(n + 1, np.inf)
     best[0] = -BREAK_COST
@@ -92,7 +101,7 @@ def breaks(t: Floats, xy: Floats, sd: Floats) -> list[float]:
     while j > 0:
         found.append(0.5 * float(t[j - 1] + t[j]))
         j = int(origin[j])
-    return found[::-1]
+    return tuple(found[::-1])
 
 
 def _variance(sd: Floats) -> Floats:
