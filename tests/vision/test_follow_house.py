@@ -127,6 +127,17 @@ def test_jumps_of_the_picture_are_followed() -> None:
     assert worst(replace(track, cameras=still), path) < 0.0015
 
 
+def test_after_a_blow_the_same_camera_goes_on() -> None:
+    """Before, it shows half of the house only: its place is hardly known."""
+    before, after = (0.2, 2.6, 115, 0.1), (-0.6, 0.3, 115, -0.03)
+    keys = [Key(t, *k) for t, k in ((0.0, before), (0.59, before), (0.6, after), (1.6, after))]
+    path = CameraPath((1280, 720), (-0.1, 0.1, 8.5), tuple(keys), 0.2)
+    track, frames = follow(path, duration=1.6)
+    assert [c.frame for c in track.cameras] == list(range(frames))
+    assert worst(track, path) < 0.008
+    assert not any("pieces" in w for w in track.warnings)
+
+
 def test_what_is_fixed_to_the_ice_carries_the_camera() -> None:
     keys = (Key(0.0, 0, 1.2, 110), Key(0.6, 0.1, 5.2, 110), Key(3.0, 0, 5.4, 110))
     path = CameraPath((1280, 720), (-0.1, 0.1, 8.5), keys, 0.2)
