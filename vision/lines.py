@@ -30,6 +30,9 @@ FULL_STEP = 400.0
 SURE_STEP = 150.0
 """Step of both sides together that is proof of the direction even if the cross is faint."""
 
+LEAST_BACK = 5.0
+"""Grey levels by which the back line must stand out to tell the end at which it is."""
+
 QUARTER = np.pi / 2
 
 STEP = np.radians(0.25)
@@ -62,7 +65,8 @@ def upright(image: Image, view: View, rig: Array) -> tuple[View, Array]:
 
     Of several crosses that stand out, the sheet's sides tell the true one: they run along it.
     They also tell the centre line from the tee line where the camera stands beside the sheet;
-    y then points to the end of the sheet that is higher in the picture.
+    y then points away from the back line, or where that is not seen to the end of the sheet that
+    is higher in the picture.
     """
     view, rig = y_up(view, rig, (image.shape[1], image.shape[0]))
     score, turn = _cross_score(image, view, rig), STEP * (np.arange(QUARTER_STEPS) - 180)
@@ -86,7 +90,9 @@ def upright(image: Image, view: View, rig: Array) -> tuple[View, Array]:
     level = turned(view, rig, float(turn[best] + STEP * aside))
     sideways = _upwards(image, *turned(*level, QUARTER))
     if _strength(image, *sideways) > _strength(image, *level) + SURE_STEP:
-        return sideways
+        backwards = turned(*sideways, np.pi)
+        clearer = _back_line(image, *backwards) > 2 * _back_line(image, *sideways) + LEAST_BACK
+        return backwards if clearer else sideways
     return level
 
 
@@ -109,6 +115,25 @@ def clearness(image: Image, view: View, rig: Array) -> float:
 def _strength(image: Image, view: View, rig: Array) -> float:
     """Add up the steps at both sides of the sheet, grey levels."""
     return sum(step for _, _, step in _side_steps(image, view, rig))
+
+
+def _back_line(image: Image, view: View, rig: Array) -> float:
+    """Tell how much a line at the back of the house stands out beside the circle, grey levels."""
+    size = (image.shape[1], image.shape[0])
+    aside = np.arange(0.85, SHEET.half_width_min, 0.03)
+    across = np.concatenate([-aside[::-1], aside])
+    beside = np.add.outer((-SHEET.back_line,), (BESIDE[0], *ON, BESIDE[1])).ravel()
+    ice = np.stack(np.broadcast_arrays(across[:, None], beside), axis=-1)
+    place = project(ice.reshape(-1, 2), view.vector, rig, size).reshape(ice.shape)
+    with np.errstate(invalid="ignore"):
+        inside = ((place > 0) & (place < np.array(size) - 1)).all((1, 2))
+    if inside.sum() < LEAST_IN_PART:
+        return 0.0
+    colour = _colours(image, place[inside])
+    line = colour[:, 1:-1].mean(1)
+    one, two = line - colour[:, 0], line - colour[:, -1]
+    least = np.where(one * two > 0, np.minimum(np.abs(one), np.abs(two)), 0.0)
+    return float(np.linalg.norm(np.median(least, axis=0)))
 
 
 def _upwards(image: Image, view: View, rig: Array) -> tuple[View, Array]:

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from tests.synthetic import PAINTS, Scene, render_still, still_camera
+from vision.house import find_house
 from vision.lines import sides, upright
 from vision.pose import View, project, turned
 from vision.rig import OVERHEAD, SIDE_L, SIDE_R, start_rig
@@ -75,3 +76,17 @@ def test_up_is_up_in_the_picture_however_the_circles_were_fitted(turn: float) ->
     bare[:, :215] = bare[:, -215:] = bare[0, SIZE[0] // 3]
     found, _ = upright(bare, *turned(*level(), turn))
     assert abs(found.vector[2]) < np.radians(0.4)
+
+
+@pytest.mark.parametrize("ahead", [-0.9, 0.9])
+def test_from_beside_the_sheet_y_points_away_from_the_back_line(ahead: float) -> None:
+    # Now one end of the sheet is higher in the picture, now the other.
+    path = still_camera(
+        size=SIZE[::-1], position=(5.5, ahead, 5.5), target=(0.0, 0.3), px_per_m=SCALE
+    )
+    lying = render_still(Scene(paint=PAINTS["navy-orange"]), path)
+    found = find_house(np.asarray(np.rot90(lying, -1), np.uint8).copy())
+    assert found is not None
+    across, down = path.at(0.0).project(np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])).T
+    seen = np.stack([SIZE[0] - 1 - down, across], axis=-1)
+    np.testing.assert_allclose(found.camera.ice(seen), [[0.0, 1.0], [1.0, 0.0]], atol=0.02)
