@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from data.sheet import STONE, Stone
 from vision.appearance import Appearance
 from vision.measure import Measures, measure
+from vision.placing import sightings
 from vision.rays import Look
 from vision.seek import seek_about
 from vision.sighting import Sighting
-from vision.stones import FOLLOWING, Search, judge, sightings
+from vision.stones import FOLLOWING, Search, judge
 
 Array = NDArray[np.float64]
 

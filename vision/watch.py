@@ -26,8 +26,9 @@ from vision.clip import Frame
 from vision.follower import PATIENCE, Follower, Patience, View
 from vision.lead import Lead
 from vision.patch import is_plain
+from vision.placing import placed_by
 from vision.sighting import Sighting
-from vision.stones import FOLLOWING, SEARCH, Search, placed_by, search_picture
+from vision.stones import FOLLOWING, SEARCH, Search, search_picture
 
 
 @dataclass(frozen=True)
@@ -43,11 +44,14 @@ class Pace:
         Each how manieth of them is looked at to learn what the stones look like.
     doubt : int
         The same where these show a stone, but none that convinces.
+    lessons : int
+        After so many sightings that taught, none of another colour is learned from.
     """
 
     memory: int = 24
     lesson: int = 8
     doubt: int = 2
+    lessons: int = 200
 
 
 class Watch:
@@ -183,7 +187,7 @@ class Watch:
 
     def _look_for_colours(self, view: View) -> bool:
         """See whether there are stones of a colour that is not known yet, and learn it."""
-        if self.appearance is None:
+        if self.appearance is None or len(self._lessons) >= self._pace.lessons:
             return False
         caps = [cap.mean for cap in self.appearance.caps]
         shown = {

@@ -1,31 +1,95 @@
 from __future__ import annotations
 
+import cv2
 import numpy as np
 import pytest
 
-from vision.appearance import any_stone, colour_differences, membership
+from tests.vision.test_follow import sighting
+from vision.appearance import (
+    UNLIKE,
+    Colour,
+    any_grey_stone,
+    any_stone,
+    colour_difference,
+    colour_differences,
+    learn,
+    membership,
+)
+from vision.sighting import Sighting
 
-RED, YELLOW = (50, 50, 205), (60, 215, 235)
-
-
-def worth(*colours: tuple[int, int, int], white: float = 215.0) -> np.ndarray:
-    return membership(np.array([colours], np.uint8), any_stone(white))[0]
-
-
-def test_worth_of_colours() -> None:
-    caps = worth(RED, YELLOW)
-    assert caps.min() > 0.9
-    assert worth((90, 95, 92)) < -0.9
-    assert abs(worth((215, 220, 215))) < 0.1
-
-
-def test_a_dark_blue_cap_is_one_and_granite_that_red_paint_tinges_is_none() -> None:
-    """Colours of stones in dim halls, where white ice has a lightness of 175."""
-    assert worth((87, 40, 22), (92, 46, 30), (77, 31, 17), white=175).min() > 0.3
-    assert worth((45, 42, 66), (47, 45, 60), white=175).max() < 0.1
+RED, YELLOW, BLUE, GREY = (30, 24, 150), (20, 190, 220), (170, 80, 30), (105, 105, 100)
 
 
-def test_lightness_says_little_of_a_colour() -> None:
-    colour = np.array([[120.0, 150.0, 90.0]])
-    lighter = colour + 40 * np.eye(3)[:2]
-    assert colour_differences(colour, lighter)[0] == pytest.approx([40 * 0.1**0.5, 40])
+def lab(bgr: tuple[int, int, int]) -> np.ndarray:
+    pixel = np.array(bgr, np.uint8).reshape(1, 1, 3)
+    return np.asarray(cv2.cvtColor(pixel, cv2.COLOR_BGR2LAB), float).ravel()
+
+
+def seen(cap: tuple[int, int, int], score: float = 2.0, size: float = 1.0) -> Sighting:
+    rng = np.random.default_rng(int(sum(cap)))
+    return sighting((0.0, 0.0), lab(cap), score)._replace(
+        cap_samples=lab(cap) + rng.normal(0, 2, (60, 3)),
+        granite_samples=lab(GREY) + rng.normal(0, 2, (60, 3)),
+        outline=(size, 0.98),
+    )
+
+
+def worth_of(colours: list[tuple[int, int, int]], look: object) -> list[float]:
+    image = np.array(colours, np.uint8)[None]
+    return membership(image, look)[0].tolist()  # type: ignore[arg-type]
+
+
+def test_caps_of_any_colour_are_worth_something_granite_the_contrary_and_ice_nothing() -> None:
+    *caps, granite, ice, black = worth_of(
+        [RED, YELLOW, BLUE, GREY, (225, 225, 220), (8, 8, 8)], any_stone(215)
+    )
+    assert min(caps) > 0.9
+    assert granite < -0.9
+    assert abs(ice) < 0.05 and abs(black) < 0.05
+
+
+def test_without_colours_caps_are_what_is_darker_or_lighter_than_granite() -> None:
+    dark, light, granite = worth_of([(35,) * 3, (200,) * 3, (110,) * 3], any_grey_stone(215))
+    assert dark > 0.9 and light > 0.9
+    assert granite < -0.9
+
+
+def test_what_is_learned_tells_the_clip_s_caps_from_other_colours() -> None:
+    look = learn([seen(RED)] * 9 + [seen(YELLOW)] * 6)
+    assert look is not None and len(look.caps) == 2
+    red, yellow, blue, granite = worth_of([RED, YELLOW, BLUE, GREY], look)
+    assert red > 0.9 and yellow > 0.9
+    assert granite < -0.9
+    assert abs(blue) < 0.05
+
+
+def test_of_more_than_two_colours_the_rarest_is_left_out_and_so_is_one_seen_by_chance() -> None:
+    look = learn([seen(RED)] * 40 + [seen(YELLOW)] * 30 + [seen(BLUE, 3.0)] * 20)
+    assert look is not None
+    assert worth_of([BLUE], look)[0] < 0.05
+    chance = learn([seen(RED)] * 40 + [seen(BLUE, 3.0)] * 2)
+    assert chance is not None and len(chance.caps) == 1
+    assert learn([]) is None
+
+
+def test_the_size_of_caps_is_learned_from_three_sightings_on() -> None:
+    few, many = learn([seen(RED, size=1.04)] * 2), learn([seen(RED, size=1.04)] * 5)
+    assert few is not None and many is not None
+    assert few.outline[0] == 1.0
+    assert many.outline == pytest.approx((1.04, 0.98))
+    assert many.slack < few.slack
+
+
+def test_colours_differ_by_hue_more_than_by_light() -> None:
+    bright, dim = np.array([140.0, 190.0, 160.0]), np.array([90.0, 190.0, 160.0])
+    other = np.array([140.0, 150.0, 190.0])
+    assert colour_difference(bright, dim) < UNLIKE < colour_difference(bright, other)
+    table = colour_differences(np.array([bright, other]), np.array([dim]))
+    assert table.shape == (2, 1)
+    assert table[0, 0] == pytest.approx(colour_difference(bright, dim))
+
+
+def test_distances_of_colours_are_in_standard_deviations() -> None:
+    colour = Colour(np.array([100.0, 150.0, 140.0]), np.diag([400.0, 25.0, 25.0]))
+    away = colour.distance2(colour.mean + np.array([[20.0, 0, 0], [0, 10.0, 0]]))
+    np.testing.assert_allclose(away, [1, 4])

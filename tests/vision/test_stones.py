@@ -17,8 +17,6 @@ from tests.synthetic.scenes import PAINTS
 from vision.appearance import CONVINCING, colour_difference, learn
 from vision.camera import Camera, CameraError
 from vision.clip import open_clip
-from vision.expected import look_beside, look_on_course
-from vision.rays import Look
 from vision.sighting import Sighting
 from vision.stick import stick_camera
 from vision.stones import FOLLOWING, SEARCH, Search, find_stones, plain_disc
@@ -206,31 +204,3 @@ def test_real_stills(shared: Path) -> None:
     assert np.median(errors) < 0.006
     assert np.percentile(errors, 95) < 0.025
     assert false <= 4  # some stones are not in the list of those measured
-
-
-@pytest.mark.parametrize("aside", [0.01, 0.03, 0.045])
-def test_where_a_stone_is_expected_has_no_say_in_where_it_is(aside: float) -> None:
-    scene = scene_of([(0.2, 0.9, RED), (-0.4, 0.2, YELLOW), (1.0, 1.6, RED)])
-    image, camera = np.asarray(render_still(scene, CAMERA), np.uint8), camera_of(CAMERA, scene)
-    learned = learn(find_stones(image, camera))
-    true = np.array([(stone.start.x, stone.start.y) for stone in scene.stones])
-    found = {}
-    for turn in range(4):
-        way = aside * np.array([np.cos(np.pi * turn / 2), np.sin(np.pi * turn / 2)])
-        look = Look(image, camera, true + way)
-        seen = look_beside(look, learned) if aside > 0.02 else look_on_course([look], learned)
-        assert all(sighting is not None for sighting in seen)
-        found[turn] = np.array([(s.x, s.y) for s in seen if s is not None])
-    places = np.array(list(found.values()))
-    assert np.abs(places - places.mean(0)).max() < 0.002
-    assert np.abs(places - true).max() < 0.008
-
-
-def test_a_stone_seen_a_moment_ago_needs_less_evidence() -> None:
-    scene = scene_of([(0.2, 0.9, RED), (-0.4, 0.2, YELLOW)])
-    image, camera = np.asarray(render_still(scene, CAMERA), np.uint8), camera_of(CAMERA, scene)
-    known = find_stones(image, camera)
-    strict = Search(least_evidence=1 + max(stone.score for stone in known))
-    assert find_stones(image, camera, search=strict) == ()
-    looks = [Look(image, camera, np.array([(stone.x, stone.y) for stone in known]))]
-    assert None not in look_on_course(looks, learn(known), search=strict)

@@ -1,0 +1,79 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from data.sheet import STONE
+from tests.synthetic.clip import render_still
+from tests.vision.test_stones import CAMERA, RED, YELLOW, camera_of, scene_of
+from vision.appearance import learn
+from vision.clip import Frame
+from vision.follower import PATIENCE, Follower, View
+from vision.lead import Lead
+from vision.stones import FOLLOWING, find_stones
+
+Places = list[tuple[float, float]]
+CAPS = (RED, YELLOW, RED)
+START: Places = [(0.3, 0.2), (-0.8, 1.0), (0.9, -0.6)]
+
+
+def view(places: Places, index: int) -> View:
+    scene = scene_of([(x, y, cap) for (x, y), cap in zip(places, CAPS, strict=False)])
+    image = np.asarray(render_still(scene, CAMERA), np.uint8)
+    return View(Frame(index, index / 10, image), camera_of(CAMERA, scene))
+
+
+@pytest.fixture(scope="module")
+def first() -> View:
+    return view(START, 0)
+
+
+@pytest.fixture(scope="module")
+def follower(first: View) -> Follower:
+    found = find_stones(first.frame.picture, first.camera)
+    return Follower(learn(found), STONE, FOLLOWING, PATIENCE)
+
+
+def seen(views: list[View], true: list[Places]) -> np.ndarray:
+    """Distance of the nearest sighting to each true place, m, shape (views, stones)."""
+    return np.array(
+        [
+            [np.hypot(*(shown.places - place).T).min() for place in places]
+            for shown, places in zip(views, true, strict=True)
+        ]
+    )
+
+
+def test_stones_are_sought_where_none_was_seen_yet(follower: Follower) -> None:
+    shown = view(START, 0)
+    found = follower.sought(shown)
+    assert len(found) == 3
+    shown.sightings.extend(found[:2])
+    again = follower.sought(shown)
+    assert [round(s.x, 2) for s in again] == [round(found[2].x, 2)]
+
+
+@pytest.mark.parametrize("step", [1, -1])
+def test_a_stone_on_its_course_and_those_at_rest_are_seen_all_the_way(
+    follower: Follower, step: int
+) -> None:
+    true = [[(0.3, 0.2 - 0.03 * k), *START[1:]] for k in range(6)][::step]
+    views = [view(places, k) for k, places in enumerate(true)]
+    leads = [Lead.to(s, views[0].frame.t) for s in follower.sought(views[0])]
+    views[0].sightings.extend(follower.sought(views[0]))
+    left = follower.follow(views[1:], leads)
+    assert len(left) == 3
+    assert all(len(shown.sightings) == 3 for shown in views)
+    assert seen(views, true).max() < 0.006
+
+
+def test_a_stone_that_is_gone_is_waited_for_and_then_given_up(follower: Follower) -> None:
+    start = view(START, 0)
+    leads = [Lead.to(s, 0.0) for s in follower.sought(start)]
+    bare = view(START[:2], 1)
+    views = [View(Frame(k, k / 10, bare.frame.picture), bare.camera) for k in (1, 2, 3, 4, 5)]
+    waiting = follower.follow(views[:2], leads)
+    assert sum(lead.missed for lead in waiting) == 1
+    left = follower.follow(views[2:], waiting)
+    assert len(left) == 2 and not any(lead.missed for lead in left)
+    assert all(len(shown.sightings) == 2 for shown in views)

@@ -1,0 +1,59 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from data.sheet import STONE
+from tests.synthetic.clip import render_still
+from tests.vision.test_stones import CAMERA, RED, YELLOW, camera_of, scene_of
+from vision.appearance import any_stone
+from vision.measure import Measures, measure
+from vision.rays import Look
+from vision.stones import plain_disc
+
+PLACES = np.array([[0.3, 1.9], [-0.45, 0.3], [0.95, 0.1]])
+SCENE = scene_of([(x, y, cap) for (x, y), cap in zip(PLACES, (RED, YELLOW, RED), strict=True)])
+
+
+PICTURE = np.asarray(render_still(SCENE, CAMERA), np.uint8)
+VIEW = camera_of(CAMERA, SCENE)
+
+
+def measured(places: np.ndarray, picture: np.ndarray = PICTURE) -> Measures:
+    return measure([Look(picture, VIEW, places)], any_stone(), STONE)
+
+
+@pytest.mark.parametrize("aside", [0.0, 0.02])
+def test_centres_lie_where_the_stones_are_whatever_place_was_looked_at(aside: float) -> None:
+    seen = measured(PLACES + np.array([aside, 0.5 * aside]))
+    assert seen.ok.all()
+    assert np.hypot(*(seen.centre - PLACES).T).max() < 0.005
+    np.testing.assert_allclose(seen.shift, 1.118 * aside, atol=0.005)
+    assert (seen.visible > 0.7).all() and (seen.uncovered > 0.8).all()
+    np.testing.assert_allclose(seen.outline, 1, atol=0.05)
+    assert np.abs(seen.bends).max() < 0.003
+
+
+def test_a_stone_gives_evidence_and_bare_ice_or_paint_do_not() -> None:
+    places = np.array([*PLACES, [0.8, 2.3], [-1.5, 0.2]])
+    seen = measured(places)
+    assert seen.evidence[:3].min() > 1.4
+    assert not (seen.ok[3:] & (seen.evidence[3:] > 0.7)).any()
+
+
+def test_of_a_stone_half_covered_half_is_seen_and_its_place_is_known_less_well() -> None:
+    x, y = VIEW.project(PLACES[1:2], STONE.cap_height)[0].astype(int)
+    covered = PICTURE.copy()
+    covered[y - 40 : y + 40, x : x + 40] = (60, 90, 60)
+    whole, half = measured(PLACES), measured(PLACES, covered)
+    assert 0.2 < half.visible[1] < whole.visible[1] - 0.2
+    assert half.uncovered[1] < 0.75
+    assert half.sd[1].max() > 1.3 * whole.sd[1].max()
+    np.testing.assert_allclose(half.sd[0], whole.sd[0])
+
+
+def test_of_a_plain_disc_the_rim_tells() -> None:
+    seen = measure([Look(PICTURE, VIEW, PLACES[:1])], None, plain_disc(STONE.radius))
+    assert seen.ok[0]
+    assert seen.evidence[0] > 0.5
+    assert seen.outline.shape == (1, 1)

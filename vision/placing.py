@@ -1,0 +1,84 @@
+"""From measures to sightings: where a camera places them, and what errors they share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import nan
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.sheet import Stone
+from vision.camera import Camera
+from vision.handle import cap_spectrum
+from vision.measure import Measures
+from vision.patch import handle_radii, slants
+from vision.rays import Look
+from vision.sighting import Sighting
+
+Array = NDArray[np.float64]
+
+UNCOVERED = 0.75
+"""Share of a cap that must be seen for its angle to be measured."""
+
+ASLANT = 0.020
+"""Standard error of how high the rim of a cap is seen, as a share of its height: a wall or a
+rounded rim is seen on the near side only."""
+
+
+def sightings(
+    seen: Measures, looks: Sequence[Look], chosen: NDArray[np.intp], disc: Stone
+) -> list[Sighting]:
+    """Give sightings of places that were measured; what they share is not told yet.
+
+    Parameters
+    ----------
+    seen : Measures
+    looks : sequence of Look
+        What was measured, in the same order.
+    chosen : ndarray of int
+        Which of the places, ascending.
+    disc : Stone
+        Size of the discs.
+    """
+    ends = np.cumsum([0, *(len(look.places) for look in looks)])
+    parts = zip(looks, np.split(chosen, np.searchsorted(chosen, ends[1:-1])), strict=True)
+    pixels = [look.camera.project(seen.centre[i], disc.cap_height) for look, i in parts if len(i)]
+    spectra = cap_spectrum(seen.handle[chosen], handle_radii(disc))
+    columns = (
+        seen.centre[chosen], seen.sd[chosen], seen.visible[chosen], seen.evidence[chosen],
+        seen.outline[chosen], seen.bends[chosen], np.concatenate([np.empty((0, 2)), *pixels]),
+        seen.uncovered[chosen] >= UNCOVERED,
+    )  # fmt: skip
+    rows = zip(seen.colour[chosen], spectra, *(column.tolist() for column in columns), strict=True)
+    return [
+        Sighting(
+            x, y, sd_x, sd_y, nan, colour, visible, score, tuple(outline), tuple(bends), (u, v),
+            spectrum.copy() if told else None,
+        )
+        for colour, spectrum, (x, y), (sd_x, sd_y), visible, score, outline, bends, (u, v), told
+        in rows
+    ]  # fmt: skip
+
+
+def placed_by(camera: Camera, seen: Sequence[Sighting], disc: Stone) -> list[Sighting]:
+    """Give sightings the places that a camera of their picture gives them, with what they share."""
+    if not seen:
+        return []
+    places = camera.ice(np.array([sighting.pixel for sighting in seen]), disc.cap_height)
+    scale, tilt = camera.scale_at(places), np.hypot(*slants(camera, places).T)
+    shared = _shared_errors(camera, places, disc, scale, tilt)
+    return [
+        sighting._replace(x=x, y=y, sd_place=sd)
+        for sighting, (x, y), sd in zip(seen, places.tolist(), shared.tolist(), strict=True)
+    ]
+
+
+def _shared_errors(camera: Camera, places: Array, disc: Stone, scale: Array, tilt: Array) -> Array:
+    """Give the standard errors that no filter averages out, m: by camera and height of the cap."""
+    rms = camera.rms_px if np.isfinite(camera.rms_px) else 0.3
+    aslant = ASLANT * disc.cap_height * tilt
+    squares = (0.35 * rms / scale) ** 2 + aslant**2
+    if camera.error is None:
+        return np.asarray(np.sqrt(squares))
+    return np.asarray(np.sqrt(squares + camera.place_sd(places, disc.cap_height) ** 2))
