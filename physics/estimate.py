@@ -18,7 +18,7 @@ from data.sheet import STONE
 from physics.by_stone import results_by_stone
 from physics.contacts import Contact
 from physics.finite_differences import by_finite_differences
-from physics.law_choice import fit_with_chosen_laws
+from physics.followed import fit_followed, followed
 from physics.local import Local, estimate_locally
 from physics.shot_model import ice
 from physics.watched import loose_priors, watch
@@ -26,6 +26,9 @@ from physics.whole_fit import GlobalFit
 
 POOR_FIT = 30.0
 """Mean square of residuals against errors from which a simulated shot is not the one seen."""
+
+BLUNT = 2.0
+"""Times its error beside the hits from which a restitution of the whole shot says nothing new."""
 
 LAWS = ("restitution", "friction", "stone_friction")
 """Unknowns of a shot that are not of one stone alone."""
@@ -116,9 +119,9 @@ def estimate(
     """
     local = estimate_locally(sightings, contacts, radius=radius, masses=masses, inertia=inertia)
     restitution, friction = local.restitution, local.friction
-    fitted, doubt = _whole(local, radius, masses or {}, inertia)
+    fitted, doubt, end = _whole(local, radius, masses or {}, inertia)
     whole = fitted if doubt is None else None
-    warnings = list(local.warnings) if doubt is None else [*local.warnings, doubt]
+    warnings = [*local.warnings, *(text for text in (doubt or end,) if text is not None)]
     if whole is not None and restitution.value is not None and whole.told("restitution"):
         restitution = whole["restitution"]
     if whole is not None and friction.value is not None and whole.told("friction"):
@@ -186,32 +189,41 @@ def _friction(whole: GlobalFit) -> Friction:
 
 def _whole(
     local: Local, radius: float, masses: Mapping[str, float], inertia: float
-) -> tuple[GlobalFit | None, str | None]:
-    """Fit the whole shot through the simulator, and say why what it gives is not to be used."""
+) -> tuple[GlobalFit | None, str | None, str | None]:
+    """Fit the whole shot through the simulator.
+
+    Say, second, why what it gives is not to be used, or else, third, how far it goes.
+    """
     if local.fit is None:
-        return None, None
+        return None, None, None
     watched = watch(
         local.known, local.fit, radius,
         priors=loose_priors(radius), masses=masses, inertia=inertia,
     )  # fmt: skip
     if watched is None or not watched.hits:
-        return None, None
+        return None, None, None
     try:
-        fit = fit_with_chosen_laws(watched)
+        fit, end = fit_followed(watched)
     except InputError as error:
-        return None, f"whole shot: cannot be simulated ({error}); values beside the hits used"
-    if not fit.settled or not fit.hits_as_seen:
-        return fit, "whole shot: the simulator does not follow it; values beside the hits used"
+        return None, f"whole shot: cannot be simulated ({error}); values beside the hits used", None
+    doubt = _doubt(fit, local.restitution)
+    return fit, doubt, None if end is None else f"whole shot: the simulator follows it {end}"
+
+
+def _doubt(fit: GlobalFit, local: Estimate) -> str | None:
+    """Say why what a fit of the whole shot gives is not to be used, None where it is."""
+    if not followed(fit):
+        return "whole shot: the simulator does not follow it; values beside the hits used"
     if fit.misfit > POOR_FIT:
-        return fit, (
+        return (
             "whole shot: the simulated paths differ from the tracks by more than their errors"
             f" (variance × {fit.misfit:.0f}); values beside the hits used"
         )
-    return fit, _disagreement(local.restitution, fit["restitution"])
+    return _disagreement(local, fit["restitution"])
 
 
 def _disagreement(local: Estimate, whole: Estimate) -> str | None:
-    """Say so where two estimates of the restitution differ by more than they may.
+    """Say so where the second estimate of the restitution is blunt, or differs by more than it may.
 
     The second uses all that the first does, and more: with errors that are anew in each frame
     the variance of their difference would be the difference of their variances (Hausman, 1978,
@@ -220,6 +232,11 @@ def _disagreement(local: Estimate, whole: Estimate) -> str | None:
     """
     if local.value is None or local.stderr is None or whole.value is None or whole.stderr is None:
         return None
+    if whole.stderr > BLUNT * local.stderr:
+        return (
+            f"whole shot: tells the restitution to ± {whole.stderr:.2g} only;"
+            f" values beside the hits used (± {local.stderr:.2g})"
+        )
     if abs(whole.value - local.value) <= 3 * max(local.stderr, whole.stderr):
         return None
     return (

@@ -40,7 +40,7 @@ def fit_shots(
     fixed: Mapping[str, float] | None = None,
     shared: Sequence[str] = (),
     start: Mapping[str, float] | None = None,
-    iterations: int = 40,
+    iterations: int = 80,
 ) -> GlobalFit:
     """Fit all unknowns of one or several shots to all their sightings at once.
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from itertools import zip_longest
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,6 +53,12 @@ class Unknown:
     high: float = np.inf
     prior: Estimate | None = None
 
+    @property
+    def stone(self) -> str | None:
+        """Name of the stone whose state it is of; None for a law."""
+        stone, dot, _ = self.name.rpartition(".")
+        return stone if dot else None
+
 
 @dataclass(frozen=True)
 class SpinSeen:
@@ -90,6 +97,8 @@ class Watched:
         Spins that were seen.
     hits : tuple of (str, str)
         Pairs in the order in which they hit each other, names of a pair sorted.
+    times : tuple of float
+        When they did, s.
     radius : float
         Of the discs, m.
     masses : mapping
@@ -105,6 +114,7 @@ class Watched:
     unknowns: tuple[Unknown, ...]
     spins: tuple[SpinSeen, ...] = ()
     hits: tuple[tuple[str, str], ...] = ()
+    times: tuple[float, ...] = ()
     radius: float = STONE.radius
     masses: Mapping[str, float] = field(default_factory=dict)
     inertia: float = STONE.inertia
@@ -152,10 +162,30 @@ class Watched:
             ]
         )
 
-    def hits_as_seen(self, simulation: Simulation) -> bool:
-        """Whether the simulated hits are those that were seen, in their order."""
-        found = [tuple(sorted(hit.stones)) for hit in simulation.hits]
-        return found == [tuple(pair) for pair in self.hits]
+    def first_other_hit(self, simulation: Simulation) -> tuple[float, str] | None:
+        """Time, s, and name of the first hit that was not seen as simulated; None without."""
+        simulated = [
+            (hit.t + self.start, " and ".join(sorted(hit.stones))) for hit in simulation.hits
+        ]
+        seen = [(t, " and ".join(pair)) for t, pair in zip(self.times, self.hits, strict=True)]
+        for one, other in zip_longest(simulated, seen):
+            if one is None or other is None or one[1] != other[1]:
+                return min(hit for hit in (one, other) if hit is not None)
+        return None
+
+    def until(self, end: float) -> Watched:
+        """Return what was seen before a time, s."""
+        traces = {name: trace.until(end) for name, trace in self.traces.items()}
+        traces = {name: trace for name, trace in traces.items() if len(trace.t)}
+        count = sum(t < end for t in self.times)
+        return replace(
+            self,
+            traces=traces,
+            unknowns=tuple(u for u in self.unknowns if u.stone is None or u.stone in traces),
+            spins=tuple(spin for spin in self.spins if spin.t < end and spin.stone in traces),
+            hits=self.hits[:count],
+            times=self.times[:count],
+        )
 
 
 def curl(values: Mapping[str, float], loss: float = FCV1Curl.loss) -> Curl:

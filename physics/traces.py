@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,6 +57,12 @@ class Trace:
         had moved faster or slower.
         """
         return self.sd_place / PLACE_REACH
+
+    def until(self, end: float) -> Trace:
+        """Return what was sighted before a time, s."""
+        keep = self.t < end
+        names = ("t", "xy", "sd", "theta", "sd_theta", "sd_place")
+        return replace(self, **{name: getattr(self, name)[keep] for name in names})
 
     def between(self, start: float, end: float) -> NDArray[np.bool_]:
         """Which sightings lie in [start, end)."""

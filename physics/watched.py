@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -20,6 +20,9 @@ Floats = NDArray[np.float64]
 
 SUDDEN = 0.1
 """Change of velocity (m/s) beyond its error that neither ice nor air can give a stone."""
+
+STOPPING = 1.0
+"""Deceleration that no ice gives a stone, m/s²."""
 
 SPIN_DRIFT = 0.03
 """How much a spin may change by itself from where it is seen to a hit, rad/s."""
@@ -123,7 +126,8 @@ def watch(
     Watched or None
         None where no stone moves.
     """
-    runs = _runs(fit)
+    runs = {name: _without_slip(fit, run, known[name]) for name, run in _runs(fit).items()}
+    runs = {name: run for name, run in runs.items() if run}
     ends = _ends(fit, runs)
     times = [fit.time(k) for k in range(len(fit.meetings))]
     order = sorted(
@@ -138,7 +142,7 @@ def watch(
     traces = {}
     for name, run in runs.items():
         if name in hit or not fit.pieces[run[0]].rest:
-            shown = _until(known[name], ends[name])
+            shown = known[name].until(ends[name])
             if len(shown.t):
                 traces[name] = shown
     if not traces:
@@ -166,7 +170,15 @@ def watch(
             states.append(Unknown(f"{name}.omega", first, prior=Estimate(0.0, 3.0)))
     pairs = tuple(_pair(fit.meetings[k].stones) for k in order)
     return Watched(
-        traces, start, (*laws, *states), tuple(spins), pairs, radius, masses or {}, inertia
+        traces,
+        start,
+        (*laws, *states),
+        tuple(spins),
+        pairs,
+        tuple(times[k] for k in order),
+        radius,
+        masses or {},
+        inertia,
     )
 
 
@@ -185,6 +197,22 @@ def _runs(fit: ShotFit) -> dict[str, list[int]]:
     for rank, piece in enumerate(fit.pieces):
         out.setdefault(piece.stone, []).append(rank)
     return {name: sorted(run, key=lambda r: fit.pieces[r].start) for name, run in out.items()}
+
+
+def _without_slip(fit: ShotFit, run: list[int], trace: Trace) -> list[int]:
+    """Leave out a first piece after which a stone rests sooner than ice can stop it.
+
+    Its places went astray there, as in the blend of two views.
+    """
+    first = fit.pieces[run[0]]
+    moves_on = any(
+        fit.pieces[rank].start <= first.end and not fit.pieces[rank].rest for rank in run[1:]
+    )
+    if first.rest or first.closes is not None or not np.isfinite(first.end) or moves_on:
+        return run
+    start = float(trace.t[first.samples[0]]) if len(first.samples) else first.start
+    _, speed = fit.motion(run[0], start)
+    return run[1:] if float(np.hypot(*speed)) > STOPPING * (first.end - start) else run
 
 
 def _ends(fit: ShotFit, runs: Mapping[str, Sequence[int]]) -> dict[str, float]:
@@ -222,12 +250,6 @@ def _jumps(fit: ShotFit, one: int, two: int) -> bool:
             variance += float(row @ fit.cov[at, at] @ row)
     change = float(np.hypot(*(speeds[1] - speeds[0])))
     return bool(change > SUDDEN + 4 * np.sqrt(variance))
-
-
-def _until(trace: Trace, end: float) -> Trace:
-    keep = trace.t < end
-    names = ("t", "xy", "sd", "theta", "sd_theta", "sd_place")
-    return replace(trace, **{name: getattr(trace, name)[keep] for name in names})
 
 
 def _state(

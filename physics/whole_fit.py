@@ -99,7 +99,10 @@ class GlobalFit:
     @property
     def hits_as_seen(self) -> bool:
         """Whether the stones hit each other in the fitted shots as they did."""
-        return all(shot.hits_as_seen(self.simulation(rank)) for rank, shot in enumerate(self.shots))
+        return all(
+            shot.first_other_hit(self.simulation(rank)) is None
+            for rank, shot in enumerate(self.shots)
+        )
 
     @property
     def misfit(self) -> float:

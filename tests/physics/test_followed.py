@@ -1,0 +1,69 @@
+"""Shots of which the tracks or the simulator have a hit that the other has not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+
+from physics.contacts import find_contacts
+from physics.estimate import Estimates, estimate
+from tests.physics.watch import RADIUS, hit_motion, watch
+from tests.synthetic.physics import Start
+
+
+def seen_with_late_touch() -> pd.DataFrame:
+    """A hits B at 1 s; 2.5 s later A hits C too."""
+    motion = hit_motion(1.8, 0.2, before=1.0, after=3.0, others=[Start(2.1, 1.995)])
+    assert [sorted((hit.first, hit.second)) for hit in motion.hits] == [[0, 1], [0, 2]]
+    return watch(motion, np.random.default_rng(3), sd=0.003)
+
+
+def measure(seen: pd.DataFrame, without: int = 0) -> Estimates:
+    contacts = find_contacts(seen, RADIUS)
+    return estimate(seen, contacts[: len(contacts) - without], radius=RADIUS)
+
+
+def near(found: Estimates) -> bool:
+    e = found.restitution
+    assert e.value is not None
+    assert e.stderr is not None
+    return abs(e.value - 0.83) < 3 * e.stderr
+
+
+def test_a_shot_is_followed_up_to_a_hit_that_was_not_seen() -> None:
+    seen = seen_with_late_touch()
+    every, fewer = measure(seen), measure(seen, without=1)
+    assert every.whole is not None
+    assert not [text for text in every.warnings if "follows" in text]
+    assert fewer.whole is not None
+    (text,) = [text for text in fewer.warnings if "follows" in text]
+    assert "the hit of A and C is not as simulated" in text
+    end = max(float(trace.t[-1]) for trace in fewer.whole.shots[0].traces.values())
+    assert end < every.collisions[-1].t
+    assert near(every)
+    assert near(fewer)
+    # Sharper than the paths beside the hit, all the same.
+    assert (fewer.restitution.stderr or 1) < (fewer.local.restitution.stderr or 0)
+
+
+def test_a_first_hit_that_is_not_as_simulated_leaves_the_values_beside_it() -> None:
+    seen = seen_with_late_touch()
+    contacts = find_contacts(seen, RADIUS)
+    # C is said to be hit by B, which never comes near it.
+    wrong = [replace(contacts[0], stones=("B", "C")), *contacts[1:]]
+    found = estimate(seen, wrong, radius=RADIUS)
+    assert found.whole is None
+    assert any("does not follow" in text or "differ" in text for text in found.warnings)
+
+
+def test_places_that_slip_as_a_stone_comes_into_view_do_not_set_it_in_motion() -> None:
+    """In the blend of two views a stone at rest seems to move, faster than ice lets it stop."""
+    seen = watch(hit_motion(1.5, 0.1), np.random.default_rng(4), sd=0.001)
+    early = (seen["stone"] == "B") & (seen["t"] < 0.15)
+    seen.loc[early, "x"] -= 0.25 * (0.15 - seen.loc[early, "t"])
+    found = measure(seen)
+    assert found.whole is not None
+    assert "B.vx" not in found.whole.names
+    assert near(found)
