@@ -48,6 +48,13 @@ def test_caps_of_any_colour_are_worth_something_granite_the_contrary_and_ice_not
     assert abs(ice) < 0.05 and abs(black) < 0.05
 
 
+def test_a_dark_blue_cap_is_one_and_granite_that_red_paint_tinges_is_none() -> None:
+    """Colours of stones in dim halls, where white ice has a lightness of 175."""
+    dim = any_stone(175)
+    assert min(worth_of([(87, 40, 22), (92, 46, 30), (77, 31, 17)], dim)) > 0.3
+    assert max(worth_of([(45, 42, 66), (47, 45, 60)], dim)) < 0.1
+
+
 def test_without_colours_caps_are_what_is_darker_or_lighter_than_granite() -> None:
     dark, light, granite = worth_of([(35,) * 3, (200,) * 3, (110,) * 3], any_grey_stone(215))
     assert dark > 0.9 and light > 0.9

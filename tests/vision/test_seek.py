@@ -1,46 +1,61 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
+import cv2
 import numpy as np
 import pytest
 
-from data.sheet import STONE
-from tests.synthetic.clip import render_still
-from tests.vision.test_stones import CAMERA, RED, YELLOW, camera_of, scene_of
-from vision.appearance import any_stone
+from data.sheet import STONE, Stone
+from vision.camera import Camera
 from vision.seek import seek, seek_about
-from vision.stones import plain_disc
 
-PLACES = np.array([[0.3, 1.9], [-0.45, 0.3], [1.25, 0.1]])
-SCENE = scene_of([(x, y, cap) for (x, y), cap in zip(PLACES, (RED, YELLOW, RED), strict=True)])
-PICTURE = np.asarray(render_still(SCENE, CAMERA), np.uint8)
-VIEW = camera_of(CAMERA, SCENE)
-ALL = (-2.0, 2.0, -1.5, 3.0)
-
-
-@pytest.mark.parametrize("radius_px", [6.5, 11.6])
-def test_the_strongest_places_are_those_of_stones(radius_px: float) -> None:
-    found = seek(PICTURE, VIEW, None, STONE, ALL, radius_px=radius_px, least=0.45)
-    assert found.appearance is not None
-    apart = np.hypot(*(found.places[:3, None] - PLACES).transpose(2, 0, 1))
-    assert apart.min(0).max() < 0.3 * STONE.radius
-    far = np.hypot(*(found.places[:, None] - found.places).transpose(2, 0, 1))
-    assert (far + 9 * np.eye(len(far))).min() > STONE.radius
+SIZE = (640, 480)
+SCALE = 110.0
+BOUNDS = (-2.2, 2.2, -1.8, 1.8)
+PLACES = np.array([(-1.2, 0.7), (0.3, -0.9), (1.1, 0.6), (1.1, 0.3)])
+PUCK = replace(STONE, cap_radius=0.0, cap_height=0.0)
+ABOVE = Camera(
+    0, 0.0,
+    np.array([[SCALE, 0, (SIZE[0] - 1) / 2], [0, -SCALE, (SIZE[1] - 1) / 2], [0, 0, 1.0]]), SIZE,
+)  # fmt: skip
 
 
-def test_no_place_is_given_where_the_ice_is_not_in_the_picture() -> None:
-    found = seek(PICTURE, VIEW, None, STONE, (40, 42, 0, 2), radius_px=8.0, least=0.4)
+def picture(disc: Stone, places: np.ndarray = PLACES) -> np.ndarray:
+    """Discs seen from straight above, drawn four times as large and shrunk."""
+    image = np.full((4 * SIZE[1], 4 * SIZE[0], 3), (235, 232, 228), np.uint8)
+    for place in places:
+        x, y = np.round(4 * (ABOVE.project(place) + 0.5)).astype(int).tolist()
+        cv2.circle(image, (x, y), round(4 * SCALE * disc.radius), (112, 120, 122), -1)
+        cv2.circle(image, (x, y), round(4 * SCALE * disc.cap_radius), (40, 26, 178), -1)
+    return np.asarray(cv2.resize(image, SIZE, interpolation=cv2.INTER_AREA), np.uint8)
+
+
+def nearest(found: np.ndarray) -> np.ndarray:
+    return np.asarray(np.hypot(*(PLACES[:, None] - found).transpose(2, 0, 1)).min(1))
+
+
+@pytest.mark.parametrize(("disc", "least"), [(STONE, 0.8), (PUCK, 0.6)])
+def test_every_disc_is_among_the_strongest(disc: Stone, least: float) -> None:
+    found = seek(picture(disc), ABOVE, None, disc, BOUNDS, radius_px=10.0, least=least)
+    assert nearest(found.places[: len(PLACES)]).max() < 0.02
+    assert (found.appearance is None) == (disc is PUCK)
+
+
+def test_bare_ice_holds_none() -> None:
+    bare = picture(STONE, PLACES[:0])
+    assert len(seek(bare, ABOVE, None, STONE, BOUNDS, radius_px=10.0, least=0.8).places) == 0
+
+
+def test_outside_the_picture_is_none() -> None:
+    far = (30.0, 31.0, 30.0, 31.0)
+    found = seek(picture(STONE), ABOVE, None, STONE, far, radius_px=10.0, least=0.8)
     assert found.places.shape == (0, 2)
 
 
-@pytest.mark.parametrize("away", [(0.03, 0.0), (-0.02, 0.04), (0.0, -0.045)])
-def test_a_stone_is_found_near_where_it_is_expected(away: tuple[float, float]) -> None:
-    about = seek_about(
-        PICTURE, VIEW, PLACES + np.array(away), any_stone(), STONE, radius_px=6.5, reach=0.35
-    )
-    assert np.hypot(*(about - PLACES).T).max() < 0.015
-
-
-def test_plain_discs_answer_by_their_rim() -> None:
-    found = seek(PICTURE, VIEW, None, plain_disc(STONE.radius), ALL, radius_px=11.6, least=0.45)
-    apart = np.hypot(*(found.places[:, None] - PLACES).transpose(2, 0, 1))
-    assert apart.min(0).max() < 0.06
+def test_a_disc_is_found_about_where_it_is_expected() -> None:
+    image = picture(STONE)
+    looks = seek(image, ABOVE, None, STONE, BOUNDS, radius_px=10.0, least=0.8).appearance
+    aside = PLACES + 0.06 * np.array([(1, 0), (0, -1), (-0.7, 0.7), (-0.7, -0.7)])
+    found = seek_about(image, ABOVE, aside, looks, STONE, radius_px=10.0, reach=0.8)
+    assert np.linalg.norm(found - PLACES, axis=1).max() < 0.01
