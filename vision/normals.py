@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import SHEET
+from data.sheet import HOUSE, SHEET
 from vision.paint import (
     BACK_LINE,
     CENTRE_LINE,
@@ -59,6 +59,9 @@ _LITTLE = 1e-3
 OUTSIDE = -1e4
 """Coordinate of what is no longer in the picture, px: nothing is seen there."""
 
+CLOSER = 4
+"""How much closer blocks lie beyond the house: some lines are painted there alone, and end soon."""
+
 LEAST, LEAST_BLOCKS = 8, 3
 """Fewer normals than this are no line; of a thin line, fewer blocks."""
 
@@ -101,6 +104,8 @@ _GROUPS = _COUNTS // _GROUP
 _FIRST_GROUP = np.cumsum(_GROUPS) - _GROUPS
 _GROUP_SIZE = np.repeat(_GROUP, _GROUPS)
 _GROUP_START = np.cumsum(_GROUP_SIZE) - _GROUP_SIZE
+_BEYOND = np.abs(_ALONG[_GROUP_START + _GROUP_SIZE // 2]) > HOUSE.twelve_foot
+_SHARE = np.where((_GROUP_SIZE > 1) & _BEYOND, CLOSER, 1)
 
 
 def _neighbours() -> tuple[Index, Index]:
@@ -268,17 +273,18 @@ def lay_out(
 
 
 def _thinned(inside: Flags, wanted: Index, groups: int) -> Flags:
-    """Keep so many groups of each kind as are wanted, evenly, of those that lie inside."""
+    """Keep so many groups of each kind as are wanted of those that lie inside."""
     whole = np.logical_and.reduceat(inside, _GROUP_START[:groups])
     first, sizes = _FIRST_GROUP[: len(wanted)], _GROUPS[: len(wanted)]
-    total = np.cumsum(whole)
-    number = total - whole - np.repeat(total[first] - whole[first], sizes)
+    share = whole * _SHARE[:groups]
+    total = np.cumsum(share)
+    number = total - share - np.repeat(total[first] - share[first], sizes)
     have = np.add.reduceat(whole, first, dtype=np.int64)
+    shares = np.add.reduceat(share, first, dtype=np.int64)
     enough = have >= np.where(_GROUP[: len(wanted)] > 1, LEAST_BLOCKS, LEAST)
-    ratio = np.repeat(np.minimum(wanted / np.maximum(have, 1), 1.0) * enough, sizes)
-    return np.asarray(
-        whole & (np.floor((number + 1) * ratio + 1e-9) > np.floor(number * ratio + 1e-9))
-    )
+    ratio = np.repeat(np.minimum(wanted / np.maximum(shares, 1), 1.0) * enough, sizes)
+    before, after = (np.floor(n * ratio + 0.5) for n in (number, number + share))
+    return np.asarray(whole & (after > before))
 
 
 def profiles(pictures: Sequence[Picture], normals: Normals, points: Array) -> Profiles:

@@ -109,8 +109,10 @@ def test_a_dissolve_from_another_camera_s_house_ends_its_piece() -> None:
     other = tilted_camera(1.1, height=3.0, px_per_m=110)
     score = Graphic(60, 500, row=60)
     cut = Cut(-1.0, 0.6, other, dissolve=0.3)
-    track, frames = follow(path, duration=2.0, cuts=(cut,), graphics=(score,))
-    assert {c.frame for c in track.cameras} == set(range(33, frames))
+    track, frames = follow(path, duration=2.4, cuts=(cut,), graphics=(score,))
+    known = [c.frame for c in track.cameras]
+    assert 15 < known[0] < 40
+    assert known == list(range(known[0], frames))
     assert worst(track, path) < 0.005
 
 

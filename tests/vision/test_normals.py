@@ -6,7 +6,7 @@ import pytest
 from data.sheet import HOUSE
 from tests.vision.cameras import ice_points
 from vision.normals import BLOCK, OUTSIDE, SAMPLES, THIN, lay_out, profiles
-from vision.paint import CIRCLES, TWELVE
+from vision.paint import CIRCLES, TEE_LINE, TWELVE
 from vision.pose import aim, project
 from vision.rig import OVERHEAD, start_rig
 
@@ -50,6 +50,14 @@ def test_there_are_as_many_as_wanted_evenly_spread() -> None:
             along = normals.along[normals.kinds[kind]].reshape(-1, BLOCK)
             assert np.ptp(along, axis=1).max() < BLOCK * 0.05
     assert (lay_out(view(), rig(), SIZE, reach=REACH, lines=False).kinds.keys()) == {0, 1, 2}
+
+
+def test_thin_lines_are_looked_at_closely_where_they_leave_the_house() -> None:
+    normals = lay_out(view(), rig(), SIZE, reach=REACH, most=32)
+    middles = normals.along[normals.kinds[TEE_LINE]].reshape(-1, BLOCK).mean(1)
+    beyond = np.abs(middles) > HOUSE.twelve_foot
+    assert beyond.sum() == 2 * np.count_nonzero(middles[beyond] > 0) >= 4
+    assert (~beyond).sum() >= 3
 
 
 def test_what_is_seen_of_each_circle_is_told() -> None:
