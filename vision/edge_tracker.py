@@ -52,6 +52,10 @@ LEAST_SUPPORT, GOOD_SUPPORT = 0.3, 0.5
 """Of the circles that are in the picture, this part must be seen; where it is less than the
 second, edges of others may have been taken for theirs, and are measured anew."""
 
+STEADY = 0.8
+"""Part of what was seen in the frame before that must be seen again, or the edges are measured
+anew: a view that was predicted badly may rest on wrong edges."""
+
 LEARNING = 0.1
 """How fast the colours of the edges are learned anew."""
 
@@ -78,6 +82,8 @@ class EdgeTracker:
         How many frames may be followed together: the more, the better they are predicted.
     fit : ViewSolution, optional
         The last one.
+    support : float
+        Share of the circles in the picture that it explained.
     """
 
     size: tuple[int, int]
@@ -85,6 +91,7 @@ class EdgeTracker:
     edge: Rim
     stride: int = 1
     fit: ViewSolution | None = None
+    support: float = 0.0
     _normals: Normals | None = None
 
     def settle(self, frames: Sequence[Frame], views: Sequence[View], rig: Array) -> list[Seen]:
@@ -126,7 +133,10 @@ class EdgeTracker:
         whole = count == len(frames) and not again
         self.stride = min(2 * count, LONGEST_STRIDE) if whole else max(count // 2, 1)
         self.fit = fits[count - 1]
-        self._learn(evidence[count - 1].palette, count)
+        last = evidence[count - 1]
+        explained = _length(rig, _explained(last, self.fit))
+        self.support = explained / _length(rig, last.visible)
+        self._learn(last.palette, count)
         return [
             Seen(frame.index, frame.t, fit.view, e.marks.pick(fit.inliers), True)
             for frame, e, fit in zip(frames, evidence[:count], fits, strict=False)
@@ -189,7 +199,8 @@ class EdgeTracker:
         """Whether a view was predicted so well that the edges need not be measured anew."""
         shift = np.abs(fit.view.vector - before.vector)[:3].max() * fit.view.focal
         near = bool(shift < SETTLED * REACH * self.size[0])
-        return near and _enough(rig, evidence.visible, _explained(evidence, fit), GOOD_SUPPORT)
+        least = max(GOOD_SUPPORT, STEADY * self.support)
+        return near and _enough(rig, evidence.visible, _explained(evidence, fit), least)
 
     def _learn(self, palette: Array, frames: int) -> None:
         """Take in the colours of the edges in the last of so many frames."""
@@ -211,8 +222,13 @@ def _explained(evidence: Evidence, fit: ViewSolution) -> Array:
     return np.asarray(evidence.covered * good / np.maximum(on, 1))
 
 
+def _length(rig: Array, share: Array) -> float:
+    """Length of such shares of the circles, m."""
+    around = 2 * np.pi * np.array([HOUSE.twelve_foot, rig[R8], rig[R4]])
+    return float(share @ around)
+
+
 def _enough(rig: Array, visible: Array, covered: Array, least: float = LEAST_SUPPORT) -> bool:
     """Whether so much of the circles is covered, of what is visible, that they fix a view."""
-    around = 2 * np.pi * np.array([HOUSE.twelve_foot, rig[R8], rig[R4]])
-    arc, whole = float(covered @ around), float(visible @ around)
-    return arc > LEAST_ARC and arc > least * whole
+    arc = _length(rig, covered)
+    return arc > LEAST_ARC and arc > least * _length(rig, visible)
