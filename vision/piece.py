@@ -15,13 +15,14 @@ from numpy.typing import NDArray
 from vision.adjust import Solution, solve
 from vision.camera import Camera
 from vision.clip import Frame
-from vision.edge_tracker import LONGEST_STRIDE, EdgeTracker
+from vision.edge_tracker import EdgeTracker
 from vision.house_fit import SHARING, HouseFit
 from vision.joint import Seen
 from vision.landmarks import Keyframe, keyframe, recognise
 from vision.paint import CENTRE_LINE, EIGHT, FOUR, TEE_LINE, TWELVE, Marks, joined
 from vision.picture import Picture
 from vision.pose import View, camera
+from vision.predict import MEMORY, predict
 from vision.replay import EVERY, Glimpse, glimpse
 from vision.resection import solve_view
 from vision.rig import Prior
@@ -87,8 +88,7 @@ class Piece:
             The first of them, as many as went well; none where the first shows neither the
             house nor its ice.
         """
-        views = [self._predicted(frame) for frame in frames]
-        seen = self.edges.settle(frames, views, self.rig)
+        seen = self.edges.settle(frames, self._predicted(frames), self.rig)
         if seen:
             self._key, self.missed = None, 0
             return seen
@@ -199,22 +199,22 @@ class Piece:
         """Give the provisional camera of a frame."""
         return camera(seen.view, self.rig, self.size, frame=seen.index, t=seen.t, found=seen.found)
 
-    def _predicted(self, frame: Frame) -> View:
-        """View at constant velocity."""
-        last = self.seen[-1]
-        if len(self.seen) < 2:
-            return last.view
-        before = self.seen[-2]
-        if last.key is not before.key or abs(last.index - before.index) > 2:
-            return last.view
-        ahead = (frame.t - last.t) / (last.t - before.t)
-        if not 0 < ahead <= LONGEST_STRIDE:
-            return last.view
-        return View(last.view.vector + ahead * (last.view.vector - before.view.vector))
+    def _predicted(self, frames: Sequence[Frame]) -> list[View]:
+        """Tell the views of the next frames by those of the last ones that followed each other."""
+        last = self.seen[-MEMORY:]
+        first = len(last) - 1
+        while first > 0 and _follows(last[first], last[first - 1]):
+            first -= 1
+        last = last[first:]
+        if abs(frames[-1].index - last[-1].index) > 2 * len(frames):
+            return [last[-1].view] * len(frames)
+        vectors = np.array([seen.view.vector for seen in last])
+        ahead = predict([seen.t for seen in last], vectors, [frame.t for frame in frames])
+        return [View(vector) for vector in ahead]
 
     def _carried(self, frame: Frame) -> Seen | None:
         """Place a frame that does not show the rings by points of the ice that are known."""
-        last, view = self.seen[-1], self._predicted(frame)
+        last, view = self.seen[-1], self._predicted([frame])[0]
         if self._key is None and self._picture is not None:
             cov = np.zeros((4, 4)) if self.edges.fit is None else self.edges.fit.cov
             self._key = keyframe(last.index, self._picture, last.view, self.rig, cov)
@@ -237,3 +237,8 @@ class Piece:
         if len(landmarks) < len(key.ice):  # half of its corners are gone: two marks each
             self._key = keyframe(frame.index, frame.picture, fit.view, self.rig, fit.cov, key.drift)
         return Seen(frame.index, frame.t, fit.view, marks, False, key)
+
+
+def _follows(seen: Seen, before: Seen) -> bool:
+    """Whether two frames are neighbours, or nearly, and placed by the same means."""
+    return seen.key is before.key and 0 < abs(seen.index - before.index) <= 2
