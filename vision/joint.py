@@ -39,13 +39,17 @@ TOGETHER = 16
 VIEW_SD = (np.inf, np.inf, 0.05, np.inf)
 """How far a view may lie from the provisional one: the roll is free where no line is seen."""
 
-LONG_RANGE = 1.5
+LONG_RANGE = 1.2
 """Errors of paint and outline are alike over longer stretches than single pieces and marks tell:
 so much larger than these say are the standard errors, as cameras known otherwise show."""
 
-YARDSTICK_PX = 0.12
+YARDSTICK_PX = 0.1
 """How well the outer edge of the 12-ft circle is made out, px: an outline that is little darker
 than the paint goes unseen and draws the edge outwards."""
+
+JITTER_PX = 0.04
+"""How far a whole picture is aside, each for itself: films keep small movements to some hundredths
+of a pixel."""
 
 UNTOLD = 0.7
 """Share of its prior standard deviation above which the camera's height counts as assumed."""
@@ -193,10 +197,12 @@ def fit_frames(seen: Sequence[Seen], shared: Bundle, size: tuple[int, int]) -> l
         )
         both = np.concatenate([follows, np.eye(RIG_SIZE, len(spread))])
         to_camera = _parameters(views[k], rig, size)
+        jitter = np.zeros(PARAMETERS)
+        jitter[:2] = JITTER_PX / fit.view.focal
         common, own = to_camera @ both, to_camera[:, :VIEW_SIZE]
         error = CameraError(
             common @ spread @ common.T,
-            LONG_RANGE**2 * noisier[k] * own @ cov @ own.T,
+            LONG_RANGE**2 * noisier[k] * own @ cov @ own.T + np.diag(jitter**2),
             _yardstick(fit.view, rig) / HOUSE.twelve_foot,
             0.0 if s.key is None else s.key.drift,
         )
