@@ -20,9 +20,10 @@ from data.tracks import TRACK_COLUMNS, Columns, Table, no_rows, teams
 from physics.contacts import Contact, cut_all
 from physics.fit import fit_shot
 from physics.glides import FREE, measure_glides, stop_time
+from physics.noise import Noise, noises
 from physics.rate_filter import filtered
 from physics.shot_fit import ShotFit
-from physics.stretch import JUMP_SD, START_SD, Filter, Model, Stretch
+from physics.stretch import START_SD, Filter, Model, Stretch
 from physics.traces import Trace, traces
 
 if TYPE_CHECKING:
@@ -30,8 +31,12 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-UNTOLD = 0.5 * JUMP_SD[1]
+UNTOLD = 2.5
 """Standard deviation of a spin that nothing is known of, rad/s."""
+
+UNSEEN_SCALE = 0.5
+"""Share of what places share that is no error of theirs which lasts for a while, but one of the
+scale."""
 
 
 def smooth(
@@ -82,12 +87,14 @@ def smoothed(
         return no_rows(TRACK_COLUMNS)
     times, first = np.unique(np.asarray(sightings["t"], float), return_index=True)
     frames = np.asarray(sightings["frame"], int)[first]
-    fit, model = _survey(known, contacts, radius)
+    fit, model, noise = _survey(known, contacts, radius)
     tables = []
     for name, trace in known.items():
         inside = (times >= trace.t[0]) & (times <= trace.t[-1])
         hits = sorted(c.t for c in contacts if name in c.stones)
-        tables.append(_track(trace, times[inside], frames[inside], hits, fit, model, run))
+        tables.append(
+            _track(trace, times[inside], frames[inside], hits, fit, model, noise[name], run)
+        )
     team = teams(sightings)
     tracks = {name: np.concatenate([table[name] for table in tables]) for name in tables[0]}
     tracks["team"] = np.array([team[stone] for stone in tracks["stone"].tolist()])
@@ -96,7 +103,7 @@ def smoothed(
 
 def _survey(
     known: dict[str, Trace], contacts: Sequence[Contact], radius: float
-) -> tuple[ShotFit, Model]:
+) -> tuple[ShotFit, Model, dict[str, Noise]]:
     """Fit each stretch between hits by itself: where stones rest, and how the ice slows them."""
     by_hits, _ = cut_all(known, contacts, radius)
     pieces = [replace(piece, opens=None, closes=None) for piece in by_hits]
@@ -104,7 +111,7 @@ def _survey(
     _, friction, prior = measure_glides(loose, known, radius)
     fit = fit_shot(known, pieces, (), radius, deceleration=prior)
     a = prior.mean if friction.value is not None else 0.0
-    return fit, Model(max(a, 0.0), prior.along, fit.inflation)
+    return fit, Model(max(a, 0.0), prior.along), noises(fit, known)
 
 
 def _track(
@@ -114,6 +121,7 @@ def _track(
     hits: Sequence[float],
     fit: ShotFit,
     model: Model,
+    noise: Noise,
     run: Filter,
 ) -> Columns:
     """Run the filter over one stone, hit to hit."""
@@ -122,7 +130,7 @@ def _track(
     place, rest, idle, speed = _modes(trace.stone, t, fit)
     z = np.column_stack([trace.xy[row], trace.theta[row]])
     z[~sighted] = np.nan
-    sd = np.column_stack([trace.sd[row] * np.sqrt(model.noise), trace.sd_theta[row]])
+    white, slow = noise.white[row], noise.slow[row]
     mean, spread = np.full((len(t), 6), np.nan), np.full((len(t), 6), np.nan)
     seen = np.zeros(len(t), dtype=int)
     part = np.searchsorted(np.asarray(hits, float), t, side="right")
@@ -130,13 +138,16 @@ def _track(
         at = np.flatnonzero(part == k)
         if np.isfinite(z[at, 0]).any():
             mean[at], spread[at], seen[at] = run(
-                Stretch(t[at], z[at], sd[at], place[at], rest[at], idle[at], speed[at], model)
-            )
+                Stretch(
+                    t[at], z[at], white[at], slow[at],
+                    place[at], rest[at], idle[at], speed[at], model,
+                )
+            )  # fmt: skip
         else:
             mean[at], spread[at] = _bridge(trace, t[at])
     spread[:, :2] = np.hypot(spread[:, :2], trace.sd_place[row][:, None])
     size = np.hypot(mean[:, 2], mean[:, 3])
-    spread[:, 2:4] = np.hypot(spread[:, 2:4], (trace.sd_scale[row] * size)[:, None])
+    spread[:, 2:4] = np.hypot(spread[:, 2:4], (UNSEEN_SCALE * trace.sd_scale[row] * size)[:, None])
     untold = spread[:, 5] > UNTOLD
     if not np.isfinite(trace.theta).any():
         untold[:] = True

@@ -18,8 +18,12 @@ Bools = NDArray[np.bool_]
 START_SD = (3.0, 10.0)
 """What is known of speed (m/s) and spin (rad/s) before the first sighting."""
 
-JUMP_SD = (1.0, 5.0)
-"""How much speed (m/s) and spin (rad/s) may change where a motion changes of itself."""
+JUMP_SD = (1.0, 3.0)
+"""How much velocity (m/s) and spin (rad/s) change where a motion changes of itself, per change of
+the rough velocity (m/s): an impulse that rubs turns a stone by μ / (k R) of what it stops."""
+
+LEAST_JUMP = 0.02
+"""Of the rough velocity, m/s."""
 
 STILL_SD = (1e-3, 1e-3)
 """How still a stone at rest lies, m/s and rad/s."""
@@ -33,10 +37,14 @@ ANYWHERE_SD = (10.0, 100.0)
 MEMORY = 0.5
 """Time over which a deceleration keeps its deviation from the mean, s."""
 
-SPIN_LOSS_SD, SPIN_LOSS_STOPPED_SD = 0.05, 0.5
-"""How much the loss of spin differs from none, rad/s²: moving, and spinning on the spot."""
+PLACE_MEMORY, ANGLE_MEMORY = 0.3, 0.8
+"""Times over which errors of sightings that last for a while become others, s."""
 
-GATE = 25.0
+SPIN_LOSS, SPIN_LOSS_STOPPED_SD = 0.03, 0.5
+"""How much the loss of spin differs from none: times the speed, (rad/s²) (m/s), and spinning on the
+spot, rad/s². A slow stone loses its spin faster (FCV1: 0.025 / v)."""
+
+GATE = 100.0
 """Squared normalised innovation beyond which a sighting is refused."""
 
 PATIENCE = 2
@@ -47,13 +55,11 @@ PATIENCE = 2
 class Model:
     """How one stone's speed is expected to change.
 
-    ``a`` is the deceleration (m/s²), ``spread`` its deviation, ``noise`` the factor on the
-    variance of the sightings.
+    ``a`` is the deceleration (m/s²), ``spread`` its deviation.
     """
 
     a: float
     spread: float
-    noise: float
 
 
 @dataclass(frozen=True)
@@ -64,8 +70,10 @@ class Stretch:
     ----------
     t : (n,) array
         Times, s, increasing.
-    z, sd : (n, 3) array
-        x, y (m) and θ (rad) and their standard deviations; NaN where not seen.
+    z : (n, 3) array
+        x, y (m) and θ (rad); NaN where not seen.
+    sd, slow : (n, 3) array
+        Standard deviations of what is anew in each sighting and of what lasts for a while.
     piece : (n,) array
         Number of the piece of its path: where it changes, the motion changed of itself.
     rest, idle : (n,) array of bool
@@ -78,6 +86,7 @@ class Stretch:
     t: Floats
     z: Floats
     sd: Floats
+    slow: Floats
     piece: NDArray[np.int64]
     rest: Bools
     idle: Bools
@@ -106,7 +115,8 @@ class Steps:
     """How place and rate of a pair go on from each time to the next, n − 1 steps.
 
     place' = place + ``reach`` rate and rate' = ``keep`` rate, with noise of variance ``q00`` of
-    the place and ``q11`` of the rate and covariance ``q01``; all of shape (n − 1,).
+    the place and ``q11`` of the rate and covariance ``q01``; the error that lasts falls by
+    ``fade`` and is renewed to its standard deviation. All of shape (n − 1,).
     """
 
     reach: Floats
@@ -114,6 +124,7 @@ class Steps:
     q00: Floats
     q01: Floats
     q11: Floats
+    fade: Floats
 
 
 def steps(stretch: Stretch) -> tuple[Steps, Steps]:
@@ -122,7 +133,9 @@ def steps(stretch: Stretch) -> tuple[Steps, Steps]:
     stopped = np.where(idle[1:], STILL_SD[0], STOPPED_SD)
     along = _steps(stretch, rest, np.full(len(rest) - 1, stretch.model.spread), stopped, 0)
     stopped = np.where(idle[1:], STILL_SD[1], STOPPED_SD)
-    loss = np.where(rest[1:], SPIN_LOSS_STOPPED_SD, SPIN_LOSS_SD)
+    speed = np.hypot(stretch.speed[:-1, 0], stretch.speed[:-1, 1])
+    moving = np.minimum(SPIN_LOSS / np.maximum(speed, 1e-6), SPIN_LOSS_STOPPED_SD)
+    loss = np.where(rest[1:], SPIN_LOSS_STOPPED_SD, moving)
     return along, _steps(stretch, idle, loss, stopped, 1)
 
 
@@ -131,7 +144,8 @@ def _steps(stretch: Stretch, still: Bools, deviation: Floats, stopped: Floats, k
     dt = np.diff(stretch.t)
     was, ends = still[:-1], still[1:]
     density = deviation**2 * MEMORY
-    jump = np.where(np.diff(stretch.piece) != 0, JUMP_SD[kind], 0.0)
+    change = np.hypot(*np.diff(stretch.speed, axis=0).T) + LEAST_JUMP
+    jump = np.where(np.diff(stretch.piece) != 0, JUMP_SD[kind] * change, 0.0)
     jump = np.where(was, START_SD[kind], jump) ** 2  # at any moment of the step
     # What was left of a motion that ends does so somewhere in the step.
     return Steps(
@@ -140,6 +154,7 @@ def _steps(stretch: Stretch, still: Bools, deviation: Floats, stopped: Floats, k
         q00=np.where(ends, 0.0, density * dt**3 / 3 + jump * dt**2 / 3),
         q01=np.where(ends, 0.0, density * dt**2 / 2 + jump * dt / 2),
         q11=np.where(ends, stopped**2, density * dt + jump),
+        fade=np.exp(-dt / (PLACE_MEMORY, ANGLE_MEMORY)[kind]),
     )
 
 

@@ -121,16 +121,16 @@ def _filled(t: Floats, values: Floats, sd: Floats, least: float, default: float)
     if not np.isfinite(given).any():
         if len(scatter) < 5:
             return np.full_like(values, default)
-        return np.full_like(values, max(_level(scatter), least))
+        return np.full_like(values, max(level(scatter), least))
     given = np.where(np.isfinite(given), given, float(np.nanmedian(given)))
     if len(scatter) >= 5:
-        level = _level(scatter / given[2:-2])
+        off = level(scatter / given[2:-2])
         # Some of it is chance: a median of that many has an error of some 0.8 / √n.
-        given = given * (level if level > 1 + 1.6 / np.sqrt(len(scatter)) else 1.0)
+        given = given * (off if off > 1 + 1.6 / np.sqrt(len(scatter)) else 1.0)
     return np.maximum(given, least)
 
 
-def _level(scatter: Floats) -> float:
+def level(scatter: Floats) -> float:
     """Robust standard deviation of residuals of one or two columns, whatever their axes."""
     usual = 0.6745 if scatter.shape[1] == 1 else 1.1774  # medians of |N| and of Rayleigh's law
     return float(np.median(np.sqrt(np.sum(scatter**2, axis=1)))) / usual

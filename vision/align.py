@@ -25,8 +25,8 @@ HARMONICS = ORDERS[1:-1]
 """Those that are compared."""
 
 _ROUNDS = 6
-_LEAST_SCALE = 2.5
-"""How much larger errors are at least than if every ring and harmonic erred for itself."""
+ALIKE = 2.5
+"""How much larger errors are than if every ring, harmonic and colour erred for itself."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ def align(spectra: Complex, angles: Array, radii: Array, sd_shift: float) -> Ali
         gain = (here * model.conj()).real.sum((1, 2, 3)) / np.maximum(size, 1e-12)
         rest = here / np.maximum(gain, 0.1)[:, None, None, None] - model
         count = 2 * rest[0, :, 0].size * np.maximum(seen.sum(1), 1)
-        noise = _LEAST_SCALE**2 * (np.abs(rest) ** 2).sum((1, 2, 3)) / count
+        noise = ALIKE**2 * (np.abs(rest) ** 2).sum((1, 2, 3)) / count
         by_ring = np.einsum("pkrc,qkrc->rpq", slopes.conj(), slopes).real
         normal = np.einsum("nr,rpq->npq", seen.astype(float), by_ring)
         prior = np.diag([0.0, 1.0, 1.0]) * (noise / sd_shift**2)[:, None, None]

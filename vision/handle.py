@@ -29,11 +29,9 @@ from vision.align import HARMONICS, ORDERS, Array, Complex, align, rings_seen, t
 _GRID = 1440
 """Angles of a whole turn that are tried."""
 
-BLOCKS = (0.04, 0.08, 0.16, 0.32)
-"""Times over which angles are averaged to see how they scatter, s."""
-
-CAUTION = 1.4
-"""How much larger errors are than the scatter over those times tells, for some last longer."""
+LASTING = 3.5
+"""How much larger errors are than one picture tells: what stands up looks otherwise from each
+side, and light and blur change slowly. Handles of two renderers and of cut-out stones err so."""
 
 SPREAD = 0.3
 """How far angles must spread for light and turning cap to be told apart by half, rad."""
@@ -65,7 +63,7 @@ class Turning:
     lost: float = 1.0
     least_likeness: float = 0.45
     rounds: int = 3
-    shift: float = 0.003
+    shift: float = 0.001
 
 
 TURNING = Turning()
@@ -188,8 +186,7 @@ def handle_angles(
         return theta, sd
     fit = align(best.pictures[good], best.angles[good], radii, turning.shift)
     rows = seen[good]
-    theta[rows], sd[rows] = fit.angle, fit.sd
-    sd *= _jitter(times, theta, sd)
+    theta[rows], sd[rows] = fit.angle, LASTING * fit.sd
     return theta - theta[rows[0]], sd
 
 
@@ -279,25 +276,3 @@ def _followed(times: Array, pictures: Complex, turning: Turning) -> Array:
             weight = min(weight + 1.0, 30.0)
             mean += (turned(pictures[index : index + 1], np.array([-angle]))[0] - mean) / weight
     return angles
-
-
-def _jitter(times: Array, theta: Array, sd: Array) -> float:
-    """How many times larger than claimed the errors are, at least 1.
-
-    By how the means of three blocks of frames in a row scatter about a steady turning (Allan's
-    variance), for blocks of several lengths: light and shadow err alike for a while.
-    """
-    step = np.diff(times)
-    usual = float(np.median(step))
-    uneven = np.cumsum(np.abs(step - usual) > 0.2 * usual)
-    worst = 1.0
-    for size in {max(round(lasting / usual), 1) for lasting in BLOCKS}:
-        mean = np.convolve(theta, np.full(size, 1 / size), "valid")
-        bend = mean[2 * size :] - 2 * mean[size:-size] + mean[: -2 * size]
-        claimed = np.convolve(sd**2, np.full(3 * size, 2 / size**2), "valid")
-        steady = uneven[3 * size - 2 :] == np.append(0, uneven)[: len(bend)]
-        ratio = np.abs(bend[steady]) / np.sqrt(claimed[steady])
-        ratio = ratio[np.isfinite(ratio)]
-        if len(ratio) >= 5:
-            worst = max(worst, CAUTION * 1.4826 * float(np.median(ratio)))
-    return worst

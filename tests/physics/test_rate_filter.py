@@ -26,11 +26,12 @@ def random_stretch(rng: np.random.Generator, n: int) -> Stretch:
         t,
         z,
         rng.uniform(1e-4, 0.02, (n, 3)),
+        rng.uniform(0, 0.02, (n, 3)),
         np.cumsum(rng.random(n) < 0.05),
         rest,
         idle,
         rng.normal(0, 1, (n, 2)) * ~rest[:, None],
-        Model(float(rng.uniform(0, 0.2)), 0.05, 1.0),
+        Model(float(rng.uniform(0, 0.2)), 0.05),
     )
 
 
@@ -60,8 +61,8 @@ def test_a_steady_motion_is_found_exactly() -> None:
     z = np.column_stack([1 + 0.5 * t, 2 - 0.3 * t, 0.7 * t])
     n = len(t)
     stretch = Stretch(
-        t, z, np.full((n, 3), 1e-3), np.zeros(n, int), np.zeros(n, bool), np.zeros(n, bool),
-        np.tile([0.5, -0.3], (n, 1)), Model(0.0, 0.02, 1.0),
+        t, z, np.full((n, 3), 1e-3), np.zeros((n, 3)), np.zeros(n, int), *np.zeros((2, n), bool),
+        np.tile([0.5, -0.3], (n, 1)), Model(0.0, 0.02),
     )  # fmt: skip
     mean, spread, seen = rate_filter.filtered(stretch)
     np.testing.assert_allclose(mean[:, :2], z[:, :2], atol=1e-5)

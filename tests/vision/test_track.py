@@ -12,9 +12,8 @@ from data.sheet import STONE
 from data.tracks import SIGHTING_COLUMNS, teams
 from physics.contacts import find_contacts
 from physics.kalman import smooth
-from physics.rate_filter import filtered
+from physics.rate_filter import filtered, forward
 from physics.stretch import Estimates, Stretch
-from tests.physics.test_consistency import innovations
 from tests.scoring import score_tracks
 from vision.camera import Camera
 from vision.clip import open_clip
@@ -133,13 +132,14 @@ def test_the_filter_is_no_surer_of_a_clip_than_it_may_be() -> None:
         return filtered(stretch)
 
     tracks = smooth(seen, find_contacts(seen, STONE.radius), radius=STONE.radius, run=spy)
-    square = np.concatenate([innovations(s, 6) for s in stretches if not s.rest.all()]) ** 2
+    square = (
+        np.concatenate([forward(s).innovations[6:] for s in stretches if not s.rest.any()]) ** 2
+    )
     for axis in range(3):
-        told = square[np.isfinite(square[:, axis]), axis]
-        # Errors that are alike from frame to frame are taken for larger ones that are not, so
-        # that there is no lower bound.
-        assert len(told) > 100
-        assert told.mean() < chi2.ppf(0.975, len(told)) / len(told)
+        found = square[np.isfinite(square[:, axis]), axis]
+        assert len(found) > 100
+        low, high = chi2.ppf([0.025, 0.975], len(found)) / len(found)
+        assert 0.8 * low < found.mean() < 1.2 * high, axis
     true = truth.set_index(["stone", "frame"])
     known = tracks.join(true.add_prefix("true_"), on=["stone", "frame"])
     moving = known[np.hypot(known["true_vx"], known["true_vy"]) > 0.05]
