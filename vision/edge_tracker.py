@@ -92,7 +92,7 @@ class EdgeTracker:
     stride: int = 1
     fit: ViewSolution | None = None
     support: float = 0.0
-    _normals: Normals | None = None
+    _last: tuple[View, Array, Normals, Array] | None = None
 
     def settle(self, frames: Sequence[Frame], views: Sequence[View], rig: Array) -> list[Seen]:
         """Refine predicted views.
@@ -160,14 +160,27 @@ class EdgeTracker:
         return bool((away[known] < 0.5 * contrast[known]).all())
 
     def _laid(self, views: Sequence[View], rig: Array) -> tuple[Normals, Array]:
-        """Give normals and where they stand in views, of which at least the first has them."""
-        if self._normals is not None:
-            standing = self._moved(self._normals, views, rig)
-            if len(standing) == len(views):
-                return self._normals, np.array(standing)
+        """Give normals and where they stand in views, of which at least the first has them.
+
+        What was asked last is kept: where the circles are not in view, lines are looked for next.
+        """
+        if self._last is not None:
+            view, known, normals, standing = self._last
+            if view is views[0] and known is rig and len(standing) >= len(views):
+                return normals, standing[: len(views)]
+        normals, standing = self._lay(views, rig)
+        self._last = views[0], rig, normals, standing
+        return normals, standing
+
+    def _lay(self, views: Sequence[View], rig: Array) -> tuple[Normals, Array]:
+        """Take the same normals as before, or where these are too far away new ones."""
+        if self._last is not None:
+            normals = self._last[2]
+            moved = self._moved(normals, views, rig)
+            if len(moved) == len(views):
+                return normals, np.array(moved)
         reach = max(REACH * self.size[0], LEAST_REACH)
         normals = lay_out(views[0].vector, rig, self.size, reach=reach, most=MOST_NORMALS)
-        self._normals = normals
         return normals, np.array([normals.standing, *self._moved(normals, views[1:], rig)])
 
     def _moved(self, normals: Normals, views: Sequence[View], rig: Array) -> list[Array]:

@@ -35,6 +35,9 @@ CORNER_SD = 0.3
 WINDOW, LEVELS = (15, 15), 2
 """Window and levels of the pyramid in which a corner is followed."""
 
+ALIKE = 0.02
+"""Turn or stretch up to which a window looks the same: by a seventh of a pixel at its corners."""
+
 ENOUGH = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 12, 0.02)
 """When it has been followed: steps at most, and the last step, px of the small picture."""
 
@@ -144,10 +147,13 @@ def recognise(key: Keyframe, picture: Picture, view: View, rig: Array) -> Marks 
     if len(near) < LEAST_CORNERS:
         return None
     corners, there = key.corners[near], expected[near]
+    warped, one = key.grey, corners
     warp = _affine(corners, there)
-    shown = (grey.shape[1], grey.shape[0])
-    warped = cv2.warpAffine(key.grey, warp, shown, borderMode=cv2.BORDER_REPLICATE)
-    one = corners @ warp[:, :2].T + warp[:, 2]
+    if np.abs(warp[:, :2] - np.eye(2)).max() > ALIKE:
+        shown = (grey.shape[1], grey.shape[0])
+        border = cv2.BORDER_REPLICATE
+        warped = np.asarray(cv2.warpAffine(key.grey, warp, shown, borderMode=border), np.uint8)
+        one = corners @ warp[:, :2].T + warp[:, 2]
     before = one.astype(np.float32)
     after, ok, _ = cv2.calcOpticalFlowPyrLK(
         warped, grey, before, there.astype(np.float32), winSize=WINDOW, maxLevel=LEVELS,

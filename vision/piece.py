@@ -21,7 +21,7 @@ from vision.joint import Seen
 from vision.landmarks import Keyframe, keyframe, recognise
 from vision.paint import CENTRE_LINE, EIGHT, FOUR, TEE_LINE, TWELVE, Marks, joined
 from vision.picture import Picture
-from vision.pose import View, camera
+from vision.pose import View, camera, project
 from vision.predict import MEMORY, predict
 from vision.replay import EVERY, Glimpse, glimpse
 from vision.resection import solve_view
@@ -37,6 +37,9 @@ REFINE_FRAMES = 6
 LEAST_EXPLAINED, SAME_RMS_PX = 0.8, 0.3
 """How much of a house, and of the frames before, one camera must explain to be the same; and by
 how much worse than another's it may explain the house, px."""
+
+NEAR = 0.002
+"""How far a view may be aside for lines to be looked for from it, widths of the picture."""
 
 MOST_DRIFT = 0.25
 """A view carried so far astray is given up, m."""
@@ -88,12 +91,13 @@ class Piece:
             The first of them, as many as went well; none where the first shows neither the
             house nor its ice.
         """
-        seen = self.edges.settle(frames, self._predicted(frames), self.rig)
+        views = self._predicted(frames)
+        seen = self.edges.settle(frames, views, self.rig)
         if seen:
             self._key, self.missed = None, 0
             return seen
         self.edges.stride = 1
-        carried = self._carried(frames[0])
+        carried = self._carried(frames[0], views[0])
         return [] if carried is None else [carried]
 
     def take(self, frames: Sequence[Frame], seen: Sequence[Seen]) -> list[tuple[Frame, Camera]]:
@@ -212,9 +216,17 @@ class Piece:
         ahead = predict([seen.t for seen in last], vectors, [frame.t for frame in frames])
         return [View(vector) for vector in ahead]
 
-    def _carried(self, frame: Frame) -> Seen | None:
+    def _is_near(self, view: View, landmarks: Marks) -> bool:
+        """Whether landmarks were seen so near to where a view has them that lines are, too."""
+        assert landmarks.across is not None
+        count = len(landmarks) // 2
+        ice = np.stack([landmarks.along[:count], landmarks.across[:count]], axis=-1)
+        aside = project(ice, view.vector, self.rig, self.size) - landmarks.pixel[:count]
+        return bool(np.abs(aside.mean(0)).max() < NEAR * self.size[0])
+
+    def _carried(self, frame: Frame, view: View) -> Seen | None:
         """Place a frame that does not show the rings by points of the ice that are known."""
-        last, view = self.seen[-1], self._predicted([frame])[0]
+        last = self.seen[-1]
         if self._key is None and self._picture is not None:
             cov = np.zeros((4, 4)) if self.edges.fit is None else self.edges.fit.cov
             self._key = keyframe(last.index, self._picture, last.view, self.rig, cov)
@@ -224,9 +236,10 @@ class Piece:
         landmarks = recognise(key, frame.picture, view, self.rig)
         if landmarks is None:
             return None
-        view = solve_view(
-            landmarks, view, self.rig, self.size, width=10.0, view_sd=np.full(4, np.inf)
-        ).view
+        if not self._is_near(view, landmarks):
+            view = solve_view(
+                landmarks, view, self.rig, self.size, width=10.0, view_sd=np.full(4, np.inf)
+            ).view
         expected = self.edges.expects(view, self.rig)
         if expected and (seen := self.edges.settle([frame], [view], self.rig)):
             self._key, self.missed = None, 0
