@@ -1,86 +1,84 @@
 from __future__ import annotations
 
+from dataclasses import replace
+from functools import cache
+
 import numpy as np
-import pytest
 
-from tests.synthetic import PAINTS, Scene, render_still, still_camera
-from tests.vision.places import RINGS
-from vision.clip import Frame
+from tests.synthetic import PAINTS, Key, cached_clip, sample_scene
+from tests.synthetic.camera import CameraPath
+from vision.clip import Frame, open_clip
 from vision.edge_tracker import LONGEST_STRIDE, EdgeTracker
-from vision.outline import Rim
-from vision.paint import FIXED
-from vision.pose import View, aim, camera
-from vision.rig import OVERHEAD, start_rig
+from vision.house import find_house
+from vision.house_fit import HouseFit
+from vision.paint import CIRCLES
+from vision.pose import View
 
-SIZE = (960, 540)
-PAINT = PAINTS["navy-orange"]
-POSITION, SCALE = (0.0, 0.0, 9.0), 90.0
-PATH = still_camera(size=SIZE, position=POSITION, target=(0, 0), px_per_m=SCALE)
+SIZE = (1280, 720)
 
 
-def rig() -> np.ndarray:
-    found = start_rig(OVERHEAD, POSITION)
-    found[3:6] = 0
-    found[6:8] = PAINT.radii[1:3]
-    found[8:10] = -2.375, 2.36
-    return found
+@cache
+def filmed() -> tuple[list[Frame], HouseFit]:
+    """Frames of a camera that turns slowly, and the house in the first."""
+    scene = replace(sample_scene(), paint=PAINTS["navy-orange"])
+    keys = (Key(0.0, 0.0, 0.3, 110), Key(2.0, 0.2, 0.6, 116, 0.02))
+    file, _ = cached_clip(scene, CameraPath(SIZE, (-0.1, 0.1, 8.5), keys, 0.2), duration=0.6)
+    frames = list(open_clip([file]))
+    house = find_house(frames[0].image)
+    assert house is not None
+    return frames, house
 
 
-def view(aside: float = 0.0) -> View:
-    """Where the camera is, or so many pixels aside."""
-    middle = (np.array(SIZE) - 1) / 2
-    return aim(middle + np.array([aside, 0.0]), SCALE, POSITION, SIZE)
+def tracker(house: HouseFit) -> EdgeTracker:
+    return EdgeTracker(SIZE, house.evidence.palette, house.edge)
 
 
-def tracker() -> EdgeTracker:
-    return EdgeTracker(SIZE, np.full((FIXED, 2, 3), np.nan), Rim())
+def test_frames_followed_together_are_placed_as_alone() -> None:
+    frames, house = filmed()
+    together, alone = tracker(house), tracker(house)
+    block = frames[:LONGEST_STRIDE]
+    seen = together.settle(block, [house.view] * len(block), house.rig)
+    assert [s.index for s in seen] == [frame.index for frame in block]
+    for frame, one in zip(block, seen, strict=True):
+        (other,) = alone.settle([frame], [house.view], house.rig)
+        assert np.abs(one.view.vector - other.view.vector).max() * one.view.focal < 0.3
 
 
-@pytest.fixture(scope="module")
-def frames() -> list[Frame]:
-    picture = render_still(Scene(paint=PAINT), PATH)
-    return [Frame(i, i / 25, np.asarray(picture, np.uint8)) for i in range(LONGEST_STRIDE)]
-
-
-@pytest.mark.parametrize("aside", [0.0, 3.0, -5.0])
-def test_a_view_is_refined_on_the_edges(frames: list[Frame], aside: float) -> None:
-    edges = tracker()
-    (seen,) = edges.settle(frames[:1], [view(aside)], rig())
-    found = camera(seen.view, rig(), SIZE)
-    pixels = PATH.at(0.0).project(np.c_[RINGS, np.zeros(len(RINGS))])
-    off = np.linalg.norm(found.ice(pixels) - RINGS, axis=1)
-    assert np.sqrt((off**2).mean()) < 0.003
-    assert edges.support > 0.8
-
-
-def test_well_predicted_frames_are_followed_together(frames: list[Frame]) -> None:
-    edges = tracker()
-    seen = edges.settle(frames, [view()] * len(frames), rig())
-    assert [s.index for s in seen] == [f.index for f in frames]
-    assert edges.stride == LONGEST_STRIDE
-
-
-def test_from_a_badly_predicted_frame_on_they_are_looked_at_anew(frames: list[Frame]) -> None:
-    edges = tracker()
-    assert edges.settle(frames[:1], [view()], rig())
-    seen = edges.settle(frames, [view(), view(), view(8.0), view()], rig())
-    assert [s.index for s in seen] == [0, 1]
+def test_the_stride_grows_while_views_are_foretold_and_shrinks_when_not() -> None:
+    frames, house = filmed()
+    edges = tracker(house)
+    edges.settle(frames[:1], [house.view], house.rig)
+    assert edges.stride == 2
+    edges.settle(frames[1:3], [house.view] * 2, house.rig)
+    assert edges.stride == LONGEST_STRIDE == 4
+    aside = View(house.view.vector + np.array([0.0, 9.0 / house.view.focal, 0.0, 0.0]))
+    (found,) = edges.settle(frames[3:4], [aside], house.rig)
     assert edges.stride == 1
+    assert np.abs(found.view.vector - house.view.vector)[1] * house.view.focal < 6.0
 
 
-def test_bare_ice_is_not_followed() -> None:
-    bare = Frame(0, 0.0, np.full((SIZE[1], SIZE[0], 3), 225, np.uint8))
-    assert tracker().settle([bare], [view()], rig()) == []
+def test_up_to_the_first_that_does_not_show_the_house() -> None:
+    frames, house = filmed()
+    bare = Frame(2, 0.08, np.full((SIZE[1], SIZE[0], 3), 230, np.uint8))
+    edges = tracker(house)
+    views = [house.view] * 4
+    seen = edges.settle([*frames[:2], bare, frames[3]], views, house.rig)
+    assert [s.index for s in seen] == [0, 1]
+    assert edges.settle([bare], [house.view], house.rig) == []
 
 
-def test_a_frame_that_shows_much_less_is_looked_at_by_itself(frames: list[Frame]) -> None:
-    picture = frames[0].image.copy()
-    picture[:, : SIZE[0] // 2 - 60] = 70
-    covered = Frame(1, 0.04, picture)
-    edges = tracker()
-    assert edges.settle(frames[:1], [view()], rig())
-    together = [frames[0], covered], [view(), view()]
-    assert len(edges.settle(*together, rig())) == 1
-    assert len(edges.settle([covered], [view()], rig())) == 1
-    assert edges.support < 0.8
-    assert len(edges.settle(*together, rig())) == 2
+def test_where_the_circles_are_out_of_view_there_are_still_lines() -> None:
+    frames, house = filmed()
+    edges = tracker(house)
+    assert edges.expects(house.view, house.rig)
+    lines = edges.lines(frames[0].picture, house.view, house.rig)
+    assert len(lines) > 10 and (lines.line >= CIRCLES).all()
+    away = View(house.view.vector + np.array([1.0, 0.0, 0.0, 0.0]))
+    assert not edges.expects(away, house.rig)
+
+
+def test_a_house_of_other_colours_is_told() -> None:
+    _, house = filmed()
+    edges = tracker(house)
+    assert edges.looks_like(house.evidence.palette)
+    assert not edges.looks_like(house.evidence.palette[:, ::-1])
