@@ -90,8 +90,11 @@ class Estimates:
 
     @property
     def laws(self) -> Joint | None:
-        """Restitution and frictions as the whole shot tells them, with their covariance."""
-        return None if self.whole is None else self.whole.joint(LAWS)
+        """Restitution, frictions and size as the whole shot tells them, with their covariance.
+
+        The size is the distance of two stones' centres as they hit each other over two radii.
+        """
+        return None if self.whole is None else self.whole.joint((*LAWS, "size"))
 
 
 def estimate(

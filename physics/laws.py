@@ -15,6 +15,9 @@ from physics.estimate import Estimates
 from physics.ice import Constant, Fit, IceLaw
 from physics.watched import FRICTION, LITERATURE, RESTITUTION, STONE_FRICTION
 
+UNSCALED = Estimate(1.0, 0.0)
+"""Stones that meet at two radii."""
+
 LEAST_FRICTION = 1e-6
 """Friction of ice that slows no stone: a law needs some."""
 
@@ -52,6 +55,9 @@ class Laws:
         Turn of the paths; none for discs that are no curling stones.
     sd_turn : float
         Standard error of the turn at 1 m/s, rad/s; 0 where no curl shows.
+    size : Estimate
+        Distance of two stones' centres as they hit each other over two radii: what the scale of
+        the tracks and their radius make of it.
     assumed : mapping of str to str
         ``restitution``, ``stone_friction`` or ``friction`` to what was assumed of it, where the
         shot does not tell.
@@ -63,6 +69,7 @@ class Laws:
     sd_friction: float
     curl: Curl
     sd_turn: float = 0.0
+    size: Estimate = UNSCALED
     assumed: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -91,15 +98,16 @@ def measured_laws(shot: Estimates | Results, radius: float) -> Laws:
         sd_friction,
         FCV1Curl(turn=shot.curl.value or 0.0) if curling else NoCurl(),
         (shot.curl.stderr or 0.0) if curling else 0.0,
+        _of(shot.laws, "size") or UNSCALED,
         assumed,
     )
 
 
 def between_stones(laws: Joint | None, collisions: Sequence[Collision]) -> Estimate:
     """Friction between the stones: of the whole shot if it tells it, else of its hits."""
-    if laws is not None and "stone_friction" in laws.names:
-        k = laws.names.index("stone_friction")
-        return Estimate(laws.values[k], float(np.sqrt(laws.cov[k][k])))
+    whole = _of(laws, "stone_friction")
+    if whole is not None:
+        return whole
     told = [
         (hit.stone_friction, hit.stderr_stone_friction)
         for hit in collisions
@@ -110,6 +118,14 @@ def between_stones(laws: Joint | None, collisions: Sequence[Collision]) -> Estim
     values, errors = np.array(told, float).T
     weights = errors**-2
     return Estimate(float(weights @ values / weights.sum()), float(weights.sum() ** -0.5))
+
+
+def _of(laws: Joint | None, name: str) -> Estimate | None:
+    """One of the laws of a whole shot, None where it does not tell it."""
+    if laws is None or name not in laws.names:
+        return None
+    k = laws.names.index(name)
+    return Estimate(laws.values[k], float(np.sqrt(laws.cov[k][k])))
 
 
 def _ice(friction: Friction, assumed: dict[str, str]) -> tuple[IceLaw, float]:

@@ -18,6 +18,7 @@ from physics.shot_model import STATE
 from physics.simulate import simulate
 from physics.simulation import Shot, StoneStart
 from physics.spread import Doubt, draws, path_spread, simulated_hits
+from physics.traces import Trace
 
 MOVED = 0.05
 """Distance by which a stone must move to count in the score, m."""
@@ -95,7 +96,7 @@ def simulate_measured(
             scores[name] = SimulationScore(None, {}, notes[name])
             continue
         try:
-            shot = Shot(stones, impact, laws.ice, laws.curl, radius)
+            shot = Shot(stones, impact, laws.ice, laws.curl, radius * (laws.size.value or 1.0))
             run = simulate(shot)
         except InputError as error:
             scores[name] = SimulationScore(None, {}, f"cannot be simulated: {error}")
@@ -173,7 +174,18 @@ def _doubt(tracks: pd.DataFrame, start: float, estimates: Estimates, laws: Laws)
         restitution=laws.restitution.stderr or 0.0,
         stone_friction=laws.stone_friction.stderr or 0.0,
         friction=laws.sd_friction,
+        size=laws.size.stderr or 0.0,
+        shared=_shared(estimates.local.known, start),
     )
+
+
+def _shared(known: Mapping[str, Trace], start: float) -> dict[str, float]:
+    """Tell what stones near each other share of the errors of their places, m."""
+    return {
+        name: float(trace.sd_place[np.argmin(np.abs(trace.t - start))])
+        for name, trace in known.items()
+        if len(trace.t)
+    }
 
 
 def _or_zero(value: float) -> float:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,7 @@ from physics.laws import Scaled
 from physics.shot_model import STATE
 from physics.simulate import simulate
 from physics.simulation import Hit, Shot, Simulation, StoneStart
+from physics.traces import PLACE_REACH
 
 Floats = NDArray[np.float64]
 
@@ -41,6 +42,10 @@ class Doubt:
         Of the hits.
     friction : float
         Of the ice, as a part of its friction.
+    size : float
+        Of the stones' radius, as a part of it.
+    shared : mapping of str to float
+        Of each stone's place, m, what stones near each other have in common.
     """
 
     states: dict[str, Floats]
@@ -48,13 +53,15 @@ class Doubt:
     restitution: float = 0.0
     stone_friction: float = 0.0
     friction: float = 0.0
+    size: float = 0.0
+    shared: Mapping[str, float] = field(default_factory=dict)
 
 
 def draws(shot: Shot, doubt: Doubt, count: int = DRAWS, seed: int = 0) -> list[Simulation]:
     """Simulate a shot many times with all that is doubtful drawn from normal distributions.
 
-    What is drawn is independent, of places also what they share. Draws that cannot be simulated
-    are left out.
+    What is drawn is independent but for what places share: stones nearer to each other than
+    `PLACE_REACH` move together. Draws that cannot be simulated are left out.
     """
     rng = np.random.default_rng(seed)
     out = []
@@ -122,7 +129,10 @@ def path_spread(others: Sequence[Simulation], times: Floats) -> pd.DataFrame:
 
 
 def _drawn(shot: Shot, doubt: Doubt, rng: np.random.Generator) -> Shot:
-    stones = tuple(_moved(stone, doubt, rng) for stone in shot.stones)
+    together = _together(shot, doubt, rng)
+    stones = tuple(
+        _moved(stone, doubt, by, rng) for stone, by in zip(shot.stones, together, strict=True)
+    )
     known = {item.name for item in fields(shot.impact)}  # type: ignore[arg-type]
     laws: dict[str, float] = {}
     for name, sd, top in (
@@ -134,12 +144,27 @@ def _drawn(shot: Shot, doubt: Doubt, rng: np.random.Generator) -> Shot:
             laws[name] = float(np.clip(value, 0.0, top))
     impact: Any = replace(shot.impact, **laws)  # type: ignore[type-var]
     factor = max(1.0 + doubt.friction * rng.standard_normal(), 0.1)
-    return replace(shot, stones=stones, impact=impact, ice=Scaled(shot.ice, factor))
+    radius = shot.radius * (1.0 + doubt.size * rng.standard_normal())
+    return replace(shot, stones=stones, impact=impact, ice=Scaled(shot.ice, factor), radius=radius)
 
 
-def _moved(stone: StoneStart, doubt: Doubt, rng: np.random.Generator) -> StoneStart:
-    values = [getattr(stone, name) for name in STATE]
-    moved = np.array(values) + doubt.states[stone.name] * rng.standard_normal(len(STATE))
+def _together(shot: Shot, doubt: Doubt, rng: np.random.Generator) -> Floats:
+    """Draw what the places share: displacements of all stones, shape (n, 2), m."""
+    xy = np.array([(stone.x, stone.y) for stone in shot.stones])
+    size = np.array([doubt.shared.get(stone.name, 0.0) for stone in shot.stones])
+    apart = np.sum((xy[:, None] - xy[None]) ** 2, axis=2)
+    cov = np.outer(size, size) * np.exp(-apart / (2 * PLACE_REACH**2))
+    return rng.multivariate_normal(np.zeros(len(xy)), cov, 2, method="eigh").T
+
+
+def _moved(
+    stone: StoneStart, doubt: Doubt, together: Floats, rng: np.random.Generator
+) -> StoneStart:
+    values = np.array([getattr(stone, name) for name in STATE])
+    sd = doubt.states[stone.name].copy()
+    sd[:2] = np.sqrt(np.maximum(sd[:2] ** 2 - doubt.shared.get(stone.name, 0.0) ** 2, 0.0))
+    moved = values + sd * rng.standard_normal(len(STATE))
+    moved[:2] += together
     after = stone.omega_after
     errors = doubt.spins_after.get(stone.name, ())
     if isinstance(after, tuple) and len(after) == len(errors):

@@ -107,6 +107,7 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     # A stone at rest is known to rest.
     sd[[stone.vx == stone.vy == 0 for stone in stones], 2:] = 0.0
     thrown = _fastest(stones)
+    radius = results.radius * (laws.size.value or 1.0)
     impact = Frictional(laws.restitution.value or 0.0, laws.stone_friction.value or 0.0)
     stone = stones[thrown]
     speed = math.hypot(stone.vx, stone.vy)
@@ -120,7 +121,7 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     release = max(HOG_TO_TEE + ahead - way, 0.0) if curling else 0.0
     bounds = Bounds(1 if stone.vy > 0 else -1) if curling else None
     return Start(
-        Shot(tuple(moved), impact, laws.ice, laws.curl, results.radius, bounds),
+        Shot(tuple(moved), impact, laws.ice, laws.curl, radius, bounds),
         thrown,
         sd,
         laws.restitution.stderr or 0.0,

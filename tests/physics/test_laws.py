@@ -36,6 +36,17 @@ def test_hits_are_weighted_and_the_whole_shot_comes_first() -> None:
     assert between_stones(None, hits[2:]) == Estimate()
 
 
+def test_the_distance_at_which_stones_meet_is_a_law_of_the_shot() -> None:
+    assert measured_laws(Estimates(), R).size == Estimate(1.0, 0.0)
+
+    class Shot(Estimates):
+        laws = Joint(("restitution", "size"), (0.8, 0.996), ((1e-4, 0.0), (0.0, 4e-6)))
+
+    size = measured_laws(Shot(), R).size
+    assert size.value == 0.996
+    assert size.stderr == pytest.approx(0.002)
+
+
 def test_what_a_shot_does_not_tell_is_assumed_with_its_doubt() -> None:
     laws = measured_laws(Estimates(), R)
     assert laws.restitution == LITERATURE.restitution

@@ -49,7 +49,7 @@ def test_a_head_on_hit_passes_on_what_is_not_known_of_restitution_and_speed() ->
 def test_a_hit_that_hardly_ever_happens_has_no_errors() -> None:
     stones = (StoneStart("A", 0.29, -1.0, 0.0, 1.0), StoneStart("B", 0.0, 0.0))
     shot = Shot(stones, Frictional(0.8, 0.1), Constant(MU), NoCurl())
-    aside = {"A": np.array([0.2, 0, 0, 0, 0]), "B": CERTAIN}
+    aside = {"A": np.array([0.5, 0, 0, 0, 0]), "B": CERTAIN}
     (hit,) = simulated_hits(simulate(shot), draws(shot, Doubt(aside, {}), 40), 0.0)
     assert hit.stderr_t is None
     assert hit.after["B"].sd_vx is None
@@ -91,3 +91,30 @@ def test_errors_of_a_simulated_shot_mean_what_they_say() -> None:
     # The eight of one draw hang together: hardly more than ten are independent.
     assert 0.4 < np.std(pulls) < 1.4
     assert np.mean(np.abs(pulls) < 2) > 0.85
+
+
+def test_what_two_places_share_moves_both_and_leaves_the_hit_as_it_is() -> None:
+    """A common error of 5 mm is one of 5 mm at the end; apart, it is that times the lever."""
+    stones = (StoneStart("A", 0.1, -0.3, 0.0, 1.0), StoneStart("B", 0.0, 0.0))
+    shot = Shot(stones, PointMass(0.8), Constant(MU), NoCurl())
+    size = np.array([0.005, 0.005, 0, 0, 0])
+    states, common = {"A": size, "B": size}, {"A": 0.005, "B": 0.005}
+    spread = {}
+    for name, doubt in (("apart", Doubt(states, {})), ("shared", Doubt(states, {}, shared=common))):
+        first, last = (
+            path_spread(draws(shot, doubt, 200), np.array([0.0, 3.0])).query("t == @t")["sd_x"]
+            for t in (0.0, 3.0)
+        )
+        assert first.to_numpy() == pytest.approx([0.005, 0.005], rel=0.2)
+        spread[name] = last.to_numpy()
+    assert np.all(spread["apart"] > 0.03)
+    assert np.all(spread["shared"] < 0.4 * spread["apart"])
+
+
+def test_the_size_of_the_stones_is_drawn_too() -> None:
+    stones = (StoneStart("A", 0.1, -0.6, 0.0, 1.0), StoneStart("B", 0.0, 0.0))
+    shot = Shot(stones, PointMass(0.8), Constant(MU), NoCurl())
+    none = {"A": CERTAIN, "B": CERTAIN}
+    (hit,) = simulated_hits(simulate(shot), draws(shot, Doubt(none, {}, size=0.01), 200), 0.0)
+    # 2 R at 1 m/s on the way to B.
+    assert hit.stderr_t == pytest.approx(0.01 * 2 * RADIUS / 0.94, rel=0.3)
