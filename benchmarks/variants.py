@@ -16,7 +16,6 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 
 import pipeline
 from tests.synthetic.clip import Truth, cached_clip
@@ -40,11 +39,8 @@ def row(seed: int) -> tuple[str, bool]:
     results, e, mu = done.results, truth.hits[0].restitution, truth.friction
     off_e = (results.restitution.value or np.nan) - e
     off_mu = (results.friction.value or np.nan) / mu - 1
-    again = {
-        stone: off
-        for stone, off in results.simulations["frictional"].rest_error.items()
-        if off is not None
-    }
+    score = results.simulations["frictional"]
+    again = {stone: off for stone, off in score.rest_error.items() if off is not None}
     forecast = results.predictions["frictional"]
     kept = abs(off_e) <= 0.01 and abs(off_mu) <= 0.03 and max(again.values(), default=1.0) <= 0.03
     wide, high = truth.size
@@ -52,16 +48,10 @@ def row(seed: int) -> tuple[str, bool]:
         f"{seed:4d}  {wide}x{high} {truth.fps:.0f} fps",
         f"e {e:.3f} {off_e:+.4f} ± {results.restitution.stderr or np.nan:.4f}",
         f"mu {mu:.4f} {100 * off_mu:+.2f} ± {100 * (results.friction.stderr or np.nan) / mu:.2f} %",
-        f"again {_places(again, _spread(done.simulations))}",
+        f"again {_places(again, score.rest_sd)}",
         f"literature {_places(forecast.rest_error, forecast.rest_sd)}",
     ]
     return "  ".join([*cells, "yes" if kept else "NO"]), kept
-
-
-def _spread(simulations: pd.DataFrame) -> dict[str, float]:
-    """Stated error of each stone's last simulated place, m."""
-    last = simulations[simulations["model"] == "frictional"].groupby("stone").last()
-    return np.hypot(last["sd_x"], last["sd_y"]).to_dict()
 
 
 def _places(errors: Mapping[str, float | None], stated: Mapping[str, float | None]) -> str:

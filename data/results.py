@@ -199,13 +199,16 @@ class SimulationScore:
     """How far a simulated shot was from the measured one.
 
     ``rmse`` over all stones and times after the first hit, m; ``rest_error`` per stone the
-    distance between simulated and measured last place, m; ``hits`` in their order.
+    distance between simulated and measured last place, m; ``hits`` in their order; ``rest_sd``
+    per stone the standard deviation (m, both axes together) of its simulated last place, from the
+    errors of the start and of the laws.
     """
 
     rmse: float | None
     rest_error: Mapping[str, float | None] = field(default_factory=dict)
     note: str | None = None
     hits: tuple[SimulatedHit, ...] = ()
+    rest_sd: Mapping[str, float | None] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

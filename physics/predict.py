@@ -108,7 +108,9 @@ def simulate_measured(
         table["t"] = table["t"] + start
         samples[name] = table
         found = score(tracks, table, start, ends, notes.get(name))
-        scores[name] = replace(found, hits=simulated_hits(run, others, start))
+        scores[name] = replace(
+            found, hits=simulated_hits(run, others, start), rest_sd=_rest_sd(table, found)
+        )
     return samples, scores, tuple(warnings)
 
 
@@ -177,6 +179,13 @@ def _doubt(tracks: pd.DataFrame, start: float, estimates: Estimates, laws: Laws)
         size=laws.size.stderr or 0.0,
         shared=_shared(estimates.local.known, start),
     )
+
+
+def _rest_sd(table: pd.DataFrame, found: SimulationScore) -> dict[str, float | None]:
+    """Tell the standard deviation of the last place of each stone that is scored, m."""
+    last = table.groupby("stone")[["sd_x", "sd_y"]].last().dropna()
+    spread = dict(zip(last.index, np.hypot(last["sd_x"], last["sd_y"]).tolist(), strict=True))
+    return {name: spread.get(name) for name in found.rest_error}
 
 
 def _shared(known: Mapping[str, Trace], start: float) -> dict[str, float]:

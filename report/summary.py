@@ -8,7 +8,7 @@ from typing import Any
 
 import pandas as pd
 
-from data.results import Prediction, Results
+from data.results import Prediction, Results, SimulationScore
 from data.sheet import House
 from physics.forecast import AFTER
 from physics.pool import Pooled
@@ -131,7 +131,7 @@ def summary(
     for model, score in results.simulations.items():
         off = f"— ({score.note or 'nothing to compare'})"
         if score.rmse is not None:
-            off = f"{unit.little(score.rmse)} RMS off"
+            off = f"{unit.little(score.rmse)} RMS off{_last(score, unit)}"
         lines.append(f"simulated   {model}: {off}")
     for model, guess in results.predictions.items():
         if guess.rmse is not None:
@@ -146,6 +146,16 @@ def summary(
         report = out / "report.html"
         lines.append(f"written     {report if report.exists() else out}")
     return "\n".join(lines)
+
+
+def _last(score: SimulationScore, unit: Unit) -> str:
+    """How far the last places were off, and by how much errors of start and laws let them be."""
+    off = [
+        f"{stone} {unit.little(error)} (± {unit.little(sd)})"
+        for stone, error in score.rest_error.items()
+        if error is not None and (sd := score.rest_sd.get(stone)) is not None
+    ]
+    return f"; at the end {', '.join(off)}" if off else ""
 
 
 def _soon(guess: Prediction, unit: Unit) -> str:

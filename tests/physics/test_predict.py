@@ -33,6 +33,10 @@ def test_the_shot_again_lands_where_it_did() -> None:
     assert scores["frictional"].rmse < 0.02
     assert set(scores["frictional"].rest_error) == {"A", "B"}
     assert max(float(v or 0) for v in scores["frictional"].rest_error.values()) < 0.04
+    for stone, error in scores["frictional"].rest_error.items():
+        sd = scores["frictional"].rest_sd[stone]
+        assert sd is not None
+        assert 0.25 * (error or 0.0) < sd < 0.1
     assert warnings == ()
     table = samples["frictional"]
     hit = find_contacts(seen, RADIUS)[0].t

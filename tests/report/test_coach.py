@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -168,6 +170,19 @@ def test_two_teams_of_one_colour_word_keep_their_colours():
         [glide("A", (0, 0), end=1.0, team="#c02030"), glide("B", (1, 0), end=1.0, team="#e03040")]
     )
     assert team_names(tracks) == {"A": "#c02030", "B": "#e03040"}
+
+
+def test_the_summary_says_how_far_the_last_places_may_be_off(shot):
+    score = replace(
+        shot.results.simulations["frictional"],
+        rmse=0.02,
+        rest_error={"A": 0.031},
+        rest_sd={"A": 0.05},
+    )
+    text = summary(replace(shot.results, simulations={"frictional": score}), shot.tracks)
+    assert "frictional: 2.0 cm RMS off; at the end A 3.1 cm (± 5.0 cm)" in text
+    unknown = replace(shot.results, simulations={"frictional": replace(score, rest_sd={})})
+    assert "at the end" not in summary(unknown, shot.tracks)
 
 
 def test_the_summary_says_who_lies_shot_in_the_unit_asked_for(shot):
