@@ -147,6 +147,33 @@ def test_discs_of_a_motion_capture(shared: Path, number: int) -> None:
     assert hit.momentum_residual < 0.1
 
 
+def test_momentum_that_a_rocking_disc_loses_to_the_table(shared: Path) -> None:
+    """What is missing in one hit, 1.4 % or 4 standard errors, is what the table takes in 15 ms.
+
+    The table's friction is not even: from none for 50 ms after the hit it grows to 0.11 and falls
+    to nothing again within half a second, as of a disc that rocks on its rim. A fit with one
+    deceleration beside the hit cannot know what it is at the hit itself. Neither masses nor a
+    centre that is off (momentum is missing across the way as well as along it, and in other
+    amounts in each hit) explain it.
+    """
+    seen = discs(shared, 42)
+    found = estimate(seen, find_contacts(seen, 0.025), radius=0.025, masses=MASSES)
+    (hit,) = found.collisions
+    assert hit.momentum_residual is not None
+    assert hit.stderr_momentum is not None
+    assert 3 < hit.momentum_residual / hit.stderr_momentum < 6
+    soon = [g for g in found.glides if g.stone == "a" and hit.t < g.t0 < hit.t + 0.3]
+    least, most = (choice(soon, key=lambda glide: glide.friction or 0.0) for choice in (min, max))
+    assert (least.friction or 0.0) < 0.01
+    assert (most.friction or 0.0) > 0.1
+    assert (most.friction or 0.0) - (least.friction or 0.0) > 5 * float(
+        np.hypot(most.stderr or 0.0, least.stderr or 0.0)
+    )
+    speed = float(np.hypot(hit.before["b"].vx, hit.before["b"].vy))
+    assert hit.momentum_residual * speed / ((most.friction or 0.0) * 9.81) < 0.015
+    assert any("friction differs from glide to glide" in text for text in found.warnings)
+
+
 def test_unequal_masses() -> None:
     # A heavy stone seen in a mirror of momentum: equal stones' truth must not fit.
     motion = hit_motion(1.5, 0.05)
