@@ -39,11 +39,11 @@ TOGETHER = 16
 VIEW_SD = (np.inf, np.inf, 0.05, np.inf)
 """How far a view may lie from the provisional one: the roll is free where no line is seen."""
 
-LONG_RANGE = 1.2
+LONG_RANGE = 1.5
 """Errors of paint and outline are alike over longer stretches than single pieces and marks tell:
 so much larger than these say are the standard errors, as cameras known otherwise show."""
 
-YARDSTICK_PX = 0.1
+YARDSTICK_PX = 0.13
 """How well the outer edge of the 12-ft circle is made out, px: an outline that is little darker
 than the paint goes unseen and draws the edge outwards."""
 
@@ -127,6 +127,8 @@ def fit_clip(seen: Sequence[Seen], rig: Array, prior: Prior, size: tuple[int, in
     shared, _ = bundle([s.marks for s in chosen], times, [s.view for s in chosen], rig, size, prior)
     cameras = _fit_frames(seen, shared, size)
     sd = LONG_RANGE * np.sqrt(np.diag(shared.cov)[:RIG_SIZE])
+    place, scale = shared.rig[POSITION], _scale_sd(chosen[-1].view, shared.rig)
+    sd[POSITION] = np.hypot(sd[POSITION], scale * place)
     return HouseTrack(
         tuple(cameras),
         np.array([HOUSE.twelve_foot, *shared.rig[[R8, R4]]]),
@@ -203,7 +205,7 @@ def fit_frames(seen: Sequence[Seen], shared: Bundle, size: tuple[int, int]) -> l
         error = CameraError(
             common @ spread @ common.T,
             LONG_RANGE**2 * noisier[k] * own @ cov @ own.T + np.diag(jitter**2),
-            _yardstick(fit.view, rig) / HOUSE.twelve_foot,
+            _scale_sd(fit.view, rig),
             0.0 if s.key is None else s.key.drift,
         )
         rms = fit.rms if s.found else float("nan")
@@ -219,9 +221,9 @@ def fit_frames(seen: Sequence[Seen], shared: Bundle, size: tuple[int, int]) -> l
     return found
 
 
-def _yardstick(view: View, rig: Array) -> float:
-    """Tell how well the 12-ft circle's radius is made out, m."""
-    return YARDSTICK_PX * float(np.linalg.norm(rig[POSITION])) / view.focal
+def _scale_sd(view: View, rig: Array) -> float:
+    """Tell how well all lengths are known, as shares: as well as the 12-ft circle's radius."""
+    return YARDSTICK_PX * float(np.linalg.norm(rig[POSITION])) / view.focal / HOUSE.twelve_foot
 
 
 def _parameters(view: Array, rig: Array, size: tuple[int, int]) -> Array:
