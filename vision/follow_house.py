@@ -21,12 +21,12 @@ from vision.clip import Clip, Frame
 from vision.edge_tracker import EdgeTracker
 from vision.house import find_house
 from vision.house_fit import HouseFit
-from vision.joint import HouseTrack, Seen, fit_clip
+from vision.joint import HouseTrack, fit_clip
 from vision.picture import image_of
 from vision.piece import Piece
 from vision.placed import Placed, nobody
 from vision.pose import View
-from vision.replay import glimpse, is_nearer, is_replay
+from vision.replay import Glimpse, glimpse, has_jumped, is_nearer, is_replay
 from vision.rig import ANYWHERE, OVERHEAD
 
 Array = NDArray[np.float64]
@@ -97,8 +97,10 @@ class HouseFollower:
         frame = frames[0]
         if piece is not None:
             seen = piece.follow(frames)
-            if seen and piece.lost and self._is_elsewhere(piece, seen[0], frame):
-                seen, piece.lost = [], PATIENCE
+            if seen and piece.lost:
+                now = glimpse(frame.picture, seen[0].view, piece.rig, frame.t)
+                if self._is_elsewhere(piece, now):
+                    seen, piece.lost = [], PATIENCE
             if seen and piece.missed > PATIENCE:
                 # Carried on through a dissolve, say: what is fixed to the ice is not it.
                 house = self._find(frame)
@@ -108,7 +110,9 @@ class HouseFollower:
             if seen:
                 del self._ahead[: len(seen)]
                 self._waiting.clear()
-                return piece.take(frames[: len(seen)], seen)
+                placed = piece.take(frames[: len(seen)], seen)
+                self._watch_for_cuts(piece)
+                return placed
             piece.lost += 1
             if piece.lost == 1:
                 self._since_find = self._between = FIND_EVERY
@@ -121,13 +125,28 @@ class HouseFollower:
         self._waiting.append(frame)
         return []
 
-    def _is_elsewhere(self, piece: Piece, seen: Seen, frame: Frame) -> bool:
-        """Whether a frame after a cut is a replay, or goes on with what was before a replay."""
-        now = glimpse(frame.picture, seen.view, piece.rig, frame.t)
-        others = [p.glimpses[-1] for p in self._pieces if p is not piece and p.glimpses]
+    def _watch_for_cuts(self, piece: Piece) -> None:
+        """End a piece that has been cut to a replay, or from one, without losing the house."""
+        now = piece.glimpse_due()
+        if now is None:
+            return
+        jumped = bool(piece.glimpses) and has_jumped(now, piece.glimpses[-1])
+        like = [*piece.glimpses[:-1], *self._elsewhere(piece)]
+        if jumped and self._is_elsewhere(piece, now) and piece.give_up_cut(like):
+            self._piece = None
+            self._since_find = self._between = FIND_EVERY
+        else:
+            piece.keep(now)
+
+    def _is_elsewhere(self, piece: Piece, now: Glimpse) -> bool:
+        """Whether a piece shows a replay now, or goes on with what was before a replay."""
         return is_replay(now, piece.glimpses) or (
-            bool(piece.glimpses) and is_nearer(now, others, piece.glimpses[-1])
+            bool(piece.glimpses) and is_nearer(now, self._elsewhere(piece), piece.glimpses[-1])
         )
+
+    def _elsewhere(self, piece: Piece) -> list[Glimpse]:
+        """Give what the other pieces showed last."""
+        return [p.glimpses[-1] for p in self._pieces if p is not piece and p.glimpses]
 
     def _find(self, frame: Frame) -> HouseFit | None:
         """Look for the house, now and then; the first is the one given, if one is."""

@@ -23,7 +23,7 @@ from vision.paint import CENTRE_LINE, EIGHT, FOUR, TEE_LINE, TWELVE, Marks, join
 from vision.picture import Picture
 from vision.pose import View, camera, project
 from vision.predict import MEMORY, predict
-from vision.replay import EVERY, Glimpse, glimpse
+from vision.replay import EVERY, Glimpse, cut_among, glimpse, shows_again
 from vision.resection import solve_view
 from vision.rig import Prior
 
@@ -81,6 +81,7 @@ class Piece:
     _refined: int = 0
     _picture: Picture | None = None
     _key: Keyframe | None = None
+    _fresh: list[Picture] = field(default_factory=list)
 
     def follow(self, frames: Sequence[Frame]) -> list[Seen]:
         """Follow into the next frames, of which there should be no more than `edges.stride`.
@@ -104,7 +105,6 @@ class Piece:
         """Take in frames that were followed; give them back with provisional cameras."""
         for frame, new in zip(frames, seen, strict=True):
             self._add(new, frame.picture)
-            self._remember(frame.picture)
         self._refine()
         return [
             (frame, self.camera(new))
@@ -115,12 +115,42 @@ class Piece:
         self.seen.append(seen)
         self.found += seen.found
         self._picture, self.lost = picture, 0
+        self._fresh = [*self._fresh, picture] if seen.found else []
 
-    def _remember(self, picture: Picture) -> None:
-        """Keep now and then what the house looks like."""
+    def glimpse_due(self) -> Glimpse | None:
+        """Tell what the house looks like in the last frame, now and then."""
         last = self.seen[-1]
-        if last.found and (not self.glimpses or last.t - self.glimpses[-1].t > EVERY):
-            self.glimpses.append(glimpse(picture, last.view, self.rig, last.t))
+        if self._picture is None or not last.found:
+            return None
+        if self.glimpses and last.t - self.glimpses[-1].t <= EVERY:
+            return None
+        return glimpse(self._picture, last.view, self.rig, last.t)
+
+    def keep(self, look: Glimpse) -> None:
+        """Keep what the house looks like in the last frame."""
+        self.glimpses.append(look)
+        self._fresh = []
+
+    def give_up_cut(self, like: Sequence[Glimpse]) -> bool:
+        """Leave out frames since the last glimpse if a cut leads to what these show.
+
+        Returns
+        -------
+        bool
+            Whether one does.
+        """
+        fresh = self.seen[len(self.seen) - len(self._fresh) :]
+        looks = [
+            glimpse(picture, seen.view, self.rig, seen.t)
+            for picture, seen in zip(self._fresh, fresh, strict=True)
+        ]
+        first = cut_among([self.glimpses[-1], *looks])
+        if first is None or not shows_again(looks[-1], self.glimpses, like):
+            return False
+        left = len(fresh) - first + 1
+        self.found -= left
+        del self.seen[-left:]
+        return True
 
     def _refine(self) -> None:
         """Fit anew what the frames share, at first often, so that the way on is more precise."""
@@ -197,6 +227,7 @@ class Piece:
         placed.reverse()
         self.seen = [*before, *(seen for _, seen in placed)]
         self._picture, self._key, self.missed = frame.picture, None, 0
+        self._fresh = []
         return placed
 
     def camera(self, seen: Seen) -> Camera:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import cv2
 import numpy as np
@@ -26,6 +27,14 @@ LONG_BEFORE = 0.8
 
 ALIKE = 0.5
 """A replay differs so much less from what was long before than from what was last."""
+
+CHANGED, LEAST_CELLS, PLACES, NEW_PLACES = 25.0, 4, 3, 2
+"""Grey levels by which a cell looks otherwise, cells that make a place of change, how many places
+must change between two glimpses if they belong to different shots, and how many must then show
+again what is not usual there: people who go, or a graphic, only uncover what was there before."""
+
+SUDDEN = 0.7
+"""Share of a change that comes with one picture if there is a cut before it."""
 
 _COURSE = np.linspace(-HOUSE.twelve_foot, HOUSE.twelve_foot, CELLS * FINER)
 _PLACES = np.stack(np.meshgrid(_COURSE, _COURSE), axis=-1).reshape(-1, 2)
@@ -64,6 +73,50 @@ def is_replay(now: Glimpse, before: Sequence[Glimpse]) -> bool:
     """Say whether a glimpse repeats one from long before the last one."""
     older = [g for g in before if g.t < before[-1].t - LONG_BEFORE]
     return bool(older) and is_nearer(now, older, before[-1], ALIKE)
+
+
+def has_jumped(now: Glimpse, last: Glimpse) -> bool:
+    """Say whether several things are elsewhere than they were a glimpse before."""
+    return _places(_differ(now.grey, last.grey)) >= PLACES
+
+
+def shows_again(now: Glimpse, before: Sequence[Glimpse], like: Sequence[Glimpse]) -> bool:
+    """Say whether things are again where they were once, not a glimpse before nor usually.
+
+    Parameters
+    ----------
+    now : Glimpse
+    before : sequence of Glimpse
+        What was seen before a cut, if there was one, up to the last.
+    like : sequence of Glimpse
+        What may be seen again.
+    """
+    usual = np.median([look.grey for look in before], axis=0)
+    new = _differ(now.grey, before[-1].grey) & _differ(now.grey, usual)
+    nearest = min(like, key=lambda look: _difference(now, look))
+    again = new & ~_differ(now.grey, nearest.grey)
+    return _places(new) >= NEW_PLACES and bool(again.sum() > 0.5 * new.sum())
+
+
+def _differ(one: Array, other: Array) -> NDArray[np.bool_]:
+    return np.asarray(np.abs(one - other) > CHANGED)
+
+
+def _places(cells: NDArray[np.bool_]) -> int:
+    """Count the connected places that some of the cells make up."""
+    count, _, stats, _ = cv2.connectedComponentsWithStats(cells.astype(np.uint8))
+    return int((stats[1:count, cv2.CC_STAT_AREA] >= LEAST_CELLS).sum())
+
+
+def cut_among(looks: Sequence[Glimpse]) -> int | None:
+    """Tell from which of some glimpses on, one after the other, another shot is seen; or None.
+
+    A cut changes all at once; what moves changes step by step.
+    """
+    steps = [_difference(one, other) for one, other in pairwise(looks)]
+    largest = max(range(len(steps)), key=steps.__getitem__)
+    sudden = steps[largest] > SUDDEN * _difference(looks[0], looks[-1])
+    return largest + 1 if sudden else None
 
 
 def is_nearer(now: Glimpse, these: Sequence[Glimpse], that: Glimpse, share: float = 0.8) -> bool:

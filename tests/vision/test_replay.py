@@ -24,7 +24,11 @@ def frames(parts: Sequence[Sequence[np.ndarray]]) -> list[int]:
     """Follow parts with crowds between them; the indices of the frames that have a camera."""
     rng = np.random.default_rng(2)
     crowd = rng.integers(0, 256, (8, *SIZE[::-1], 3), dtype=np.uint8)
-    pictures = [p for k, part in enumerate(parts) for p in ([*crowd] if k else []) + [*part]]
+    return frames_of([p for k, part in enumerate(parts) for p in ([*crowd] if k else []) + [*part]])
+
+
+def frames_of(pictures: Sequence[np.ndarray]) -> list[int]:
+    """Follow pictures; the indices of the frames that have a camera in the end."""
     follower = HouseFollower(SIZE)
     for k, picture in enumerate(pictures):
         follower.look(Frame(k, k / RATE, picture))
@@ -46,3 +50,15 @@ def test_the_shot_may_go_on_after_a_replay(live: list[np.ndarray]) -> None:
     first, second = live[:50], live[60:]
     found = frames([first, live[6:26], second])
     assert found == [*range(50), *range(50 + 36, 50 + 36 + len(second))]
+
+
+def test_a_replay_without_a_gap_is_told_by_what_is_seen(live: list[np.ndarray]) -> None:
+    found = frames_of([*live, *live[8:38]])
+    assert found == list(range(found[-1] + 1))
+    assert len(live) - 6 <= found[-1] < len(live)
+
+
+def test_the_shot_may_go_on_after_a_replay_without_a_gap(live: list[np.ndarray]) -> None:
+    found = frames_of([*live[:50], *live[6:26], *live[51:]])
+    assert not set(found) & set(range(50, 70))
+    assert {*range(44), *range(76, 94)} <= set(found)
