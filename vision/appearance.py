@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from vision.clip import Image
+from vision.lab import bgr_of, lab_of
 from vision.sighting import Sighting
 
 Array = NDArray[np.float64]
@@ -33,12 +33,12 @@ class Colour:
     mean: Array
     covariance: Array
 
-    def distance2(self, lab: Array) -> Array:
-        """Squared Mahalanobis distance of colours, shape (..., 3)."""
-        away = lab - self.mean
-        return np.asarray(
-            np.einsum("...i,ij,...j->...", away, np.linalg.inv(self.covariance), away)
-        )
+    def distance(self, lab: Floats) -> Floats:
+        """Mahalanobis distance of colours, shape (..., 3)."""
+        root = np.linalg.cholesky(np.linalg.inv(self.covariance))
+        away = (lab - self.mean.astype(np.float32)).reshape(-1, 3) @ root.astype(np.float32)
+        away *= away
+        return np.asarray(np.sqrt(away @ np.ones(3, np.float32)).reshape(lab.shape[:-1]))
 
     @property
     def name(self) -> str:
@@ -49,7 +49,7 @@ class Colour:
     @property
     def bgr(self) -> tuple[int, int, int]:
         """The mean colour as blue, green, red of 0 to 255."""
-        return lab_to_bgr(self.mean)
+        return bgr_of(self.mean)
 
 
 @dataclass(frozen=True)
@@ -77,19 +77,11 @@ class Appearance:
     slack: float = 0.03
 
 
-def lab_to_bgr(lab: Array) -> tuple[int, int, int]:
-    """Blue, green, red of 0 to 255 from a colour in L*a*b*."""
-    pixel = np.clip(lab, 0, 255).astype(np.uint8).reshape(1, 1, 3)
-    blue, green, red = cv2.cvtColor(pixel, cv2.COLOR_LAB2BGR).ravel().tolist()
-    return int(blue), int(green), int(red)
-
-
 @lru_cache(maxsize=1)
-def _lab_of_table() -> Array:
+def _lab_of_table() -> Floats:
     steps = (np.arange(64) * 4 + 2).astype(np.uint8)
     bgr = np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), -1).reshape(64, -1, 3)
-    lab = cv2.cvtColor(bgr, cv2.COLOR_BGR2LAB).reshape(64, 64, 64, 3)
-    return np.asarray(lab, float)
+    return lab_of(bgr).reshape(64, 64, 64, 3).astype(np.float32)
 
 
 def any_stone(white: float = 210.0) -> Appearance:
@@ -168,8 +160,8 @@ def learn(sightings: Sequence[Sighting]) -> Appearance | None:
         np.concatenate([s.granite_samples for group in groups for s in group]), (15.0, 9.0, 9.0)
     )
     lab = _lab_of_table()
-    to_cap = np.min([np.sqrt(cap.distance2(lab)) for cap in caps], axis=0)
-    to_granite = np.sqrt(granite.distance2(lab))
+    to_cap = np.min([cap.distance(lab) for cap in caps], axis=0)
+    to_granite = granite.distance(lab)
     # What may be either is neither: the nearer counts, by how much nearer it is.
     nearer = np.clip((to_granite - to_cap) / 1.5, -1, 1)
     likely = np.clip((4.5 - np.minimum(to_cap, to_granite)) / 1.5, 0, 1)

@@ -10,11 +10,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from vision.camera import Camera
+from vision.lab import lab_of
 from vision.picture import Picture, colours_at
 
 Array = NDArray[np.float64]
@@ -144,5 +144,4 @@ def sample_rays(looks: Sequence[Look], profile: Profile, rays: int) -> Rays:
             part = slice(k, min(k + most, end))
             x, y = (along[part].reshape(-1, along.shape[-1]) for along in (across, down))
             bgr[part] = colours_at(look.picture, x, y).reshape(-1, *bgr.shape[1:])
-    lab = cv2.cvtColor(bgr.reshape(-1, *bgr.shape[2:]), cv2.COLOR_BGR2LAB).reshape(bgr.shape)
-    return Rays(bgr, np.asarray(lab, np.uint8), inside, profile.radius, angle)
+    return Rays(bgr, lab_of(bgr), inside, profile.radius, angle)

@@ -21,6 +21,7 @@ from data.sheet import Stone
 from vision.appearance import Appearance, any_grey_stone, any_stone, membership
 from vision.camera import Camera
 from vision.ice_map import IceMap, rectify
+from vision.lab import lab_of
 from vision.picture import Picture, colours_at
 
 Array = NDArray[np.float64]
@@ -85,7 +86,7 @@ def seek(
 
 def _unknown(ice: IceMap, disc: Stone) -> Appearance:
     """Say what stones may look like on a piece of ice, before any is known."""
-    lab = cv2.cvtColor(ice.image, cv2.COLOR_BGR2LAB)[ice.valid].astype(np.int32)
+    lab = lab_of(ice.image)[ice.valid].astype(np.int32)
     white = max(float(np.percentile(lab[:, 0], 75)), 60.0)
     vivid = int((((lab[:, 1:] - 128) ** 2).sum(1) > VIVID**2).sum())
     if vivid < 0.5 * np.pi * (disc.cap_radius * ice.scale) ** 2:
