@@ -9,6 +9,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from vision.circles import WALL
 from vision.clip import Image
 from vision.lab import bgr_of, lab_of
 from vision.sighting import Sighting
@@ -68,6 +69,9 @@ class Appearance:
         Radii at which cap and granite are seen to end, as shares of the nominal ones.
     slack : float
         Standard deviation of a stone's radii about these, as a share.
+    wall : tuple of float
+        Height of the caps' walls and the standard deviation of that, m; below 0 where the near
+        edges of caps are seen too far in.
     """
 
     membership: Floats
@@ -75,6 +79,7 @@ class Appearance:
     granite: Colour | None = None
     outline: tuple[float, float] = (1.0, 0.98)
     slack: float = 0.03
+    wall: tuple[float, float] = WALL
 
 
 @lru_cache(maxsize=1)
@@ -166,11 +171,11 @@ def learn(sightings: Sequence[Sighting]) -> Appearance | None:
     nearer = np.clip((to_granite - to_cap) / 1.5, -1, 1)
     likely = np.clip((4.5 - np.minimum(to_cap, to_granite)) / 1.5, 0, 1)
     worth = np.asarray(nearer * likely, np.float32)
-    chosen = [s.outline for group in groups for s in group if s.visible > 0.8]
+    chosen = [(*s.outline, s.wall) for group in groups for s in group if s.visible > 0.8]
     if len(chosen) < 3:
         return Appearance(worth, caps, granite)
-    cap_share, rim_share = np.median(np.array(chosen), axis=0).tolist()
-    return Appearance(worth, caps, granite, (cap_share, rim_share), 0.01)
+    cap_share, rim_share, wall = np.median(np.array(chosen), axis=0).tolist()
+    return Appearance(worth, caps, granite, (cap_share, rim_share), 0.01, (wall, 0.001))
 
 
 def colour_difference(first: Array, second: Array) -> float:

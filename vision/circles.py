@@ -18,8 +18,8 @@ from vision.rims import Bands, Rim
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-WALL = 0.004
-"""Usual height of a cap's wall, m."""
+WALL = 0.0, 0.004
+"""Height of a cap's wall where nothing is known of it, and the standard deviation of that, m."""
 
 BENDS = (2, 3, 4)
 """Waves around a circle by which it is told to be bent."""
@@ -36,6 +36,8 @@ class Fits:
     shift : ndarray, shape (n, 2)
         From the place to the centre, m.
     radii : ndarray, shape (n, circles)
+    wall : ndarray, shape (n,)
+        Height of the wall, m.
     covariance : ndarray, shape (n, 2, 2)
         Of the shift by the scatter of the edges, m².
     bends : ndarray, shape (n, 6)
@@ -47,6 +49,7 @@ class Fits:
     ok: Bools
     shift: Array
     radii: Array
+    wall: Array
     covariance: Array
     bends: Array
     shares: Array
@@ -114,11 +117,12 @@ def fit_circles(
     reach: float,
     noise: Array,
     rounds: int = 2,
+    wall: tuple[float, float] = WALL,
 ) -> Fits:
     """Fit concentric circles to the edges on rays from centres that are nearly right.
 
     Linear: edge ≈ R + dx cos φ + dy sin φ + wall · lean, robust by reweighting (Tukey's
-    biweight), with the radii held near what is expected and the wall low. The edges are chosen anew
+    biweight), with the radii and the wall held near what is expected. The edges are chosen anew
     about each fit.
 
     Parameters
@@ -134,6 +138,8 @@ def fit_circles(
         Least standard error of one edge, m.
     rounds : int
         How often edges are chosen.
+    wall : tuple of float
+        Expected height of the wall, and the standard deviation of that, m.
     """
     n, circles = len(rays.inside), len(rims)
     expected = np.array([rim.radius for rim in rims])
@@ -143,14 +149,14 @@ def fit_circles(
     prior[:, range(size), range(size)] = 1e-9
     for k, radius in enumerate(expected.tolist()):
         prior[:, 2 + k, 2 + k] += (noise / (slack * radius)) ** 2
-    prior[:, -1, -1] += (noise / WALL) ** 2
+    prior[:, -1, -1] += (noise / wall[1]) ** 2
     bands = Bands.of(rims, rays)
     strong = np.array([rim.strength for rim in rims])[:, None]
     inside = np.concatenate([rim.inside for rim in rims], 1)
     may = np.concatenate([(rim.use & rim.inside) * rim.weight[:, None] for rim in rims], 1)
     least = reach * float(expected[-1]) + 2 * noise
     scale = np.full(n, 0.10 * float(expected[-1]))
-    usual = np.repeat(expected, len(rays.angle))
+    usual = np.repeat(expected, len(rays.angle)) + wall[0] * design.lean
     change: Array = np.zeros_like(design.lean)
     solution: Array = np.zeros((n, size))
     for _ in range(rounds):
@@ -179,7 +185,9 @@ def fit_circles(
     radii = expected + solution[:, 2:-1]
     first = slice(len(rays.angle))
     bends = _bends(residual[:, first], fits[:, first])
-    return Fits(count >= 8, solution[:, :2], radii, covariance, bends, shares)
+    return Fits(
+        count >= 8, solution[:, :2], radii, wall[0] + solution[:, -1], covariance, bends, shares
+    )
 
 
 @lru_cache(maxsize=8)

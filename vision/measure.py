@@ -60,6 +60,8 @@ class Measures:
         How the edge of cap or disc is bent (`vision.circles.Fits`), m.
     outline : ndarray, shape (n, circles)
         Radii found, as shares of the nominal ones.
+    wall : ndarray, shape (n,)
+        How high the wall of the cap is, m; means nothing where it is not seen.
     handle : ndarray, shape (n, rays, rings, 3)
         What is around the centre, L*a*b*: at the height of the handle, 0 where it shows more
         than the cap, and beside it, for a stone, at the height of the cap.
@@ -78,6 +80,7 @@ class Measures:
     evidence: Array
     bends: Array
     outline: Array
+    wall: Array
     handle: Bytes
     worth: Floats
     rays: Rays
@@ -200,7 +203,7 @@ def _stones(
     pixel = 1 / scale
     fit = fit_circles(
         rays, (cap_rim, granite_rim), appearance.slack, effort.edge_reach, 0.25 * pixel,
-        effort.rounds,
+        effort.rounds, appearance.wall,
     )  # fmt: skip
     # All around, a stone's granite is of one lightness, and its cap is as large as any other's;
     # caps and shoulders of people are neither.
@@ -225,6 +228,7 @@ def _stones(
         evidence=fit.shares.sum(1) - uneven - 0.5 * misfit + 0.5 * response,
         bends=fit.bends,
         outline=fit.radii / np.array([disc.cap_radius, disc.radius]),
+        wall=fit.wall,
         handle=handle,
         worth=worth,
         rays=rays,
@@ -258,6 +262,7 @@ def _plain(
         evidence=fit.shares[:, 0],
         bends=fit.bends,
         outline=fit.radii / disc.radius,
+        wall=fit.wall,
         handle=handle,
         worth=np.zeros(within.shape, np.float32),
         rays=rays,

@@ -47,17 +47,17 @@ def sightings(
     spectra = cap_spectrum(seen.handle[chosen], handle_radii(disc))
     columns = (
         seen.centre[chosen], seen.sd[chosen], seen.visible[chosen], seen.evidence[chosen],
-        seen.outline[chosen], seen.bends[chosen], np.concatenate([np.empty((0, 2)), *pixels]),
-        seen.uncovered[chosen] >= UNCOVERED,
+        seen.outline[chosen], seen.wall[chosen], seen.bends[chosen],
+        np.concatenate([np.empty((0, 2)), *pixels]), seen.uncovered[chosen] >= UNCOVERED,
     )  # fmt: skip
     rows = zip(seen.colour[chosen], spectra, *(column.tolist() for column in columns), strict=True)
     return [
         Sighting(
-            x, y, sd_x, sd_y, nan, colour, visible, score, tuple(outline), tuple(bends), (u, v),
-            spectrum.copy() if told else None,
+            x, y, sd_x, sd_y, nan, colour, visible, score, tuple(outline), wall, tuple(bends),
+            (u, v), spectrum.copy() if told else None,
         )
-        for colour, spectrum, (x, y), (sd_x, sd_y), visible, score, outline, bends, (u, v), told
-        in rows
+        for colour, spectrum, (x, y), (sd_x, sd_y), visible, score, outline, wall, bends, (u, v),
+        told in rows
     ]  # fmt: skip
 
 

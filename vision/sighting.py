@@ -34,6 +34,8 @@ class Sighting(NamedTuple):
         Evidence that it is a stone: 1 is little, 2.5 is much.
     outline : tuple of float
         Radii found for cap and granite (or the rim alone), as shares of the nominal ones.
+    wall : float
+        How high the wall of the cap is, m; means nothing where it is not seen.
     bends : tuple of float
         How the edge of cap or disc is bent (`vision.circles.Fits`), m.
     pixel : tuple of float
@@ -56,6 +58,7 @@ class Sighting(NamedTuple):
     visible: float
     score: float
     outline: tuple[float, ...]
+    wall: float
     bends: tuple[float, ...]
     pixel: tuple[float, float]
     spectrum: NDArray[np.complex64] | None = None

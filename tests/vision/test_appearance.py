@@ -25,12 +25,15 @@ def lab(bgr: tuple[int, int, int]) -> np.ndarray:
     return np.asarray(cv2.cvtColor(pixel, cv2.COLOR_BGR2LAB), float).ravel()
 
 
-def seen(cap: tuple[int, int, int], score: float = 2.0, size: float = 1.0) -> Sighting:
+def seen(
+    cap: tuple[int, int, int], score: float = 2.0, size: float = 1.0, wall: float = 0.0
+) -> Sighting:
     rng = np.random.default_rng(int(sum(cap)))
     return sighting((0.0, 0.0), lab(cap), score)._replace(
         cap_samples=lab(cap) + rng.normal(0, 2, (60, 3)),
         granite_samples=lab(GREY) + rng.normal(0, 2, (60, 3)),
         outline=(size, 0.98),
+        wall=wall,
     )
 
 
@@ -85,6 +88,13 @@ def test_the_size_of_caps_is_learned_from_three_sightings_on() -> None:
     assert few.outline[0] == 1.0
     assert many.outline == pytest.approx((1.04, 0.98))
     assert many.slack < few.slack
+
+
+def test_the_wall_of_caps_is_learned_once_for_the_clip() -> None:
+    look = learn([seen(RED, wall=height) for height in (0.004, 0.006, 0.009)])
+    assert look is not None
+    assert look.wall[0] == pytest.approx(0.006)
+    assert look.wall[1] < any_stone().wall[1]
 
 
 def test_colours_differ_by_hue_more_than_by_light() -> None:

@@ -59,6 +59,20 @@ def test_a_wall_seen_on_the_near_side_does_not_draw_the_circle_there() -> None:
     np.testing.assert_allclose(above.shift[0], 0, atol=0.0003)
 
 
+def test_a_wall_whose_height_is_known_is_held_to_it() -> None:
+    seen = 1.3 * np.maximum(directions(RAYS)[1] @ [0.0, -1.0], 0)
+    rays, rim = rim_of(RADIUS + 0.007 * seen, np.ones(RAYS, bool), seen[None])
+    noise = np.array([0.0005])
+    free, held, none = (
+        fit_circles(rays, (rim,), 0.05, 0.035, noise, wall=(height, sd))
+        for height, sd in ((0.0, 0.004), (0.007, 1e-5), (0.0, 1e-5))
+    )
+    np.testing.assert_allclose(free.wall, 0.007, atol=0.0015)
+    np.testing.assert_allclose(held.wall, 0.007, atol=1e-4)
+    np.testing.assert_allclose(held.shift, 0, atol=0.001)
+    assert none.shift[0, 1] < -0.004
+
+
 def test_bends_are_the_waves_of_the_edge_about_its_circle() -> None:
     angle = directions(RAYS)[0]
     edge = RADIUS + 0.002 * np.cos(3 * angle) - 0.001 * np.sin(2 * angle)
