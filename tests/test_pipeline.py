@@ -440,6 +440,24 @@ def test_a_terminal_without_greek_letters_gets_its_answer(tmp_path: Path) -> Non
     assert "restitution e = " in done.stdout
 
 
+def test_a_clip_is_tracked_without_what_takes_long_to_load(tmp_path: Path) -> None:
+    clip = str(pipeline.sample_clip())
+    code = (
+        "import sys, pipeline\n"
+        f"pipeline.main(['track', {clip!r}, '--frames', '0:9', '-q', '-o', {str(tmp_path)!r}])\n"
+        "print({'pandas', 'scipy', 'filterpy', 'matplotlib'} & sys.modules.keys() or 'none')"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=Path(pipeline.__file__).parent,
+    )
+    assert done.stdout.splitlines()[-1] == "none"
+    assert (tmp_path / "tracks.csv").exists()
+
+
 def test_tracks_from_a_table_never_load_opencv(tmp_path: Path) -> None:
     (tmp_path / "hit.csv").write_text(central_hit(masses=(1.0, 1.0), restitution=0.8))
     code = (

@@ -90,11 +90,12 @@ def _given_cameras(
 
 def _follow(clip: Clip, settings: Settings, progress: Progress, placed: Placed) -> HouseTrack:
     """Follow the house, from where a person says that it is or from where it is found."""
-    from vision.follow_house import follow_house
+    if settings.house is None:
+        from vision.follow_house import follow_house
+
+        return follow_house(clip, progress, placed=placed)
     from vision.given import GivenHouse, follow_given
 
-    if settings.house is None:
-        return follow_house(clip, progress, placed=placed)
     frame, *points = settings.house
     return follow_given(clip, GivenHouse.of(points, frame), progress, placed)
 
