@@ -27,8 +27,8 @@ from physics.whole_fit import GlobalFit
 POOR_FIT = 30.0
 """Mean square of residuals against errors from which a simulated shot is not the one seen."""
 
-BLUNT = 2.0
-"""Times its error beside the hits from which a restitution of the whole shot says nothing new."""
+BLUNT = 3.0
+"""Times the error beside the hits from which a value of the whole shot says nothing new."""
 
 LAWS = ("restitution", "friction", "stone_friction")
 """Unknowns of a shot that are not of one stone alone."""
@@ -210,6 +210,10 @@ def _whole(
     except InputError as error:
         return None, f"whole shot: cannot be simulated ({error}); values beside the hits used", None
     doubt = _doubt(fit, local.restitution)
+    if doubt is None and end is not None and _blunt(fit["friction"], local.friction):
+        doubt = (
+            f"whole shot: the simulator follows it {end}, too short; values beside the hits used"
+        )
     return fit, doubt, None if end is None else f"whole shot: the simulator follows it {end}"
 
 
@@ -225,6 +229,11 @@ def _doubt(fit: GlobalFit, local: Estimate) -> str | None:
     return _disagreement(local, fit["restitution"])
 
 
+def _blunt(whole: Estimate, local: Estimate | Friction) -> bool:
+    """Whether a value of the whole shot is so much less sure that it says nothing new."""
+    return bool(whole.stderr and local.stderr and whole.stderr > BLUNT * local.stderr)
+
+
 def _disagreement(local: Estimate, whole: Estimate) -> str | None:
     """Say so where the second estimate of the restitution is blunt, or differs by more than it may.
 
@@ -235,7 +244,7 @@ def _disagreement(local: Estimate, whole: Estimate) -> str | None:
     """
     if local.value is None or local.stderr is None or whole.value is None or whole.stderr is None:
         return None
-    if whole.stderr > BLUNT * local.stderr:
+    if _blunt(whole, local):
         return (
             f"whole shot: tells the restitution to ± {whole.stderr:.2g} only;"
             f" values beside the hits used (± {local.stderr:.2g})"

@@ -5,7 +5,6 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import zip_longest
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +23,9 @@ Floats = NDArray[np.float64]
 
 V_C = 0.064
 """v_c in μ(v) = a / (v + v_c) + b, m/s, of FCV1 (Uehara and Ito, 2021)."""
+
+TOGETHER = 0.04
+"""Time within which the order of hits is not told, s: a frame."""
 
 STATE: tuple[str, ...] = ("x", "y", "vx", "vy", "omega")
 
@@ -163,15 +165,21 @@ class Watched:
         )
 
     def first_other_hit(self, simulation: Simulation) -> tuple[float, str] | None:
-        """Time, s, and name of the first hit that was not seen as simulated; None without."""
+        """Time, s, and name of the first hit that was not seen as simulated; None without.
+
+        Hits at about one time, as in a row of stones that touch, may come in another order.
+        """
         simulated = [
             (hit.t + self.start, " and ".join(sorted(hit.stones))) for hit in simulation.hits
         ]
         seen = [(t, " and ".join(pair)) for t, pair in zip(self.times, self.hits, strict=True)]
-        for one, other in zip_longest(simulated, seen):
-            if one is None or other is None or one[1] != other[1]:
-                return min(hit for hit in (one, other) if hit is not None)
-        return None
+        for hit in simulated:
+            near = [other for other in seen if other[0] <= seen[0][0] + TOGETHER]
+            same = next((other for other in near if other[1] == hit[1]), None)
+            if same is None:
+                return min([hit, *seen[:1]])
+            seen.remove(same)
+        return seen[0] if seen else None
 
     def until(self, end: float) -> Watched:
         """Return what was seen before a time, s."""

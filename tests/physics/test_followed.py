@@ -67,3 +67,20 @@ def test_places_that_slip_as_a_stone_comes_into_view_do_not_set_it_in_motion() -
     assert found.whole is not None
     assert "B.vx" not in found.whole.names
     assert near(found)
+
+
+def test_hits_at_one_time_may_come_in_another_order() -> None:
+    seen = seen_with_late_touch()
+    whole = measure(seen).whole
+    assert whole is not None
+    shot, run = whole.shots[0], whole.simulation()
+    (first, last), pairs = shot.times, shot.hits
+    assert shot.first_other_hit(run) is None
+    swapped = {"hits": pairs[::-1], "times": (last - 0.01, last)}
+    assert replace(shot, **swapped).first_other_hit(run) is None
+    assert replace(shot, hits=pairs[::-1]).first_other_hit(run) == (first, "A and C")
+    assert replace(shot, hits=pairs[:1], times=(first,)).first_other_hit(run) == (
+        run.hits[1].t + shot.start, "A and C"
+    )  # fmt: skip
+    more = replace(shot, hits=(*pairs, ("B", "C")), times=(first, last, last + 1))
+    assert more.first_other_hit(run) == (last + 1, "B and C")
