@@ -22,7 +22,7 @@ from physics.stretch import (
     Stretch,
     steps,
 )  # fmt: skip
-from tests.physics.watch import RADIUS, hit_motion, watch
+from tests.physics.watch import RADIUS, hit_motion, lasting, watch
 
 Floats = NDArray[np.float64]
 
@@ -42,15 +42,6 @@ def path(rng: np.random.Generator, way: Steps, place: float, rate: float) -> Flo
     return np.array(out)
 
 
-def lasting(rng: np.random.Generator, t: Floats, sd: Floats, memory: float) -> Floats:
-    """Errors of standard deviations `sd` (n,) that last for a while."""
-    out = [rng.normal(0, sd[0])]
-    for step, size in zip(np.diff(t), sd[1:], strict=True):
-        fade = np.exp(-step / memory)
-        out.append(fade * out[-1] + rng.normal(0, size * np.sqrt(1 - fade**2)))
-    return np.array(out)
-
-
 def drawn(rng: np.random.Generator, n: int = 30) -> tuple[Stretch, Floats]:
     """A stretch whose truth (n, 6) moves and is seen by the filter's own laws."""
     t = np.cumsum(rng.uniform(0.02, 0.06, n))
@@ -66,7 +57,7 @@ def drawn(rng: np.random.Generator, n: int = 30) -> tuple[Stretch, Floats]:
     theta = path(rng, turning, *rng.normal(0, [3.0, 2.0]))
     truth = np.column_stack([x[:, 0], y[:, 0], x[:, 1], y[:, 1], theta])
     memories = (PLACE_MEMORY, PLACE_MEMORY, ANGLE_MEMORY)
-    errors = [lasting(rng, t, slow[:, k], memory) for k, memory in enumerate(memories)]
+    errors = [lasting(rng, t, slow[0, k], memory) for k, memory in enumerate(memories)]
     z = truth[:, SEEN] + np.column_stack(errors) + rng.normal(0, sd)
     z[1 + rng.choice(n - 1, n // 10), :2] = np.nan
     z[1 + rng.choice(n - 1, n // 10), 2] = np.nan
@@ -125,7 +116,7 @@ def test_innovations_of_a_shot_are_as_large_as_expected(stated: bool, slow: floa
         for _, group in seen.groupby("stone"):
             for column in ("x", "y"):
                 t = group["t"].to_numpy()
-                off = lasting(rng, t, np.full(len(t), slow), 0.3)
+                off = lasting(rng, t, slow, PLACE_MEMORY)
                 seen.loc[group.index, column] += off
         each += [forward(stretch).innovations[6:] for stretch in stretches_of(seen)]
     found = np.concatenate(each)

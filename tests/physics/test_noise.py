@@ -13,19 +13,11 @@ from physics.glides import FREE
 from physics.noise import Noise, noises
 from physics.stretch import ANGLE_MEMORY, PLACE_MEMORY
 from physics.traces import traces
-from tests.physics.watch import RADIUS, hit_motion, watch
+from tests.physics.watch import RADIUS, hit_motion, lasting, watch
 
 Floats = NDArray[np.float64]
 
 SHOTS = 6
-
-
-def lasting(rng: np.random.Generator, t: Floats, sd: float, memory: float) -> Floats:
-    """Errors of one size that last for a while."""
-    out = [rng.normal(0, sd)]
-    for fade in np.exp(-np.diff(t) / memory):
-        out.append(fade * out[-1] + rng.normal(0, sd * np.sqrt(1 - fade**2)))
-    return np.array(out)
 
 
 def shots(*, given: bool = True, slow: float = 0.0, turned: float = 0.0) -> list[pd.DataFrame]:

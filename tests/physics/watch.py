@@ -7,9 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from data.tracks import check_sightings
 from tests.synthetic.physics import Ice, Impact, Motion, Start, simulate
+
+Floats = NDArray[np.float64]
 
 RADIUS = 0.1455
 NAMES = "ABCDEF"
@@ -63,6 +66,14 @@ def watch(
             table[["sd_x", "sd_y"]], table["sd_theta"] = sd, sd_theta
         tables.append(table)
     return check_sightings(pd.concat(tables))
+
+
+def lasting(rng: np.random.Generator, t: Floats, sd: float, memory: float) -> Floats:
+    """Errors of one size that last for a while."""
+    out = [rng.normal(0, sd)]
+    for fade in np.exp(-np.diff(t) / memory):
+        out.append(fade * out[-1] + rng.normal(0, sd * np.sqrt(1 - fade**2)))
+    return np.array(out)
 
 
 def semireal(
