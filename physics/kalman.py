@@ -5,6 +5,10 @@ lowers; what the ice does otherwise is white noise of acceleration. The known pa
 deceleration is taken out of the measurements before the filter and put back afterwards, so
 that the filter itself stays linear and the backward pass (Rauch, Tung and Striebel, 1965,
 AIAA J. 3, 1445) exact. A filter never runs across a hit.
+
+How sightings err is told by the shot itself (`physics.noise`): what is anew in each of them is the
+filter's measurement noise, what lasts for a while a state beside each pair, and what all share is
+added to the places and, as an error of the scale, to the velocities in the end.
 """
 
 from __future__ import annotations
@@ -104,7 +108,10 @@ def smoothed(
 def _survey(
     known: dict[str, Trace], contacts: Sequence[Contact], radius: float
 ) -> tuple[ShotFit, Model, dict[str, Noise]]:
-    """Fit each stretch between hits by itself: where stones rest, and how the ice slows them."""
+    """Fit each stretch between hits by itself.
+
+    It tells where stones rest, how the ice slows them and how their sightings err.
+    """
     by_hits, _ = cut_all(known, contacts, radius)
     pieces = [replace(piece, opens=None, closes=None) for piece in by_hits]
     loose = fit_shot(known, pieces, (), radius, deceleration=FREE)
