@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -22,7 +23,7 @@ from physics.stretch import (
     Stretch,
     steps,
 )  # fmt: skip
-from tests.physics.watch import RADIUS, hit_motion, lasting, watch
+from tests.physics.watch import RADIUS, airtable, hit_motion, lasting, semireal, watch
 
 Floats = NDArray[np.float64]
 
@@ -93,7 +94,7 @@ def test_errors_are_as_large_as_stated() -> None:
     assert all(within_bounds(errors[:, k, axis], 18) for k in range(3) for axis in range(6))
 
 
-def stretches_of(seen: pd.DataFrame) -> list[Stretch]:
+def stretches_of(seen: pd.DataFrame, radius: float = RADIUS) -> list[Stretch]:
     """What the filter is given of the stones of a shot while they move."""
     kept: list[Stretch] = []
 
@@ -101,7 +102,7 @@ def stretches_of(seen: pd.DataFrame) -> list[Stretch]:
         kept.append(stretch)
         return filtered(stretch)
 
-    smooth(seen, find_contacts(seen, RADIUS), radius=RADIUS, run=spy)
+    smooth(seen, find_contacts(seen, radius), radius=radius, run=spy)
     return [stretch for stretch in kept if not stretch.rest.any()]
 
 
@@ -126,3 +127,15 @@ def test_innovations_of_a_shot_are_as_large_as_expected(stated: bool, slow: floa
         # What the ice may do is more than it does here, and how sightings err is not quite known.
         low, high = chi2.ppf([0.025, 0.975], len(told)) / len(told)
         assert 0.9 * low < np.mean(told**2) < 1.1 * high
+
+
+def test_innovations_of_imported_tracks_are_as_large_as_expected(shared: Path) -> None:
+    rng = np.random.default_rng(64)
+    for seen, radius in (
+        (semireal(shared, "lgt_glancing", rng, sd=0.003, slow=0.003), RADIUS),
+        (airtable(shared), 0.035),  # marked by a program; nobody knows how it errs
+    ):
+        moving = [each for each in stretches_of(seen, radius) if len(each.t) > 12]
+        found = np.concatenate([forward(stretch).innovations[6:, :2] for stretch in moving])
+        assert 0.6 < np.nanmean(found**2) < 1.7
+        assert abs(np.nanmean(found[1:] * found[:-1])) < 0.15 * np.nanmean(found**2)
