@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 UNCOVERED = 0.75
 """Share of a cap that must be seen for its angle to be measured."""
 
-ASLANT = 0.020
+ASLANT = 0.015
 """Standard error of how high the rim of a cap is seen, as a share of its height: a wall or a
 rounded rim is seen on the near side only."""
 
