@@ -62,8 +62,9 @@ LEARNING = 0.1
 LONGEST_STRIDE = 4
 """Most frames that are followed together."""
 
-FREE = (np.inf, np.inf, 0.02, np.inf)
-"""How far a view may be turned from its prediction: the roll is free where no line is seen."""
+FREE, HELD = (np.inf, np.inf, 0.02, np.inf), (np.inf, np.inf, 0.002, np.inf)
+"""How far a view may lie from its prediction, and where no line is seen: circles alone would turn
+it on and on, for the camera's place is not known exactly."""
 
 
 @dataclass
@@ -205,8 +206,9 @@ class EdgeTracker:
         self, marks: Sequence[Marks], views: Sequence[View], rig: Array
     ) -> list[ViewSolution]:
         frames = linear.Frame(joined(marks), self.size, counts=[len(m) for m in marks])
-        start = views[: len(marks)]
-        return solve_views(frames, start, rig, view_sd=FREE, width=WIDTH, iterations=6)
+        start, lines = views[: len(marks)], all((m.line >= CIRCLES).any() for m in marks)
+        view_sd = FREE if lines else HELD
+        return solve_views(frames, start, rig, view_sd=view_sd, width=WIDTH, iterations=6)
 
     def _is_settled(self, before: View, evidence: Evidence, fit: ViewSolution, rig: Array) -> bool:
         """Whether a view was predicted so well that the edges need not be measured anew."""

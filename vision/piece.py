@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from vision.adjust import Solution, solve
 from vision.camera import Camera
 from vision.clip import Frame
-from vision.edge_tracker import EdgeTracker
+from vision.edge_tracker import HELD, EdgeTracker
 from vision.house_fit import SHARING, HouseFit
 from vision.joint import Seen
 from vision.landmarks import Keyframe, keyframe, recognise
-from vision.paint import CENTRE_LINE, EIGHT, FOUR, TEE_LINE, TWELVE, Marks, joined
+from vision.paint import CENTRE_LINE, CIRCLES, EIGHT, FOUR, TEE_LINE, TWELVE, Marks, joined
 from vision.picture import Picture
-from vision.pose import View, camera, project
+from vision.pose import ROLL, View, camera, project
 from vision.predict import MEMORY, predict
 from vision.replay import EVERY, Glimpse, cut_among, glimpse, shows_again
 from vision.resection import solve_view
@@ -161,7 +161,7 @@ class Piece:
         self.rig = self._joint(self._spread()).rig
         for i in (-2, -1):
             seen = self.seen[i]
-            view = solve_view(seen.marks, seen.view, self.rig, self.size).view
+            view = solve_view(seen.marks, seen.view, self.rig, self.size, view_sd=HELD).view
             self.seen[i] = replace(seen, view=view)
 
     def _spread(self) -> list[Seen]:
@@ -245,6 +245,8 @@ class Piece:
             return [last[-1].view] * len(frames)
         vectors = np.array([seen.view.vector for seen in last])
         ahead = predict([seen.t for seen in last], vectors, [frame.t for frame in frames])
+        if not (last[-1].marks.line >= CIRCLES).any():
+            ahead[:, ROLL] = vectors[-1, ROLL]  # circles do not tell it: it would run away
         return [View(vector) for vector in ahead]
 
     def _is_near(self, view: View, landmarks: Marks) -> bool:

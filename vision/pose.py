@@ -23,6 +23,9 @@ DOWN = np.diag([1.0, -1.0, -1.0])
 
 VIEW_SIZE = 4
 
+ROLL = 2
+"""Where in a view's vector the turn about the camera's own axis lies, for one that looks down."""
+
 
 @dataclass(frozen=True)
 class View:
