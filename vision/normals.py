@@ -106,6 +106,8 @@ _GROUP_SIZE = np.repeat(_GROUP, _GROUPS)
 _GROUP_START = np.cumsum(_GROUP_SIZE) - _GROUP_SIZE
 _BEYOND = np.abs(_ALONG[_GROUP_START + _GROUP_SIZE // 2]) > HOUSE.twelve_foot
 _SHARE = np.where((_GROUP_SIZE > 1) & _BEYOND, CLOSER, 1)
+# Blocks lie alike at both ends; on circles not close to either side of where the back line touches.
+_PHASE = np.where(_GROUP_SIZE > 1, 0.5, 1e-9)
 
 
 def _neighbours() -> tuple[Index, Index]:
@@ -283,7 +285,7 @@ def _thinned(inside: Flags, wanted: Index, groups: int) -> Flags:
     shares = np.add.reduceat(share, first, dtype=np.int64)
     enough = have >= np.where(_GROUP[: len(wanted)] > 1, LEAST_BLOCKS, LEAST)
     ratio = np.repeat(np.minimum(wanted / np.maximum(shares, 1), 1.0) * enough, sizes)
-    before, after = (np.floor(n * ratio + 0.5) for n in (number, number + share))
+    before, after = (np.floor(n * ratio + _PHASE[:groups]) for n in (number, number + share))
     return np.asarray(whole & (after > before))
 
 
