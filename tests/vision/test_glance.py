@@ -3,6 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.vision.test_follow import sighting
 from vision import glance as module
 from vision.camera import Camera
 from vision.glance import glance
@@ -14,10 +15,9 @@ RED, BLUE = np.array([120.0, 190.0, 165.0]), np.array([50.0, 140.0, 92.0])
 
 def stone(x: float, colour: np.ndarray, score: float) -> Sighting:
     around = np.zeros((20, 3))
-    return Sighting(
-        x, 0.0, 0.01, 0.01, 0.0, colour, 1.0, score, (1.0, 1.0), 0.0, (0.0, 0.0),
-        cap_samples=around + colour, granite_samples=around + np.array([90.0, 128.0, 128.0]),
-    )  # fmt: skip
+    return sighting((x, 0.0), colour, score)._replace(
+        cap_samples=around + colour, granite_samples=around + np.array([90.0, 128.0, 128.0])
+    )
 
 
 def test_a_stone_of_another_colour_stays_though_it_convinces_less(
