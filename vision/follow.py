@@ -45,6 +45,8 @@ class Gate:
         Seconds for which a moving stone is waited for.
     births : int
         Sightings that make a track.
+    told : int
+        Sightings that tell how a stone moves, so that a hit nobody sees is expected.
     least_score : float
         Evidence that the better part of a track's sightings must show.
     deceleration : float
@@ -59,6 +61,7 @@ class Gate:
     colours: float = 45.0
     patience: float = 3.0
     births: int = 5
+    told: int = 3
     least_score: float = 0.0
     deceleration: float = 0.1
     restitution: float = 0.85
@@ -253,7 +256,7 @@ def _struck(tracks: Sequence[Track], t: float, radius: float, gate: Gate) -> dic
     since = np.array([track.times[-1] for track in tracks])
     if not ways.any():
         return {}
-    known = np.array([len(track.times) >= gate.births for track in tracks])
+    known = np.array([len(track.times) >= gate.told for track in tracks])
     first, second = np.triu_indices(len(tracks), 1)
     start = np.maximum(since[first], since[second])
     apart = places[second] + ways[second] * (start - since[second])[:, None]

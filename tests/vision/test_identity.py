@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from tests.synthetic.physics import Impact, Motion, Start, simulate
@@ -117,6 +117,7 @@ def test_leaving_and_entering_the_picture(speed: float, later: float) -> None:
     gap=st.floats(0.1, 0.4),
     share=st.floats(0.1, 0.9),
 )
+@example(speed=2.375, offset=0.0, gap=0.25, share=0.5625)  # four sightings before it
 def test_a_hit_that_nobody_saw(speed: float, offset: float, gap: float, share: float) -> None:
     starts = [Start(offset, 1.0, 0.0, -speed), Start(0.0, 0.0)]
     motion = simulate(starts, 2.5, impact=Impact(0.8, 0.05), step=1e-3)
