@@ -101,7 +101,7 @@ class HouseFollower:
                 now = glimpse(frame.picture, seen[0].view, piece.rig, frame.t)
                 if self._is_elsewhere(piece, now):
                     seen, piece.lost = [], PATIENCE
-            if seen and piece.missed > PATIENCE:
+            if seen and piece.missed > FIND_EVERY:
                 # Carried on through a dissolve, say: what is fixed to the ice is not it.
                 house = self._find(frame)
                 if house is not None:
