@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vision.edges import crossings, steps
-from vision.normals import BLOCK, OUTSIDE, SAMPLES, THIN, Normals, Profiles, lay_out, profiles
+from vision.normals import BLOCK, OUTSIDE, SAMPLES, THIN, Normals, Profiles, lay_out
 from vision.paint import CIRCLES, FIXED, TWELVE, Marks
-from vision.picture import Picture
+from vision.picture import Picture, channels_at
 from vision.runs import Curves, Runs, smooth
 from vision.stripes import Blocks, find_stripes
 
@@ -177,6 +177,28 @@ def measure_along(
         )
         for k in range(len(pictures))
     ]  # fmt: skip
+
+
+def profiles(pictures: Sequence[Picture], normals: Normals, points: Array) -> Profiles:
+    """Colours along the normals at these places in pictures.
+
+    Parameters
+    ----------
+    pictures : sequence of Picture
+    normals : Normals
+    points : ndarray, shape (pictures, 2, n)
+        Where they are in each, px.
+
+    Returns
+    -------
+    ndarray, shape (pictures, 3, SAMPLES, n)
+    """
+    found = np.empty((len(pictures), 3, SAMPLES, points.shape[-1]), np.float32)
+    if normals.kinds:
+        places = points.astype(np.float32)[:, :, None] + normals.samples
+        for k, picture in enumerate(pictures):
+            found[k] = channels_at(picture, *places[k])
+    return found
 
 
 @dataclass(frozen=True, eq=False)

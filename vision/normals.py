@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -21,7 +20,6 @@ from vision.paint import (
     ice_frame,
     measures,
 )
-from vision.picture import Picture, channels_at
 from vision.pose import project
 
 Array = NDArray[np.float64]
@@ -287,25 +285,3 @@ def _thinned(inside: Flags, wanted: Index, groups: int) -> Flags:
     ratio = np.repeat(np.minimum(wanted / np.maximum(shares, 1), 1.0) * enough, sizes)
     before, after = (np.floor(n * ratio + _PHASE[:groups]) for n in (number, number + share))
     return np.asarray(whole & (after > before))
-
-
-def profiles(pictures: Sequence[Picture], normals: Normals, points: Array) -> Profiles:
-    """Colours along the normals at these places in pictures.
-
-    Parameters
-    ----------
-    pictures : sequence of Picture
-    normals : Normals
-    points : ndarray, shape (pictures, 2, n)
-        Where they are in each, px.
-
-    Returns
-    -------
-    ndarray, shape (pictures, 3, SAMPLES, n)
-    """
-    found = np.empty((len(pictures), 3, SAMPLES, points.shape[-1]), np.float32)
-    if normals.kinds:
-        places = points.astype(np.float32)[:, :, None] + normals.samples
-        for k, picture in enumerate(pictures):
-            found[k] = channels_at(picture, *places[k])
-    return found

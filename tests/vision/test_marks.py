@@ -7,7 +7,8 @@ import pytest
 
 from tests.synthetic import PAINTS, Paint, render_still, sample_scene, still_camera
 from tests.synthetic.scene import Scene
-from vision.marks import measure
+from vision.marks import measure, profiles
+from vision.normals import SAMPLES, lay_out
 from vision.paint import CENTRE_LINE, LEFT, RIGHT, TEE_LINE
 from vision.pose import View
 from vision.rig import OVERHEAD, start_rig
@@ -105,3 +106,20 @@ def test_known_colours_are_told_from_those_of_something_else() -> None:
     assert (again.support > 0.85).all()
     other = measure(still(PAINTS["gold-purple"]), view.vector, rig, reach=7, palette=seen.palette)
     assert other.support[0] < 0.1
+
+
+def test_profiles_are_read_along_the_normals() -> None:
+    view, rig = truth(PAINTS["navy-orange"])
+    normals = lay_out(view.vector, rig, SIZE, reach=7.0, most=48)
+    x, y = np.meshgrid(np.arange(SIZE[0]), np.arange(SIZE[1]))
+    image = np.stack([x / 6, y / 6, np.full_like(x, 100.0)], axis=-1).astype(np.uint8)
+    share = np.linspace(-1, 1, SAMPLES)[:, None]
+    shift = np.array([[2.5], [-1.25]])
+    at = (normals.point + shift)[:, None] + (normals.normal * normals.reach)[:, None] * share
+    (found,) = profiles([image], normals, (normals.point + shift)[None])
+    np.testing.assert_allclose(found[:2], at / 6, atol=1.6)
+    np.testing.assert_array_equal(found[2], 100)
+    above = View(view.vector + np.array([1.2, 0.0, 0.0, 0.0]))
+    none = lay_out(above.vector, rig, SIZE, reach=7.0, lines=False)
+    assert not none.kinds
+    assert profiles([image], none, none.point[None]).shape == (1, 3, SAMPLES, 0)

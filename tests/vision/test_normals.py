@@ -5,7 +5,7 @@ import pytest
 
 from data.sheet import HOUSE
 from tests.vision.cameras import ice_points
-from vision.normals import BLOCK, OUTSIDE, SAMPLES, THIN, lay_out, profiles
+from vision.normals import BLOCK, OUTSIDE, THIN, lay_out
 from vision.paint import CIRCLES, TEE_LINE, TWELVE
 from vision.pose import aim, project
 from vision.rig import OVERHEAD, start_rig
@@ -66,8 +66,6 @@ def test_what_is_seen_of_each_circle_is_told() -> None:
     assert normals.visible[:CIRCLES] == pytest.approx(0.5, abs=0.06)
     away = lay_out(view((640.0, 6000.0)), rig(), SIZE, reach=REACH, lines=False)
     assert not away.kinds
-    black = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
-    assert profiles([black], away, away.point[None]).shape == (1, 3, SAMPLES, 0)
 
 
 def test_normals_move_with_the_picture_until_they_leave_it() -> None:
@@ -87,15 +85,3 @@ def test_normals_move_with_the_picture_until_they_leave_it() -> None:
     assert a_little is not None
     assert 0 < (a_little[0] == OUTSIDE).mean() < 0.1
     assert edge.moved(view((640.0, -30.0)), rig(), SIZE) is None
-
-
-def test_profiles_are_read_along_the_normals() -> None:
-    normals = lay_out(view(), rig(), SIZE, reach=REACH, most=48)
-    x, y = np.meshgrid(np.arange(SIZE[0]), np.arange(SIZE[1]))
-    image = np.stack([x / 6, y / 6, np.full_like(x, 100.0)], axis=-1).astype(np.uint8)
-    share = np.linspace(-1, 1, SAMPLES)[:, None]
-    shift = np.array([[2.5], [-1.25]])
-    at = (normals.point + shift)[:, None] + (normals.normal * normals.reach)[:, None] * share
-    (found,) = profiles([image], normals, (normals.point + shift)[None])
-    np.testing.assert_allclose(found[:2], at / 6, atol=1.6)
-    np.testing.assert_array_equal(found[2], 100)
