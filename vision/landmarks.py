@@ -187,7 +187,7 @@ def recognise(key: Keyframe, picture: Picture, view: View, rig: Array) -> Marks 
 def _affine(start: Array, end: Array) -> Array:
     """Affine motion from places to places, (n, 2) each, by least squares, shape (2, 3)."""
     design = np.column_stack([start, np.ones(len(start))])
-    return np.asarray(np.linalg.solve(design.T @ design, design.T @ end).T)
+    return np.asarray(np.linalg.lstsq(design, end, rcond=None)[0].T)
 
 
 def replaced(marks: Marks, key: Keyframe, now: Camera) -> Marks:

@@ -63,6 +63,15 @@ def test_a_graphic_alone_is_no_scene() -> None:
     assert recognise(key, blank, view, rig) is None
 
 
+def test_corners_in_one_row_tell_no_scene_and_stop_nothing() -> None:
+    view, rig = truth(PATH, 0.0)
+    image = render_still(SCENE, PATH, 0.0)
+    key = keyframe(0, image, view, rig, np.zeros((4, 4)))
+    corners = np.column_stack([np.arange(150.0, 350.0, 10), np.full(20, 176.0)])
+    row = replace(key, ice=camera(view, rig, SIZE).ice(2 * corners + 0.5), corners=corners)
+    assert recognise(row, image, view, rig) is None
+
+
 def test_uncertainty_grows_from_keyframe_to_keyframe() -> None:
     view, rig = truth(PATH, 0.0)
     image = render_still(SCENE, PATH, 0.0)
