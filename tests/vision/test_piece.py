@@ -1,13 +1,21 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
+import cv2
 import numpy as np
 
+from tests.synthetic import PAINTS, render_still, sample_scene, tilted_camera
+from tests.vision.places import RINGS
+from tests.vision.test_edge_tracker import filmed, tracker
 from vision.clip import Frame
 from vision.edge_tracker import EdgeTracker
+from vision.house import find_house
+from vision.house_fit import HouseFit
 from vision.outline import Rim
 from vision.paint import FIXED, joined
 from vision.piece import Piece
-from vision.pose import aim
+from vision.pose import aim, camera
 from vision.rig import OVERHEAD, start_rig
 
 SIZE = (640, 360)
@@ -24,3 +32,51 @@ def test_a_house_that_was_found_ends_the_row_of_frames_that_missed_it() -> None:
     placed = piece.enter(bare[2], view, joined([]), bare[:2])
     assert placed[-1][0] is bare[2] and placed[-1][1].found
     assert piece.missed == 0
+
+
+def followed(house: HouseFit, frames: list[Frame]) -> Piece:
+    piece = Piece(house.camera.size, house.rig, OVERHEAD, tracker(house))
+    piece.enter(frames[0], house.view, house.evidence.marks, [])
+    left = frames[1:]
+    while left:
+        seen = piece.follow(left[: piece.edges.stride])
+        assert seen
+        placed = piece.take(left[: len(seen)], seen)
+        assert [frame.index for frame, _ in placed] == [camera.frame for _, camera in placed]
+        del left[: len(seen)]
+    return piece
+
+
+def test_frames_are_followed_one_from_the_other() -> None:
+    frames, house = filmed()
+    piece = followed(house, frames)
+    assert [seen.index for seen in piece.seen] == [frame.index for frame in frames]
+    assert piece.found == len(frames) and all(seen.found for seen in piece.seen)
+
+
+def test_one_camera_explains_its_house_and_not_that_of_another() -> None:
+    frames, house = filmed()
+    piece = followed(house, frames)
+    again = find_house(frames[-1].image)
+    assert again is not None
+    view = piece.explains(again)
+    assert view is not None
+    seen = camera(view, piece.rig, house.camera.size).ice(again.camera.project(RINGS))
+    assert np.linalg.norm(seen - RINGS, axis=1).max() < 0.01
+    scene = replace(sample_scene(), paint=PAINTS["navy-orange"])
+    beside = tilted_camera(0.7, height=6.0, px_per_m=110)
+    other = find_house(np.asarray(render_still(scene, beside), np.uint8))
+    assert other is not None
+    assert piece.explains(other) is None
+
+
+def test_where_no_rings_are_in_view_what_is_fixed_to_the_ice_carries_on() -> None:
+    frames, house = filmed()
+    piece = followed(house, frames[:3])
+    tee = np.round(house.camera.project([0.0, 0.0])).astype(int).tolist()
+    covered = cv2.circle(frames[3].image.copy(), tee, 215, (90, 140, 60), -1)
+    (carried,) = piece.follow([replace(frames[3], picture=covered)])
+    assert not carried.found and carried.key is not None
+    assert np.abs(carried.view.vector - piece.seen[-1].view.vector).max() * house.view.focal < 8.0
+    noise = np.random.default_rng(0).integers(0, 255, covered.shape, np.uint8)
+    assert piece.follow([replace(frames[3], picture=noise)]) == []
