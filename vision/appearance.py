@@ -89,19 +89,15 @@ def _lab_of_table() -> Floats:
     return lab_of(bgr).reshape(64, 64, 64, 3).astype(np.float32)
 
 
-def any_stone(white: float = 210.0) -> Appearance:
+@lru_cache(maxsize=32)
+def any_stone(white: int = 210) -> Appearance:
     """Appearance of stones before any is known: saturated caps, grey granite darker than ice.
 
     Parameters
     ----------
-    white : float
+    white : int
         Lightness L* of the white ice in the picture, 0 to 255.
     """
-    return _any_stone(round(white))
-
-
-@lru_cache(maxsize=32)
-def _any_stone(white: int) -> Appearance:
     lab = _lab_of_table()
     chroma = np.hypot(lab[..., 1] - 128, lab[..., 2] - 128)
     light = lab[..., 0] / white
@@ -117,19 +113,9 @@ def _any_stone(white: int) -> Appearance:
     return Appearance((cap - granite).astype(np.float32))
 
 
-def any_grey_stone(white: float = 210.0) -> Appearance:
-    """Appearance of stones in a recording without colours: caps darker or lighter than granite.
-
-    Parameters
-    ----------
-    white : float
-        Lightness L* of the white ice in the picture, 0 to 255.
-    """
-    return _any_grey_stone(round(white))
-
-
 @lru_cache(maxsize=32)
-def _any_grey_stone(white: int) -> Appearance:
+def any_grey_stone(white: int = 210) -> Appearance:
+    """As `any_stone`, in a recording without colours: caps darker or lighter than granite."""
     light = _lab_of_table()[..., 0] / white
     granite = np.clip((light - 0.3) / 0.1, 0, 1) * np.clip((0.78 - light) / 0.1, 0, 1)
     return Appearance((1 - 2 * granite).astype(np.float32))

@@ -40,7 +40,15 @@ LEAST_IN_VIEW = 0.4
 
 @dataclass(frozen=True)
 class Candidates:
-    """Places that may be discs, strongest first: (n, 2) in m."""
+    """Where discs may be.
+
+    Attributes
+    ----------
+    places : ndarray, shape (n, 2)
+        m, strongest first.
+    appearance : Appearance or None
+        By what they were sought; None for plain discs.
+    """
 
     places: Array
     appearance: Appearance | None
@@ -87,7 +95,7 @@ def seek(
 def _unknown(ice: IceMap, disc: Stone) -> Appearance:
     """Say what stones may look like on a piece of ice, before any is known."""
     lab = lab_of(ice.image)[ice.valid].astype(np.int32)
-    white = max(float(np.percentile(lab[:, 0], 75)), 60.0)
+    white = max(round(float(np.percentile(lab[:, 0], 75))), 60)
     vivid = int((((lab[:, 1:] - 128) ** 2).sum(1) > VIVID**2).sum())
     if vivid < 0.5 * np.pi * (disc.cap_radius * ice.scale) ** 2:
         return any_grey_stone(white)  # not one cap of any colour is in view

@@ -7,6 +7,7 @@ import pytest
 from tests.vision.test_follow import sighting
 from vision.appearance import (
     UNLIKE,
+    Appearance,
     Colour,
     any_grey_stone,
     any_stone,
@@ -37,9 +38,9 @@ def seen(
     )
 
 
-def worth_of(colours: list[tuple[int, int, int]], look: object) -> list[float]:
+def worth_of(colours: list[tuple[int, int, int]], look: Appearance) -> list[float]:
     image = np.array(colours, np.uint8)[None]
-    return membership(image, look)[0].tolist()  # type: ignore[arg-type]
+    return membership(image, look)[0].tolist()
 
 
 def test_caps_of_any_colour_are_worth_something_granite_the_contrary_and_ice_nothing() -> None:
