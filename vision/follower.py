@@ -24,7 +24,7 @@ from vision.rays import Look
 from vision.seek import Bounds
 from vision.sighting import Sighting
 from vision.still import portraits, unchanged
-from vision.stones import Search, search_picture
+from vision.stones import NEAREST, Search, search_picture
 
 Array = NDArray[np.float64]
 
@@ -125,7 +125,7 @@ class Follower:
         if not leads:
             return []
         t = view.frame.t
-        apart = 1.6 * self.disc.radius
+        apart = NEAREST * self.disc.radius
         near, still = 0.15 * self.disc.radius, STILL * self.disc.radius
         expected = [lead.at(t) for lead in leads]
         found = self._measured(view, leads, expected, ahead)

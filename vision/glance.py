@@ -16,7 +16,7 @@ from vision.appearance import (
 )
 from vision.camera import Camera
 from vision.clip import Image
-from vision.stones import Findings, search_picture
+from vision.stones import NEAREST, Findings, search_picture
 
 
 def glance(pictures: Sequence[tuple[Image, Camera]], disc: Stone = STONE) -> list[Findings]:
@@ -52,6 +52,6 @@ def _with_strangers(known: Findings, other: Findings, look: Appearance, disc: St
         stone
         for stone in other.stones
         if all(colour_difference(cap.mean, stone.colour) > UNLIKE for cap in look.caps)
-        and all(hypot(stone.x - s.x, stone.y - s.y) > 1.6 * disc.radius for s in known.stones)
+        and all(hypot(stone.x - s.x, stone.y - s.y) > NEAREST * disc.radius for s in known.stones)
     ]
     return Findings((*known.stones, *strangers), known.refused)

@@ -33,6 +33,9 @@ Floats = NDArray[np.float32]
 Bytes = NDArray[np.uint8]
 Bools = NDArray[np.bool_]
 
+CLEARLY = 0.3
+"""Worth from which a sample counts as one of the cap; of the granite, less than its negative."""
+
 
 @dataclass(frozen=True)
 class Measures:
@@ -141,6 +144,13 @@ def _rings(rays: Rays, radii: Array) -> Bytes:
     return np.asarray(seen)
 
 
+def well_within(radius: Array, disc: Stone) -> tuple[slice, slice]:
+    """Tell which of the radii lie on a stone's cap, and which on its granite, not near an edge."""
+    ends = [0.88 * disc.cap_radius, 1.10 * disc.cap_radius, 0.97 * disc.radius]
+    cap, first, last = np.searchsorted(radius, ends).tolist()
+    return slice(0, cap), slice(first, last)
+
+
 @lru_cache(maxsize=8)
 def _template(disc: Stone, effort: Effort) -> Array:
     """Weights of the radii in the mean over the cap less the mean over the granite."""
@@ -166,15 +176,13 @@ def _stones(
     disc: Stone,
     effort: Effort,
 ) -> Measures:
-    radius = rays.radius
     lab = rays.lab.astype(np.float32)
     falls = falls_along(lab)
-    in_cap = slice(0, int(np.searchsorted(radius, 0.88 * disc.cap_radius)))
-    in_ring = slice(*np.searchsorted(radius, [1.10 * disc.cap_radius, 0.97 * disc.radius]).tolist())
+    in_cap, in_ring = well_within(rays.radius, disc)
     worth = membership(rays.bgr, appearance)
     if not rays.inside.all():
         worth *= rays.inside
-    of_cap, of_ring = worth[..., in_cap] > 0.3, worth[..., in_ring] < -0.3
+    of_cap, of_ring = worth[..., in_cap] > CLEARLY, worth[..., in_ring] < -CLEARLY
     cap = _mean_of(lab[..., in_cap, :], of_cap.astype(np.float32))
     granite = _mean_of(lab[..., in_ring, :], of_ring.astype(np.float32))
     # Bolts and highlights are light and dark alike; the hue is what ends at the cap's edge.

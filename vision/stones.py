@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from data.sheet import STONE, Stone
 from vision.appearance import Appearance
 from vision.camera import Camera
-from vision.measure import Measures, measure
+from vision.measure import CLEARLY, Measures, measure, well_within
 from vision.patch import EFFORT, is_plain
 from vision.picture import Picture
 from vision.placing import placed_by, sightings
@@ -27,6 +27,9 @@ from vision.seek import Bounds, seek
 from vision.sighting import Refusal, Sighting
 
 Array = NDArray[np.float64]
+
+NEAREST = 1.6
+"""Nearer to each other than so many radii no two discs are seen: two, if places did not err."""
 
 
 @dataclass(frozen=True)
@@ -138,7 +141,7 @@ def search_picture(
     )  # fmt: skip
     places = sought.places
     if known is not None and len(known) and len(places):
-        new = np.hypot(*(places[:, None] - known).transpose(2, 0, 1)).min(1) > 1.6 * disc.radius
+        new = np.hypot(*(places[:, None] - known).transpose(2, 0, 1)).min(1) > NEAREST * disc.radius
         places = places[new]
     refused: list[Refusal] = []
     # The second time from the centre that the first has found, roughly.
@@ -196,13 +199,11 @@ def judge(seen: Measures, disc: Stone, search: Search) -> list[str]:
 
 def with_samples(found: Sighting, seen: Measures, index: int, disc: Stone) -> Sighting:
     """Add what the place's samples say of the colours of cap and granite, for learning."""
-    lab, worth, radius = seen.rays.lab[index], seen.worth[index], seen.rays.radius
-    cap = (worth > 0.3) & (radius < 0.88 * disc.cap_radius)
-    ring = (radius > 1.10 * disc.cap_radius) & (radius < 0.97 * disc.radius)
-    granite = (worth < -0.3) & ring
+    cap, ring = well_within(seen.rays.radius, disc)
+    lab, worth = seen.rays.lab[index], seen.worth[index]
     return found._replace(
-        cap_samples=lab[cap][::7].astype(float),
-        granite_samples=lab[granite][::5].astype(float),
+        cap_samples=lab[:, cap][worth[:, cap] > CLEARLY][::7].astype(float),
+        granite_samples=lab[:, ring][worth[:, ring] < -CLEARLY][::5].astype(float),
     )
 
 
@@ -210,6 +211,6 @@ def _apart(found: Sequence[Sighting], disc: Stone) -> list[Sighting]:
     """Keep the better of any two that overlap more than two discs can."""
     kept: list[Sighting] = []
     for item in sorted(found, key=lambda s: -s.score):
-        if all(np.hypot(item.x - k.x, item.y - k.y) > 1.6 * disc.radius for k in kept):
+        if all(np.hypot(item.x - k.x, item.y - k.y) > NEAREST * disc.radius for k in kept):
             kept.append(item)
     return kept
