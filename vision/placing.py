@@ -25,6 +25,10 @@ ASLANT = 0.015
 """Standard error of how high the rim of a cap is seen, as a share of its height: a wall or a
 rounded rim is seen on the near side only."""
 
+RMS_SHARE, USUAL_RMS_PX = 0.35, 0.3
+"""Share of the residual of a camera's edges by which places may lie aside; what that residual is
+taken for where it is not known, px."""
+
 
 def sightings(
     seen: Measures, looks: Sequence[Look], chosen: NDArray[np.intp], disc: Stone
@@ -66,19 +70,18 @@ def placed_by(camera: Camera, seen: Sequence[Sighting], disc: Stone) -> list[Sig
     if not seen:
         return []
     places = camera.ice(np.array([sighting.pixel for sighting in seen]), disc.cap_height)
-    scale, tilt = camera.scale_at(places), np.hypot(*slants(camera, places).T)
-    shared = _shared_errors(camera, places, disc, scale, tilt)
+    shared = _shared_errors(camera, places, disc)
     return [
         sighting._replace(x=x, y=y, sd_place=sd)
         for sighting, (x, y), sd in zip(seen, places.tolist(), shared.tolist(), strict=True)
     ]
 
 
-def _shared_errors(camera: Camera, places: Array, disc: Stone, scale: Array, tilt: Array) -> Array:
+def _shared_errors(camera: Camera, places: Array, disc: Stone) -> Array:
     """Give the standard errors that no filter averages out, m: by camera and height of the cap."""
-    rms = camera.rms_px if np.isfinite(camera.rms_px) else 0.3
-    aslant = ASLANT * disc.cap_height * tilt
-    squares = (0.35 * rms / scale) ** 2 + aslant**2
+    rms = camera.rms_px if np.isfinite(camera.rms_px) else USUAL_RMS_PX
+    aslant = ASLANT * disc.cap_height * np.hypot(*slants(camera, places).T)
+    squares = (RMS_SHARE * rms / camera.scale_at(places)) ** 2 + aslant**2
     if camera.error is None:
         return np.asarray(np.sqrt(squares))
     return np.asarray(np.sqrt(squares + camera.place_sd(places, disc.cap_height) ** 2))

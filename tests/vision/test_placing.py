@@ -6,7 +6,7 @@ import numpy as np
 
 from data.sheet import STONE
 from tests.vision.test_follow import sighting
-from vision.placing import placed_by
+from vision.placing import RMS_SHARE, placed_by
 from vision.pose import View, camera
 from vision.rig import OVERHEAD, start_rig
 
@@ -31,6 +31,6 @@ def test_what_sightings_share_is_the_camera_s_and_grows_where_it_looks_aslant() 
     errors = [s.sd_place for s in placed_by(DOWN, seen, STONE)]
     assert errors == sorted(errors)
     flat = [s.sd_place for s in placed_by(DOWN, seen, replace(STONE, cap_height=0.0))]
-    np.testing.assert_allclose(flat, 0.35 * 0.2 * HEIGHT / FOCAL, rtol=0.01)
+    np.testing.assert_allclose(flat, RMS_SHARE * 0.2 * HEIGHT / FOCAL, rtol=0.01)
     rough = placed_by(replace(DOWN, rms_px=2.0), seen, STONE)
     assert all(s.sd_place > e for s, e in zip(rough, errors, strict=True))
