@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from vision.appearance import colour_differences
 from vision.assign import assign
+from vision.lead import DECELERATION
 from vision.sighting import Sighting
 
 Array = NDArray[np.float64]
@@ -63,7 +64,7 @@ class Gate:
     births: int = 5
     told: int = 3
     least_score: float = 0.0
-    deceleration: float = 0.1
+    deceleration: float = DECELERATION
     restitution: float = 0.85
 
 

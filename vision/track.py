@@ -125,7 +125,9 @@ def _rows(name: str, track: Track, team: str, disc: Stone, edge: float) -> Colum
     spectra: list[Complex | None] = [sighting.spectrum for sighting in track.sightings]
     theta, sd_theta = handle_angles(np.array(track.times), spectra, handle_radii(disc))
     seen = track.sightings
-    x, y, sd_x, sd_y, sd_place = np.array([item[:5] for item in seen]).T
+    x, y, sd_x, sd_y, sd_place = np.array(
+        [(item.x, item.y, item.sd_x, item.sd_y, item.sd_place) for item in seen]
+    ).T
     return {
         "stone": np.full(len(seen), name),
         "frame": np.array(track.frames),
