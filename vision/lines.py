@@ -69,7 +69,8 @@ def upright(image: Image, view: View, rig: Array) -> tuple[View, Array]:
     is higher in the picture.
     """
     view, rig = y_up(view, rig, (image.shape[1], image.shape[0]))
-    score, turn = _cross_score(image, view, rig), STEP * (np.arange(QUARTER_STEPS) - 180)
+    score = _cross_score(image, view, rig)
+    turn = STEP * (np.arange(QUARTER_STEPS) - QUARTER_STEPS // 2)
     noise = float(np.median(score)) + 1e-9
     spread = float(np.median(np.abs(score - noise))) + 0.05 * noise
     score -= 0.02 * noise * np.abs(np.degrees(turn)) / 10
@@ -122,7 +123,7 @@ def _back_line(image: Image, view: View, rig: Array) -> float:
     size = (image.shape[1], image.shape[0])
     aside = np.arange(0.85, SHEET.half_width_min, 0.03)
     across = np.concatenate([-aside[::-1], aside])
-    beside = np.add.outer((-SHEET.back_line,), (BESIDE[0], *ON, BESIDE[1])).ravel()
+    beside = np.array([BESIDE[0], *ON, BESIDE[1]]) - SHEET.back_line
     ice = np.stack(np.broadcast_arrays(across[:, None], beside), axis=-1)
     place = project(ice.reshape(-1, 2), view.vector, rig, size).reshape(ice.shape)
     with np.errstate(invalid="ignore"):

@@ -3,6 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from vision.camera import Camera
 from vision.ice_map import rectify
 from vision.pose import View, camera
 from vision.rig import OVERHEAD, start_rig
@@ -11,7 +12,7 @@ SIZE, HEIGHT = (1280, 720), 8.0
 RIG = start_rig(OVERHEAD, (0.3, -0.2, HEIGHT))
 
 
-def drawn(focal: float, turn: float, height: float) -> tuple[np.ndarray, object, np.ndarray]:
+def drawn(focal: float, turn: float, height: float) -> tuple[np.ndarray, Camera, np.ndarray]:
     """A picture with a blot at a place this high above the ice, its camera and that place."""
     look = camera(View(np.array([0.05, 0.02, turn, np.log(focal)])), RIG, SIZE)
     place = np.array([0.45, 0.62])
@@ -25,7 +26,7 @@ def drawn(focal: float, turn: float, height: float) -> tuple[np.ndarray, object,
 @pytest.mark.parametrize("scale", [45.0, 80.0])
 def test_a_blot_lies_on_the_map_where_it_lies_on_the_ice(height: float, scale: float) -> None:
     image, look, place = drawn(900.0, 0.4, height)
-    ice = rectify(image, look, (-1.5, 1.5, -1.0, 2.0), scale=scale, height=height)  # type: ignore[arg-type]
+    ice = rectify(image, look, (-1.5, 1.5, -1.0, 2.0), scale=scale, height=height)
     assert ice is not None
     light = ice.image[..., 0].astype(float)
     row, column = np.indices(light.shape)
@@ -35,12 +36,12 @@ def test_a_blot_lies_on_the_map_where_it_lies_on_the_ice(height: float, scale: f
 
 def test_what_the_picture_does_not_show_is_not_valid_or_not_on_the_map() -> None:
     image, look, _ = drawn(900.0, 0.0, 0.0)
-    ice = rectify(image, look, (-9.0, 9.0, -9.0, 9.0), scale=30.0)  # type: ignore[arg-type]
+    ice = rectify(image, look, (-9.0, 9.0, -9.0, 9.0), scale=30.0)
     assert ice is not None
     row, column = np.indices(ice.valid.shape)
-    seen = look.project(ice.place(column, row))  # type: ignore[attr-defined]
+    seen = look.project(ice.place(column, row))
     inside = np.all((seen > 1) & (seen < np.array(SIZE) - 2), axis=-1)
     outside = np.any((seen < -2) | (seen > np.array(SIZE) + 1), axis=-1)
     assert ice.valid[inside].all()
     assert not ice.valid[outside].any()
-    assert rectify(image, look, (50.0, 52.0, 0.0, 2.0), scale=30.0) is None  # type: ignore[arg-type]
+    assert rectify(image, look, (50.0, 52.0, 0.0, 2.0), scale=30.0) is None
