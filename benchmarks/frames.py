@@ -54,8 +54,10 @@ def main() -> None:
     parser.add_argument("--sheet", type=Path, help="write crops of all errors here")
     arguments = parser.parse_args()
     frames = arguments.shared / "frames"
-    houses, tally = 0, Tally()
     files = sorted((frames / "images").glob("*.jpg"))
+    if not files:
+        parser.error(f"no boxed frames in {frames}: say where they are with --shared")
+    houses, tally = 0, Tally()
     for file in files:
         try:
             camera = film([file], Settings(), no_progress, nobody).cameras[0]

@@ -22,10 +22,10 @@ from tests.scoring import score_tracks
 from tests.synthetic.camera import broadcast_camera, tilted_camera
 from tests.synthetic.clip import cached_clip
 from tests.synthetic.scenes import random_scene, sweepers
-from vision.appearance import CONVINCING, learn
 from vision.camera import Camera
 from vision.clip import open_clip
-from vision.stones import SEARCH, find_stones
+from vision.glance import glance
+from vision.stones import SEARCH
 from vision.track import track_stones
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -146,9 +146,8 @@ def stills_table() -> pd.DataFrame:
         place = np.array(still["camera"]["xyz"])
         matrix = np.array(still["homography"])
         camera = Camera(0, 0.0, matrix, size, still["k1"], still["k2"], position=place)
-        first = find_stones(image, camera)
-        look = learn([sighting for sighting in first if sighting.score > CONVINCING])
-        found = np.array([(s.x, s.y) for s in find_stones(image, camera, look)]).reshape(-1, 2)
+        (seen,) = glance([(image, camera)])
+        found = np.array([(stone.x, stone.y) for stone in seen.stones]).reshape(-1, 2)
         name = still["file"].replace(".jpg", ".txt")
         boxes = np.loadtxt(SHARED / "frames" / "boxes" / name, ndmin=2)
         boxes = boxes[boxes[:, 0] == 0]
