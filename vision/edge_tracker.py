@@ -160,6 +160,11 @@ class EdgeTracker:
         known = np.isfinite(contrast) & np.isfinite(away)
         return bool((away[known] < 0.5 * contrast[known]).all())
 
+    @property
+    def _reach(self) -> float:
+        """Half length of the normals, px."""
+        return max(REACH * self.size[0], LEAST_REACH)
+
     def _laid(self, views: Sequence[View], rig: Array) -> tuple[Normals, Array]:
         """Give normals and where they stand in views, of which at least the first has them.
 
@@ -180,8 +185,7 @@ class EdgeTracker:
             moved = self._moved(normals, views, rig)
             if len(moved) == len(views):
                 return normals, np.array(moved)
-        reach = max(REACH * self.size[0], LEAST_REACH)
-        normals = lay_out(views[0].vector, rig, self.size, reach=reach, most=MOST_NORMALS)
+        normals = lay_out(views[0].vector, rig, self.size, reach=self._reach, most=MOST_NORMALS)
         return normals, np.array([normals.standing, *self._moved(normals, views[1:], rig)])
 
     def _moved(self, normals: Normals, views: Sequence[View], rig: Array) -> list[Array]:
@@ -213,7 +217,7 @@ class EdgeTracker:
     def _is_settled(self, before: View, evidence: Evidence, fit: ViewSolution, rig: Array) -> bool:
         """Whether a view was predicted so well that the edges need not be measured anew."""
         shift = np.abs(fit.view.vector - before.vector)[:3].max() * fit.view.focal
-        near = bool(shift < SETTLED * REACH * self.size[0])
+        near = bool(shift < SETTLED * self._reach)
         least = max(GOOD_SUPPORT, STEADY * self.support)
         return near and _enough(rig, evidence.visible, _explained(evidence, fit), least)
 
