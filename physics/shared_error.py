@@ -26,7 +26,7 @@ def shared_error(
     A map of the ice is wrong alike at places near each other: by a field whose correlation falls
     with the distance d as exp(-d² / 2 L²), L being `PLACE_REACH`. The unknowns follow such an
     error as they follow the sightings. The size of the field is stated, `sd_place`, and shows in
-    what the fit leaves: the two have the same say in its square.
+    what the fit leaves: the two have the same say in its square, where noise does not hide it.
 
     Parameters
     ----------
@@ -80,7 +80,17 @@ def shared_error(
     )
     steps = np.diff(off, axis=0)
     noise = np.median(steps**2, axis=0) / MEDIAN / 2 / counts[:, None]
-    return np.asarray(out * (1 + _excess(mean(off), left, noise)) / 2)
+    return np.asarray(out * (1 + _shown(mean(off), left, noise)) / 2)
+
+
+def _shown(off: Floats, left: Floats, noise: Floats) -> float:
+    """Factor on the variances `left` that residuals show, 1 as far as noise hides them.
+
+    A fit follows a field over a short path and leaves next to nothing of it: whatever else
+    residuals have in them would pass for a field many times as large.
+    """
+    told = float(np.mean(left / (left + noise)))
+    return told * _excess(off, left, noise) + 1 - told
 
 
 def _excess(off: Floats, left: Floats, noise: Floats) -> float:

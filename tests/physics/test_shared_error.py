@@ -12,24 +12,27 @@ from physics.traces import PLACE_REACH, Trace
 Floats = NDArray[np.float64]
 COUNT, SIZE, SD = 150, 2e-3, 4e-4
 T = np.linspace(0, 3, COUNT)
-PATH = np.stack([0.2 * T, 1.6 * T - 0.1 * T**2], axis=1)
 BASIS = np.stack([np.ones(COUNT), T, T**2], axis=1)
-APART = np.sum((PATH[:, None] - PATH[None]) ** 2, axis=2)
-ROOT = np.linalg.cholesky(np.exp(-APART / (2 * PLACE_REACH**2)) + 1e-9 * np.eye(COUNT))
 
 
-def fitted(field: float, stated: float, rng: np.random.Generator) -> tuple[Floats, Floats]:
+def fitted(
+    field: float, stated: float, rng: np.random.Generator, t: Floats = T
+) -> tuple[Floats, Floats]:
     """Errors of the six unknowns of a parabola in time, and the variances that are stated."""
-    off = field * ROOT @ rng.normal(size=(COUNT, 2)) + SD * rng.normal(size=(COUNT, 2))
+    path = np.stack([0.2 * t, 1.6 * t - 0.1 * t**2], axis=1)
+    apart = np.sum((path[:, None] - path[None]) ** 2, axis=2)
+    root = np.linalg.cholesky(np.exp(-apart / (2 * PLACE_REACH**2)) + 1e-9 * np.eye(COUNT))
+    off = field * root @ rng.normal(size=(COUNT, 2)) + SD * rng.normal(size=(COUNT, 2))
     by_axis = np.zeros((COUNT, 2, 6))
     for axis in range(2):
-        by_axis[:, axis, 3 * axis : 3 * axis + 3] = -BASIS / SD
+        basis = np.stack([np.ones(COUNT), t, t**2], axis=1)
+        by_axis[:, axis, 3 * axis : 3 * axis + 3] = -basis / SD
     slopes = by_axis.reshape(2 * COUNT, 6)
     cov = np.asarray(np.linalg.inv(slopes.T @ slopes), float)
     found = -cov @ slopes.T @ (off / SD).ravel()
     residuals = (off / SD).ravel() + slopes @ found
     trace = Trace(
-        "A", T, PATH + off, np.full((COUNT, 2), SD), np.full(COUNT, np.nan),
+        "A", t, path + off, np.full((COUNT, 2), SD), np.full(COUNT, np.nan),
         np.full(COUNT, np.nan), np.full(COUNT, stated),
     )  # fmt: skip
     shared = shared_error({"A": trace}, residuals.reshape(-1, 2), slopes, cov, np.ones(2 * COUNT))
@@ -56,6 +59,15 @@ def test_a_field_smaller_than_stated_does_too() -> None:
     none = np.mean([fitted(0.0, SIZE, rng)[1] for _ in range(40)], axis=0)
     assert np.all(none < 0.75 * wide)
     assert np.all(none > 0.4 * wide)  # what is stated keeps its say
+
+
+def test_a_path_so_short_that_nothing_of_the_field_is_left_has_the_errors_that_are_stated() -> None:
+    """Noise is no sign of a larger field where the fit follows whatever field there is."""
+    rng = np.random.default_rng(3)
+    each = [fitted(SIZE, SIZE, rng, 0.25 * T) for _ in range(100)]
+    errors, variances = map(np.array, zip(*each, strict=True))
+    ratio = np.sqrt(variances.mean(axis=0) / np.mean(errors**2, axis=0))
+    assert np.all((ratio > 0.8) & (ratio < 1.5))
 
 
 def test_places_that_share_nothing_add_nothing() -> None:
