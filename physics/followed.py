@@ -29,15 +29,22 @@ def fit_followed(shot: Watched) -> tuple[GlobalFit, str | None]:
     whole = fit = fit_with_chosen_laws(shot)
     end = None
     while not followed(fit):
-        other = fit.shots[0].first_other_hit(fit.simulation())
-        if other is None:  # it did not come to its end
-            other = fit.shots[0].times[-1], " and ".join(fit.shots[0].hits[-1])
-        shorter = fit.shots[0].until(other[0] - BEFORE)
+        time, why = _obstacle(fit)
+        shorter = fit.shots[0].until(time - BEFORE)
         if not shorter.hits:
             return whole, None
-        end = f"until {other[0] - BEFORE:.2f} s: the hit of {other[1]} is not as simulated"
+        end = f"until {time - BEFORE:.2f} s: {why}"
         fit = fit_with_chosen_laws(shorter)
     return fit, end
+
+
+def _obstacle(fit: GlobalFit) -> tuple[float, str]:
+    """Time, s, of the hit at which a shot is not followed, and why it is not."""
+    shot = fit.shots[0]
+    other = shot.first_other_hit(fit.simulation())
+    if other is not None:
+        return other[0], f"the hit of {other[1]} is not as simulated"
+    return shot.times[-1], f"with the hit of {' and '.join(shot.hits[-1])} the fit does not settle"
 
 
 def followed(fit: GlobalFit) -> bool:
