@@ -42,9 +42,9 @@ def fit_with_chosen_laws(shot: Watched) -> GlobalFit:
         criterion = least + _against(more, name)
         if criterion < least:
             if name == "slope":  # where friction falls there is a knee to be found
-                del fewer["v_c"]
-                bent = fit_shots([shot], fixed=fewer, start=_start(more))
-                more = bent if bent.settled else more
+                free = {key: value for key, value in fewer.items() if key != "v_c"}
+                bent = fit_shots([shot], fixed=free, start=_start(more))
+                more, fewer = (bent, free) if bent.settled else (more, fewer)
             best, held, least = more, fewer, criterion
         tried.append(more)
         criteria.append(criterion)
