@@ -82,6 +82,11 @@ def noises(fit: ShotFit, known: Mapping[str, Trace]) -> dict[str, Noise]:
         Of all pieces.
     known : mapping
         Stone to its sightings.
+
+    Returns
+    -------
+    dict of str to Noise
+        By stone.
     """
     each = [
         _errors(list(_places(fit, known, 0)), known, PLACE_MEMORY),
@@ -193,7 +198,8 @@ def _slows(runs: Sequence[Run], white: Mapping[str, float], memory: float) -> di
         unit = n * _left(run.t, memory)
         weight = float(np.median(np.diff(run.t))) / memory
         for name in (run.stone, ""):
-            prior = STATED * np.array([max(1.0 - size**2, 0.0), 1.0])
+            stated = max(1.0 - white.get(name, white[""]) ** 2, 0.0)
+            prior = STATED * np.array([stated, 1.0])
             sums[name] = sums.get(name, prior) + weight * np.array([excess, unit])
     excess, unit = sums.pop("", np.array([0.0, 1.0]))
     usual = max(excess / unit, 0.0)
