@@ -39,8 +39,8 @@ UNTOLD = 2.5
 """Standard deviation of a spin that nothing is known of, rad/s."""
 
 UNSEEN_SCALE = 0.5
-"""Share of what places share that is no error of theirs which lasts for a while, but one of the
-scale."""
+"""Part of `Trace.sd_scale` that adds to the errors of velocities: the rest, which changes under
+way, is among the lasting errors of the places, which the filter knows."""
 
 
 def smooth(
@@ -83,8 +83,8 @@ def smoothed(
         `data.tracks.TRACK_COLUMNS`. ``seen`` is 0 in rows at which other stones were seen
         but not this one, or at which its sighting was refused as an outlier. Angles and spins
         are NaN where the stone's angle was not seen from one hit to the next, velocities where
-        it was seen once. The
-        standard deviations of places include what the sightings share (``sd_place``).
+        it was seen once. The standard deviations of places include what the sightings share
+        (``sd_place``).
     """
     known = traces(sightings)
     if not known:

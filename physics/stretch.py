@@ -79,7 +79,8 @@ class Stretch:
     rest, idle : (n,) array of bool
         Whether the stone rests, and whether it also does not spin.
     speed : (n, 2) array
-        About how fast it moves, m/s: only for the direction in which the ice slows it.
+        About how fast it moves, m/s: for the way in which the ice slows it, how much its motion
+        changes of itself, and how fast it may lose its spin.
     model : Model
     """
 
