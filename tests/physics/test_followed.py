@@ -6,9 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pandas as pd
+import pytest
 
 from physics.contacts import find_contacts
 from physics.estimate import Estimates, estimate
+from physics.followed import fit_followed
+from physics.shot_model import Watched
+from physics.whole_fit import GlobalFit
 from tests.physics.watch import RADIUS, hit_motion, watch
 from tests.synthetic.physics import Start
 
@@ -56,6 +60,25 @@ def test_a_first_hit_that_is_not_as_simulated_leaves_the_values_beside_it() -> N
     found = estimate(seen, wrong, radius=RADIUS)
     assert found.whole is None
     assert any("does not follow" in text or "differ" in text for text in found.warnings)
+
+
+def test_a_fit_that_does_not_settle_is_left_before_its_last_hit(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    whole = measure(seen_with_late_touch()).whole
+    assert whole is not None
+    (shot,) = whole.shots
+
+    def fit(part: Watched) -> GlobalFit:
+        return replace(whole, shots=(part,), settled=part is not shot)
+
+    monkeypatch.setattr("physics.followed.fit_with_chosen_laws", fit)
+    found, end = fit_followed(shot)
+    assert found.shots[0].hits == shot.hits[:1]
+    assert (
+        end
+        == f"until {shot.times[-1] - 0.1:.2f} s: with the hit of A and C the fit does not settle"
+    )
 
 
 def test_places_that_slip_as_a_stone_comes_into_view_do_not_set_it_in_motion() -> None:
