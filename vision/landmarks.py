@@ -38,7 +38,7 @@ WINDOW, LEVELS = (15, 15), 2
 ALIKE = 0.02
 """Turn or stretch up to which a window looks the same: by a seventh of a pixel at its corners."""
 
-ENOUGH = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 12, 0.02)
+TERMINATION = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 12, 0.02)
 """When it has been followed: steps at most, and the last step, px of the small picture."""
 
 LEAST_CORNERS = 12
@@ -157,12 +157,12 @@ def recognise(key: Keyframe, picture: Picture, view: View, rig: Array) -> Marks 
     before = one.astype(np.float32)
     after, ok, _ = cv2.calcOpticalFlowPyrLK(
         warped, grey, before, there.astype(np.float32), winSize=WINDOW, maxLevel=LEVELS,
-        criteria=ENOUGH, flags=cv2.OPTFLOW_USE_INITIAL_FLOW,
+        criteria=TERMINATION, flags=cv2.OPTFLOW_USE_INITIAL_FLOW,
     )  # fmt: skip
     # What is the same is found again from there: it was there that one looked, so near at hand.
     back, ok_back, _ = cv2.calcOpticalFlowPyrLK(
         grey, warped, after, before.copy(), winSize=WINDOW, maxLevel=0,
-        criteria=ENOUGH, flags=cv2.OPTFLOW_USE_INITIAL_FLOW,
+        criteria=TERMINATION, flags=cv2.OPTFLOW_USE_INITIAL_FLOW,
     )  # fmt: skip
     two = after.astype(np.float64)
     good = np.flatnonzero(

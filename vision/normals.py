@@ -104,7 +104,9 @@ _GROUP_SIZE = np.repeat(_GROUP, _GROUPS)
 _GROUP_START = np.cumsum(_GROUP_SIZE) - _GROUP_SIZE
 _BEYOND = np.abs(_ALONG[_GROUP_START + _GROUP_SIZE // 2]) > HOUSE.twelve_foot
 _SHARE = np.where((_GROUP_SIZE > 1) & _BEYOND, CLOSER, 1)
-# Blocks lie alike at both ends; on circles not close to either side of where the back line touches.
+# Of the blocks in each equal share of a line the middle one is kept, so both ends are alike. Of
+# circles the first normal: the middle ones of 32 would stand 6° on either side of where the back
+# line touches the house, and measure that line.
 _PHASE = np.where(_GROUP_SIZE > 1, 0.5, 1e-9)
 
 
