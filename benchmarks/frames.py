@@ -64,9 +64,7 @@ def main() -> None:
         except CurlshotError:
             continue
         houses += 1
-        boxes = np.loadtxt((frames / "boxes" / file.name).with_suffix(".txt"), ndmin=2)
-        stones = boxes[boxes[:, 0] == 0, 1:] if boxes.size else np.empty((0, 4))
-        _look(file, camera, stones, tally)
+        _look(file, camera, stone_boxes(frames, file.stem), tally)
     print(f"house found in {houses} of {len(files)} frames")
     print(
         f"stones: recall {tally.found / tally.marked:.3f} of {tally.marked}, precision at least"
@@ -74,6 +72,12 @@ def main() -> None:
     )
     if arguments.sheet is not None and tally.crops:
         cv2.imwrite(str(arguments.sheet), _sheet(tally.crops, 8))
+
+
+def stone_boxes(frames: Path, name: str) -> Array:
+    """Boxes of the stones of a frame, (n, 4): middle, width and height as shares of the picture."""
+    boxes = np.loadtxt(frames / "boxes" / f"{name}.txt", ndmin=2)
+    return boxes[boxes[:, 0] == 0, 1:] if boxes.size else np.empty((0, 4))
 
 
 def _look(file: Path, camera: Camera, boxes: Array, tally: Tally) -> None:

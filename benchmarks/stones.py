@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from benchmarks.frames import stone_boxes
 from data.sheet import STONE
 from tests.scoring import score_tracks
 from tests.synthetic.camera import broadcast_camera, tilted_camera
@@ -148,11 +149,9 @@ def stills_table() -> pd.DataFrame:
         camera = Camera(0, 0.0, matrix, size, still["k1"], still["k2"], position=place)
         (seen,) = glance([(image, camera)])
         found = np.array([(stone.x, stone.y) for stone in seen.stones]).reshape(-1, 2)
-        name = still["file"].replace(".jpg", ".txt")
-        boxes = np.loadtxt(SHARED / "frames" / "boxes" / name, ndmin=2)
-        boxes = boxes[boxes[:, 0] == 0]
-        marked = camera.ice(boxes[:, 1:3] * size - 0.5, STONE.cap_height)
-        whole = np.all(np.abs(boxes[:, 1:3] - 0.5) < 0.5 - 0.1 * boxes[:, 3:5], axis=1)
+        boxes = stone_boxes(SHARED / "frames", Path(still["file"]).stem)
+        marked = camera.ice(boxes[:, :2] * size - 0.5, STONE.cap_height)
+        whole = np.all(np.abs(boxes[:, :2] - 0.5) < 0.5 - 0.1 * boxes[:, 2:], axis=1)
         on_sheet = np.abs(marked[:, 0]) < SEARCH.x_max - 0.1
         marked = marked[on_sheet & whole]
         apart = np.hypot(*(found[:, None] - marked[None]).transpose(2, 0, 1))

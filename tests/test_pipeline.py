@@ -56,6 +56,17 @@ def curlshot(
     )
 
 
+def in_python(code: str) -> subprocess.CompletedProcess[str]:
+    """Run some code in an interpreter of its own, which must end well."""
+    return subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=Path(pipeline.__file__).parent,
+    )
+
+
 def test_sample_is_measured_to_the_bars(sample: pipeline.Run) -> None:
     truth = read_truth(SAMPLE)
     score = score_tracks(sample.tracks, truth.stones)
@@ -222,13 +233,7 @@ def test_help_loads_nothing_heavy() -> None:
     code = (
         "import sys, pipeline\npipeline.command_line('').format_help()\nprint(sorted(sys.modules))"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        capture_output=True,
-        text=True,
-        check=True,
-        cwd=Path(pipeline.__file__).parent,
-    )
+    done = in_python(code)
     for heavy in ("numpy", "pandas", "cv2", "scipy", "matplotlib", "av"):
         assert f"'{heavy}'" not in done.stdout
 
@@ -447,13 +452,7 @@ def test_a_clip_is_tracked_without_what_takes_long_to_load(tmp_path: Path) -> No
         f"pipeline.main(['track', {clip!r}, '--frames', '0:9', '-q', '-o', {str(tmp_path)!r}])\n"
         "print({'pandas', 'scipy', 'filterpy', 'matplotlib'} & sys.modules.keys() or 'none')"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        capture_output=True,
-        text=True,
-        check=True,
-        cwd=Path(pipeline.__file__).parent,
-    )
+    done = in_python(code)
     assert done.stdout.splitlines()[-1] == "none"
     assert (tmp_path / "tracks.csv").exists()
 
@@ -465,13 +464,7 @@ def test_tracks_from_a_table_never_load_opencv(tmp_path: Path) -> None:
         f"pipeline.run([{str(tmp_path / 'hit.csv')!r}], {str(tmp_path / 'out')!r})\n"
         "print('cv2' in sys.modules)"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        capture_output=True,
-        text=True,
-        check=True,
-        cwd=Path(pipeline.__file__).parent,
-    )
+    done = in_python(code)
     assert (done.stdout, done.stderr) == ("False\n", "")
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -81,6 +81,13 @@ class Appearance:
     slack: float = 0.03
     wall: tuple[float, float] = WALL
 
+    def nearest(self, colour: Array) -> tuple[int, float]:
+        """Rank of the cap whose colour is nearest to one, shape (3,), and their difference."""
+        means = np.array([cap.mean for cap in self.caps])
+        differences = colour_differences(means, colour[None])[:, 0]
+        rank = int(differences.argmin())
+        return rank, float(differences[rank])
+
 
 @lru_cache(maxsize=1)
 def _lab_of_table() -> Floats:
@@ -119,6 +126,11 @@ def any_grey_stone(white: int = 210) -> Appearance:
     light = _lab_of_table()[..., 0] / white
     granite = np.clip((light - 0.3) / 0.1, 0, 1) * np.clip((0.78 - light) / 0.1, 0, 1)
     return Appearance((1 - 2 * granite).astype(np.float32))
+
+
+def convincing(sightings: Iterable[Sighting]) -> list[Sighting]:
+    """Those from which may be learned what stones look like."""
+    return [sighting for sighting in sightings if sighting.score > CONVINCING]
 
 
 def learn(sightings: Sequence[Sighting]) -> Appearance | None:

@@ -6,14 +6,7 @@ from collections.abc import Sequence
 from math import hypot
 
 from data.sheet import STONE, Stone
-from vision.appearance import (
-    CONVINCING,
-    MOST_COLOURS,
-    UNLIKE,
-    Appearance,
-    colour_difference,
-    learn,
-)
+from vision.appearance import MOST_COLOURS, UNLIKE, Appearance, convincing, learn
 from vision.camera import Camera
 from vision.clip import Image
 from vision.stones import NEAREST, Findings, search_picture
@@ -34,7 +27,7 @@ def glance(pictures: Sequence[tuple[Image, Camera]], disc: Stone = STONE) -> lis
         One per picture, with the places that were refused and why.
     """
     first = [search_picture(image, camera, None, disc) for image, camera in pictures]
-    appearance = learn([s for found in first for s in found.stones if s.score > CONVINCING])
+    appearance = learn(convincing(stone for found in first for stone in found.stones))
     if appearance is None:
         return first
     again = [search_picture(image, camera, appearance, disc) for image, camera in pictures]
@@ -51,7 +44,7 @@ def _with_strangers(known: Findings, other: Findings, look: Appearance, disc: St
     strangers = [
         stone
         for stone in other.stones
-        if all(colour_difference(cap.mean, stone.colour) > UNLIKE for cap in look.caps)
+        if look.nearest(stone.colour)[1] > UNLIKE
         and all(hypot(stone.x - s.x, stone.y - s.y) > NEAREST * disc.radius for s in known.stones)
     ]
     return Findings((*known.stones, *strangers), known.refused)

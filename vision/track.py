@@ -13,7 +13,7 @@ from data.progress import Progress, no_progress
 from data.sheet import STONE, Stone
 from data.tracks import SIGHTING_COLUMNS, Columns, no_rows, order_of_motion
 from vision.align import Complex
-from vision.appearance import Appearance, colour_difference
+from vision.appearance import Appearance
 from vision.camera import Camera
 from vision.clip import Clip
 from vision.follow import Gate, Track, follow
@@ -148,6 +148,6 @@ def _teams(tracks: Mapping[str, Track], appearance: Appearance | None) -> dict[s
     if appearance is None:
         return dict.fromkeys(tracks, "")
     return {
-        name: min(appearance.caps, key=lambda cap: colour_difference(cap.mean, track.colour)).name
+        name: appearance.caps[appearance.nearest(track.colour)[0]].name
         for name, track in tracks.items()
     }

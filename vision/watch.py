@@ -13,14 +13,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from data.sheet import STONE, Stone
-from vision.appearance import (
-    CONVINCING,
-    MOST_COLOURS,
-    UNLIKE,
-    Appearance,
-    colour_difference,
-    learn,
-)
+from vision.appearance import MOST_COLOURS, UNLIKE, Appearance, convincing, learn
 from vision.camera import Camera
 from vision.clip import Frame
 from vision.follower import PATIENCE, Follower, Patience, View
@@ -141,10 +134,10 @@ class Watch:
     def _learn(self, views: Iterable[View]) -> None:
         views = list(views)[::-1]
         found = self._of_any_colour(views[:: self._pace.lesson])
-        if found and not _convincing(found):
+        if found and not convincing(found):
             # A stone far away convinces in some pictures only.
             found = self._of_any_colour(views[1 :: self._pace.doubt])
-        self._lessons += _convincing(found)
+        self._lessons += convincing(found)
         self.appearance = learn(self._lessons)
 
     def _of_any_colour(self, views: Iterable[View]) -> list[Sighting]:
@@ -189,21 +182,13 @@ class Watch:
         """See whether there are stones of a colour that is not known yet, and learn it."""
         if self.appearance is None or len(self._lessons) >= self._pace.lessons:
             return False
-        caps = [cap.mean for cap in self.appearance.caps]
-        shown = {
-            min(range(len(caps)), key=lambda i: colour_difference(caps[i], stone.colour))
-            for stone in view.sightings
-        }
+        shown = {self.appearance.nearest(stone.colour)[0] for stone in view.sightings}
         if len(shown) == MOST_COLOURS:
             return False  # one more would take the place of one that is on the ice
         new = any(
-            min(colour_difference(cap, stone.colour) for cap in caps) > UNLIKE
-            for stone in _convincing(self._of_any_colour([view]))
+            self.appearance.nearest(stone.colour)[1] > UNLIKE
+            for stone in convincing(self._of_any_colour([view]))
         )
         if new:
             self._learn(self._recent)
         return new
-
-
-def _convincing(found: Iterable[Sighting]) -> list[Sighting]:
-    return [stone for stone in found if stone.score > CONVINCING]

@@ -107,6 +107,15 @@ def test_colours_differ_by_hue_more_than_by_light() -> None:
     assert table[0, 0] == pytest.approx(colour_difference(bright, dim))
 
 
+def test_the_nearest_cap_and_how_far_it_is() -> None:
+    look = learn([seen(RED)] * 3 + [seen(YELLOW)] * 3)
+    assert look is not None
+    for rank, cap in enumerate(look.caps):
+        away = cap.mean + np.array([0.0, 6.0, 8.0])
+        assert look.nearest(away) == (rank, pytest.approx(10.0))
+    assert look.nearest(lab(BLUE))[1] > UNLIKE
+
+
 def test_distances_of_colours_are_in_standard_deviations() -> None:
     colour = Colour(np.array([100.0, 150.0, 140.0]), np.diag([400.0, 25.0, 25.0]))
     away = colour.distance(

@@ -14,7 +14,7 @@ from tests.synthetic.clip import describe, render_still
 from tests.synthetic.physics import Start
 from tests.synthetic.scene import Colour, Graphic, Person, Scene, Stone
 from tests.synthetic.scenes import PAINTS
-from vision.appearance import CONVINCING, colour_difference, learn
+from vision.appearance import colour_difference, convincing, learn
 from vision.camera import Camera, CameraError
 from vision.clip import open_clip
 from vision.sighting import Sighting
@@ -192,9 +192,7 @@ def test_real_stills(shared: Path) -> None:
         matrix = np.array(still["homography"])
         camera = Camera(0, 0.0, matrix, size, still["k1"], still["k2"], position=place)
         found = find_stones(picture.image, camera)
-        found = find_stones(
-            picture.image, camera, learn([s for s in found if s.score > CONVINCING])
-        )
+        found = find_stones(picture.image, camera, learn(convincing(found)))
         true = np.array([(s["x"], s["y"]) for s in still["stones"]])
         apart = np.hypot(
             *(true[:, None] - np.array([(s.x, s.y) for s in found])[None]).transpose(2, 0, 1)
