@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.traces import PLACE_REACH, Trace
+from physics.traces import Trace, alike
 
 Floats = NDArray[np.float64]
 
@@ -24,8 +24,8 @@ def shared_error(
     """Covariance of a fit's unknowns that what places share gives them.
 
     A map of the ice is wrong alike at places near each other: by a field whose correlation falls
-    with the distance d as exp(-d² / 2 L²), L being `PLACE_REACH`. The unknowns follow such an
-    error as they follow the sightings. The size of the field is stated, `sd_place`, and shows in
+    with their distance (`physics.traces.alike`). The unknowns follow such an error as they follow
+    the sightings. The size of the field is stated, `sd_place`, and shows in
     what the fit leaves: the two have the same say in its square, where noise does not hide it.
 
     Parameters
@@ -62,9 +62,8 @@ def shared_error(
     gain = (-(cov @ slopes.T) * weights).reshape(len(cov), -1, 2) / sd * size[:, None]
     sums = np.add.reduceat(gain, edges, axis=1)
     middle = mean(xy)
-    apart = middle[:, None] - middle[None]
-    alike = np.exp(-np.sum(apart**2, axis=2) / (2 * PLACE_REACH**2))
-    field = [sums[:, :, axis] @ alike for axis in range(2)]
+    correlation = alike(middle)
+    field = [sums[:, :, axis] @ correlation for axis in range(2)]
     out = sum(field[axis] @ sums[:, :, axis].T for axis in range(2))
     # What the fit leaves of such a field, group by group.
     off = residuals * sd

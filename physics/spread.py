@@ -17,7 +17,7 @@ from physics.laws import Scaled
 from physics.shot_model import STATE
 from physics.simulate import simulate
 from physics.simulation import Hit, Shot, Simulation, StoneStart
-from physics.traces import PLACE_REACH
+from physics.traces import alike
 
 Floats = NDArray[np.float64]
 
@@ -60,8 +60,8 @@ class Doubt:
 def draws(shot: Shot, doubt: Doubt, count: int = DRAWS, seed: int = 0) -> list[Simulation]:
     """Simulate a shot many times with all that is doubtful drawn from normal distributions.
 
-    What is drawn is independent but for what places share: stones nearer to each other than
-    `PLACE_REACH` move together. Draws that cannot be simulated are left out.
+    What is drawn is independent but for what places share: stones near each other move
+    together (`physics.traces.alike`). Draws that cannot be simulated are left out.
     """
     rng = np.random.default_rng(seed)
     out = []
@@ -152,8 +152,7 @@ def _together(shot: Shot, doubt: Doubt, rng: np.random.Generator) -> Floats:
     """Draw what the places share: displacements of all stones, shape (n, 2), m."""
     xy = np.array([(stone.x, stone.y) for stone in shot.stones])
     size = np.array([doubt.shared.get(stone.name, 0.0) for stone in shot.stones])
-    apart = np.sum((xy[:, None] - xy[None]) ** 2, axis=2)
-    cov = np.outer(size, size) * np.exp(-apart / (2 * PLACE_REACH**2))
+    cov = np.outer(size, size) * alike(xy)
     return rng.multivariate_normal(np.zeros(len(xy)), cov, 2, method="eigh").T
 
 

@@ -130,6 +130,16 @@ def _filled(t: Floats, values: Floats, sd: Floats, least: float, default: float)
     return np.maximum(given, least)
 
 
+def alike(xy: Floats) -> Floats:
+    """Correlation of what places (n, 2), m, share: exp(-d² / 2 L²) of their distance d.
+
+    L is `PLACE_REACH`.
+    """
+    apart = np.sum((xy[:, None] - xy[None]) ** 2, axis=2)
+    out: Floats = np.exp(-apart / (2 * PLACE_REACH**2))
+    return out
+
+
 def level(scatter: Floats) -> float:
     """Robust standard deviation of residuals of one or two columns, whatever their axes."""
     usual = 0.6745 if scatter.shape[1] == 1 else 1.1774  # medians of |N| and of Rayleigh's law

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import HOUSE, SHEET
-from vision.pose import View, project, turned
+from vision.pose import View, pictured, project, turned
 from vision.rig import SIDE_L, SIDE_R
 
 Array = NDArray[np.float64]
@@ -125,9 +125,8 @@ def _back_line(image: Image, view: View, rig: Array) -> float:
     across = np.concatenate([-aside[::-1], aside])
     beside = np.array([BESIDE[0], *ON, BESIDE[1]]) - SHEET.back_line
     ice = np.stack(np.broadcast_arrays(across[:, None], beside), axis=-1)
-    place = project(ice.reshape(-1, 2), view.vector, rig, size).reshape(ice.shape)
-    with np.errstate(invalid="ignore"):
-        inside = ((place > 0) & (place < np.array(size) - 1)).all((1, 2))
+    place, within = pictured(ice, view.vector, rig, size)
+    inside = within.all(1)
     if inside.sum() < LEAST_IN_PART:
         return 0.0
     colour = _colours(image, place[inside])
@@ -160,9 +159,7 @@ def _cross_score(image: Image, view: View, rig: Array) -> Array:
     angle = STEP * np.arange(4 * QUARTER_STEPS)
     ice = ALONG[:, None, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
     size = (image.shape[1], image.shape[0])
-    place = project(ice.reshape(-1, 2), view.vector, rig, size).reshape(ice.shape)
-    with np.errstate(invalid="ignore"):
-        inside = np.asarray(((place > 0) & (place < np.array(size) - 1)).all(-1))
+    place, inside = pictured(ice, view.vector, rig, size)
     steps, known = _steps(_colours(image, place).astype(np.float32), inside)
     # A line is faint all the way, darker than ice and perhaps lighter than paint; stones, brooms
     # and print are strong here and there. So each ring's part of each ray counts on its own.
@@ -234,9 +231,8 @@ def _side_steps(image: Image, view: View, rig: Array) -> list[tuple[int, float, 
     for which, sign in ((SIDE_L, -1.0), (SIDE_R, 1.0)):
         across = sign * np.arange(SHEET.half_width_min - 0.1, SHEET.half_width_max + 0.1, 0.01)
         ice = np.stack(np.broadcast_arrays(across, along[:, None]), axis=-1)
-        place = project(ice.reshape(-1, 2), view.vector, rig, size).reshape(ice.shape)
-        with np.errstate(invalid="ignore"):
-            inside = ((place > 0) & (place < np.array(size) - 1)).all((1, 2))
+        place, within = pictured(ice, view.vector, rig, size)
+        inside = within.all(1)
         if inside.sum() < 8:
             continue
         colour = _colours(image, place[inside])

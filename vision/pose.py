@@ -119,6 +119,15 @@ def project(ice: Array, view: Array, rig: Array, size: tuple[int, int]) -> Array
     return np.asarray(q.T)
 
 
+def pictured(
+    ice: Array, view: Array, rig: Array, size: tuple[int, int]
+) -> tuple[Array, NDArray[np.bool_]]:
+    """As `project` for places of shape (..., 2), and which of them lie in the picture, (...)."""
+    place = project(ice.reshape(-1, 2), view, rig, size).reshape(ice.shape)
+    with np.errstate(invalid="ignore"):
+        return place, np.asarray(((place > 0) & (place < np.array(size) - 1)).all(-1))
+
+
 def camera(
     view: View,
     rig: Array,

@@ -10,7 +10,7 @@ from vision.lines import clearness
 from vision.marks import Evidence
 from vision.paint import EIGHT, TWELVE
 from vision.picture import Image
-from vision.pose import View, project
+from vision.pose import View, pictured
 
 Array = NDArray[np.float64]
 
@@ -80,9 +80,7 @@ def _is_target(image: Image, view: View, rig: Array) -> bool:
     size = (image.shape[1], image.shape[0])
     for first, last in UNPAINTED:
         radius = np.exp(np.arange(np.log(first), np.log(last), 0.01))
-        ice = (radius[:, None, None] * way).reshape(-1, 2)
-        place = project(ice, view.vector, rig, size).reshape(len(radius), len(angle), 2)
-        seen = np.asarray(((place > 0) & (place < np.array(size) - 1)).all(-1))
+        place, seen = pictured(radius[:, None, None] * way, view.vector, rig, size)
         x, y = np.where(seen[..., None], place, 0.0).astype(np.float32).transpose(2, 0, 1)
         colour = cv2.remap(image, x, y, cv2.INTER_LINEAR).astype(float)
         within = seen[8:] & seen[:-8]

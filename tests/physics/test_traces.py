@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from physics.traces import local_residuals, traces
+from physics.traces import PLACE_REACH, alike, local_residuals, traces
 from tests.physics.watch import hit_motion, watch
 
 
@@ -38,3 +38,10 @@ def test_angles_are_made_continuous() -> None:
     seen.loc[turning, "theta"] = np.angle(np.exp(1j * 3.0 * seen.loc[turning, "t"]))
     theta = traces(seen)["A"].theta
     assert np.allclose(np.diff(theta), 3.0 / 30, atol=1e-9)
+
+
+def test_what_places_share_fades_with_their_distance() -> None:
+    shared = alike(np.array([[0.0, 0.0], [0.6, 0.8], [30.0, 0.0]]) * PLACE_REACH)
+    assert np.diag(shared) == pytest.approx(1.0)
+    assert shared[0, 1] == shared[1, 0] == pytest.approx(np.exp(-0.5))
+    assert shared[0, 2] < 1e-12

@@ -5,7 +5,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from vision.pose import View, aim, camera, project, rescaled, rotation_vector, turned
+from vision.pose import (
+    View,
+    aim,
+    camera,
+    pictured,
+    project,
+    rescaled,
+    rotation_vector,
+    turned,
+)
 from vision.rig import ANYWHERE, OVERHEAD, POSITION, start_rig
 
 SIZE = (1280, 720)
@@ -86,3 +95,12 @@ def test_a_rotation_vector_is_exact_near_the_identity_and_near_a_half_turn(
     found = rotation_vector(Rotation.from_rotvec(vector).as_matrix())
 
     np.testing.assert_allclose(found, vector, rtol=1e-8, atol=1e-15)
+
+
+def test_places_are_in_the_picture_up_to_its_edge() -> None:
+    place = (0.0, 0.0, 8.0)
+    rig, view = start_rig(OVERHEAD, place), aim((640.0, 360.0), 200.0, place, SIZE)
+    ice = np.array([[[0.0, 0.0], [3.0, 0.0]], [[3.4, 0.0], [0.0, -1.9]]])
+    pixels, inside = pictured(ice, view.vector, rig, SIZE)
+    np.testing.assert_array_equal(inside, [[True, True], [False, False]])
+    np.testing.assert_allclose(pixels[0, 0], (640.0, 360.0), atol=1.0)
