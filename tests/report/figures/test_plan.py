@@ -1,0 +1,60 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from matplotlib.patches import Circle, Ellipse
+
+from data.sheet import HOUSE
+from report import figures
+from tests.report.figures.drawn import check_layout
+
+
+@pytest.mark.parametrize("house", [HOUSE, None])
+def test_plan_shows_every_stone_to_scale(shot, house):
+    figure = figures.plan_figure(
+        shot.tracks, shot.simulations, shot.results.collisions, house=house
+    )
+    check_layout(figure)
+    (ax,) = figure.axes
+    assert {"A", "B", "C", "D"} <= {t.get_text() for t in ax.texts}
+    radii = [round(p.get_radius(), 4) for p in ax.patches if isinstance(p, Circle)]
+    assert radii.count(0.1455) == 4 + 9
+    assert radii.count(1.829) == (house is not None)
+    assert ax.get_aspect() == 1
+
+
+def test_ellipses_are_enlarged_as_the_legend_says(shot):
+    figure = figures.plan_figure(shot.tracks, house=HOUSE)
+    (ax,), (legend,) = figure.axes, figure.legends
+    (said,) = [t.get_text() for t in legend.get_texts() if "sd" in t.get_text()]
+    factor = int(said.split(",")[1].split()[0])
+    sizes = [p.get_width() for p in ax.patches if type(p) is Ellipse]
+    assert len(sizes) == 4
+    assert sizes == pytest.approx([2 * 2 * 0.004 * factor] * 4)
+
+
+def test_plan_of_stones_that_were_seen_once(shot):
+    one = shot.tracks[shot.tracks["frame"] == 0]
+    check_layout(figures.plan_figure(one, house=HOUSE))
+    check_layout(figures.plan_figure(one, house=None))
+
+
+def test_long_delivery_keeps_the_house_in_view(shot):
+    tracks = shot.tracks.copy()
+    thrown = tracks["stone"] == "A"
+    tracks.loc[thrown, "y"] = np.linspace(30, 0.5, thrown.sum())
+    figure = figures.plan_figure(tracks, house=HOUSE)
+    check_layout(figure)
+    low, high = figure.axes[0].get_ylim()
+    assert low < -1.829
+    assert 1.829 < high < 12
+
+
+def test_without_a_house_the_whole_way_is_in_view(shot):
+    tracks = shot.tracks[shot.tracks["stone"] == "A"].copy()
+    tracks["y"] = np.linspace(30, 0.5, len(tracks))
+    figure = figures.plan_figure(tracks, house=None)
+    check_layout(figure)
+    low, high = figure.axes[0].get_ylim()
+    assert low < 0.5
+    assert high > 30

@@ -1,0 +1,50 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pandas as pd
+import pytest
+
+import pipeline
+from data.sheet import HOUSE
+from report import tables
+from report.summary import summary
+from report.units import FEET
+from tests.report.glides import glide
+
+
+def test_the_summary_says_how_far_the_last_places_may_be_off(shot):
+    score = replace(
+        shot.results.simulations["frictional"],
+        rmse=0.02,
+        rest_error={"A": 0.031},
+        rest_sd={"A": 0.05},
+    )
+    text = summary(replace(shot.results, simulations={"frictional": score}), shot.tracks)
+    assert "frictional: 2.0 cm RMS off; at the end A 3.1 cm (± 5.0 cm)" in text
+    unknown = replace(shot.results, simulations={"frictional": replace(score, rest_sd={})})
+    assert "at the end" not in summary(unknown, shot.tracks)
+
+
+def test_the_summary_says_who_lies_shot_in_the_unit_asked_for(shot):
+    text = summary(shot.results, shot.tracks, house=HOUSE)
+    (line,) = [line for line in text.splitlines() if line.startswith("shot stone")]
+    rest = tables.rest_table(shot.tracks, shot.results.collisions)
+    name, why = tables.shot_stone(rest)
+    distance = rest.loc[rest["stone"] == name, "to_tee"].iloc[0]
+    assert line == f"shot stone  {name}, {distance:.2f} m from the tee; {why}"
+    assert "3.1 cm RMS" in text
+    feet = summary(shot.results, shot.tracks, house=HOUSE, unit=FEET)
+    assert f"{name}, {distance / 0.3048:.1f} ft from the tee" in feet
+    assert "1.2 in RMS" in feet
+    assert "shot stone" not in summary(shot.results, shot.tracks)
+
+
+@pytest.mark.parametrize(("unit", "said"), [("m", "m from the tee"), ("ft", "ft from the tee")])
+def test_the_command_takes_the_unit(tmp_path, capsys, unit: str, said: str):
+    tracks = pd.concat([glide("A", (0.3, 3.0), 1.0), glide("B", (0.6, 0.8))])
+    tracks.to_csv(tmp_path / "glide.csv", index=False)
+    words = ["estimate", "-q", str(tmp_path / "glide.csv"), "-o", str(tmp_path / "out")]
+    assert pipeline.main([*words, "--units", unit]) == 0
+    (line,) = [k for k in capsys.readouterr().out.splitlines() if k.startswith("shot stone")]
+    assert said in line
