@@ -51,3 +51,18 @@ def test_numbers_without_an_error():
     assert significant(0.0) == "0"
     assert significant(0.000123456) == "0.000123"
     assert significant(29.97, 4) == "29.97"
+
+
+@pytest.mark.parametrize(
+    ("value", "stderr", "most", "said"),
+    [
+        (1.23456, 0.0123, 4, ("1.235", "0.012")),
+        (1.23456, 0.0000123, 3, ("1.235", "0.000")),
+        (1e-7, 1.2e-5, 4, ("0", None)),
+        (0.0, 0.0, 4, ("0", None)),
+        (1.23456, None, 3, ("1.235", None)),
+        (None, 0.1, 3, ("—", None)),
+    ],
+)
+def test_decimals_have_an_end(value, stderr, most, said):
+    assert parts(value, stderr, most) == said

@@ -1,22 +1,17 @@
 from __future__ import annotations
 
-import dataclasses
 import json
 
 import numpy as np
 import pytest
 
-from data.errors import InputError
-from data.results import MeasuredState
 from data.sheet import HOUSE
 from physics.bounds import Bounds
 from physics.curl import FCV1Curl
-from physics.ice import FCV1, Fit
+from physics.ice import FCV1
 from physics.impact import PointMass
 from physics.simulation import Shot, StoneStart
-from physics.start import measured_start
 from report.playback import STEPS, differences, playback, shot_values
-from report.trial import sliders, trial
 
 
 def decoded(values: list[int], column: str) -> np.ndarray:
@@ -72,49 +67,3 @@ def test_a_shot_is_told_in_full():
     assert values["curl"]["name"] == "fcv1" and values["bounds"]["play"] == -1
     assert [stone["omega_after"] for stone in values["stones"]] == [[0.3], []]
     json.dumps(values, allow_nan=False)
-
-
-def test_sliders_begin_at_what_was_measured(shot):
-    what_if = trial(shot.tracks, shot.results)
-    start = measured_start(shot.tracks, shot.results)
-    thrown = start.shot.stones[start.thrown]
-    stands = {s.key: (float(s.value), float(s.step)) for s in sliders(what_if)}
-    truth = {
-        "restitution": shot.results.restitution.value,
-        "friction": shot.results.friction.value,
-        "rub": start.shot.impact.stone_friction,
-        "speed": np.hypot(thrown.vx, thrown.vy),
-        "spin": thrown.omega,
-        "aim": 0.0,
-    }
-    assert stands.keys() == truth.keys()
-    for key, (value, step) in stands.items():
-        assert value == pytest.approx(truth[key], abs=step / 2 + 1e-12), key
-    for slider in sliders(what_if):
-        assert float(slider.low) <= float(slider.value) <= float(slider.high)
-
-
-def test_sliders_reach_as_far_as_what_was_measured(shot):
-    fast = Fit(0.001, 0.1, 0.03)
-    what_if = trial(shot.tracks, shot.results)
-    what_if["shot"]["ice"] = {"name": "fit", **dataclasses.asdict(fast)}
-    what_if["shot"]["stones"][what_if["thrown"]]["omega"] = -9.0
-    reach = {s.key: s for s in sliders(what_if)}
-    assert float(reach["friction"].high) >= 0.0309
-    assert float(reach["spin"].low) <= -9.0
-
-
-def test_rigid_bodies_need_all_spins(shot):
-    assert trial(shot.tracks, shot.results)["spins_known"]
-    first, *others = shot.results.collisions
-    after = {**first.after, "A": MeasuredState(0, 0, 0, 0, None)}
-    blind = dataclasses.replace(
-        shot.results, collisions=(dataclasses.replace(first, after=after), *others)
-    )
-    assert not trial(shot.tracks, blind)["spins_known"]
-
-
-def test_nothing_to_throw_where_nothing_moves(shot):
-    still = shot.tracks[shot.tracks["stone"] == "D"]
-    with pytest.raises(InputError, match="no stone moves"):
-        trial(still, dataclasses.replace(shot.results, collisions=()))
