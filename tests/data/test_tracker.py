@@ -5,10 +5,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from data.clock import uniform_steps
 from data.errors import InputError
 from data.export import write_csv
 from data.tracker import Imported, read_table
@@ -79,23 +76,6 @@ def test_times_printed_to_the_millisecond_become_equal_steps(tmp_path: Path, fps
     np.testing.assert_allclose(red["t"], np.arange(n) / fps, atol=4e-4)
     # Differences of printed times would be 0.5 ms wrong.
     assert np.ptp(np.diff(red["t"])) < 1e-9
-
-
-@given(
-    fps=st.floats(5, 400),
-    start=st.floats(0, 100),
-    gone=st.sets(st.integers(1, 58), max_size=40),
-)
-def test_uniform_steps_are_found_with_frames_missing(
-    fps: float, start: float, gone: set[int]
-) -> None:
-    count = np.array([k for k in range(60) if k not in gone])
-    if (np.diff(count) == 1).sum() == 0:
-        return
-    steps, first, step = uniform_steps(start + count / fps)
-    np.testing.assert_array_equal(steps, count)
-    assert first == pytest.approx(start, abs=1e-9)
-    assert step == pytest.approx(1 / fps, rel=1e-9)
 
 
 def test_uneven_times_stay_as_they_are(tmp_path: Path) -> None:

@@ -1,0 +1,46 @@
+from __future__ import annotations
+
+import pytest
+
+from command.parser import command_line
+from pipeline import WORK
+
+
+def said(capsys, *words: str) -> tuple[int, str]:
+    with pytest.raises(SystemExit) as left:
+        command_line("1.0").parse_args(words)
+    out = capsys.readouterr()
+    return int(left.value.code or 0), out.out + out.err
+
+
+def test_there_is_a_parser_for_every_work(capsys) -> None:
+    for command in WORK:
+        code, text = said(capsys, command, "--help")
+        assert (code, text.split()[:3]) == (0, ["usage:", "curlshot", command])
+
+
+@pytest.mark.parametrize(
+    ("words", "part"),
+    [
+        ((), "COMMAND"),
+        (("walk",), "walk"),
+        (("track",), "CLIP"),
+        (("run", "a.mp4", "--fps", "0"), "--fps: '0' is not a positive number"),
+        (("run", "a.mp4", "--frames", "3"), "FIRST:LAST"),
+    ],
+)
+def test_a_mistake_is_one_line_and_exit_code_2(capsys, words, part: str) -> None:
+    code, text = said(capsys, *words)
+    assert code == 2
+    assert text.count("\n") == 1
+    assert part in text and "--help" in text
+
+
+def test_the_version_is_told(capsys) -> None:
+    assert said(capsys, "--version") == (0, "curlshot 1.0\n")
+
+
+def test_inputs_come_in_the_order_they_were_named() -> None:
+    parsed = command_line("1.0").parse_args(["run", "b.txt", "a.txt", "--mass", "A=2"])
+    assert [str(name) for name in parsed.inputs] == ["b.txt", "a.txt"]
+    assert parsed.mass == [("A", 2.0)]

@@ -1,0 +1,79 @@
+from __future__ import annotations
+
+import argparse
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from command import values
+from physics.what_if import Amount
+
+
+@pytest.mark.parametrize(
+    ("read", "text", "value"),
+    [
+        (values.positive, "0.5", 0.5),
+        (values.fraction, "1", 1.0),
+        (values.friction, "0.0109", 0.0109),
+        (values.offset, "-0.05", -0.05),
+        (values.amount, "1.5", Amount(1.5, False)),
+        (values.amount, "-0.5x", Amount(-0.5, True)),
+        (values.speed, "1.1x", Amount(1.1, True)),
+        (values.samples, "0", 0),
+        (values.throw_sd, "0.0076,0.0018", (0.0076, 0.0018)),
+        (values.frame_range, "2:31", (2, 31)),
+        (values.frame_range, "10:", (10, None)),
+        (values.frame_range, ":5", (0, 5)),
+        (values.stick, "20,36,20,220,0.5", (20.0, 36.0, 20.0, 220.0, 0.5)),
+        (values.house, "0:640,360,460,360,640,180", (0, 640, 360, 460, 360, 640, 180)),
+        (values.house, "640,360,460,360,640,180", (None, 640, 360, 460, 360, 640, 180)),
+        (values.mass, "a=b=19.1", ("a=b", 19.1)),
+        (values.pair, "A=mass A", ("A", "mass A")),
+    ],
+)
+def test_what_is_meant_is_read(read, text: str, value) -> None:
+    assert read(text) == value
+
+
+@pytest.mark.parametrize(
+    ("read", "text", "said"),
+    [
+        (values.positive, "-1", "not a positive number"),
+        (values.positive, "inf", "not a positive number"),
+        (values.fraction, "1.2", "a number from 0 to 1"),
+        (values.friction, "0.5", "a friction of ice"),
+        (values.offset, "far", "a distance in metres"),
+        (values.speed, "0", "nor a factor such as 1.1x"),
+        (values.speed, "11x", "at most 10x"),
+        (values.samples, "-1", "a number of samples"),
+        (values.samples, "1e3", "a number of samples"),
+        (values.samples, "100001", "a number of samples"),
+        (values.throw_sd, "0.1", "not V,A"),
+        (values.throw_sd, "0.1,2", "a standard deviation in rad"),
+        (values.frame_range, "5", "not FIRST:LAST"),
+        (values.stick, "1,2,3,4", "not X1,Y1,X2,Y2,METRES"),
+        (values.stick, "1,2,1,2,3", "the stick has no length"),
+        (values.stick, "1,2,3,4,-5", "the stick has no length"),
+        (values.house, "a:1,2,3,4,5,6", "not FRAME:XC"),
+        (values.mass, "19.1", "not STONE=MASS"),
+        (values.pair, "A=", "not STONE="),
+    ],
+)
+def test_what_makes_no_sense_is_refused_with_what_was_expected(read, text: str, said: str) -> None:
+    with pytest.raises(argparse.ArgumentTypeError, match=said):
+        read(text)
+
+
+@given(
+    st.sampled_from(
+        [values.positive, values.amount, values.speed, values.samples, values.throw_sd,
+         values.frame_range, values.stick, values.house, values.mass, values.pair]
+    ),
+    st.text(alphabet="0123456789.,:=x-+eEnaif ²٣", max_size=12),
+)  # fmt: skip
+def test_any_text_is_read_or_refused(read, text: str) -> None:
+    try:
+        read(text)
+    except argparse.ArgumentTypeError as refusal:
+        assert repr(text) in str(refusal) or "expected" not in str(refusal)

@@ -1,0 +1,91 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from data.columns import (
+    ANGLE_UNITS,
+    LENGTH_UNITS,
+    clock_column,
+    plain_name,
+    refuse_disorder,
+    times_of,
+    written_unit,
+)
+from data.delimited import TextTable, read_text_table
+from data.errors import InputError
+
+
+def table(tmp_path: Path, text: str) -> TextTable:
+    path = tmp_path / "a.csv"
+    path.write_text(text, encoding="utf-8")
+    return read_text_table(path, lambda cells: "x" in cells)
+
+
+def times(tmp_path: Path, head: str, cells: list[str], fps: float | None = None):
+    read = table(tmp_path, f"{head},x\n" + "".join(f"{cell},0.5\n" for cell in cells))
+    return times_of(read, {0: read.numbers([0])[:, 0]}, 0, fps)
+
+
+@pytest.mark.parametrize(
+    ("written", "plain"),
+    [("v_{x} (m/s)", "vx"), (' "X" [cm]', "x"), ("θ_{r} (°)", "θr"), ("Time", "time")],
+)
+def test_names_lose_units_and_dress(written: str, plain: str) -> None:
+    assert plain_name(written) == plain
+
+
+def test_the_unit_is_that_behind_a_wanted_column() -> None:
+    head = ["t (s)", "x (cm)", "sd_x (mm)"]
+    plain = ["t", "x", "sd_x"]
+    assert written_unit(head, plain, ["x", "y"], LENGTH_UNITS) == "cm"
+    assert written_unit(head[::2], plain[::2], ["x", "y"], LENGTH_UNITS) is None
+    assert written_unit(["x (furlong)"], ["x"], ["x"], LENGTH_UNITS) is None
+    assert ANGLE_UNITS["deg"] * 180 == pytest.approx(np.pi)
+
+
+def test_milliseconds_become_seconds(tmp_path: Path) -> None:
+    found, decimals, warnings = times(tmp_path, "t (ms)", ["0", "40", "80"])
+    np.testing.assert_allclose(found, [0, 0.04, 0.08])
+    assert (decimals, warnings) == (None, [])
+
+
+def test_decimals_tell_how_times_were_printed(tmp_path: Path) -> None:
+    assert times(tmp_path, "t", ["0.000", "0.033", "0.067"])[1] == 3
+    assert times(tmp_path, "t", ["0", "3.3E-2", "6.7E-2"])[1] is None
+
+
+def test_whole_numbers_are_frames_if_their_rate_is_given(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="whole numbers: frames"):
+        times(tmp_path, "t", ["0", "1", "2"])
+    found, _, (warning,) = times(tmp_path, "t", ["0", "1", "2"], fps=50)
+    np.testing.assert_allclose(found, [0, 0.02, 0.04])
+    assert "taken as frames" in warning
+    _, _, (warning,) = times(tmp_path, "t", ["0.0", "0.5", "1.2"], fps=50)
+    assert "not used" in warning
+
+
+def test_rows_without_a_time_need_a_rate(tmp_path: Path) -> None:
+    read = table(tmp_path, "x,y\n1,2\n3,4\n")
+    with pytest.raises(InputError, match="--fps"):
+        clock_column(read, ["x", "y"], None)
+    assert clock_column(read, ["x", "y"], 25.0) is None
+    assert clock_column(read, ["x", "frame"], 25.0) == 1
+    assert clock_column(read, ["x", "time"], None) == 1
+
+
+@pytest.mark.parametrize(
+    ("cells", "said"),
+    [
+        ([0.0, np.nan, 0.2], "line 3: no time"),
+        ([0.0, 0.2, 0.1], "line 4: time goes back"),
+        ([0.0, 0.1, 0.1], "line 4: time stands still"),
+        ([0.0, 0.1, 1e13], "make no sense"),
+    ],
+)
+def test_disorder_is_refused_with_its_line(tmp_path: Path, cells: list[float], said: str) -> None:
+    read = table(tmp_path, "t,x\n" + "0,1\n" * 3)
+    with pytest.raises(InputError, match=said):
+        refuse_disorder(read, np.array(cells))

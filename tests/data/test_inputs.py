@@ -1,0 +1,51 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from data.errors import InputError
+from data.inputs import find_inputs
+
+
+def made(folder: Path, *names: str) -> list[Path]:
+    folder.mkdir(exist_ok=True)
+    paths = [folder / name for name in names]
+    for path in paths:
+        path.touch()
+    return paths
+
+
+def test_pictures_of_a_folder_come_in_natural_order(tmp_path: Path) -> None:
+    made(tmp_path / "f", "10.png", "9.PNG", "1a.jpg", "notes.txt")
+    assert [path.name for path in find_inputs([tmp_path / "f"])] == ["1a.jpg", "9.PNG", "10.png"]
+
+
+def test_a_glob_is_sorted_and_files_keep_their_order(tmp_path: Path) -> None:
+    made(tmp_path, "b2.csv", "b10.csv", "a.txt")
+    found = find_inputs([tmp_path / "a.txt", str(tmp_path / "b*.csv")])
+    assert [path.name for path in found] == ["a.txt", "b2.csv", "b10.csv"]
+
+
+def test_brackets_in_a_name_are_a_name_first(tmp_path: Path) -> None:
+    (plain,) = made(tmp_path / "take [7]", "a [1].csv")
+    assert find_inputs([plain]) == (plain,)
+    assert find_inputs([str(tmp_path / "take [7]" / "*.csv")]) == (plain,)
+    (one,) = made(tmp_path / "x1", "a.csv")
+    assert find_inputs([str(tmp_path / "x[0-9]" / "a.csv")]) == (one,)
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [("no.mp4", "no such file"), ("none*", "no such file"), ("empty", "no pictures")],
+)
+def test_what_is_not_there_is_named(tmp_path: Path, name: str, said: str) -> None:
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(InputError, match=said) as refusal:
+        find_inputs([str(tmp_path / name)])
+    assert name in str(refusal.value)
+
+
+def test_nothing_named_is_a_mistake() -> None:
+    with pytest.raises(InputError, match="no input"):
+        find_inputs([])

@@ -1,0 +1,34 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from data.errors import InputError
+from data.results import Estimate, Friction, Input, Results
+from work.runs import apart, find_runs
+
+
+def written(folder: Path) -> Path:
+    folder.mkdir(parents=True)
+    nothing = Results(Input(("a.mp4",), 25.0, 10, 0.4), Estimate(), Friction())
+    nothing.write(folder / "results.json")
+    return folder
+
+
+def test_clips_of_one_name_are_told_apart_by_their_folders(tmp_path: Path) -> None:
+    clips = [tmp_path / "a" / "shot.mp4", tmp_path / "b" / "shot.mp4", tmp_path / "c.mp4"]
+    assert list(apart(clips)) == ["a-shot", "b-shot", "c"]
+    again = [tmp_path / "a" / "shot.mp4", tmp_path / "a" / "shot.mov"]
+    assert list(apart(again)) == ["a-shot", "a-shot-2"]
+
+
+def test_runs_are_found_in_folders_of_folders(tmp_path: Path) -> None:
+    one, two = written(tmp_path / "season" / "one"), written(tmp_path / "season" / "two")
+    assert list(find_runs([tmp_path / "season"])) == ["one", "two"]
+    assert list(find_runs([two, one / "results.json", two])) == ["two", "one"]
+
+
+def test_a_run_without_results_is_named(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="name the folders of runs"):
+        find_runs([tmp_path])
