@@ -286,5 +286,5 @@ class Piece:
 
 
 def _follows(seen: Seen, before: Seen) -> bool:
-    """Whether two frames are neighbours, or nearly, and placed by the same means."""
-    return seen.key is before.key and 0 < abs(seen.index - before.index) <= 2
+    """Whether two frames are neighbours, or nearly."""
+    return 0 < abs(seen.index - before.index) <= 2
