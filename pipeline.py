@@ -9,9 +9,9 @@ import argparse
 import json
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from command.again import again
 from command.arguments import out_folder, settings_of, what_if_folder
@@ -38,7 +38,6 @@ if TYPE_CHECKING:
 
     from data.results import Results
     from physics.pool import Pooled
-    from physics.start import Start
 
 __all__ = [
     "Measured", "Run", "Settings", "analyse", "check", "convert", "convert_each", "find_runs",
@@ -229,18 +228,10 @@ def season(
     means = pooled(shots)
     if folder is None:
         return shots, means
-    from data.files import whole_file, write_text
-    from data.tracks import write_table
-    from report.season import season_figure
-    from report.style import PNG_DPI
+    from report.season import write_season
 
-    content = {"schema": 1, "shots": list(runs), **{k: asdict(v) for k, v in means.items()}}
     with staged(folder) as stage:
-        write_table(shots, stage / "shots.csv")
-        write_table(hits, stage / "hits.csv")
-        write_text(stage / "season.json", json.dumps(content, indent=1, ensure_ascii=False) + "\n")
-        with whole_file(stage / "season.png") as part:
-            season_figure(shots, hits, means).savefig(part, format="png", dpi=PNG_DPI)
+        write_season(stage, shots, hits, means)
     return shots, means
 
 
@@ -381,13 +372,11 @@ def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:
 
 
 def _do_check(arguments: argparse.Namespace, bars: Bars) -> str:
-    from data.files import whole_file
-
     settings, folder = settings_of(arguments), out_folder(arguments, arguments.inputs[0])
     check_folder(folder)
     figure, lines = check(arguments.inputs, settings, bars)
-    with staged(folder) as stage, whole_file(stage / "check.png") as part:
-        figure.savefig(part, format="png", dpi=CHECK_DPI)
+    with staged(folder) as stage:
+        figure.savefig(stage / "check.png", dpi=CHECK_DPI)
     return "\n".join([*lines, f"written     {folder / 'check.png'}"])
 
 
@@ -442,6 +431,7 @@ def _do_simulate(arguments: argparse.Namespace, bars: Bars) -> str:
     from physics.simulate import simulate
     from physics.what_if import Changes, changed
     from report.summary import odds_text, simulation_json, simulation_text
+    from report.whatif import write_odds
 
     shot = shot_file(arguments.shot)
     folder = what_if_folder(arguments, shot)
@@ -466,31 +456,11 @@ def _do_simulate(arguments: argparse.Namespace, bars: Bars) -> str:
         write_table(table, stage / "simulation.csv")
         if throws:
             outcomes, odds = throw_often(start, changes, throws, arguments.throw_sd, shot.name)
-            _write_odds(stage, start, outcomes, odds)
+            write_odds(stage, start, outcomes, odds)
             outcome = {"nominal": outcome, **odds}
             lines += odds_text(odds, [folder / name for name in WHAT_IF])
     lines += [f"warning: {text}" for text in start.assumed]
     return json.dumps(outcome, indent=1) if arguments.json else "\n".join(lines)
-
-
-def _write_odds(stage: Path, start: Start, outcomes: pd.DataFrame, odds: Mapping[str, Any]) -> None:
-    """Write where a shot thrown many times ends, as a table, in sum and as a picture."""
-    from data.files import whole_file, write_text
-    from data.tracks import write_table
-    from report.style import PNG_DPI
-    from report.whatif import spread_figure
-
-    write_table(outcomes, stage / "outcomes.csv")
-    write_text(stage / "whatif.json", json.dumps(odds, indent=1, ensure_ascii=False) + "\n")
-    figure = spread_figure(
-        outcomes,
-        {stone.name: (stone.x, stone.y) for stone in start.shot.stones},
-        odds["thrown"],
-        f"{odds['thrown']} thrown {odds['samples']} times",
-        start.shot.radius,
-    )
-    with whole_file(stage / "spread.png") as part:
-        figure.savefig(part, format="png", dpi=PNG_DPI)
 
 
 WORK = {

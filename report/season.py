@@ -2,22 +2,42 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from data.files import write_text
+from data.tracks import write_table
 from physics.pool import Pooled
 from report.numbers import plus_minus
-from report.style import BLACK, BLUE, GREY, SKY, new_figure, plain_text, styled
+from report.style import BLACK, BLUE, GREY, PNG_DPI, SKY, new_figure, plain_text, styled
 
 ROW = 0.24
 """Height of a shot's row, inches."""
 
 LONGEST = 28
 """Letters of a shot's name that are shown."""
+
+
+def write_season(
+    folder: Path, shots: pd.DataFrame, hits: pd.DataFrame, pooled: Mapping[str, Pooled]
+) -> None:
+    """Write a season as two tables, in sum and as a picture; see `season_figure`."""
+    content = {
+        "schema": 1,
+        "shots": shots["shot"].tolist(),
+        **{law: asdict(mean) for law, mean in pooled.items()},
+    }
+    write_table(shots, folder / "shots.csv")
+    write_table(hits, folder / "hits.csv")
+    write_text(folder / "season.json", json.dumps(content, indent=1, ensure_ascii=False) + "\n")
+    season_figure(shots, hits, pooled).savefig(folder / "season.png", dpi=PNG_DPI)
 
 
 def season_figure(shots: pd.DataFrame, hits: pd.DataFrame, pooled: Mapping[str, Pooled]) -> Figure:

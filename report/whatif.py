@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -12,9 +15,12 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
+from data.files import write_text
 from data.sheet import HOUSE, STONE
+from data.tracks import write_table
+from physics.start import Start
 from report.figures import draw_house
-from report.style import BLACK, GREY, new_figure, plain_text, stone_colours, styled
+from report.style import BLACK, GREY, PNG_DPI, new_figure, plain_text, stone_colours, styled
 
 Array = NDArray[np.float64]
 
@@ -26,6 +32,32 @@ FARTHEST = 6.4
 """Most that the picture shows along and across, m from its centre."""
 MOST_DOTS = 1000
 """Dots of one stone."""
+
+
+def write_odds(folder: Path, start: Start, outcomes: pd.DataFrame, odds: Mapping[str, Any]) -> None:
+    """Write where a shot thrown many times ends, as a table, in sum and as a picture.
+
+    Parameters
+    ----------
+    folder : Path
+        For ``outcomes.csv``, ``whatif.json`` and ``spread.png``.
+    start : Start
+        The shot.
+    outcomes : DataFrame
+        ``sample, stone, x, y, hits``, as `physics.what_if.sample` gives them.
+    odds : mapping
+        The same in sum.
+    """
+    write_table(outcomes, folder / "outcomes.csv")
+    write_text(folder / "whatif.json", json.dumps(odds, indent=1, ensure_ascii=False) + "\n")
+    figure = spread_figure(
+        outcomes,
+        {stone.name: (stone.x, stone.y) for stone in start.shot.stones},
+        odds["thrown"],
+        f"{odds['thrown']} thrown {odds['samples']} times",
+        start.shot.radius,
+    )
+    figure.savefig(folder / "spread.png", dpi=PNG_DPI)
 
 
 def spread_figure(
