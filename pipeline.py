@@ -149,6 +149,7 @@ def run_each(
 def _write_run(
     stage: Path, measured: Measured, done: Run, settings: Settings, progress: Progress
 ) -> None:
+    from data.results_file import write_results
     from data.tracks import write_table, write_tracks
     from report.page import write_report
     from report.provenance import Provenance, sources
@@ -157,7 +158,7 @@ def _write_run(
 
     write_tracks(done.tracks, stage / "tracks.csv")
     write_table(done.simulations, stage / "simulation.csv")
-    done.results.write(stage / "results.json")
+    write_results(done.results, stage / "results.json")
     if done.cameras is not None:
         write_table(done.cameras, stage / "camera.csv")
     if done.posterior is not None:
@@ -381,6 +382,7 @@ def _do_check(arguments: argparse.Namespace, bars: Bars) -> str:
 
 
 def _do_estimate(arguments: argparse.Namespace, bars: Bars) -> str:
+    from data.results_file import write_results
     from data.tracks import write_table
     from report.summary import summary
     from report.units import UNITS
@@ -391,7 +393,7 @@ def _do_estimate(arguments: argparse.Namespace, bars: Bars) -> str:
     measured = measure(arguments.inputs, settings, bars)
     done = analyse(measured, settings)
     with staged(folder, replaces=_stale(folder, measured.files)) as stage:
-        done.results.write(stage / "results.json")
+        write_results(done.results, stage / "results.json")
         if done.posterior is not None:
             write_table(done.posterior, stage / "posterior.csv")
     return summary(done.results, done.tracks, folder, done.house, UNITS[arguments.units])

@@ -1,20 +1,9 @@
-"""What a run found out, as values: the content of ``results.json``."""
+"""What a run found out, as values: the content of ``results.json`` (see `data.results_file`)."""
 
 from __future__ import annotations
 
-import json
-import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
-from pathlib import Path
-from typing import Any, TypeVar, get_type_hints
-
-from data.errors import InputError
-from data.files import write_text
-
-SCHEMA = 1
-
-_Made = TypeVar("_Made")
+from dataclasses import dataclass, field
 
 
 @dataclass(frozen=True)
@@ -243,7 +232,7 @@ class Input:
 
 @dataclass(frozen=True)
 class Results:
-    """All that a run found out; see `to_json` for the file's form.
+    """All that a run found out.
 
     ``masses`` has those given, in any unit, of all stones or none. ``teams`` has each stone's as in
     ``tracks.csv``, without those of which nothing is known.
@@ -266,135 +255,3 @@ class Results:
     posterior: Posterior | None = None
     masses: Mapping[str, float] = field(default_factory=dict)
     teams: Mapping[str, str] = field(default_factory=dict)
-
-    def to_json(self) -> str:
-        """Text of ``results.json``: strict JSON, values that are not finite as null."""
-        return json.dumps(
-            _plain({"schema": SCHEMA, **asdict(self)}),
-            indent=1,
-            ensure_ascii=False,
-            allow_nan=False,
-        )
-
-    def write(self, path: Path) -> None:
-        """Write ``results.json`` whole or not at all."""
-        write_text(path, self.to_json() + "\n")
-
-    @classmethod
-    def read(cls, path: Path) -> Results:
-        """Read a ``results.json``.
-
-        Raises
-        ------
-        InputError
-            Where the file is missing or no such thing.
-        """
-        try:
-            raw = json.loads(path.read_text(encoding="utf-8"))
-            if raw.pop("schema") != SCHEMA:
-                raise InputError(f"{path}: results of another version; run again")
-            return cls(
-                input=_made(Input, {**raw["input"], "files": tuple(raw["input"]["files"])}),
-                restitution=_made(Estimate, raw["restitution"]),
-                friction=_made(Friction, raw["friction"]),
-                collisions=tuple(_collision(item) for item in raw["collisions"]),
-                glides=tuple(_made(Glide, item) for item in raw["glides"]),
-                simulations={name: _simulated(item) for name, item in raw["simulations"].items()},
-                warnings=tuple(raw["warnings"]),
-                radius=_length(raw["radius"]),
-                predictions={
-                    name: _prediction(item) for name, item in raw.get("predictions", {}).items()
-                },
-                laws=_joint(raw.get("laws")),
-                methods={name: _method(item) for name, item in raw.get("methods", {}).items()},
-                law_choice=tuple(
-                    _made(Law, _with_estimates(item, "friction"))
-                    for item in raw.get("law_choice", ())
-                ),
-                curl=_made(Told, raw.get("curl", {})),
-                stones={
-                    name: _made(StoneResult, _with_estimates(item, "friction", "turn", "spin"))
-                    for name, item in raw.get("stones", {}).items()
-                },
-                posterior=(_made(Posterior, raw["posterior"]) if raw.get("posterior") else None),
-                masses={str(name): _length(mass) for name, mass in raw.get("masses", {}).items()},
-                teams={str(name): str(team) for name, team in raw.get("teams", {}).items()},
-            )
-        except OSError as error:
-            raise InputError(f"{path}: {error.strerror}") from None
-        except (ValueError, KeyError, TypeError, AttributeError):
-            raise InputError(f"{path}: not a results.json of this program") from None
-
-
-def _collision(item: dict[str, Any]) -> Collision:
-    nx, ny = item["normal"]
-    return _made(Collision, {**item, **_sides(item), "normal": (nx, ny)})
-
-
-def _simulated(item: dict[str, Any]) -> SimulationScore:
-    hits = tuple(_made(SimulatedHit, {**hit, **_sides(hit)}) for hit in item.get("hits", ()))
-    return _made(SimulationScore, {**item, "hits": hits})
-
-
-def _sides(hit: dict[str, Any]) -> dict[str, Any]:
-    """Read who hit whom, and their states before and after."""
-    first, second = hit["stones"]
-    states = {
-        when: {name: _made(MeasuredState, hit[when][name]) for name in (first, second)}
-        for when in ("before", "after")
-    }
-    return {"stones": (first, second), **states}
-
-
-def _made(kind: type[_Made], item: Mapping[str, Any]) -> _Made:
-    """Make a value of what JSON gave; TypeError where a number is none."""
-    made = kind(**item)
-    for name, hint in get_type_hints(kind).items():
-        value = getattr(made, name)
-        absent = value is None and hint == float | None
-        if hint in (float, float | None) and not (absent or type(value) in (int, float)):
-            raise TypeError(f"{name} is no number")
-    return made
-
-
-def _length(value: Any) -> float:
-    if type(value) not in (int, float) or not 0 < value < math.inf:
-        raise TypeError("no length nor mass")
-    return float(value)
-
-
-def _prediction(item: dict[str, Any]) -> Prediction:
-    return _made(Prediction, _with_estimates(item, "restitution", "friction"))
-
-
-def _method(item: dict[str, Any]) -> Method:
-    hits = tuple(_made(Estimate, hit) for hit in item["hits"])
-    told = _made(Told, item["stone_friction"])
-    own = _with_estimates(item, "restitution", "friction")
-    return _made(Method, {**own, "stone_friction": told, "hits": hits})
-
-
-def _with_estimates(item: dict[str, Any], *names: str) -> dict[str, Any]:
-    """Make the estimates of an item of these names."""
-    return {**item, **{name: _made(Estimate, item[name]) for name in names}}
-
-
-def _joint(item: dict[str, Any] | None) -> Joint | None:
-    if item is None:
-        return None
-    names, cov = tuple(item["names"]), tuple(tuple(map(float, row)) for row in item["cov"])
-    if {len(names)} != {len(item["values"]), len(cov), *map(len, cov)}:
-        raise ValueError("names, values and covariance do not fit")
-    return Joint(names, tuple(map(float, item["values"])), cov)
-
-
-def _plain(value: Any) -> Any:
-    """Reduce to what JSON knows; numbers that are not finite become None."""
-    if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(item) for item in value]
-    if isinstance(value, bool) or value is None or isinstance(value, (str, int)):
-        return value
-    number = float(value)
-    return number if math.isfinite(number) else None

@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 from PIL import Image
 
-from data.results import Results
+from data.results_file import read_results
 from data.sheet import HOUSE
 from data.tracks import read_tracks
 from report.figures import plan_figure
@@ -29,7 +29,7 @@ SHOWN = (0.14, 0.84)  # of the width of the frame: the sheet, not its neighbours
 def picture(run: Path) -> Image.Image:
     """Return a frame of the annotated clip, and beside it the plan view."""
     frame = annotated(run / "overlay.mp4", WHEN)
-    results, tracks = Results.read(run / "results.json"), read_tracks(run / "tracks.csv")
+    results, tracks = read_results(run / "results.json"), read_tracks(run / "tracks.csv")
     simulations = dict(list(pd.read_csv(run / "simulation.csv").groupby("model")))
     figure = plan_figure(tracks, simulations, results.collisions, house=HOUSE)
     plan = Image.open(BytesIO(render(figure)[1])).convert("RGB")

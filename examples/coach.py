@@ -8,13 +8,13 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from data.results import Results
+from data.results_file import read_results
 from data.tracks import read_tracks
 from report.tables import rest_table, shot_stone, speed_table, takeout_table
 from report.units import FEET
 
 run = Path(sys.argv[1])
-results, tracks = Results.read(run / "results.json"), read_tracks(run / "tracks.csv")
+results, tracks = read_results(run / "results.json"), read_tracks(run / "tracks.csv")
 hits = results.collisions
 
 rest = rest_table(tracks, hits)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from data.results import Results
+from data.results_file import read_results
 from data.sheet import HOUSE
 from data.tracks import read_tracks
 from report.figures import comparison_figure, hit_figure, motion_figure, plan_figure
@@ -21,7 +21,7 @@ from report.tables import measured_table
 run = Path(sys.argv[1])
 out = Path(sys.argv[2]) if sys.argv[2:] else run
 
-results = Results.read(run / "results.json")
+results = read_results(run / "results.json")
 tracks = read_tracks(run / "tracks.csv")
 simulations = dict(list(pd.read_csv(run / "simulation.csv").groupby("model")))
 hits = results.collisions

@@ -8,13 +8,13 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from data.results import Results
+from data.results_file import read_results
 from data.tracks import read_tracks
 from physics.start import measured_start
 from physics.what_if import Amount, Changes, changed, odds, sample
 
 run = Path(sys.argv[1])
-start = measured_start(read_tracks(run / "tracks.csv"), Results.read(run / "results.json"))
+start = measured_start(read_tracks(run / "tracks.csv"), read_results(run / "results.json"))
 
 for words, changes in (
     ("as thrown", Changes()),

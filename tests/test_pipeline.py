@@ -16,7 +16,7 @@ import pipeline
 from data.errors import CurlshotError, InputError
 from data.files import staged
 from data.inputs import find_inputs
-from data.results import Results
+from data.results_file import read_results
 from data.tracks import TRACK_COLUMNS
 from report.summary import summary
 from tests.scoring import read_truth, score_tracks
@@ -94,7 +94,7 @@ def test_run_writes_the_whole_contract(sample: pipeline.Run) -> None:
     simulation = pd.read_csv(sample.out / "simulation.csv")
     assert tuple(simulation.columns) == ("model", *TRACK_COLUMNS)
     assert set(simulation["model"]) == {"point-mass", "rigid-body", "frictional"}
-    assert Results.read(sample.out / "results.json") == sample.results
+    assert read_results(sample.out / "results.json") == sample.results
     raw = json.loads((sample.out / "results.json").read_text())
     assert raw["schema"] == 1
     assert raw["restitution"]["value"] == sample.results.restitution.value

@@ -32,7 +32,7 @@ def find_runs(names: Sequence[str | Path]) -> dict[str, Results]:
     InputError
         Where there are none, or one is no results.json.
     """
-    from data.results import Results
+    from data.results_file import read_results
 
     found: list[Path] = []
     for path in map(Path, names):
@@ -43,4 +43,4 @@ def find_runs(names: Sequence[str | Path]) -> dict[str, Results]:
         found += [here] if here.exists() else below
     unique = dict.fromkeys(path.resolve() for path in found)
     folders = apart([path.parent.with_name(f"{path.parent.name}.run") for path in unique])
-    return {name: Results.read(path) for name, path in zip(folders, unique, strict=True)}
+    return {name: read_results(path) for name, path in zip(folders, unique, strict=True)}

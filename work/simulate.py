@@ -54,14 +54,14 @@ def read_start(path: Path, folder: Path) -> Start:
     InputError
         Where there is no shot in the files, or `folder` holds the measured one.
     """
-    from data.results import Results
+    from data.results_file import read_results
     from data.tracks import read_tracks
     from physics.shot import read_shot
     from physics.start import measured_start, written_start
 
     if not measured_shot(path):
         return written_start(read_shot(path))
-    results = Results.read(path)
+    results = read_results(path)
     tracks = path.parent / "tracks.csv"
     if not tracks.exists():
         raise InputError(f"{tracks}: no such file; it belongs beside {path.name}")

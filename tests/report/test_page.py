@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from data.results import Estimate, Friction
+from data.results_file import results_json
 from data.sheet import HOUSE
 from report.numbers import MINUS
 from report.page import write_report
@@ -110,7 +111,7 @@ def test_page_is_well_formed_and_offline(written):
 def test_numbers_are_those_of_the_results(written, shot):
     page = Page(written)
     values = {value for value, _ in page.numbers}
-    raw = json.loads(shot.results.to_json())
+    raw = json.loads(results_json(shot.results))
     for key in ("schema", "laws", "law_choice", "methods", "stones", "posterior"):
         raw.pop(key)  # the page draws them, or gives what follows from them
     missing = [number for number in numbers_in(raw) if number not in values]

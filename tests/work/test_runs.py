@@ -6,13 +6,14 @@ import pytest
 
 from data.errors import InputError
 from data.results import Estimate, Friction, Input, Results
+from data.results_file import write_results
 from work.runs import apart, find_runs
 
 
 def written(folder: Path) -> Path:
     folder.mkdir(parents=True)
     nothing = Results(Input(("a.mp4",), 25.0, 10, 0.4), Estimate(), Friction())
-    nothing.write(folder / "results.json")
+    write_results(nothing, folder / "results.json")
     return folder
 
 

@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 from data.errors import InputError
 from data.results import (
-    SCHEMA,
     Collision,
     Estimate,
     Friction,
@@ -28,6 +27,7 @@ from data.results import (
     StoneResult,
     Told,
 )
+from data.results_file import SCHEMA, read_results, results_json, write_results
 
 RESULTS = Results(
     input=Input(("clip Ä.mp4",), 25.0, 150, 5.96),
@@ -82,12 +82,12 @@ def strict(text: str) -> dict[str, object]:
 
 
 def test_round_trip(tmp_path: Path) -> None:
-    RESULTS.write(tmp_path / "results.json")
-    assert Results.read(tmp_path / "results.json") == RESULTS
+    write_results(RESULTS, tmp_path / "results.json")
+    assert read_results(tmp_path / "results.json") == RESULTS
 
 
 def test_the_form_of_the_file() -> None:
-    raw = strict(RESULTS.to_json())
+    raw = strict(results_json(RESULTS))
     assert raw["schema"] == SCHEMA == 1
     assert set(raw) == {
         *("schema", "input", "restitution", "friction", "collisions", "glides"),
@@ -114,11 +114,11 @@ def test_what_is_not_finite_is_null(tmp_path: Path) -> None:
         simulations={"frictional": SimulationScore(np.float64("nan"), {"A": -math.inf})},
         input=replace(RESULTS.input, frames=np.int64(7), fps=np.float32(25)),  # type: ignore[arg-type]
     )
-    raw = strict(odd.to_json())
+    raw = strict(results_json(odd))
     assert raw["restitution"] == {"value": None, "stderr": None}
     assert raw["input"]["frames"] == 7  # type: ignore[index]
-    odd.write(tmp_path / "results.json")
-    back = Results.read(tmp_path / "results.json")
+    write_results(odd, tmp_path / "results.json")
+    back = read_results(tmp_path / "results.json")
     assert back.restitution == Estimate(None, None)
     assert back.simulations["frictional"].rest_error == {"A": None}
 
@@ -134,7 +134,7 @@ def test_any_value_is_strict_json(value: float | None, stderr: float | None, tex
         warnings=(text,),
         glides=(Glide(text, 0.0, 1.0, value, stderr),),
     )
-    raw = strict(results.to_json())
+    raw = strict(results_json(results))
     known = value is not None and math.isfinite(value)
     assert raw["restitution"]["value"] == (value if known else None)  # type: ignore[index]
     assert raw["warnings"] == [text]
@@ -157,17 +157,17 @@ def test_other_files_are_refused(tmp_path: Path, text: str, reason: str) -> None
     path = tmp_path / "results.json"
     path.write_text(text)
     with pytest.raises(InputError, match=reason):
-        Results.read(path)
+        read_results(path)
     path.write_bytes(b"\xff\xfe\x00")
     with pytest.raises(InputError, match=r"not a results\.json"):
-        Results.read(path)
+        read_results(path)
     with pytest.raises(InputError, match="No such file"):
-        Results.read(tmp_path / "none.json")
+        read_results(tmp_path / "none.json")
 
 
 @settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
-    key=st.sampled_from(sorted(json.loads(RESULTS.to_json()))),
+    key=st.sampled_from(sorted(json.loads(results_json(RESULTS)))),
     value=st.recursive(
         st.one_of(st.none(), st.integers(), st.text(max_size=5), st.booleans()),
         lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner),
@@ -175,12 +175,12 @@ def test_other_files_are_refused(tmp_path: Path, text: str, reason: str) -> None
     ),
 )
 def test_damaged_results_are_read_or_refused(tmp_path: Path, key: str, value: object) -> None:
-    raw = json.loads(RESULTS.to_json())
+    raw = json.loads(results_json(RESULTS))
     raw[key] = value
     path = tmp_path / "results.json"
     path.write_text(json.dumps(raw))
     try:
-        Results.read(path)
+        read_results(path)
     except InputError as refusal:
         assert str(path) in str(refusal)
 
@@ -203,7 +203,7 @@ def test_damaged_results_are_read_or_refused(tmp_path: Path, key: str, value: ob
 def test_what_is_no_number_or_no_stone_is_refused(
     path: tuple[str | int, ...], value: object, tmp_path: Path
 ) -> None:
-    content = json.loads(RESULTS.to_json())
+    content = json.loads(results_json(RESULTS))
     place = content
     for key in path[:-1]:
         place = place[key]
@@ -211,4 +211,4 @@ def test_what_is_no_number_or_no_stone_is_refused(
     file = tmp_path / "results.json"
     file.write_text(json.dumps(content))
     with pytest.raises(InputError, match="not a results"):
-        Results.read(file)
+        read_results(file)
