@@ -8,8 +8,9 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from data.delimited import TextTable, plain_decimals
+from data.delimited import TextTable
 from data.errors import InputError
+from data.text import plain_decimals
 from data.tracks import LATEST
 
 Array = NDArray[np.float64]

@@ -1,10 +1,9 @@
-"""Text tables of numbers in any dialect: encoding, delimiter, decimal sign, minus, digits."""
+"""Text tables of numbers in any dialect: with or without a header, whatever the delimiter."""
 
 from __future__ import annotations
 
 import csv
 import re
-import unicodedata
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,17 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.errors import InputError
+from data.text import NUMBER, plain_decimals, plain_digits, quoted, read_text
 
 Array = NDArray[np.float64]
-
-LARGEST = 64_000_000
-"""Bytes; a larger file is no table of tracks."""
-
-MOST_LINES = 1_000_000
-"""A clip of ten minutes with sixteen stones, one row each, has half as many."""
-
-LONGEST_LINE = 1_000_000
-"""Characters; a row of numbers has a few hundred."""
 
 MOST_CELLS = 3_500_000
 """Read at once; as text they take some hundred bytes each."""
@@ -31,18 +22,11 @@ MOST_CELLS = 3_500_000
 _PREFACE = 10
 """How many lines may stand above the header or the first row of numbers."""
 
-_EXPORT = "from Tracker, save tracks as text with File > Export > Data"
-
-_NUMBER = re.compile(
-    r"[+-]?(\d+([.,]\d*)?|[.,]\d+)(e[+-]?\d+)?|[+-]?(inf|infinity|∞)", re.IGNORECASE
-)
 _SPREADSHEET = re.compile('"?sep=.?"?', re.IGNORECASE)
 """What spreadsheets take for the delimiter of what follows, and no name of a track."""
 
 _UNIT = re.compile(r"[(\[]?(m?s|sec|[cm]?m|in|ft|px|kg|rad|deg|°|(m|rad|deg|°)/s[²2]?)?[)\]]?")
 _MISSING = frozenset({"", "nan", "na", "n/a", "#n/a", "null", "none", "-"})
-_BIDI_MARKS = dict.fromkeys(map(ord, "\u200e\u200f\u061c\u2066\u2067\u2068\u2069"))
-_MINUS = dict.fromkeys(map(ord, "\u2212\u2010\u2011\u2012\u2013\ufe63\uff0d"), "-")
 
 
 @dataclass(frozen=True)
@@ -122,7 +106,7 @@ class TextTable:
                     if cell.lower() not in _MISSING:
                         column = f" in column {self.names[columns[k]]}" if self.names else ""
                         raise InputError(
-                            f"{self.path}: line {self.line_numbers[row]}: {_short(cell)} is not a"
+                            f"{self.path}: line {self.line_numbers[row]}: {quoted(cell)} is not a"
                             f" number{column}"
                         ) from None
                     out[row, k] = np.nan
@@ -148,7 +132,7 @@ def read_text_table(path: Path, is_header: Callable[[Sequence[str]], bool]) -> T
     InputError
         Where the file is missing, empty, no text, or no table.
     """
-    lines = [line for line in enumerate(_text(path).split("\n"), 1) if line[1].strip()]
+    lines = [line for line in enumerate(read_text(path).split("\n"), 1) if line[1].strip()]
     if not lines:
         raise InputError(f"{path}: the file is empty")
     title = ""
@@ -163,73 +147,8 @@ def read_text_table(path: Path, is_header: Callable[[Sequence[str]], bool]) -> T
         title = line
     raise InputError(
         f"{path}: not a table of tracks: no header with t, x and y, and no rows of numbers"
-        f" (line {lines[0][0]}: {_short(lines[0][1])})"
+        f" (line {lines[0][0]}: {quoted(lines[0][1])})"
     )
-
-
-def plain_digits(text: str) -> str:
-    """Write digits, minus signs and exponents as ASCII: ``−2,6×10^−2`` becomes ``-2,6E-2``."""
-    if text.isascii():
-        return text
-    signs: dict[int, str | None] = {**_BIDI_MARKS, **_MINUS, ord("\u066b"): "."}
-    for character in set(text):
-        if not character.isascii() and character.isdecimal():
-            signs[ord(character)] = str(unicodedata.decimal(character))
-    plain = text.translate(signs).replace("أس", "E").replace("اس", "E")
-    return re.sub(r"[ \xa0]?[×·⋅][ \xa0]?10\^(?=[+-]?\d)", "E", plain)
-
-
-def plain_decimals(columns: Sequence[list[str]], source: str) -> list[list[str]]:
-    """Write decimal commas as points, in all columns or in none.
-
-    Raises
-    ------
-    InputError
-        Where some numbers have a decimal comma and others a point.
-    """
-    commas = any("," in cell for cells in columns for cell in cells)
-    if not commas:
-        return list(columns)
-    for cells in columns:
-        for cell in cells:
-            if "." in cell and _NUMBER.fullmatch(cell.replace(",", "")):
-                raise InputError(
-                    f"{source}: both commas and points in numbers ({_short(cell)}): which is the"
-                    " decimal sign?"
-                )
-    return [[cell.replace(",", ".") for cell in cells] for cells in columns]
-
-
-def _text(path: Path) -> str:
-    """Return the text of a file with Unix line ends."""
-    try:
-        size = path.stat().st_size
-        if size > LARGEST:
-            raise InputError(f"{path}: {size / 1e6:.0f} MB is too large for a table of tracks")
-        raw = path.read_bytes()
-    except FileNotFoundError:
-        raise InputError(f"{path}: no such file") from None
-    except IsADirectoryError:
-        raise InputError(f"{path}: a folder, not a table of tracks") from None
-    except (OSError, ValueError) as error:
-        raise InputError(f"{path}: cannot be read ({error})") from None
-    if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
-        text = raw.decode("utf-16", errors="replace")
-    elif b"\0" in raw or raw.startswith(b"PK\x03\x04"):
-        raise InputError(f"{path}: not text, so no table of tracks; {_EXPORT}")
-    else:
-        try:
-            text = raw.decode("utf-8-sig")
-        except UnicodeDecodeError:
-            text = raw.decode("latin-1")
-    if text.lstrip()[:1] == "<":
-        raise InputError(f"{path}: XML, not a table of tracks; {_EXPORT}")
-    text = text.replace("\r\n", "\n").replace("\r", "\n").replace("\0", "\ufffd")
-    if (lines := text.count("\n")) > MOST_LINES:
-        raise InputError(f"{path}: {lines} lines are too many for a table of tracks")
-    if len(text) > LONGEST_LINE and max(map(len, text.split("\n"))) > LONGEST_LINE:
-        raise InputError(f"{path}: a line of over {LONGEST_LINE} characters is no row of a table")
-    return text
 
 
 def _header(
@@ -307,9 +226,9 @@ def _delimiter_of_numbers(line: str) -> str | None:
         cells = [cell.strip().strip('"') for cell in cells]
         while cells and not cells[-1]:
             cells.pop()
-        if len(cells) > 1 and cells[0] and all(not c or _NUMBER.fullmatch(c) for c in cells):
+        if len(cells) > 1 and cells[0] and all(not c or NUMBER.fullmatch(c) for c in cells):
             return delimiter
-    return "\t" if _NUMBER.fullmatch(line.strip()) else None
+    return "\t" if NUMBER.fullmatch(line.strip()) else None
 
 
 def _splitter(delimiter: str, first_line: str) -> Callable[[str], list[str]]:
@@ -361,7 +280,7 @@ def _joined_decimals(path: Path, names: tuple[str, ...]) -> Callable[[str], list
             cells.append(cell)
         if not clear or len(cells) != len(names):
             raise InputError(
-                f"{path}: {_short(line)} does not fit the header; if its commas stand between and"
+                f"{path}: {quoted(line)} does not fit the header; if its commas stand between and"
                 " in the numbers, export with another delimiter"
             )
         return cells
@@ -372,9 +291,3 @@ def _joined_decimals(path: Path, names: tuple[str, ...]) -> Callable[[str], list
 def _cells_used(cells: Sequence[str]) -> int:
     """Count the cells up to the last one that is not empty."""
     return max((k + 1 for k, cell in enumerate(cells) if cell.strip()), default=0)
-
-
-def _short(text: str) -> str:
-    """Quote the beginning of a text for a message."""
-    clean = " ".join("".join(c if c.isprintable() else " " for c in text[:200]).split())
-    return f"“{clean[:40]}…”" if len(clean) > 40 else f"“{clean}”"

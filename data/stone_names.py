@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from data.errors import InputError
-from data.layouts import TrackFile
+from data.track_file import TrackFile
 
 
 def chosen(

@@ -21,9 +21,10 @@ from data.columns import ANGLE_UNITS, LENGTH_UNITS, UNIT_NOT_SAID, UNIT_SAID
 from data.discs import top_speed
 from data.errors import InputError
 from data.export import read_parquet
-from data.layouts import TrackFile, read_layout
+from data.layouts import read_layout
 from data.project import is_project, read_project
 from data.stone_names import chosen, named_by_file, refuse_shared_names
+from data.track_file import TrackFile
 from data.tracks import check_sightings
 
 FASTEST = 20.0

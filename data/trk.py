@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from data.columns import LENGTH_UNITS
 from data.errors import InputError
-from data.layouts import TrackFile
+from data.track_file import TrackFile
 
 Array = NDArray[np.float64]
 Frames = NDArray[np.int64]

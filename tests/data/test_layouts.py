@@ -2,87 +2,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-import pytest
-
-from data.errors import InputError
-from data.layouts import TrackFile, read_layout
-
-
-def read(folder: Path, text: str, fps: float | None = None, name: str = "shot.txt") -> TrackFile:
-    path = folder / name
-    path.write_text(text, encoding="utf-8")
-    return read_layout(path, fps)
-
-
-def stones(file: TrackFile) -> list[str]:
-    return list(file.tracks["stone"].unique())
-
-
-def xy(file: TrackFile, stone: str) -> list[list[float]]:
-    rows = file.tracks[file.tracks["stone"] == stone]
-    return [list(row) for row in rows[["x", "y"]].to_numpy()]
-
-
-@pytest.mark.parametrize(
-    ("title", "names"),
-    [
-        (";red stone;;;yellow;;;", ["red stone", "yellow"]),
-        (";a;b;;;c;d;;;", ["a;b", "c;d"]),  # nothing is quoted in Tracker's exports
-        ("", ["A", "B"]),
-    ],
-)
-def test_names_of_tracks(tmp_path: Path, title: str, names: list[str]) -> None:
-    header = "t;x;y;vx;x;y;vx;"
-    file = read(tmp_path, f"#multi:\n{title}\n{header}\n0;1;2;9;3;4;9\n1;1;2;9;3;4;9\n")
-    assert stones(file) == names
-
-
-def test_one_name_for_two_tracks_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="two stones with one name, red"):
-        read(tmp_path, "#multi:\n\tred\t\tred\t\t\nt\tx\ty\tx\ty\t\n0\t1\t1\t2\t2\n")
-
-
-@pytest.mark.parametrize(
-    ("columns", "names"),
-    [
-        ("x1,y1,x2,y2", ["1", "2"]),
-        ("1x,1y,2x,2y", ["1", "2"]),
-        ("red_x,red_y,yellow_x,yellow_y", ["red", "yellow"]),
-        ("x red,y red,x yellow,y yellow", ["red", "yellow"]),
-        ("c_a_x,c_a_y,c_b_x,c_b_y", ["a", "b"]),
-        ("ax,ay,bx,by", ["a", "b"]),
-        ("XA,YA,XB,YB", ["A", "B"]),
-    ],
-)
-def test_pairs_of_columns_are_stones(tmp_path: Path, columns: str, names: list[str]) -> None:
-    file = read(tmp_path, f"t,{columns}\n0,1,2,3,4\n1,1,2,3,5\n")
-    assert stones(file) == names
-    assert xy(file, names[0]) == [[1, 2], [1, 2]]
-    assert xy(file, names[1]) == [[3, 4], [3, 5]]
-
-
-@pytest.mark.parametrize("columns", ["vx,vy", "ax,ay", "vx,vy,ax,ay", "px,py", "pixelx,pixely"])
-def test_derived_columns_are_no_stones(tmp_path: Path, columns: str) -> None:
-    with pytest.raises(InputError, match="no columns x and y"):
-        read(tmp_path, f"t,{columns}\n0,1,2,3,4\n")
-
-
-def test_the_one_pair_of_centres_is_named_after_the_file(tmp_path: Path) -> None:
-    assert stones(read(tmp_path, "t,xpos,ypos\n0,1,2\n", name="A.csv")) == ["A"]
-
-
-def test_pairs_beside_plain_columns_are_not_swallowed(tmp_path: Path) -> None:
-    file = read(tmp_path, "t,x,y,x2,y2\n0,1,2,3,4\n")
-    assert stones(file) == ["shot"]
-    assert "x and y of 2" in file.warnings[0]
-
-
-@pytest.mark.parametrize("angle", ["ang_a", "theta_a", "a_theta", "angle a"])
-def test_angles_find_their_stone(tmp_path: Path, angle: str) -> None:
-    file = read(tmp_path, f"t,{angle},xa,ya,xb,yb\n0,0.5,1,2,3,4\n")
-    assert file.tracks.set_index("stone")["theta"]["a"] == 0.5
-    assert np.isnan(file.tracks.set_index("stone")["theta"]["b"])
+from tests.data.reading import read, stones, xy
 
 
 def test_times_in_milliseconds_and_frames(tmp_path: Path) -> None:
@@ -101,12 +21,6 @@ def test_decimals_of_the_times(tmp_path: Path) -> None:
     assert read(tmp_path, "t,x,y\n0.000,1,2\n0.033,1,2\n").decimals == 3
     assert read(tmp_path, "t;x;y\n0;1;2\n0,5;1;2\n").decimals == 1
     assert read(tmp_path, "t,x,y\n0.000000E0,1,2\n3.333333E-2,1,2\n").decimals is None
-
-
-def test_a_track_without_marks_is_left_out(tmp_path: Path) -> None:
-    file = read(tmp_path, "#multi:\n,red,,blue,,\nt,x,y,x,y,\n0,1,2,,\n1,1,2,,\n")
-    assert stones(file) == ["red"]
-    assert "blue has no place" in file.warnings[0]
 
 
 def test_comment_sign_before_the_header(tmp_path: Path) -> None:

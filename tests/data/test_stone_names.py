@@ -6,8 +6,8 @@ import pandas as pd
 import pytest
 
 from data.errors import InputError
-from data.layouts import TrackFile
 from data.stone_names import chosen, named_by_file, refuse_shared_names
+from data.track_file import TrackFile
 
 
 def files(**tracks: list[str]) -> tuple[list[Path], list[TrackFile]]:

@@ -1,0 +1,234 @@
+"""Tables with one row per time and the stones side by side, Tracker's own among them."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from data.columns import ANGLE_UNITS, TIME_NAMES, clock_column, refuse_disorder, times_of, values_of
+from data.delimited import TextTable
+from data.errors import InputError
+from data.track_file import TrackFile
+from data.tracks import stone_name
+
+Array = NDArray[np.float64]
+
+ANGLE_NAMES = {"ang", "angle", "theta"}
+"""What a column of angles is called."""
+
+COMPANIONS = ("theta", "sd_x", "sd_y", "sd_theta", "frame")
+"""What else a table may tell of a place."""
+
+_CENTRE = {"c", "cm", "com", "centre", "center", "pos", "position"}
+_DERIVED = {"v", "a", "p", "pixel", "px", "vel", "velocity", "acc", "acceleration", "sd"}
+
+
+@dataclass(frozen=True)
+class Place:
+    """Columns of one stone in a wide table: of its place, and of what else is told of it."""
+
+    stone: str
+    x: int
+    y: int
+    others: Mapping[str, int] = field(default_factory=dict)
+
+    @property
+    def columns(self) -> dict[str, int]:
+        """Give all of its columns by what they hold."""
+        return {"x": self.x, "y": self.y, **self.others}
+
+
+def pairs_of(names: Sequence[str]) -> dict[str, tuple[int, int]]:
+    """Columns of x and y by what their names share: ``x1, y1`` or ``red_x, red_y``."""
+    # An angle of a stone named x, or the error of a place, is no place.
+    places = {
+        k: name for k, name in enumerate(names) if name.split("_")[0] not in {*ANGLE_NAMES, "sd"}
+    }
+    pairs = _halves((name[:1], name[1:], k) for k, name in places.items())
+    used = {k for pair in pairs.values() for k in pair}
+    rest = ((name[-1:], name[:-1], k) for k, name in places.items() if k not in used)
+    pairs = _halves(rest) | pairs
+    pairs.pop("", None)
+    # vx, vy, ax, ay and so on are no stones; but ax, ay beside bx, by are.
+    dull = _DERIVED if set(pairs) <= _DERIVED else _DERIVED - {"a"}
+    return {stem: pair for stem, pair in pairs.items() if stem not in dull}
+
+
+def _halves(names: Iterable[tuple[str, str, int]]) -> dict[str, tuple[int, int]]:
+    """Find axes that share a stem, from the axis, the stem and the column of each."""
+    found: dict[str, dict[str, int]] = {}
+    for axis, stem, column in names:
+        if axis in ("x", "y"):
+            found.setdefault(stem.strip("_ ."), {}).setdefault(axis, column)
+    return {stem: (half["x"], half["y"]) for stem, half in found.items() if len(half) == 2}
+
+
+def read_wide(table: TextTable, names: Sequence[str], fps: float | None) -> TrackFile:
+    """Read one row per time, the stones side by side."""
+    places = _blocks(table, names) or _named_pairs(table, names)
+    if not places:
+        if any(name in ("θ", "θr", "ω") for name in names):
+            raise InputError(
+                f"{table.path}: only angles about the origin, no x and y; export x and y too"
+            )
+        raise InputError(
+            f"{table.path}: no columns x and y (there are {', '.join(names)[:80]}); needs t, x, y"
+        )
+    doubled = [name for name, n in Counter(p.stone for p in places).items() if n > 1]
+    if doubled:
+        raise InputError(
+            f"{table.path}: two stones with one name, {doubled[0]}; rename one in the line of names"
+        )
+    clock = clock_column(table, names, fps)
+    columns = {clock} | {k for place in places for k in place.columns.values()}
+    values = values_of(table, columns)
+    times, decimals, warnings = times_of(table, values, clock, fps)
+    others = [k for k, name in enumerate(names) if name in TIME_NAMES and k != clock]
+    if any(not np.array_equal(table.numbers([k])[:, 0], values[clock or 0]) for k in others):
+        raise InputError(f"{table.path}: two columns of times that differ; one file per stone")
+    unread = [stem for stem, (x, _) in pairs_of(names).items() if x not in columns]
+    if unread:
+        warnings.append(f"{table.path}: x and y of {', '.join(unread)} beside x and y; left out")
+    return side_by_side(table, values, places, times, decimals, warnings)
+
+
+def _blocks(table: TextTable, names: Sequence[str]) -> list[Place]:
+    """Places in Tracker's layout: columns named x and y, one block after the other."""
+    xs = [k for k, name in enumerate(names) if name == "x"]
+    ys = [k for k, name in enumerate(names) if name == "y"]
+    if len(xs) != len(ys):
+        raise InputError(f"{table.path}: columns x: {len(xs)}, columns y: {len(ys)}; needs as many")
+    stones = _titles(table, xs, len(names))
+    others: list[dict[str, int]] = [{} for _ in xs]
+    for kind in COMPANIONS:
+        alike = ANGLE_NAMES if kind == "theta" else {kind}
+        found = [k for k, name in enumerate(names) if name in alike]
+        if len(found) == len(xs):
+            for place, column in zip(others, found, strict=True):
+                place[kind] = column
+    return [Place(stones[k], xs[k], ys[k], others[k]) for k in range(len(xs))]
+
+
+def _titles(table: TextTable, starts: Sequence[int], width: int) -> list[str]:
+    """Names of the tracks: from the line above the header, else the file, else by order."""
+    count = len(starts)
+    title = table.title
+    if count == 1:
+        return [title_of(table)]
+    if title and count and (width - 1) % count == 0:
+        # A name is followed by as many delimiters as its track has columns.
+        gap = table.delimiter * ((width - 1) // count)
+        parts = title.removeprefix(table.delimiter).split(gap)
+        named = [part.strip(table.delimiter + " \t") for part in parts[:count]]
+        if len(named) == count and all(named):
+            return named
+    cells = [cell.strip() for cell in title.split(table.delimiter)]
+    found = []
+    for start in starts:
+        before = [cell for cell in cells[: start + 1] if cell]
+        found.append(before[-1] if before else "")
+    return found if all(found) else [stone_name(k) for k in range(count)]
+
+
+def title_of(table: TextTable) -> str:
+    """Name of the only track: the line above, or the file's name."""
+    return table.title.strip(table.delimiter + " \t\"'") or table.path.stem
+
+
+def _named_pairs(table: TextTable, names: Sequence[str]) -> list[Place]:
+    """Places whose columns carry the stone's name: ``x1, y1``; ``c_a_x, c_a_y, ang_a``."""
+    places = []
+    pairs = pairs_of(names)
+    frame = names.index("frame") if "frame" in names else None
+    for stem, (x, y) in pairs.items():
+        words = re.split(r"[_ .]+", stem)
+        stone = stem
+        if words[0] in _CENTRE and len(words) > 1:
+            stone = stem[len(words[0]) + 1 :]
+        elif words[0] in _CENTRE and len(pairs) == 1:
+            stone = title_of(table)
+        others = {} if frame is None else {"frame": frame}
+        for k, name in enumerate(names):
+            kind, _, whose = name.rpartition(f"_{stone}")
+            if not whose and kind in ("sd_x", "sd_y", "sd_theta"):
+                others.setdefault(kind, k)
+            elif _angle_of(name) in (stem, stone):
+                others.setdefault("theta", k)
+        written = table.names[x] if table.names is not None else ""
+        places.append(Place(_as_written(stone, written), x, y, others))
+    return places
+
+
+def _as_written(stone: str, column: str) -> str:
+    """Give a name the capitals that it has in the name of a column."""
+    at = column.casefold().rfind(stone)
+    return (
+        column[at : at + len(stone)] if at >= 0 and len(column.casefold()) == len(column) else stone
+    )
+
+
+def _angle_of(name: str) -> str | None:
+    """Find the stone that a column such as ``ang_a`` or ``theta1`` belongs to."""
+    for word in sorted(ANGLE_NAMES, key=len, reverse=True):
+        if name.startswith(word):
+            return name.removeprefix(word).strip("_ .")
+        if name.endswith(word):
+            return name.removesuffix(word).strip("_ .")
+    return None
+
+
+def side_by_side(
+    table: TextTable,
+    values: dict[int, Array],
+    places: Sequence[Place],
+    times: Array,
+    decimals: int | None,
+    warnings: list[str],
+) -> TrackFile:
+    """Make a file of tracks out of the columns of its stones and their common times.
+
+    Raises
+    ------
+    InputError
+        Where the times are in disorder, or there is no place at all.
+    """
+    refuse_disorder(table, times)
+    parts = []
+    for place in places:
+        present = {key: values[column] for key, column in place.columns.items()}
+        part = pd.DataFrame({"stone": place.stone, "t": times, **present})
+        part = part[part["x"].notna() & part["y"].notna()]
+        if part.empty:
+            warnings.append(f"{table.path}: {place.stone} has no place in any row; left out")
+            continue
+        if "theta" in part and _about_origin(part):
+            warnings.append(
+                f"{table.path}: the angle of {place.stone} is that of its place about the origin,"
+                " not its spin; left out"
+            )
+            part = part.drop(columns="theta")
+        parts.append(part)
+    if not parts:
+        raise InputError(f"{table.path}: no row with a place (x and y)")
+    tracks = pd.concat(parts, ignore_index=True)
+    return TrackFile(tracks, decimals, warnings=warnings)
+
+
+def _about_origin(part: pd.DataFrame) -> bool:
+    """Tell whether an angle is just the direction of the place, in degrees or radians."""
+    place = np.arctan2(part["y"].to_numpy(), part["x"].to_numpy())
+    theta = part["theta"].to_numpy()
+    known = np.isfinite(theta) & np.isfinite(place)
+    if not known.any() or np.ptp(place[known]) < 0.05:
+        return False
+    for unit in ANGLE_UNITS.values():
+        away = np.exp(1j * (theta[known] * unit - place[known]))
+        if float(np.abs(np.angle(away)).max()) < 0.02:
+            return True
+    return False

@@ -1,0 +1,76 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from data.errors import InputError
+from tests.data.reading import read, stones, xy
+
+
+@pytest.mark.parametrize(
+    ("columns", "names"),
+    [
+        ("x1,y1,x2,y2", ["1", "2"]),
+        ("1x,1y,2x,2y", ["1", "2"]),
+        ("red_x,red_y,yellow_x,yellow_y", ["red", "yellow"]),
+        ("x red,y red,x yellow,y yellow", ["red", "yellow"]),
+        ("c_a_x,c_a_y,c_b_x,c_b_y", ["a", "b"]),
+        ("ax,ay,bx,by", ["a", "b"]),
+        ("XA,YA,XB,YB", ["A", "B"]),
+    ],
+)
+def test_pairs_of_columns_are_stones(tmp_path: Path, columns: str, names: list[str]) -> None:
+    file = read(tmp_path, f"t,{columns}\n0,1,2,3,4\n1,1,2,3,5\n")
+    assert stones(file) == names
+    assert xy(file, names[0]) == [[1, 2], [1, 2]]
+    assert xy(file, names[1]) == [[3, 4], [3, 5]]
+
+
+@pytest.mark.parametrize("columns", ["vx,vy", "ax,ay", "vx,vy,ax,ay", "px,py", "pixelx,pixely"])
+def test_derived_columns_are_no_stones(tmp_path: Path, columns: str) -> None:
+    with pytest.raises(InputError, match="no columns x and y"):
+        read(tmp_path, f"t,{columns}\n0,1,2,3,4\n")
+
+
+def test_the_one_pair_of_centres_is_named_after_the_file(tmp_path: Path) -> None:
+    assert stones(read(tmp_path, "t,xpos,ypos\n0,1,2\n", name="A.csv")) == ["A"]
+
+
+def test_pairs_beside_plain_columns_are_not_swallowed(tmp_path: Path) -> None:
+    file = read(tmp_path, "t,x,y,x2,y2\n0,1,2,3,4\n")
+    assert stones(file) == ["shot"]
+    assert "x and y of 2" in file.warnings[0]
+
+
+@pytest.mark.parametrize("angle", ["ang_a", "theta_a", "a_theta", "angle a"])
+def test_angles_find_their_stone(tmp_path: Path, angle: str) -> None:
+    file = read(tmp_path, f"t,{angle},xa,ya,xb,yb\n0,0.5,1,2,3,4\n")
+    assert file.tracks.set_index("stone")["theta"]["a"] == 0.5
+    assert np.isnan(file.tracks.set_index("stone")["theta"]["b"])
+
+
+@pytest.mark.parametrize(
+    ("title", "names"),
+    [
+        (";red stone;;;yellow;;;", ["red stone", "yellow"]),
+        (";a;b;;;c;d;;;", ["a;b", "c;d"]),  # nothing is quoted in Tracker's exports
+        ("", ["A", "B"]),
+    ],
+)
+def test_names_of_tracks(tmp_path: Path, title: str, names: list[str]) -> None:
+    header = "t;x;y;vx;x;y;vx;"
+    file = read(tmp_path, f"#multi:\n{title}\n{header}\n0;1;2;9;3;4;9\n1;1;2;9;3;4;9\n")
+    assert stones(file) == names
+
+
+def test_one_name_for_two_tracks_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="two stones with one name, red"):
+        read(tmp_path, "#multi:\n\tred\t\tred\t\t\nt\tx\ty\tx\ty\t\n0\t1\t1\t2\t2\n")
+
+
+def test_a_track_without_marks_is_left_out(tmp_path: Path) -> None:
+    file = read(tmp_path, "#multi:\n,red,,blue,,\nt,x,y,x,y,\n0,1,2,,\n1,1,2,,\n")
+    assert stones(file) == ["red"]
+    assert "blue has no place" in file.warnings[0]
