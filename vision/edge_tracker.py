@@ -39,8 +39,13 @@ MARK_SD = 0.2
 WIDTH = 6.0
 """Width of the robust loss, in standard deviations, while the shared part is provisional."""
 
-SETTLED = 0.4
-"""Correction below which the edges need not be measured anew, half lengths of the normals."""
+SETTLED, LEAST_SETTLED = 0.4, 0.1
+"""Correction below which the edges need not be measured anew, half lengths of the normals; and in
+however fast a pan."""
+
+OPEN = 0.5
+"""Longest exposure, as a share of the time from one frame to the next: film cameras' half a turn
+of the shutter, which broadcasts keep to."""
 
 ROUNDS = 3
 """How often the edges of a frame are measured at most."""
@@ -120,8 +125,10 @@ class EdgeTracker:
             if not evidence:
                 return []
             fits = self._fitted([e.marks for e in evidence], views, rig)
+            before = [views[0] if self.fit is None else self.fit.view, *views]
             settled = [
-                self._is_settled(*each, rig) for each in zip(views, evidence, fits, strict=False)
+                self._is_settled(*each, rig)
+                for each in zip(before, views, evidence, fits, strict=False)
             ]
             count = _leading(settled)
             if count:
@@ -214,11 +221,18 @@ class EdgeTracker:
         view_sd = FREE if lines else HELD
         return solve_views(frames, start, rig, view_sd=view_sd, width=WIDTH, iterations=6)
 
-    def _is_settled(self, before: View, evidence: Evidence, fit: ViewSolution, rig: Array) -> bool:
-        """Whether a view was predicted so well that the edges need not be measured anew."""
-        shift = np.abs(fit.view.vector - before.vector)[:3].max() * fit.view.focal
-        near = bool(shift < SETTLED * self._reach)
+    def _is_settled(
+        self, last: View, expected: View, evidence: Evidence, fit: ViewSolution, rig: Array
+    ) -> bool:
+        """Whether a view was predicted so well that the edges need not be measured anew.
+
+        The colours beside an edge are those at the outer quarters of a normal. Where a pan blurs
+        edges into these, an edge is drawn to where it was expected.
+        """
+        blur = OPEN * _aside(expected, last) / 2
+        most = np.clip(0.5 * self._reach - blur, LEAST_SETTLED * self._reach, SETTLED * self._reach)
         least = max(GOOD_SUPPORT, STEADY * self.support)
+        near = _aside(fit.view, expected) < most
         return near and _enough(rig, evidence.visible, _explained(evidence, fit), least)
 
     def _learn(self, palette: Array, frames: int) -> None:
@@ -227,6 +241,11 @@ class EdgeTracker:
         mixed = kept * self.palette + (1 - kept) * palette
         mixed = np.where(np.isfinite(mixed), mixed, palette)
         self.palette = np.where(np.isfinite(mixed), mixed, self.palette)
+
+
+def _aside(one: View, other: View) -> float:
+    """How far a turn moves the picture from one view to another, px."""
+    return float(np.abs(one.vector - other.vector)[:3].max() * one.focal)
 
 
 def _leading(good: Sequence[bool]) -> int:

@@ -29,6 +29,10 @@ MOST_CORNERS = 100
 APART = 10
 """Corners of a keyframe, and their least distance, px of the small picture."""
 
+LEAST_RESPONSE = 1e-4
+"""Least response of a corner, of the strongest one's (Harris and Stephens, 1988, A combined corner
+and edge detector, Alvey Vision Conference): along the edges of lines points would slide."""
+
 CORNER_SD = 0.3
 """Standard deviation of a recognised corner per axis, px of the small picture."""
 
@@ -101,8 +105,9 @@ def keyframe(
     grey = _small(picture)
     factor = w / grey.shape[1]
     found = cv2.goodFeaturesToTrack(
-        grey, MOST_CORNERS, 0.01, APART, mask=_on_ice(view, rig, (w, h), grey)
-    )
+        grey, MOST_CORNERS, LEAST_RESPONSE, APART, mask=_on_ice(view, rig, (w, h), grey),
+        useHarrisDetector=True,
+    )  # fmt: skip
     corners = np.zeros((0, 2)) if found is None else found.reshape(-1, 2).astype(np.float64)
     ice = camera(view, rig, (w, h)).ice(_large(corners, factor))
     spread = _spread(ice, view, rig, cov, (w, h))

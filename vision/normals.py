@@ -38,8 +38,9 @@ _SHARES = np.linspace(-1.0, 1.0, SAMPLES, dtype=np.float32)
 LINE_REACH = 0.06
 """Half width looked at across a thin line, m: some are painted as two stripes 3 cm apart."""
 
-BAND = 0.08
-"""Half width looked at across the edge of the hog line, m: the line is 10 cm wide."""
+BAND = 0.05
+"""Half width looked at across the edge of the hog line, m: half the line's own, so that however
+far a pan blurs them, its other edge does not draw this one aside."""
 
 BLOCK = 6
 """Neighbouring normals of a thin line that are measured together."""
