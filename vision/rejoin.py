@@ -1,8 +1,10 @@
 """A stone that was hit where nobody saw it: its two tracks are one.
 
-A moving stone that goes out of sight is expected to glide on (`vision.follow`). Where it is hit
-just then, behind a sweeper say, it comes back where it is not expected, as a new track. The way
-of that track, followed back, leads to where the first one ends.
+A moving stone that goes out of sight is expected to glide on, one at rest to stay
+(`vision.follow`). Where it is hit just then, behind a sweeper say, it comes back where it is not
+expected, as a new track. The way of that track, followed back, leads to where the first one ends:
+of a stone that moved, to when it was lost; of one that rested, to when it was hit at some time
+since.
 """
 
 from __future__ import annotations
@@ -51,9 +53,9 @@ def rejoined(tracks: Sequence[Track], radius: float, gate: Gate = GATE) -> list[
 
 
 def _goes_on(first: Track, second: Track, radius: float, gate: Gate) -> bool:
-    """Whether a track may be that of a moving stone that has gone out of sight."""
+    """Whether a track may be that of a stone that has gone out of sight."""
     unseen = second.times[0] - first.times[-1]
-    if not 0 < unseen < gate.patience or first.speed == 0:
+    if not 0 < unseen < gate.patience:
         return False
     if colour_difference(first.colour, second.colour) > gate.colours:
         return False
@@ -66,5 +68,8 @@ def _goes_on(first: Track, second: Track, radius: float, gate: Gate) -> bool:
     speed = way / (second.times[begun[-1]] - second.times[0])
     back = (speed + 0.5 * gate.deceleration * unseen) * unseen / way
     end = first.sightings[-1]
+    if first.speed == 0:
+        nearest = ((here.x - end.x) * dx + (here.y - end.y) * dy) / way**2
+        back = min(max(nearest, 0.0), back)
     off = hypot(here.x - back * dx - end.x, here.y - back * dy - end.y)
     return off < (gate.reach + STRAY * unseen) * radius

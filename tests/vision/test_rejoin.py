@@ -46,7 +46,24 @@ def test_what_comes_back_from_where_a_stone_was_lost_is_that_stone(start, colour
     assert all(track.times == sorted(track.times) for track in joined)
 
 
-def test_a_stone_that_came_back_and_rests_does_not_go_on() -> None:
+@pytest.mark.parametrize(
+    ("start", "hit", "stones"),
+    [((0.2, 0.4), 2.0, 1), ((0.2, 0.4), 0.4, 2), ((0.9, 0.4), 2.0, 2)],
+    ids=["hit behind the sweeper", "passed where it was still seen", "from beside it"],
+)
+def test_a_stone_at_rest_that_was_hit_behind_a_sweeper_goes_on(start, hit, stones) -> None:
+    def guard(t: float) -> Place | None:
+        return (0.2, 0.4) if t < LOST else None
+
+    def struck(t: float) -> Place | None:
+        return (start[0] + 0.5 * (t - hit), start[1] - (t - hit)) if t > BACK else None
+
+    tracks = follow(clip([guard, struck], seconds=4.0), R)
+    assert len(tracks) == 2
+    assert len(rejoined(tracks, R)) == stones
+
+
+def test_a_stone_that_came_back_and_rests_does_not_glide_on() -> None:
     way = coming_back((0.2, 1.6))
 
     def resting(t: float) -> Place | None:
@@ -54,7 +71,7 @@ def test_a_stone_that_came_back_and_rests_does_not_go_on() -> None:
 
     def another(t: float) -> Place | None:
         x, y = way(RESTS)
-        return (x + 0.5 * (t - 5.0), y + 0.9 * (t - 5.0)) if t > 6.0 else None
+        return (x + 0.5 * (t - 4.0), y + 0.9 * (t - 4.0)) if t > 6.0 else None
 
     tracks = follow(clip([thrown, resting, another], seconds=8.0), R)
     first, rest, new = tracks
