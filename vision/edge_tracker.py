@@ -27,8 +27,9 @@ from vision.rig import R4, R8
 
 Array = NDArray[np.float64]
 
-MOST_NORMALS = 32
-"""Normals on each circle."""
+MOST_NORMALS = 48
+"""Normals on each circle: paint is ragged, and by 32 the camera is placed .4 mm aside of what the
+whole circles tell, by these .3 mm; more gain little."""
 
 REACH, LEAST_REACH = 0.007, 6.0
 """Half length of the normals in widths of the picture, and the least, px."""

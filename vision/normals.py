@@ -105,10 +105,6 @@ _GROUP_SIZE = np.repeat(_GROUP, _GROUPS)
 _GROUP_START = np.cumsum(_GROUP_SIZE) - _GROUP_SIZE
 _BEYOND = np.abs(_ALONG[_GROUP_START + _GROUP_SIZE // 2]) > HOUSE.twelve_foot
 _SHARE = np.where((_GROUP_SIZE > 1) & _BEYOND, CLOSER, 1)
-# Of the blocks in each equal share of a line the middle one is kept, so both ends are alike. Of
-# circles the first normal: the middle ones of 32 would stand 6° on either side of where the back
-# line touches the house, and measure that line.
-_PHASE = np.where(_GROUP_SIZE > 1, 0.5, 1e-9)
 
 
 def _neighbours() -> tuple[Index, Index]:
@@ -250,7 +246,7 @@ def lay_out(
     span = np.add.reduceat(np.where(inside, length, 0.0), _STARTS[:upto]) / 2
     scale = span / np.maximum(shown * _SPACING[:upto], 1e-9)
     wanted = np.where(
-        _GROUP[:upto] > 1, min(most // 4, MOST_BLOCKS), min(3 * most // 4, MOST_STEPS)
+        _GROUP[:upto] > 1, min(most // 6, MOST_BLOCKS), min(most // 2, MOST_STEPS)
     )
     wanted[:CIRCLES] = np.clip(span[:CIRCLES] / spacing, 12, most)
     kept = _thinned(inside, wanted, groups)
@@ -286,5 +282,6 @@ def _thinned(inside: Flags, wanted: Index, groups: int) -> Flags:
     shares = np.add.reduceat(share, first, dtype=np.int64)
     enough = have >= np.where(_GROUP[: len(wanted)] > 1, LEAST_BLOCKS, LEAST)
     ratio = np.repeat(np.minimum(wanted / np.maximum(shares, 1), 1.0) * enough, sizes)
-    before, after = (np.floor(n * ratio + _PHASE[:groups]) for n in (number, number + share))
+    # Of those in each equal share of a line the middle one: both ends are alike.
+    before, after = (np.floor(n * ratio + 0.5) for n in (number, number + share))
     return np.asarray(whole & (after > before))

@@ -53,7 +53,7 @@ def test_there_are_as_many_as_wanted_evenly_spread() -> None:
 
 
 def test_thin_lines_are_looked_at_closely_where_they_leave_the_house() -> None:
-    normals = lay_out(view(), rig(), SIZE, reach=REACH, most=32)
+    normals = lay_out(view(), rig(), SIZE, reach=REACH, most=48)
     middles = normals.along[normals.kinds[TEE_LINE]].reshape(-1, BLOCK).mean(1)
     beyond = np.abs(middles) > HOUSE.twelve_foot
     assert beyond.sum() == 2 * np.count_nonzero(middles[beyond] > 0) >= 4
