@@ -245,9 +245,7 @@ def lay_out(
     shown = np.add.reduceat(inside, _STARTS[:upto], dtype=np.int64)
     span = np.add.reduceat(np.where(inside, length, 0.0), _STARTS[:upto]) / 2
     scale = span / np.maximum(shown * _SPACING[:upto], 1e-9)
-    wanted = np.where(
-        _GROUP[:upto] > 1, min(most // 6, MOST_BLOCKS), min(most // 2, MOST_STEPS)
-    )
+    wanted = np.where(_GROUP[:upto] > 1, min(most // 6, MOST_BLOCKS), min(most // 2, MOST_STEPS))
     wanted[:CIRCLES] = np.clip(span[:CIRCLES] / spacing, 12, most)
     kept = _thinned(inside, wanted, groups)
     at = np.flatnonzero(np.repeat(kept, _GROUP_SIZE[:groups]))
