@@ -156,10 +156,16 @@ class EdgeTracker:
         visible = self._laid([view], rig)[0].visible
         return _enough(rig, visible, visible)
 
-    def lines(self, picture: Picture, view: View, rig: Array) -> Marks:
-        """Measure the straight lines near where a view has them."""
-        marks = self._measured([picture], *self._laid([view], rig))[0].marks
-        return marks.pick(marks.line >= CIRCLES)
+    def lines(self, pictures: Sequence[Picture], views: Sequence[View], rig: Array) -> list[Marks]:
+        """Measure the straight lines near where views have them.
+
+        Returns
+        -------
+        list of Marks
+            Of the first of the pictures, as many as can be measured together; one at least.
+        """
+        measured = self._measured(pictures, *self._laid(views, rig))
+        return [e.marks.pick(e.marks.line >= CIRCLES) for e in measured]
 
     def looks_like(self, palette: Array) -> bool:
         """Whether the circles have the same colours in a palette, as far as both know them."""

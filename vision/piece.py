@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from vision.adjust import Solution, solve
 from vision.camera import Camera
 from vision.clip import Frame
-from vision.edge_tracker import HELD, EdgeTracker
+from vision.edge_tracker import HELD, LONGEST_STRIDE, EdgeTracker
 from vision.house_fit import SHARING, HouseFit
+from vision.ice_tracker import IceTracker
 from vision.joint import Seen
-from vision.landmarks import Keyframe, keyframe, recognise
-from vision.paint import CENTRE_LINE, CIRCLES, EIGHT, FOUR, TEE_LINE, TWELVE, Marks, joined
+from vision.paint import CENTRE_LINE, CIRCLES, EIGHT, FOUR, TEE_LINE, TWELVE, Marks
 from vision.picture import Picture
-from vision.pose import ROLL, View, camera, project
+from vision.pose import ROLL, View, camera
 from vision.predict import MEMORY, predict
 from vision.replay import EVERY, Glimpse, cut_among, glimpse, shows_again
 from vision.resection import solve_view
@@ -37,12 +37,6 @@ REFINE_FRAMES = 6
 LEAST_EXPLAINED, SAME_RMS_PX = 0.8, 0.3
 """How much of a house, and of the frames before, one camera must explain to be the same; and by
 how much worse than another's it may explain the house, px."""
-
-NEAR = 0.002
-"""How far a view may be aside for lines to be looked for from it, widths of the picture."""
-
-MOST_DRIFT = 0.25
-"""A view carried so far astray is given up, m."""
 
 
 @dataclass
@@ -65,8 +59,6 @@ class Piece:
         How many of them fixed their camera themselves.
     lost : int
         Frames since the last that was followed.
-    missed : int
-        Frames in a row that were carried to where rings should be in view, and are not.
     """
 
     size: tuple[int, int]
@@ -77,11 +69,15 @@ class Piece:
     glimpses: list[Glimpse] = field(default_factory=list)
     found: int = 0
     lost: int = 0
-    missed: int = 0
     _refined: int = 0
     _picture: Picture | None = None
-    _key: Keyframe | None = None
+    _ice: IceTracker = field(default_factory=IceTracker)
     _fresh: list[Picture] = field(default_factory=list)
+
+    @property
+    def missed(self) -> int:
+        """Frames in a row that were carried to where rings should be in view, and are not."""
+        return self._ice.missed
 
     def follow(self, frames: Sequence[Frame]) -> list[Seen]:
         """Follow into the next frames, of which there should be no more than `edges.stride`.
@@ -95,11 +91,13 @@ class Piece:
         views = self._predicted(frames)
         seen = self.edges.settle(frames, views, self.rig)
         if seen:
-            self._key, self.missed = None, 0
-            return seen
-        self.edges.stride = 1
-        carried = self._carried(frames[0], views[0])
-        return [] if carried is None else [carried]
+            self._ice.forget()
+        elif self._picture is not None:
+            last = self.seen[-1]
+            seen = self._ice.settle(frames, views, last, self._picture, self.rig, self.edges)
+            whole = len(seen) == len(frames)
+            self.edges.stride = min(2 * len(seen), LONGEST_STRIDE) if whole else 1
+        return seen
 
     def take(self, frames: Sequence[Frame], seen: Sequence[Seen]) -> list[tuple[Frame, Camera]]:
         """Take in frames that were followed; give them back with provisional cameras."""
@@ -213,7 +211,8 @@ class Piece:
             This frame and, before it, those to which it could be followed back through frames
             that wait, in order.
         """
-        before, self.seen, self._key, self.edges.stride = self.seen, [], None, 1
+        before, self.seen, self.edges.stride = self.seen, [], 1
+        self._ice.forget()
         settled = self.edges.settle([frame], [view], self.rig)
         first = settled[0] if settled else Seen(frame.index, frame.t, view, marks, True)
         self._add(first, frame.picture)
@@ -226,8 +225,8 @@ class Piece:
             del left[: len(followed)]
         placed.reverse()
         self.seen = [*before, *(seen for _, seen in placed)]
-        self._picture, self._key, self.missed = frame.picture, None, 0
-        self._fresh = []
+        self._picture, self._fresh = frame.picture, []
+        self._ice.forget()
         return placed
 
     def camera(self, seen: Seen) -> Camera:
@@ -248,41 +247,6 @@ class Piece:
         if not (last[-1].marks.line >= CIRCLES).any():
             ahead[:, ROLL] = vectors[-1, ROLL]  # circles do not tell it: it would run away
         return [View(vector) for vector in ahead]
-
-    def _is_near(self, view: View, landmarks: Marks) -> bool:
-        """Whether landmarks were seen so near to where a view has them that lines are, too."""
-        assert landmarks.across is not None
-        count = len(landmarks) // 2
-        ice = np.stack([landmarks.along[:count], landmarks.across[:count]], axis=-1)
-        aside = project(ice, view.vector, self.rig, self.size) - landmarks.pixel[:count]
-        return bool(np.abs(aside.mean(0)).max() < NEAR * self.size[0])
-
-    def _carried(self, frame: Frame, view: View) -> Seen | None:
-        """Place a frame that does not show the rings by points of the ice that are known."""
-        last = self.seen[-1]
-        if self._key is None and self._picture is not None:
-            cov = np.zeros((4, 4)) if self.edges.fit is None else self.edges.fit.cov
-            self._key = keyframe(last.index, self._picture, last.view, self.rig, cov)
-        key = self._key
-        if key is None or key.drift > MOST_DRIFT:
-            return None
-        landmarks = recognise(key, frame.picture, view, self.rig)
-        if landmarks is None:
-            return None
-        if not self._is_near(view, landmarks):
-            view = solve_view(
-                landmarks, view, self.rig, self.size, width=10.0, view_sd=np.full(4, np.inf)
-            ).view
-        expected = self.edges.expects(view, self.rig)
-        if expected and (seen := self.edges.settle([frame], [view], self.rig)):
-            self._key, self.missed = None, 0
-            return seen[0]
-        self.missed = self.missed + 1 if expected else 0
-        marks = joined([landmarks, self.edges.lines(frame.picture, view, self.rig)])
-        fit = solve_view(marks, view, self.rig, self.size, view_sd=(1, 1, 0.02, 0.1))
-        if len(landmarks) < len(key.ice):  # half of its corners are gone: two marks each
-            self._key = keyframe(frame.index, frame.picture, fit.view, self.rig, fit.cov, key.drift)
-        return Seen(frame.index, frame.t, fit.view, marks, False, key)
 
 
 def _follows(seen: Seen, before: Seen) -> bool:

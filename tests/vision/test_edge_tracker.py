@@ -71,7 +71,7 @@ def test_where_the_circles_are_out_of_view_there_are_still_lines() -> None:
     frames, house = filmed()
     edges = tracker(house)
     assert edges.expects(house.view, house.rig)
-    lines = edges.lines(frames[0].picture, house.view, house.rig)
+    (lines,) = edges.lines([frames[0].picture], [house.view], house.rig)
     assert len(lines) > 10 and (lines.line >= CIRCLES).all()
     away = View(house.view.vector + np.array([1.0, 0.0, 0.0, 0.0]))
     assert not edges.expects(away, house.rig)
