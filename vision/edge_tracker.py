@@ -125,11 +125,12 @@ class EdgeTracker:
             evidence = evidence[: _leading([_enough(rig, e.visible, e.covered) for e in evidence])]
             if not evidence:
                 return []
-            fits = self._fitted([e.marks for e in evidence], views, rig)
             before = [views[0] if self.fit is None else self.fit.view, *views]
+            speeds = [_aside(now, last) for now, last in zip(views, before, strict=False)]
+            fits = self._fitted([e.marks for e in evidence], views, rig)
             settled = [
                 self._is_settled(*each, rig)
-                for each in zip(before, views, evidence, fits, strict=False)
+                for each in zip(views, speeds, evidence, fits, strict=False)
             ]
             count = _leading(settled)
             if count:
@@ -217,7 +218,7 @@ class EdgeTracker:
     ) -> list[Evidence]:
         return measure_along(
             pictures[: len(standing)], normals, standing,
-            least_sd=MARK_SD, palette=self.palette, level=self.edge.level,
+            least_sd=MARK_SD, palette=self.palette, edge=self.edge,
         )  # fmt: skip
 
     def _fitted(
@@ -229,14 +230,14 @@ class EdgeTracker:
         return solve_views(frames, start, rig, view_sd=view_sd, width=WIDTH, iterations=6)
 
     def _is_settled(
-        self, last: View, expected: View, evidence: Evidence, fit: ViewSolution, rig: Array
+        self, expected: View, speed: float, evidence: Evidence, fit: ViewSolution, rig: Array
     ) -> bool:
         """Whether a view was predicted so well that the edges need not be measured anew.
 
         The colours beside an edge are those at the outer quarters of a normal. Where a pan blurs
         edges into these, an edge is drawn to where it was expected.
         """
-        blur = OPEN * _aside(expected, last) / 2
+        blur = OPEN * speed / 2
         most = np.clip(0.5 * self._reach - blur, LEAST_SETTLED * self._reach, SETTLED * self._reach)
         least = max(GOOD_SUPPORT, STEADY * self.support)
         near = _aside(fit.view, expected) < most

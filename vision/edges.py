@@ -82,8 +82,8 @@ def steps(profile: Profiles, normals: Normals, known: Array) -> tuple[Profiles, 
     return value, good, palette
 
 
-def crossings(value: Profiles) -> tuple[Array, Flags]:
-    """Find where profiles rise through 0, in samples, and whether they do.
+def crossings(value: Profiles) -> tuple[Array, Array, Flags]:
+    """Find where profiles rise through 0, in samples, how steeply, and whether they do.
 
     Parameters
     ----------
@@ -91,7 +91,8 @@ def crossings(value: Profiles) -> tuple[Array, Flags]:
 
     Returns
     -------
-    sample, good : ndarray, shape (..., n)
+    sample, rise, good : ndarray, shape (..., n)
+        Place, rise from one sample to the next, and whether there is one.
     """
     below = value[..., 1:-1, :] < 0
     rising = below[..., :-1, :] > below[..., 1:, :]
@@ -101,4 +102,5 @@ def crossings(value: Profiles) -> tuple[Array, Flags]:
     low, high = (np.take_along_axis(value, at, -2)[..., 0, :] for at in (best, best + 1))
     best = best[..., 0, :]
     good = (low < 0) & (high >= 0)
-    return best + (low / np.where(good, low - high, 1.0)).astype(np.float64), good
+    rise = np.where(good, high - low, 1.0)
+    return best - (low / rise).astype(np.float64), rise, good

@@ -16,7 +16,7 @@ from vision.adjust import solve
 from vision.camera import Camera
 from vision.lines import sides, upright
 from vision.marks import Evidence, measure
-from vision.outline import Rim, find_rim
+from vision.outline import SHARP, Rim, find_rim
 from vision.picture import Image
 from vision.pose import DOWN, View, aim, camera, rescaled, rotation_vector
 from vision.proof import worth
@@ -161,9 +161,9 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
     view, rig = upright(image, view, rig)
     rig = sides(image, view, rig)
     prior = OVERHEAD if overhead else ANYWHERE
-    edge = Rim()
+    edge = SHARP
     for reach in (8.0, 6.0):
-        evidence = measure(image, view.vector, rig, reach=reach, level=edge.level)
+        evidence = measure(image, view.vector, rig, reach=reach, edge=edge)
         if len(evidence.marks) < 30:
             return None
         fit = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)

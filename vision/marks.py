@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from vision.edges import crossings, steps
 from vision.normals import BLOCK, OUTSIDE, SAMPLES, THIN, Normals, Profiles, lay_out
+from vision.outline import SHARP, Rim
 from vision.paint import CIRCLES, FIXED, TWELVE, Marks
 from vision.picture import Picture, channels_at
 from vision.runs import Curves, Runs, smooth
@@ -88,7 +89,7 @@ def measure(
     least_sd: float = EDGE_SD,
     palette: Array | None = None,
     lines: bool = True,
-    level: float = 0.0,
+    edge: Rim = SHARP,
 ) -> Evidence:
     """Measure the circles, and the lines if asked, near where the camera puts them.
 
@@ -107,13 +108,13 @@ def measure(
         Colours of the edges in the frames before; NaN where not known.
     lines : bool
         Whether lines are measured.
-    level : float
-        Where the 12-ft edge is between ice (−0.5) and paint (0.5), as `vision.outline` tells.
+    edge : Rim
+        Where the 12-ft circle ends in the profiles across it.
     """
     h, w = picture.shape[:2]
     normals = lay_out(view, rig, (w, h), reach=reach, spacing=spacing, most=most, lines=lines)
     return measure_along(
-        [picture], normals, normals.standing[None], least_sd=least_sd, palette=palette, level=level
+        [picture], normals, normals.standing[None], least_sd=least_sd, palette=palette, edge=edge
     )[0]
 
 
@@ -124,7 +125,7 @@ def measure_along(
     *,
     least_sd: float = EDGE_SD,
     palette: Array | None = None,
-    level: float = 0.0,
+    edge: Rim = SHARP,
 ) -> list[Evidence]:
     """Measure circles and lines in pictures along the same normals; see `measure`.
 
@@ -142,8 +143,10 @@ def measure_along(
         palette = np.full((FIXED, 2, colours.shape[1]), np.nan)
     value, good, found = steps(colours[..., :wide], normals, palette)
     rim = places.kinds.get(TWELVE, slice(0))
-    value[..., rim] -= np.float32(level)
-    sample, crossed = crossings(value)
+    value[..., rim] -= np.float32(edge.level)
+    sample, rise, crossed = crossings(value)
+    step = 2 * float(normals.reach[0]) / (SAMPLES - 1) if wide else 1.0
+    sample[..., rim] -= edge.beyond(rise[..., rim] / step) / step
     good &= crossed
     offset = (sample / (SAMPLES // 2) - 1) * normals.reach[:wide]
     within = points[:, 0, wide::BLOCK] > OUTSIDE
@@ -167,9 +170,8 @@ def measure_along(
     middles = standing[..., wide:].reshape(*standing.shape[:3], -1, BLOCK).mean(4)
     place, normal = np.moveaxis(np.append(standing[..., :wide], middles, axis=3), 1, 0)
     pixel = place + places.normal * offset[:, None]
-    step = 2 * float(normals.reach[0]) / (SAMPLES - 1) if wide else 0.0
     crossing = np.where(good[:, rim], sample[:, rim], np.nan)
-    profile = value[..., rim] + np.float32(level)
+    profile = value[..., rim] + np.float32(edge.level)
     return [
         Evidence(
             Marks(places.line, places.along, pixel[k].T, normal[k].T, sd[k]).pick(good[k]),

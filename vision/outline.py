@@ -42,10 +42,27 @@ class Rim:
         Level of a profile there: −0.5 in the ice, 0.5 in the paint.
     sd : float
         Standard deviation of the edge's place, px.
+    line : float
+        How far the line moves the place half way between ice and paint off the edge, px, if the
+        edge is blurred by much more than the line is wide: its depth times its width.
     """
 
     level: float = 0.0
     sd: float = 0.0
+    line: float = 0.0
+
+    def beyond(self, slope: Array) -> Array:
+        """How far beyond the edge profiles cross the level, px, by their slopes there, per px.
+
+        The level is that of a picture in which things rest. Where a pan blurs the edge, the level
+        lies far from half way, but the edge lies no farther than the line would have it.
+        """
+        away = self.level / slope
+        return np.asarray(away - np.clip(away, -abs(self.line), abs(self.line)))
+
+
+SHARP = Rim()
+"""An edge without a line: half way from ice to paint."""
 
 
 def find_rim(profile: Array, step: float) -> Rim:
@@ -62,7 +79,7 @@ def find_rim(profile: Array, step: float) -> Rim:
     x = np.asarray(step * (np.arange(len(profile)) - len(profile) // 2)[known], np.float64)
     y = profile[known]
     if len(y) < 12:
-        return Rim()
+        return SHARP
     mean: Array = np.array([0.0, np.log(WIDTH), np.log(BLUR), y[-3:].mean(), 0.0, y[:3].mean()])
     weight = np.array([1.0, WIDTH_SPREAD, BLUR_SPREAD, 0.3, DEPTH_SD, 0.3]) ** -2.0
     now: Array = mean.copy()
@@ -82,7 +99,7 @@ def find_rim(profile: Array, step: float) -> Rim:
         else:
             damping *= 10
     sd = float(np.sqrt(np.linalg.inv(normal)[0, 0]))
-    return Rim(float(np.interp(now[0], x, y)), sd)
+    return Rim(float(np.interp(now[0], x, y)), sd, float(now[4] * np.exp(now[1])))
 
 
 def _cost(residual: Array, off: Array, weight: Array) -> float:

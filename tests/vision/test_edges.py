@@ -29,9 +29,10 @@ def test_an_edge_lies_half_way_between_its_two_colours() -> None:
     normals = circles()
     place = np.random.default_rng(0).uniform(9, 15, len(normals.line))
     value, good, palette = steps(profiles(place), normals, UNKNOWN)
-    sample, crossed = crossings(value)
+    sample, rise, crossed = crossings(value)
     assert good.all() and crossed.all()
     np.testing.assert_allclose(sample, place, atol=0.06)
+    np.testing.assert_allclose(rise, 0.25 / 0.8, rtol=0.15)  # of a logistic curve, half way
     for kind in (TWELVE, EIGHT, FOUR):
         np.testing.assert_allclose(palette[kind], [ICE, PAINT], atol=2.0)
     assert np.isnan(palette[FOUR + 1 :]).all()
@@ -53,7 +54,7 @@ def test_a_faint_step_is_no_edge() -> None:
     normals = circles()
     faint = profiles(np.full(len(normals.line), 12.0), paint=ICE - MIN_CONTRAST / 2)
     assert not steps(faint, normals, UNKNOWN)[1].any()
-    assert not crossings(np.full((SAMPLES, 3), 0.4, np.float32))[1].any()
+    assert not crossings(np.full((SAMPLES, 3), 0.4, np.float32))[2].any()
 
 
 def test_of_several_crossings_the_steepest_counts() -> None:
@@ -61,7 +62,7 @@ def test_of_several_crossings_the_steepest_counts() -> None:
     value[4:6, 0] += [0.3, 0.45]
     value[18:, 1] -= 0.6
     value[20:, 1] += 0.9
-    sample, good = crossings(value)
+    sample, _, good = crossings(value)
     assert good.all()
     assert 3 < sample[0] < 6
     assert 19 <= sample[1] <= 20

@@ -10,9 +10,9 @@ STEP = 0.375
 X = STEP * (np.arange(33) - 16)
 
 
-def profile(edge: float, width: float, depth: float, blur: float) -> np.ndarray:
+def profile(edge: float, width: float, depth: float, blur: float, x: np.ndarray = X) -> np.ndarray:
     """Ice, a line of this width and so much darker than the paint, and paint."""
-    rise = (1 + depth) * ndtr((X - edge) / blur) - depth * ndtr((X - edge - width) / blur)
+    rise = (1 + depth) * ndtr((x - edge) / blur) - depth * ndtr((x - edge - width) / blur)
     return np.asarray(rise - 0.5)
 
 
@@ -33,6 +33,20 @@ def test_an_outline_belongs_to_the_paint(width: float, depth: float) -> None:
     found = np.interp(find_rim(noisy, STEP).level, noisy[12:19], X[12:19])
     assert abs(found - edge) < 0.15
     assert abs(found - edge) < 0.5 * abs(half_way - edge)
+
+
+@pytest.mark.parametrize("depth", [0.6, -0.3])
+def test_in_a_pan_the_edge_stays_where_it_is_at_rest(depth: float) -> None:
+    rim = find_rim(profile(0.0, 1.2, depth, 0.9), STEP)
+    wide = STEP * (np.arange(120) - 60)
+    passed = [profile(shift, 1.2, depth, 0.9, wide) for shift in np.linspace(-4.5, 4.5, 60)]
+    blurred = np.mean(passed, axis=0)
+    crossed = float(np.interp(rim.level, blurred[40:80], wide[40:80]))
+    slope = float(np.interp(crossed, wide, np.gradient(blurred, wide)))
+    assert abs(crossed) > 0.5
+    assert abs(crossed - rim.beyond(np.array(slope))) < 0.6 * abs(crossed)
+    at_rest = rim.beyond(np.array(0.5))
+    assert abs(at_rest) < 0.02
 
 
 def test_too_little_of_a_profile_tells_nothing() -> None:
