@@ -252,10 +252,12 @@ def _plain(
     effort: Effort,
 ) -> Measures:
     n, pixel = len(places), 1 / scale
-    falls = falls_along(rays.lab.astype(np.float32))
+    # Colours mix in a blurred edge as they are coded: in L*a*b* its middle would lie elsewhere, by
+    # what is beyond it, and a ring of paint under the rim would draw the disc aside.
+    falls = falls_along(rays.bgr.astype(np.float32))
     steps = np.sqrt((falls * falls) @ np.ones(3, np.float32))
     at_rim = rays.at(disc.radius)
-    rim = Rim(steps, at_rim, at_rim, disc.radius, 0.06 * disc.radius, 12.0, np.ones(n))
+    rim = Rim(steps, at_rim, at_rim, disc.radius, 0.06 * disc.radius, 20.0, np.ones(n))
     fit = fit_circles(rays, (rim,), 0.03, effort.edge_reach, 0.25 * pixel, effort.rounds)
     within = rays.inside & (rays.radius < 0.8 * disc.radius)
     visible = fit.shares[:, 0] * at_rim.mean(1)

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import cv2
 import numpy as np
 import pytest
 
@@ -7,6 +8,7 @@ from data.sheet import STONE
 from tests.synthetic.clip import render_still
 from tests.vision.test_stones import CAMERA, RED, YELLOW, camera_of, scene_of
 from vision.appearance import any_stone
+from vision.camera import Camera
 from vision.measure import Measures, measure
 from vision.rays import Look
 from vision.stones import plain_disc
@@ -57,3 +59,21 @@ def test_of_a_plain_disc_the_rim_tells() -> None:
     assert seen.ok[0]
     assert seen.evidence[0] > 0.5
     assert seen.outline.shape == (1, 1)
+
+
+@pytest.mark.parametrize("aside", [-12, -5, 0, 5, 12])
+def test_paint_that_ends_under_a_plain_disc_does_not_draw_it_aside(aside: float) -> None:
+    scale, size = 20 / STONE.radius, 201
+    flat = np.array([[scale, 0, 100.3], [0, -scale, 99.6], [0, 0, 1]])
+    x, y = np.meshgrid(np.arange(size, dtype=float), np.arange(size, dtype=float))
+    picture = np.empty((size, size, 3))
+    picture[:] = (226, 224, 220)
+    for distance, colour in (
+        (x - 100.3 - aside, (120, 126, 20)),
+        (np.hypot(x - 100.3, y - 99.6) - 20, (118, 122, 120)),
+    ):
+        picture += np.clip(0.5 - distance, 0, 1)[..., None] * (np.array(colour) - picture)
+    blurred = cv2.GaussianBlur(picture, (0, 0), 0.8)
+    look = Look(np.round(blurred).astype(np.uint8), Camera(0, 0.0, flat, (size, size)), PLACES * 0)
+    seen = measure([look], None, plain_disc(STONE.radius))
+    assert np.abs(seen.centre).max() < 0.05 / scale
