@@ -109,6 +109,11 @@ class _Design:
         out[:, :-1, -1] = out[:, -1, :-1]
         return out
 
+    def solve(self, weight: Array, edges: Array, prior: Array) -> Array:
+        """Unknowns by which edges change so, (n, edges), by weighted least squares."""
+        right = self.drawn(weight * edges)[..., None]
+        return np.asarray(np.linalg.solve(self.normal(weight) + prior, right)[..., 0])
+
 
 def fit_circles(
     rays: Rays,
@@ -123,7 +128,8 @@ def fit_circles(
 
     Linear: edge ≈ R + dx cos φ + dy sin φ + wall · lean, robust by reweighting (Tukey's
     biweight), with the radii and the wall held near what is expected. The edges are chosen anew
-    about each fit.
+    about each fit. Whether there are such circles is asked of all alike; where they lie, of each
+    as far as its edges say (`Rim.say`).
 
     Parameters
     ----------
@@ -164,13 +170,19 @@ def fit_circles(
         target = edge.reshape(n, -1) - usual
         base = may * (strength > strong).reshape(n, -1)
         for _ in range(3):
-            residual = target - change
-            w = base * np.maximum(1 - (residual / scale[:, None]) ** 2, 0) ** 2
-            typical = 1.4826 * _median(np.abs(residual), w > 0)
+            w = base * _likely(target - change, scale)
+            typical = 1.4826 * _median(np.abs(target - change), w > 0)
             scale = np.maximum(np.minimum(scale, 3.5 * typical), least)
-            right = design.drawn(w * target)[..., None]
-            solution = np.asarray(np.linalg.solve(design.normal(w) + prior, right)[..., 0])
+            solution = design.solve(w, target, prior)
             change = design.edges(solution)
+    agree = (base > 0) & (np.abs(target - change) < 0.75 * scale[:, None]) & inside
+    shares = agree.reshape(n, circles, -1).sum(-1)
+    shares = shares / np.maximum(inside.reshape(n, circles, -1).sum(-1), 1)
+    # From here on circles that are known to lie aside have less of a say.
+    base *= np.repeat([rim.say for rim in rims], len(rays.angle))
+    for _ in range(2):
+        solution = design.solve(base * _likely(target - change, scale), target, prior)
+        change = design.edges(solution)
     residual = target - change
     fits = (base > 0) & (np.abs(residual) < 0.75 * scale[:, None])
     count = fits.sum(1)
@@ -180,14 +192,17 @@ def fit_circles(
     spread = np.linalg.inv(normal + prior)
     covariance = (spread @ normal @ spread)[:, :2, :2]
     covariance *= (np.maximum(rms, noise) ** 2)[:, None, None]
-    agree = (fits & inside).reshape(n, circles, -1).sum(-1)
-    shares = agree / np.maximum(inside.reshape(n, circles, -1).sum(-1), 1)
     radii = expected + solution[:, 2:-1]
     first = slice(len(rays.angle))
     bends = _bends(residual[:, first], fits[:, first])
     return Fits(
         count >= 8, solution[:, :2], radii, wall[0] + solution[:, -1], covariance, bends, shares
     )
+
+
+def _likely(residual: Array, scale: Array) -> Array:
+    """Tukey's biweight of residuals, (n, edges), by the scale at each place."""
+    return np.asarray(np.maximum(1 - (residual / scale[:, None]) ** 2, 0) ** 2)
 
 
 @lru_cache(maxsize=8)

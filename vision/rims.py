@@ -41,7 +41,9 @@ class Rim:
     strength : float
         Least that an edge falls by.
     weight : ndarray, shape (n,)
-        What an edge counts.
+        What an edge at each place counts.
+    say : float
+        What an edge says of where the centre is, beside those of the other circles.
     lean : ndarray, shape (n, rays), optional
         How far the edge lies beyond the circle per metre of the wall below it: where a slanting
         view shows the wall, what ends there is its foot. None where there is no wall.
@@ -54,6 +56,7 @@ class Rim:
     width: float
     strength: float
     weight: Array
+    say: float = 1.0
     lean: Array | None = None
 
 

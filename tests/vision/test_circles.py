@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -79,3 +81,18 @@ def test_bends_are_the_waves_of_the_edge_about_its_circle() -> None:
     fits = fitted(edge, np.ones(RAYS, bool))
     np.testing.assert_allclose(fits.bends[0], [0, 0.002, 0, -0.001, 0, 0], atol=0.0003)
     np.testing.assert_allclose(fits.shift[0], 0, atol=0.0003)
+
+
+def test_a_circle_that_says_little_hardly_draws_the_centre_to_its_own() -> None:
+    everywhere, aside = np.ones(RAYS, bool), 0.006
+    rays, inner = rim_of(np.full(RAYS, RADIUS), everywhere)
+    _, outer = rim_of(RADIUS + aside * directions(RAYS)[1][:, 0], everywhere)
+    noise = np.array([0.0005])
+    alike, less = (
+        fit_circles(rays, (inner, replace(outer, say=say)), 0.05, 0.035, noise)
+        for say in (1.0, 0.1)
+    )
+    assert abs(alike.shift[0, 0] - aside / 2) < 0.001
+    assert abs(less.shift[0, 0]) < 0.001
+    # Whether there are circles is asked of both.
+    np.testing.assert_allclose(less.shares, alike.shares)

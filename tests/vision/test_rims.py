@@ -20,7 +20,7 @@ def rim_of(
     rays = Rays(bgr, bgr, shown, STEPS, directions(RAYS)[0])
     use = inside[None]
     fall = falls_along(lab)[..., 0]
-    return rays, Rim(fall, use, use, RADIUS, 0.02, 2.0, np.ones(1), lean)
+    return rays, Rim(fall, use, use, RADIUS, 0.02, 2.0, np.ones(1), lean=lean)
 
 
 def test_edges_lie_where_the_light_goes_out_and_what_is_far_off_is_another_edge() -> None:
