@@ -19,7 +19,6 @@ from importlib import import_module
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from physics.batch import States
 from physics.curl import FCV1Curl
 from physics.curve import CELLS, curve
 from physics.ice import FCV1
@@ -27,7 +26,7 @@ from physics.impact import Frictional
 from physics.many import simulate_many
 from physics.motion import Motion, Path
 from physics.simulate import simulate
-from physics.simulation import Shot, StoneStart
+from physics.simulation import Shot, States, StoneStart
 
 
 def single() -> Shot:

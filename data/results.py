@@ -234,8 +234,9 @@ class Input:
 class Results:
     """All that a run found out.
 
-    ``masses`` has those given, in any unit, of all stones or none. ``teams`` has each stone's as in
-    ``tracks.csv``, without those of which nothing is known.
+    ``masses`` has those given, in any unit, of all stones or none. ``shared_error`` is the standard
+    deviation (m) of what places near each other share, None where nothing is known of it.
+    ``teams`` has each stone's as in ``tracks.csv``, without those of which nothing is known.
     """
 
     input: Input
@@ -255,3 +256,4 @@ class Results:
     posterior: Posterior | None = None
     masses: Mapping[str, float] = field(default_factory=dict)
     teams: Mapping[str, str] = field(default_factory=dict)
+    shared_error: float | None = None

@@ -9,6 +9,7 @@ velocities would meet, which is nearly where these do.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 from physics.motion import Path, Point
 
 Array = NDArray[np.float64]
+Index = NDArray[np.intp]
 
 BEYOND = 1.02
 """Share of the time to a contact, were velocities kept, after which to look: stones are slowed."""
@@ -184,3 +186,43 @@ def all_slack(a0: Array, a1: Array, b0: Array, b1: Array, step: Array) -> Array:
 def _spreads(p0: Array, p1: Array) -> Array:
     """Bounds on the diameters of the sets of velocities between two points of paths."""
     return np.asarray(p0[:, 2] - p1[:, 2] + p0[:, 2] * np.abs(p1[:, 3] - p0[:, 3]))
+
+
+def all_crossings(
+    points: Callable[[Index, Array], Array], a: Index, b: Index, low: Array, high: Array,
+    reach: Array,
+) -> Array:  # fmt: skip
+    """Find when pairs meet between `low` (apart) and `high` (within reach); see `_crossing`.
+
+    Parameters
+    ----------
+    points : callable
+        From ranks of paths and times to places, speeds and directions, shape (n, 4).
+    a, b : ndarray of int, shape (n,)
+        Ranks of the paths of each pair.
+    low, high : ndarray, shape (n,)
+        Times, s.
+    reach : ndarray, shape (n,)
+        Distances of their centres, m.
+    """
+    low, high = low.copy(), high.copy()
+    t = (low + high) / 2
+    for _ in range(100):
+        pa, pb = points(a, t), points(b, t)
+        offset = pb[:, :2] - pa[:, :2]
+        distance = np.hypot(offset[:, 0], offset[:, 1])
+        low, high = np.where(distance > reach, t, low), np.where(distance > reach, high, t)
+        rate = ((velocity(pb) - velocity(pa)) * offset).sum(axis=1) / distance
+        new = np.where(rate < 0, t - (distance - reach) / np.where(rate < 0, rate, 1.0), low)
+        new = np.where((low < new) & (new < high), new, (low + high) / 2)
+        done = np.abs(new - t) <= 1e-14 * np.maximum(1.0, t)
+        t = new
+        if done.all():
+            break
+    return t
+
+
+def velocity(points: Array) -> Array:
+    """Velocities at points of paths, shape (..., 2), m/s."""
+    speed, heading = points[..., 2], points[..., 3]
+    return np.stack([speed * np.cos(heading), speed * np.sin(heading)], axis=-1)

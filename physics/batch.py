@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from data.errors import InputError
-from physics.approach import all_nearest, all_slack
+from physics.approach import all_crossings, all_nearest, all_slack, velocity
 from physics.bounds import all_leave_at
 from physics.curl import Curl
 from physics.ice import IceLaw
 from physics.impact import resolve
 from physics.paths import CurveTable, Index, Paths
 from physics.simulate import PRESSED, SIMULTANEOUS, SLOW, TOUCHING, simulate
-from physics.simulation import Shot
+from physics.simulation import Shot, States
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -33,31 +33,6 @@ LONGER, SHORTER = 4.0, 0.25
 """Factors of a step that was clear and of one that was not."""
 
 
-@dataclass(frozen=True)
-class States:
-    """States of the stones at the time 0 in each variant, arrays of shape (variants, stones).
-
-    ``x, y`` in m, ``vx, vy`` in m/s, ``omega`` in rad/s; columns in the order of the shot's
-    stones.
-    """
-
-    x: Array
-    y: Array
-    vx: Array
-    vy: Array
-    omega: Array
-
-    @classmethod
-    def of(cls, shot: Shot, variants: int) -> States:
-        """Return the states of a shot, repeated."""
-        return cls(
-            *(
-                np.tile([float(getattr(stone, key)) for stone in shot.stones], (variants, 1))
-                for key in ("x", "y", "vx", "vy", "omega")
-            )
-        )
-
-
 class Batch:
     """Variants under way; (s, i) is stone i of variant s, and s * stones + i its path."""
 
@@ -67,9 +42,11 @@ class Batch:
         states: States,
         laws: Sequence[tuple[IceLaw, Curl]],
         law: Index,
+        radius: Array,
         vary: Mapping[str, Array],
     ) -> None:
         self.shot, self.states, self.laws, self.law, self.vary = shot, states, laws, law, vary
+        self.radius = radius
         count, self.stones = states.x.shape
         self.mass = np.array([stone.mass for stone in shot.stones])
         self.spins_after = _spins_after(shot)
@@ -96,7 +73,7 @@ class Batch:
         self.now = self._points(every, np.zeros(len(every))).reshape(count, self.stones, 4)
         apart = np.linalg.norm(place[:, :, None] - place[:, None], axis=-1)
         # Stones that were placed too close keep the distance that they had.
-        self.base = np.minimum(2 * shot.radius, apart)
+        self.base = np.minimum(2 * radius[:, None, None], apart)
         self.reach = self.base.copy()
         self.waiting = np.zeros(apart.shape, bool)
         shots = np.arange(count)
@@ -147,7 +124,8 @@ class Batch:
         lanes = np.flatnonzero(contact & meets[s])
         if lanes.size:
             s, i, j = s[lanes], i[lanes], j[lanes]
-            when = self._crossing(shots[s], i, j, t0[s], t1[s], reach[lanes])
+            lane = shots[s] * stones
+            when = all_crossings(self._points, lane + i, lane + j, t0[s], t1[s], reach[lanes])
             first = np.full(count, np.inf)
             np.minimum.at(first, s, when)
             i, j = np.minimum(i, j), np.maximum(i, j)
@@ -196,33 +174,6 @@ class Batch:
         k, j = np.nonzero(near)
         return s[k], i[k], j
 
-    def _crossing(
-        self, shots: Index, i: Index, j: Index, low: Array, high: Array, reach: Array
-    ) -> Array:
-        """Find when pairs meet between `low` (apart) and `high` (within reach)."""
-        low, high = low.copy(), high.copy()
-        t = (low + high) / 2
-        for _ in range(100):
-            dx, dy, rate = self._relative(shots, i, j, t)
-            distance = np.hypot(dx, dy)
-            low, high = np.where(distance > reach, t, low), np.where(distance > reach, high, t)
-            rate = rate / distance
-            new = np.where(rate < 0, t - (distance - reach) / np.where(rate < 0, rate, 1.0), low)
-            new = np.where((low < new) & (new < high), new, (low + high) / 2)
-            done = np.abs(new - t) <= 1e-14 * np.maximum(1.0, t)
-            t = new
-            if done.all():
-                break
-        return t
-
-    def _relative(self, shots: Index, i: Index, j: Index, t: Array) -> tuple[Array, Array, Array]:
-        """From stone i to j: offset, and its product with the relative velocity."""
-        a = self._points(shots * self.stones + i, t)
-        b = self._points(shots * self.stones + j, t)
-        dx, dy = b[:, 0] - a[:, 0], b[:, 1] - a[:, 1]
-        va, vb = _velocity(a), _velocity(b)
-        return dx, dy, (vb[:, 0] - va[:, 0]) * dx + (vb[:, 1] - va[:, 1]) * dy
-
     def _hit_waiting(self, shots: Index) -> None:
         """Resolve the first pair that touches and closes in each of these variants."""
         pair = self.waiting[shots].reshape(len(shots), -1).argmax(axis=1)
@@ -236,7 +187,7 @@ class Batch:
         swap = self.now[shots, j, 2] > self.now[shots, i, 2]
         i, j = np.where(swap, j, i), np.where(swap, i, j)
         a, b = self.now[shots, i], self.now[shots, j]
-        v1, v2 = _velocity(a), _velocity(b)
+        v1, v2 = velocity(a), velocity(b)
         path1, path2 = shots * self.stones + i, shots * self.stones + j
         w1, w2 = self.paths.omega(path1, t), self.paths.omega(path2, t)
         offset = b[:, :2] - a[:, :2]
@@ -247,7 +198,7 @@ class Batch:
         spins = self._spin_after(shots, i, w1, listed), self._spin_after(shots, j, w2, listed)
         m1, m2 = self.mass[i], self.mass[j]
         after = resolve(
-            self._impact(shots), v1, v2, w1, w2, normal, self.shot.radius,
+            self._impact(shots), v1, v2, w1, w2, normal, self.radius[shots],
             mass1=m1, mass2=m2, spin_after=spins,
         )  # fmt: skip
         hit = closing > 0
@@ -272,7 +223,7 @@ class Batch:
         one = self.now[shots, i]
         offset = now[..., :2] - one[:, None, :2]
         distance = np.hypot(offset[..., 0], offset[..., 1])
-        relative = _velocity(one)[:, None] - _velocity(now)
+        relative = velocity(one)[:, None] - velocity(now)
         closing = (relative * offset).sum(axis=-1)
         base = self.base[shots, i]
         touching = distance <= base + TOUCHING
@@ -313,7 +264,9 @@ class Batch:
         if self.vary:
             impact = replace(impact, **{key: float(value[s]) for key, value in self.vary.items()})
         ice, curl = self.laws[self.law[s]]
-        done = simulate(replace(self.shot, stones=stones, impact=impact, ice=ice, curl=curl))
+        radius = float(self.radius[s])
+        shot = replace(self.shot, stones=stones, impact=impact, ice=ice, curl=curl, radius=radius)
+        done = simulate(shot)
         for k, stone in enumerate(stones):
             rest = done.rest[stone.name]
             self.now[s, k, :2], self.in_play[s, k] = (rest.x, rest.y), rest.in_play
@@ -336,8 +289,3 @@ def _spins_after(shot: Shot) -> Array:
         given.append((after if isinstance(after, tuple) else (after,)) or (math.nan,))
     most = max(map(len, given))
     return np.array([[*spins, *[spins[-1]] * (most - len(spins))] for spins in given], float)
-
-
-def _velocity(points: Array) -> Array:
-    speed, heading = points[..., 2], points[..., 3]
-    return np.stack([speed * np.cos(heading), speed * np.sin(heading)], axis=-1)

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from data.errors import InputError
-from physics.batch import Batch, States
+from physics.batch import Batch
 from physics.curl import Curl
 from physics.ice import IceLaw
-from physics.simulation import Shot, check_shot
+from physics.simulation import Shot, States, check_shot
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -52,6 +52,7 @@ def simulate_many(
     *,
     ice: Sequence[IceLaw] = (),
     curl: Sequence[Curl] = (),
+    radius: ArrayLike | None = None,
     vary: Mapping[str, ArrayLike] | None = None,
 ) -> Outcomes:
     """Simulate many variants of a shot; each ends as `simulate` ends it, to 1e-6 m.
@@ -64,6 +65,8 @@ def simulate_many(
         Where the stones begin in each variant.
     ice, curl : sequence of IceLaw and of Curl, optional
         One for each variant; equal pairs share their work.
+    radius : array_like, shape (variants,), optional
+        Half the distance of two stones' centres as they hit each other, m.
     vary : mapping, optional
         Parameter of the model of impact to its value in each variant.
 
@@ -85,12 +88,13 @@ def simulate_many(
     parameters = {key: np.asarray(value, float) for key, value in (vary or {}).items()}
     if any(value.shape != (variants, len(shot.stones)) for value in columns.values()):
         raise ValueError(f"states must have the shape (variants, {len(shot.stones)})")
-    if any(value.shape != (variants,) for value in parameters.values()):
+    radii = np.full(variants, shot.radius) if radius is None else np.asarray(radius, float)
+    if any(value.shape != (variants,) for value in (radii, *parameters.values())):
         raise ValueError(f"parameters must have the shape ({variants},)")
     for name, given in (("ice", ice), ("curl", curl)):
         if given and len(given) != variants:
             raise ValueError(f"{len(given)} laws of {name} for {variants} variants")
-    if not all(np.isfinite(v).all() for v in (*columns.values(), *parameters.values())):
+    if not all(np.isfinite(v).all() for v in (radii, *columns.values(), *parameters.values())):
         raise InputError("shot: a variant has a number that is not finite")
     pairs = list(zip(ice or [shot.ice] * variants, curl or [shot.curl] * variants, strict=True))
     laws = list(dict.fromkeys(pairs))
@@ -107,6 +111,7 @@ def simulate_many(
             States(**{key: value[part] for key, value in columns.items()}),
             laws,
             law[part],
+            radii[part],
             {key: value[part] for key, value in parameters.items()},
         )
         batch.run()

@@ -10,7 +10,7 @@ from itertools import combinations
 
 import numpy as np
 import pandas as pd
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from data.errors import InputError
 from data.results import StoneState
@@ -20,6 +20,8 @@ from physics.curl import Curl, FCV1Curl
 from physics.ice import FCV1, IceLaw
 from physics.impact import Frictional, Impact
 from physics.motion import Motion, Path
+
+Array = NDArray[np.float64]
 
 SIMULATION_COLUMNS: tuple[str, ...] = (
     "stone", "frame", "t", "x", "y", "theta", "vx", "vy", "omega",
@@ -74,6 +76,31 @@ class Shot:
     curl: Curl = field(default_factory=FCV1Curl)
     radius: float = STONE.radius
     bounds: Bounds | None = None
+
+
+@dataclass(frozen=True)
+class States:
+    """States of the stones at the time 0 in each variant, arrays of shape (variants, stones).
+
+    ``x, y`` in m, ``vx, vy`` in m/s, ``omega`` in rad/s; columns in the order of the shot's
+    stones.
+    """
+
+    x: Array
+    y: Array
+    vx: Array
+    vy: Array
+    omega: Array
+
+    @classmethod
+    def of(cls, shot: Shot, variants: int) -> States:
+        """Return the states of a shot, repeated."""
+        return cls(
+            *(
+                np.tile([float(getattr(stone, key)) for stone in shot.stones], (variants, 1))
+                for key in ("x", "y", "vx", "vy", "omega")
+            )
+        )
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ from physics.laws import measured_laws
 from physics.motion import Motion, Path
 from physics.shot_model import STATE
 from physics.simulation import Shot, StoneStart
+from physics.traces import alike
 
 Array = NDArray[np.float64]
 
@@ -41,10 +42,13 @@ class Start:
     thrown : int
         Rank of the thrown stone.
     sd : ndarray, shape (stones, 5)
-        Standard errors of x, y, vx, vy, omega of each stone.
-    sd_restitution, sd_stone_friction, sd_friction, sd_turn : float
+        Standard errors of x, y, vx, vy, omega of each stone, without what places share.
+    together : ndarray, shape (stones, stones)
+        Covariance of what the places of the stones share, m², on either axis.
+    sd_restitution, sd_stone_friction, sd_friction, sd_turn, sd_size : float
         Standard errors of restitution, of the friction between stones, of the ice's friction
-        relative to it, and of the turn of the paths at 1 m/s, rad/s.
+        relative to it, of the turn of the paths at 1 m/s, rad/s, and of the distance at which
+        stones meet, relative to it.
     release : float
         Distance that the thrown stone has come since it was let go, m.
     assumed : tuple of str
@@ -54,17 +58,22 @@ class Start:
     shot: Shot
     thrown: int
     sd: Array
+    together: Array
     sd_restitution: float = 0.0
     sd_stone_friction: float = 0.0
     sd_friction: float = 0.0
     sd_turn: float = 0.0
+    sd_size: float = 0.0
     release: float = 0.0
     assumed: tuple[str, ...] = ()
 
 
 def written_start(shot: Shot) -> Start:
     """Return a shot written by hand: known exactly, let go where it begins."""
-    return Start(shot, _fastest(shot.stones), np.zeros((len(shot.stones), len(STATE))))
+    count = len(shot.stones)
+    return Start(
+        shot, _fastest(shot.stones), np.zeros((count, len(STATE))), np.zeros((count, count))
+    )
 
 
 def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
@@ -106,6 +115,10 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     sd = np.nan_to_num(table[[f"sd_{key}" for key in STATE]].to_numpy(float))
     # A stone at rest is known to rest.
     sd[[stone.vx == stone.vy == 0 for stone in stones], 2:] = 0.0
+    # What the places share is alike near each other, of which none can be more than all.
+    shared = np.minimum(results.shared_error or 0.0, sd[:, :2].min(axis=1))
+    together = np.outer(shared, shared) * alike(np.array([(stone.x, stone.y) for stone in stones]))
+    sd[:, :2] = np.sqrt(sd[:, :2] ** 2 - shared[:, None] ** 2)
     thrown = _fastest(stones)
     radius = results.radius * (laws.size.value or 1.0)
     impact = Frictional(laws.restitution.value or 0.0, laws.stone_friction.value or 0.0)
@@ -124,10 +137,12 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
         Shot(tuple(moved), impact, laws.ice, laws.curl, radius, bounds),
         thrown,
         sd,
+        together,
         laws.restitution.stderr or 0.0,
         laws.stone_friction.stderr or 0.0,
         laws.sd_friction,
         laws.sd_turn,
+        laws.size.stderr or 0.0,
         release,
         tuple(laws.assumed.values()),
     )

@@ -13,12 +13,11 @@ from scipy.special import ndtri
 
 from data.errors import InputError
 from data.sheet import GRAVITY, HOUSE
-from physics.batch import States
 from physics.curl import Curl, FCV1Curl
 from physics.ice import IceLaw
 from physics.laws import Scaled
 from physics.many import simulate_many
-from physics.simulation import StoneStart
+from physics.simulation import States, StoneStart
 from physics.start import Start, speed_before
 
 Array = NDArray[np.float64]
@@ -121,8 +120,9 @@ def sample(
 ) -> pd.DataFrame:
     """Simulate a shot many times, each a little off.
 
-    States, restitution, frictions and curl are drawn from their standard errors, speed and
-    direction of the throw from what players are off by; their errors grow on the way to the start.
+    States, restitution, frictions, curl and the distance at which stones meet are drawn from their
+    standard errors, speed and direction of the throw from what players are off by; their errors
+    grow on the way to the start.
 
     Parameters
     ----------
@@ -146,6 +146,10 @@ def sample(
     places = States.of(shot, count)
     for item, sd in zip(fields(places), start.sd.T, strict=True):
         getattr(places, item.name)[:] += sd * rng.standard_normal((count, len(sd)))
+    none = np.zeros(len(shot.stones))
+    # The errors that places share are drawn once for all stones, for x and for y.
+    places.x[:] += rng.multivariate_normal(none, start.together, count, method="eigh")
+    places.y[:] += rng.multivariate_normal(none, start.together, count, method="eigh")
     rank = rng.permutation(np.arange(count) % LAWS)
     pairs = _laws(start, rng)
     _throw(start, places, throw_sd, rng)
@@ -158,7 +162,8 @@ def sample(
             mean = float(getattr(shot.impact, name))
             vary[name] = np.clip(mean + sd * rng.standard_normal(count), 0.0, top)
     ice, curl = ([pair[k] for pair in (pairs[r] for r in rank)] for k in range(2))
-    done = simulate_many(shot, places, ice=ice, curl=curl, vary=vary)
+    radius = shot.radius * (1 + start.sd_size * rng.standard_normal(count))
+    done = simulate_many(shot, places, ice=ice, curl=curl, radius=radius, vary=vary)
     names = [stone.name for stone in shot.stones]
     return pd.DataFrame(
         {

@@ -116,6 +116,7 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
         posterior=None if drawn is None else summarise(drawn),
         teams={stone: team for stone, team in of_team.items() if team},
         masses=masses or {},
+        shared_error=_shared_error(sightings),
     )
     cameras = camera_table(measured.cameras) if measured.cameras else None
     simulations = [as_tracks(table, model, of_team) for model, table in sampled.items()]
@@ -127,6 +128,13 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
         house=measured.house,
         posterior=drawn,
     )
+
+
+def _shared_error(sightings: pd.DataFrame) -> float | None:
+    """Tell what places near each other share of their errors, m; None where it is not known."""
+    if "sd_place" not in sightings or sightings["sd_place"].isna().all():
+        return None
+    return float(sightings["sd_place"].median())
 
 
 def _timed(contacts: Sequence[Contact], hits: Sequence[Collision]) -> list[Contact]:

@@ -29,7 +29,7 @@ class Before(NamedTuple):
         Spins, rad/s.
     mass1, mass2 : float or ndarray
         Masses in any one unit.
-    radius : float
+    radius : float or ndarray
         Radius of both, m.
     spin_after : tuple of float or ndarray, optional
         Spins after the hit, rad/s, for the models that do not find them.
@@ -41,7 +41,7 @@ class Before(NamedTuple):
     w2: Number
     mass1: Number = 1.0
     mass2: Number = 1.0
-    radius: float = STONE.radius
+    radius: Number = STONE.radius
     spin_after: tuple[Number, Number] | None = None
 
 
@@ -90,7 +90,7 @@ def resolve(
     w1: ArrayLike,
     w2: ArrayLike,
     normal: ArrayLike,
-    radius: float = STONE.radius,
+    radius: Number = STONE.radius,
     *,
     mass1: ArrayLike = 1.0,
     mass2: ArrayLike = 1.0,

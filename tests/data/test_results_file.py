@@ -69,6 +69,7 @@ RESULTS = Results(
     },
     posterior=Posterior(100, {"restitution": {"0.5": 0.83}}, {"restitution": {"restitution": 1.0}}),
     teams={"A": "#d8c020"},
+    shared_error=0.0013,
 )
 
 
@@ -92,7 +93,7 @@ def test_the_form_of_the_file() -> None:
     assert set(raw) == {
         *("schema", "input", "restitution", "friction", "collisions", "glides"),
         *("simulations", "warnings", "radius", "predictions", "laws", "methods", "law_choice"),
-        *("curl", "stones", "posterior", "masses", "teams"),
+        *("curl", "stones", "posterior", "masses", "teams", "shared_error"),
     }
     assert raw["input"] == {
         "files": ["clip Ä.mp4"],

@@ -8,14 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from data.sheet import GRAVITY
-from physics.batch import States
 from physics.bounds import Bounds
 from physics.curl import FCV1Curl, NoCurl
 from physics.ice import FCV1, Constant
 from physics.impact import Frictional, PointMass
 from physics.many import simulate_many
 from physics.simulate import simulate
-from physics.simulation import Shot, Simulation, StoneStart
+from physics.simulation import Shot, Simulation, States, StoneStart
 
 R = 0.145
 PLAY = Bounds()

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from data.errors import InputError
-from physics.batch import FEW, States
+from physics.batch import FEW
 from physics.curl import FCV1Curl, NoCurl
 from physics.ice import FCV1, Constant, IceLaw
 from physics.impact import Frictional, Impact, PointMass, RigidBody
 from physics.many import Outcomes, simulate_many
 from physics.simulate import simulate
-from physics.simulation import Shot, Simulation, StoneStart
+from physics.simulation import Shot, Simulation, States, StoneStart
 
 R = 0.145
 COUNT = FEW + 12
@@ -80,6 +80,16 @@ def test_each_variant_ends_as_it_does_alone(stones: tuple[StoneStart, ...], impa
     shot = Shot(stones, impact, FCV1(), FCV1Curl(), R)
     states = thrown(shot)
     assert_same(simulate_many(shot, states), one_by_one(shot, states))
+
+
+def test_stones_of_another_size_in_each_variant() -> None:
+    shot = Shot(HOUSE, Frictional(0.85, 0.1))
+    radii = np.linspace(0.99, 1.01, COUNT) * shot.radius
+    out = simulate_many(shot, States.of(shot, COUNT), radius=radii)
+    assert_same(out, [simulate(replace(shot, radius=radius)) for radius in radii.tolist()])
+    assert len({tuple(row) for row in out.x.tolist()}) == COUNT
+    with pytest.raises(ValueError, match="shape"):
+        simulate_many(shot, States.of(shot, COUNT), radius=radii[1:])
 
 
 def test_every_variant_has_its_own_ice_and_restitution() -> None:

@@ -134,7 +134,9 @@ def test_the_spread_of_a_lone_stone_is_that_of_its_throw() -> None:
     gone = 20.0
     later = math.sqrt(speed**2 - 2 * MU * GRAVITY * gone)
     stone = replace(shot.stones[0], y=gone, vy=later)
-    late = Start(replace(shot, stones=(stone,)), 0, np.zeros((1, 5)), release=gone)
+    late = Start(
+        replace(shot, stones=(stone,)), 0, np.zeros((1, 5)), np.zeros((1, 1)), release=gone
+    )
     again = sample(late, 4000, sd)
     assert again["y"].std() == pytest.approx(out["y"].std(), rel=0.01)
     assert again["x"].std() == pytest.approx(out["x"].std(), rel=0.01)
@@ -143,11 +145,11 @@ def test_the_spread_of_a_lone_stone_is_that_of_its_throw() -> None:
 def test_measured_uncertainties_spread_the_outcome() -> None:
     shot = Shot((StoneStart("A", 0, 0, 0, 2.0),), PointMass(), Constant(MU), NoCurl(), R)
     way = 2.0**2 / (2 * MU * GRAVITY)
-    start = Start(shot, 0, np.zeros((1, 5)), sd_friction=0.02)
+    start = Start(shot, 0, np.zeros((1, 5)), np.zeros((1, 1)), sd_friction=0.02)
     out = sample(start, 4000, (0.0, 0.0))
     assert out["y"].std() == pytest.approx(0.02 * way, rel=0.05)
     assert out["x"].std() == pytest.approx(0.0, abs=1e-12)
-    speed = Start(shot, 0, np.array([[0, 0, 0, 0.01, 0]]))
+    speed = Start(shot, 0, np.array([[0, 0, 0, 0.01, 0]]), np.zeros((1, 1)))
     out = sample(speed, 4000, (0.0, 0.0))
     assert out["y"].std() == pytest.approx(2.0 * 0.01 / (MU * GRAVITY), rel=0.05)
 
@@ -174,12 +176,42 @@ def test_friction_between_stones_and_curl_are_drawn_where_they_are_not_known() -
     assert away.std() == pytest.approx(0.01, rel=0.1)
     stone = StoneStart("A", 0, 0, 0, 2.0, 1.0)
     alone = Shot((stone,), ice=Constant(MU), curl=FCV1Curl(turn=0.008, loss=0.0))
-    out = sample(Start(alone, 0, np.zeros((1, 5)), sd_turn=0.001), 2000, (0.0, 0.0))
+    out = sample(
+        Start(alone, 0, np.zeros((1, 5)), np.zeros((1, 1)), sd_turn=0.001), 2000, (0.0, 0.0)
+    )
     bent, straight = (
         simulate(replace(alone, curl=FCV1Curl(turn=turn, loss=0.0))).rest["A"].x
         for turn in (0.009, 0.008)
     )
     assert out["x"].std() == pytest.approx(abs(bent - straight), rel=0.05)
+
+
+def test_what_places_share_moves_all_stones_together() -> None:
+    tracks, results = measured()
+    start = measured_start(tracks, replace(results, shared_error=0.003))
+    a, b, c = (tracks[tracks["stone"] == name].iloc[0] for name in "ABC")
+    # Known to 4 mm, 3 of them alike: exp(-d² / 2) for distances d in metres.
+    apart = math.dist((b["x"], b["y"]), (c["x"], c["y"]))
+    assert start.together[1, 2] == pytest.approx(0.003**2 * math.exp(-(apart**2) / 2))
+    assert start.together[0, 0] == pytest.approx(0.003**2)
+    assert start.sd[:, :2] == pytest.approx(math.sqrt(0.004**2 - 0.003**2))
+    assert a["y"] != start.shot.stones[0].y  # taken back, and its error with it
+    alone = measured_start(tracks, replace(results, shared_error=None))
+    assert not alone.together.any()
+    wide, narrow = (
+        sample(s, 600, (0.0, 0.0)).query("stone == 'B'")[["x", "y"]].std().sum()
+        for s in (alone, start)
+    )
+    assert narrow < 0.9 * wide
+
+
+def test_the_distance_at_contact_is_drawn_where_it_was_measured() -> None:
+    start = replace(written_start(replace(HIT, bounds=None)), sd_size=0.01)
+    b = sample(start, 600, (0.0, 0.0)).query("stone == 'B'")
+    smaller, larger = (
+        simulate(replace(HIT, radius=R * factor, bounds=None)).rest["B"] for factor in (0.99, 1.01)
+    )
+    assert b["x"].std() == pytest.approx(abs(larger.x - smaller.x) / 2, rel=0.1)
 
 
 def test_odds_count() -> None:
