@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.fit_rules import meeting_rules, slowing
+from physics.fit_rules import SLOWEST, meeting_rules, slowing
 from physics.normal_equations import inverse_of_blocks
 from physics.residuals import huber_weights, inflation
 from physics.segments import Piece
@@ -221,19 +221,35 @@ class _Solver:
             trace = self.traces[piece.stone]
             basis = self._basis(i)
             weights = huber_weights(self._residuals(i, basis)) / trace.sd[piece.samples] ** 2
-            scale = float(np.median(trace.sd_scale[piece.samples]))
-            speed = float(np.hypot(*self.theta[[6 * i + 1, 6 * i + 4]]))
-            drift = (scale * speed) ** 2 / self.inflation
-            for axis in range(2):
-                at = slice(6 * i + 3 * axis, 6 * i + 3 * axis + 3)
-                weighted = basis * weights[:, axis : axis + 1]
-                block, value = weighted.T @ basis, weighted.T @ trace.xy[piece.samples, axis]
-                # What the sightings say of the velocity is wrong by what they share: an unknown
-                # that is eliminated at once (Sherman and Morrison's formula).
-                less = drift * block[1] / (1 + drift * block[1, 1])
-                normal[at, at] += block - np.outer(less, block[1])
-                right[at] += value - less * value[1]
+            block, value = self._seen(i, basis, weights)
+            own = slice(6 * i, 6 * i + 6)
+            normal[own, own], right[own] = block, value
         return normal, right
+
+    def _seen(self, i: int, basis: Floats, weights: Floats) -> tuple[Floats, Floats]:
+        """Set up the normal equations of one piece's sightings, of its own unknowns.
+
+        Further unknowns are eliminated at once: what the sightings say of the velocity is wrong
+        by what they share, on either axis, and the deceleration changes as the stone slows.
+        """
+        piece = self.pieces[i]
+        trace = self.traces[piece.stone]
+        velocity = self.theta[[6 * i + 1, 6 * i + 4]]
+        speed = float(np.hypot(*velocity))
+        tau, none = basis[:, 1], np.zeros_like(basis)
+        bend = tau[:, None] ** 3 / 6 * velocity / max(speed, 1e-9)
+        along_x = np.column_stack([basis, none, tau, none[:, 0], bend[:, 0]])
+        along_y = np.column_stack([none, basis, none[:, 0], tau, bend[:, 1]])
+        full = along_x.T @ (weights[:, :1] * along_x) + along_y.T @ (weights[:, 1:] * along_y)
+        xy = weights * trace.xy[piece.samples]
+        value = along_x.T @ xy[:, 0] + along_y.T @ xy[:, 1]
+        drift = speed * float(np.median(trace.sd_scale[piece.samples]))
+        change = self.prior.change / (speed + SLOWEST) ** 2
+        known = np.square([drift, drift, change])[:, None] / self.inflation
+        both = np.column_stack([full, value])
+        further = np.linalg.solve(np.eye(3) + known * full[6:, 6:], known * both[6:])
+        left = both[:6] - full[:6, 6:] @ further
+        return left[:, :6], left[:, -1]
 
     def _rules(self) -> tuple[Floats, Floats]:
         """Set up the normal equations of what is known besides the sightings."""

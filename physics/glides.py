@@ -24,6 +24,10 @@ Lubricants 10, 265) and of anything that glides, m/s²: only used where the glid
 LEAST_SPREAD = 0.01
 """Least spread of decelerations from glide to glide, m/s²: no ice law is exactly constant."""
 
+CHANGE = 0.002
+"""How much a deceleration changes in time at 1 m/s, m/s³: in Penner's law (μ g)² / 2 v², 0.003, in
+FCV1's half as much, on even ice not at all."""
+
 WORST = 0.02
 """Standard error of a friction beyond which a glide is said to tell nothing."""
 
@@ -51,7 +55,7 @@ def measure_glides(
         share = sd**2 / (sd**2 + error**2)
         mean, sd = mean + share * (measured - mean), sd * error / float(np.hypot(sd, error))
     spread = float(np.sqrt(max(spread, LEAST_SPREAD) ** 2 + sd**2))
-    return glides, friction, Deceleration(mean, spread, spread)
+    return glides, friction, Deceleration(mean, spread, spread, CHANGE)
 
 
 def _each(

@@ -18,6 +18,10 @@ Floats = NDArray[np.float64]
 WORST = 0.2
 """Standard error of a restitution beyond which a hit is said to tell nothing."""
 
+LOST = 0.2
+"""Share of the momentum that no scale, mass or map of the ice is off by: if more of it is lost or
+won, beyond three standard errors, something else touched the stones."""
+
 
 @dataclass(frozen=True)
 class Discs:
@@ -55,10 +59,11 @@ def measure_hits(
     """
     count = len(joint.meetings)
     values, cov = joint.propagate(range(count), _restitutions)
-    notes = [_why_not(joint, k, known, values[k], cov[k, k]) for k in range(count)]
+    each = [Estimate(values[k], float(np.sqrt(cov[k, k]))) for k in range(count)]
+    changes = [_momentum(apart, k, discs.of(apart.meetings[k].stones)) for k in range(count)]
+    notes = [_why_not(joint, k, known, each[k], changes[k]) for k in range(count)]
     collisions = tuple(
-        _collision(joint, apart, k, known, discs, Estimate(values[k], np.sqrt(cov[k, k])), notes[k])
-        for k in range(count)
+        _collision(joint, k, known, discs, each[k], changes[k], notes[k]) for k in range(count)
     )
     usable = [k for k, note in enumerate(notes) if note is None]
     return collisions, pooled(values[usable], cov[np.ix_(usable, usable)])
@@ -66,11 +71,11 @@ def measure_hits(
 
 def _collision(
     joint: ShotFit,
-    apart: ShotFit,
     k: int,
     known: Mapping[str, Trace],
     discs: Discs,
     restitution: Estimate,
+    momentum: Estimate,
     note: str | None,
 ) -> Collision:
     first, second = joint.meetings[k].stones
@@ -79,7 +84,6 @@ def _collision(
     spins = spins_at(joint, k, known, mass)
     before, after = _states(joint, k, known, spins)
     energy = [float(mass @ np.sum(speeds**2, axis=1)) for speeds in (state.before, state.after)]
-    residual, stderr_residual = _momentum(apart, k, mass)
     rubbing, why = Estimate(), note
     if note is None:
         rubbing, why = stone_friction(joint, k, spins, discs.radius, discs.inertia)
@@ -94,8 +98,8 @@ def _collision(
         stderr=restitution.stderr if note is None else None,
         before=before,
         after=after,
-        momentum_residual=residual,
-        stderr_momentum=stderr_residual,
+        momentum_residual=momentum.value,
+        stderr_momentum=momentum.stderr,
         energy_lost=1 - energy[1] / energy[0] if energy[0] > 0 else None,
         stone_friction=rubbing.value,
         stderr_stone_friction=rubbing.stderr,
@@ -144,12 +148,12 @@ def _restitutions(states: Sequence[Encounter]) -> Floats:
 
 
 def _why_not(
-    fit: ShotFit, k: int, known: Mapping[str, Trace], value: float, variance: float
+    fit: ShotFit, k: int, known: Mapping[str, Trace], restitution: Estimate, momentum: Estimate
 ) -> str | None:
     """Why a hit cannot tell its restitution; None where it can."""
-    stderr = float(np.sqrt(variance))
+    value, stderr = restitution.value or np.nan, restitution.stderr or np.nan
     if np.isfinite(value) and stderr < WORST:
-        return None
+        return _lost(momentum)
     for stone in fit.meetings[k].stones:
         for rank, when in zip(fit.sides[k, stone], ("before", "after"), strict=True):
             seen = len(fit.pieces[rank].samples)
@@ -158,7 +162,16 @@ def _why_not(
     return f"restitution unknown: its standard error would be {stderr:.2g}"
 
 
-def _momentum(fit: ShotFit, k: int, mass: Floats) -> tuple[float | None, float | None]:
+def _lost(momentum: Estimate) -> str | None:
+    """Say so where so much momentum is lost or won that not only the two stones touched."""
+    change, stderr = momentum.value, momentum.stderr
+    if change is None or stderr is None or change < max(LOST, 3 * stderr):
+        return None
+    off = f"{100 * change:.0f} % ± {100 * stderr:.0f} %"
+    return f"restitution unknown: momentum changes by {off}, something else touched the stones"
+
+
+def _momentum(fit: ShotFit, k: int, mass: Floats) -> Estimate:
     """Relative change of momentum at hit k where it is not held, and its standard error."""
 
     def change(states: Sequence[Encounter]) -> Floats:
@@ -168,8 +181,8 @@ def _momentum(fit: ShotFit, k: int, mass: Floats) -> tuple[float | None, float |
     value, cov = fit.propagate([k], change)
     total = float(np.hypot(*(mass @ fit.encounter(k).before)))
     if total < 1e-6:
-        return None, None
-    return float(np.hypot(*value)) / total, float(np.sqrt(np.trace(cov))) / total
+        return Estimate()
+    return Estimate(float(np.hypot(*value)) / total, float(np.sqrt(np.trace(cov))) / total)
 
 
 def pooled(values: Floats, cov: Floats) -> Estimate:

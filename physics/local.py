@@ -6,14 +6,14 @@ Nothing is differentiated twice. See `physics.fit` for the model.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from data.results import Collision, Estimate, Friction, Glide
-from data.sheet import STONE
+from data.sheet import GRAVITY, STONE
 from physics.contacts import Contact, cut_all
 from physics.fit import fit_shot
 from physics.glides import FREE, measure_glides
@@ -25,9 +25,8 @@ from physics.traces import Trace, traces
 
 Floats = NDArray[np.float64]
 
-UNEVEN, BESIDE = 0.025, 1.0
-"""Where decelerations differ by more than UNEVEN (m/s²) from glide to glide, no glide is taken
-to be even either, and velocities at a hit come from BESIDE seconds on either side of it."""
+UNEVEN = 0.025
+"""Difference of decelerations from glide to glide that is worth a word, m/s²: a quarter of them."""
 
 
 @dataclass(frozen=True)
@@ -95,8 +94,6 @@ def estimate_locally(
     if not meetings:
         warnings.append("restitution: no hit seen")
         return Local(Estimate(), friction, (), glides, tuple(warnings))
-    if prior.along > UNEVEN:
-        pieces = [_near(piece, known[piece.stone], meetings) for piece in pieces]
     joint = fit(pieces, prior)
     discs = Discs(radius, masses or {}, inertia)
     collisions, restitution = measure_hits(joint, fit(pieces, prior, momentum=False), known, discs)
@@ -117,8 +114,13 @@ def _checked(
             f"friction: the stones gain speed (μ = {value:.3f} ± {stderr:.3f}), so these are no"
             " free glides on level ice; not reported"
         ]
+    if value < 0:
+        return friction, [
+            f"friction: {value:.4f} ± {stderr:.4f}: too little is seen to tell it from none"
+        ]
     each = [glide.friction for glide in glides if glide.friction is not None]
-    if len(each) > 1 and prior.along > max(UNEVEN, 0.3 * prior.mean):
+    uneven = max(UNEVEN, 0.3 * prior.mean)
+    if prior.along > uneven and GRAVITY * (max(each) - min(each)) > uneven:
         return friction, [
             f"friction differs from glide to glide ({min(each):.4f} to {max(each):.4f}):"
             " it depends on speed or place, the value is a mean"
@@ -131,7 +133,7 @@ def _doubts(hit: Collision) -> list[str]:
     name = f"hit of {hit.stones[0]} and {hit.stones[1]} at {hit.t:.2f} s"
     out = [f"{name}: {hit.note}"] if hit.note else []
     residual, stderr = hit.momentum_residual, hit.stderr_momentum
-    if residual is not None and stderr is not None and residual > max(0.05, 3 * stderr):
+    if hit.note is None and residual and stderr and residual > max(0.05, 3 * stderr):
         out.append(
             f"{name}: momentum changes by {100 * residual:.0f} % ± {100 * stderr:.0f} %:"
             " scale, masses or tracks are off"
@@ -141,16 +143,6 @@ def _doubts(hit: Collision) -> list[str]:
 
 def _alone(piece: Piece) -> bool:
     return piece.opens is None and piece.closes is None
-
-
-def _near(piece: Piece, trace: Trace, meetings: Sequence[Meeting]) -> Piece:
-    """Leave out of a moving piece what is far from the hits that bound it."""
-    hits = [meetings[k].t for k in (piece.opens, piece.closes) if k is not None]
-    if piece.rest or not hits:
-        return piece
-    t = trace.t[piece.samples]
-    beside = np.min([np.abs(t - hit) for hit in hits], axis=0) < BESIDE
-    return replace(piece, samples=piece.samples[beside])
 
 
 def _scatter(trace: Trace, piece: Piece) -> Floats:

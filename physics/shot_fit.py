@@ -17,12 +17,14 @@ Floats = NDArray[np.float64]
 class Deceleration:
     """Prior of the acceleration on one piece, m/s².
 
-    ``mean`` against the motion with standard deviation ``along``; ``across`` it zero mean.
+    ``mean`` against the motion with standard deviation ``along``; ``across`` it zero mean. With
+    the speed v (m/s) it changes by some ``change`` / v² in time, m/s³: 0 where it is constant.
     """
 
     mean: float = 0.0
     along: float = 1.0
     across: float = 1.0
+    change: float = 0.0
 
 
 @dataclass(frozen=True)
