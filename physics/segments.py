@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from physics.stretch import PLACE_MEMORY
 from physics.traces import Trace
 
 Floats = NDArray[np.float64]
@@ -34,6 +35,12 @@ PLACE = 0.002
 """Places that are all this near to their median, m, are one, whatever their errors: those of a
 camera that wanders are alike in all frames."""
 
+ALIKE, LASTING = 1.25, 0.35
+"""Shares of a place's variance by which errors of neighbouring frames are alike, and by which those
+within `PLACE_MEMORY` are: with the first breaks are sought, with the second they are believed. Of
+211 paths whose truth is known 97 were cut for nothing by the first alone, 8 by both; with half a
+variance, a push of 0.1 m/s is missed."""
+
 OUTLIER = 16.0
 """Squared normalised error, two axes, at which a sample costs no more."""
 
@@ -43,7 +50,8 @@ def breaks(t: Floats, xy: Floats, sd: Floats) -> list[float]:
 
     The partition with the highest marginal likelihood, found exactly by pruned dynamic
     programming (Killick et al., 2012, J. Am. Stat. Assoc. 107, 1590), the likelihood of each
-    segment coming from a recursive least-squares filter of place, velocity and acceleration.
+    segment coming from a recursive least-squares filter of place, velocity and acceleration. Of
+    the breaks that white errors leave those are kept that lasting errors do not explain.
 
     Parameters
     ----------
@@ -66,7 +74,20 @@ def _breaks(samples: bytes) -> tuple[float, ...]:
     t, n = t[:, 0], len(t)
     if n < 6 or _at_one_place(xy, sd):
         return ()
-    variance = _variance(sd)
+    variance = np.mean(sd**2, axis=1)
+    sought = _starts(t, xy, (1 + ALIKE) * variance, np.ones(n, bool))
+    if not sought:
+        return ()
+    # As often as sightings err alike they say the same once more: only what stands out of that is
+    # a break. Where it is, their scatter tells best.
+    alike = 2 * PLACE_MEMORY / float(np.median(np.diff(t)))
+    starts = _starts(t, xy, (1 + LASTING * alike) * variance, np.isin(np.arange(n), sought))
+    return tuple(0.5 * float(t[j - 1] + t[j]) for j in starts)
+
+
+def _starts(t: Floats, xy: Floats, variance: Floats, may: NDArray[np.bool_]) -> list[int]:
+    """Find the samples, of those that may, at which all segments but the first begin."""
+    n = len(t)
     best = np.full(n + 1, np.inf)
     best[0] = -BREAK_COST
     origin = np.zeros(n + 1, dtype=int)
@@ -84,30 +105,25 @@ def _breaks(samples: bytes) -> tuple[float, ...]:
         cost = cost + np.where(ok, distance + 2 * np.log(total / variance[j]), OUTLIER)
         share = np.where(ok, 1.0 / total, 0.0)[:, None]
         state += (gain * share)[:, :, None] * np.concatenate([error, -gain], axis=1)[:, None]
-        # A segment that begins here knows its place and nothing of its motion.
-        first = np.zeros((1, 3, 5))
-        first[0, 0, :2] = xy[j]
-        first[0, :, 2:] = np.diag([variance[j], SPEED_SD**2, ACCELERATION_SD**2])
-        starts = np.append(starts, j)
-        cost = np.append(cost, best[j] + BREAK_COST)
-        state = np.concatenate([state, first])
+        if may[j] or not j:
+            # A segment that begins here knows its place and nothing of its motion.
+            first = np.zeros((1, 3, 5))
+            first[0, 0, :2] = xy[j]
+            first[0, :, 2:] = np.diag([variance[j], SPEED_SD**2, ACCELERATION_SD**2])
+            starts = np.append(starts, j)
+            cost = np.append(cost, best[j] + BREAK_COST)
+            state = np.concatenate([state, first])
         pick = int(cost.argmin())
         best[j + 1], origin[j + 1] = cost[pick], starts[pick]
         keep = (cost < best[j + 1] + 40.0) | (starts > j - 8)
         if not keep.all():
             starts, cost, state = starts[keep], cost[keep], state[keep]
-    found: list[float] = []
+    found: list[int] = []
     j = int(origin[n])
     while j > 0:
-        found.append(0.5 * float(t[j - 1] + t[j]))
+        found.append(j)
         j = int(origin[j])
-    return tuple(found[::-1])
-
-
-def _variance(sd: Floats) -> Floats:
-    """Variance of each place on either axis, shape (n,)."""
-    # Errors of neighbouring frames are alike; white noise of the same size would cry wolf.
-    return np.asarray((1.5**2) * np.mean(sd**2, axis=1))
+    return found[::-1]
 
 
 def _at_one_place(xy: Floats, sd: Floats) -> bool:
@@ -119,7 +135,7 @@ def _at_one_place(xy: Floats, sd: Floats) -> bool:
     """
     if np.abs(xy - np.median(xy, axis=0)).max() < PLACE:
         return True
-    weights = 1 / _variance(sd)
+    weights = 1 / ((1 + ALIKE) * np.mean(sd**2, axis=1))
     total = np.concatenate([[0.0], np.cumsum(weights)])
     centre = weights @ xy / total[-1]
     sums = np.concatenate([np.zeros((1, 2)), np.cumsum(weights[:, None] * (xy - centre), axis=0)])

@@ -62,7 +62,7 @@ def test_nothing_leaks_across_a_hit() -> None:
     whole = smooth(seen, hits, radius=RADIUS)
     late = seen["t"] > hits[0].t
     other = seen.copy()
-    other.loc[late, ["x", "y"]] += 0.02 * np.sin(40 * other.loc[late, ["t"]].to_numpy())
+    other.loc[late, ["x", "y"]] += 0.05 * np.sin(10 * other.loc[late, ["t"]].to_numpy())
     changed = smooth(other, hits, radius=RADIUS)
     before = whole["t"] < hits[0].t
     after = whole[~before][["vx", "vy"]].to_numpy() - changed[~before][["vx", "vy"]].to_numpy()

@@ -6,7 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from physics.segments import breaks, cut
+from physics.stretch import PLACE_MEMORY
 from physics.traces import Trace
+from tests.physics.watch import lasting
 
 
 def trace(t: np.ndarray, y: np.ndarray, sd: float, seed: int = 0) -> Trace:
@@ -35,6 +37,18 @@ def test_a_kink_is_found_within_two_frames(when: float, before: float, after: fl
     y = np.where(when > T, before * (T - when), after * (T - when))
     one = trace(T, y, 0.003)
     assert breaks(one.t, one.xy, one.sd) == pytest.approx([when], abs=2.5 / 30)
+
+
+def test_errors_that_last_for_a_while_are_no_breaks_and_a_push_among_them_is_one() -> None:
+    stated = np.full((len(T), 2), 0.0012)
+    for seed in range(15):
+        rng = np.random.default_rng(seed)
+        one = trace(T, 1.5 * T - 0.05 * T**2, 0.0007, seed)
+        for axis in range(2):
+            one.xy[:, axis] += lasting(rng, T, 0.002, PLACE_MEMORY)
+        assert breaks(one.t, one.xy, stated) == []
+        one.xy[:, 1] -= np.maximum(0, 0.15 * (T - 2))
+        assert breaks(one.t, one.xy, stated) == pytest.approx([2], abs=0.2)
 
 
 def test_single_outliers_are_no_breaks() -> None:
