@@ -169,7 +169,7 @@ class HouseFollower:
             best, which = max(pieces, key=lambda p: p.found), "the longest"
         else:
             best, which = pieces[0], "the one given"
-        track = fit_clip(best.seen, best.rig, best.prior, self._size)
+        track = fit_clip(best.seen, best.rig, best.prior, self._size, best.edges.edge)
         return replace(track, warnings=(*_left_out(best, pieces, which), *track.warnings))
 
     def _start(self, frame: Frame, house: HouseFit) -> list[tuple[Frame, Camera]]:

@@ -20,6 +20,7 @@ from vision.bundle import LOST, NOISE_TRUST, bundle
 from vision.camera import PARAMETERS, Camera, CameraError
 from vision.landmarks import Keyframe, replaced
 from vision.linear import Frame, by_measure, by_rig, linearised
+from vision.outline import SHARP, Rim
 from vision.paint import CIRCLES, FIXED, Marks, ice_frame, joined, measures
 from vision.pose import VIEW_SIZE, View, camera, project, turning
 from vision.resection import solve_views
@@ -39,17 +40,14 @@ TOGETHER = 16
 VIEW_SD = (np.inf, np.inf, 0.05, np.inf)
 """How far a view may lie from the provisional one: the roll is free where no line is seen."""
 
-LONG_RANGE = 1.5
-"""Errors of paint and outline are alike over longer stretches than single pieces and marks tell:
-so much larger than these say are the standard errors, as cameras known otherwise show."""
+LONG_RANGE = 1.2
+"""Errors of paint, and what compression does to edges, are alike over longer stretches than single
+pieces and marks tell: so much larger than these say are the standard errors, as clips with truth
+show."""
 
-YARDSTICK_PX = 0.13
-"""How well the outer edge of the 12-ft circle is made out, px: an outline that is little darker
-than the paint goes unseen and draws the edge outwards."""
-
-JITTER_PX = 0.04
-"""How far a whole picture is aside, each for itself: films keep small movements to some hundredths
-of a pixel."""
+ASTRAY = 0.45
+"""How far a whole picture is aside, in residuals of its edges, as clips with truth show: films
+repeat what has hardly moved, the more so the more they are compressed."""
 
 UNTOLD = 0.7
 """Share of its prior standard deviation above which the camera's height counts as assumed."""
@@ -108,7 +106,9 @@ class Seen:
     key: Keyframe | None = None
 
 
-def fit_clip(seen: Sequence[Seen], rig: Array, prior: Prior, size: tuple[int, int]) -> HouseTrack:
+def fit_clip(
+    seen: Sequence[Seen], rig: Array, prior: Prior, size: tuple[int, int], edge: Rim = SHARP
+) -> HouseTrack:
     """Fit the cameras of a clip.
 
     Parameters
@@ -120,14 +120,16 @@ def fit_clip(seen: Sequence[Seen], rig: Array, prior: Prior, size: tuple[int, in
     prior : Prior
     size : tuple of int
         Width and height of the picture, px.
+    edge : Rim
+        The outer edge of the 12-ft circle: as well as it is made out, all lengths are known.
     """
     good = [s for s in seen if s.found]
     chosen = _spread(good)
     times = [s.t for s in chosen]
     shared, _ = bundle([s.marks for s in chosen], times, [s.view for s in chosen], rig, size, prior)
-    cameras = _fit_frames(seen, shared, size)
+    cameras = _fit_frames(seen, shared, size, edge.sd)
     sd = LONG_RANGE * np.sqrt(np.diag(shared.cov)[:RIG_SIZE])
-    place, scale = shared.rig[POSITION], _scale_sd(chosen[-1].view, shared.rig)
+    place, scale = shared.rig[POSITION], _scale_sd(chosen[-1].view, shared.rig, edge.sd)
     sd[POSITION] = np.hypot(sd[POSITION], scale * place)
     return HouseTrack(
         tuple(cameras),
@@ -137,13 +139,15 @@ def fit_clip(seen: Sequence[Seen], rig: Array, prior: Prior, size: tuple[int, in
     )
 
 
-def _fit_frames(seen: Sequence[Seen], shared: Bundle, size: tuple[int, int]) -> list[Camera]:
+def _fit_frames(
+    seen: Sequence[Seen], shared: Bundle, size: tuple[int, int], edge_sd: float
+) -> list[Camera]:
     """Fit all frames; what is known from a keyframe is placed by that one's final camera."""
     done: dict[int, Camera] = {}
     ready, waiting = [s for s in seen if s.key is None], [s for s in seen if s.key is not None]
     while ready:
         for k in range(0, len(ready), TOGETHER):
-            cameras = fit_frames(ready[k : k + TOGETHER], shared, size)
+            cameras = fit_frames(ready[k : k + TOGETHER], shared, size, edge_sd)
             done.update({camera.frame: camera for camera in cameras})
         ready = [
             _carried(s, s.key, done[s.key.frame])
@@ -167,8 +171,13 @@ def _carried(seen: Seen, key: Keyframe, by: Camera) -> Seen:
     return replace(seen, marks=marks, key=replace(key, drift=drift))
 
 
-def fit_frames(seen: Sequence[Seen], shared: Bundle, size: tuple[int, int]) -> list[Camera]:
-    """Fit frames' views with what they share held; the cameras, with their errors."""
+def fit_frames(
+    seen: Sequence[Seen], shared: Bundle, size: tuple[int, int], edge_sd: float
+) -> list[Camera]:
+    """Fit frames' views with what they share held; the cameras, with their errors.
+
+    `edge_sd` is the standard error of the 12-ft circle's edge, px.
+    """
     marks = joined([s.marks for s in seen])
     marks = replace(marks, sd=marks.sd * shared.noise[family(marks.line)])
     offset, piece = shared.offsets(marks)
@@ -199,13 +208,13 @@ def fit_frames(seen: Sequence[Seen], shared: Bundle, size: tuple[int, int]) -> l
         )
         both = np.concatenate([follows, np.eye(RIG_SIZE, len(spread))])
         to_camera = _parameters(views[k], rig, size)
-        jitter = np.zeros(PARAMETERS)
-        jitter[:2] = JITTER_PX / fit.view.focal
+        astray = np.zeros(PARAMETERS)
+        astray[:2] = ASTRAY * np.nan_to_num(fit.rms) / fit.view.focal
         common, own = to_camera @ both, to_camera[:, :VIEW_SIZE]
         error = CameraError(
             common @ spread @ common.T,
-            LONG_RANGE**2 * noisier[k] * own @ cov @ own.T + np.diag(jitter**2),
-            _scale_sd(fit.view, rig),
+            LONG_RANGE**2 * noisier[k] * own @ cov @ own.T + np.diag(astray**2),
+            _scale_sd(fit.view, rig, edge_sd),
             0.0 if s.key is None else s.key.drift,
         )
         rms = fit.rms if s.found else float("nan")
@@ -221,9 +230,9 @@ def fit_frames(seen: Sequence[Seen], shared: Bundle, size: tuple[int, int]) -> l
     return found
 
 
-def _scale_sd(view: View, rig: Array) -> float:
+def _scale_sd(view: View, rig: Array, edge_sd: float) -> float:
     """Tell how well all lengths are known, as shares: as well as the 12-ft circle's radius."""
-    return YARDSTICK_PX * float(np.linalg.norm(rig[POSITION])) / view.focal / HOUSE.twelve_foot
+    return edge_sd * float(np.linalg.norm(rig[POSITION])) / view.focal / HOUSE.twelve_foot
 
 
 def _parameters(view: Array, rig: Array, size: tuple[int, int]) -> Array:

@@ -28,6 +28,16 @@ DEPTH_SD = 0.5
 MISFIT = 0.01
 """What is left of a mean profile by the model, in steps from paint to ice."""
 
+UNSEEN = 0.2
+"""How far outlines draw the edge out, px: what is not known of it where they are not looked for."""
+
+BARE = 0.04
+"""How well an edge without a line is made out, px, as clips with truth show."""
+
+DOUBT = 0.7
+"""Share of the way from half way to the edge that is in doubt, as clips with truth show: under one
+blur, a narrow dark line looks much like a wider one that is less dark."""
+
 ROUNDS = 15
 """Steps of the fit (Levenberg, 1944)."""
 
@@ -41,14 +51,14 @@ class Rim:
     level : float
         Level of a profile there: −0.5 in the ice, 0.5 in the paint.
     sd : float
-        Standard deviation of the edge's place, px.
+        Standard deviation of the edge's place, px, alike all along it.
     line : float
         How far the line moves the place half way between ice and paint off the edge, px, if the
         edge is blurred by much more than the line is wide: its depth times its width.
     """
 
     level: float = 0.0
-    sd: float = 0.0
+    sd: float = UNSEEN
     line: float = 0.0
 
     def beyond(self, slope: Array) -> Array:
@@ -98,8 +108,9 @@ def find_rim(profile: Array, step: float) -> Rim:
             now, value, slope, cost, damping = tried, ahead, ahead_slope, new, damping / 5
         else:
             damping *= 10
-    sd = float(np.sqrt(np.linalg.inv(normal)[0, 0]))
-    return Rim(float(np.interp(now[0], x, y)), sd, float(now[4] * np.exp(now[1])))
+    moved = now[0] - np.interp(0.0, y, x)
+    sd = np.sqrt(np.linalg.inv(normal)[0, 0] + (DOUBT * moved) ** 2 + BARE**2)
+    return Rim(float(np.interp(now[0], x, y)), float(sd), float(now[4] * np.exp(now[1])))
 
 
 def _cost(residual: Array, off: Array, weight: Array) -> float:

@@ -51,3 +51,10 @@ def test_in_a_pan_the_edge_stays_where_it_is_at_rest(depth: float) -> None:
 
 def test_too_little_of_a_profile_tells_nothing() -> None:
     assert find_rim(np.full(33, np.nan), STEP).level == 0.0
+
+
+def test_a_line_makes_the_edge_less_sure_and_none_looked_at_least() -> None:
+    bare, lined = (find_rim(profile(0.0, 1.2, depth, 0.9), STEP) for depth in (0.0, 0.6))
+    assert bare.sd < 0.1
+    assert bare.sd < 0.5 * lined.sd
+    assert bare.sd < find_rim(np.full(33, np.nan), STEP).sd
