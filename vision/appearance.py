@@ -111,7 +111,8 @@ def any_stone(white: int = 210) -> Appearance:
     # Blue caps are the darkest, and dark colours are never as far from grey as light ones.
     blue = np.clip((118 - lab[..., 2]) / 10, 0, 1)
     vivid = chroma / (1 - blue * (1 - np.clip(light / 0.4, 0.6, 1)))
-    cap = np.clip((vivid - 28) / 14, 0, 1)
+    # Light blue ones are the palest; paint tinges granite red rather than blue.
+    cap = np.clip((vivid - 28 + 8 * blue) / 14, 0, 1)
     granite = (
         np.clip((36 - vivid) / 16, 0, 1)
         * np.clip((light - 0.08) / 0.1, 0, 1)

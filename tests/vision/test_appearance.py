@@ -59,6 +59,13 @@ def test_a_dark_blue_cap_is_one_and_granite_that_red_paint_tinges_is_none() -> N
     assert max(worth_of([(45, 42, 66), (47, 45, 60)], dim)) < 0.1
 
 
+def test_a_light_blue_cap_is_one_and_granite_as_pale_of_another_hue_is_none() -> None:
+    """A cap of chroma 30, as a clip without colour tags shows it."""
+    look = any_stone(244)
+    assert min(worth_of([(185, 144, 69), (190, 142, 64)], look)) > 0.3
+    assert max(worth_of([(97, 107, 140), (112, 120, 150)], look)) < -0.3
+
+
 def test_without_colours_caps_are_what_is_darker_or_lighter_than_granite() -> None:
     dark, light, granite = worth_of([(35,) * 3, (200,) * 3, (110,) * 3], any_grey_stone(215))
     assert dark > 0.9 and light > 0.9
