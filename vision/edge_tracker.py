@@ -19,11 +19,12 @@ from vision.joint import Seen
 from vision.marks import Evidence, measure_along
 from vision.normals import Normals, lay_out
 from vision.outline import Rim
-from vision.paint import CIRCLES, FIXED, Marks, joined
+from vision.paint import CIRCLES, FIXED, TWELVE, Marks, joined
 from vision.picture import Picture
-from vision.pose import View
+from vision.pose import View, project
 from vision.resection import ViewSolution, solve_views
 from vision.rig import R4, R8
+from vision.smear import LEAST_MOTION, USUAL, exposure
 
 Array = NDArray[np.float64]
 
@@ -34,6 +35,9 @@ whole circles tell, by these .3 mm; more gain little."""
 REACH, LEAST_REACH = 0.007, 6.0
 """Half length of the normals in widths of the picture, and the least, px."""
 
+LONGER, MOST_REACH = 1.2, 0.04
+"""Half length of the normals in what a pan blurs edges by; and the most, widths of the picture."""
+
 MARK_SD = 0.2
 """Least standard deviation of a mark, px."""
 
@@ -43,10 +47,6 @@ WIDTH = 6.0
 SETTLED, LEAST_SETTLED = 0.4, 0.1
 """Correction below which the edges need not be measured anew, half lengths of the normals; and in
 however fast a pan."""
-
-OPEN = 0.5
-"""Longest exposure, as a share of the time from one frame to the next: film cameras' half a turn
-of the shutter, which broadcasts keep to."""
 
 ROUNDS = 3
 """How often the edges of a frame are measured at most."""
@@ -91,6 +91,8 @@ class EdgeTracker:
         The last one.
     support : float
         Share of the circles in the picture that it explained.
+    blur : float
+        How far a pan smears edges in the frames asked for last, px.
     """
 
     size: tuple[int, int]
@@ -99,9 +101,13 @@ class EdgeTracker:
     stride: int = 1
     fit: ViewSolution | None = None
     support: float = 0.0
+    blur: float = 0.0
+    _exposure: float = USUAL
     _last: tuple[View, Array, Normals, Array] | None = None
 
-    def settle(self, frames: Sequence[Frame], views: Sequence[View], rig: Array) -> list[Seen]:
+    def settle(
+        self, frames: Sequence[Frame], views: Sequence[View], rig: Array, last: View
+    ) -> list[Seen]:
         """Refine predicted views.
 
         Parameters
@@ -109,6 +115,8 @@ class EdgeTracker:
         frames, views : sequences of Frame and View
             One or more frames, and where they are expected.
         rig : ndarray, shape (14,)
+        last : View
+            That of the frame before them.
 
         Returns
         -------
@@ -118,6 +126,8 @@ class EdgeTracker:
         """
         again = False
         for _ in range(ROUNDS):
+            speeds = [now.aside(old) for now, old in zip(views, [last, *views], strict=False)]
+            self.blur = self._exposure * max(speeds)
             normals, standing = self._laid(views, rig)
             if not _enough(rig, normals.visible, normals.visible):
                 return []
@@ -125,12 +135,9 @@ class EdgeTracker:
             evidence = evidence[: _leading([_enough(rig, e.visible, e.covered) for e in evidence])]
             if not evidence:
                 return []
-            before = [views[0] if self.fit is None else self.fit.view, *views]
-            speeds = [_aside(now, last) for now, last in zip(views, before, strict=False)]
             fits = self._fitted([e.marks for e in evidence], views, rig)
             settled = [
-                self._is_settled(*each, rig)
-                for each in zip(views, speeds, evidence, fits, strict=False)
+                self._is_settled(*each, rig) for each in zip(views, evidence, fits, strict=False)
             ]
             count = _leading(settled)
             if count:
@@ -143,10 +150,11 @@ class EdgeTracker:
         whole = count == len(frames) and not again
         self.stride = min(2 * count, LONGEST_STRIDE) if whole else max(count // 2, 1)
         self.fit = fits[count - 1]
-        last = evidence[count - 1]
-        explained = _length(rig, _explained(last, self.fit))
-        self.support = explained / _length(rig, last.visible)
-        self._learn(last.palette, count)
+        shown = evidence[count - 1]
+        explained = _length(rig, _explained(shown, self.fit))
+        self.support = explained / _length(rig, shown.visible)
+        self._learn(shown.palette, count)
+        self._learn_exposure(shown.slope, normals, [last, *views][count - 1], self.fit.view, rig)
         return [
             Seen(frame.index, frame.t, fit.view, e.marks.pick(fit.inliers), True)
             for frame, e, fit in zip(frames, evidence[:count], fits, strict=False)
@@ -177,8 +185,9 @@ class EdgeTracker:
 
     @property
     def _reach(self) -> float:
-        """Half length of the normals, px."""
-        return max(REACH * self.size[0], LEAST_REACH)
+        """Half length of the normals, px: their outer quarters show what is beside the blur."""
+        least = max(REACH * self.size[0], LEAST_REACH)
+        return min(max(LONGER * self.blur, least), max(MOST_REACH * self.size[0], least))
 
     def _laid(self, views: Sequence[View], rig: Array) -> tuple[Normals, Array]:
         """Give normals and where they stand in views, of which at least the first has them.
@@ -195,8 +204,8 @@ class EdgeTracker:
 
     def _lay(self, views: Sequence[View], rig: Array) -> tuple[Normals, Array]:
         """Take the same normals as before, or where these are too far away new ones."""
-        if self._last is not None:
-            normals = self._last[2]
+        normals = None if self._last is None else self._last[2]
+        if normals is not None and normals.kinds and 0.8 < self._reach / normals.reach[0] < 1.25:
             moved = self._moved(normals, views, rig)
             if len(moved) == len(views):
                 return normals, np.array(moved)
@@ -230,18 +239,31 @@ class EdgeTracker:
         return solve_views(frames, start, rig, view_sd=view_sd, width=WIDTH, iterations=6)
 
     def _is_settled(
-        self, expected: View, speed: float, evidence: Evidence, fit: ViewSolution, rig: Array
+        self, expected: View, evidence: Evidence, fit: ViewSolution, rig: Array
     ) -> bool:
         """Whether a view was predicted so well that the edges need not be measured anew.
 
         The colours beside an edge are those at the outer quarters of a normal. Where a pan blurs
         edges into these, an edge is drawn to where it was expected.
         """
-        blur = OPEN * speed / 2
-        most = np.clip(0.5 * self._reach - blur, LEAST_SETTLED * self._reach, SETTLED * self._reach)
+        free = 0.5 * (self._reach - self.blur)
+        most = np.clip(free, LEAST_SETTLED * self._reach, SETTLED * self._reach)
         least = max(GOOD_SUPPORT, STEADY * self.support)
-        near = _aside(fit.view, expected) < most
+        near = fit.view.aside(expected) < most
         return near and _enough(rig, evidence.visible, _explained(evidence, fit), least)
+
+    def _learn_exposure(
+        self, slope: Array, normals: Normals, before: View, now: View, rig: Array
+    ) -> None:
+        """Take in how long pictures are exposed, as the 12-ft edge shows it in a pan."""
+        if now.aside(before) < LEAST_MOTION or TWELVE not in normals.kinds:
+            return
+        rim = normals.kinds[TWELVE]
+        places = (normals.foot + normals.way * HOUSE.twelve_foot)[:, rim].T
+        two, one = (project(places, view.vector, rig, self.size) for view in (now, before))
+        told = exposure(slope, ((two - one).T * normals.normal[:, rim]).sum(0))
+        if told is not None:
+            self._exposure += 0.5 * (told - self._exposure)
 
     def _learn(self, palette: Array, frames: int) -> None:
         """Take in the colours of the edges in the last of so many frames."""
@@ -249,11 +271,6 @@ class EdgeTracker:
         mixed = kept * self.palette + (1 - kept) * palette
         mixed = np.where(np.isfinite(mixed), mixed, palette)
         self.palette = np.where(np.isfinite(mixed), mixed, self.palette)
-
-
-def _aside(one: View, other: View) -> float:
-    """How far a turn moves the picture from one view to another, px."""
-    return float(np.abs(one.vector - other.vector)[:3].max() * one.focal)
 
 
 def _leading(good: Sequence[bool]) -> int:

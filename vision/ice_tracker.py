@@ -87,7 +87,7 @@ class IceTracker:
         if not corners:
             return []
         if edges.expects(views[0], rig):
-            seen = edges.settle(frames[:1], views[:1], rig)
+            seen = edges.settle(frames[:1], views[:1], rig, last.view)
             if seen:
                 self.forget()
                 return seen

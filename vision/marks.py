@@ -52,6 +52,8 @@ class Evidence:
         Profiles across the 12-ft edge, from ice (−0.5) to paint (0.5).
     crossing : ndarray, shape (n,)
         Samples at which the marks on it are; NaN where there is none.
+    slope : ndarray, shape (n,)
+        Of the profiles there, per px; NaN where there is no mark.
     step : float
         Distance of the samples, px.
     """
@@ -62,6 +64,7 @@ class Evidence:
     palette: Array
     rim: Profiles
     crossing: Array
+    slope: Array
     step: float
 
     @property
@@ -146,7 +149,8 @@ def measure_along(
     value[..., rim] -= np.float32(edge.level)
     sample, rise, crossed = crossings(value)
     step = 2 * float(normals.reach[0]) / (SAMPLES - 1) if wide else 1.0
-    sample[..., rim] -= edge.beyond(rise[..., rim] / step) / step
+    slope = rise[..., rim] / step
+    sample[..., rim] -= edge.beyond(slope) / step
     good &= crossed
     offset = (sample / (SAMPLES // 2) - 1) * normals.reach[:wide]
     within = points[:, 0, wide::BLOCK] > OUTSIDE
@@ -170,12 +174,13 @@ def measure_along(
     middles = standing[..., wide:].reshape(*standing.shape[:3], -1, BLOCK).mean(4)
     place, normal = np.moveaxis(np.append(standing[..., :wide], middles, axis=3), 1, 0)
     pixel = place + places.normal * offset[:, None]
-    crossing = np.where(good[:, rim], sample[:, rim], np.nan)
+    crossing, slope = (np.where(good[:, rim], v, np.nan) for v in (sample[:, rim], slope))
     profile = value[..., rim] + np.float32(edge.level)
     return [
         Evidence(
             Marks(places.line, places.along, pixel[k].T, normal[k].T, sd[k]).pick(good[k]),
-            normals.visible, covered[k], found[k], profile[k], crossing[k], step,
+            normals.visible, covered[k], found[k], profile[k], crossing[k],
+            slope[k], step,
         )
         for k in range(len(pictures))
     ]  # fmt: skip

@@ -34,6 +34,9 @@ REFINE_AT = (8, 40, 160)
 
 REFINE_FRAMES = 6
 
+MOST_BLUR = 0.004
+"""Blur of a picture beyond which it would not look like a sharp one of the same, widths of it."""
+
 LEAST_EXPLAINED, SAME_RMS_PX = 0.8, 0.3
 """How much of a house, and of the frames before, one camera must explain to be the same; and by
 how much worse than another's it may explain the house, px."""
@@ -89,11 +92,11 @@ class Piece:
             house nor its ice.
         """
         views = self._predicted(frames)
-        seen = self.edges.settle(frames, views, self.rig)
+        last = self.seen[-1]
+        seen = self.edges.settle(frames, views, self.rig, last.view)
         if seen:
             self._ice.forget()
         elif self._picture is not None:
-            last = self.seen[-1]
             seen = self._ice.settle(frames, views, last, self._picture, self.rig, self.edges)
             whole = len(seen) == len(frames)
             self.edges.stride = min(2 * len(seen), LONGEST_STRIDE) if whole else 1
@@ -118,7 +121,7 @@ class Piece:
     def glimpse_due(self) -> Glimpse | None:
         """Tell what the house looks like in the last frame, now and then."""
         last = self.seen[-1]
-        if self._picture is None or not last.found:
+        if self._picture is None or not last.found or self.edges.blur > MOST_BLUR * self.size[0]:
             return None
         if self.glimpses and last.t - self.glimpses[-1].t <= EVERY:
             return None
@@ -213,7 +216,7 @@ class Piece:
         """
         before, self.seen, self.edges.stride = self.seen, [], 1
         self._ice.forget()
-        settled = self.edges.settle([frame], [view], self.rig)
+        settled = self.edges.settle([frame], [view], self.rig, view)
         first = settled[0] if settled else Seen(frame.index, frame.t, view, marks, True)
         self._add(first, frame.picture)
         placed = [(frame, first)]

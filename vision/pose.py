@@ -43,6 +43,10 @@ class View:
         """Focal length, px."""
         return float(np.exp(self.vector[3]))
 
+    def aside(self, other: View) -> float:
+        """How far turning from another view moves the picture, px."""
+        return float(np.abs(self.vector - other.vector)[:3].max() * self.focal)
+
 
 def rotation_matrix(vector: Array) -> Array:
     """Ice axes to camera axes (x right, y down, z forward), shape (3, 3), from a view's vector.

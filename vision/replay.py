@@ -70,9 +70,10 @@ def glimpse(picture: Picture, view: View, rig: Array, t: float) -> Glimpse:
 
 
 def is_replay(now: Glimpse, before: Sequence[Glimpse]) -> bool:
-    """Say whether a glimpse repeats one from long before the last one."""
-    older = [g for g in before if g.t < before[-1].t - LONG_BEFORE]
-    return bool(older) and is_nearer(now, older, before[-1], ALIKE)
+    """Say whether a glimpse repeats one from long before the last one that shows the same ice."""
+    known = [g for g in before if np.isfinite(_difference(now, g))]
+    older = [g for g in known if g.t < known[-1].t - LONG_BEFORE]
+    return bool(older) and is_nearer(now, older, known[-1], ALIKE)
 
 
 def has_jumped(now: Glimpse, last: Glimpse) -> bool:
@@ -120,9 +121,15 @@ def cut_among(looks: Sequence[Glimpse]) -> int | None:
 
 
 def is_nearer(now: Glimpse, these: Sequence[Glimpse], that: Glimpse, share: float = 0.8) -> bool:
-    """Say whether a glimpse differs from one of these by less than this share of from that."""
-    nearest = min((_difference(now, g) for g in these), default=np.inf)
-    return nearest < share * _difference(now, that)
+    """Say whether a glimpse differs from one of these by less than this share of from that.
+
+    What does not show the same ice is not compared.
+    """
+    nearest, last = (
+        min((_difference(now, g) for g in these), default=np.inf),
+        _difference(now, that),
+    )
+    return bool(np.isfinite(last) and nearest < share * last)
 
 
 def _difference(one: Glimpse, other: Glimpse) -> float:

@@ -37,22 +37,22 @@ def test_frames_followed_together_are_placed_as_alone() -> None:
     frames, house = filmed()
     together, alone = tracker(house), tracker(house)
     block = frames[:LONGEST_STRIDE]
-    seen = together.settle(block, [house.view] * len(block), house.rig)
+    seen = together.settle(block, [house.view] * len(block), house.rig, house.view)
     assert [s.index for s in seen] == [frame.index for frame in block]
     for frame, one in zip(block, seen, strict=True):
-        (other,) = alone.settle([frame], [house.view], house.rig)
+        (other,) = alone.settle([frame], [house.view], house.rig, house.view)
         assert np.abs(one.view.vector - other.view.vector).max() * one.view.focal < 0.3
 
 
 def test_the_stride_grows_while_views_are_foretold_and_shrinks_when_not() -> None:
     frames, house = filmed()
     edges = tracker(house)
-    edges.settle(frames[:1], [house.view], house.rig)
+    edges.settle(frames[:1], [house.view], house.rig, house.view)
     assert edges.stride == 2
-    edges.settle(frames[1:3], [house.view] * 2, house.rig)
+    edges.settle(frames[1:3], [house.view] * 2, house.rig, house.view)
     assert edges.stride == LONGEST_STRIDE == 4
     aside = View(house.view.vector + np.array([0.0, 9.0 / house.view.focal, 0.0, 0.0]))
-    (found,) = edges.settle(frames[3:4], [aside], house.rig)
+    (found,) = edges.settle(frames[3:4], [aside], house.rig, house.view)
     assert edges.stride == 1
     assert np.abs(found.view.vector - house.view.vector)[1] * house.view.focal < 6.0
 
@@ -62,9 +62,9 @@ def test_up_to_the_first_that_does_not_show_the_house() -> None:
     bare = Frame(2, 0.08, np.full((SIZE[1], SIZE[0], 3), 230, np.uint8))
     edges = tracker(house)
     views = [house.view] * 4
-    seen = edges.settle([*frames[:2], bare, frames[3]], views, house.rig)
+    seen = edges.settle([*frames[:2], bare, frames[3]], views, house.rig, house.view)
     assert [s.index for s in seen] == [0, 1]
-    assert edges.settle([bare], [house.view], house.rig) == []
+    assert edges.settle([bare], [house.view], house.rig, house.view) == []
 
 
 def test_where_the_circles_are_out_of_view_there_are_still_lines() -> None:

@@ -18,7 +18,7 @@ def started() -> tuple[list[Frame], HouseFit, EdgeTracker, Seen]:
     """Frames of a house, of which the first has been followed."""
     frames, house = filmed()
     edges = tracker(house)
-    (first,) = edges.settle(frames[:1], [house.view], house.rig)
+    (first,) = edges.settle(frames[:1], [house.view], house.rig, house.view)
     return frames, house, edges, first
 
 

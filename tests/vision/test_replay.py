@@ -9,6 +9,7 @@ from tests.synthetic import broadcast_camera, cached_clip, sample_scene
 from tests.vision.test_joint import SIZE
 from vision.clip import Frame, open_clip
 from vision.follow_house import HouseFollower
+from vision.replay import CELLS, Glimpse, is_replay
 
 RATE = 25
 
@@ -35,6 +36,15 @@ def frames_of(pictures: Sequence[np.ndarray]) -> list[int]:
     track = follower.finish()
     assert track is not None
     return [c.frame for c in track.cameras]
+
+
+def test_only_what_shows_the_same_ice_is_compared() -> None:
+    house = np.random.default_rng(4).uniform(0, 255, (CELLS, CELLS))
+    low, high = house.copy(), house + 6.0
+    low[: CELLS * 3 // 4], high[CELLS // 2 :] = np.nan, np.nan
+    first, last = Glimpse(0.0, high), Glimpse(2.0, low)
+    assert not is_replay(Glimpse(2.2, high + 1.0), [first, last])
+    assert is_replay(Glimpse(2.2, high + 1.0), [first, Glimpse(2.0, house)])
 
 
 def test_what_goes_on_after_a_cut_belongs_to_the_shot(live: list[np.ndarray]) -> None:

@@ -1,0 +1,32 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from vision.smear import LEAST, MOST, SHARP, exposure
+
+MOTION = np.linspace(-60, 60, 49)
+
+
+def slopes(share: float) -> np.ndarray:
+    """Slopes of edges in pictures exposed for this share of the time between them."""
+    return np.asarray(1 / np.hypot(SHARP, share * MOTION))
+
+
+@pytest.mark.parametrize("share", [0.15, 0.5, 0.9])
+def test_the_exposure_is_told_by_how_far_edges_are_smeared(share: float) -> None:
+    rng = np.random.default_rng(0)
+    slope = slopes(share) * rng.normal(1, 0.05, len(MOTION))
+    slope[::6] = np.nan
+    slope[::7] = 0.4  # print, or a stone
+    assert exposure(slope, MOTION) == pytest.approx(share, rel=0.1)
+
+
+def test_it_lies_between_none_and_the_whole_time() -> None:
+    assert exposure(np.full(len(MOTION), 1 / SHARP), MOTION) == LEAST
+    assert exposure(np.full(len(MOTION), 1e-3), MOTION) == MOST
+
+
+def test_a_camera_at_rest_does_not_tell_it() -> None:
+    assert exposure(slopes(0.5), 0.1 * MOTION) is None
+    assert exposure(np.full(len(MOTION), np.nan), MOTION) is None
