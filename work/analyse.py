@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from physics.contacts import Contact
 
 
+ICE = (0.004, 0.03)
+"""Frictions that stones have on curling ice, from the keenest to wet or frosted one."""
+
+
 @dataclass(frozen=True)
 class Run:
     """The outcome of a run.
@@ -92,6 +96,8 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
     drawn = sample_posterior(estimates, settings.samples, np.random.default_rng(0))
     if settings.samples and drawn is None:
         notes = (*notes, "no samples: the shot tells neither restitution nor friction")
+    if measured.house is not None:
+        notes = (*notes, *_pace(estimates.friction))
     times = sightings["t"]
     results = Results(
         input=Input(
@@ -135,6 +141,24 @@ def _shared_error(sightings: pd.DataFrame) -> float | None:
     if "sd_place" not in sightings or sightings["sd_place"].isna().all():
         return None
     return float(sightings["sd_place"].median())
+
+
+def _pace(friction: Estimate) -> tuple[str, ...]:
+    """Say so where stones slow as on no ice: a clip that runs k times too slowly shows μ / k²."""
+    from physics.watched import FRICTION
+
+    value, stderr = friction.value, friction.stderr
+    if value is None or stderr is None or value <= 0:
+        return ()
+    if ICE[0] < value + 2 * stderr and value - 2 * stderr < ICE[1]:
+        return ()
+    times, pace = (FRICTION / value) ** 0.5, "slow"
+    if times < 1:
+        times, pace = 1 / times, "fast"
+    return (
+        f"friction: {value:.2g} ± {stderr:.1g} is not that of curling ice; a clip in {pace} motion"
+        f" (about {times:.2g} times) would look so: then speeds are not real ones, e is",
+    )
 
 
 def _timed(contacts: Sequence[Contact], hits: Sequence[Collision]) -> list[Contact]:
