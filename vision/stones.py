@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import hypot
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +21,6 @@ from vision.patch import EFFORT, is_plain
 from vision.picture import Picture
 from vision.placing import placed_by, sightings
 from vision.rays import Look
-from vision.roundness import edge_error
 from vision.seek import Bounds, seek
 from vision.sighting import Refusal, Sighting
 
@@ -86,36 +84,6 @@ def plain_disc(radius: float) -> Stone:
     return Stone(radius=radius, cap_radius=0.0, cap_height=0.0)
 
 
-def find_stones(
-    image: Picture,
-    camera: Camera,
-    appearance: Appearance | None = None,
-    disc: Stone = STONE,
-    search: Search = SEARCH,
-) -> tuple[Sighting, ...]:
-    """Find and measure the stones in one picture.
-
-    Parameters
-    ----------
-    image : ndarray, shape (h, w, 3)
-        BGR.
-    camera : Camera
-        The picture's camera; where its position is known, the height of the cap is taken out.
-    appearance : Appearance, optional
-        What stones look like here, from `learn`; without it, what any stone looks like.
-    disc : Stone
-        Radius, cap radius and cap height; `plain_disc` for a disc without a cap.
-
-    Returns
-    -------
-    tuple of Sighting
-        Strongest first; no two nearer than discs can be.
-    """
-    found = search_picture(image, camera, appearance, disc, search).stones
-    edge = edge_error([[stone] for stone in found])
-    return tuple(stone._replace(sd_place=hypot(stone.sd_place, edge)) for stone in found)
-
-
 def search_picture(
     image: Picture,
     camera: Camera,
@@ -125,14 +93,29 @@ def search_picture(
     bounds: Bounds | None = None,
     known: Array | None = None,
 ) -> Findings:
-    """As `find_stones`, on a part of the ice if need be, and also say what was refused and why.
+    """Find and measure the stones in one picture, and say what was refused and why.
 
     Parameters
     ----------
+    image : Picture or ndarray of shape (h, w, 3)
+        BGR.
+    camera : Camera
+        The picture's camera; where its position is known, the height of the cap is taken out.
+    appearance : Appearance, optional
+        What stones look like here, from `learn`; without it, what any stone looks like.
+    disc : Stone
+        Radius, cap radius and cap height; `plain_disc` for a disc without a cap.
+    search : Search
+        Where stones are sought and what they must show.
     bounds : (x0, x1, y0, y1), optional
         The part of the ice, m; all of it where left out.
     known : ndarray, shape (n, 2), optional
         Places of stones that need not be found, m: nothing near them is looked at.
+
+    Returns
+    -------
+    Findings
+        The stones no nearer to each other than discs can be.
     """
     area = whole_ice(camera, disc, search) if bounds is None else bounds
     sought = seek(

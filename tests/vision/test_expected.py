@@ -8,14 +8,14 @@ from tests.vision.test_stones import CAMERA, RED, YELLOW, camera_of, scene_of
 from vision.appearance import learn
 from vision.expected import look_beside, look_on_course
 from vision.rays import Look
-from vision.stones import Search, find_stones
+from vision.stones import Search, search_picture
 
 
 @pytest.mark.parametrize("aside", [0.01, 0.03, 0.045])
 def test_where_a_stone_is_expected_has_no_say_in_where_it_is(aside: float) -> None:
     scene = scene_of([(0.2, 0.9, RED), (-0.4, 0.2, YELLOW), (1.0, 1.6, RED)])
     image, camera = np.asarray(render_still(scene, CAMERA), np.uint8), camera_of(CAMERA, scene)
-    learned = learn(find_stones(image, camera))
+    learned = learn(search_picture(image, camera).stones)
     true = np.array([(stone.start.x, stone.start.y) for stone in scene.stones])
     found = {}
     for turn in range(4):
@@ -32,9 +32,9 @@ def test_where_a_stone_is_expected_has_no_say_in_where_it_is(aside: float) -> No
 def test_a_stone_seen_a_moment_ago_needs_less_evidence() -> None:
     scene = scene_of([(0.2, 0.9, RED), (-0.4, 0.2, YELLOW)])
     image, camera = np.asarray(render_still(scene, CAMERA), np.uint8), camera_of(CAMERA, scene)
-    known = find_stones(image, camera)
+    known = search_picture(image, camera).stones
     strict = Search(least_evidence=1 + max(stone.score for stone in known))
-    assert find_stones(image, camera, search=strict) == ()
+    assert search_picture(image, camera, search=strict).stones == ()
     looks = [Look(image, camera, np.array([(stone.x, stone.y) for stone in known]))]
     assert None not in look_on_course(looks, learn(known), search=strict)
 
@@ -42,7 +42,7 @@ def test_a_stone_seen_a_moment_ago_needs_less_evidence() -> None:
 def test_where_no_stone_is_none_is_seen() -> None:
     scene = scene_of([(0.2, 0.9, RED), (-0.4, 0.2, YELLOW)])
     image, camera = np.asarray(render_still(scene, CAMERA), np.uint8), camera_of(CAMERA, scene)
-    learned = learn(find_stones(image, camera))
+    learned = learn(search_picture(image, camera).stones)
     look = Look(image, camera, np.array([[0.2, 0.9], [1.2, 0.3], [0.2, 0.75]]))
     first, bare, beside = look_on_course([look], learned)
     assert first is not None

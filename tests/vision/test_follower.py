@@ -10,7 +10,9 @@ from vision.appearance import learn
 from vision.clip import Frame
 from vision.follower import PATIENCE, Follower, View
 from vision.lead import Lead
-from vision.stones import FOLLOWING, find_stones
+from vision.rays import Look
+from vision.sighting import Sighting
+from vision.stones import FOLLOWING, search_picture
 
 Places = list[tuple[float, float]]
 CAPS = (RED, YELLOW, RED)
@@ -30,7 +32,7 @@ def first() -> View:
 
 @pytest.fixture(scope="module")
 def follower(first: View) -> Follower:
-    found = find_stones(first.frame.picture, first.camera)
+    found = search_picture(first.frame.picture, first.camera).stones
     return Follower(learn(found), STONE, FOLLOWING, PATIENCE)
 
 
@@ -77,3 +79,19 @@ def test_a_stone_that_is_gone_is_waited_for_and_then_given_up(follower: Follower
     left = follower.follow(views[2:], waiting)
     assert len(left) == 2 and not any(lead.missed for lead in left)
     assert all(len(shown.sightings) == 2 for shown in views)
+
+
+def test_what_shows_clearly_less_than_a_moment_ago_is_looked_for_beside_too(
+    follower: Follower, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def doubted(looks: list[Look], *_: object) -> list[Sighting]:
+        places = np.concatenate([look.places for look in looks])
+        near = [min(known, key=lambda s: np.hypot(s.x - x, s.y - y)) for x, y in places]
+        return [s._replace(score=0.7 * s.score) for s in near]
+
+    known = follower.sought(view(START, 0))
+    moved = [(x + 0.02, y) for x, y in START]
+    after = view(moved, 1)
+    monkeypatch.setattr("vision.follower.look_on_course", doubted)
+    follower.follow([after], [Lead.to(s, 0.0) for s in known])
+    assert seen([after], [moved]).max() < 0.003

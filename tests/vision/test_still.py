@@ -8,7 +8,7 @@ from tests.synthetic.clip import render_still
 from tests.vision.test_stones import CAMERA, RED, YELLOW, camera_of, scene_of
 from vision.clip import Image
 from vision.still import Portrait, portraits, unchanged
-from vision.stones import find_stones
+from vision.stones import search_picture
 
 PLACES = [(0.3, 0.2, RED), (-0.8, 1.0, YELLOW), (0.9, -0.6, RED)]
 VIEW = camera_of(CAMERA, scene_of(PLACES))
@@ -24,7 +24,7 @@ def picture(shift: tuple[float, float] = (0.0, 0.0), light: float = 1.0) -> Imag
 @pytest.fixture(scope="module")
 def known() -> list[Portrait]:
     image = picture()
-    found = sorted(find_stones(image, VIEW), key=lambda s: np.hypot(s.x - 0.3, s.y - 0.2))
+    found = sorted(search_picture(image, VIEW).stones, key=lambda s: np.hypot(s.x - 0.3, s.y - 0.2))
     taken = portraits(image, VIEW, 0.0, found, STONE)
     assert len(taken) == 3
     return [portrait for portrait in taken if portrait is not None]

@@ -19,7 +19,7 @@ from vision.camera import Camera, CameraError
 from vision.clip import open_clip
 from vision.sighting import Sighting
 from vision.stick import stick_camera
-from vision.stones import FOLLOWING, SEARCH, Search, find_stones, plain_disc
+from vision.stones import FOLLOWING, SEARCH, Search, plain_disc, search_picture
 
 RED, YELLOW, BLUE = (30, 24, 150), (20, 190, 220), (170, 80, 30)
 CAMERA = still_camera(px_per_m=140.0, target=(0.0, 0.6))
@@ -41,7 +41,7 @@ def scene_of(places: list[tuple[float, float, Colour]], **more: object) -> Scene
 
 def look(scene: Scene, path: CameraPath = CAMERA, search: Search = SEARCH) -> tuple[Sighting, ...]:
     image = np.asarray(render_still(scene, path), np.uint8)
-    return find_stones(image, camera_of(path, scene), search=search)
+    return search_picture(image, camera_of(path, scene), search=search).stones
 
 
 def misses(found: tuple[Sighting, ...], scene: Scene) -> NDArray[np.float64]:
@@ -91,7 +91,9 @@ def test_a_camera_whose_height_is_not_known_misplaces_caps_more_than_the_ice() -
     unknown = np.array([0, 0, 0, sd / z, 0, 0, sd, 0, 0])
     error = CameraError(np.outer(unknown, unknown), np.zeros((9, 9)))
     image = np.asarray(render_still(scene, path), np.uint8)
-    known, doubted = (find_stones(image, c)[0] for c in (camera, replace(camera, error=error)))
+    known, doubted = (
+        search_picture(image, c).stones[0] for c in (camera, replace(camera, error=error))
+    )
     off = STONE.cap_height * sd / z**2 * np.hypot(1.6 - plumb[0], 1.0 - plumb[1])
     added = np.sqrt(2 * (doubted.sd_place**2 - known.sd_place**2))
     assert added == pytest.approx(off, rel=0.1)
@@ -123,12 +125,12 @@ def without_colours(scene: Scene, path: CameraPath = CAMERA) -> NDArray[np.uint8
 
 def test_in_a_picture_without_colours_caps_lighter_or_darker_than_granite_are_found() -> None:
     scene = scene_of([(0.3, 0.2, RED), (-0.35, 0.3, YELLOW), (1.4, 0.6, RED), (0.1, 2.4, YELLOW)])
-    found = find_stones(without_colours(scene), camera_of(CAMERA, scene))
+    found = search_picture(without_colours(scene), camera_of(CAMERA, scene)).stones
     assert len(found) == len(scene.stones)
     assert misses(found, scene).max() < 0.010
     person = Person(((0.0, 0.5, 0.2, 1.0),))
     empty = scene_of([], people=(person,), graphics=(Graphic(),))
-    assert find_stones(without_colours(empty), camera_of(CAMERA, empty)) == ()
+    assert search_picture(without_colours(empty), camera_of(CAMERA, empty)).stones == ()
 
 
 def test_stones_of_the_neighbouring_sheet_are_left_out() -> None:
@@ -172,7 +174,7 @@ def test_discs_of_which_only_the_radius_is_known() -> None:
         cv2.circle(image, centre, 17 * fine, colour, -1, cv2.LINE_AA, 4)
     cv2.rectangle(image, (150, 20), (200, 54), (180, 180, 180), -1)
     camera = stick_camera((0, 239, 100, 239, 0.5), (320, 240))
-    found = find_stones(image, camera, None, plain_disc(0.085))
+    found = search_picture(image, camera, None, plain_disc(0.085)).stones
     assert len(found) == 3
     pixels = camera.project(np.array([(s.x, s.y) for s in found]))
     apart = np.hypot(*(pixels[:, None] - np.array(true)[None]).transpose(2, 0, 1)).min(0)
@@ -191,8 +193,8 @@ def test_real_stills(shared: Path) -> None:
         place = np.array(still["camera"]["xyz"])
         matrix = np.array(still["homography"])
         camera = Camera(0, 0.0, matrix, size, still["k1"], still["k2"], position=place)
-        found = find_stones(picture.image, camera)
-        found = find_stones(picture.image, camera, learn(convincing(found)))
+        found = search_picture(picture.image, camera).stones
+        found = search_picture(picture.image, camera, learn(convincing(found))).stones
         true = np.array([(s["x"], s["y"]) for s in still["stones"]])
         apart = np.hypot(
             *(true[:, None] - np.array([(s.x, s.y) for s in found])[None]).transpose(2, 0, 1)
