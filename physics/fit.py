@@ -1,7 +1,7 @@
 """One least-squares fit of a whole shot, hit by hit joined.
 
-Between hits each stone moves with an acceleration that is constant and mostly against its
-motion, until it stops. At a hit the paths on either side meet, the centres are two radii
+Between hits each stone moves with an acceleration that is mostly against its motion, and changes
+little, until it stops. At a hit the paths on either side meet, the centres are two radii
 apart, and the momentum of the two stones is the same before and after. All of this is linear
 in the unknowns but for the times of the hits, so a few Gauss-Newton steps find it.
 """
@@ -15,14 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physics.fit_rules import SLOWEST, meeting_rules, slowing
-from physics.normal_equations import inverse_of_blocks
+from physics.normal_equations import eliminated, inverse_of_blocks
 from physics.residuals import huber_weights, inflation
 from physics.segments import Piece
 from physics.shot_fit import Deceleration, Meeting, ShotFit
 from physics.traces import Trace
 
 Floats = NDArray[np.float64]
-
 
 FARTHEST = 100.0
 """Longest step of any state (SI units), so that a fit of nonsense ends."""
@@ -98,6 +97,7 @@ class _Solver:
             for i, p in enumerate(pieces)
             if p.closes is not None
         }
+        self.further = np.zeros((len(self.pieces), 3, 7))
         self.blocks = self._blocks()
         self.origins = np.array([self._origin(piece) for piece in pieces])
         self.theta = np.zeros(self.size)
@@ -208,9 +208,17 @@ class _Solver:
     def _residuals(self, i: int, basis: Floats) -> Floats:
         piece = self.pieces[i]
         trace = self.traces[piece.stone]
-        fitted = basis @ self.theta[6 * i : 6 * i + 6].reshape(2, 3).T
-        out: Floats = (trace.xy[piece.samples] - fitted) / trace.sd[piece.samples]
-        return out
+        own = self.theta[6 * i : 6 * i + 6]
+        further = self.further[i] @ np.append(-own, 1.0)
+        fitted = basis @ own.reshape(2, 3).T + self._bend(i, basis) * further[2]
+        fitted += basis[:, 1:2] * further[:2]
+        return np.asarray((trace.xy[piece.samples] - fitted) / trace.sd[piece.samples])
+
+    def _bend(self, i: int, basis: Floats) -> Floats:
+        """By how much places change with the change of the deceleration, shape (n, 2)."""
+        velocity = self.theta[[6 * i + 1, 6 * i + 4]]
+        along = velocity / max(float(np.hypot(*velocity)), 1e-9)
+        return np.asarray(basis[:, 1:2] ** 3 / 6 * along)
 
     def _data(self) -> tuple[Floats, Floats]:
         """Set up the normal equations of the sightings, outliers weighted down."""
@@ -229,15 +237,13 @@ class _Solver:
     def _seen(self, i: int, basis: Floats, weights: Floats) -> tuple[Floats, Floats]:
         """Set up the normal equations of one piece's sightings, of its own unknowns.
 
-        Further unknowns are eliminated at once: what the sightings say of the velocity is wrong
-        by what they share, on either axis, and the deceleration changes as the stone slows.
+        Three further unknowns are eliminated at once: what the sightings say of the velocity is
+        wrong by what they share, on either axis, and the deceleration changes as the stone slows.
         """
         piece = self.pieces[i]
         trace = self.traces[piece.stone]
-        velocity = self.theta[[6 * i + 1, 6 * i + 4]]
-        speed = float(np.hypot(*velocity))
-        tau, none = basis[:, 1], np.zeros_like(basis)
-        bend = tau[:, None] ** 3 / 6 * velocity / max(speed, 1e-9)
+        speed = float(np.hypot(*self.theta[[6 * i + 1, 6 * i + 4]]))
+        tau, none, bend = basis[:, 1], np.zeros_like(basis), self._bend(i, basis)
         along_x = np.column_stack([basis, none, tau, none[:, 0], bend[:, 0]])
         along_y = np.column_stack([none, basis, none[:, 0], tau, bend[:, 1]])
         full = along_x.T @ (weights[:, :1] * along_x) + along_y.T @ (weights[:, 1:] * along_y)
@@ -245,11 +251,9 @@ class _Solver:
         value = along_x.T @ xy[:, 0] + along_y.T @ xy[:, 1]
         drift = speed * float(np.median(trace.sd_scale[piece.samples]))
         change = self.prior.change / (speed + SLOWEST) ** 2
-        known = np.square([drift, drift, change])[:, None] / self.inflation
-        both = np.column_stack([full, value])
-        further = np.linalg.solve(np.eye(3) + known * full[6:, 6:], known * both[6:])
-        left = both[:6] - full[:6, 6:] @ further
-        return left[:, :6], left[:, -1]
+        known = np.square([drift, drift, change]) / self.inflation
+        normal, right, self.further[i] = eliminated(full, value, known)
+        return normal, right
 
     def _rules(self) -> tuple[Floats, Floats]:
         """Set up the normal equations of what is known besides the sightings."""

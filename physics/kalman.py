@@ -116,7 +116,8 @@ def _survey(
     pieces = [replace(piece, opens=None, closes=None) for piece in by_hits]
     loose = fit_shot(known, pieces, (), radius, deceleration=FREE)
     _, friction, prior = measure_glides(loose, known, radius)
-    fit = fit_shot(known, pieces, (), radius, deceleration=prior)
+    # How sightings err is told against parabolas: none of their misfit is put down to the ice.
+    fit = fit_shot(known, pieces, (), radius, deceleration=replace(prior, change=0.0))
     a = prior.mean if friction.value is not None else 0.0
     return fit, Model(max(a, 0.0), prior.along), noises(fit, known)
 

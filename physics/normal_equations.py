@@ -31,3 +31,28 @@ def inverse_of_blocks(normal: Floats, blocks: Sequence[NDArray[np.int64]]) -> Fl
         at = np.ix_(block, block)
         out[at] = inverse(normal[at])
     return out
+
+
+def eliminated(normal: Floats, right: Floats, variance: Floats) -> tuple[Floats, Floats, Floats]:
+    """Eliminate the last unknowns of normal equations, of which something is known beforehand.
+
+    Parameters
+    ----------
+    normal, right : arrays, shapes (n + k, n + k) and (n + k,)
+        Of all unknowns, without what is known of the last k.
+    variance : (k,) array
+        With which these are known to be 0; an unknown of variance 0 is none.
+
+    Returns
+    -------
+    normal, right : arrays, shapes (n, n) and (n,)
+        Of the others, by Schur's complement.
+    further : (k, n + 1) array
+        Gives the last unknowns as its product with the others', negative, and a 1.
+    """
+    count = len(normal) - len(variance)
+    both = np.column_stack([normal[:, :count], right])
+    inner = np.eye(len(variance)) + variance[:, None] * normal[count:, count:]
+    further = np.asarray(np.linalg.solve(inner, variance[:, None] * both[count:]))
+    left = both[:count] - normal[:count, count:] @ further
+    return left[:, :-1], left[:, -1], further
