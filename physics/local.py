@@ -74,7 +74,7 @@ def estimate_locally(
     """
     known = traces(sightings)
     meetings = [
-        Meeting(c.t, c.stones, max(_gap(known[stone], c.t) for stone in c.stones)) for c in contacts
+        Meeting(c.t, c.stones, max(known[stone].gap(c.t) for stone in c.stones)) for c in contacts
     ]
     pieces, _ = cut_all(known, meetings, radius)
     idle = [piece for piece in pieces if piece.rest and _alone(piece)]
@@ -150,14 +150,6 @@ def _scatter(trace: Trace, piece: Piece) -> Floats:
     xy = trace.xy[piece.samples]
     out: Floats = (xy - np.median(xy, axis=0)) / trace.sd[piece.samples]
     return out * huber_weights(out)
-
-
-def _gap(trace: Trace, time: float) -> float:
-    """Time between the sightings either side of `time`, at least the usual step."""
-    if len(trace.t) < 2:
-        return trace.step
-    k = int(np.clip(np.searchsorted(trace.t, time), 1, len(trace.t) - 1))
-    return max(trace.step, float(trace.t[k] - trace.t[k - 1]))
 
 
 def _distances(fit: ShotFit, radius: float) -> list[str]:

@@ -58,6 +58,13 @@ class Trace:
         """
         return self.sd_place / PLACE_REACH
 
+    def gap(self, time: float) -> float:
+        """Time between the sightings either side of a time, at least the usual step, s."""
+        if len(self.t) < 2:
+            return self.step
+        k = int(np.clip(np.searchsorted(self.t, time), 1, len(self.t) - 1))
+        return max(self.step, float(self.t[k] - self.t[k - 1]))
+
     def until(self, end: float) -> Trace:
         """Return what was sighted before a time, s."""
         keep = self.t < end

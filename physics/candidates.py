@@ -1,0 +1,162 @@
+"""Where two paths come near enough for a hit: all that may have been one, in order of time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physics.segments import breaks
+from physics.shot_fit import Meeting
+from physics.traces import Trace
+
+Floats = NDArray[np.float64]
+
+REACH = 1.15
+"""Distance in units of 2R up to which two discs may touch (scale errors, covers, shape)."""
+
+LITTLE = 0.25
+"""Time within which a hit shows in where a stone is, s, unless six sightings take longer."""
+
+
+def candidates(known: Mapping[str, Trace], radius: float) -> list[Meeting]:
+    """Find where two paths come within reach of a contact, in order of time."""
+    moving = {name for name, path in known.items() if _extent(path) > 0.25 * radius}
+    turns = {name: breaks(known[name].t, known[name].xy, known[name].sd) for name in moving}
+    found: list[Meeting] = []
+    for first, second in combinations(sorted(known), 2):
+        if first in moving or second in moving:
+            found += _approaches(known[first], known[second], turns, radius)
+    return _causal(sorted(found, key=lambda meeting: meeting.t), known)
+
+
+def _causal(meetings: list[Meeting], known: Mapping[str, Trace]) -> list[Meeting]:
+    """Put a hit that sets a touching pair in motion before the hit of that pair."""
+    out = list(meetings)
+    for i, late in enumerate(meetings):
+        for j, early in enumerate(meetings[:i]):
+            width = max(early.looseness, late.looseness)
+            if late.t - early.t > 2.5 * width or set(early.stones).isdisjoint(late.stones):
+                continue
+            if _closing(late, known, early.t) > 0 >= _closing(early, known, early.t):
+                out[j] = replace(early, t=late.t + 0.01 * width)
+    return sorted(out, key=lambda meeting: meeting.t)
+
+
+def _closing(meeting: Meeting, known: Mapping[str, Trace], time: float) -> float:
+    """How much nearer, m, a pair came over a few sightings before `time`; 0 if none for sure."""
+    first, second = (known[stone] for stone in meeting.stones)
+    step = max(first.step, second.step)
+    t = time - step * np.array([8.0, 7.0, 6.0, 3.0, 2.0, 1.0])
+    distance = np.hypot(*(_at(second, t) - _at(first, t)).T)
+    change = float(distance[:3].mean() - distance[3:].mean())
+    noise = np.sqrt(np.mean(first.sd**2) + np.mean(second.sd**2))
+    return change if change > 3 * noise else min(change, 0.0)
+
+
+def _extent(path: Trace) -> float:
+    """Size of the region that the middle 96 % of a path's places lie in, m."""
+    low, high = np.quantile(path.xy, [0.02, 0.98], axis=0)
+    return float(np.hypot(*(high - low)))
+
+
+def _approaches(
+    a: Trace, b: Trace, turns: Mapping[str, Sequence[float]], radius: float
+) -> list[Meeting]:
+    start, end = max(a.t[0], b.t[0]), min(a.t[-1], b.t[-1])
+    t = np.union1d(a.t, b.t)
+    t = t[(t >= start) & (t <= end)]
+    if len(t) < 3:
+        return []
+    apart = _at(b, t) - _at(a, t)
+    distance = np.hypot(apart[:, 0], apart[:, 1])
+    # Between two sightings they may have come closer by what they move in that time.
+    noise = 3 * np.sqrt(np.mean(a.sd**2) + np.mean(b.sd**2))
+    step = np.maximum(np.hypot(*np.diff(apart, axis=0).T) - noise, 0.0)
+    step = _over_gaps(a, b, t, step)
+    reach = REACH * 2 * radius + 0.6 * np.maximum(np.append(step, 0.0), np.append(0.0, step))
+    near = np.flatnonzero(distance < reach + noise / 3)
+    # One approach lasts until they are clearly out of reach of each other.
+    far = np.cumsum(distance > 1.1 * reach + noise)
+    out: list[Meeting] = []
+    for run in np.split(near, np.flatnonzero(np.diff(far[near])) + 1):
+        if not len(run):
+            continue
+        both = turns.get(a.stone, ()), turns.get(b.stone, ())
+        times = _meeting_times(t, distance, run, noise, both)
+        for time in times:
+            if _moves(a, time, radius) or _moves(b, time, radius):
+                gap = max(a.gap(time), b.gap(time))
+                out.append(Meeting(time, (a.stone, b.stone), gap))
+    return out
+
+
+def _meeting_times(
+    t: Floats,
+    distance: Floats,
+    run: NDArray[np.int64],
+    noise: float,
+    turns: tuple[Sequence[float], Sequence[float]],
+) -> list[float]:
+    """List the times within one stretch of nearness at which the two may have met.
+
+    The closest approach; the first moment that is as close as noise can tell, since one may
+    follow the other from there; and the times at which the motion of both changed, since two
+    may lie side by side for long.
+    """
+    k = int(run[np.argmin(distance[run])])
+    first = int(run[np.argmax(distance[run] < distance[k] + noise)])
+    times = [_vertex(t, distance, k)]
+    step = float(np.median(np.diff(t)))
+    further = [] if first == 0 else [_vertex(t, distance, first)]
+    one, other = turns
+    inside = [turn for turn in one if t[run[0]] <= turn <= t[run[-1]]]
+    further += [turn for turn in inside if any(abs(turn - x) < 3 * step for x in other)]
+    for time in further:
+        if min(abs(time - x) for x in times) > 3 * step:
+            times.append(time)
+    return times
+
+
+def _moves(path: Trace, time: float, radius: float) -> bool:
+    """Whether a stone is somewhere else a little after `time` than before it."""
+    k = int(np.searchsorted(path.t, time))
+    few = max(6, round(LITTLE / path.step))
+    before, after = path.xy[max(k - few, 0) : max(k - 1, 1)], path.xy[k + 1 : k + few]
+    if not len(before) or not len(after):
+        return True
+    shift = float(np.hypot(*(after.mean(axis=0) - before.mean(axis=0))))
+    sd = float(np.mean(path.sd)) * np.sqrt(1 / len(before) + 1 / len(after))
+    return bool(shift > max(4 * sd, 0.02 * radius))
+
+
+def _at(path: Trace, t: Floats) -> Floats:
+    return np.column_stack([np.interp(t, path.t, path.xy[:, axis]) for axis in range(2)])
+
+
+def _over_gaps(a: Trace, b: Trace, t: Floats, step: Floats) -> Floats:
+    """Relative movement over the whole of the gap that each interval lies in."""
+    out = step.copy()
+    middle = 0.5 * (t[1:] + t[:-1])
+    for path in (a, b):
+        k = np.clip(np.searchsorted(path.t, middle), 1, len(path.t) - 1)
+        ratio = (path.t[k] - path.t[k - 1]) / (t[1:] - t[:-1])
+        out = np.maximum(out, step * ratio)
+    return out
+
+
+def _vertex(t: Floats, distance: Floats, k: int) -> float:
+    """Time of closest approach from lines through the two samples on either side of it."""
+    if 2 <= k < len(t) - 2:
+        for low in (k, k + 1):  # the last sample before the meeting is k - 1 or k
+            down = (distance[low - 1] - distance[low - 2]) / (t[low - 1] - t[low - 2])
+            up = (distance[low + 1] - distance[low]) / (t[low + 1] - t[low])
+            if down < 0 < up:
+                rise = distance[low] - up * t[low] - distance[low - 1] + down * t[low - 1]
+                cross = rise / (down - up)
+                if t[low - 1] <= cross <= t[low]:
+                    return float(cross)
+    return float(t[k])

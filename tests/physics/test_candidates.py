@@ -1,0 +1,50 @@
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from physics.candidates import candidates
+from physics.traces import Trace, traces
+from tests.physics.watch import RADIUS, hit_motion, watch
+from tests.synthetic.physics import Start
+
+
+def straight(name: str, place: tuple[float, float], velocity: tuple[float, float]) -> Trace:
+    """A stone that keeps its velocity, seen 30 times a second for two seconds."""
+    t = np.arange(60) / 30
+    xy = np.array(place) + t[:, None] * np.array(velocity)
+    none = np.full(60, np.nan)
+    return Trace(name, t, xy, np.full((60, 2), 1e-3), none, none, np.zeros(60))
+
+
+@pytest.mark.parametrize(("beside", "count"), [(0.0, 1), (0.28, 1), (0.4, 0), (0.6, 0)])
+def test_paths_within_reach_are_candidates_at_their_nearest(beside: float, count: int) -> None:
+    # They pass each other at t = 0.5 s, whatever else they do.
+    paths = {
+        "A": straight("A", (0.0, -0.5), (0.0, 1.0)),
+        "B": straight("B", (beside, 0.5), (0.0, -1.0)),
+    }
+    found = candidates(paths, RADIUS)
+    assert len(found) == count
+    for meeting in found:
+        assert meeting.stones == ("A", "B")
+        assert meeting.t == pytest.approx(0.5, abs=0.04)
+
+
+def test_stones_that_rest_side_by_side_never_meet() -> None:
+    paths = {
+        "A": straight("A", (0.0, 0.0), (0.0, 0.0)),
+        "B": straight("B", (2 * RADIUS, 0.0), (0.0, 0.0)),
+    }
+    assert candidates(paths, RADIUS) == []
+
+
+def test_candidates_of_a_row_come_in_the_order_of_cause() -> None:
+    # A strikes B, which touches C: the hit of B and C cannot come before.
+    motion = hit_motion(1.5, 0.02, others=(Start(0.0, 2 * RADIUS + 0.002),))
+    found = candidates(traces(watch(motion, np.random.default_rng(3), sd=0.003)), RADIUS)
+    pairs = [meeting.stones for meeting in found]
+    assert pairs.index(("A", "B")) < pairs.index(("B", "C"))
+    assert all(one.t <= two.t for one, two in pairwise(found))
