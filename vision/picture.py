@@ -56,11 +56,21 @@ class Planes:
     turns: int = 0
 
     @classmethod
-    def of(cls, frame: av.VideoFrame) -> Planes:
-        """Take a decoded frame of whatever format, the way up in which it is meant to be shown."""
-        if frame.format.name not in ("yuv420p", "yuvj420p"):
-            frame = frame.reformat(format="yuv420p")
+    def of(cls, frame: av.VideoFrame, pixel: float = 1.0) -> Planes:
+        """Take a decoded frame of whatever format as it is meant to be shown: upright, unsqueezed.
+
+        Parameters
+        ----------
+        frame : av.VideoFrame
+        pixel : float
+            Width of its pixels over their height.
+        """
         turns = round(frame.rotation / 90) % 4
+        name = frame.format.name
+        layout = name if name in ("yuv420p", "yuvj420p") else "yuv420p"
+        width = frame.width if pixel == 1 else 2 * round(frame.width * pixel / 2)
+        if (layout, width) != (name, frame.width):
+            frame = frame.reformat(width=width, format=layout)
         luma, blue, red = (_upright(_values(plane), turns) for plane in frame.planes)
         return cls(luma, blue, red, _to_bgr(frame), frame=frame, turns=turns)
 

@@ -29,13 +29,19 @@ def number(frame: Frame) -> int:
     return round(float((frame.image[4:28].mean(axis=(0, 2)) > 110).sum())) // 2 - 1
 
 
-def write_clip(path: Path, times: Sequence[float], **options: str) -> Path:
-    """Write H.264 with the given presentation times, s; B-frames come out of order."""
+def write_clip(
+    path: Path, times: Sequence[float], *, pixel: Fraction = Fraction(1), **options: str
+) -> Path:
+    """Write H.264 with the given presentation times, s; B-frames come out of order.
+
+    Its pixels are meant to be shown so many times as wide as high.
+    """
     clock = Fraction(1, 90_000)
     with av.open(str(path), "w", options=options) as container:
         stream = container.add_stream("libx264", rate=30)
         stream.width, stream.height, stream.pix_fmt = WIDTH, HEIGHT, "yuv420p"
         stream.codec_context.time_base = clock
+        stream.codec_context.sample_aspect_ratio = pixel
         stream.options = {"bf": "2", "g": "10"}
         for index, t in enumerate(times):
             frame = av.VideoFrame.from_ndarray(picture(index), format="bgr24")
@@ -74,6 +80,19 @@ def test_a_clip_can_be_read_again(tmp_path: Path) -> None:
     assert [(frame.index, frame.t) for frame in clip] == first
     assert clip.expected == clip.frames == 12
     assert clip.fps == pytest.approx(25, rel=0.02)  # the last frame may last longer
+
+
+def test_squeezed_pictures_are_shown_as_they_are_meant(tmp_path: Path) -> None:
+    plain, squeezed = (
+        open_clip([write_clip(tmp_path / f"{k}.mp4", np.arange(3) / 25, pixel=pixel)])
+        for k, pixel in enumerate((Fraction(1), Fraction(4, 3)))
+    )
+    assert plain.size == (WIDTH, HEIGHT)
+    assert squeezed.size == (2 * round(WIDTH * 2 / 3), HEIGHT)
+    for one, other in zip(plain, squeezed, strict=True):
+        assert other.image.shape[1::-1] == squeezed.size
+        wide = cv2.resize(one.image, squeezed.size, interpolation=cv2.INTER_LINEAR)
+        assert np.abs(wide[4:28].astype(float) - other.image[4:28]).mean() < 4
 
 
 def test_a_range_of_frames_keeps_numbers_and_times(tmp_path: Path) -> None:
