@@ -9,6 +9,7 @@ from data.sheet import STONE, Stone
 from vision.appearance import MOST_COLOURS, UNLIKE, Appearance, convincing, learn
 from vision.camera import Camera
 from vision.clip import Image
+from vision.sighting import Refusal, Sighting
 from vision.stones import NEAREST, Findings, search_picture
 
 
@@ -41,10 +42,15 @@ def glance(pictures: Sequence[tuple[Image, Camera]], disc: Stone = STONE) -> lis
 
 def _with_strangers(known: Findings, other: Findings, look: Appearance, disc: Stone) -> Findings:
     """Add stones of a colour of which none convinces to those of the colour that is known."""
+
+    def apart(place: Sighting | Refusal, stones: Sequence[Sighting]) -> bool:
+        least = NEAREST * disc.radius
+        return all(hypot(place.x - s.x, place.y - s.y) > least for s in stones)
+
     strangers = [
         stone
         for stone in other.stones
-        if look.nearest(stone.colour)[1] > UNLIKE
-        and all(hypot(stone.x - s.x, stone.y - s.y) > NEAREST * disc.radius for s in known.stones)
+        if look.nearest(stone.colour)[1] > UNLIKE and apart(stone, known.stones)
     ]
-    return Findings((*known.stones, *strangers), known.refused)
+    refused = tuple(place for place in known.refused if apart(place, strangers))
+    return Findings((*known.stones, *strangers), refused)

@@ -7,7 +7,7 @@ from tests.vision.test_follow import sighting
 from vision import glance as module
 from vision.camera import Camera
 from vision.glance import glance
-from vision.sighting import Sighting
+from vision.sighting import Refusal, Sighting
 from vision.stones import Findings
 
 RED, BLUE = np.array([120.0, 190.0, 165.0]), np.array([50.0, 140.0, 92.0])
@@ -28,8 +28,12 @@ def test_a_stone_of_another_colour_stays_though_it_convinces_less(
     )  # fmt: skip
 
     def search(image: object, camera: object, appearance: object, disc: object) -> Findings:
-        return Findings(first if appearance is None else first[:1])
+        refused = tuple(
+            Refusal(s.x, s.y, 0.4, "too little of a stone about it") for s in first[1:3]
+        )
+        return Findings(first) if appearance is None else Findings(first[:1], refused)
 
     monkeypatch.setattr(module, "search_picture", search)
     (found,) = glance([(np.zeros((4, 4, 3), np.uint8), Camera(0, 0.0, np.eye(3), (4, 4)))])
     assert [s.x for s in found.stones] == [0.0, 0.6]
+    assert [place.x for place in found.refused] == [1.2]  # what is taken is not refused too
