@@ -160,8 +160,7 @@ class Piece:
             return
         self._refined += 1
         self.rig = self._joint(self._spread()).rig
-        for i in (-2, -1):
-            seen = self.seen[i]
+        for i, seen in list(enumerate(self.seen))[-MEMORY:]:  # by them the next are predicted
             view = solve_view(seen.marks, seen.view, self.rig, self.size, view_sd=HELD).view
             self.seen[i] = replace(seen, view=view)
 

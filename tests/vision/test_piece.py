@@ -1,20 +1,24 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
+import pytest
 
 from tests.synthetic import PAINTS, render_still, sample_scene, tilted_camera
 from tests.vision.places import RINGS
 from tests.vision.test_edge_tracker import filmed, tracker
+from vision import edge_tracker
 from vision.clip import Frame
 from vision.edge_tracker import EdgeTracker
 from vision.house import find_house
 from vision.house_fit import HouseFit
+from vision.normals import lay_out
 from vision.outline import Rim
-from vision.paint import FIXED, joined
+from vision.paint import CIRCLES, FIXED, joined
 from vision.piece import Piece
-from vision.pose import aim, camera
+from vision.pose import ROLL, aim, camera
 from vision.rig import OVERHEAD, start_rig
 
 SIZE = (640, 360)
@@ -67,3 +71,15 @@ def test_one_camera_explains_its_house_and_not_that_of_another() -> None:
     other = find_house(np.asarray(render_still(scene, beside), np.uint8))
     assert other is not None
     assert piece.explains(other) is None
+
+
+def test_where_no_line_is_seen_the_roll_stays_nearly_what_it_was(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(edge_tracker, "lay_out", partial(lay_out, lines=False))
+    frames, house = filmed()
+    piece = followed(house, frames)
+    assert not any((seen.marks.line >= CIRCLES).any() for seen in piece.seen[1:])
+    roll = np.array([seen.view.vector[ROLL] for seen in piece.seen])
+    assert np.abs(np.diff(roll)).max() < np.radians(0.25)
+    assert np.abs(roll - roll[0]).max() < np.radians(2.0)
