@@ -25,7 +25,8 @@ LITTLE = 0.25
 def candidates(known: Mapping[str, Trace], radius: float) -> list[Meeting]:
     """Find where two paths come within reach of a contact, in order of time."""
     moving = {name for name, path in known.items() if _extent(path) > 0.25 * radius}
-    turns = {name: breaks(known[name].t, known[name].xy, known[name].sd) for name in moving}
+    paths = {name: known[name] for name in moving}
+    turns = {name: breaks(p.t, p.xy, p.sd, p.lasting) for name, p in paths.items()}
     found: list[Meeting] = []
     for first, second in combinations(sorted(known), 2):
         if first in moving or second in moving:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physics.stretch import PLACE_MEMORY
-from physics.traces import Trace
+from physics.traces import LASTING, Trace
 
 Floats = NDArray[np.float64]
 
@@ -35,17 +35,14 @@ PLACE = 0.002
 """Places that are all this near to their median, m, are one, whatever their errors: those of a
 camera that wanders are alike in all frames."""
 
-ALIKE, LASTING = 1.25, 0.35
-"""Shares of a place's variance by which errors of neighbouring frames are alike, and by which those
-within `PLACE_MEMORY` are: with the first breaks are sought, with the second they are believed. Of
-211 paths whose truth is known 97 were cut for nothing by the first alone, 8 by both; with half a
-variance, a push of 0.1 m/s is missed."""
+ALIKE = 1.25
+"""Share of a place's variance by which the errors of neighbouring frames are alike."""
 
 OUTLIER = 16.0
 """Squared normalised error, two axes, at which a sample costs no more."""
 
 
-def breaks(t: Floats, xy: Floats, sd: Floats) -> list[float]:
+def breaks(t: Floats, xy: Floats, sd: Floats, lasting: float = LASTING) -> list[float]:
     """Find the times at which a path stops being one motion of constant acceleration.
 
     The partition with the highest marginal likelihood, found exactly by pruned dynamic
@@ -57,6 +54,8 @@ def breaks(t: Floats, xy: Floats, sd: Floats) -> list[float]:
     ----------
     t, xy, sd : (n,), (n, 2), (n, 2) arrays
         Times, places and their standard deviations.
+    lasting : float
+        Share of the places' variance by which those within `PLACE_MEMORY` err alike.
 
     Returns
     -------
@@ -64,11 +63,11 @@ def breaks(t: Floats, xy: Floats, sd: Floats) -> list[float]:
         Times between the last sample of one segment and the first of the next, s.
     """
     # The same paths are asked for again: for hits, for what moves, for the filter.
-    return list(_breaks(np.column_stack([t, xy, sd]).tobytes()))
+    return list(_breaks(np.column_stack([t, xy, sd]).tobytes(), lasting))
 
 
 @lru_cache(maxsize=64)
-def _breaks(samples: bytes) -> tuple[float, ...]:
+def _breaks(samples: bytes, lasting: float) -> tuple[float, ...]:
     """As `breaks`, of rows of time, place and standard deviations."""
     t, xy, sd = np.split(np.frombuffer(samples).reshape(-1, 5), [1, 3], axis=1)
     t, n = t[:, 0], len(t)
@@ -81,7 +80,8 @@ def _breaks(samples: bytes) -> tuple[float, ...]:
     # As often as sightings err alike they say the same once more: only what stands out of that is
     # a break. Where it is, their scatter tells best.
     alike = 2 * PLACE_MEMORY / float(np.median(np.diff(t)))
-    starts = _starts(t, xy, (1 + LASTING * alike) * variance, np.isin(np.arange(n), sought))
+    held = (1 + max(ALIKE, lasting * alike)) * variance
+    starts = _starts(t, xy, held, np.isin(np.arange(n), sought))
     return tuple(0.5 * float(t[j - 1] + t[j]) for j in starts)
 
 
@@ -210,7 +210,7 @@ def cut(path: Trace, hits: Sequence[tuple[int, float]], radius: float) -> list[P
         sure = inside[
             (path.t[inside] > bounds[k] + margin) & (path.t[inside] < bounds[k + 1] - margin)
         ]
-        edges = breaks(path.t[sure], path.xy[sure], path.sd[sure]) if len(sure) else []
+        edges = breaks(path.t[sure], path.xy[sure], path.sd[sure], path.lasting)
         cuts = [bounds[k], *_spaced(edges, path.t[inside]), bounds[k + 1]]
         run: list[Piece] = []
         for i in range(len(cuts) - 1):

