@@ -25,7 +25,7 @@ LEAST_SPREAD = 0.01
 """Least spread of decelerations from glide to glide, m/s²: no ice law is exactly constant."""
 
 CHANGE = 0.002
-"""How much a deceleration changes in time at 1 m/s, m/s³: in Penner's law (μ g)² / 2 v², 0.003, in
+"""How much ice changes a deceleration in time at 1 m/s, m/s³: in Penner's law (μ g)² / 2 v², 0.003, in
 FCV1's half as much, on even ice not at all."""
 
 WORST = 0.02
@@ -48,14 +48,15 @@ def measure_glides(
     """
     glides, values, cov = _each(fit, known, radius)
     friction, spread = _pooled(values, cov)
-    usual = USUAL if curling_size(radius) else ANY
+    curling = curling_size(radius)
+    usual, change = (USUAL, CHANGE) if curling else (ANY, 0.0)
     mean, sd = float(usual.value or 0.0), float(usual.stderr or 0.0)
     if friction.value is not None and friction.stderr is not None:
         measured, error = friction.value * GRAVITY, max(friction.stderr * GRAVITY, 1e-6)
         share = sd**2 / (sd**2 + error**2)
         mean, sd = mean + share * (measured - mean), sd * error / float(np.hypot(sd, error))
     spread = float(np.sqrt(max(spread, LEAST_SPREAD) ** 2 + sd**2))
-    return glides, friction, Deceleration(mean, spread, spread, CHANGE)
+    return glides, friction, Deceleration(mean, spread, spread, change)
 
 
 def _each(
