@@ -25,8 +25,8 @@ LEAST_SPREAD = 0.01
 """Least spread of decelerations from glide to glide, m/s²: no ice law is exactly constant."""
 
 CHANGE = 0.002
-"""How much ice changes a deceleration in time at 1 m/s, m/s³: in Penner's law (μ g)² / 2 v², 0.003, in
-FCV1's half as much, on even ice not at all."""
+"""How much ice changes a deceleration in time at 1 m/s, m/s³: (μ g)² / 2 v² in Penner's law, 0.003,
+half as much in FCV1's, nothing on even ice."""
 
 WORST = 0.02
 """Standard error of a friction beyond which a glide is said to tell nothing."""
