@@ -47,7 +47,7 @@ class Glimpse:
     Attributes
     ----------
     t : float
-        S.
+        When, s.
     grey : ndarray, shape (48, 48)
         Lightness; NaN where the picture ends.
     """

@@ -28,11 +28,10 @@ SQUASHES = np.array(
 """Height over width of a circle's image, and how far its short axis leans from upright, rad."""
 
 RATIOS = np.array([1.0, *(OVERHEAD.mean[[R8, R4]] / HOUSE.twelve_foot)])
+"""Usual radii of the 12-, 8- and 4-ft edges, as shares of the first."""
 
-SMALLEST = 0.09
-"""Least radius of the 12-ft circle that is looked for, as a fraction of the picture's width."""
-
-LARGEST = 0.85
+SMALLEST, LARGEST = 0.09, 0.85
+"""Radii between which the 12-ft circle is looked for, as fractions of the picture's width."""
 
 EDGE_LOW, EDGE_HIGH = 150, 300
 """Hysteresis of the edges, as gradients of the Scharr operator: steps of some 14 and 28 levels."""
@@ -63,7 +62,7 @@ class Guess:
     Attributes
     ----------
     centre : ndarray, shape (2,)
-        Px.
+        Where the picture shows it, px.
     scale : float
         Pixels per metre along the long axis of the circles' images.
     foreshortening : float
@@ -188,7 +187,7 @@ def _radii(
     r = np.hypot(d[:, 0], d[:, 1])
     facing = (d * gradients).sum(1) / np.maximum(r, 1e-9)
     tolerance = np.maximum(0.97 - 2.0 / np.maximum(r, 4.0), 0.8)
-    largest = int((LARGEST + 0.02) * w)
+    largest = max(int((LARGEST + 0.02) * w), int(LARGEST * w) + 2)
     near = (np.abs(facing) > tolerance) & (r < largest - 1)
     sector = (np.arctan2(d[near, 1], d[near, 0]) * (ANGLES / (2 * np.pi))).astype(int) % ANGLES
     # Which sectors hold an edge, per polarity and radius: many edges in one count once.

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
 
 from data.errors import InputError
 from data.progress import Progress, no_progress
 from vision.camera import Camera
-from vision.clip import Clip, Frame
+from vision.clip import Clip
 from vision.placed import Placed, nobody
 
 Stick = tuple[float, float, float, float, float]
@@ -43,17 +41,18 @@ def stick_camera(stick: Stick, size: tuple[int, int], frame: int = 0, t: float =
 
 
 def stick_cameras(
-    clip: Clip | Iterable[Frame],
-    stick: Stick,
-    progress: Progress = no_progress,
-    placed: Placed = nobody,
+    clip: Clip, stick: Stick, progress: Progress = no_progress, placed: Placed = nobody
 ) -> tuple[Camera, ...]:
-    """Give every frame of a clip the camera of the stick; `placed` is told of each."""
+    """Give every frame of a clip the camera of the stick; `placed` is told of each.
+
+    Raises
+    ------
+    InputError
+        As `stick_camera`.
+    """
     cameras: list[Camera] = []
-    total = clip.expected if isinstance(clip, Clip) else None
-    for done, frame in enumerate(clip):
-        height, width = frame.image.shape[:2]
-        cameras.append(stick_camera(stick, (width, height), frame.index, frame.t))
+    for done, frame in enumerate(clip, 1):
+        cameras.append(stick_camera(stick, clip.size, frame.index, frame.t))
         placed(frame, cameras[-1])
-        progress("camera", done + 1, total)
+        progress("camera", done, clip.expected)
     return tuple(cameras)

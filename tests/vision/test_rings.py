@@ -53,3 +53,9 @@ def test_the_middle_house_comes_before_its_neighbour() -> None:
 
 def test_a_blank_picture_has_no_rings() -> None:
     assert guesses(np.full((H, W, 3), 128, np.uint8)) == []
+
+
+@pytest.mark.parametrize("width", [8, 20, 41, 60])
+def test_a_tiny_picture_stops_nothing(width: int) -> None:
+    tiny = cv2.resize(drawn((160, 90), 70), (width, width), interpolation=cv2.INTER_AREA)
+    assert len(guesses(tiny)) <= 5

@@ -1,14 +1,17 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from data.errors import InputError
-from vision.stick import stick_camera
+from vision.clip import open_clip
+from vision.stick import stick_camera, stick_cameras
 
 
 @given(
@@ -38,3 +41,18 @@ def test_a_stick_without_a_length_is_refused(
 ) -> None:
     with pytest.raises(InputError, match=r"stick .*px apart"):
         stick_camera(stick, (320, 240))
+
+
+def test_every_frame_has_the_camera_of_the_stick(tmp_path: Path) -> None:
+    files = [tmp_path / f"{k}.png" for k in range(3)]
+    for file in files:
+        cv2.imwrite(str(file), np.full((48, 64, 3), 90, np.uint8))
+    told: list[tuple[int, float]] = []
+    stick = (10.0, 10.0, 60.0, 10.0, 0.5)
+    cameras = stick_cameras(
+        open_clip(files, 10.0), stick, placed=lambda frame, _: told.append((frame.index, frame.t))
+    )
+    assert [(c.frame, c.t) for c in cameras] == told == [(0, 0.0), (1, 0.1), (2, 0.2)]
+    for camera in cameras:
+        assert camera.size == (64, 48)
+        assert camera.ice([10.0, 0.0]) == pytest.approx([0.0, 0.1])

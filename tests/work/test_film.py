@@ -51,6 +51,15 @@ def test_a_stick_gives_the_scale_and_no_house(tmp_path: Path) -> None:
     assert np.hypot(*np.diff(ice, axis=0)[0]) == pytest.approx(0.5)
 
 
+def test_frames_of_which_none_can_be_read_are_refused(tmp_path: Path) -> None:
+    files = (tmp_path / "a.png", tmp_path / "b.png")
+    cv2.imwrite(str(files[0]), np.full((120, 160, 3), 90, np.uint8))
+    files[1].write_bytes(b"no picture")
+    settings = Settings(stick=(20.0, 20.0, 120.0, 20.0, 0.5), frames=(1, 1))
+    with pytest.raises(InputError, match="none of the frames that are used can be read"):
+        film(files, settings, no_progress, nobody)
+
+
 @pytest.mark.parametrize(
     ("names", "said"),
     [
