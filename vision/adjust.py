@@ -16,8 +16,8 @@ from vision.linear import Frame, Linear, by_rig, linearised
 from vision.paint import Marks, joined
 from vision.pose import VIEW_SIZE, View
 from vision.resection import VIEW_SD
-from vision.rig import RIG_SIZE, Prior
-from vision.robust import WIDTH, inverse, loss, spread
+from vision.rig import Prior
+from vision.robust import WIDTH, loss, spread
 
 Array = NDArray[np.float64]
 
@@ -35,8 +35,6 @@ class Solution:
         Shared part, in the order of `vision.rig.Prior`.
     views : tuple of View
         One per frame.
-    rig_cov : ndarray, shape (14, 14)
-        Covariance of the shared part.
     rms : ndarray
         Residual of the inlying marks per frame, px; NaN where there are none.
     inliers : tuple of ndarray of bool
@@ -47,7 +45,6 @@ class Solution:
 
     rig: Array
     views: tuple[View, ...]
-    rig_cov: Array
     rms: Array
     inliers: tuple[NDArray[np.bool_], ...]
     cost: float
@@ -92,7 +89,6 @@ def solve(
 
     now, shared, damping = start, rig, 1e-4
     at, cost = look(now, shared)
-    schur = np.zeros((RIG_SIZE, RIG_SIZE))
     for _ in range(iterations):
         weight = 1 / (1 + (at.residual / WIDTH) ** 2)
         jv, js = at.by_view * weight, by_rig(every, at, now)
@@ -125,7 +121,6 @@ def solve(
     return Solution(
         shared,
         tuple(View(v) for v in now),
-        sharing * inverse(schur),
         np.array([rms for rms, _ in left]),
         tuple(good for _, good in left),
         float(cost),

@@ -64,8 +64,8 @@ class Camera:
         q = (u − c) / R, the pixel is c + R q (1 + k1 |q|² + k2 |q|⁴).
     f_px : float
         Focal length, px; NaN where unknown.
-    position : ndarray, shape (3,)
-        Place of the camera in ice coordinates, m; NaN where unknown.
+    position : ndarray, shape (3,), optional
+        Place of the camera in ice coordinates, m; None where unknown.
     rms_px : float
         Residual of the edges that fixed it, px; NaN where there were none.
     found : bool
@@ -138,7 +138,7 @@ class Camera:
 
         See `project`.
         """
-        if self.position is None or not np.isfinite(self.position).all():
+        if self.position is None:
             return ice
         rise = np.asarray(height, float)[..., None]
         return np.asarray(ice + (ice - self.position[:2]) * rise / (self.position[2] - rise))
@@ -148,7 +148,7 @@ class Camera:
         xy = apply_homography(
             np.asarray(np.linalg.inv(self.homography), np.float64), self.undistort(pixels)
         )
-        if height and self.position is not None and np.isfinite(self.position).all():
+        if height and self.position is not None:
             xy = xy + (self.position[:2] - xy) * (height / self.position[2])
         return xy
 

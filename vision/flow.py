@@ -6,10 +6,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from vision.picture import Image
+
 Array = NDArray[np.float64]
-Image = NDArray[np.uint8]
 
 FLOW_WIDTH = 480
+"""Width of the pictures in which motion is measured, px."""
 
 
 def _thumbnail(image: Image) -> Image:

@@ -127,7 +127,7 @@ class Follower:
             return []
         t = view.frame.t
         apart = NEAREST * self.disc.radius
-        near, still = 0.15 * self.disc.radius, STILL * self.disc.radius
+        near, still = ON_COURSE * self.disc.radius, STILL * self.disc.radius
         expected = [lead.at(t) for lead in leads]
         found = self._measured(view, leads, expected, ahead)
         going: list[tuple[Lead, Sighting | None]] = []

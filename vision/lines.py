@@ -7,13 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import HOUSE, SHEET
+from vision.picture import Image
 from vision.pose import View, pictured, project, turned
 from vision.rig import SIDE_L, SIDE_R
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
 Flags = NDArray[np.bool_]
-Image = NDArray[np.uint8]
 
 FAINT = 6.0
 """Grey levels beyond which a stronger contrast says no more about a thin line."""

@@ -17,8 +17,11 @@ from data.sheet import Stone
 from vision.appearance import Appearance, membership
 from vision.circles import fit_circles
 from vision.patch import (
+    CAP_END,
     EFFORT,
     HANDLE_HEIGHT,
+    RING_BEGIN,
+    RING_END,
     Effort,
     handle_radii,
     is_plain,
@@ -161,8 +164,9 @@ def well_within(radius: Array, disc: Stone) -> tuple[slice, slice]:
 def _template(disc: Stone, effort: Effort) -> Array:
     """Weights of the radii in the mean over the cap less the mean over the granite."""
     radius = profile_of(disc, effort).radius[: effort.radii]
-    cap = radius * (radius < 0.94 * disc.cap_radius)
-    ring = radius * ((radius > 1.05 * disc.cap_radius) & (radius < 0.96 * disc.radius))
+    cap = radius * (radius < CAP_END * disc.cap_radius)
+    first, last = RING_BEGIN * disc.cap_radius, RING_END * disc.radius
+    ring = radius * ((radius > first) & (radius < last))
     return np.asarray(cap / cap.sum() - ring / ring.sum())
 
 

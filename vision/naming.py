@@ -46,10 +46,11 @@ def first_motion(track: Track, radius: float) -> float | None:
     return float(start if start > times[1] else times[0])
 
 
-def _first_speed(track: Track, steps: int = 5) -> float:
+def _first_speed(track: Track) -> float:
     """Mean speed over the first few frames, m/s."""
-    first, last = track.sightings[0], track.sightings[min(steps, len(track.times) - 1)]
-    wait = track.times[min(steps, len(track.times) - 1)] - track.times[0]
+    few = min(5, len(track.times) - 1)
+    first, last = track.sightings[0], track.sightings[few]
+    wait = track.times[few] - track.times[0]
     return float(np.hypot(last.x - first.x, last.y - first.y) / wait) if wait > 0 else 0.0
 
 

@@ -59,6 +59,11 @@ class Effort:
 EFFORT = Effort()
 
 
+CAP_END, RING_BEGIN, RING_END = 0.94, 1.05, 0.96
+"""Up to where the template of a stone counts as cap, a share of the cap's radius, and between
+which its ring of granite, shares of the cap's and of the stone's: edges are left out."""
+
+
 def is_plain(disc: Stone) -> bool:
     """Say whether a disc has no cap that could be told from its rim."""
     return disc.cap_radius <= 0
@@ -100,6 +105,6 @@ def slants(camera: Camera, places: Array) -> Array:
 
     Its length is the tangent of the angle to the vertical.
     """
-    if camera.position is None or not np.isfinite(camera.position).all():
+    if camera.position is None:
         return np.zeros((len(places), 2))
     return np.asarray((places - camera.position[:2]) / camera.position[2])

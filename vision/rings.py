@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import HOUSE
+from vision.picture import Image
 from vision.rig import OVERHEAD, R4, R8
 
 Array = NDArray[np.float64]
-Image = NDArray[np.uint8]
 
 SQUASHES = np.array(
     [(1.0, 0.0), (0.88, 0.0), (0.75, 0.0), (0.62, 0.0), (0.5, 0.0), (0.4, 0.0)]
@@ -51,6 +51,9 @@ CENTRES = 3
 TRIED = 10
 """Centres about which radii are looked for."""
 
+GUESSES = 5
+"""Hypotheses that are given."""
+
 ANGLES = 72
 """Sectors in which a circle's edges are counted."""
 
@@ -80,7 +83,7 @@ class Guess:
     score: float
 
 
-def guesses(image: Image, count: int = 5) -> list[Guess]:
+def guesses(image: Image) -> list[Guess]:
     """Look for concentric rings in a small picture, some 320 px wide; the best first."""
     points, gradients = _edges(image)
     h, w = image.shape[:2]
@@ -104,7 +107,7 @@ def guesses(image: Image, count: int = 5) -> list[Guess]:
             score -= abs(float(centre[0]) / w - 0.5)
             found.append(Guess(centre, scale, float(squash), float(lean), score))
     found.sort(key=lambda c: -c.score)
-    return found[:count]
+    return found[:GUESSES]
 
 
 def _stretch(squash: float, lean: float) -> Array:

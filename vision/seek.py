@@ -22,6 +22,7 @@ from vision.appearance import Appearance, any_grey_stone, any_stone, membership
 from vision.camera import Camera
 from vision.ice_map import IceMap, rectify
 from vision.lab import lab_of
+from vision.patch import CAP_END, RING_BEGIN, RING_END, is_plain
 from vision.picture import Picture, colours_at
 
 Array = NDArray[np.float64]
@@ -84,7 +85,7 @@ def seek(
     ice = rectify(image, camera, bounds, scale=scale, height=disc.cap_height)
     if ice is None or not ice.valid.any():
         return none
-    if appearance is None and disc.cap_radius > 0:
+    if appearance is None and not is_plain(disc):
         appearance = _unknown(ice, disc)
     response = _response(ice, appearance, disc)
     # Nearer than stones can be: paint of the cap's colour beside a stone may answer more strongly.
@@ -160,7 +161,7 @@ def _annulus(inner: float, outer: float, size: int) -> Floats:
 
 
 def _response(ice: IceMap, appearance: Appearance | None, disc: Stone) -> Floats:
-    if disc.cap_radius <= 0:
+    if is_plain(disc):
         return _disc_response(ice, disc)
     assert appearance is not None
     return _stone_response(ice, appearance, disc)
@@ -170,8 +171,8 @@ def _stone_response(ice: IceMap, appearance: Appearance, disc: Stone) -> Floats:
     worth = membership(ice.image, appearance) * ice.valid
     unit = ice.scale
     size = int(np.ceil(disc.radius * unit))
-    cap = _annulus(0.0, 0.94 * disc.cap_radius * unit, size)
-    ring = _annulus(1.05 * disc.cap_radius * unit, 0.96 * disc.radius * unit, size)
+    cap = _annulus(0.0, CAP_END * disc.cap_radius * unit, size)
+    ring = _annulus(RING_BEGIN * disc.cap_radius * unit, RING_END * disc.radius * unit, size)
     if ice.valid.all():
         return _filtered(worth, cap - ring)
     valid = ice.valid.astype(np.float32)

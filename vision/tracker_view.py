@@ -65,7 +65,7 @@ def view_over(
     return View(system, clip.size, video, clip.expected), marks, off
 
 
-def closest_similarity(cameras: Sequence[Camera], step: float = 1e-4) -> Coordinates:
+def closest_similarity(cameras: Sequence[Camera]) -> Coordinates:
     """Tracker's coordinate systems that agree with cameras at the tee.
 
     Origin, and, of all rotations with one scale, the one closest (least squares) to the
@@ -75,9 +75,8 @@ def closest_similarity(cameras: Sequence[Camera], step: float = 1e-4) -> Coordin
     ----------
     cameras : sequence of Camera
         In the order of their frames.
-    step : float
-        For the derivative, m.
     """
+    step = 1e-4  # for the derivative, m
     around = step * np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]], float)
     pixels = np.array([camera.project(around) for camera in cameras])
     along_x = (pixels[:, 1] - pixels[:, 2]) / (2 * step)

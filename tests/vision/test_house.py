@@ -19,15 +19,13 @@ from tests.synthetic import (
     sweepers,
     tilted_camera,
 )
+from tests.vision.places import RINGS
 from vision.camera import Camera
 from vision.house import find_house
 from vision.house_fit import HouseFit
 
 SIZE = (1280, 720)
 ANGLE = np.arange(16) * np.pi / 8
-RINGS = np.concatenate(
-    [r * np.stack([np.cos(ANGLE), np.sin(ANGLE)], axis=-1) for r in (1.829, 1.219, 0.61)]
-)
 OUTLINE = 0.007
 """The library takes the outer side of a painted outline as the edge; the renderer its middle."""
 

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tests.vision.test_adjust import SIZE, marks, true_rig, views
+from tests.vision.cameras import SIZE, marks, true_rig, views
 from vision.linear import Frame, by_measure, by_rig, linearised
 from vision.paint import MEASURED, joined
 from vision.pose import VIEW_SIZE
