@@ -76,6 +76,8 @@ def solve(
     sharing : float
         How many marks share one error (of paint, of the lens): so much less do they weigh
         against the rig's prior.
+    iterations : int
+        Steps at most.
     """
     every = Frame(joined(frames), size, counts=[len(m) for m in frames])
     held = sharing / prior.sd**2

@@ -25,6 +25,8 @@ HARMONICS = ORDERS[1:-1]
 """Those that are compared."""
 
 _ROUNDS = 6
+"""How often angles and shifts are found anew against the mean that they give."""
+
 ALIKE = 2.5
 """How much larger errors are than if every ring, harmonic and colour erred for itself."""
 

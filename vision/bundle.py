@@ -31,6 +31,7 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 FAMILIES = 3
+"""Of marks: see `vision.shared.family`."""
 
 PAINT_SD = np.array([0.001, 0.002, 1.0])
 """What is expected of the paint of circles and of lines, m; fixed points have none."""

@@ -161,6 +161,8 @@ def follow(
         In order of time; read once.
     radius : float
         Of the discs, m.
+    gate : Gate
+        When a sighting may belong to a track.
 
     Returns
     -------

@@ -167,6 +167,8 @@ def handle_angles(
         rings; None where the cap is not seen well.
     radii : ndarray, shape (rings,)
         Of the rings at one height, m.
+    turning : Turning
+        How angles are followed.
 
     Returns
     -------

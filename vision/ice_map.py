@@ -57,6 +57,8 @@ def rectify(
 
     Parameters
     ----------
+    image, camera : Picture, Camera
+        The picture, and its camera.
     bounds : (x0, x1, y0, y1)
         The part of the ice to map, m; what the picture does not show is left out.
     scale : float

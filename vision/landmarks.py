@@ -92,8 +92,8 @@ def keyframe(
 
     Parameters
     ----------
-    frame : int
-        Index of the picture's frame.
+    frame, picture : int, Picture
+        The picture, and the index of its frame.
     view, cov : View, ndarray of shape (4, 4)
         Its view and that view's covariance.
     rig : ndarray
@@ -134,8 +134,10 @@ def recognise(key: Keyframe, picture: Picture, view: View, rig: Array) -> Marks 
 
     Parameters
     ----------
-    view : View
-        The picture's, as far as it is known: within a tenth of the picture.
+    key : Keyframe
+    picture : Picture
+    view, rig : View, ndarray
+        The picture's camera, as far as it is known: within a tenth of the picture.
 
     Returns
     -------

@@ -33,6 +33,7 @@ REFINE_AT = (8, 40, 160)
 """Numbers of frames at which what they share is fitted anew on the way."""
 
 REFINE_FRAMES = 6
+"""Of all frames so many, spread over them, say what they share on the way."""
 
 MOST_BLUR = 0.004
 """Blur of a picture beyond which it would not look like a sharp one of the same, widths of it."""

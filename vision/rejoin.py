@@ -31,7 +31,7 @@ def rejoined(tracks: Sequence[Track], radius: float, gate: Gate = GATE) -> list[
     Parameters
     ----------
     tracks : sequence of Track
-        In order of birth.
+        In order of birth; those that go on are made longer.
     radius : float
         Of the discs, m.
     gate : Gate

@@ -87,6 +87,8 @@ def solve_view(
         Standard deviation of the view about its start.
     width : float
         Width of the Cauchy loss in standard deviations.
+    iterations : int
+        Steps at most.
     """
     frame = Frame(marks, size)
     return solve_views(frame, [view], rig, view_sd=view_sd, width=width, iterations=iterations)[0]

@@ -69,6 +69,8 @@ def seek(
 
     Parameters
     ----------
+    image, camera : Picture, Camera
+        The picture, and its camera.
     appearance : Appearance, optional
         What stones look like; without it, what any stone looks like (as returned).
     disc : Stone
@@ -117,8 +119,12 @@ def seek_about(
 
     Parameters
     ----------
+    image, camera : Picture, Camera
+        The picture, and its camera.
     places : ndarray, shape (n, 2)
         Where discs are expected, m.
+    appearance, disc, radius_px : Appearance, Stone, float
+        As for `seek`.
     reach : float
         How far from there they may be along x and along y, in radii.
 
