@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.linear import Frame, Linear, by_rig, linearised
+from vision.linear import Linear, Observations, by_rig, linearised
 from vision.paint import Marks, joined
 from vision.pose import VIEW_SIZE, View
 from vision.resection import VIEW_SD
@@ -79,13 +79,13 @@ def solve(
     iterations : int
         Steps at most.
     """
-    every = Frame(joined(frames), size, counts=[len(m) for m in frames])
+    observed = Observations(joined(frames), size, counts=[len(m) for m in frames])
     held = sharing / prior.sd**2
     hold = 1 / np.square(VIEW_SD)
     start = np.array([v.vector for v in views])
 
     def look(vs: Array, s: Array) -> tuple[Linear, float]:
-        at = linearised(every, every.points(s), vs, s)
+        at = linearised(observed, observed.points(s), vs, s)
         value = float((held * (s - prior.mean) ** 2).sum() + (hold * (vs - start) ** 2).sum())
         return at, 0.5 * value + float(loss(at.residual, WIDTH).sum())
 
@@ -93,11 +93,11 @@ def solve(
     at, cost = look(now, shared)
     for _ in range(iterations):
         weight = 1 / (1 + (at.residual / WIDTH) ** 2)
-        jv, js = at.by_view * weight, by_rig(every, at, now)
+        jv, js = at.by_view * weight, by_rig(observed, at, now)
         schur = np.diag(held) + (js * weight) @ js.T
         right = held * (shared - prior.mean) + js @ (weight * at.residual)
         blocks = []
-        for part, v, v0 in zip(every.parts, now, start, strict=True):
+        for part, v, v0 in zip(observed.parts, now, start, strict=True):
             vv = jv[:, part] @ at.by_view[:, part].T + np.diag(hold)
             vv.flat[:: VIEW_SIZE + 1] += damping * vv.diagonal() + 1e-9
             vs = jv[:, part] @ js[:, part].T
@@ -119,7 +119,7 @@ def solve(
         damping = max(damping / 10, 1e-9)
         if done:
             break
-    left = [spread(at.residual[part], every.sd[part], WIDTH) for part in every.parts]
+    left = [spread(at.residual[part], observed.sd[part], WIDTH) for part in observed.parts]
     return Solution(
         shared,
         tuple(View(v) for v in now),

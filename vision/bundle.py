@@ -19,7 +19,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.linear import Frame, Linear, by_measure, by_rig, linearised
+from vision.linear import Linear, Observations, by_measure, by_rig, linearised
 from vision.paint import Marks, joined
 from vision.pose import VIEW_SIZE, View
 from vision.resection import VIEW_SD
@@ -139,12 +139,12 @@ class _Problem:
     ) -> None:
         ordered = [m.pick(np.argsort(piece_of(m), kind="stable")) for m in frames]
         marks = joined(ordered)
-        self.frame = Frame(marks, size, counts=[len(m) for m in ordered])
+        self.observed = Observations(marks, size, counts=[len(m) for m in ordered])
         self.kind = family(marks.line)
         identity = piece_of(marks)
         self.pieces, self.piece = np.unique(identity, return_inverse=True)
         self.family = family(self.pieces // BINS)
-        number = np.repeat(np.arange(len(frames)), self.frame.counts)
+        number = np.repeat(np.arange(len(frames)), self.observed.counts)
         changes = (np.diff(identity, prepend=-1) != 0) | (np.diff(number, prepend=-1) != 0)
         self.first = np.flatnonzero(changes)
         self.basis = basis[number]
@@ -160,9 +160,9 @@ class _Problem:
 
     def see(self, state: _State) -> Linear:
         """Linearise all frames."""
-        points = self.frame.points(state.rig) - (self.basis @ state.travel).T
-        points[:2] += self.frame.way * state.offset[self.piece]
-        return linearised(self.frame, points, state.views, state.rig)
+        points = self.observed.points(state.rig) - (self.basis @ state.travel).T
+        points[:2] += self.observed.way * state.offset[self.piece]
+        return linearised(self.observed, points, state.views, state.rig)
 
     def cost(self, state: _State, at: Linear, paint: Array, noise: Array) -> float:
         """Half the robust sum of squares."""
@@ -193,13 +193,13 @@ class _Problem:
         right = held * np.concatenate(away)
         matrix = np.zeros((len(held), len(held)))
         w = 1 / (noise[self.kind] ** 2 + (at.residual / WIDTH) ** 2)
-        by_shared, by_offset = by_rig(self.frame, at, state.views), by_measure(self.frame, at)
+        by_shared, by_offset = by_rig(self.observed, at, state.views), by_measure(self.observed, at)
         along = (self.basis.T[:, None] * by_shared[POSITION]).reshape(-1, len(w))
         by_shared = np.concatenate([by_shared, along])
         shared, own, pull = by_shared * w, at.by_view * w, w * at.residual
         matrix[rig, rig] = shared @ by_shared.T
         right[rig] += by_shared @ pull
-        for k, part in enumerate(self.frame.parts):
+        for k, part in enumerate(self.observed.parts):
             view = slice(paints.stop + VIEW_SIZE * k, paints.stop + VIEW_SIZE * (k + 1))
             matrix[view, view] = own[:, part] @ at.by_view[:, part].T
             matrix[view, rig] = own[:, part] @ by_shared[:, part].T
@@ -262,7 +262,7 @@ class _Problem:
         w = 1 / (noise[self.kind] ** 2 + (at.residual / WIDTH) ** 2)
         own = at.by_view * w
         views = state.views.copy()
-        for k, part in enumerate(self.frame.parts):
+        for k, part in enumerate(self.observed.parts):
             matrix = own[:, part] @ at.by_view[:, part].T + np.diag(self.hold)
             right = own[:, part] @ at.residual[part] + self.hold * (views[k] - self.start[k])
             views[k] -= np.linalg.solve(matrix, right)

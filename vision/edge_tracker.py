@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import HOUSE
-from vision import linear
 from vision.clip import Frame
 from vision.joint import Seen
+from vision.linear import Observations
 from vision.marks import Evidence, measure_along
 from vision.normals import Normals, lay_out
 from vision.outline import Rim
@@ -233,10 +233,10 @@ class EdgeTracker:
     def _fitted(
         self, marks: Sequence[Marks], views: Sequence[View], rig: Array
     ) -> list[ViewSolution]:
-        frames = linear.Frame(joined(marks), self.size, counts=[len(m) for m in marks])
+        observed = Observations(joined(marks), self.size, counts=[len(m) for m in marks])
         start, lines = views[: len(marks)], all((m.line >= CIRCLES).any() for m in marks)
         view_sd = FREE if lines else HELD
-        return solve_views(frames, start, rig, view_sd=view_sd, width=WIDTH, iterations=6)
+        return solve_views(observed, start, rig, view_sd=view_sd, width=WIDTH, iterations=6)
 
     def _is_settled(
         self, expected: View, evidence: Evidence, fit: ViewSolution, rig: Array

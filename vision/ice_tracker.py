@@ -15,7 +15,7 @@ from vision.clip import Frame
 from vision.edge_tracker import EdgeTracker
 from vision.joint import Seen
 from vision.landmarks import Keyframe, keyframe, recognise
-from vision.linear import Frame as Marked
+from vision.linear import Observations
 from vision.paint import Marks, joined
 from vision.picture import Picture
 from vision.pose import View, project
@@ -98,8 +98,8 @@ class IceTracker:
         pictures = [frame.picture for frame in frames[: len(views)]]
         lines = edges.lines(pictures, views, rig)
         marks = [joined(both) for both in zip(corners, lines, strict=False)]
-        marked = Marked(joined(marks), edges.size, counts=[len(m) for m in marks])
-        fits = solve_views(marked, views[: len(marks)], rig, view_sd=VIEW_SD)
+        observed = Observations(joined(marks), edges.size, counts=[len(m) for m in marks])
+        fits = solve_views(observed, views[: len(marks)], rig, view_sd=VIEW_SD)
         frame, fit = frames[len(fits) - 1], fits[-1]
         if _is_worn(corners[len(fits) - 1], key):
             self.key = keyframe(frame.index, frame.picture, fit.view, rig, fit.cov, key.drift)

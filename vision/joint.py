@@ -19,7 +19,7 @@ from data.sheet import HOUSE
 from vision.bundle import LOST, NOISE_TRUST, bundle
 from vision.camera import PARAMETERS, Camera, CameraError
 from vision.landmarks import Keyframe, replaced
-from vision.linear import Frame, by_measure, by_rig, linearised
+from vision.linear import Observations, by_measure, by_rig, linearised
 from vision.outline import SHARP, Rim
 from vision.paint import CIRCLES, FIXED, Marks, ice_frame, joined, measures
 from vision.pose import VIEW_SIZE, View, camera, project, turning
@@ -181,23 +181,23 @@ def fit_frames(
     marks = joined([s.marks for s in seen])
     marks = replace(marks, sd=marks.sd * shared.noise[family(marks.line)])
     offset, piece = shared.offsets(marks)
-    frame = Frame(marks, size, offset, [len(s.marks) for s in seen])
+    observed = Observations(marks, size, offset, [len(s.marks) for s in seen])
     away = shared.moved(np.array([s.t for s in seen]))
-    frame.foot -= frame.each(away.T)
-    fits = solve_views(frame, [s.view for s in seen], shared.rig, view_sd=VIEW_SD)
+    observed.foot -= observed.each(away.T)
+    fits = solve_views(observed, [s.view for s in seen], shared.rig, view_sd=VIEW_SD)
     views = np.array([fit.view.vector for fit in fits])
-    at = linearised(frame, frame.points(shared.rig), views, shared.rig)
+    at = linearised(observed, observed.points(shared.rig), views, shared.rig)
     weight = 1 / (1 + (at.residual / WIDTH) ** 2)
     # A frame may be noisier than most: fewer marks, people, blur.
-    square = frame.summed(weight * at.residual**2) / LOST
-    free = np.maximum(frame.summed(weight) - VIEW_SIZE, 0.0)
+    square = observed.summed(weight * at.residual**2) / LOST
+    free = np.maximum(observed.summed(weight) - VIEW_SIZE, 0.0)
     noisier = (NOISE_TRUST + square) / (NOISE_TRUST + free)
     by_view = at.by_view * weight
-    by_shared, by_offset = by_rig(frame, at, views), by_measure(frame, at)
+    by_shared, by_offset = by_rig(observed, at, views), by_measure(observed, at)
     hold = 1 / np.square(VIEW_SD)
     identity, on_circle = piece_of(marks), marks.line < CIRCLES
     found = []
-    for k, (s, fit, part) in enumerate(zip(seen, fits, frame.parts, strict=True)):
+    for k, (s, fit, part) in enumerate(zip(seen, fits, observed.parts, strict=True)):
         normal = by_view[:, part] @ at.by_view[:, part].T + np.diag(hold)
         cov = inverse(normal)  # linearised at the same place as the rest, else errors do not cancel
         rig = shared.rig.copy()

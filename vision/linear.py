@@ -20,7 +20,7 @@ _FAR = 1e6
 """Residual, in standard deviations, of a point that the camera cannot see."""
 
 
-class Frame:
+class Observations:
     """Marks of one frame, or of several, in the form in which residuals are worked out.
 
     One column per mark; the frames follow each other, `counts` marks of each.
@@ -105,12 +105,12 @@ class Linear:
     r2: Array
 
 
-def linearised(frame: Frame, points: Array, views: Array, rig: Array) -> Linear:
-    """Residuals of marks at `points` (see `Frame.points`), and derivatives.
+def linearised(observed: Observations, points: Array, views: Array, rig: Array) -> Linear:
+    """Residuals of marks at `points` (see `Observations.points`), and derivatives.
 
     Parameters
     ----------
-    frame : Frame
+    observed : Observations
     points : ndarray, shape (3, n)
         Places of the marks relative to the camera, m.
     views : ndarray, shape (4,) or (frames, 4)
@@ -118,23 +118,23 @@ def linearised(frame: Frame, points: Array, views: Array, rig: Array) -> Linear:
     """
     views = views.reshape(-1, VIEW_SIZE)
     rotations = [rotation_matrix(view) for view in views]
-    p = frame.turned(rotations, points)
+    p = observed.turned(rotations, points)
     z = p[2]
     hidden = z <= 1e-3
     blind = bool(hidden.any())
     if blind:
         z = np.where(hidden, 1.0, z)
-    lens = frame.each(np.exp(views[:, 3]) / frame.radius) / z
+    lens = observed.each(np.exp(views[:, 3]) / observed.radius) / z
     q = p[:2] * lens
-    k1 = frame.each(rig[K1] + rig[K1_ZOOM] * zoom(views[:, 3], frame.size))
+    k1 = observed.each(rig[K1] + rig[K1_ZOOM] * zoom(views[:, 3], observed.size))
     k2 = rig[K2]
     r2 = q[0] * q[0] + q[1] * q[1]
     stretch = 1 + r2 * (k1 + k2 * r2)
-    nx, ny = frame.normal
+    nx, ny = observed.normal
     along = nx * q[0] + ny * q[1]
-    residual = along * stretch - frame.target
+    residual = along * stretch - observed.target
     bend = along * (2 * k1 + 4 * k2 * r2)
-    by_q = frame.normal * stretch + bend * q
+    by_q = observed.normal * stretch + bend * q
     by_log_f = by_q[0] * q[0] + by_q[1] * q[1]
     by_point = np.empty_like(p)
     by_point[:2] = by_q * lens
@@ -149,26 +149,26 @@ def linearised(frame: Frame, points: Array, views: Array, rig: Array) -> Linear:
     moment[1] = p[2] * by_point[0] - p[0] * by_point[2]
     moment[2] = p[0] * by_point[1] - p[1] * by_point[0]
     by_view = np.empty((VIEW_SIZE, p.shape[1]))
-    by_view[:3] = frame.turned([turning(view).T for view in views], moment)
+    by_view[:3] = observed.turned([turning(view).T for view in views], moment)
     by_view[3] = by_log_f + by_k1 * rig[K1_ZOOM]
-    by_place = frame.turned([rotation.T for rotation in rotations], by_point)
+    by_place = observed.turned([rotation.T for rotation in rotations], by_point)
     return Linear(residual, by_view, by_place, by_k1, r2)
 
 
-def by_rig(frame: Frame, at: Linear, views: Array) -> Array:
+def by_rig(observed: Observations, at: Linear, views: Array) -> Array:
     """Differentiate the residuals by the rig, shape (14, n)."""
-    found = np.zeros((RIG_SIZE, len(frame.line)))
+    found = np.zeros((RIG_SIZE, len(observed.line)))
     found[POSITION] = -at.by_place
     found[K1] = at.by_k1
     found[K2] = at.by_k1 * at.r2
-    zoomed = zoom(views.reshape(-1, VIEW_SIZE)[:, 3], frame.size)
-    found[K1_ZOOM] = at.by_k1 * frame.each(zoomed)
-    column = MEASURED[frame.line]
+    zoomed = zoom(views.reshape(-1, VIEW_SIZE)[:, 3], observed.size)
+    found[K1_ZOOM] = at.by_k1 * observed.each(zoomed)
+    column = MEASURED[observed.line]
     unknown = np.flatnonzero(column >= 0)
-    found[column[unknown], unknown] = by_measure(frame, at)[unknown]
+    found[column[unknown], unknown] = by_measure(observed, at)[unknown]
     return found
 
 
-def by_measure(frame: Frame, at: Linear) -> Array:
+def by_measure(observed: Observations, at: Linear) -> Array:
     """Differentiate the residuals by the measure of the mark's own line, shape (n,)."""
-    return np.asarray(at.by_place[0] * frame.way[0] + at.by_place[1] * frame.way[1])
+    return np.asarray(at.by_place[0] * observed.way[0] + at.by_place[1] * observed.way[1])

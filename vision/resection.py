@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from vision.linear import Frame, Linear, linearised
+from vision.linear import Linear, Observations, linearised
 from vision.paint import Marks
 from vision.pose import VIEW_SIZE, View
 from vision.robust import WIDTH, inverse, loss, spread
@@ -90,12 +90,15 @@ def solve_view(
     iterations : int
         Steps at most.
     """
-    frame = Frame(marks, size)
-    return solve_views(frame, [view], rig, view_sd=view_sd, width=width, iterations=iterations)[0]
+    observed = Observations(marks, size)
+    (found,) = solve_views(
+        observed, [view], rig, view_sd=view_sd, width=width, iterations=iterations
+    )
+    return found
 
 
 def solve_views(
-    frame: Frame,
+    observed: Observations,
     views: Sequence[View],
     rig: Array,
     *,
@@ -104,40 +107,40 @@ def solve_views(
     iterations: int = 12,
 ) -> list[ViewSolution]:
     """Fit the views of several frames at once, each by itself; as `solve_view`."""
-    points = frame.points(rig)
+    points = observed.points(rig)
     hold = 1 / np.asarray(view_sd, float) ** 2
     start = now = np.array([view.vector for view in views])
-    at = linearised(frame, points, now, rig)
+    at = linearised(observed, points, now, rig)
     residual = at.residual
-    cost = frame.summed(loss(residual, width))
+    cost = observed.summed(loss(residual, width))
     damping = np.full(len(now), 1e-4)
     for _ in range(iterations):
-        step, ahead, new = _descent(frame, at, now - start, hold, width, damping)
+        step, ahead, new = _descent(observed, at, now - start, hold, width, damping)
         if ((cost - new < _NEAR) | (np.abs(step).max(1) < _STRAIGHT)).all():
             better = new < cost
             now, cost = np.where(better[:, None], now + step, now), np.where(better, new, cost)
-            residual = np.where(frame.each(better), ahead, residual)
+            residual = np.where(observed.each(better), ahead, residual)
             break
-        tried = linearised(frame, points, now + step, rig)
-        new = frame.summed(loss(tried.residual, width))
+        tried = linearised(observed, points, now + step, rig)
+        new = observed.summed(loss(tried.residual, width))
         new += 0.5 * (now + step - start) ** 2 @ hold
         better = new <= cost
         now, cost = np.where(better[:, None], now + step, now), np.where(better, new, cost)
         damping = np.where(better, np.maximum(damping / 10, 1e-9), 10 * damping)
-        at = tried if better.all() else linearised(frame, points, now, rig)
+        at = tried if better.all() else linearised(observed, points, now, rig)
         residual = at.residual
     weighted = at.by_view / (1 + (residual / width) ** 2)
     found = []
-    for k, part in enumerate(frame.parts):
+    for k, part in enumerate(observed.parts):
         information = weighted[:, part] @ at.by_view[:, part].T
         information[_DIAGONAL, _DIAGONAL] += hold + 1e-9
-        rms, inliers = spread(residual[part], frame.sd[part], width)
+        rms, inliers = spread(residual[part], observed.sd[part], width)
         found.append(ViewSolution(View(now[k]), information, rms, inliers, float(cost[k])))
     return found
 
 
 def _descent(
-    frame: Frame, at: Linear, away: Array, hold: Array, width: float, damping: Array
+    observed: Observations, at: Linear, away: Array, hold: Array, width: float, damping: Array
 ) -> tuple[Array, Array, Array]:
     """Step views, `away` from their starts, to the least costs of linear residuals.
 
@@ -148,13 +151,13 @@ def _descent(
     for _ in range(REWEIGHTINGS):
         last, relative = step, scale * residual
         weighted = at.by_view / (1 + relative * relative)
-        normal = np.array([weighted[:, p] @ at.by_view[:, p].T for p in frame.parts])
-        right = np.array([weighted[:, p] @ at.residual[p] for p in frame.parts]) + hold * away
+        normal = np.array([weighted[:, p] @ at.by_view[:, p].T for p in observed.parts])
+        right = np.array([weighted[:, p] @ at.residual[p] for p in observed.parts]) + hold * away
         normal[:, _DIAGONAL, _DIAGONAL] *= 1 + damping[:, None]
         normal[:, _DIAGONAL, _DIAGONAL] += hold + 1e-9
         step = -np.asarray(np.linalg.solve(normal, right[..., None]))[..., 0]
-        residual = at.residual + frame.product(step, at.by_view)
+        residual = at.residual + observed.product(step, at.by_view)
         if np.abs(step - last).max() < _FINE:
             break
-    cost = frame.summed(loss(residual, width)) + 0.5 * (away + step) ** 2 @ hold
+    cost = observed.summed(loss(residual, width)) + 0.5 * (away + step) ** 2 @ hold
     return step, residual, cost

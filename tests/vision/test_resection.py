@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from tests.vision.cameras import SD, SIZE, marks, true_rig, views
-from vision.linear import Frame
+from vision.linear import Observations
 from vision.paint import CENTRE_LINE, fixed, joined
 from vision.pose import View, project
 from vision.resection import solve_view, solve_views
@@ -84,7 +84,7 @@ def test_views_fitted_together_are_those_fitted_alone() -> None:
     frames = [marks(rng, v.vector, rig, SD) for v in truth]
     frames[2] = frames[2].pick(np.zeros(len(frames[2]), bool))
     start = [View(v.vector + rng.normal(0, 0.003, 4)) for v in truth]
-    together = Frame(joined(frames), SIZE, counts=[len(m) for m in frames])
+    together = Observations(joined(frames), SIZE, counts=[len(m) for m in frames])
     for k, found in enumerate(solve_views(together, start, rig)):
         alone = solve_view(frames[k], start[k], rig, SIZE)
         np.testing.assert_allclose(found.view.vector, alone.view.vector, atol=2e-5)
