@@ -18,7 +18,7 @@ from vision.joint import Seen
 from vision.linear import Observations
 from vision.marks import Evidence, measure_along
 from vision.normals import Normals, lay_out
-from vision.outline import Rim
+from vision.outline import PaintEdge
 from vision.paint import CIRCLES, FIXED, TWELVE, Marks, joined
 from vision.picture import Picture
 from vision.pose import View, project
@@ -83,7 +83,7 @@ class EdgeTracker:
         Width and height of the pictures, px.
     palette : ndarray, shape (9, 2, 3)
         Colours on either side of each kind of edge.
-    edge : Rim
+    edge : PaintEdge
         Where the 12-ft circle ends in the profiles across it.
     stride : int
         How many frames may be followed together: the more, the better they are predicted.
@@ -97,7 +97,7 @@ class EdgeTracker:
 
     size: tuple[int, int]
     palette: Array
-    edge: Rim
+    edge: PaintEdge
     stride: int = 1
     fit: ViewSolution | None = None
     support: float = 0.0

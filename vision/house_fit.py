@@ -16,7 +16,7 @@ from vision.adjust import solve
 from vision.camera import Camera
 from vision.lines import sides, upright
 from vision.marks import Evidence, measure
-from vision.outline import SHARP, Rim, find_rim
+from vision.outline import HALF_WAY, PaintEdge, find_edge
 from vision.picture import Image
 from vision.pose import DOWN, View, aim, camera, rescaled, rotation_vector
 from vision.proof import worth
@@ -52,7 +52,7 @@ class HouseFit:
     rms_px : float
     overhead : bool
         Whether it looks like a camera that hangs over the tee.
-    edge : Rim
+    edge : PaintEdge
         Where the 12-ft circle ends in the profiles across it.
     """
 
@@ -62,7 +62,7 @@ class HouseFit:
     evidence: Evidence
     rms_px: float
     overhead: bool
-    edge: Rim
+    edge: PaintEdge
 
 
 @dataclass(frozen=True)
@@ -161,14 +161,14 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
     view, rig = upright(image, view, rig)
     rig = sides(image, view, rig)
     prior = OVERHEAD if overhead else ANYWHERE
-    edge = SHARP
+    edge = HALF_WAY
     for reach in (8.0, 6.0):
         evidence = measure(image, view.vector, rig, reach=reach, edge=edge)
         if len(evidence.marks) < 30:
             return None
         fit = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
         view, rig = fit.views[0], fit.rig
-        edge = find_rim(evidence.profile, evidence.step)
+        edge = find_edge(evidence.profile, evidence.step)
     rms = float(fit.rms[0])
     found = camera(view, rig, size, frame=frame, t=t, rms_px=rms)
     if worth(evidence) == 0:

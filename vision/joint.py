@@ -20,7 +20,7 @@ from vision.bundle import LOST, NOISE_TRUST, bundle
 from vision.camera import PARAMETERS, Camera, CameraError
 from vision.landmarks import Keyframe, replaced
 from vision.linear import Observations, by_measure, by_rig, linearised
-from vision.outline import SHARP, Rim
+from vision.outline import HALF_WAY, PaintEdge
 from vision.paint import CIRCLES, FIXED, Marks, ice_frame, joined, measures
 from vision.pose import VIEW_SIZE, View, camera, project, turning
 from vision.resection import solve_views
@@ -107,7 +107,11 @@ class Seen:
 
 
 def fit_clip(
-    seen: Sequence[Seen], rig: Array, prior: Prior, size: tuple[int, int], edge: Rim = SHARP
+    seen: Sequence[Seen],
+    rig: Array,
+    prior: Prior,
+    size: tuple[int, int],
+    edge: PaintEdge = HALF_WAY,
 ) -> HouseTrack:
     """Fit the cameras of a clip.
 
@@ -120,7 +124,7 @@ def fit_clip(
     prior : Prior
     size : tuple of int
         Width and height of the picture, px.
-    edge : Rim
+    edge : PaintEdge
         The outer edge of the 12-ft circle: as well as it is made out, all lengths are known.
     """
     good = [s for s in seen if s.found]

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from vision.edges import crossings, steps
 from vision.normals import BLOCK, OUTSIDE, SAMPLES, THIN, Normals, Profiles, lay_out
-from vision.outline import SHARP, Rim
+from vision.outline import HALF_WAY, PaintEdge
 from vision.paint import CIRCLES, FIXED, TWELVE, Marks
 from vision.picture import Picture, channels_at
 from vision.runs import Curves, Runs, smooth
@@ -92,7 +92,7 @@ def measure(
     least_sd: float = EDGE_SD,
     palette: Array | None = None,
     lines: bool = True,
-    edge: Rim = SHARP,
+    edge: PaintEdge = HALF_WAY,
 ) -> Evidence:
     """Measure the circles, and the lines if asked, near where the camera puts them.
 
@@ -111,7 +111,7 @@ def measure(
         Colours of the edges in the frames before; NaN where not known.
     lines : bool
         Whether lines are measured.
-    edge : Rim
+    edge : PaintEdge
         Where the 12-ft circle ends in the profiles across it.
     """
     h, w = picture.shape[:2]
@@ -128,7 +128,7 @@ def measure_along(
     *,
     least_sd: float = EDGE_SD,
     palette: Array | None = None,
-    edge: Rim = SHARP,
+    edge: PaintEdge = HALF_WAY,
 ) -> list[Evidence]:
     """Measure circles and lines in pictures along the same normals; see `measure`.
 

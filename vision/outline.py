@@ -43,7 +43,7 @@ ROUNDS = 15
 
 
 @dataclass(frozen=True)
-class Rim:
+class PaintEdge:
     """The edge of the paint in the profiles across it.
 
     Attributes
@@ -71,11 +71,11 @@ class Rim:
         return np.asarray(away - np.clip(away, -abs(self.line), abs(self.line)))
 
 
-SHARP = Rim()
+HALF_WAY = PaintEdge()
 """An edge without a line: half way from ice to paint."""
 
 
-def find_rim(profile: Array, step: float) -> Rim:
+def find_edge(profile: Array, step: float) -> PaintEdge:
     """Find the edge of the paint in a mean profile.
 
     Parameters
@@ -89,7 +89,7 @@ def find_rim(profile: Array, step: float) -> Rim:
     x = np.asarray(step * (np.arange(len(profile)) - len(profile) // 2)[known], np.float64)
     y = profile[known]
     if len(y) < 12:
-        return SHARP
+        return HALF_WAY
     mean: Array = np.array([0.0, np.log(WIDTH), np.log(BLUR), y[-3:].mean(), 0.0, y[:3].mean()])
     weight = np.array([1.0, WIDTH_SPREAD, BLUR_SPREAD, 0.3, DEPTH_SD, 0.3]) ** -2.0
     now: Array = mean.copy()
@@ -110,7 +110,7 @@ def find_rim(profile: Array, step: float) -> Rim:
             damping *= 10
     moved = now[0] - np.interp(0.0, y, x)
     sd = np.sqrt(np.linalg.inv(normal)[0, 0] + (DOUBT * moved) ** 2 + BARE**2)
-    return Rim(float(np.interp(now[0], x, y)), float(sd), float(now[4] * np.exp(now[1])))
+    return PaintEdge(float(np.interp(now[0], x, y)), float(sd), float(now[4] * np.exp(now[1])))
 
 
 def _cost(residual: Array, off: Array, weight: Array) -> float:

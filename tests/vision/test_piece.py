@@ -15,7 +15,7 @@ from vision.edge_tracker import EdgeTracker
 from vision.house import find_house
 from vision.house_fit import HouseFit
 from vision.normals import lay_out
-from vision.outline import Rim
+from vision.outline import PaintEdge
 from vision.paint import CIRCLES, FIXED, joined
 from vision.piece import Piece
 from vision.pose import ROLL, aim, camera
@@ -28,7 +28,7 @@ POSITION = (0.0, 0.0, 8.5)
 def test_a_house_that_was_found_ends_the_row_of_frames_that_missed_it() -> None:
     rig = start_rig(OVERHEAD, POSITION)
     view = aim((320.0, 180.0), 75.0, POSITION, SIZE)
-    edges = EdgeTracker(SIZE, np.full((FIXED, 2, 3), np.nan), Rim())
+    edges = EdgeTracker(SIZE, np.full((FIXED, 2, 3), np.nan), PaintEdge())
     piece = Piece(SIZE, rig, OVERHEAD, edges)
     bare = [Frame(i, i / 25, np.full((SIZE[1], SIZE[0], 3), 230, np.uint8)) for i in range(3)]
     piece._ice.missed = 20
