@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 
 Place = tuple[float, float]
 
-Glimpse = tuple[Place, Sighting | None]
+Foreseen = tuple[Place, Sighting | None]
 """Where a stone was expected some pictures before, and what was seen there, if one was."""
 
 STILL = 0.03
@@ -69,7 +69,7 @@ PATIENCE = Patience()
 
 
 @dataclass(frozen=True)
-class View:
+class StoneView:
     """A picture with its camera and the stones seen in it so far."""
 
     frame: Frame
@@ -80,6 +80,10 @@ class View:
     def places(self) -> Array:
         """Of the stones, m, shape (n, 2)."""
         return _places(self.sightings)
+
+    def look(self, places: Sequence[Place]) -> Look:
+        """Look at places on the ice in it."""
+        return Look(self.frame.picture, self.camera, _array(places))
 
 
 @dataclass(frozen=True)
@@ -100,12 +104,12 @@ class Follower:
     search: Search
     patience: Patience
 
-    def follow(self, views: Sequence[View], leads: Sequence[Lead]) -> list[Lead]:
+    def follow(self, views: Sequence[StoneView], leads: Sequence[Lead]) -> list[Lead]:
         """Add to views, one after the other, the stones to which leads point.
 
         Parameters
         ----------
-        views : sequence of View
+        views : sequence of StoneView
             In the order of the clip, or against it.
         leads : sequence of Lead
             To stones of the picture before.
@@ -121,7 +125,9 @@ class Follower:
                 leads = self._step(view, leads, seen)
         return list(leads)
 
-    def _step(self, view: View, leads: Sequence[Lead], ahead: Sequence[Glimpse]) -> list[Lead]:
+    def _step(
+        self, view: StoneView, leads: Sequence[Lead], ahead: Sequence[Foreseen]
+    ) -> list[Lead]:
         """Add to a view the stones to which leads point; some were measured ahead."""
         if not leads:
             return []
@@ -151,7 +157,7 @@ class Follower:
                 going.append((replace(lead, missed=True), None))
         return self._portrayed(view, going)
 
-    def _ahead(self, views: Sequence[View], leads: Sequence[Lead]) -> list[list[Glimpse]]:
+    def _ahead(self, views: Sequence[StoneView], leads: Sequence[Lead]) -> list[list[Foreseen]]:
         """Measure at once what views show of stones that rest or keep their course."""
         if not leads:
             return [[] for _ in views]
@@ -167,13 +173,13 @@ class Follower:
         for i, portrait in known.items():
             if abs(views[0].frame.t - portrait.t) >= self.patience.trust:
                 alike[0].pop(i, None)
-        out: list[list[Glimpse]] = []
+        out: list[list[Foreseen]] = []
         looks = []
         for view, seen in zip(views, alike, strict=True):
             expected = [lead.at(view.frame.t) for lead in leads]
             others = [place for i, place in enumerate(expected) if i not in seen]
             out.append([(expected[i], sighting) for i, sighting in seen.items()])
-            looks.append(Look(view.frame.picture, view.camera, _array(others)))
+            looks.append(view.look(others))
         if any(len(look.places) for look in looks):
             measured = iter(look_on_course(looks, self.appearance, self.disc, self.search))
             for so_far, look in zip(out, looks, strict=True):
@@ -181,18 +187,22 @@ class Follower:
         return out
 
     def _measured(
-        self, view: View, leads: Sequence[Lead], expected: Sequence[Place], ahead: Sequence[Glimpse]
+        self,
+        view: StoneView,
+        leads: Sequence[Lead],
+        expected: Sequence[Place],
+        ahead: Sequence[Foreseen],
     ) -> list[Sighting | None]:
         """Look at each stone where it is expected, unless it was measured ahead."""
-        glimpses = [_nearest(ahead, place) for place in expected]
-        found = [seen if away < ON_COURSE * self.disc.radius else None for away, seen in glimpses]
+        nearest = [_nearest(ahead, place) for place in expected]
+        found = [seen if away < ON_COURSE * self.disc.radius else None for away, seen in nearest]
         others = [
             index
-            for index, (away, _) in enumerate(glimpses)
+            for index, (away, _) in enumerate(nearest)
             if found[index] is None and away > SETTLED * self.disc.radius
         ]
         if others:
-            look = Look(view.frame.picture, view.camera, _array([expected[i] for i in others]))
+            look = view.look([expected[i] for i in others])
             seen = look_on_course([look], self.appearance, self.disc, self.search)
             for index, sighting in zip(others, seen, strict=True):
                 found[index] = sighting
@@ -202,13 +212,15 @@ class Follower:
             if not lead.missed and _score(sighting) < DOUBTFUL * lead.score
         ]
         if astray:
-            look = Look(view.frame.picture, view.camera, _array([expected[i] for i in astray]))
+            look = view.look([expected[i] for i in astray])
             seen = look_beside(look, self.appearance, self.disc, self.search)
             for index, sighting in zip(astray, seen, strict=True):
                 found[index] = max(found[index], sighting, key=_score)
         return found
 
-    def _portrayed(self, view: View, going: Sequence[tuple[Lead, Sighting | None]]) -> list[Lead]:
+    def _portrayed(
+        self, view: StoneView, going: Sequence[tuple[Lead, Sighting | None]]
+    ) -> list[Lead]:
         """Take the portraits of the stones at rest that have just been measured."""
         leads = [lead for lead, _ in going]
         due = [
@@ -223,12 +235,12 @@ class Follower:
             leads[index] = replace(leads[index], portrait=portrait)
         return leads
 
-    def _near(self, view: View, lead: Lead) -> Sighting | None:
+    def _near(self, view: StoneView, lead: Lead) -> Sighting | None:
         """Seek a stone that is not where it is expected about there and about its last place."""
         either = np.array([lead.at(view.frame.t), lead.place])
         reach = self.patience.reach * self.disc.radius
-        low, high = either.min(0) - reach - self.disc.radius, either.max(0) + reach
-        high = high + self.disc.radius
+        low = either.min(0) - reach - self.disc.radius
+        high = either.max(0) + reach + self.disc.radius
         bounds = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
         found = self.sought(view, bounds)
         away = [min(float(np.hypot(*(place - e))) for e in either) for place in _places(found)]
@@ -236,7 +248,7 @@ class Follower:
             return None
         return found[int(np.argmin(away))]
 
-    def sought(self, view: View, bounds: Bounds | None = None) -> list[Sighting]:
+    def sought(self, view: StoneView, bounds: Bounds | None = None) -> list[Sighting]:
         """Stones on a part of the ice, or on all of it, that were not seen in the view so far."""
         found = search_picture(
             view.frame.picture,
@@ -255,10 +267,10 @@ def _away(sightings: Sequence[Sighting], x: float, y: float) -> float:
     return min((hypot(s.x - x, s.y - y) for s in sightings), default=inf)
 
 
-def _nearest(ahead: Sequence[Glimpse], place: Place) -> tuple[float, Sighting | None]:
+def _nearest(ahead: Sequence[Foreseen], place: Place) -> tuple[float, Sighting | None]:
     """Give what was measured ahead nearest to a place, and how far from it, m."""
     away = [(dist(place, start), seen) for start, seen in ahead]
-    return min(away, key=lambda glimpse: glimpse[0], default=(inf, None))
+    return min(away, key=lambda found: found[0], default=(inf, None))
 
 
 def _score(sighting: Sighting | None) -> float:

@@ -16,7 +16,7 @@ from data.sheet import STONE, Stone
 from vision.appearance import MOST_COLOURS, UNLIKE, Appearance, convincing, learn
 from vision.camera import Camera
 from vision.clip import Frame
-from vision.follower import PATIENCE, Follower, Patience, View
+from vision.follower import PATIENCE, Follower, Patience, StoneView
 from vision.lead import Lead
 from vision.patch import is_plain
 from vision.placing import placed_by
@@ -72,15 +72,15 @@ class Watch:
         self.appearance: Appearance | None = None
         self.disc, self._search, self._pace, self._patience = disc, search, pace, patience
         self._lessons: list[Sighting] = []
-        self._waiting: list[View] = []
-        self._recent: deque[View] = deque(maxlen=pace.memory)
+        self._waiting: list[StoneView] = []
+        self._recent: deque[StoneView] = deque(maxlen=pace.memory)
         self._leads: list[Lead] = []
         self._since = pace.memory
         self._seen: list[tuple[int, float, Camera, list[Sighting]]] = []
 
     def look(self, frame: Frame, camera: Camera) -> None:
         """Take in a frame; it waits for some more, the first ones until the stones are learned."""
-        view = View(frame, camera)
+        view = StoneView(frame, camera)
         self._waiting.append(view)
         self._seen.append((frame.index, frame.t, camera, view.sightings))
         if len(self._waiting) >= (self._patience.block if self._knows else self._pace.memory):
@@ -131,7 +131,7 @@ class Watch:
             self._see(self._waiting[begin : begin + size])
         self._waiting = []
 
-    def _learn(self, views: Iterable[View]) -> None:
+    def _learn(self, views: Iterable[StoneView]) -> None:
         views = list(views)[::-1]
         found = self._of_any_colour(views[:: self._pace.lesson])
         if found and not convincing(found):
@@ -140,7 +140,7 @@ class Watch:
         self._lessons += convincing(found)
         self.appearance = learn(self._lessons)
 
-    def _of_any_colour(self, views: Iterable[View]) -> list[Sighting]:
+    def _of_any_colour(self, views: Iterable[StoneView]) -> list[Sighting]:
         """Stones of any colour that were not seen in the views so far."""
         # Too much on the ice answers faintly to any colour.
         search = replace(self._search, least_score=SEARCH.least_score)
@@ -152,7 +152,7 @@ class Watch:
             ).stones
         ]
 
-    def _see(self, views: Sequence[View]) -> None:
+    def _see(self, views: Sequence[StoneView]) -> None:
         """Follow what is known through views, and search the last of them if it is time."""
         if self._knows:
             self._leads = self._follower.follow(views, self._leads)
@@ -161,7 +161,7 @@ class Watch:
         if self._since >= self._pace.memory:
             self._search_for_new(views[-1])
 
-    def _search_for_new(self, view: View) -> None:
+    def _search_for_new(self, view: StoneView) -> None:
         """Search all the ice; follow what is found back through the last pictures."""
         self._since = 0
         fresh = self._find(view)
@@ -172,13 +172,13 @@ class Watch:
         if self._knows:
             self._follower.follow([*self._recent][-2::-1], leads)
 
-    def _find(self, view: View) -> list[Sighting]:
+    def _find(self, view: StoneView) -> list[Sighting]:
         """Add to a view the stones of known colours that were not seen in it so far."""
         fresh = self._follower.sought(view)
         view.sightings.extend(fresh)
         return fresh
 
-    def _look_for_colours(self, view: View) -> bool:
+    def _look_for_colours(self, view: StoneView) -> bool:
         """See whether there are stones of a colour that is not known yet, and learn it."""
         if self.appearance is None or len(self._lessons) >= self._pace.lessons:
             return False

@@ -8,7 +8,7 @@ from tests.synthetic.clip import render_still
 from tests.vision.test_stones import CAMERA, RED, YELLOW, camera_of, scene_of
 from vision.appearance import learn
 from vision.clip import Frame
-from vision.follower import PATIENCE, Follower, View
+from vision.follower import PATIENCE, Follower, StoneView
 from vision.lead import Lead
 from vision.rays import Look
 from vision.sighting import Sighting
@@ -19,24 +19,24 @@ CAPS = (RED, YELLOW, RED)
 START: Places = [(0.3, 0.2), (-0.8, 1.0), (0.9, -0.6)]
 
 
-def view(places: Places, index: int) -> View:
+def view(places: Places, index: int) -> StoneView:
     scene = scene_of([(x, y, cap) for (x, y), cap in zip(places, CAPS, strict=False)])
     image = np.asarray(render_still(scene, CAMERA), np.uint8)
-    return View(Frame(index, index / 10, image), camera_of(CAMERA, scene))
+    return StoneView(Frame(index, index / 10, image), camera_of(CAMERA, scene))
 
 
 @pytest.fixture(scope="module")
-def first() -> View:
+def first() -> StoneView:
     return view(START, 0)
 
 
 @pytest.fixture(scope="module")
-def follower(first: View) -> Follower:
+def follower(first: StoneView) -> Follower:
     found = search_picture(first.frame.picture, first.camera).stones
     return Follower(learn(found), STONE, FOLLOWING, PATIENCE)
 
 
-def seen(views: list[View], true: list[Places]) -> np.ndarray:
+def seen(views: list[StoneView], true: list[Places]) -> np.ndarray:
     """Distance of the nearest sighting to each true place, m, shape (views, stones)."""
     return np.array(
         [
@@ -73,7 +73,7 @@ def test_a_stone_that_is_gone_is_waited_for_and_then_given_up(follower: Follower
     start = view(START, 0)
     leads = [Lead.to(s, 0.0) for s in follower.sought(start)]
     bare = view(START[:2], 1)
-    views = [View(Frame(k, k / 10, bare.frame.picture), bare.camera) for k in (1, 2, 3, 4, 5)]
+    views = [StoneView(Frame(k, k / 10, bare.frame.picture), bare.camera) for k in (1, 2, 3, 4, 5)]
     waiting = follower.follow(views[:2], leads)
     assert sum(lead.missed for lead in waiting) == 1
     left = follower.follow(views[2:], waiting)
