@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from data.sheet import STONE, Stone
 from vision.appearance import Appearance
-from vision.measure import Measures, measure
+from vision.measure import Measures, measure_discs
 from vision.placing import sightings
 from vision.rays import Look
 from vision.seek import seek_about
@@ -53,14 +53,14 @@ def look_on_course(
     list of Sighting or None
         One per place, in their order; None where there is no stone.
     """
-    seen = measure(looks, appearance, disc)
+    seen = measure_discs(looks, appearance, disc)
     settled = seen.shift < SETTLED * disc.radius
     out = _found(seen, looks, settled, disc, search)
     # The edges that were chosen from beside the centre draw the circle towards there.
     near = np.flatnonzero(~settled & (seen.shift < ON_COURSE * disc.radius) & seen.ok)
     if len(near):
         looks = _moved(looks, seen.centre, near)
-        seen = measure(looks, appearance, disc)
+        seen = measure_discs(looks, appearance, disc)
         settled = seen.shift < SETTLED * disc.radius
         found = _found(seen, looks, settled, disc, search)
         for i, sighting in zip(near.tolist(), found, strict=True):
@@ -76,10 +76,10 @@ def look_beside(
         look.picture, look.camera, look.places, appearance, disc,
         radius_px=search.radius_px, reach=NEARBY,
     )  # fmt: skip
-    seen = measure([replace(look, places=about)], appearance, disc)
+    seen = measure_discs([replace(look, places=about)], appearance, disc)
     within = seen.ok & (seen.shift < NEARBY * disc.radius)
     looks = [replace(look, places=np.where(within[:, None], seen.centre, about))]
-    seen = measure(looks, appearance, disc)
+    seen = measure_discs(looks, appearance, disc)
     return _found(seen, looks, np.ones(len(about), bool), disc, search)
 
 

@@ -15,7 +15,7 @@ from data.sheet import HOUSE
 from vision.adjust import solve
 from vision.camera import Camera
 from vision.lines import sides, upright
-from vision.marks import Evidence, measure
+from vision.marks import Evidence, measure_marks
 from vision.outline import HALF_WAY, PaintEdge, find_edge
 from vision.picture import Image
 from vision.pose import DOWN, View, aim, camera, rescaled, rotation_vector
@@ -99,12 +99,12 @@ def fit_roughly(
     rms = np.nan
     for share in (0.3, 0.2, 0.15):
         reach = max(share * thickness, 3.0)
-        evidence = measure(image, view.vector, rig, reach=reach, spacing=4, lines=False)
+        evidence = measure_marks(image, view.vector, rig, reach=reach, spacing=4, lines=False)
         if len(evidence.marks) < 30:
             return None
         solution = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
         view, rig, rms = solution.views[0], solution.rig, float(solution.rms[0])
-    explained = worth(measure(image, view.vector, rig, reach=5.0, spacing=4, lines=False))
+    explained = worth(measure_marks(image, view.vector, rig, reach=5.0, spacing=4, lines=False))
     aside = ASIDE * abs(centre / size[0] - 0.5)
     score = explained - aside - ROUGH * float(np.nan_to_num(rms, nan=9.0))
     return RoughFit(view, rig, score) if explained > 0 else None
@@ -149,7 +149,7 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
     """
     size = (image.shape[1], image.shape[0])
     view, rig = rescaled(best.view, 1 / factor), best.rig
-    circles = measure(image, view.vector, rig, reach=max(4 / factor, 6.0), lines=False)
+    circles = measure_marks(image, view.vector, rig, reach=max(4 / factor, 6.0), lines=False)
     if len(circles.marks) < 30:
         return None
     fits = {
@@ -163,7 +163,7 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
     prior = OVERHEAD if overhead else ANYWHERE
     edge = HALF_WAY
     for reach in (8.0, 6.0):
-        evidence = measure(image, view.vector, rig, reach=reach, edge=edge)
+        evidence = measure_marks(image, view.vector, rig, reach=reach, edge=edge)
         if len(evidence.marks) < 30:
             return None
         fit = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)

@@ -81,7 +81,7 @@ class Evidence:
         )
 
 
-def measure(
+def measure_marks(
     picture: Picture,
     view: Array,
     rig: Array,
@@ -130,7 +130,7 @@ def measure_along(
     palette: Array | None = None,
     edge: PaintEdge = HALF_WAY,
 ) -> list[Evidence]:
-    """Measure circles and lines in pictures along the same normals; see `measure`.
+    """Measure circles and lines in pictures along the same normals; see `measure_marks`.
 
     Parameters
     ----------

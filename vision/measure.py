@@ -98,7 +98,7 @@ class Measures:
     rays: Rays
 
 
-def measure(
+def measure_discs(
     looks: Sequence[Look],
     appearance: Appearance | None,
     disc: Stone,

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from data.sheet import STONE, Stone
 from vision.appearance import Appearance
 from vision.camera import Camera
-from vision.measure import CLEARLY, Measures, measure, well_within
+from vision.measure import CLEARLY, Measures, measure_discs, well_within
 from vision.patch import EFFORT, is_plain
 from vision.picture import Picture
 from vision.placing import placed_by, sightings
@@ -133,7 +133,7 @@ def search_picture(
         if not len(places):
             return Findings((), tuple(refused))
         looks = [Look(image, camera, places)]
-        seen = measure(looks, sought.appearance, disc, effort)
+        seen = measure_discs(looks, sought.appearance, disc, effort)
         faults = judge(seen, disc, least)
         refused += [
             Refusal(float(places[i, 0]), float(places[i, 1]), float(seen.evidence[i]), fault)

@@ -7,7 +7,7 @@ import pytest
 
 from tests.synthetic import PAINTS, Paint, render_still, sample_scene, still_camera
 from tests.synthetic.scene import Scene
-from vision.marks import measure, profiles
+from vision.marks import measure_marks, profiles
 from vision.normals import SAMPLES, lay_out
 from vision.paint import CENTRE_LINE, LEFT, RIGHT, TEE_LINE
 from vision.pose import View
@@ -42,7 +42,7 @@ def still(paint: Paint) -> np.ndarray:
 def test_edges_lie_on_the_circles(name: str) -> None:
     paint = PAINTS[name]
     view, rig = truth(paint)
-    evidence = measure(still(paint), view.vector, rig, reach=7)
+    evidence = measure_marks(still(paint), view.vector, rig, reach=7)
     assert (evidence.support > 0.85).all()
     # An outline is part of the paint: its outer side is the edge.
     outline = 0.0 if paint.outline is None else 90 * paint.outline_width
@@ -57,7 +57,7 @@ def test_edges_lie_on_the_circles(name: str) -> None:
 def test_lines_and_sides_are_measured() -> None:
     paint = PAINTS["navy-orange"]
     view, rig = truth(paint)
-    marks = measure(still(paint), view.vector, rig, reach=7).marks
+    marks = measure_marks(still(paint), view.vector, rig, reach=7).marks
     middle = (np.array(SIZE) - 1) / 2
     for kind, axis, place in (
         (CENTRE_LINE, 0, 0.0),
@@ -73,7 +73,7 @@ def test_lines_and_sides_are_measured() -> None:
 def test_bare_ice_gives_no_edges() -> None:
     view, rig = truth(PAINTS["navy-orange"])
     noise = np.random.default_rng(0).normal(230, 2, (SIZE[1], SIZE[0], 3))
-    evidence = measure(noise.astype(np.uint8), view.vector, rig, reach=7)
+    evidence = measure_marks(noise.astype(np.uint8), view.vector, rig, reach=7)
     assert (evidence.visible > 0.9).all()
     assert (evidence.covered == 0).all()
 
@@ -87,7 +87,7 @@ def test_edges_are_unbiased_under_blur_and_noise(name: str, softness: float, noi
     image = render_still(
         replace(base, light=replace(base.light, softness=softness, noise=noise)), path
     )
-    marks = measure(image, view.vector, rig, reach=7, most=60, least_sd=NOISE_SD).marks
+    marks = measure_marks(image, view.vector, rig, reach=7, most=60, least_sd=NOISE_SD).marks
     middle = (np.array(SIZE) - 1) / 2
     for kind, radius in enumerate((1.829, rig[6], rig[7])):
         on = marks.pick(marks.line == kind)
@@ -101,10 +101,12 @@ def test_edges_are_unbiased_under_blur_and_noise(name: str, softness: float, noi
 def test_known_colours_are_told_from_those_of_something_else() -> None:
     paint = PAINTS["navy-orange"]
     view, rig = truth(paint)
-    seen = measure(still(paint), view.vector, rig, reach=7)
-    again = measure(still(paint), view.vector, rig, reach=7, palette=seen.palette)
+    seen = measure_marks(still(paint), view.vector, rig, reach=7)
+    again = measure_marks(still(paint), view.vector, rig, reach=7, palette=seen.palette)
     assert (again.support > 0.85).all()
-    other = measure(still(PAINTS["gold-purple"]), view.vector, rig, reach=7, palette=seen.palette)
+    other = measure_marks(
+        still(PAINTS["gold-purple"]), view.vector, rig, reach=7, palette=seen.palette
+    )
     assert other.support[0] < 0.1
 
 

@@ -9,7 +9,7 @@ from tests.synthetic.clip import render_still
 from tests.vision.test_stones import CAMERA, RED, YELLOW, camera_of, scene_of
 from vision.appearance import any_stone
 from vision.camera import Camera
-from vision.measure import Measures, measure
+from vision.measure import Measures, measure_discs
 from vision.rays import Look
 from vision.stones import plain_disc
 
@@ -22,7 +22,7 @@ VIEW = camera_of(CAMERA, SCENE)
 
 
 def measured(places: np.ndarray, picture: np.ndarray = PICTURE) -> Measures:
-    return measure([Look(picture, VIEW, places)], any_stone(), STONE)
+    return measure_discs([Look(picture, VIEW, places)], any_stone(), STONE)
 
 
 @pytest.mark.parametrize("aside", [0.0, 0.02])
@@ -55,7 +55,7 @@ def test_of_a_stone_half_covered_half_is_seen_and_its_place_is_known_less_well()
 
 
 def test_of_a_plain_disc_the_rim_tells() -> None:
-    seen = measure([Look(PICTURE, VIEW, PLACES[:1])], None, plain_disc(STONE.radius))
+    seen = measure_discs([Look(PICTURE, VIEW, PLACES[:1])], None, plain_disc(STONE.radius))
     assert seen.ok[0]
     assert seen.evidence[0] > 0.5
     assert seen.outline.shape == (1, 1)
@@ -75,5 +75,5 @@ def test_paint_that_ends_under_a_plain_disc_does_not_draw_it_aside(aside: float)
         picture += np.clip(0.5 - distance, 0, 1)[..., None] * (np.array(colour) - picture)
     blurred = cv2.GaussianBlur(picture, (0, 0), 0.8)
     look = Look(np.round(blurred).astype(np.uint8), Camera(0, 0.0, flat, (size, size)), PLACES * 0)
-    seen = measure([look], None, plain_disc(STONE.radius))
+    seen = measure_discs([look], None, plain_disc(STONE.radius))
     assert np.abs(seen.centre).max() < 0.05 / scale

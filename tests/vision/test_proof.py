@@ -9,7 +9,7 @@ import pytest
 from tests.synthetic import PAINTS, render_still, sample_scene, tilted_camera
 from vision.house import find_house
 from vision.house_fit import HouseFit
-from vision.marks import Evidence, measure
+from vision.marks import Evidence, measure_marks
 from vision.picture import Image
 from vision.pose import View, project
 from vision.proof import is_house, worth
@@ -47,7 +47,7 @@ def drawn(
 
 def seen(image: Image) -> Evidence:
     view, rig = level()
-    return measure(image, view.vector, rig, reach=6.0)
+    return measure_marks(image, view.vector, rig, reach=6.0)
 
 
 def proved(image: Image) -> bool:
