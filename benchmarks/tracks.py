@@ -1,69 +1,37 @@
 """How true the tracks of rendered clips are: ``python -m benchmarks.tracks`` from the root.
 
-Each kind of shot that occurs, rendered with a known truth and followed from the picture to the
-filter. One row per kind, pooled over its clips: stone-frames found of those in view, switched
-stones, false tracks, errors of place, speed and spin, and how many true values lie within two
-stated standard errors. A star marks what misses its bar.
+Each kind of shot that occurs (`benchmarks.kinds`), rendered with a known truth and followed from
+the picture to the filter. One row per kind, pooled over its clips: stone-frames found of those in
+view, switched stones, false tracks, errors of place, speed and spin, and how many true values lie
+within two stated standard errors. A star marks what misses its bar.
 """
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 
+from benchmarks.kinds import KINDS, Kind, clip_of
 from benchmarks.stones import cameras_of_table
 from data.sheet import STONE
 from physics.contacts import find_contacts
 from physics.kalman import smooth
 from tests.scoring import score_tracks
-from tests.synthetic import (
-    CameraPath,
-    Scene,
-    Start,
-    Stone,
-    Truth,
-    broadcast_camera,
-    cached_clip,
-    frame_times,
-    pictures,
-    plain_pictures,
-    random_scene,
-    sweepers,
-    tilted_camera,
-)
+from tests.synthetic import Truth
 from vision.camera import Camera
-from vision.clip import Clip, open_clip
+from vision.clip import Clip
 from vision.follow_house import follow_house
 from vision.track import track_stones
 
-SECONDS = 2.6
 SLOW, IDLE = 0.05, 0.05
 """Below these a stone does not count as moving (m/s) or turning (rad/s)."""
 
 BESIDE = 0.01
 """Rows nearer to a hit, s, may lie on its other side."""
-
-RED, YELLOW, BLUE = (44, 26, 178), (38, 208, 226), (150, 70, 20)
-
-Rng = np.random.Generator
-
-
-@dataclass(frozen=True)
-class Kind:
-    """A kind of clip: its scene and camera drawn by chance, its rate, and the bar for places."""
-
-    name: str
-    scene: Callable[[Rng], Scene]
-    camera: Callable[[Rng], CameraPath]
-    rmse: float = 0.005
-    fps: float = 25.0
-    uneven: bool = False
-    supersample: int = 1
-    plain: bool = False
 
 
 @dataclass(frozen=True)
@@ -80,111 +48,6 @@ BARS = {
     "speed m/s": Bar(high=0.01), "spin rad/s": Bar(high=0.05),
     "in 2 sd: x": COVERED, "v": COVERED, "omega": COVERED,
 }  # fmt: skip
-
-
-def overhead(rng: Rng, size: tuple[int, int] = (1280, 720)) -> CameraPath:
-    """Broadcast camera near plumb over the tee that pans, zooms, rolls and shakes."""
-    wide = size[0] / 1280
-    return broadcast_camera(
-        size=size,
-        position=(*rng.uniform(-0.4, 0.4, 2).tolist(), float(rng.uniform(7.5, 10.5))),
-        end=SECONDS,
-        target=((0.05, float(rng.uniform(1.0, 1.6))), (0.1, float(rng.uniform(-0.1, 0.5)))),
-        px_per_m=(wide * float(rng.uniform(115, 140)), wide * float(rng.uniform(95, 110))),
-        k1=(float(rng.uniform(-0.08, 0.03)), float(rng.uniform(-0.05, 0.03))),
-        shake=0.3,
-        shake_phase=float(rng.uniform(0, 6)),
-    )
-
-
-def aslant(degrees: float) -> Callable[[Rng], CameraPath]:
-    """Still camera that looks at the tee from so far off plumb."""
-
-    def camera(rng: Rng) -> CameraPath:
-        return tilted_camera(
-            np.radians(degrees + rng.uniform(-2, 2)),
-            height=float(rng.uniform(6.5, 9.5)) * float(np.cos(np.radians(degrees))) ** 0.5,
-            px_per_m=float(rng.uniform(92, 108)),
-            k1=float(rng.uniform(-0.04, 0.02)),
-        )
-
-    return camera
-
-
-def shot(**more: object) -> Callable[[Rng], Scene]:
-    """Give a thrown stone that hits one of several."""
-    return lambda rng: random_scene(rng, **more)  # type: ignore[arg-type]
-
-
-def swept(rng: Rng) -> Scene:
-    scene = random_scene(rng, resting=6)
-    return replace(scene, people=sweepers(scene, SECONDS))
-
-
-def three_hits(rng: Rng) -> Scene:
-    """Give three hits in a row down the sheet."""
-    scene = random_scene(rng, resting=2, speed=2.2)
-    x, y, fall = float(rng.uniform(-0.3, 0.3)), float(rng.uniform(1.5, 1.8)), []
-    for _ in range(3):
-        x, y = x + float(rng.uniform(-0.06, 0.06)), y - float(rng.uniform(0.45, 0.65))
-        fall.append((x, y))
-    start = Start(float(fall[0][0] + rng.uniform(-0.05, 0.05)), 2.6, 0.0, -2.2, 1.0, 1.4)
-    stones = [Stone("A", start, RED)]
-    for name, (px, py), cap in zip("BCD", fall, (YELLOW, RED, YELLOW), strict=True):
-        stones.append(Stone(name, Start(px, py, theta=float(rng.uniform(0, 6))), cap))
-    stones.append(Stone("E", Start(1.2, 0.9, theta=2.0), YELLOW))
-    return replace(scene, stones=tuple(stones))
-
-
-def freeze(rng: Rng) -> Scene:
-    """Give a stone that comes to rest against another, and two that touch all the time."""
-    scene = random_scene(rng, resting=2)
-    slowing = 9.81 * scene.ice.friction(1.0)
-    lasts = 0.75 * SECONDS
-    speed, way = slowing * lasts, 0.5 * slowing * lasts**2
-    away = 2 * STONE.radius + 0.001
-    start = Start(0.2, 0.4 + away + way, 0.0, -speed, 0.5, float(rng.uniform(0.4, 1.0)))
-    stones = (
-        Stone("A", start, RED),
-        Stone("B", Start(0.2, 0.4, theta=2.0), YELLOW),
-        Stone("C", Start(-0.8, 0.1, theta=4.0), RED),
-        Stone("D", Start(-0.8 + 2 * STONE.radius + 2e-4, 0.1, theta=1.0), RED),
-    )
-    return replace(scene, stones=stones)
-
-
-KINDS: tuple[Kind, ...] = (
-    Kind("overhead", shot(), overhead),
-    Kind("ten stones", shot(resting=9), overhead),
-    Kind("three hits", three_hits, overhead),
-    Kind("equal colours", shot(caps=(BLUE, BLUE)), overhead),
-    Kind("sweepers", swept, overhead),
-    Kind("freeze", freeze, overhead),
-    Kind("30 fps", shot(), overhead, fps=30.0),
-    Kind("50 fps", shot(resting=4), overhead, fps=50.0),
-    Kind("60 fps", shot(resting=4), overhead, fps=60.0),
-    Kind("variable rate", shot(), overhead, fps=30.0, uneven=True),
-    Kind("30 deg", shot(), aslant(30), rmse=0.010),
-    Kind("50 deg", shot(), aslant(50), rmse=0.020, supersample=2),
-    Kind("1080p", shot(), lambda rng: overhead(rng, (1920, 1080))),
-    Kind("plain", shot(), overhead, plain=True),
-    Kind("plain, 30 deg", shot(), aslant(30), rmse=0.010, plain=True),
-)
-
-
-def clip_of(kind: Kind, seed: int) -> tuple[Clip, Truth]:
-    """One clip of a kind, rendered once per machine."""
-    rng = np.random.default_rng([seed, *kind.name.encode()])
-    scene, camera = kind.scene(rng), kind.camera(rng)
-    times = frame_times(kind.fps, SECONDS)
-    if kind.uneven:
-        dropped = rng.choice(np.arange(2, len(times)), len(times) // 6, replace=False)
-        times = frame_times(kind.fps, SECONDS, dropped=dropped.tolist(), jitter=0.3, rng=rng)
-    path, truth = cached_clip(
-        scene, camera, fps=kind.fps, times=times, supersample=kind.supersample,
-        draw=plain_pictures if kind.plain else pictures,
-    )  # fmt: skip
-    return open_clip([path]), truth
 
 
 def tracks_of(clip: Clip, cameras: Sequence[Camera]) -> pd.DataFrame:
