@@ -28,7 +28,7 @@ from vision.robust import WIDTH, inverse
 from vision.shared import BINS, Bundle, family, piece_of, polynomials
 
 Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+Index = NDArray[np.int64]
 
 FAMILIES = 3
 """Of marks: see `vision.shared.family`."""

@@ -16,7 +16,7 @@ from vision.rays import Rays, directions
 from vision.rims import Bands, Rim
 
 Array = NDArray[np.float64]
-Bools = NDArray[np.bool_]
+Flags = NDArray[np.bool_]
 
 WALL = 0.0, 0.004
 """Height of a cap's wall where nothing is known of it, and the standard deviation of that, m."""
@@ -46,7 +46,7 @@ class Fits:
         Rays that agree, of those in the picture.
     """
 
-    ok: Bools
+    ok: Flags
     shift: Array
     radii: Array
     wall: Array
@@ -212,13 +212,13 @@ def _harmonics(rays: int) -> Array:
     return np.concatenate([np.cos(turns), np.sin(turns)], 1)
 
 
-def _bends(residual: Array, use: Bools) -> Array:
+def _bends(residual: Array, use: Flags) -> Array:
     """Harmonics of what edges lie off a circle, (n, rays), by those that are used."""
     count = np.maximum(use.sum(1), 1)
     return np.asarray(2 * (residual * use) @ _harmonics(residual.shape[1]) / count[:, None])
 
 
-def _median(values: Array, use: Bools) -> Array:
+def _median(values: Array, use: Flags) -> Array:
     """Median of the chosen values of each row; 0 where there are none."""
     ranked = np.sort(np.where(use, values, np.inf), axis=1)
     count = use.sum(1)

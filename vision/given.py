@@ -171,6 +171,8 @@ def _frame(clip: Clip, house: GivenHouse) -> Frame:
     for frame in clip:
         if house.frame is None or frame.index == house.frame:
             return frame
+    if house.frame is None:
+        raise InputError(f"{clip.files[0]}: none of the frames that are used can be read")
     raise InputError(
         f"house {house}: frame {house.frame} is not among those of {clip.files[0].name} that are"
         f" used, {clip.first} to {clip.first + clip.expected - 1}"

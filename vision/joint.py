@@ -29,7 +29,7 @@ from vision.robust import WIDTH, inverse
 from vision.shared import ARC, Bundle, family, piece_of, sensitivity
 
 Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+Index = NDArray[np.int64]
 
 JOINT_FRAMES = 12
 """Frames to which the shared part is fitted."""
@@ -257,7 +257,7 @@ _ON_CIRCLE = np.repeat(np.arange(CIRCLES), len(_ARCS))
 _FOOT, _WAY = ice_frame(_ON_CIRCLE, np.tile(_ARCS, CIRCLES))
 
 
-def _explained(pieces: Ints, view: View, rig: Array, size: tuple[int, int]) -> float:
+def _explained(pieces: Index, view: View, rig: Array, size: tuple[int, int]) -> float:
     """Share of the pieces of the circles in the picture that are among these."""
     places = _FOOT + _WAY * measures(rig)[_ON_CIRCLE]
     x, y = project(places.T, view.vector, rig, size).T

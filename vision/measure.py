@@ -34,7 +34,7 @@ from vision.rims import Rim, falls_along, summed
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
 Bytes = NDArray[np.uint8]
-Bools = NDArray[np.bool_]
+Flags = NDArray[np.bool_]
 
 CLEARLY = 0.3
 """Worth from which a sample counts as one of the cap; of the granite, less than its negative."""
@@ -82,7 +82,7 @@ class Measures:
     rays : Rays
     """
 
-    ok: Bools
+    ok: Flags
     centre: Array
     shift: Array
     sd: Array

@@ -8,6 +8,13 @@ import numpy as np
 
 from vision.follow import Track
 
+LEFT, JITTER = 0.25, 6.0
+"""How far from where it lay a stone must be to have left: in radii, and in its usual distance from
+there while it lay."""
+
+FEW = 5
+"""Frames over which the first speed is taken: from one to the next it is told badly."""
+
 
 def first_motion(track: Track, radius: float) -> float | None:
     """Time at which a stone first moved, s; None for one that stays where it is.
@@ -19,7 +26,7 @@ def first_motion(track: Track, radius: float) -> float | None:
     times = np.array(track.times)
     if len(times) < 3:
         return None
-    least = 0.25 * radius
+    least = LEFT * radius
     start = places[0]
     if float(np.hypot(*(places - start).T).max()) < least:
         return None
@@ -32,7 +39,7 @@ def first_motion(track: Track, radius: float) -> float | None:
     home = np.median(places[:still], axis=0)
     away = np.hypot(*(places - home).T)
     jitter = float(np.median(away[:still])) if still > 3 else 0.0
-    limit = max(least, 6 * jitter)
+    limit = max(least, JITTER * jitter)
     beyond = away > limit
     if beyond.sum() < min(3, len(times) - still):
         return None
@@ -48,7 +55,7 @@ def first_motion(track: Track, radius: float) -> float | None:
 
 def _first_speed(track: Track) -> float:
     """Mean speed over the first few frames, m/s."""
-    few = min(5, len(track.times) - 1)
+    few = min(FEW, len(track.times) - 1)
     first, last = track.sightings[0], track.sightings[few]
     wait = track.times[few] - track.times[0]
     return float(np.hypot(last.x - first.x, last.y - first.y) / wait) if wait > 0 else 0.0

@@ -20,7 +20,7 @@ from vision.picture import Picture, colours_at
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
 Bytes = NDArray[np.uint8]
-Bools = NDArray[np.bool_]
+Flags = NDArray[np.bool_]
 
 _MOST_ROWS = 32000
 """As many as cv2.remap takes at once."""
@@ -51,11 +51,11 @@ class Rays:
 
     bgr: Bytes
     lab: Bytes
-    inside: Bools
+    inside: Flags
     radius: Array
     angle: Array
 
-    def at(self, radius: float) -> Bools:
+    def at(self, radius: float) -> Flags:
         """Which rays show the place at this radius, shape (n, rays)."""
         return np.asarray(self.inside[..., np.searchsorted(self.radius, radius)])
 

@@ -17,7 +17,7 @@ from vision.rays import Rays
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
 Bytes = NDArray[np.uint8]
-Bools = NDArray[np.bool_]
+Flags = NDArray[np.bool_]
 
 _EDGE_WIDTH = 0.010
 """Half the width of what is taken for one edge, m; at least two samples, at most four."""
@@ -50,8 +50,8 @@ class Rim:
     """
 
     fall: Floats
-    use: Bools
-    inside: Bools
+    use: Flags
+    inside: Flags
     radius: float
     width: float
     strength: float
@@ -147,6 +147,6 @@ def falls_along(values: Floats | Bytes) -> Floats:
     return np.asarray(filtered, np.float32).reshape(values.shape)
 
 
-def summed(values: Bools | Floats) -> Floats:
+def summed(values: Flags | Floats) -> Floats:
     """Sum over the last axis; for many short rows faster than numpy's own."""
     return np.asarray(values.astype(np.float32) @ np.ones(values.shape[-1], np.float32))

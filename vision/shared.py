@@ -17,7 +17,7 @@ from vision.pose import VIEW_SIZE
 from vision.rig import POSITION, RIG_SIZE
 
 Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+Index = NDArray[np.int64]
 
 ARC = np.radians(15.0)
 """Length of a piece of a circle, rad."""
@@ -54,7 +54,7 @@ class Bundle:
     rig: Array
     travel: Array
     span: tuple[float, float]
-    pieces: Ints
+    pieces: Index
     offset: Array
     cov: Array
     noise: Array
@@ -74,7 +74,7 @@ class Bundle:
         onto[POSITION, RIG_SIZE : RIG_SIZE + 3 * count] = np.kron(basis, np.eye(3))
         return np.asarray(onto @ self.cov @ onto.T)
 
-    def offsets(self, marks: Marks) -> tuple[Array, Ints]:
+    def offsets(self, marks: Marks) -> tuple[Array, Index]:
         """Offset of the paint under each mark, m, and the place of its piece; 0, −1 if unseen."""
         wanted = piece_of(marks)
         at = np.minimum(np.searchsorted(self.pieces, wanted), len(self.pieces) - 1)
@@ -82,14 +82,14 @@ class Bundle:
         return np.where(known, self.offset[at], 0.0), np.where(known, at, -1)
 
 
-def piece_of(marks: Marks) -> Ints:
+def piece_of(marks: Marks) -> Index:
     """Identity of the piece of paint that each mark lies on."""
     length = np.where(marks.line < CIRCLES, ARC, PIECE)
     number = np.floor(marks.along / length).astype(np.int64) + BINS // 2
     return np.asarray(marks.line * BINS + np.clip(number, 0, BINS - 1))
 
 
-def family(line: Ints) -> Ints:
+def family(line: Index) -> Index:
     """Tell circles (0), lines (1) and fixed points (2) apart."""
     return np.asarray((line >= CIRCLES).astype(np.int64) + (line == FIXED), np.int64)
 
@@ -102,7 +102,7 @@ def polynomials(t: Array, span: tuple[float, float], degree: int) -> Array:
 
 
 def sensitivity(
-    by_view: Array, by_shared: Array, by_offset: Array, cov: Array, piece: Ints, shared: int
+    by_view: Array, by_shared: Array, by_offset: Array, cov: Array, piece: Index, shared: int
 ) -> Array:
     """How a view follows rig and offsets when fitted with these held, shape (4, shared).
 

@@ -155,3 +155,11 @@ def test_points_that_no_house_has_are_refused(points: tuple[float, ...], match: 
 def test_a_frame_that_is_not_there_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="frame 9 is not among"):
         follow_given(textured(tmp_path, (0.0,)), GivenHouse.of((320, 180, 420, 180, 320, 80), 9))
+
+
+def test_a_clip_of_which_nothing_can_be_read_says_so(tmp_path: Path) -> None:
+    textured(tmp_path, (0.0,))
+    (tmp_path / "1.png").write_bytes(b"no picture")
+    clip = open_clip([tmp_path / "0.png", tmp_path / "1.png"], 25.0, (1, 1))
+    with pytest.raises(InputError, match="none of the frames that are used can be read"):
+        follow_given(clip, GivenHouse.of((320, 180, 420, 180, 320, 80)))
