@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.results import Collision, Estimate, MeasuredState
+from physics.noise import Noise, noises
 from physics.shot_fit import Encounter, ShotFit
 from physics.spins import spins_at, stone_friction
 from physics.traces import Trace
@@ -62,8 +63,10 @@ def measure_hits(
     each = [Estimate(values[k], float(np.sqrt(cov[k, k]))) for k in range(count)]
     changes = [_momentum(apart, k, discs.of(apart.meetings[k].stones)) for k in range(count)]
     notes = [_why_not(joint, k, known, each[k], changes[k]) for k in range(count)]
+    noise = noises(joint, known)
     collisions = tuple(
-        _collision(joint, k, known, discs, each[k], changes[k], notes[k]) for k in range(count)
+        _collision(joint, k, known, noise, discs, each[k], changes[k], notes[k])
+        for k in range(count)
     )
     usable = [k for k, note in enumerate(notes) if note is None]
     return collisions, pooled(values[usable], cov[np.ix_(usable, usable)])
@@ -73,6 +76,7 @@ def _collision(
     joint: ShotFit,
     k: int,
     known: Mapping[str, Trace],
+    noise: Mapping[str, Noise],
     discs: Discs,
     restitution: Estimate,
     momentum: Estimate,
@@ -81,7 +85,7 @@ def _collision(
     first, second = joint.meetings[k].stones
     state = joint.encounter(k)
     mass = discs.of((first, second))
-    spins = spins_at(joint, k, known, mass)
+    spins = spins_at(joint, k, known, noise, mass)
     before, after = _states(joint, k, known, spins)
     energy = [float(mass @ np.sum(speeds**2, axis=1)) for speeds in (state.before, state.after)]
     rubbing, why = Estimate(), note

@@ -9,20 +9,24 @@ from numpy.typing import NDArray
 
 from data.results import Estimate
 from physics.glides import stop_time
+from physics.noise import Noise
+from physics.rate_filter import filtered
 from physics.shot_fit import Encounter, ShotFit
+from physics.stretch import Model, Stretch
 from physics.traces import Trace
 
 Floats = NDArray[np.float64]
-
-LONGEST = 1.0
-"""Time beside a hit over which a spin is taken as constant, s."""
 
 POOR = 0.3
 """Standard error of a spin, rad/s, from which the other stone's is asked for help."""
 
 
 def spins_at(
-    fit: ShotFit, k: int, known: Mapping[str, Trace], mass: Floats
+    fit: ShotFit,
+    k: int,
+    known: Mapping[str, Trace],
+    noise: Mapping[str, Noise],
+    mass: Floats,
 ) -> list[tuple[Estimate, Estimate]]:
     """Spins before and after hit k, rad/s, of its first and its second stone.
 
@@ -35,15 +39,15 @@ def spins_at(
         Which sightings belong to which side.
     k : int
         Rank of the hit.
-    known : mapping
-        Stone to its sightings.
+    known, noise : mapping
+        Stone to its sightings, and to how they err.
     mass : (2,) array
         Masses of the two.
     """
     stones = fit.meetings[k].stones
     t = fit.time(k)
     before, after = (
-        [spin_on(fit, fit.sides[k, stone][side], known, t)[0] for stone in stones]
+        [spin_on(fit, fit.sides[k, stone][side], known, noise, t) for stone in stones]
         for side in (0, 1)
     )
     for one, other in ((0, 1), (1, 0)):
@@ -79,31 +83,45 @@ def _joined(own: Estimate, start: Estimate, change: Estimate, sign: float) -> Es
 
 
 def spin_on(
-    fit: ShotFit, rank: int, known: Mapping[str, Trace], time: float
-) -> tuple[Estimate, float]:
-    """Spin on one piece near a time, from a line through its angles, and the mean time of them.
+    fit: ShotFit, rank: int, known: Mapping[str, Trace], noise: Mapping[str, Noise], time: float
+) -> Estimate:
+    """Spin on one piece at a time on it or beside it, rad/s, as the filter of tracks tells it.
 
     Nothing where fewer than two angles are seen; zero for a stone at rest.
+
+    Parameters
+    ----------
+    fit : ShotFit
+        Which sightings belong to the piece.
+    rank : int
+        Of the piece.
+    known, noise : mapping
+        Stone to its sightings, and to how they err.
+    time : float
+        s.
     """
     piece = fit.pieces[rank]
     if piece.rest:
-        return Estimate(0.0, 0.0), time
-    trace = known[piece.stone]
-    t, theta, sd = (a[piece.samples] for a in (trace.t, trace.theta, trace.sd_theta))
+        return Estimate(0.0, 0.0)
+    trace, errs = known[piece.stone], noise[piece.stone]
+    samples = piece.samples[np.isfinite(trace.theta[piece.samples])]
+    if len(samples) < 2:
+        return Estimate()
+    t = np.union1d(trace.t[samples], time)
+    row = samples[np.minimum(np.searchsorted(trace.t[samples], t), len(samples) - 1)]
+    z = np.column_stack([trace.xy, trace.theta])[row]
+    z[trace.t[row] != t] = np.nan
     x = fit.theta[6 * rank : 6 * rank + 6].reshape(2, 3)
     stop = stop_time(x, fit.origins[rank], np.inf)
-    ok = np.isfinite(theta) & (np.abs(t - time) < LONGEST) & (t <= stop)
-    if ok.sum() < 2:
-        return Estimate(), time
-    weights = sd[ok] ** -2.0
-    slope = 0.0
-    for _ in range(5):
-        tau = t[ok] - float(weights @ t[ok]) / weights.sum()
-        slope = float(weights @ (tau * theta[ok])) / float(weights @ tau**2)
-        off = theta[ok] - float(weights @ theta[ok]) / weights.sum() - slope * tau
-        weights = sd[ok] ** -2.0 / np.maximum(np.abs(off) / (2.5 * sd[ok]), 1.0)
-    middle = float(weights @ t[ok]) / float(weights.sum())
-    return Estimate(slope, float((weights @ tau**2) ** -0.5)), middle
+    speed = x[:, 1] + (np.minimum(t, stop) - fit.origins[rank])[:, None] * x[:, 2]
+    one, spinning = np.zeros(len(t), dtype=int), np.zeros(len(t), dtype=bool)
+    mean, spread, _ = filtered(
+        Stretch(
+            t, z, errs.white[row], errs.slow[row], one, t > stop, spinning, speed, Model(0.0, 1.0)
+        )
+    )
+    at = int(np.searchsorted(t, time))
+    return Estimate(float(mean[at, 5]), float(spread[at, 5]))
 
 
 def stone_friction(

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from data.results import Estimate
 from data.sheet import STONE, curling_size
+from physics.noise import Noise, noises
 from physics.shot_fit import ShotFit
 from physics.shot_model import V_C, SpinSeen, Unknown, Watched
 from physics.spins import spin_on
@@ -35,8 +36,8 @@ SLOPE, KNEE, TURN = Estimate(0.001, 0.0015), Estimate(V_C, 0.04), Estimate(0.0, 
 """What is known of a and v_c in μ(v) = a / (v + v_c) + b, m/s (a is 0 in the constant law, 0.002
 in FCV1, some 0.0035 in Penner's), and of the turn of a path at 1 m/s, rad/s (0.0082 in FCV1)."""
 
-LEAST_GAP = 2.0
-"""Time between two hits of one stone from which on its spin is seen twice, s."""
+BESIDE = 1.0
+"""Time beside a hit in whose middle a spin is told, s: far enough from where it changes."""
 
 
 @dataclass(frozen=True)
@@ -158,12 +159,13 @@ def watch(
         Unknown("turn", 0.0, -0.1, 0.1, TURN),
         Unknown("size", 1.0, 0.7, 1.3, priors.size),
     )
+    noise = noises(fit, known)
     states: list[Unknown] = []
     spins: list[SpinSeen] = []
     for name in traces:
         run = runs.get(name, [])
         states += _state(name, known[name], fit, run, start)
-        own = [spin for rank in run for spin in _seen(fit, rank, known, ends[name])]
+        own = [spin for rank in run for spin in _seen(fit, rank, known, noise, ends[name])]
         spins += own
         if run and not fit.pieces[run[0]].rest:
             first = own[0].omega if own else 0.0
@@ -268,21 +270,21 @@ def _state(
     ]
 
 
-def _seen(fit: ShotFit, rank: int, known: Mapping[str, Trace], end: float) -> list[SpinSeen]:
-    """Spin on one piece beside the hits that bound it, each where it is seen by itself."""
+def _seen(
+    fit: ShotFit, rank: int, known: Mapping[str, Trace], noise: Mapping[str, Noise], end: float
+) -> list[SpinSeen]:
+    """Spin on one piece beside the first of the hits that bound it, or beside its start.
+
+    All its angles have a say in it, so that there is no second one to be had.
+    """
     piece = fit.pieces[rank]
-    if piece.rest or piece.start >= end:
+    seen = known[piece.stone].t[piece.samples]
+    if piece.rest or piece.start >= end or not len(seen):
         return []
-    times = [fit.time(k) for k in (piece.opens, piece.closes) if k is not None]
-    if not times:
-        samples = known[piece.stone].t[piece.samples]
-        times = [float(samples[0])] if len(samples) else []
-    if len(times) == 2 and times[1] - times[0] < LEAST_GAP:
-        times = times[:1]
-    out = []
-    for t in times:
-        spin, middle = spin_on(fit, rank, known, t)
-        if spin.value is not None and spin.stderr is not None and middle < end:
-            error = float(np.hypot(spin.stderr, SPIN_DRIFT))
-            out.append(SpinSeen(piece.stone, middle, spin.value, error))
-    return out
+    hits = [fit.time(k) for k in (piece.opens, piece.closes) if k is not None]
+    near = seen[np.abs(seen - (hits or seen)[0]) < BESIDE]
+    middle = float(np.mean(near)) if len(near) else np.inf
+    spin = spin_on(fit, rank, known, noise, middle) if middle < end else Estimate()
+    if spin.value is None or spin.stderr is None:
+        return []
+    return [SpinSeen(piece.stone, middle, spin.value, float(np.hypot(spin.stderr, SPIN_DRIFT)))]
