@@ -11,6 +11,7 @@ import pytest
 import pipeline
 from data.errors import InputError
 from data.results import Collision, Estimate, Friction, Input, MeasuredState, Results
+from data.results_file import write_results
 from physics.season import hits_table, pooled, shots_table
 from pipeline import find_runs, main, season
 from report.season import season_figure
@@ -56,7 +57,7 @@ def test_command_reads_folders_of_runs(tmp_path: Path, capsys: pytest.CaptureFix
     for name, value in (("x", 0.80), ("y", 0.86)):
         (tmp_path / "runs" / name).mkdir(parents=True)
         shot = replace(SHOT, restitution=Estimate(value, 0.001))
-        shot.write(tmp_path / "runs" / name / "results.json")
+        write_results(shot, tmp_path / "runs" / name / "results.json")
     out = tmp_path / "out"
     assert main(["season", str(tmp_path / "runs"), "-o", str(out)]) == 0
     assert "e = 0.83" in capsys.readouterr().out
@@ -71,7 +72,7 @@ def test_command_reads_folders_of_runs(tmp_path: Path, capsys: pytest.CaptureFix
 def test_friction_below_zero_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name, value in (("good", 0.011), ("bad-one", -0.004)):
         shot = replace(SHOT, friction=Friction(value, 0.001))
-        shot.write(tmp_path / name / "results.json")
+        write_results(shot, tmp_path / name / "results.json")
     assert main(["season", str(tmp_path), "-o", str(tmp_path / "out")]) == 0
     warnings = [line for line in capsys.readouterr().out.splitlines() if "warning" in line]
     assert len(warnings) == 1
@@ -81,7 +82,7 @@ def test_friction_below_zero_is_named(tmp_path: Path, capsys: pytest.CaptureFixt
 def test_runs_of_one_name_are_told_apart(tmp_path: Path) -> None:
     for parent in ("p", "q"):
         (tmp_path / parent / "shot").mkdir(parents=True)
-        SHOT.write(tmp_path / parent / "shot" / "results.json")
+        write_results(SHOT, tmp_path / parent / "shot" / "results.json")
     found = find_runs([tmp_path / "p" / "shot", tmp_path / "q" / "shot", tmp_path / "p" / "shot"])
     assert list(found) == ["p-shot", "q-shot"]
     assert season(found)[0]["shot"].tolist() == ["p-shot", "q-shot"]
@@ -115,5 +116,5 @@ def test_one_bad_clip_does_not_stop_the_others(
 def test_dots_in_names_of_folders_stay(tmp_path: Path) -> None:
     for name in ("2026.01.05", "2026.01.06"):
         (tmp_path / name).mkdir()
-        SHOT.write(tmp_path / name / "results.json")
+        write_results(SHOT, tmp_path / name / "results.json")
     assert list(find_runs([tmp_path])) == ["2026.01.05", "2026.01.06"]
