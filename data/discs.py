@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from data.columns import UNIT_NOT_SAID
 from data.errors import InputError
-from data.sheet import STONE
+from data.sheet import curling_size
 
 OVERLAP = 0.8
 """Share of their width to which centres may seem to come: nobody marks them exactly."""
@@ -43,7 +43,7 @@ def refuse_no_discs(
     InputError
         Two discs lie in one another at several times, or a curling stone is faster than any.
     """
-    if radius == STONE.radius:
+    if curling_size(radius):
         _refuse_racing(sightings, source, advice)
     places = sightings.pivot_table(index="t", columns="stone", values=["x", "y"])
     for one, other in combinations(sorted(sightings["stone"].unique()), 2):

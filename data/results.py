@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from data.sheet import STONE
+
 
 @dataclass(frozen=True)
 class Estimate:
@@ -246,7 +248,7 @@ class Results:
     glides: tuple[Glide, ...] = ()
     simulations: Mapping[str, SimulationScore] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
-    radius: float = 0.1455
+    radius: float = STONE.radius
     predictions: Mapping[str, Prediction] = field(default_factory=dict)
     laws: Joint | None = None
     methods: Mapping[str, Method] = field(default_factory=dict)

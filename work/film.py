@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from data.errors import InputError
 from data.inputs import PROJECT_SUFFIXES, TABLE_SUFFIXES
 from data.progress import Progress
-from data.sheet import HOUSE, STONE, House, Stone
+from data.sheet import HOUSE, STONE, House, Stone, curling_size
 from work.settings import Settings, refuse_table_options
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def film(files: tuple[Path, ...], settings: Settings, progress: Progress, placed
         filmed = Filmed(clip, cameras, disc)
     elif settings.camera is not None:
         cameras, notes = _given_cameras(clip, settings.camera, settings, progress, placed)
-        house = HOUSE if settings.radius == STONE.radius else None
+        house = HOUSE if curling_size(settings.radius) else None
         filmed = Filmed(clip, cameras, disc, house, notes)
     else:
         followed = _follow(clip, settings, progress, placed)
@@ -116,7 +116,7 @@ def disc_of(settings: Settings) -> Stone:
     """Say what is looked for: stones in a house or of their size, else plain discs."""
     from vision.stones import plain_disc
 
-    sized_as_stones = settings.camera is None or settings.radius == STONE.radius
+    sized_as_stones = settings.camera is None or curling_size(settings.radius)
     if settings.stick is None and sized_as_stones:
         return replace(STONE, radius=settings.radius)
     return plain_disc(settings.radius)

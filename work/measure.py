@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from data.errors import InputError
 from data.inputs import IMAGE_SUFFIXES, TABLE_SUFFIXES, find_inputs
 from data.progress import Progress, no_progress
-from data.sheet import HOUSE, STONE, House
+from data.sheet import HOUSE, House, curling_size
 from work.film import check_size, disc_of, film
 from work.settings import Settings, refuse_clip_options
 
@@ -107,7 +107,7 @@ def _imported(files: tuple[Path, ...], table: Imported, settings: Settings) -> M
         table.fps,
         table.sightings["t"].nunique(),
         table.warnings,
-        house=HOUSE if settings.radius == STONE.radius else None,
+        house=HOUSE if curling_size(settings.radius) else None,
         masses=table.masses,
     )
 

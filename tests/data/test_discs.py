@@ -45,7 +45,7 @@ def test_one_slipped_mark_is_no_evidence() -> None:
     table = shot()
     row = table.index[(table["stone"] == "A")][3]
     table.loc[row, ["x", "y"]] = 0.0
-    refuse_no_discs(table, 0.14, "a.txt")
+    refuse_no_discs(table, 0.12, "a.txt")  # no stones: they may be fast
 
 
 def test_stones_faster_than_any_are_refused_but_not_other_discs() -> None:

@@ -38,6 +38,9 @@ def test_stones_are_looked_for_in_a_house_and_discs_elsewhere() -> None:
     camera_and_size = Settings(camera=Path("camera.csv"), radius=0.0382)
     assert disc_of(camera_and_size).cap_height == 0.0
     assert disc_of(Settings(camera=Path("camera.csv"))) == STONE
+    # Stones are not all as large as the rules allow.
+    smaller = disc_of(Settings(camera=Path("camera.csv"), radius=0.145))
+    assert (smaller.radius, smaller.cap_height) == (0.145, STONE.cap_height)
 
 
 def test_a_stick_gives_the_scale_and_no_house(tmp_path: Path) -> None:

@@ -29,6 +29,7 @@ def test_a_table_has_no_clip_and_no_cameras(tmp_path: Path) -> None:
 def test_pucks_have_no_house(tmp_path: Path) -> None:
     path = table(tmp_path / "A.csv", 0.0465)
     assert measure([path], Settings(radius=0.0465)).house is None
+    assert measure([path], Settings(radius=0.145)).house is not None
 
 
 def test_the_unit_of_the_table_is_taken(tmp_path: Path) -> None:
