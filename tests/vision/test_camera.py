@@ -1,12 +1,21 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from vision.camera import CAMERA_COLUMNS, Camera, apply_homography, camera_table
+from vision.camera import (
+    CAMERA_COLUMNS,
+    PARAMETERS,
+    Camera,
+    CameraError,
+    apply_homography,
+    camera_table,
+)
 
 Array = NDArray[np.float64]
 SIZE = (1280, 720)
@@ -135,6 +144,50 @@ def test_scale_of_a_camera_straight_above(roll: float) -> None:
     camera = Pinhole((0.3, 0.2, 10.0), 0, 0, roll).camera()
     for place in ((0.0, 0.0), (1.8, -1.2)):
         assert camera.scale_at(place) == pytest.approx(1500 / 10, rel=1e-9)
+
+
+def changed(parameter: int, step: float) -> Camera:
+    """A tilted camera of which one of the parameters differs."""
+    pinhole, k = Pinhole((0.4, -3.0, 8.0), 0.05, -0.3, 0.2), [-0.06, 0.02]
+    if parameter < 3:
+        x, y, z = step * np.eye(3)[parameter]
+        crossed = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+        pinhole.turn = (np.eye(3) + crossed) @ pinhole.turn
+    elif parameter == 3:
+        pinhole.f *= np.exp(step)
+    elif parameter < 7:
+        pinhole.place = pinhole.place + step * np.eye(3)[parameter - 4]
+    else:
+        k[parameter - 7] += step
+    return pinhole.camera(*k)
+
+
+@pytest.mark.parametrize("parameter", range(PARAMETERS))
+@pytest.mark.parametrize("height", [0.0, 0.12])
+def test_places_move_with_the_parameters_as_the_jacobian_says(
+    parameter: int, height: float
+) -> None:
+    ice = np.array([[0.0, 0.0], [1.4, -0.8], [-1.1, 2.0]])
+    pixels = changed(parameter, 0.0).project(ice, height)
+    one, two = (changed(parameter, step).ice(pixels, height) for step in (-1e-6, 1e-6))
+    found = changed(parameter, 0.0).place_jacobian(ice, height)[..., parameter]
+    np.testing.assert_allclose(found, (two - one) / 2e-6, rtol=1e-4, atol=1e-6)
+
+
+def test_the_covariance_of_places_is_of_what_is_shared_and_what_is_not() -> None:
+    rng = np.random.default_rng(3)
+    shared, own = (r @ r.T for r in rng.normal(0, 1e-3, (2, PARAMETERS, PARAMETERS)))
+    camera, places = changed(0, 0.0), np.array([[1.0, 0.5], [-0.3, 2.0]])
+    assert not camera.place_cov(places).any()
+    known = replace(camera, error=CameraError(shared, own, scale=0.002, drift=0.003))
+    by_camera = camera.place_jacobian(places)
+    expected = by_camera @ (shared + own) @ by_camera.transpose(0, 2, 1) + 0.003**2 * np.eye(2)
+    expected += 0.002**2 * places[:, :, None] * places[:, None]
+    np.testing.assert_allclose(known.place_cov(places), expected, rtol=1e-9)
+    of_all = known.shared_place_cov(places)
+    np.testing.assert_allclose(known.place_sd(places) ** 2, np.trace(of_all.T) / 2, rtol=1e-9)
+    with pytest.raises(ValueError, match="place is not known"):
+        replace(camera, position=None).place_jacobian(places)
 
 
 def test_homography_of_a_known_map() -> None:

@@ -9,7 +9,7 @@ from tests.synthetic import broadcast_camera, cached_clip, sample_scene
 from tests.vision.test_joint import SIZE
 from vision.clip import Frame, open_clip
 from vision.follow_house import HouseFollower
-from vision.replay import CELLS, Glimpse, is_replay
+from vision.replay import CELLS, Glimpse, cut_among, has_jumped, is_nearer, is_replay, shows_again
 
 RATE = 25
 
@@ -45,6 +45,42 @@ def test_only_what_shows_the_same_ice_is_compared() -> None:
     first, last = Glimpse(0.0, high), Glimpse(2.0, low)
     assert not is_replay(Glimpse(2.2, high + 1.0), [first, last])
     assert is_replay(Glimpse(2.2, high + 1.0), [first, Glimpse(2.0, house)])
+
+
+def house(*things: tuple[int, int], t: float = 0.0) -> Glimpse:
+    """A glimpse of a house with dark things on it, each of three cells by three."""
+    grey = np.full((CELLS, CELLS), 200.0)
+    for row, column in things:
+        grey[row : row + 3, column : column + 3] = 60.0
+    return Glimpse(t, grey)
+
+
+A, B, C, D = (5, 8), (30, 12), (14, 40), (40, 33)
+
+
+def test_it_has_jumped_where_several_things_are_elsewhere() -> None:
+    assert has_jumped(house(A, B), house(C, D))
+    assert not has_jumped(house(A, B), house(A, B))
+    assert not has_jumped(house(A, B), house(A, (30, 14)))  # one has moved a little
+
+
+def test_a_cut_changes_all_at_once_and_what_moves_step_by_step() -> None:
+    assert cut_among([house(A, B), house(A, B), house(C, D), house(C, D)]) == 2
+    assert cut_among([house((5, 9 + k), (30, 20 + k)) for k in range(4)]) is None
+
+
+def test_what_was_there_once_is_shown_again_but_not_what_is_usual() -> None:
+    before = [house(A, B), house(C, D), house(C, D), house(C, D)]
+    assert shows_again(house(A, B), before, before[:1])
+    assert not shows_again(house(A, B), before, [house((20, 20), (9, 25))])
+    # People who go uncover what was there before.
+    covered = [house(), house(), house(), house(A, B)]
+    assert not shows_again(house(), covered, covered[:1])
+
+
+def test_the_nearer_is_the_one_that_differs_less() -> None:
+    assert is_nearer(house(A, B), [house(C, D), house(A, B)], house(A, D))
+    assert not is_nearer(house(A, B), [house(C, D)], house(A, B))
 
 
 def test_what_goes_on_after_a_cut_belongs_to_the_shot(live: list[np.ndarray]) -> None:
