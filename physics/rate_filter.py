@@ -15,7 +15,7 @@ from math import sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.stretch import ANYWHERE_SD, GATE, PATIENCE, Estimates, Steps, Stretch, drift, steps
+from physics.stretch import ANYWHERE_SD, GATE, PATIENCE, Smoothed, Steps, Stretch, drift, steps
 
 Floats = NDArray[np.float64]
 
@@ -60,7 +60,7 @@ class Forward:
         return np.array(each).T
 
 
-def filtered(stretch: Stretch) -> Estimates:
+def filtered(stretch: Stretch) -> Smoothed:
     """Filter and smooth one stretch between two hits.
 
     Returns

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.stretch import ANYWHERE_SD, GATE, PATIENCE, Estimates, Steps, Stretch, drift, steps
+from physics.stretch import ANYWHERE_SD, GATE, PATIENCE, Smoothed, Steps, Stretch, drift, steps
 
 Floats = NDArray[np.float64]
 
@@ -19,7 +19,7 @@ PAIRS = ((0, 2, 6), (1, 3, 7), (4, 5, 8))
 """Ranks of place, rate and lasting error in the state x, y, vx, vy, θ, ω, and the errors."""
 
 
-def filtered(stretch: Stretch) -> Estimates:
+def filtered(stretch: Stretch) -> Smoothed:
     """Filter and smooth one stretch between two hits: as `physics.rate_filter.filtered`."""
     from filterpy.kalman import KalmanFilter
 

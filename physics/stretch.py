@@ -104,10 +104,10 @@ class Stretch:
         return np.array([*self.z[first, :2], theta]), rates[[0, 0, 1]]
 
 
-Estimates = tuple[Floats, Floats, NDArray[np.int64]]
+Smoothed = tuple[Floats, Floats, NDArray[np.int64]]
 """x, y, vx, vy, θ, ω, shape (n, 6); their standard deviations; whether each sighting was used."""
 
-Filter = Callable[[Stretch], Estimates]
+Filter = Callable[[Stretch], Smoothed]
 """Filters a stretch and smooths it backwards."""
 
 

@@ -17,8 +17,8 @@ from physics.rate_filter import filtered, forward
 from physics.stretch import (
     ANGLE_MEMORY,
     PLACE_MEMORY,
-    Estimates,
     Model,
+    Smoothed,
     Steps,
     Stretch,
     steps,
@@ -98,7 +98,7 @@ def stretches_of(seen: pd.DataFrame, radius: float = RADIUS) -> list[Stretch]:
     """What the filter is given of the stones of a shot while they move."""
     kept: list[Stretch] = []
 
-    def spy(stretch: Stretch) -> Estimates:
+    def spy(stretch: Stretch) -> Smoothed:
         kept.append(stretch)
         return filtered(stretch)
 

@@ -13,7 +13,7 @@ from data.tracks import SIGHTING_COLUMNS, teams
 from physics.contacts import find_contacts
 from physics.kalman import smooth
 from physics.rate_filter import filtered, forward
-from physics.stretch import Estimates, Stretch
+from physics.stretch import Smoothed, Stretch
 from tests.scoring import score_tracks
 from vision.camera import Camera
 from vision.clip import open_clip
@@ -127,7 +127,7 @@ def test_the_filter_is_no_surer_of_a_clip_than_it_may_be() -> None:
     seen = track_stones(clip, cameras).sightings
     stretches: list[Stretch] = []
 
-    def spy(stretch: Stretch) -> Estimates:
+    def spy(stretch: Stretch) -> Smoothed:
         stretches.append(stretch)
         return filtered(stretch)
 
