@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -14,7 +13,7 @@ from data.sheet import STONE, curling_size
 from physics.curl import Curl, FCV1Curl, NoCurl
 from physics.ice import Fit, IceLaw, Penner
 from physics.impact import Frictional
-from physics.motion import Motion, Path
+from physics.motion import Path
 from physics.simulate import simulate
 from physics.simulation import Shot, Simulation, StoneStart
 from physics.traces import Trace
@@ -159,7 +158,7 @@ class Watched:
         """Seen less simulated spins over their standard errors, one for each of `spins`."""
         return np.array(
             [
-                (s.omega - _at(simulation.paths[s.stone], s.t - self.start).omega) / s.stderr
+                (s.omega - simulation.state(s.stone, s.t - self.start).omega) / s.stderr
                 for s in self.spins
             ]
         )
@@ -200,12 +199,6 @@ def curl(values: Mapping[str, float], loss: float = FCV1Curl.loss) -> Curl:
     """Return the law of curl with the turn at 1 m/s as given, and spins lost as in FCV1."""
     turn = values.get("turn", 0.0)
     return FCV1Curl(turn=turn, loss=loss) if turn or loss else NoCurl()
-
-
-def _at(paths: Sequence[Path], t: float) -> Motion:
-    """State on a stone's paths at a time of the simulation, s."""
-    k = bisect_right(paths, t, key=lambda path: path.start) - 1
-    return paths[max(k, 0)].at(t)
 
 
 def places(paths: Sequence[Path], times: Floats) -> Floats:

@@ -151,6 +151,11 @@ class Simulation:
     paths: Mapping[str, tuple[Path, ...]]
     gone: Mapping[str, float] = field(default_factory=dict)
 
+    def state(self, stone: str, t: float) -> Motion:
+        """State of a stone at a time >= 0, s; at the moment of a hit that after it."""
+        paths = self.paths[stone]
+        return paths[bisect_right(paths, t, key=lambda path: path.start) - 1].at(t)
+
     def sample(self, times: ArrayLike) -> pd.DataFrame:
         """States of all stones at given times.
 
@@ -175,7 +180,7 @@ class Simulation:
             raise ValueError("a simulation starts at t = 0: sample it at finite times from there")
         names = sorted(self.paths)
         rows = np.array(
-            [_at(self.paths[name], t) for name in names for t in moments.tolist()], float
+            [self.state(name, t) for name in names for t in moments.tolist()], float
         ).reshape(-1, 6)
         table = pd.DataFrame(rows, columns=["x", "y", "theta", "vx", "vy", "omega"])
         table.insert(0, "t", np.tile(moments, len(names)))
@@ -221,8 +226,3 @@ def check_shot(shot: Shot) -> None:
 
 _NUMBERS = ("x", "y", "vx", "vy", "omega", "theta", "mass")
 _LIMITS = {"x": FARTHEST, "y": FARTHEST, "vx": FASTEST, "vy": FASTEST, "omega": FASTEST}
-
-
-def _at(paths: tuple[Path, ...], t: float) -> Motion:
-    """State at the time `t` on the last path that has begun by then."""
-    return paths[bisect_right(paths, t, key=lambda path: path.start) - 1].at(t)
