@@ -17,9 +17,9 @@ from physics.estimate import Estimates
 from physics.fit import fit_shot
 from physics.glides import FREE
 from physics.global_fit import fit_shots
+from physics.hindcast import explained_until, score
 from physics.impact import Frictional, Impact, PointMass
 from physics.law_choice import STRAIGHT
-from physics.predict import explained_until, score
 from physics.simulate import simulate
 from physics.simulation import Simulation
 from physics.traces import traces

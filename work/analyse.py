@@ -64,9 +64,9 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
     from physics.contacts import find_contacts
     from physics.estimate import estimate
     from physics.forecast import predict
+    from physics.hindcast import simulate_measured
     from physics.kalman import smooth
     from physics.posterior import sample_posterior, summarise
-    from physics.predict import simulate_measured
     from physics.watched import LITERATURE
     from vision.camera import camera_table
 

@@ -6,10 +6,10 @@ import pytest
 from physics.contacts import find_contacts
 from physics.curl import NoCurl
 from physics.estimate import estimate
+from physics.hindcast import simulate_measured
 from physics.ice import Constant
 from physics.impact import Frictional, PointMass
 from physics.kalman import smooth
-from physics.predict import simulate_measured
 from physics.simulate import simulate
 from physics.simulation import Shot, StoneStart
 from physics.spread import Doubt, draws, path_spread, simulated_hits

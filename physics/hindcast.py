@@ -1,4 +1,7 @@
-"""The measured shot simulated: from the states just before the first hit to the end."""
+"""The measured shot simulated again: from the states just before the first hit, with its own laws.
+
+What is foretold with laws fixed in advance is in `physics.forecast`.
+"""
 
 from __future__ import annotations
 
@@ -19,6 +22,7 @@ from physics.simulate import simulate
 from physics.simulation import Shot, StoneStart
 from physics.spread import Doubt, draws, path_spread, simulated_hits
 from physics.traces import Trace
+from physics.watched import SUDDEN
 
 MOVED = 0.05
 """Distance by which a stone must move to count in the score, m."""
@@ -26,8 +30,8 @@ MOVED = 0.05
 STILL = 0.01
 """Speed below which a stone lies still before the first hit, m/s."""
 
-SUDDEN, WITHIN = 0.1, 0.1
-"""Change of velocity (m/s) within a time (s) that neither ice nor air can give a stone."""
+WITHIN = 0.1
+"""Time within which a change of velocity is sudden, s."""
 
 
 def simulate_measured(

@@ -10,14 +10,14 @@ import pytest
 from data.results import SimulationScore
 from physics.contacts import find_contacts
 from physics.estimate import Estimates, estimate
+from physics.hindcast import simulate_measured
 from physics.kalman import smooth
-from physics.predict import simulate_measured
 from tests.physics.watch import RADIUS, hit_motion, semireal, watch
 
 MODELS = {"point-mass", "rigid-body", "frictional"}
 
 
-def predict(
+def again(
     seen: pd.DataFrame,
 ) -> tuple[dict[str, pd.DataFrame], dict[str, SimulationScore], tuple[str, ...]]:
     hits = find_contacts(seen, RADIUS)
@@ -27,7 +27,7 @@ def predict(
 
 def test_the_shot_again_lands_where_it_did() -> None:
     seen = watch(hit_motion(1.2, 0.08), np.random.default_rng(41), sd=0.002)
-    samples, scores, warnings = predict(seen)
+    samples, scores, warnings = again(seen)
     assert set(scores) == MODELS
     assert scores["frictional"].rmse is not None
     assert scores["frictional"].rmse < 0.02
@@ -79,7 +79,7 @@ def test_a_frame_that_may_lie_behind_the_hit_is_no_start() -> None:
 def test_who_glides_only_is_no_part_of_the_score() -> None:
     seen = watch(hit_motion(), np.random.default_rng(42))
     early = seen[seen["t"] < 0.9].reset_index(drop=True)
-    samples, scores, warnings = predict(early)
+    samples, scores, warnings = again(early)
     assert any("no hit" in warning for warning in warnings)
     assert scores["point-mass"].rmse is not None
     assert scores["point-mass"].rmse < 0.02
@@ -90,7 +90,7 @@ def test_who_glides_only_is_no_part_of_the_score() -> None:
 def test_without_spins_the_rigid_bodies_say_so() -> None:
     seen = watch(hit_motion(), np.random.default_rng(43))
     seen[["theta", "sd_theta"]] = np.nan
-    samples, scores, _ = predict(seen)
+    samples, scores, _ = again(seen)
     assert scores["rigid-body"].rmse is None
     assert "spin" in (scores["rigid-body"].note or "")
     assert "rigid-body" not in samples
@@ -99,7 +99,7 @@ def test_without_spins_the_rigid_bodies_say_so() -> None:
 
 def test_two_hits_in_quick_succession(shared: Path) -> None:
     seen = semireal(shared, "pyeongchang_two_hits", np.random.default_rng(44), sd=0.005)
-    _, scores, _ = predict(seen)
+    _, scores, _ = again(seen)
     assert scores["frictional"].rmse is not None
     assert scores["frictional"].rmse < 0.06
     assert set(scores["frictional"].rest_error) == {"A", "B", "C"}
@@ -122,7 +122,7 @@ def test_stones_that_grip_each_other_are_simulated_so() -> None:
     seen = watch(hit_motion(1.4, -0.12, stone_friction=0.4), np.random.default_rng(47), sd=0.002)
     estimates = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
     assert estimates.collisions[0].stone_friction is None
-    _, scores, _ = predict(seen)
+    _, scores, _ = again(seen)
     point_mass, frictional = scores["point-mass"].rmse, scores["frictional"].rmse
     assert frictional is not None
     assert point_mass is not None
@@ -137,7 +137,7 @@ def test_a_stone_counts_until_something_else_moves_it() -> None:
     wall = hit + 0.8
     k = seen[b & (seen["t"] >= wall)].index
     seen.loc[k, "y"] = 2 * seen.loc[k[0], "y"] - seen.loc[k, "y"]
-    _, scores, warnings = predict(seen)
+    _, scores, warnings = again(seen)
     assert any("B is compared until" in warning for warning in warnings)
     assert scores["frictional"].rmse is not None
     assert scores["frictional"].rmse < 0.02
@@ -146,7 +146,7 @@ def test_a_stone_counts_until_something_else_moves_it() -> None:
 
 def test_empty_tracks() -> None:
     seen = watch(hit_motion(), np.random.default_rng(46)).iloc[:0]
-    samples, scores, warnings = predict(seen)
+    samples, scores, warnings = again(seen)
     assert samples == {}
     assert scores == {}
     assert warnings == pytest.approx(("no tracks to simulate",))
