@@ -80,9 +80,9 @@ def test_what_a_map_shares_is_no_wrong_simulation() -> None:
     """A map off by millimetres in a smooth way: sightings are far more alike than they are true."""
     motion = hit_motion(1.5, 0.08)
     seen = watch(motion, np.random.default_rng(5), sd=0.0005)
-    field = 0.004
-    seen["x"] += field * np.sin(3 * seen["y"])
-    seen["y"] += field * np.cos(3 * seen["x"] + 2 * seen["y"])
+    field, wave = 0.004, 2.0  # m, 1/m: errors of a map are taken to be alike over a metre
+    seen["x"] += field * np.sin(wave * seen["y"])
+    seen["y"] += field * np.cos(wave * (seen["x"] + 0.7 * seen["y"]))
     told = estimate(seen.assign(sd_place=field), find_contacts(seen, RADIUS), radius=RADIUS)
     untold = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
     assert told.whole is not None
