@@ -155,8 +155,8 @@ def _why_not(
     fit: ShotFit, k: int, known: Mapping[str, Trace], restitution: Estimate, momentum: Estimate
 ) -> str | None:
     """Why a hit cannot tell its restitution; None where it can."""
-    value, stderr = restitution.value or np.nan, restitution.stderr or np.nan
-    if np.isfinite(value) and stderr < WORST:
+    stderr = np.nan if restitution.stderr is None else restitution.stderr
+    if stderr < WORST:
         return _lost(momentum)
     for stone in fit.meetings[k].stones:
         for rank, when in zip(fit.sides[k, stone], ("before", "after"), strict=True):
