@@ -52,7 +52,8 @@ def by_finite_differences(
         _mean(hits),
         _mean(slowed),
         hits=tuple(hits),
-        note=f"mean finite differences over at most {WINDOW:g} s on either side of a hit",
+        note=f"mean finite differences over at most {WINDOW:g} s on either side of a hit; errors"
+        " are of noise alone",
     )
 
 
