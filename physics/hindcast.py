@@ -180,6 +180,7 @@ def _doubt(tracks: pd.DataFrame, start: float, estimates: Estimates, laws: Laws)
         restitution=laws.restitution.stderr or 0.0,
         stone_friction=laws.stone_friction.stderr or 0.0,
         friction=laws.sd_friction,
+        turn=laws.sd_turn,
         size=laws.size.stderr or 0.0,
         shared=_shared(estimates.local.known, start),
     )

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from data.errors import InputError
 from data.results import MeasuredState, SimulatedHit, StoneState
+from physics.curl import FCV1Curl
 from physics.laws import Scaled
 from physics.shot_model import STATE
 from physics.simulate import simulate
@@ -42,6 +43,8 @@ class Doubt:
         Of the hits.
     friction : float
         Of the ice, as a part of its friction.
+    turn : float
+        Of the turn of the paths at 1 m/s, rad/s.
     size : float
         Of the stones' radius, as a part of it.
     shared : mapping of str to float
@@ -53,6 +56,7 @@ class Doubt:
     restitution: float = 0.0
     stone_friction: float = 0.0
     friction: float = 0.0
+    turn: float = 0.0
     size: float = 0.0
     shared: Mapping[str, float] = field(default_factory=dict)
 
@@ -145,7 +149,11 @@ def _drawn(shot: Shot, doubt: Doubt, rng: np.random.Generator) -> Shot:
     impact: Any = replace(shot.impact, **laws)  # type: ignore[type-var]
     factor = max(1.0 + doubt.friction * rng.standard_normal(), 0.1)
     radius = shot.radius * (1.0 + doubt.size * rng.standard_normal())
-    return replace(shot, stones=stones, impact=impact, ice=Scaled(shot.ice, factor), radius=radius)
+    curl = shot.curl
+    if doubt.turn > 0 and isinstance(curl, FCV1Curl):
+        curl = replace(curl, turn=curl.turn + doubt.turn * rng.standard_normal())
+    ice = Scaled(shot.ice, factor)
+    return replace(shot, stones=stones, impact=impact, ice=ice, curl=curl, radius=radius)
 
 
 def _together(shot: Shot, doubt: Doubt, rng: np.random.Generator) -> Floats:

@@ -1,10 +1,12 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from physics.contacts import find_contacts
-from physics.curl import NoCurl
+from physics.curl import FCV1Curl, NoCurl
 from physics.estimate import estimate
 from physics.hindcast import simulate_measured
 from physics.ice import Constant
@@ -30,6 +32,18 @@ def test_a_glide_is_as_uncertain_as_its_closed_form_says() -> None:
         end = path_spread(draws(shot, doubt, 200), np.array([0.0, 30.0])).iloc[-1]
         assert end["sd_y"] == pytest.approx(way * relative, rel=0.15)
         assert end["sd_x"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_turn_of_a_path_is_drawn_where_it_was_measured() -> None:
+    stone = StoneStart("A", 0.0, 0.0, 0.0, 2.0, 1.0)
+    shot = Shot((stone,), ice=Constant(MU), curl=FCV1Curl(turn=0.008, loss=0.0))
+    runs = draws(shot, Doubt({"A": CERTAIN}, {}, turn=0.001), 300)
+    bent, straight = (
+        simulate(replace(shot, curl=FCV1Curl(turn=turn, loss=0.0))).rest["A"].x
+        for turn in (0.009, 0.008)
+    )
+    end = path_spread(runs, np.array([0.0, 30.0])).iloc[-1]
+    assert end["sd_x"] == pytest.approx(abs(bent - straight), rel=0.15)
 
 
 def test_a_head_on_hit_passes_on_what_is_not_known_of_restitution_and_speed() -> None:
