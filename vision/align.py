@@ -46,6 +46,11 @@ def turned(spectra: Complex, angles: Array) -> Complex:
     return np.asarray(spectra * phase[:, :, None, None], np.complex64)
 
 
+def ring_weights(radii: Array) -> Array:
+    """Weights of rings, shape (rings,): their squares go as the rings' lengths."""
+    return np.asarray(np.sqrt(radii / radii[-1]))
+
+
 def rings_seen(spectra: Complex) -> NDArray[np.bool_]:
     """Which rings of the pictures (n, orders, rings, channels) are seen, shape (n, rings)."""
     return np.asarray(spectra.any((1, 3)))
@@ -66,7 +71,7 @@ def align(spectra: Complex, angles: Array, radii: Array, sd_shift: float) -> Ali
         Standard deviation of the shifts, m, per axis.
     """
     seen = rings_seen(spectra)
-    weight = np.sqrt(radii / radii[-1])
+    weight = ring_weights(radii)
     often = np.maximum(seen.sum(0), 1)[:, None]
     angle, shift = angles.astype(float), np.zeros((len(angles), 2))
     sd = np.full(len(angles), np.nan)

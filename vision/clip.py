@@ -18,6 +18,7 @@ from vision.picture import Image as Image
 from vision.picture import Picture, Planes, image_of
 
 DEFAULT_IMAGE_FPS = 25.0
+"""Rate of pictures where none is given, 1/s."""
 
 
 @dataclass(frozen=True)

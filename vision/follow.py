@@ -26,6 +26,7 @@ Array = NDArray[np.float64]
 Pair = tuple[float, float]
 
 _FORBIDDEN = 1e6
+"""Cost of a pair that may not be: more than all others together."""
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,16 @@ from math import ceil, nan, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.align import HARMONICS, ORDERS, Array, Complex, align, rings_seen, turned
+from vision.align import (
+    HARMONICS,
+    ORDERS,
+    Array,
+    Complex,
+    align,
+    ring_weights,
+    rings_seen,
+    turned,
+)
 
 _GRID = 1440
 """Angles of a whole turn that are tried."""
@@ -82,10 +91,10 @@ def cap_spectrum(patch: NDArray[np.uint8], radii: Array) -> Complex:
     Returns
     -------
     ndarray, shape (..., orders, rings, channels)
-        Of the orders `vision.align.ORDERS`. Rings weigh as their length does.
+        Of the orders `vision.align.ORDERS`, each ring with its weight.
     """
     spectrum = np.fft.rfft(patch.astype(np.float32), axis=-3)[..., ORDERS, :, :] / patch.shape[-3]
-    weight = np.resize(np.sqrt(radii / radii[-1]), patch.shape[-2])
+    weight = np.resize(ring_weights(radii), patch.shape[-2])
     return np.asarray(spectrum * weight[:, None], np.complex64)
 
 

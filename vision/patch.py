@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from data.sheet import Stone
 from vision.camera import Camera
-from vision.rays import Profile, joined, straight
+from vision.rays import Profile, chained, straight
 
 Array = NDArray[np.float64]
 
@@ -89,7 +89,7 @@ def profile_of(disc: Stone, effort: Effort) -> Profile:
         grip = HANDLE_HEIGHT
     low, high = effort.handle_inner * size, effort.handle_outer * size
     rings = straight([(low, grip), (high, grip)], np.linspace(low, high, 2 * effort.handle_rings))
-    return joined(straight(top, np.linspace(inner, outer, effort.radii)), rings)
+    return chained(straight(top, np.linspace(inner, outer, effort.radii)), rings)
 
 
 def handle_radii(disc: Stone, effort: Effort = EFFORT) -> Array:

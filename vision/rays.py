@@ -96,7 +96,7 @@ def straight(nodes: Sequence[tuple[float, float]], radius: Array) -> Profile:
     return Profile(node_radius, node_height, radius, np.array(mix, np.float32))
 
 
-def joined(first: Profile, second: Profile) -> Profile:
+def chained(first: Profile, second: Profile) -> Profile:
     """Profile that has the samples of one and then those of the other."""
     mix = np.zeros((len(first.mix) + len(second.mix), len(first.radius) + len(second.radius)))
     mix[: len(first.mix), : len(first.radius)] = first.mix

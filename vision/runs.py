@@ -16,11 +16,14 @@ APART = 2.5
 """Standard deviations from a smooth curve beyond which an offset is left out."""
 
 _TERMS = 3
+"""Of a parabola."""
+
 _DIAGONAL = np.eye(_TERMS)
 _LEAST_POINTS = np.array([-1, 3, 5])
 """A term of the curve takes part if there are more points."""
 
 _HELD = 1e9
+"""What holds a term at 0 that does not take part: more than any line has points."""
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from vision.clip import Clip
 from vision.placed import Placed, nobody
 
 Stick = tuple[float, float, float, float, float]
+"""Two ends (x1, y1, x2, y2), px, and the length, m."""
 
 
 def stick_camera(stick: Stick, size: tuple[int, int], frame: int = 0, t: float = 0.0) -> Camera:

@@ -4,7 +4,7 @@ import numpy as np
 
 from vision.camera import Camera
 from vision.pose import aim, camera
-from vision.rays import Look, joined, sample_rays, straight
+from vision.rays import Look, chained, sample_rays, straight
 from vision.rig import OVERHEAD, start_rig
 
 SIZE = (480, 360)
@@ -44,9 +44,9 @@ def test_what_is_beside_the_picture_is_not_inside() -> None:
     assert rays.at(0.1)[0].tolist() == [False, True, True, True]
 
 
-def test_joined_profiles_keep_the_samples_of_both() -> None:
+def test_chained_profiles_keep_the_samples_of_both() -> None:
     one = straight([(0.1, 0.0), (0.3, 0.2)], np.array([0.1, 0.2, 0.3]))
     two = straight([(0.4, 0.1), (0.6, 0.1)], np.array([0.45, 0.6]))
-    both = joined(one, two)
+    both = chained(one, two)
     np.testing.assert_allclose(both.node_radius @ both.mix, both.radius, atol=1e-6)
     np.testing.assert_allclose(both.node_height @ both.mix, [0, 0.1, 0.2, 0.1, 0.1], atol=1e-6)
