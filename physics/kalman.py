@@ -95,7 +95,7 @@ def smoothed(
     tables = []
     for name, trace in known.items():
         inside = (times >= trace.t[0]) & (times <= trace.t[-1])
-        hits = sorted(c.t for c in contacts if name in c.stones)
+        hits = sorted((c for c in contacts if name in c.stones), key=lambda c: c.t)
         tables.append(
             _track(trace, times[inside], frames[inside], hits, fit, model, noise[name], run)
         )
@@ -126,7 +126,7 @@ def _track(
     trace: Trace,
     t: Floats,
     frames: NDArray[np.int64],
-    hits: Sequence[float],
+    hits: Sequence[Contact],
     fit: ShotFit,
     model: Model,
     noise: Noise,
@@ -141,7 +141,7 @@ def _track(
     white, slow = noise.white[row], noise.slow[row]
     mean, spread = np.full((len(t), 6), np.nan), np.full((len(t), 6), np.nan)
     seen = np.zeros(len(t), dtype=int)
-    part = np.searchsorted(np.asarray(hits, float), t, side="right")
+    part = np.searchsorted(np.array([hit.t for hit in hits]), t, side="right")
     for k in np.unique(part):
         at = np.flatnonzero(part == k)
         if np.isfinite(z[at, 0]).any():
@@ -151,8 +151,10 @@ def _track(
                     place[at], rest[at], idle[at], speed[at], model,
                 )
             )  # fmt: skip
-        else:
-            mean[at], spread[at] = _bridge(trace, t[at])
+    for k in np.unique(part):
+        at = np.flatnonzero(part == k)
+        if 0 < k < len(hits) and np.isfinite(z[at, 0]).sum() < 2:
+            _bridge(hits, part, t, mean, spread, at)
     spread[:, :2] = np.hypot(spread[:, :2], trace.sd_place[row][:, None])
     size = np.hypot(mean[:, 2], mean[:, 3])
     spread[:, 2:4] = np.hypot(spread[:, 2:4], (UNSEEN_SCALE * trace.sd_scale[row] * size)[:, None])
@@ -193,14 +195,45 @@ def _modes(
     return place, rest, idle, speed
 
 
-def _bridge(trace: Trace, t: Floats) -> tuple[Floats, Floats]:
-    """Straight line over a stretch between two hits in which the stone was never seen."""
-    k = int(np.clip(np.searchsorted(trace.t, t[0]), 1, len(trace.t) - 1))
-    gap = float(trace.t[k] - trace.t[k - 1])
-    mean, spread = np.full((len(t), 6), np.nan), np.full((len(t), 6), np.nan)
-    for axis in range(2):
-        mean[:, axis] = np.interp(t, trace.t, trace.xy[:, axis])
-        mean[:, 2 + axis] = (trace.xy[k, axis] - trace.xy[k - 1, axis]) / gap
-    spread[:, :2] = gap
-    spread[:, 2:4] = START_SD[0]
-    return mean, spread
+def _bridge(
+    hits: Sequence[Contact],
+    part: NDArray[np.int64],
+    t: Floats,
+    mean: Floats,
+    spread: Floats,
+    at: NDArray[np.int64],
+) -> None:
+    """Fill in how a stone moved from one hit to the next where it was seen once or never.
+
+    By a straight line from where its motion before leads to at the one hit to where its motion
+    after comes from at the other.
+
+    Parameters
+    ----------
+    hits : sequence of Contact
+        Of the stone, in order of time.
+    part : (n,) array of int
+        How many of them each row comes after.
+    t : (n,) array
+        Times of the rows, s.
+    mean, spread : (n, 6) array
+        States and their standard deviations, NaN where the stone was never seen; rows `at` are
+        changed.
+    at : (m,) array of int
+        The rows between the two hits.
+    """
+    told = np.flatnonzero(np.isfinite(mean[:, 0]) & (part != part[at[0]]))
+    after = int(np.searchsorted(told, at[0]))
+    beside = told[after - 1 : after + 1]
+    first, last = hits[part[beside[0]]], hits[part[beside[1]] - 1]
+    ahead = np.array([first.t, last.t])[:, None] - t[beside][:, None]
+    place = mean[beside, :2] + ahead * mean[beside, 2:4]
+    speed = (place[1] - place[0]) / (last.t - first.t)
+    late = np.array([[first.stderr_t], [last.stderr_t]]) * (speed - mean[beside, 2:4])
+    error = np.sqrt(spread[beside, :2] ** 2 + (ahead * spread[beside, 2:4]) ** 2 + late**2)
+    more_hits = part[beside[1]] - part[beside[0]] - 2  # the line knows nothing of them
+    mean[at, 2:4] = speed
+    spread[at, 2:4] = np.hypot(*error) / (last.t - first.t) + START_SD[0] * more_hits
+    unseen = at[np.isnan(mean[at, 0])]
+    mean[unseen, :2] = place[0] + (t[unseen] - first.t)[:, None] * speed
+    spread[unseen, :2] = np.hypot(*error) + START_SD[0] * more_hits * (last.t - first.t)

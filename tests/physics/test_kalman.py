@@ -7,10 +7,10 @@ import pandas as pd
 import pytest
 
 from data.tracks import TRACK_COLUMNS, check_sightings
-from physics.contacts import find_contacts
+from physics.contacts import Contact, find_contacts
 from physics.kalman import smooth
 from tests.physics.watch import RADIUS, airtable, hit_motion, watch
-from tests.synthetic.physics import Motion
+from tests.synthetic.physics import Motion, Start
 
 COLUMNS = ("x", "y", "theta", "vx", "vy", "omega")
 
@@ -103,6 +103,32 @@ def test_gaps_are_bridged_and_marked() -> None:
     gap = (tracks["seen"] == 0).to_numpy()
     assert np.abs(off[gap, :2]).max() < 0.01
     assert sd[gap, 0].max() > 1.3 * np.median(sd[~gap & (tracks["stone"] == "A"), 0])
+
+
+def test_a_way_too_short_to_be_seen_twice_is_told_by_its_ends() -> None:
+    motion = hit_motion(1.8, 0.0, after=1.0, others=[Start(0.03, 2 * RADIUS + 0.07)])
+    first, second = motion.hits
+    middle = (first.t + second.t) / 2
+    for sightings in (0, 1):
+        pulls = []
+        for seed in range(8):
+            rng = np.random.default_rng([37, seed])
+            seen = watch(motion, rng, fps=100, sd=0.001)
+            near = seen["t"].between(first.t, second.t) & (seen["stone"] == "B")
+            kept = (seen.loc[near, "t"] - middle).abs().nsmallest(sightings).index
+            left = seen.drop(seen.index[near].difference(kept)).reset_index(drop=True)
+            contacts = [
+                Contact(hit.t + rng.normal(0, 5e-4), 5e-4, stones, hit.normal)
+                for hit, stones in ((first, ("A", "B")), (second, ("B", "C")))
+            ]
+            tracks = smooth(left, contacts, radius=RADIUS)
+            own = tracks[tracks["stone"] == "B"]
+            row = own.iloc[(own["t"] - middle).abs().argmin()]
+            true = motion.at(row["t"])[1]
+            pulls += [(row[v] - true[k]) / row[f"sd_{v}"] for k, v in ((3, "vx"), (4, "vy"))]
+            assert row["sd_vy"] < 0.1
+            assert row["y"] == pytest.approx(true[1], abs=4 * row["sd_y"])
+        assert np.mean(np.abs(pulls) < 2) > 0.8
 
 
 def test_outliers_are_refused() -> None:
