@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from data.sheet import HOUSE
-from vision.normals import SAMPLES, Normals, lay_out
+from vision.normals import BLOCK, SAMPLES, Normals, lay_out
 from vision.paint import CENTRE_LINE, TEE_LINE
 from vision.pose import aim
 from vision.rig import OVERHEAD, start_rig
@@ -63,9 +63,13 @@ def test_a_line_that_ends_at_the_house_is_found_beyond_it() -> None:
     painted[:, np.abs(normals.along) < HOUSE.twelve_foot] = 0
     blocks, offset, good = stripes(profile + painted, normals)
     part = blocks.kinds[CENTRE_LINE]
-    shown = np.abs(blocks.along[part]) > HOUSE.twelve_foot
+    beyond = (
+        np.abs(normals.along[normals.kinds[CENTRE_LINE]].reshape(-1, BLOCK)) > HOUSE.twelve_foot
+    )
+    shown, bare = beyond.all(1), ~beyond.any(1)
+    assert min(shown.sum(), bare.sum()) >= 4
     assert good[part][shown].mean() > 0.7
-    assert good[part][~shown].mean() < 0.2
+    assert good[part][bare].mean() < 0.2
     off = offset[part] - (1.5 + 0.3 * blocks.along[part])
     assert np.median(np.abs(off[good[part] & shown])) < 0.35
 
