@@ -58,7 +58,7 @@ def sightings(
     return [
         Sighting(
             x, y, sd_x, sd_y, nan, colour, visible, score, tuple(outline), wall, tuple(bends),
-            (u, v), spectrum.copy() if told else None,
+            (u, v), nan, spectrum.copy() if told else None,
         )
         for colour, spectrum, (x, y), (sd_x, sd_y), visible, score, outline, wall, bends, (u, v),
         told in rows
@@ -70,18 +70,20 @@ def placed_by(camera: Camera, seen: Sequence[Sighting], disc: Stone) -> list[Sig
     if not seen:
         return []
     places = camera.ice(np.array([sighting.pixel for sighting in seen]), disc.cap_height)
-    shared = _shared_errors(camera, places, disc)
+    size = 1 / camera.scale_at(places)
+    shared = _shared_errors(camera, places, size, disc)
+    told = zip(seen, places.tolist(), shared.tolist(), size.tolist(), strict=True)
     return [
-        sighting._replace(x=x, y=y, sd_place=sd)
-        for sighting, (x, y), sd in zip(seen, places.tolist(), shared.tolist(), strict=True)
+        sighting._replace(x=x, y=y, sd_place=sd, pixel_size=pixel)
+        for sighting, (x, y), sd, pixel in told
     ]
 
 
-def _shared_errors(camera: Camera, places: Array, disc: Stone) -> Array:
+def _shared_errors(camera: Camera, places: Array, pixel: Array, disc: Stone) -> Array:
     """Give the standard errors that no filter averages out, m: by camera and height of the cap."""
     rms = camera.rms_px if np.isfinite(camera.rms_px) else USUAL_RMS_PX
     aslant = ASLANT * disc.cap_height * np.hypot(*slants(camera, places).T)
-    squares = (RMS_SHARE * rms / camera.scale_at(places)) ** 2 + aslant**2
+    squares = (RMS_SHARE * rms * pixel) ** 2 + aslant**2
     if camera.error is None:
         return np.asarray(np.sqrt(squares))
     return np.asarray(np.sqrt(squares + camera.place_sd(places, disc.cap_height) ** 2))

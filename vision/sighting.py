@@ -40,6 +40,8 @@ class Sighting(NamedTuple):
         How the edge of cap or disc is bent (`vision.circles.Fits`), m.
     pixel : tuple of float
         Where the picture shows the middle of the cap, px.
+    pixel_size : float
+        How long a pixel is there by the camera at hand, m; NaN where it is not told yet.
     cap_samples, granite_samples : ndarray, shape (n, 3)
         Colours of the cap and of the granite, for learning.
     spectrum : ndarray or None
@@ -61,6 +63,7 @@ class Sighting(NamedTuple):
     wall: float
     bends: tuple[float, ...]
     pixel: tuple[float, float]
+    pixel_size: float
     spectrum: NDArray[np.complex64] | None = None
     cap_samples: Array = _NONE
     granite_samples: Array = _NONE

@@ -22,6 +22,7 @@ def test_places_are_those_under_the_pixels_with_the_caps_height_taken_out() -> N
     seen = [sighting((9.0, 9.0))._replace(pixel=(u, v)) for u, v in pixels]
     found = placed_by(DOWN, seen, STONE)
     np.testing.assert_allclose([(s.x, s.y) for s in found], PLACES, atol=1e-6)
+    np.testing.assert_allclose([s.pixel_size for s in found], HEIGHT / FOCAL, rtol=0.01)
     assert placed_by(DOWN, [], STONE) == []
 
 
