@@ -30,6 +30,12 @@ POOR_FIT = 30.0
 BLUNT = 3.0
 """Times the error beside the hits from which a value of the whole shot says nothing new."""
 
+LED_ASTRAY = (
+    "whole shot: something else than ice and hits moves a stone by its first hit;"
+    " values beside the hits used"
+)
+"""Why a shot with hits is not fitted as a whole."""
+
 LAWS = ("restitution", "friction", "stone_friction")
 """Unknowns of a shot that are not of one stone alone."""
 
@@ -121,21 +127,20 @@ def estimate(
         k in I = k m R²; decides whether a contact can have slid throughout.
     """
     local = estimate_locally(sightings, contacts, radius=radius, masses=masses, inertia=inertia)
-    restitution, friction = local.restitution, local.friction
+    restitution, friction, unsure = local.restitution, local.friction, local.friction_doubt
     fitted, doubt, end = _whole(local, radius, masses or {}, inertia)
     whole = fitted if doubt is None else None
-    warnings = [*local.warnings, *(text for text in (doubt or end,) if text is not None)]
     if whole is not None and restitution.value is not None and whole.told("restitution"):
         restitution = whole["restitution"]
     if whole is not None and friction.value is not None and whole.told("friction"):
-        friction = _friction(whole)
-        warnings = [text for text in warnings if not text.startswith("friction differs")]
+        friction, unsure = _friction(whole), None
+    warnings = (unsure, *local.warnings, doubt or end)
     return Estimates(
         restitution,
         friction,
         local.collisions,
         local.glides,
-        tuple(warnings),
+        tuple(text for text in warnings if text is not None),
         local,
         whole,
         _global(fitted, doubt),
@@ -156,7 +161,7 @@ def _rests(local: Local) -> dict[str, float]:
 def _global(fit: GlobalFit | None, doubt: str | None) -> Method:
     """Return what the whole shot says, used or not."""
     if fit is None:
-        return Method(note=doubt or "the whole shot is not fitted: no hit, or nothing that moves")
+        return Method(note=doubt or "the whole shot is not fitted: no hit, or no stone that moves")
     rub = Told(note="any friction above what stops the stones sliding on each other does the same")
     if fit.told("stone_friction"):
         rub = Told(*_pair(fit["stone_friction"]))
@@ -204,7 +209,7 @@ def _whole(
         priors=loose_priors(radius), masses=masses, inertia=inertia,
     )  # fmt: skip
     if watched is None or not watched.hits:
-        return None, None, None
+        return None, LED_ASTRAY, None
     try:
         fit, end = fit_followed(watched)
     except InputError as error:

@@ -43,8 +43,10 @@ class Local:
         In order of time.
     glides : tuple of Glide
         In order of stone and time.
+    friction_doubt : str or None
+        Why the friction could not be told, or what is odd about it.
     warnings : tuple of str
-        What could not be told and why; what does not agree.
+        What else could not be told and why; what does not agree.
     fit : ShotFit or None
         Of the paths; None without a hit.
     known : mapping
@@ -55,6 +57,7 @@ class Local:
     friction: Friction = field(default_factory=Friction)
     collisions: tuple[Collision, ...] = ()
     glides: tuple[Glide, ...] = ()
+    friction_doubt: str | None = None
     warnings: tuple[str, ...] = ()
     fit: ShotFit | None = None
     known: Mapping[str, Trace] = field(default_factory=dict)
@@ -90,42 +93,40 @@ def estimate_locally(
         )  # fmt: skip
 
     glides, friction, prior = measure_glides(fit(pieces, FREE), known, radius)
-    friction, warnings = _checked(friction, glides, prior)
+    friction, doubt = _checked(friction, glides, prior)
     if not meetings:
-        warnings.append("restitution: no hit seen")
-        return Local(Estimate(), friction, (), glides, tuple(warnings))
+        return Local(Estimate(), friction, (), glides, doubt, ("restitution: no hit seen",))
     joint = fit(pieces, prior)
     discs = Discs(radius, masses or {}, inertia)
     collisions, restitution = measure_hits(joint, fit(pieces, prior, momentum=False), known, discs)
-    warnings += [text for hit in collisions for text in _doubts(hit)]
-    warnings += _distances(joint, radius)
-    return Local(restitution, friction, collisions, glides, tuple(warnings), joint, known)
+    warnings = [text for hit in collisions for text in _doubts(hit)] + _distances(joint, radius)
+    return Local(restitution, friction, collisions, glides, doubt, tuple(warnings), joint, known)
 
 
 def _checked(
     friction: Friction, glides: Sequence[Glide], prior: Deceleration
-) -> tuple[Friction, list[str]]:
+) -> tuple[Friction, str | None]:
     """Return the friction of the glides if it can be one, and what is odd about it."""
     value, stderr = friction.value, friction.stderr
     if value is None or stderr is None:
-        return friction, ["friction: no stone glides freely for long enough to tell it"]
+        return friction, "friction: no stone glides freely for long enough to tell it"
     if value + 2 * stderr < 0:
-        return Friction(), [
+        return Friction(), (
             f"friction: the stones gain speed (μ = {value:.3f} ± {stderr:.3f}), so these are no"
             " free glides on level ice; not reported"
-        ]
+        )
     if value < 0:
-        return friction, [
+        return friction, (
             f"friction: {value:.4f} ± {stderr:.4f}: too little is seen to tell it from none"
-        ]
+        )
     each = [glide.friction for glide in glides if glide.friction is not None]
     uneven = max(UNEVEN, 0.3 * prior.mean)
     if prior.along > uneven and GRAVITY * (max(each) - min(each)) > uneven:
-        return friction, [
+        return friction, (
             f"friction differs from glide to glide ({min(each):.4f} to {max(each):.4f}):"
             " it depends on speed or place, the value is a mean"
-        ]
-    return friction, []
+        )
+    return friction, None
 
 
 def _doubts(hit: Collision) -> list[str]:

@@ -10,6 +10,7 @@ import pytest
 from data.tracks import check_sightings
 from physics.contacts import find_contacts
 from physics.estimate import Estimates, estimate
+from physics.local import estimate_locally
 from tests.physics.watch import RADIUS, airtable, discs, hit_motion, semireal, watch
 from tests.synthetic.physics import Ice, Impact, Start, simulate
 
@@ -292,3 +293,29 @@ def test_stones_that_gain_speed_have_no_friction() -> None:
     found = estimate(check_sightings(table), (), radius=0.1455)
     assert found.friction.value is None
     assert any("gain speed" in text for text in found.warnings)
+
+
+def test_a_stone_that_is_pushed_on_its_way_to_the_hit() -> None:
+    seen = watch(hit_motion(1.5, 0.08), np.random.default_rng(12), sd=0.001)
+    early = (seen["stone"] == "A") & (seen["t"] < 0.6)
+    seen.loc[early, "y"] += 0.5 * (0.6 - seen.loc[early, "t"])
+    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    assert found.whole is None
+    assert found.restitution.value == pytest.approx(0.83, abs=0.02)
+    (why,) = [text for text in found.warnings if "whole shot" in text]
+    assert "something else than ice and hits moves a stone" in why
+    assert found.methods["global"].note == why
+
+
+def test_what_glides_alone_do_not_tell_is_no_doubt_where_the_whole_shot_does(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    seen = watch(hit_motion(), np.random.default_rng(13), sd=0.002)
+    contacts = find_contacts(seen, RADIUS)
+    local = replace(estimate_locally(seen, contacts, radius=RADIUS), friction_doubt="friction: ?")
+    monkeypatch.setattr("physics.estimate.estimate_locally", lambda *_, **__: local)
+    found = estimate(seen, contacts, radius=RADIUS)
+    assert found.whole is not None
+    assert "friction: ?" not in found.warnings
+    monkeypatch.setattr("physics.estimate.POOR_FIT", 0.0)
+    assert "friction: ?" in estimate(seen, contacts, radius=RADIUS).warnings
