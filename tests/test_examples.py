@@ -65,7 +65,8 @@ def test_what_if(sample: pipeline.Run, capsys: pytest.CaptureFixture[str]) -> No
     assert sample.out is not None
     text = said("what_if", capsys, sample.out)
     assert "5 cm to the left" in text
-    assert text.count("in the house") == 9
+    # Whether the third stone moves most of the time depends on the aim.
+    assert text.count("A: in the house") == text.count("B: in the house") == 3
 
 
 def test_figures(sample: pipeline.Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
