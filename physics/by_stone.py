@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from data.results import Collision, Estimate, Glide, StoneResult
+from physics.random_effects import random_effects
 
 
 def results_by_stone(
@@ -42,17 +43,10 @@ def _result(stone: str, glides: Sequence[Glide], collisions: Sequence[Collision]
 
 
 def _mean(found: Sequence[tuple[float | None, float | None]]) -> Estimate:
-    """Weighted mean; its error grows with the scatter (Birge ratio)."""
+    """Mean over the glides of a stone, which differ as those of all stones do."""
     known = [(value, sd) for value, sd in found if value is not None and sd]
-    if not known:
-        return Estimate()
-    values, errors = np.array(known, float).T
-    weights = errors**-2
-    mean = float(weights @ values / weights.sum())
-    variance = 1 / float(weights.sum())
-    if len(values) > 1:
-        variance *= max(1.0, float(weights @ (values - mean) ** 2) / (len(values) - 1))
-    return Estimate(mean, float(np.sqrt(variance)))
+    values, errors = np.array(known, float).reshape(-1, 2).T
+    return random_effects(values, np.diag(errors**2)).mean
 
 
 def _spin(stone: str, collisions: Sequence[Collision]) -> Estimate:

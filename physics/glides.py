@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from data.results import Estimate, Friction, Glide
 from data.sheet import GRAVITY, curling_size
+from physics.random_effects import random_effects
 from physics.shot_fit import Deceleration, ShotFit
 from physics.traces import PLACE_REACH, Trace
 
@@ -27,6 +28,9 @@ LEAST_SPREAD = 0.01
 CHANGE = 0.002
 """How much ice changes a deceleration in time at 1 m/s, m/s³: (μ g)² / 2 v² in Penner's law, 0.003,
 half as much in FCV1's, nothing on even ice."""
+
+CLEAR = 2.0
+"""Excess of the misfit of one deceleration for all glides from which they are known to differ."""
 
 WORST = 0.02
 """Standard error of a friction beyond which a glide is said to tell nothing."""
@@ -47,9 +51,10 @@ def measure_glides(
         What to assume of a glide that is too short to tell.
     """
     glides, values, cov = _each(fit, known, radius)
-    friction, spread = _pooled(values, cov)
-    curling = curling_size(radius)
-    usual, change = (USUAL, CHANGE) if curling else (ANY, 0.0)
+    pooled = random_effects(values, cov)
+    friction = _friction(pooled.mean)
+    spread = pooled.spread if pooled.excess > CLEAR else 0.0
+    usual, change = (USUAL, CHANGE) if curling_size(radius) else (ANY, 0.0)
     mean, sd = float(usual.value or 0.0), float(usual.stderr or 0.0)
     if friction.value is not None and friction.stderr is not None:
         measured, error = friction.value * GRAVITY, max(friction.stderr * GRAVITY, 1e-6)
@@ -123,33 +128,8 @@ def stop_time(x: Floats, origin: float, last: float) -> float:
     return min(last, origin + float(x[:, 1] @ x[:, 1]) / braking)
 
 
-def _pooled(values: Floats, cov: Floats) -> tuple[Friction, float]:
-    """Mean friction over the glides, and the spread of decelerations between them, m/s².
-
-    Random effects after DerSimonian and Laird, 1986, Control. Clin. Trials 7, 177, for values
-    whose errors are correlated: what a fit takes from the speed before a hit it takes from the
-    speed after it.
-
-    Parameters
-    ----------
-    values : (n,) array
-        Decelerations, m/s².
-    cov : (n, n) array
-        Their covariance.
-    """
-    count = len(values)
-    if not count:
-        return Friction(), 0.0
-    ones = np.ones(count)
-    inverse = np.linalg.inv(cov)
-    weights: Floats = inverse @ ones
-    off = values - weights @ values / weights.sum()
-    between = 0.0
-    excess = float(off @ inverse @ off) - (count - 1)
-    # Two or three glides show some spread by chance alone.
-    if count > 1 and excess > np.sqrt(2 * (count - 1)):
-        between = excess / float(np.trace(inverse) - weights @ weights / weights.sum())
-    weights = np.linalg.inv(cov + between * np.eye(count)) @ ones
-    mean, stderr = float(weights @ values / weights.sum()), float(weights.sum() ** -0.5)
-    clear = excess > 2 * np.sqrt(2 * (count - 1))
-    return Friction(mean / GRAVITY, stderr / GRAVITY), float(np.sqrt(between)) if clear else 0.0
+def _friction(deceleration: Estimate) -> Friction:
+    """Coefficient of friction that a deceleration, m/s², shows."""
+    if deceleration.value is None or deceleration.stderr is None:
+        return Friction()
+    return Friction(deceleration.value / GRAVITY, deceleration.stderr / GRAVITY)

@@ -149,11 +149,12 @@ def test_discs_of_a_motion_capture(shared: Path, number: int) -> None:
 
 
 def test_momentum_that_a_rocking_disc_loses_to_the_table(shared: Path) -> None:
-    """What is missing in one hit, 1.4 % or 4 standard errors, is what the table takes in 15 ms.
+    """What is missing in one hit, 1.2 ± 0.5 %, is what the table takes in 15 ms.
 
     The table's friction is not even: from none for 50 ms after the hit it grows to 0.11 and falls
     to nothing again within half a second, as of a disc that rocks on its rim. A fit with one
-    deceleration beside the hit cannot know what it is at the hit itself. Neither masses nor a
+    deceleration beside the hit cannot know what it is at the hit itself, but by how much it
+    differs from one glide to the next. Neither masses nor a
     centre that is off (momentum is missing across the way as well as along it, and in other
     amounts in each hit) explain it.
     """
@@ -162,7 +163,7 @@ def test_momentum_that_a_rocking_disc_loses_to_the_table(shared: Path) -> None:
     (hit,) = found.collisions
     assert hit.momentum_residual is not None
     assert hit.stderr_momentum is not None
-    assert 3 < hit.momentum_residual / hit.stderr_momentum < 6
+    assert 0.008 < hit.momentum_residual < 3 * hit.stderr_momentum
     soon = [g for g in found.glides if g.stone == "a" and hit.t < g.t0 < hit.t + 0.3]
     least, most = (choice(soon, key=lambda glide: glide.friction or 0.0) for choice in (min, max))
     assert (least.friction or 0.0) < 0.01
