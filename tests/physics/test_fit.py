@@ -5,7 +5,6 @@ import pytest
 
 from physics.contacts import cut_all
 from physics.fit import fit_shot
-from physics.residuals import likeness
 from physics.shot_fit import Deceleration, Meeting
 from physics.traces import traces
 from tests.physics.watch import RADIUS, hit_motion, watch
@@ -52,19 +51,3 @@ def test_covariance_follows_from_the_scatter() -> None:
         places.append(value)
         sd.append(np.sqrt(np.diag(cov)))
     assert np.allclose(np.std(places, axis=0), np.median(sd, axis=0), rtol=0.4)
-
-
-def test_alike_errors_are_told_from_white_ones() -> None:
-    rng = np.random.default_rng(64)
-    white = [(rng.normal(size=(60, 2)), 3) for _ in range(12)]
-    assert likeness(white) < 1.4
-    keep = 0.8
-    alike = []
-    for _ in range(12):
-        r = rng.normal(size=(60, 2))
-        for k in range(1, 60):
-            r[k] = keep * r[k - 1] + np.sqrt(1 - keep**2) * r[k]
-        alike.append((r - r.mean(axis=0), 1))
-    assert likeness(alike) == pytest.approx((1 + keep) / (1 - keep), rel=0.4)
-    assert likeness([]) == 1.0
-    assert likeness([(np.zeros((20, 2)), 1)]) == 1.0
