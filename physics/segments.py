@@ -71,10 +71,11 @@ def _breaks(samples: bytes, lasting: float) -> tuple[float, ...]:
     """As `breaks`, of rows of time, place and standard deviations."""
     t, xy, sd = np.split(np.frombuffer(samples).reshape(-1, 5), [1, 3], axis=1)
     t, n = t[:, 0], len(t)
-    if n < 6 or _at_one_place(xy, sd):
-        return ()
     variance = np.mean(sd**2, axis=1)
-    sought = _starts(t, xy, (1 + ALIKE) * variance, np.ones(n, bool))
+    white = (1 + ALIKE) * variance
+    if n < 6 or _at_one_place(xy, white):
+        return ()
+    sought = _starts(t, xy, white, np.ones(n, bool))
     if not sought:
         return ()
     # As often as sightings err alike they say the same once more: only what stands out of that is
@@ -126,7 +127,7 @@ def _starts(t: Floats, xy: Floats, variance: Floats, may: NDArray[np.bool_]) -> 
     return found[::-1]
 
 
-def _at_one_place(xy: Floats, sd: Floats) -> bool:
+def _at_one_place(xy: Floats, variance: Floats) -> bool:
     """Whether places show no trace of a motion, over the whole or over any shorter stretch.
 
     Most stones rest most of the time, and to see that is a thousand times cheaper than to
@@ -135,7 +136,7 @@ def _at_one_place(xy: Floats, sd: Floats) -> bool:
     """
     if np.abs(xy - np.median(xy, axis=0)).max() < PLACE:
         return True
-    weights = 1 / ((1 + ALIKE) * np.mean(sd**2, axis=1))
+    weights = 1 / variance
     total = np.concatenate([[0.0], np.cumsum(weights)])
     centre = weights @ xy / total[-1]
     sums = np.concatenate([np.zeros((1, 2)), np.cumsum(weights[:, None] * (xy - centre), axis=0)])

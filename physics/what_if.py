@@ -148,8 +148,9 @@ def sample(
         getattr(places, item.name)[:] += sd * rng.standard_normal((count, len(sd)))
     none = np.zeros(len(shot.stones))
     # The errors that places share are drawn once for all stones, for x and for y.
-    places.x[:] += rng.multivariate_normal(none, start.together, count, method="eigh")
-    places.y[:] += rng.multivariate_normal(none, start.together, count, method="eigh")
+    shared = rng.multivariate_normal(none, start.together, (2, count), method="eigh")
+    places.x[:] += shared[0]
+    places.y[:] += shared[1]
     rank = rng.permutation(np.arange(count) % LAWS)
     pairs = _laws(start, rng)
     _throw(start, places, throw_sd, rng)
