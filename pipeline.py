@@ -255,10 +255,8 @@ def check(
     data.errors.CurlshotError
         Where the input cannot be used; one line says why.
     """
-    import numpy as np
-
-    from report.check import Look, check_figure, check_lines, frames_to_show
-    from vision.camera import camera_table
+    from report.check import check_figure
+    from report.looks import Look, check_lines, check_table, frames_to_show
     from vision.glance import glance
     from vision.placed import nobody
 
@@ -266,10 +264,7 @@ def check(
     seen = film(files, settings, progress, nobody)
     clip, cameras = seen.clip, seen.cameras
     radii = () if seen.house is None else _painted(seen.house)
-    table = camera_table(cameras)
-    rim = radii[0] if radii else 0.0
-    around = rim * np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
-    table["sd"] = [float(np.mean(camera.place_sd(around))) for camera in cameras]
+    table = check_table(cameras, radii[0] if radii else 0.0)
     by_frame = {camera.frame: camera for camera in cameras}
     chosen = frozenset(frames_to_show(table))
     frames = []

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import cv2
@@ -15,16 +14,13 @@ from numpy.typing import NDArray
 
 from data.sheet import STONE
 from report.drawing import circle, draw_lines, ice_lines
-from report.numbers import count
+from report.looks import COLUMNS, Look, numbered
 from report.style import BLUE, GREY, ORANGE, SKY, VERMILLION, new_figure, styled
-from vision.camera import Camera
-from vision.clip import Frame, Image
+from vision.clip import Image
 from vision.ice_map import rectify
-from vision.sighting import Refusal, Sighting
 
 Array = NDArray[np.float64]
 
-COLUMNS = 4
 PICTURE_WIDTH = 640
 """Width of a frame on the sheet, px."""
 
@@ -37,71 +33,6 @@ REACH = 2.2
 _RINGS, _LINES = (255, 255, 0), (0, 255, 255)  # BGR: on no common paint
 _TAKEN, _REFUSED = (80, 255, 80), (60, 60, 255)
 _CIRCLE = circle(61)
-
-
-@dataclass(frozen=True)
-class Look:
-    """One frame of the sheet.
-
-    Attributes
-    ----------
-    frame : Frame
-    camera : Camera
-    stones : sequence of Sighting
-        What was taken for a stone.
-    refused : sequence of Refusal
-        What looked like one and was refused, and why.
-    """
-
-    frame: Frame
-    camera: Camera
-    stones: Sequence[Sighting]
-    refused: Sequence[Refusal] = ()
-
-
-def check_lines(
-    name: str,
-    read: int,
-    cameras: pd.DataFrame,
-    looks: Sequence[Look],
-    warnings: Sequence[str] = (),
-) -> list[str]:
-    """Say in a few lines how far a clip can be trusted.
-
-    Parameters
-    ----------
-    name : str
-        Of the clip.
-    read : int
-        Frames read.
-    cameras : DataFrame
-        As for `check_figure`.
-    looks : sequence of Look
-    warnings : sequence of str
-
-    Returns
-    -------
-    list of str
-        Input, camera, places where known, stones, warnings.
-    """
-    carried = int((cameras["found"] == 0).sum())
-    rms, sd = cameras["rms_px"], 1000 * cameras["sd"]
-    edges = f"edges {rms.median():.2f} px off, worst frame {rms.max():.2f} px"
-    if rms.isna().all():
-        edges = "edges not measured"
-    lines = [
-        f"input       {name}: {count(read, 'frame')}",
-        f"camera      known in {count(len(cameras), 'frame')}, carried in {carried} of them;"
-        f" {edges}",
-    ]
-    if sd.max() > 0:
-        lines.append(
-            f"places      known to {sd.median():.1f} mm at the 12-ft ring,"
-            f" worst frame {sd.max():.1f} mm (one standard error)"
-        )
-    most = max(len(look.stones) for look in looks)
-    lines.append(f"stones      {most} at most in one of {count(len(looks), 'frame')} looked at")
-    return lines + [f"warning: {text}" for text in warnings]
 
 
 def check_figure(
@@ -119,8 +50,7 @@ def check_figure(
     looks : sequence of Look
         The frames to show.
     cameras : DataFrame
-        ``t``, ``rms_px``, ``found`` and ``sd`` (m, of a point of the 12-ft ring, per axis), one
-        row per frame.
+        One row per frame, as `report.looks.check_table` gives it.
     rings : sequence of float
         Painted radii, m; none where there is no house.
     title : str
@@ -207,16 +137,6 @@ def _drawn(
     )
 
 
-def numbered(refused: Sequence[Refusal], apart: float) -> list[Refusal]:
-    """Choose the refused places that get a number: one of those that lie on one another."""
-    chosen: list[Refusal] = []
-    for place in refused:
-        near = [item for item in chosen if np.hypot(item.x - place.x, item.y - place.y) < apart]
-        if all(item.reason != place.reason for item in near):
-            chosen.append(place)
-    return chosen
-
-
 def _show(ax: Axes, image: Image) -> None:
     ax.imshow(image[..., ::-1])
     ax.axis("off")
@@ -275,27 +195,3 @@ def _residuals(axes: NDArray[np.object_], cameras: pd.DataFrame) -> None:
         "shaded: carried without rings in view" if carried.any() else "rings seen in every frame"
     )
     axes[1].set_xlabel("time (s)")
-
-
-def frames_to_show(cameras: pd.DataFrame, count: int = 3 * COLUMNS) -> list[int]:
-    """Choose frames spread over the clip, the one with the largest residual among them.
-
-    Parameters
-    ----------
-    cameras : DataFrame
-        With ``frame`` and ``rms_px``.
-    count : int
-        How many, at most.
-
-    Returns
-    -------
-    list of int
-        Frame numbers in order.
-    """
-    at = np.unique(np.round(np.linspace(0, len(cameras) - 1, count)).astype(int))
-    residual = np.nan_to_num(cameras["rms_px"].to_numpy(float), nan=0.0)
-    worst = int(residual.argmax())
-    if worst not in at:
-        nearest = 1 + int(np.abs(at[1:-1] - worst).argmin()) if len(at) > 2 else 0
-        at[nearest] = worst
-    return [int(frame) for frame in cameras["frame"].iloc[np.sort(at)]]

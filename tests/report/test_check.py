@@ -2,50 +2,20 @@ from __future__ import annotations
 
 import cv2
 import numpy as np
-import pandas as pd
-import pytest
 
 from pipeline import main, sample_clip
-from report.check import Look, check_figure, frames_to_show, numbered
+from report.check import check_figure
+from report.looks import Look
+from tests.report.looking import SIZE, camera, table
 from vision.camera import Camera
 from vision.clip import Frame
 from vision.sighting import Refusal
-
-SIZE = (320, 240)
-
-
-def camera(frame: int, **kwargs) -> Camera:
-    homography = np.array([[50.0, 0, 160], [0, -50.0, 120], [0, 0, 1]])
-    return Camera(frame, frame / 25, homography, SIZE, **kwargs)
 
 
 def house_picture() -> np.ndarray:
     image = np.full((SIZE[1], SIZE[0], 3), 230, np.uint8)
     cv2.circle(image, (160, 120), round(50 * 1.829), (160, 60, 20), -1, cv2.LINE_AA)
     return image
-
-
-def table(count: int, worst: int) -> pd.DataFrame:
-    rms = np.full(count, 0.2)
-    rms[worst] = 0.9
-    return pd.DataFrame(
-        {"frame": np.arange(count) + 5, "t": np.arange(count) / 25, "rms_px": rms,
-         "found": (np.arange(count) % 7 != 3).astype(int), "sd": 0.002}
-    )  # fmt: skip
-
-
-@pytest.mark.parametrize("worst", [0, 17, 59])
-def test_the_worst_frame_is_shown_and_no_frame_twice(worst: int) -> None:
-    shown = frames_to_show(table(60, worst))
-    assert worst + 5 in shown
-    assert shown == sorted(set(shown))
-    assert len(shown) == 12
-    assert {5, 64} <= {*shown}
-
-
-@pytest.mark.parametrize("count", [1, 2, 5])
-def test_a_short_clip_is_shown_whole(count: int) -> None:
-    assert frames_to_show(table(count, count - 1)) == list(range(5, 5 + count))
 
 
 def drawn_frame(figure, number: int) -> np.ndarray:
@@ -74,13 +44,6 @@ def test_a_single_picture_is_large_and_has_no_course_in_time() -> None:
     figure.draw_without_rendering()
     assert picture.get_window_extent().width > 1.5 * above.get_window_extent().width
     assert above.get_title("left") == "from above"
-
-
-def test_numbers_of_reasons_do_not_lie_on_one_another() -> None:
-    close = [Refusal(0.5 + 0.05 * k, 0.5, 0.3, "a broom") for k in range(4)]
-    other = [Refusal(0.6, 0.5, 0.3, "too small"), Refusal(1.5, 0.5, 0.3, "a broom")]
-    chosen = numbered([*close, *other], 0.29)
-    assert chosen == [close[0], *other]
 
 
 def test_the_average_is_sharp_only_if_the_camera_was_followed() -> None:
