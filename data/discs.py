@@ -21,6 +21,9 @@ OFTEN = 3
 FASTEST_STONE = 6.0
 """m/s; the hardest takeouts leave the hand at 4 to 5."""
 
+WINDOW = 0.1
+"""Seconds over which a speed is a mean: the noise of marks, a centimetre, hardly counts in it."""
+
 
 def refuse_no_discs(
     sightings: pd.DataFrame, radius: float, source: str, advice: str = UNIT_NOT_SAID
@@ -70,13 +73,11 @@ def _refuse_racing(sightings: pd.DataFrame, source: str, advice: str) -> None:
             )
 
 
-def top_speed(
-    t: NDArray[np.float64], xy: NDArray[np.float64], window: float = 0.1
-) -> tuple[float, float]:
-    """Find the greatest mean speed over a window, s, and its time: noise hardly counts."""
+def top_speed(t: NDArray[np.float64], xy: NDArray[np.float64]) -> tuple[float, float]:
+    """Find the greatest mean speed over `WINDOW`, m/s, and the time at which it begins, s."""
     if len(t) < 2:
         return 0.0, float(t[0])
-    ends = np.searchsorted(t, t + window * (1 - 1e-9))
+    ends = np.searchsorted(t, t + WINDOW * (1 - 1e-9))
     first = np.flatnonzero(ends < len(t))
     if len(first) == 0:
         first, ends = np.array([0]), np.array([len(t) - 1])

@@ -34,6 +34,9 @@ from data.trk import MEASURED, TEXT_COLUMNS, Coordinates
 
 Array = NDArray[np.float64]
 
+PLAIN_SIZE = (1280, 720)
+"""Width and height of a picture that no video gives, px."""
+
 _TRACKER = "org.opensourcephysics.cabrillo.tracker."
 _MEDIA = "org.opensourcephysics.media."
 _MARK, _MODEL = "Footprint.Diamond", "CircleFootprint.Circle#7 outline"
@@ -58,20 +61,20 @@ class View:
     """
 
     coordinates: Coordinates
-    size: tuple[int, int] = (1280, 720)
+    size: tuple[int, int] = PLAIN_SIZE
     video: tuple[str, ...] = ()
     frames: int = 0
 
 
-def plain_view(sightings: pd.DataFrame, size: tuple[int, int] = (1280, 720)) -> View:
+def plain_view(sightings: pd.DataFrame) -> View:
     """Give a view from above without a video, in which all places lie within the picture."""
     xy = sightings[["x", "y"]].to_numpy(float)
     low, high = xy.min(axis=0), xy.max(axis=0)
-    scale = float(np.clip(0.8 * np.min(np.array(size) / np.maximum(high - low, 0.2)), 1.5, 1e4))
+    scale = float(np.clip(0.8 * np.min(np.array(PLAIN_SIZE) / np.maximum(high - low, 0.2)), 1.5, 1e4))
     middle = (low + high) / 2
-    origin = np.array(size) / 2 + scale * middle * (-1.0, 1.0)
+    origin = np.array(PLAIN_SIZE) / 2 + scale * middle * (-1.0, 1.0)
     keys = np.zeros(1, np.int64)
-    return View(Coordinates(keys, origin[None], np.zeros(1), np.full((1, 2), scale)), size)
+    return View(Coordinates(keys, origin[None], np.zeros(1), np.full((1, 2), scale)))
 
 
 def write_trk(project: str, path: Path) -> None:
