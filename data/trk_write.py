@@ -70,9 +70,10 @@ def plain_view(sightings: pd.DataFrame) -> View:
     """Give a view from above without a video, in which all places lie within the picture."""
     xy = sightings[["x", "y"]].to_numpy(float)
     low, high = xy.min(axis=0), xy.max(axis=0)
-    scale = float(np.clip(0.8 * np.min(np.array(PLAIN_SIZE) / np.maximum(high - low, 0.2)), 1.5, 1e4))
+    size = np.array(PLAIN_SIZE)
+    scale = float(np.clip(0.8 * np.min(size / np.maximum(high - low, 0.2)), 1.5, 1e4))
     middle = (low + high) / 2
-    origin = np.array(PLAIN_SIZE) / 2 + scale * middle * (-1.0, 1.0)
+    origin = size / 2 + scale * middle * (-1.0, 1.0)
     keys = np.zeros(1, np.int64)
     return View(Coordinates(keys, origin[None], np.zeros(1), np.full((1, 2), scale)))
 
