@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from command.again import again
 from command.arguments import out_folder, settings_of, what_if_folder
 from command.bars import Bars
+from command.garbage import collect_seldom
 from command.guard import guarded, one_line
 from command.parser import command_line
 from command.threads import use_one_thread
@@ -294,6 +295,7 @@ def _painted(house: House) -> tuple[float, ...]:
 def main(argv: Sequence[str] | None = None) -> int:
     """Entry point of the command; returns its exit code (0 well, 2 a person's mistake)."""
     use_one_thread()
+    collect_seldom()
     arguments = command_line(VERSION).parse_args(argv)
     bars = Bars(quiet=arguments.quiet)
     return guarded(lambda: WORK[arguments.command](arguments, bars), bars)
