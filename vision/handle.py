@@ -42,6 +42,9 @@ LASTING = 3.5
 """How much larger errors are than one picture tells: what stands up looks otherwise from each
 side, and light and blur change slowly. Handles of two renderers and of cut-out stones err so."""
 
+MANY = 0.1
+"""Share of pictures unlike those before from which on another one to begin with is tried."""
+
 SPREAD = 0.3
 """How far angles must spread for light and turning cap to be told apart by half, rad."""
 
@@ -263,12 +266,24 @@ def unturned(pictures: Complex, angles: Array, shown: NDArray[np.bool_]) -> Comp
 
 
 def _followed(times: Array, pictures: Complex, turning: Turning) -> Array:
-    """Angles from picture to picture, each against the running mean; NaN where unlike it.
+    """Angles from picture to picture; NaN where unlike those before.
 
-    From the first of the pictures that show most, onwards and then back.
+    From the first of the pictures that show most; where that leaves many unlike it, as where a
+    slanting view has the handle before the cap at first, from amidst those, and the better is kept.
     """
+    angles = _followed_from(int(rings_seen(pictures).sum(1).argmax()), times, pictures, turning)
+    lost = np.flatnonzero(np.isnan(angles))
+    if len(lost) > MANY * len(times):
+        amidst = int(lost[len(lost) // 2])
+        again = _followed_from(amidst, times, pictures, turning)
+        if np.isnan(again).sum() < len(lost):
+            return again
+    return angles
+
+
+def _followed_from(begin: int, times: Array, pictures: Complex, turning: Turning) -> Array:
+    """Angles from one picture onwards and then back, each against the running mean."""
     angles = np.full(len(times), np.nan)
-    begin = int(rings_seen(pictures).sum(1).argmax())
     angles[begin] = 0.0
     mean, weight = pictures[begin].copy(), 1.0
     for way in (range(begin + 1, len(times)), range(begin - 1, -1, -1)):

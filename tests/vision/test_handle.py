@@ -138,3 +138,16 @@ def test_caps_that_show_nothing_tell_no_angle() -> None:
     theta, sd = handle_angles(np.arange(30) / 25, [blank] * 30, RADII)
     assert np.isnan(theta).all()
     assert np.isnan(sd).all()
+
+
+def test_a_cap_that_a_slanting_view_hides_at_first_is_told_once_it_is_seen() -> None:
+    rng = np.random.default_rng(6)
+    times = np.arange(80) / 25
+    true = 1.1 * times
+    angle = np.arange(RAYS)[:, None] * (2 * np.pi / RAYS)
+    hidden = np.where((RADII * np.sin(9 * angle) > 0)[..., None], 60, 150)
+    before = cap_spectrum(np.repeat(hidden, 3, -1).astype(np.uint8), RADII)
+    pictures = [before if i < 15 else spectrum(a, rng) for i, a in enumerate(true)]
+    theta, _ = handle_angles(times, pictures, RADII)
+    assert np.isnan(theta[:15]).all()
+    assert np.abs(theta - true - np.nanmedian(theta - true))[15:].max() < 0.03
