@@ -148,11 +148,12 @@ def _steps(stretch: Stretch, still: Bools, deviation: Floats, stopped: Floats, k
     change = np.hypot(*np.diff(stretch.speed, axis=0).T) + LEAST_JUMP
     jump = np.where(np.diff(stretch.piece) != 0, JUMP_SD[kind] * change, 0.0)
     jump = np.where(was, START_SD[kind], jump) ** 2  # at any moment of the step
-    # What was left of a motion that ends does so somewhere in the step.
+    # What was left of a motion ends somewhere in the step, be it stopped dead in full run.
+    stop = np.where(was, 0.0, jump) * dt**2 / 12
     return Steps(
         reach=np.where(ends, np.where(was, 0.0, 0.5 * dt), dt),
         keep=np.where(ends, 0.0, 1.0),
-        q00=np.where(ends, 0.0, density * dt**3 / 3 + jump * dt**2 / 3),
+        q00=np.where(ends, stop, density * dt**3 / 3 + jump * dt**2 / 3),
         q01=np.where(ends, 0.0, density * dt**2 / 2 + jump * dt / 2),
         q11=np.where(ends, stopped**2, density * dt + jump),
         fade=np.exp(-dt / (PLACE_MEMORY, ANGLE_MEMORY)[kind]),

@@ -86,6 +86,32 @@ def test_a_stone_at_rest_stays_at_rest() -> None:
     assert np.hypot(resting["x"], resting["y"]).max() < 0.004
 
 
+def test_a_stone_stopped_dead_was_as_fast_until_then() -> None:
+    pulls = []
+    for seed in range(10):
+        rng = np.random.default_rng([41, seed])
+        t = np.arange(60) / 25
+        stop = t[35] + 0.04 * rng.random()
+        y = 1.1 * np.minimum(t, stop) - 1.1 * stop
+        seen = check_sightings(
+            pd.DataFrame(
+                {
+                    "stone": "A",
+                    "frame": np.arange(60),
+                    "t": t,
+                    "x": rng.normal(0, 0.0005, 60),
+                    "y": y + rng.normal(0, 0.0005, 60),
+                    "sd_x": 0.0005,
+                    "sd_y": 0.0005,
+                }
+            )
+        )
+        tracks = smooth(seen, (), radius=RADIUS)
+        moving = tracks[(t < stop) & (t > 0.5)]
+        pulls.append((moving["vy"] - 1.1) / moving["sd_vy"])
+    assert np.mean(np.abs(np.concatenate(pulls)) < 2) > 0.9
+
+
 def test_gaps_are_bridged_and_marked() -> None:
     rng = np.random.default_rng(35)
     motion = hit_motion()

@@ -36,6 +36,13 @@ def test_a_stone_at_rest_goes_nowhere() -> None:
         assert np.all(way.q00[9:] == 0)
 
 
+def test_a_stone_stopped_dead_may_have_gone_on_for_any_part_of_the_step() -> None:
+    along, _ = steps(stretch(stops=10, breaks=10, a=0.0))
+    # Uniform over what it would have gone at 1 m/s in a step.
+    assert np.sqrt(along.q00[9]) == pytest.approx(0.05 / np.sqrt(12), rel=0.03)
+    assert np.all(along.q00[10:] == 0)
+
+
 def test_what_lasts_fades_with_time() -> None:
     along, turning = steps(stretch())
     assert along.fade == pytest.approx(np.exp(-0.05 / PLACE_MEMORY))
