@@ -42,7 +42,7 @@ class Alignment:
 
 def turned(spectra: Complex, angles: Array) -> Complex:
     """Spectra (n, orders, rings, channels) of the caps turned counter-clockwise by `angles`."""
-    phase = np.exp(-1j * ORDERS * angles[:, None])
+    phase = np.exp(-1j * ORDERS * angles[:, None]).astype(np.complex64)
     return np.asarray(spectra * phase[:, :, None, None], np.complex64)
 
 
@@ -53,7 +53,7 @@ def ring_weights(radii: Array) -> Array:
 
 def rings_seen(spectra: Complex) -> NDArray[np.bool_]:
     """Which rings of the pictures (n, orders, rings, channels) are seen, shape (n, rings)."""
-    return np.asarray(spectra.any((1, 3)))
+    return np.asarray((spectra != 0).any(1).any(-1))  # five times as fast as at once
 
 
 def align(spectra: Complex, angles: Array, radii: Array, sd_shift: float) -> Alignment:
@@ -72,27 +72,27 @@ def align(spectra: Complex, angles: Array, radii: Array, sd_shift: float) -> Ali
     """
     seen = rings_seen(spectra)
     weight = ring_weights(radii)
-    often = np.maximum(seen.sum(0), 1)[:, None]
+    often = np.maximum(seen.sum(0), 1)[:, None].astype(np.float32)
     angle, shift = angles.astype(float), np.zeros((len(angles), 2))
     sd = np.full(len(angles), np.nan)
     for _ in range(_ROUNDS):
         upright = turned(spectra, -angle)
         mean = upright.sum(0) / often
         slopes = _slopes(mean, radii, weight)
+        flat = slopes.reshape(3, -1)
         moved = np.concatenate([np.zeros((len(angle), 1)), shift], axis=1)
-        model = mean[1:-1] + np.einsum("np,pkrc->nkrc", moved, slopes)
+        model = mean[1:-1] + (moved.astype(np.float32) @ flat).reshape(-1, *slopes.shape[1:])
         model *= seen[:, None, :, None]
         here = upright[:, 1:-1]
-        size = (np.abs(model) ** 2).sum((1, 2, 3))
-        gain = (here * model.conj()).real.sum((1, 2, 3)) / np.maximum(size, 1e-12)
-        rest = here / np.maximum(gain, 0.1)[:, None, None, None] - model
+        gain = _product(here, model) / np.maximum(_product(model, model), 1e-12)
+        rest = here * (1 / np.maximum(gain, 0.1)).astype(np.float32)[:, None, None, None] - model
         count = 2 * rest[0, :, 0].size * np.maximum(seen.sum(1), 1)
-        noise = ALIKE**2 * (np.abs(rest) ** 2).sum((1, 2, 3)) / count
+        noise = ALIKE**2 * _product(rest, rest) / count
         by_ring = np.einsum("pkrc,qkrc->rpq", slopes.conj(), slopes).real
         normal = np.einsum("nr,rpq->npq", seen.astype(float), by_ring)
         prior = np.diag([0.0, 1.0, 1.0]) * (noise / sd_shift**2)[:, None, None]
         normal += prior + 1e-12 * np.eye(3)
-        pull = np.einsum("pkrc,nkrc->np", slopes.conj(), rest).real
+        pull = (rest.reshape(len(rest), -1) @ flat.conj().T).real
         pull -= np.einsum("npq,nq->np", prior, moved)
         inverse = np.linalg.inv(normal)
         step = np.einsum("npq,nq->np", inverse, pull)
@@ -102,7 +102,13 @@ def align(spectra: Complex, angles: Array, radii: Array, sd_shift: float) -> Ali
     return Alignment(angle, sd, shift)
 
 
-def _slopes(mean: Complex, radii: Array, weight: Array) -> NDArray[np.complex128]:
+def _product(first: Complex, second: Complex) -> Array:
+    """Real part of the scalar product of each of n pictures with another."""
+    flat, other = first.reshape(len(first), 1, -1), second.conj().reshape(len(second), -1, 1)
+    return np.asarray((flat @ other).real[:, 0, 0])
+
+
+def _slopes(mean: Complex, radii: Array, weight: Array) -> Complex:
     """Change of a picture's compared harmonics with angle and shift: (3, harmonics, rings, …)."""
     plain = mean / weight[:, None]
     outwards = np.gradient(plain, radii, axis=1)
@@ -113,4 +119,4 @@ def _slopes(mean: Complex, radii: Array, weight: Array) -> NDArray[np.complex128
         -0.5 * (raised + lowered),
         0.5j * (raised - lowered),
     ]
-    return np.asarray(np.array(slopes) * weight[:, None])
+    return np.asarray(np.array(slopes) * weight[:, None], np.complex64)
