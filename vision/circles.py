@@ -56,14 +56,11 @@ class Fits:
 
 
 @lru_cache(maxsize=8)
-def _products(rays: int, circles: int) -> tuple[Array, Array]:
-    """Change of each edge by shift and radii, one circle after the other; products of that."""
+def _changes(rays: int, circles: int) -> Array:
+    """Change of each edge, one circle after the other, by shift, radii and wall."""
     around = directions(rays)[1]
-    change = np.concatenate(
-        [np.hstack([around, np.tile(row, (rays, 1))]) for row in np.eye(circles)]
-    )
-    squares = change[:, :, None] * change[:, None, :]
-    return change, squares.reshape(len(change), -1)
+    rows = [np.hstack([around, np.tile(row, (rays, 1))]) for row in np.eye(circles, circles + 1)]
+    return np.concatenate(rows).T
 
 
 @dataclass(frozen=True)
@@ -72,46 +69,37 @@ class _Design:
 
     Attributes
     ----------
-    common : ndarray, shape (edges, unknowns − 1)
-        The same for all places.
-    squares : ndarray, shape (edges, (unknowns − 1)²)
-        Products of that.
-    lean : ndarray, shape (n, edges)
-        By the wall.
+    change : ndarray, shape (n, unknowns, edges)
     """
 
-    common: Array
-    squares: Array
-    lean: Array
+    change: Array
 
     @classmethod
     def of(cls, rims: Sequence[Rim]) -> _Design:
         """Design of concentric circles."""
-        flat: Array = np.zeros(rims[0].use.shape)
-        lean = np.concatenate([flat if rim.lean is None else rim.lean for rim in rims], 1)
-        common, squares = _products(rims[0].use.shape[1], len(rims))
-        return cls(common, squares, lean)
+        n, rays = rims[0].use.shape
+        change = np.tile(_changes(rays, len(rims)), (n, 1, 1))
+        for k, rim in enumerate(rims):
+            if rim.lean is not None:
+                change[:, -1, k * rays : (k + 1) * rays] = rim.lean
+        return cls(change)
+
+    @property
+    def lean(self) -> Array:
+        """Change of the edges by the wall, shape (n, edges)."""
+        return self.change[:, -1]
 
     def edges(self, unknowns: Array) -> Array:
         """Change of the edges, (n, edges), by unknowns, (n, unknowns)."""
-        return np.asarray(unknowns[:, :-1] @ self.common.T + unknowns[:, -1:] * self.lean)
-
-    def drawn(self, weighted: Array) -> Array:
-        """Right-hand side of the normal equations by weighted edges, shape (n, unknowns)."""
-        return np.column_stack([weighted @ self.common, (weighted * self.lean).sum(1)])
+        return np.asarray((unknowns[:, None] @ self.change)[:, 0])
 
     def normal(self, weight: Array) -> Array:
         """Matrices of the normal equations, shape (n, unknowns, unknowns)."""
-        size = self.common.shape[1] + 1
-        out = np.empty((len(weight), size, size))
-        out[:, :-1, :-1] = (weight @ self.squares).reshape(-1, size - 1, size - 1)
-        out[:, -1] = self.drawn(weight * self.lean)
-        out[:, :-1, -1] = out[:, -1, :-1]
-        return out
+        return np.asarray((self.change * weight[:, None]) @ np.swapaxes(self.change, 1, 2))
 
     def solve(self, weight: Array, edges: Array, prior: Array) -> Array:
         """Unknowns by which edges change so, (n, edges), by weighted least squares."""
-        right = self.drawn(weight * edges)[..., None]
+        right = self.change @ (weight * edges)[..., None]
         return np.asarray(np.linalg.solve(self.normal(weight) + prior, right)[..., 0])
 
 
