@@ -34,15 +34,17 @@ STOPPED_SD = 0.01
 ANYWHERE_SD = (10.0, 100.0)
 """What is known of place (m) and angle (rad) before the first sighting."""
 
-MEMORY = 0.5
-"""Time over which a deceleration keeps its deviation from the mean, s."""
+MEMORY = 0.125
+"""Time over which what the ice takes keeps its deviation from the mean, s. Stones curl, and so it
+never fades altogether; a longer time follows the errors of sightings instead."""
 
 PLACE_MEMORY, ANGLE_MEMORY = 0.3, 0.8
 """Times over which errors of sightings that last for a while become others, s."""
 
-SPIN_LOSS, SPIN_LOSS_STOPPED_SD = 0.03, 0.5
-"""How much the loss of spin differs from none: times the speed, (rad/s²) (m/s), and spinning on the
-spot, rad/s². A slow stone loses its spin faster (FCV1: 0.025 / v)."""
+LOSS_SD, MOST_LOSS_SD = (0.003, 0.06), (0.1, 1.0)
+"""How much a slow stone loses speed (m/s²) and spin (rad/s²) otherwise than is known: times its
+speed, m/s, and at most. It is slowed more, and loses its spin faster (FCV1: 0.02 / (v + 0.06) and
+0.025 / v)."""
 
 GATE = 100.0
 """Squared normalised innovation beyond which a sighting is refused."""
@@ -131,23 +133,22 @@ class Steps:
 def steps(stretch: Stretch) -> tuple[Steps, Steps]:
     """Give the steps of either place, and those of the angle."""
     rest, idle = stretch.rest, stretch.idle
-    stopped = np.where(idle[1:], STILL_SD[0], STOPPED_SD)
-    along = _steps(stretch, rest, np.full(len(rest) - 1, stretch.model.spread), stopped, 0)
-    stopped = np.where(idle[1:], STILL_SD[1], STOPPED_SD)
-    speed = np.hypot(stretch.speed[:-1, 0], stretch.speed[:-1, 1])
-    moving = np.minimum(SPIN_LOSS / np.maximum(speed, 1e-6), SPIN_LOSS_STOPPED_SD)
-    loss = np.where(rest[1:], SPIN_LOSS_STOPPED_SD, moving)
-    return along, _steps(stretch, idle, loss, stopped, 1)
+    speed = np.maximum(np.hypot(stretch.speed[:-1, 0], stretch.speed[:-1, 1]), 1e-6)
+    slower, turning = np.minimum(np.divide.outer(LOSS_SD, speed).T, MOST_LOSS_SD).T
+    pivoting = np.where(rest[1:], MOST_LOSS_SD[1], turning)
+    along = _steps(stretch, rest, np.hypot(stretch.model.spread, slower), 0)
+    return along, _steps(stretch, idle, pivoting, 1)
 
 
-def _steps(stretch: Stretch, still: Bools, deviation: Floats, stopped: Floats, kind: int) -> Steps:
-    """Give the steps of a pair by what its acceleration deviates by and how still it ends."""
+def _steps(stretch: Stretch, still: Bools, deviation: Floats, kind: int) -> Steps:
+    """Give the steps of a pair of that kind by what its acceleration deviates by."""
     dt = np.diff(stretch.t)
     was, ends = still[:-1], still[1:]
     density = deviation**2 * MEMORY
     change = np.hypot(*np.diff(stretch.speed, axis=0).T) + LEAST_JUMP
     jump = np.where(np.diff(stretch.piece) != 0, JUMP_SD[kind] * change, 0.0)
     jump = np.where(was, START_SD[kind], jump) ** 2  # at any moment of the step
+    stopped = np.where(stretch.idle[1:], STILL_SD[kind], STOPPED_SD)
     # What was left of a motion ends somewhere in the step, be it stopped dead in full run.
     stop = np.where(was, 0.0, jump) * dt**2 / 12
     return Steps(

@@ -64,3 +64,8 @@ def test_a_motion_that_changes_little_changes_its_spin_little() -> None:
     )
     assert plain < little < 0.1
     assert much > 1.0
+
+
+def test_slow_stones_may_be_slowed_more() -> None:
+    fast, slow = (steps(stretch(speed=speed, a=0.0))[0].q11 for speed in (2.0, 0.1))
+    assert np.all(slow > 2 * fast)
