@@ -17,7 +17,7 @@ from vision.clip import Frame
 from vision.joint import Seen
 from vision.linear import Observations
 from vision.marks import Evidence, measure_along
-from vision.normals import Normals, lay_out
+from vision.normals import OUTSIDE, THIN, Normals, lay_out
 from vision.outline import PaintEdge
 from vision.paint import CIRCLES, FIXED, TWELVE, Marks, joined
 from vision.picture import Picture
@@ -166,7 +166,9 @@ class EdgeTracker:
         return _enough(rig, visible, visible)
 
     def lines(self, pictures: Sequence[Picture], views: Sequence[View], rig: Array) -> list[Marks]:
-        """Measure the straight lines near where views have them.
+        """Measure the straight lines near where views have them, as far as they are known.
+
+        A wide line whose colours no frame with the rings has told lies where none has told.
 
         Returns
         -------
@@ -174,7 +176,9 @@ class EdgeTracker:
             Of the first of the pictures, as many as can be measured together; one at least.
         """
         measured = self._measured(pictures, *self._laid(views, rig))
-        return [e.marks.pick(e.marks.line >= CIRCLES) for e in measured]
+        known = np.isfinite(self.palette[:, 0, 0])
+        known[[*THIN]], known[:CIRCLES] = True, False
+        return [e.marks.pick(known[e.marks.line]) for e in measured]
 
     def looks_like(self, palette: Array) -> bool:
         """Whether the circles have the same colours in a palette, as far as both know them."""
@@ -199,6 +203,8 @@ class EdgeTracker:
             if view is views[0] and known is rig and len(standing) >= len(views):
                 return normals, standing[: len(views)]
         normals, standing = self._lay(views, rig)
+        # Where a pan smears a narrow band wider than it is, its edges are no longer half way.
+        standing = np.where(normals.reach < min(self.blur, self._reach), OUTSIDE, standing)
         self._last = views[0], rig, normals, standing
         return normals, standing
 

@@ -5,13 +5,13 @@ from functools import cache
 
 import numpy as np
 
-from tests.synthetic import PAINTS, Key, cached_clip, sample_scene
+from tests.synthetic import PAINTS, Key, cached_clip, render_still, sample_scene
 from tests.synthetic.camera import CameraPath
 from vision.clip import Frame, open_clip
 from vision.edge_tracker import LONGEST_STRIDE, EdgeTracker
 from vision.house import find_house
 from vision.house_fit import HouseFit
-from vision.paint import CIRCLES
+from vision.paint import CENTRE_LINE, CIRCLES, HOG_LINE
 from vision.pose import View
 
 SIZE = (1280, 720)
@@ -75,6 +75,23 @@ def test_where_the_circles_are_out_of_view_there_are_still_lines() -> None:
     assert len(lines) > 10 and (lines.line >= CIRCLES).all()
     away = View(house.view.vector + np.array([1.0, 0.0, 0.0, 0.0]))
     assert not edges.expects(away, house.rig)
+
+
+def test_the_hog_line_counts_once_it_is_known_where_no_pan_smears_it() -> None:
+    path = CameraPath(SIZE, (0.0, 0.0, 9.0), (Key(0.0, 0.0, 3.2, 72),))
+    image = render_still(replace(sample_scene(), paint=PAINTS["navy-orange"]), path, 0.0)
+    house = find_house(image)
+    assert house is not None
+    known, unknown, smeared = (tracker(house) for _ in range(3))
+    unknown.palette = house.evidence.palette.copy()
+    unknown.palette[HOG_LINE] = np.nan
+    smeared.blur = 12.0
+    shown = []
+    for edges in (known, unknown, smeared):
+        (lines,) = edges.lines([image], [house.view], house.rig)
+        assert CENTRE_LINE in lines.line
+        shown.append(HOG_LINE in lines.line)
+    assert shown == [True, False, False]
 
 
 def test_a_house_of_other_colours_is_told() -> None:
