@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import erfc, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -155,6 +156,7 @@ def _track(
         at = np.flatnonzero(part == k)
         if 0 < k < len(hits) and np.isfinite(z[at, 0]).sum() < 2:
             _bridge(hits, part, t, mean, spread, at)
+    _widen(hits, part, t, mean, spread)
     spread[:, :2] = np.hypot(spread[:, :2], trace.sd_place[row][:, None])
     size = np.hypot(mean[:, 2], mean[:, 3])
     spread[:, 2:4] = np.hypot(spread[:, 2:4], (UNSEEN_SCALE * trace.sd_scale[row] * size)[:, None])
@@ -237,3 +239,22 @@ def _bridge(
     unseen = at[np.isnan(mean[at, 0])]
     mean[unseen, :2] = place[0] + (t[unseen] - first.t)[:, None] * speed
     spread[unseen, :2] = np.hypot(*error) + START_SD[0] * more_hits * (last.t - first.t)
+
+
+def _widen(
+    hits: Sequence[Contact], part: NDArray[np.int64], t: Floats, mean: Floats, spread: Floats
+) -> None:
+    """Widen the rates of rows so near a hit that they may lie on its other side.
+
+    With the probability p that a row does, its rates have p (1 - p) times the square of their
+    change in the hit added to their variance. Parameters as of `_bridge`; ``spread`` is changed.
+    """
+    rates = [2, 3, 5]
+    for k, hit in enumerate(hits, 1):
+        after = int(np.searchsorted(part, k))
+        if not 0 < after < len(t):
+            continue
+        for row in (after - 1, after):
+            p = 0.5 * erfc(abs(t[row] - hit.t) / max(sqrt(2) * hit.stderr_t, 1e-9))
+            change = np.nan_to_num(mean[after, rates] - mean[after - 1, rates])
+            spread[row, rates] = np.hypot(spread[row, rates], sqrt(p * (1 - p)) * change)

@@ -75,6 +75,26 @@ def test_nothing_leaks_across_a_hit() -> None:
     assert np.hypot(jump["vx"], jump["vy"]) > 1.0
 
 
+def test_a_row_that_may_lie_on_the_other_side_of_a_hit_says_so() -> None:
+    motion = hit_motion()
+    seen = watch(motion, np.random.default_rng(42))
+    frame = seen["t"].unique()[np.searchsorted(seen["t"].unique(), motion.hits[0].t)]
+    sure, unsure = (
+        smooth(
+            seen, [Contact(frame - 0.001, error, ("A", "B"), motion.hits[0].normal)], radius=RADIUS
+        )
+        for error in (1e-5, 1e-3)
+    )
+    beside = (sure["t"] == frame) & (sure["stone"] == "A")
+    before = (sure["t"] < frame) & (sure["stone"] == "A")
+    jump = sure["vy"][beside].item() - sure["vy"][before].iloc[-1]
+    # It lies one standard error of the time after the hit: before it with a probability of 0.159.
+    assert unsure["sd_vy"][beside].item() == pytest.approx(
+        np.hypot(sure["sd_vy"][beside].item(), np.sqrt(0.159 * 0.841) * jump), rel=0.01
+    )
+    assert unsure["sd_vy"][before].iloc[-2] == pytest.approx(sure["sd_vy"][before].iloc[-2])
+
+
 def test_a_stone_at_rest_stays_at_rest() -> None:
     motion = hit_motion()
     seen = watch(motion, np.random.default_rng(34))
