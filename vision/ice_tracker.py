@@ -6,7 +6,7 @@ Frames that can be predicted are placed together, as those that show the rings a
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,11 +14,12 @@ from numpy.typing import NDArray
 from vision.clip import Frame
 from vision.edge_tracker import EdgeTracker
 from vision.joint import Seen
-from vision.landmarks import Keyframe, keyframe, recognise
+from vision.keyframe import Keyframe, keyframe
+from vision.landmarks import Landmarks
 from vision.linear import Observations
 from vision.paint import Marks, joined
 from vision.picture import Picture
-from vision.pose import View, project
+from vision.pose import VIEW_SIZE, View
 from vision.resection import solve_view, solve_views
 
 Array = NDArray[np.float64]
@@ -39,18 +40,19 @@ class IceTracker:
 
     Attributes
     ----------
-    key : Keyframe, optional
-        What frames are compared with; None while the rings are in view.
+    landmarks : Landmarks, optional
+        What is looked for; None while the rings are in view.
     missed : int
         Frames in a row that were carried to where rings should be in view, and are not.
     """
 
-    key: Keyframe | None = None
+    landmarks: Landmarks | None = None
     missed: int = 0
+    _cov: Array = field(default_factory=lambda: np.zeros((VIEW_SIZE, VIEW_SIZE)))
 
     def forget(self) -> None:
         """Begin anew from the next frame that does not show the rings."""
-        self.key, self.missed = None, 0
+        self.landmarks, self.missed = None, 0
 
     def settle(
         self,
@@ -79,30 +81,39 @@ class IceTracker:
             The first of the frames, as many as went well; none where the first does not show
             the same ice.
         """
-        if self.key is None:
-            cov = np.zeros((4, 4)) if edges.fit is None else edges.fit.cov
-            self.key = keyframe(last.index, picture, last.view, rig, cov)
-        key = self.key
-        views, corners = _recognised(key, frames, views, rig)
+        landmarks = self.landmarks
+        if landmarks is None:
+            cov = self._cov if edges.fit is None else edges.fit.cov
+            landmarks = Landmarks(keyframe(last.index, picture, last.view, rig, cov))
+        placed, corners = _recognised(landmarks, frames, views, rig)
+        key = landmarks.key
+        if not corners and last.index != key.frame:
+            # What is left of the corners does not do: those of the frame before may.
+            key = keyframe(last.index, picture, last.view, rig, self._cov, key.drift)
+            landmarks = Landmarks(key)
+            placed, corners = _recognised(landmarks, frames, views, rig)
+        self.landmarks = landmarks
         if not corners:
             return []
-        if edges.expects(views[0], rig):
-            seen = edges.settle(frames[:1], views[:1], rig, last.view)
+        if edges.expects(placed[0], rig):
+            seen = edges.settle(frames[:1], placed[:1], rig, last.view)
             if seen:
                 self.forget()
                 return seen
             self.missed += 1
-            views, corners = views[:1], corners[:1]
+            placed, corners = placed[:1], corners[:1]
         else:
             self.missed = 0
-        pictures = [frame.picture for frame in frames[: len(views)]]
-        lines = edges.lines(pictures, views, rig)
+        pictures = [frame.picture for frame in frames[: len(placed)]]
+        lines = edges.lines(pictures, placed, rig)
         marks = [joined(both) for both in zip(corners, lines, strict=False)]
         observed = Observations(joined(marks), edges.size, counts=[len(m) for m in marks])
-        fits = solve_views(observed, views[: len(marks)], rig, view_sd=VIEW_SD)
+        fits = solve_views(observed, placed[: len(marks)], rig, view_sd=VIEW_SD)
         frame, fit = frames[len(fits) - 1], fits[-1]
+        self._cov = fit.cov
         if _is_worn(corners[len(fits) - 1], key):
-            self.key = keyframe(frame.index, frame.picture, fit.view, rig, fit.cov, key.drift)
+            key_now = keyframe(frame.index, frame.picture, fit.view, rig, fit.cov, key.drift)
+            self.landmarks = Landmarks(key_now)
         return [
             Seen(frame.index, frame.t, fit.view, each, False, key)
             for frame, fit, each in zip(frames, fits, marks, strict=False)
@@ -110,24 +121,26 @@ class IceTracker:
 
 
 def _recognised(
-    key: Keyframe, frames: Sequence[Frame], views: Sequence[View], rig: Array
+    landmarks: Landmarks, frames: Sequence[Frame], views: Sequence[View], rig: Array
 ) -> tuple[list[View], list[Marks]]:
-    """Find a keyframe's corners in frames, up to one that shows few of them: views and marks."""
+    """Find landmarks in frames, up to one that shows few of them: views and marks."""
     seen: list[View] = []
     found: list[Marks] = []
-    if key.drift > MOST_DRIFT:
+    if landmarks.key.drift > MOST_DRIFT:
         return seen, found
     for frame, view in zip(frames, views, strict=True):
-        corners = recognise(key, frame.picture, view, rig)
-        if corners is None:
+        known = landmarks.find(frame.picture, view, rig)
+        if known is None:
             break
         height, width = frame.picture.shape[:2]
-        if _aside(corners, view, rig, (width, height)) > NEAR * width:
-            free = np.full(4, np.inf)
-            view = solve_view(corners, view, rig, (width, height), width=10.0, view_sd=free).view
+        if known.aside > NEAR * width:
+            free = np.full(VIEW_SIZE, np.inf)
+            view = solve_view(
+                known.marks, view, rig, (width, height), width=10.0, view_sd=free
+            ).view
         seen.append(view)
-        found.append(corners)
-        if _is_worn(corners, key):
+        found.append(known.marks)
+        if _is_worn(known.marks, landmarks.key):
             break
     return seen, found
 
@@ -135,12 +148,3 @@ def _recognised(
 def _is_worn(corners: Marks, key: Keyframe) -> bool:
     """Whether half of a keyframe's corners are no longer seen: each that is gives two marks."""
     return len(corners) < len(key.ice)
-
-
-def _aside(corners: Marks, view: View, rig: Array, size: tuple[int, int]) -> float:
-    """How far from where a view has them corners were seen, px."""
-    assert corners.across is not None
-    count = len(corners) // 2
-    ice = np.stack([corners.along[:count], corners.across[:count]], axis=-1)
-    aside = project(ice, view.vector, rig, size) - corners.pixel[:count]
-    return float(np.abs(aside.mean(0)).max())

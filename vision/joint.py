@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import HOUSE
+from vision.astray import astray, motion
 from vision.bundle import LOST, NOISE_TRUST, bundle
 from vision.camera import PARAMETERS, Camera, CameraError
 from vision.landmarks import Keyframe, replaced
@@ -44,10 +45,6 @@ LONG_RANGE = 1.2
 """Errors of paint, and what compression does to edges, are alike over longer stretches than single
 pieces and marks tell: so much larger than these say are the standard errors, as clips with truth
 show."""
-
-ASTRAY = 0.45
-"""How far a whole picture is aside, in residuals of its edges, as clips with truth show: films
-repeat what has hardly moved, the more so the more they are compressed."""
 
 UNTOLD = 0.7
 """Share of its prior standard deviation above which the camera's height counts as assumed."""
@@ -198,6 +195,7 @@ def fit_frames(
     noisier = (NOISE_TRUST + square) / (NOISE_TRUST + free)
     by_view = at.by_view * weight
     by_shared, by_offset = by_rig(observed, at, views), by_measure(observed, at)
+    aside = astray(motion(observed, at, views), np.array([fit.rms for fit in fits]))
     hold = 1 / np.square(VIEW_SD)
     identity, on_circle = piece_of(marks), marks.line < CIRCLES
     found = []
@@ -212,12 +210,12 @@ def fit_frames(
         )
         both = np.concatenate([follows, np.eye(RIG_SIZE, len(spread))])
         to_camera = _parameters(views[k], rig, size)
-        astray = np.zeros(PARAMETERS)
-        astray[:2] = ASTRAY * np.nan_to_num(fit.rms) / fit.view.focal
+        turned = np.zeros(PARAMETERS)
+        turned[:2] = aside[k] / fit.view.focal
         common, own = to_camera @ both, to_camera[:, :VIEW_SIZE]
         error = CameraError(
             common @ spread @ common.T,
-            LONG_RANGE**2 * noisier[k] * own @ cov @ own.T + np.diag(astray**2),
+            LONG_RANGE**2 * noisier[k] * own @ cov @ own.T + np.diag(turned**2),
             _scale_sd(fit.view, rig, edge_sd),
             0.0 if s.key is None else s.key.drift,
         )

@@ -80,13 +80,12 @@ def joined(parts: Sequence[Marks]) -> Marks:
 def fixed(ice: Array, pixel: Array, sd: ArrayLike) -> Marks:
     """Points of the ice at known places, shape (n, 2), m, seen at pixels: two marks for each."""
     count = len(ice)
+    x, y = np.concatenate([ice, ice]).T
+    normal, both = np.zeros((2 * count, 2)), np.empty((2, count))
+    normal[:count, 0] = normal[count:, 1] = 1.0
+    both[:] = sd
     return Marks(
-        np.full(2 * count, FIXED),
-        np.tile(ice[:, 0], 2),
-        np.tile(pixel, (2, 1)),
-        np.repeat(np.eye(2), count, axis=0),
-        np.tile(np.broadcast_to(np.asarray(sd, float), count), 2),
-        np.tile(ice[:, 1], 2),
+        np.full(2 * count, FIXED), x, np.concatenate([pixel, pixel]), normal, both.ravel(), y
     )
 
 

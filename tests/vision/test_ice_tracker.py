@@ -12,6 +12,7 @@ from vision.edge_tracker import EdgeTracker
 from vision.house_fit import HouseFit
 from vision.ice_tracker import IceTracker
 from vision.joint import Seen
+from vision.landmarks import Landmarks
 
 
 def started() -> tuple[list[Frame], HouseFit, EdgeTracker, Seen]:
@@ -36,11 +37,12 @@ def test_where_no_rings_are_in_view_what_is_fixed_to_the_ice_carries_on() -> Non
     (carried,) = ice.settle(
         [covered(frames[1], house)], [first.view], first, frames[0].picture, house.rig, edges
     )
-    assert not carried.found and carried.key is ice.key is not None
+    assert ice.landmarks is not None
+    assert not carried.found and carried.key is ice.landmarks.key
     assert ice.missed == 1  # the rings should be in view
     assert np.abs(carried.view.vector - first.view.vector).max() * house.view.focal < 8.0
     (again,) = ice.settle([frames[2]], [carried.view], carried, frames[1].picture, house.rig, edges)
-    assert again.found and ice.key is None and ice.missed == 0
+    assert again.found and ice.landmarks is None and ice.missed == 0
 
 
 def test_other_pictures_are_not_taken_for_the_same_ice() -> None:
@@ -70,3 +72,18 @@ def test_frames_up_to_the_first_of_another_scene_are_placed() -> None:
     block = [frames[1], replace(frames[2], picture=noise), frames[3]]
     seen = IceTracker().settle(block, [first.view] * 3, first, frames[0].picture, house.rig, edges)
     assert [s.index for s in seen] == [frames[1].index]
+
+
+def test_where_a_keyframe_no_longer_does_the_frame_before_does() -> None:
+    frames, house, edges, first = started()
+    ice, picture = IceTracker(), covered(frames[1], house).picture
+    (carried,) = ice.settle(
+        [covered(frames[1], house)], [first.view], first, frames[0].picture, house.rig, edges
+    )
+    assert ice.landmarks is not None
+    few = replace(ice.landmarks.key, ice=np.zeros((0, 2)), corners=np.zeros((0, 2)))
+    ice.landmarks = Landmarks(few)
+    after = [covered(frames[2], house)]
+    (again,) = ice.settle(after, [carried.view], carried, picture, house.rig, edges)
+    assert again.key is not None and again.key.frame == carried.index
+    assert again.key.drift > few.drift

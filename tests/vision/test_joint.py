@@ -12,7 +12,7 @@ from vision.camera import Camera
 from vision.clip import open_clip
 from vision.follow_house import follow_house
 from vision.joint import Seen, fit_clip
-from vision.landmarks import Keyframe
+from vision.keyframe import Keyframe
 from vision.paint import FIXED, TEE_LINE, TWELVE, Marks
 from vision.pose import View
 from vision.resection import solve_view
