@@ -19,7 +19,7 @@ from data.sheet import HOUSE
 from vision.astray import astray, motion
 from vision.bundle import LOST, NOISE_TRUST, bundle
 from vision.camera import PARAMETERS, Camera, CameraError
-from vision.landmarks import Keyframe, replaced
+from vision.keyframe import Keyframe, replaced
 from vision.linear import Observations, by_measure, by_rig, linearised
 from vision.outline import HALF_WAY, PaintEdge
 from vision.paint import CIRCLES, FIXED, Marks, ice_frame, joined, measures
