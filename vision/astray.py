@@ -28,7 +28,7 @@ NONE = 0.07
 repeated is aside by no more than the camera has moved."""
 
 NEAR = 2
-"""Steps before and after a picture of which the motion is taken: a camera that shakes turns back."""
+"""Steps before and after a picture over which motion is averaged: shaking cameras turn back."""
 
 
 def motion(observed: Observations, at: Linear, views: Array) -> Array:
@@ -56,7 +56,7 @@ def motion(observed: Observations, at: Linear, views: Array) -> Array:
 
 
 def astray(moved: Array, rms: Array) -> Array:
-    """Standard deviation per axis of what pictures are aside, px.
+    """Give the standard deviation per axis of what pictures are aside, px.
 
     Parameters
     ----------

@@ -1,8 +1,9 @@
 """What the frames of a clip share, fitted to many of them at once.
 
 The unknowns are the rig (place, lens, painted measures), each frame's view, and the paint: how
-far each piece of a painted line lies off its nominal course. A camera stays where it is unless
-the marks fit much better if it moves slowly: then along a curve of the third degree in time.
+far each piece of a painted line lies off its nominal course, some by much: a stone beside a line
+draws it aside. A camera stays where it is unless the marks fit much better if it moves slowly:
+then along a curve of the third degree in time.
 
 Edge points of one piece, in however many frames, share that error: so it, not the number of
 points, limits what can be known. How large such errors are, and the noise of single points, is
@@ -24,7 +25,7 @@ from vision.paint import Marks, joined
 from vision.pose import VIEW_SIZE, View
 from vision.resection import VIEW_SD
 from vision.rig import POSITION, RIG_SIZE, Prior
-from vision.robust import WIDTH, inverse
+from vision.robust import WIDTH, inverse, loss
 from vision.shared import BINS, Bundle, family, piece_of, polynomials
 
 Array = NDArray[np.float64]
@@ -167,7 +168,8 @@ class _Problem:
     def cost(self, state: _State, at: Linear, paint: Array, noise: Array) -> float:
         """Half the robust sum of squares."""
         off = (state.rig - self.prior.mean) / self.prior.sd
-        value = float(off @ off + ((state.offset / paint[self.family]) ** 2).sum())
+        value = float(off @ off)
+        value += 2 * float(loss(state.offset / paint[self.family], WIDTH).sum())
         value += float((state.travel**2).sum()) / TRAVEL_SD**2
         value += float((self.hold * (state.views - self.start) ** 2).sum())
         r = at.residual / noise[self.kind] / WIDTH
@@ -180,7 +182,7 @@ class _Problem:
             [
                 1 / self.prior.sd**2,
                 np.full(state.travel.size, 1 / TRAVEL_SD**2),
-                1 / paint[self.family] ** 2,
+                1 / (paint[self.family] ** 2 + (state.offset / WIDTH) ** 2),
                 np.tile(self.hold, len(state.views)),
             ]
         )
@@ -271,9 +273,11 @@ class _Problem:
     def spread(self, state: _State, cov: Array, paint: Array, noise: Array) -> tuple[Array, Array]:
         """Estimate the paint's and the marks' standard deviations anew."""
         variance = np.diagonal(cov)[self.shared :][: len(self.pieces)]
+        sure = 1 / (1 + (state.offset / paint[self.family] / WIDTH) ** 2)
         squares, counts = PAINT_TRUST * PAINT_SD**2, np.full(FAMILIES, PAINT_TRUST)
-        squares = squares + np.bincount(self.family, state.offset**2 + variance, FAMILIES)
-        counts = counts + np.bincount(self.family, minlength=FAMILIES)
+        off = sure * (state.offset**2 + variance)
+        squares = squares + np.bincount(self.family, off, FAMILIES) / LOST
+        counts = counts + np.bincount(self.family, sure, FAMILIES)
         fresh = np.sqrt(squares / counts)
         residual, kinds = self.see(state).residual, self.kind
         w = 1 / (1 + (residual / noise[kinds] / WIDTH) ** 2)

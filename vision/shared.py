@@ -22,8 +22,10 @@ Index = NDArray[np.int64]
 ARC = np.radians(15.0)
 """Length of a piece of a circle, rad."""
 
-PIECE = 0.4
-"""Length of a piece of a line, m."""
+PIECE = 0.12
+"""Length of a piece of a line, m: no more than from mark to mark. What a line's marks are aside
+stays in a picture that stays, and goes on along it in waves: marks of one piece would tell of a
+slope that is none."""
 
 BINS = 1000
 """Pieces a line may have; the identity of a piece is its line's number times this, plus its own."""

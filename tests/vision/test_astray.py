@@ -1,0 +1,44 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.vision.cameras import SIZE, marks, true_rig
+from vision.astray import COPIED, MUCH, NONE, REPEATED, astray, motion
+from vision.linear import Observations, linearised
+from vision.paint import joined
+
+RIG = true_rig()
+SQUARE_ON = np.array([0.0, 0.0, 0.0, np.log(1200.0)])
+
+
+def moved(views: np.ndarray) -> np.ndarray:
+    rng = np.random.default_rng(0)
+    seen = [marks(rng, view, RIG, 0.0) for view in views]
+    frames = [m.pick(m.line < 3) for m in seen]  # normals all around
+    observed = Observations(joined(frames), SIZE, counts=[len(m) for m in frames])
+    return motion(observed, linearised(observed, observed.points(RIG), views, RIG), views)
+
+
+def test_a_turn_moves_the_picture_by_the_focal_length_times_its_angle() -> None:
+    steps = np.outer(np.arange(6), [2e-3, 0.0, 0.0, 0.0])
+    np.testing.assert_allclose(moved(SQUARE_ON + steps), 2.4, rtol=0.15)
+
+
+def test_motion_is_that_of_the_time_about_a_frame_and_none_of_one_alone() -> None:
+    views = np.repeat(SQUARE_ON[None], 12, axis=0)
+    views[6:, 0] += 1e-3
+    found = moved(views)
+    assert (found[4:8] > 0.4).all()
+    assert not found[:4].any() and not found[8:].any()
+    assert moved(SQUARE_ON[None]) == [0.0]
+
+
+def test_pictures_that_hardly_move_are_aside_by_most_and_those_that_rest_by_nothing() -> None:
+    residual = np.full(4, 0.1)
+    rest, shake, pan, still = astray(residual * [0.0, 1.0, 100 * MUCH, NONE], residual)
+    assert rest == 0
+    assert shake == pytest.approx(0.1 * (COPIED + REPEATED), rel=0.1)
+    assert pan == pytest.approx(0.1 * COPIED, rel=0.01)
+    assert rest < still < shake
+    assert astray(np.ones(1), np.array([np.nan])) == [0.0]
