@@ -132,7 +132,7 @@ def sample_rays(looks: Sequence[Look], profile: Profile, rays: int) -> Rays:
     ends = np.concatenate(projected).astype(np.float32)
     across, down = ends[..., 0] @ profile.mix, ends[..., 1] @ profile.mix
     width, high = looks[0].camera.size
-    if (ends.min((0, 1, 2)) >= 0).all() and (ends.max((0, 1, 2)) <= (width - 1, high - 1)).all():
+    if (ends >= 0).all() and (ends <= np.array([width - 1, high - 1], np.float32)).all():
         inside = np.ones(across.shape, bool)
     else:
         inside = (across >= 0) & (down >= 0) & (across <= width - 1) & (down <= high - 1)
