@@ -211,7 +211,7 @@ class EdgeTracker:
     def _lay(self, views: Sequence[View], rig: Array) -> tuple[Normals, Array]:
         """Take the same normals as before, or where these are too far away new ones."""
         normals = None if self._last is None else self._last[2]
-        if normals is not None and normals.kinds and 0.8 < self._reach / normals.reach[0] < 1.25:
+        if normals is not None and normals.kinds and 0.8 < self._reach / normals.wanted < 1.25:
             moved = self._moved(normals, views, rig)
             if len(moved) == len(views):
                 return normals, np.array(moved)

@@ -39,8 +39,9 @@ LINE_REACH = 0.06
 """Half width looked at across a thin line, m: some are painted as two stripes 3 cm apart."""
 
 BAND = 0.05
-"""Half width looked at across the edge of the hog line, m: half the line's own, so that however
-far a pan blurs them, its other edge does not draw this one aside."""
+"""Half width looked at across the edges of the hog line and of the sheet's sides, m: half of what
+is painted there, so that however far it is blurred or away, its other edge does not draw this one
+aside."""
 
 BLOCK = 6
 """Neighbouring normals of a thin line that are measured together."""
@@ -138,8 +139,10 @@ class Normals:
         Where it was in the picture, px.
     normal : ndarray, shape (2, n)
         The unit normal there.
+    wanted : float
+        Half length to be looked at as a rule, px.
     reach : ndarray, shape (n,)
-        Half length to be looked at, px.
+        That of each, px.
     visible : ndarray, shape (3,)
         Fraction of each circle inside the picture.
     samples : ndarray of float32, shape (2, SAMPLES, n)
@@ -153,6 +156,7 @@ class Normals:
     way: Array
     point: Array
     normal: Array
+    wanted: float
     reach: Array
     visible: Array
     samples: Profiles
@@ -194,7 +198,7 @@ class Normals:
         point, (across, down) = seen[:, :count], seen[:, count:] - seen[:, :count]
         if not np.abs(point - self.point).max() < MOST_MOVED * size[0]:
             return None
-        reach, (x, y), (w, h) = self.reach[0], point, size
+        reach, (x, y), (w, h) = self.wanted, point, size
         inside = (x > reach) & (y > reach) & (x < w - 1 - reach) & (y < h - 1 - reach)
         if not inside.all():
             blocks = inside[self.wide :].reshape(-1, BLOCK)
@@ -260,13 +264,23 @@ def lay_out(
     thin, hog = _GROUP[:upto] > 1, _KINDS[:upto] == HOG_LINE
     reaches[thin] = np.maximum(reach, LINE_REACH * scale[thin])
     reaches[hog] = np.minimum(reach, BAND * scale[hog])
-    normal, reaches = np.stack([down[at], -across[at]]) / length[at], np.repeat(reaches, counts)
+    normal = np.stack([down[at], -across[at]]) / length[at]
+    reaches = np.minimum(np.repeat(reaches, counts), _beside(place, measure)[at])
     samples = _SHARES[:, None] * (normal * reaches).astype(np.float32)[:, None]
     visible = shown[:CIRCLES] / _COUNTS[:CIRCLES]
     return Normals(
-        kinds, _LINE[at], _ALONG[at], _FOOT[:, at], _WAY[:, at], place.T[:, at], normal, reaches,
-        visible, samples,
+        kinds, _LINE[at], _ALONG[at], _FOOT[:, at], _WAY[:, at], place.T[:, at], normal, reach,
+        reaches, visible, samples,
     )  # fmt: skip
+
+
+def _beside(place: Array, measure: Array) -> Array:
+    """Half widths that may be looked at across the sheet's sides, px; no bound elsewhere."""
+    bound = np.full(len(place), np.inf)
+    left, right = (_LINE[: len(place)] == kind for kind in (LEFT, RIGHT))
+    across = np.hypot(*(place[right] - place[left]).T)
+    bound[left] = bound[right] = BAND * across / (measure[right] - measure[left])
+    return bound
 
 
 def _thinned(inside: Flags, wanted: Index, groups: int) -> Flags:

@@ -6,9 +6,10 @@ import pytest
 from data.sheet import HOUSE
 from tests.vision.cameras import ice_points
 from vision.normals import BLOCK, OUTSIDE, THIN, lay_out
-from vision.paint import CIRCLES, TEE_LINE, TWELVE
+from vision.paint import CIRCLES, LEFT, RIGHT, TEE_LINE, TWELVE
 from vision.pose import aim, project
 from vision.rig import OVERHEAD, start_rig
+from vision.rig import POSITION as PLACE
 
 SIZE = (1280, 720)
 POSITION = (0.1, -0.2, 8.5)
@@ -58,6 +59,21 @@ def test_thin_lines_are_looked_at_closely_where_they_leave_the_house() -> None:
     beyond = np.abs(middles) > HOUSE.twelve_foot
     assert beyond.sum() == 2 * np.count_nonzero(middles[beyond] > 0) >= 4
     assert (~beyond).sum() >= 3
+
+
+def test_far_sides_are_looked_at_no_farther_than_they_are_wide() -> None:
+    aslant = start_rig(OVERHEAD, (0.5, -6.0, 5.0))
+    camera = aim((640.0, 460.0), 120.0, aslant[PLACE], SIZE).vector
+    normals = lay_out(camera, aslant, SIZE, reach=REACH)
+    for kind in (LEFT, RIGHT):
+        side = normals.kinds[kind]
+        place = ice_points(normals.line[side], normals.along[side], aslant)
+        half = 0.05 * np.array([1.0, 0.0])
+        ends = [project(place + way, camera, aslant, SIZE) for way in (-half, half)]
+        wide = np.hypot(*(ends[1] - ends[0]).T) / 2
+        assert wide.min() < 0.7 * REACH
+        np.testing.assert_allclose(normals.reach[side], np.minimum(wide, REACH), rtol=0.08)
+    assert (normals.reach[normals.kinds[TWELVE]] == REACH).all()
 
 
 def test_what_is_seen_of_each_circle_is_told() -> None:
