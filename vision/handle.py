@@ -18,25 +18,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
-from math import ceil, nan, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.align import (
-    HARMONICS,
-    ORDERS,
-    Array,
-    Complex,
-    align,
-    ring_weights,
-    rings_seen,
-    turned,
-)
-
-_GRID = 1440
-"""Angles of a whole turn that are tried."""
+from vision.align import ORDERS, Array, Complex, align, ring_weights, rings_seen, turned
+from vision.facing import angle_between, angles_between
 
 LASTING = 3.5
 """How much larger errors are than one picture tells: what stands up looks otherwise from each
@@ -99,67 +86,6 @@ def cap_spectrum(patch: NDArray[np.uint8], radii: Array) -> Complex:
     spectrum = np.fft.rfft(patch.astype(np.float32), axis=-3)[..., ORDERS, :, :] / patch.shape[-3]
     weight = np.resize(ring_weights(radii), patch.shape[-2])
     return np.asarray(spectrum * weight[:, None], np.complex64)
-
-
-@lru_cache(maxsize=64)
-def _offsets(reach: float) -> tuple[Array, NDArray[np.complex128]]:
-    """Angles up to `reach` either way, rad, and how they turn the harmonics."""
-    offset = np.linspace(-reach, reach, max(int(_GRID * reach / np.pi), 9))
-    return offset, np.exp(1j * HARMONICS[:, None] * offset)
-
-
-def angle_between(
-    reference: Complex, spectrum: Complex, expected: float, reach: float
-) -> tuple[float, float]:
-    """Angle by which one cap is turned against a reference: `angles_between` of one, to 2 mrad."""
-    model, seen = reference[1:-1], spectrum[1:-1]
-    cross = (model.conj() * seen).sum((1, 2)) * np.exp(1j * HARMONICS * expected)
-    shown = model[:, seen.any((0, 2))].ravel()
-    energy = sqrt(np.vdot(shown, shown).real * np.vdot(seen, seen).real)
-    if not energy:
-        return nan, 0.0
-    offset, phases = _offsets(ceil(100 * reach) / 100)
-    value = (cross @ phases).real
-    best = int(value.argmax())
-    return expected + float(offset[best]), float(value[best]) / energy
-
-
-def angles_between(
-    reference: Complex, spectra: Complex, expected: Array, reach: float
-) -> tuple[Array, Array]:
-    """Angles by which caps are turned against a reference, if they are not shifted.
-
-    Parameters
-    ----------
-    reference : ndarray, shape (orders, rings, channels)
-    spectra : ndarray, shape (n, orders, rings, channels)
-    expected : ndarray, shape (n,)
-        About where the angles are sought, rad.
-    reach : float
-        How far from there, rad.
-
-    Returns
-    -------
-    angle, likeness : ndarray, shape (n,)
-        Angles nearest to what was expected, rad; correlations of the two pictures, 0 to 1.
-    """
-    model, seen = reference[1:-1], spectra[:, 1:-1]
-    cross = (np.conj(model) * seen).sum((2, 3)).astype(complex)
-    shown = rings_seen(seen) @ (np.abs(model) ** 2).sum((0, 2))
-    energy = np.sqrt(shown * (np.abs(seen) ** 2).sum((1, 2, 3)))
-    blank = energy <= 0
-    offset, phases = _offsets(ceil(100 * reach) / 100)
-    near = cross * np.exp(1j * HARMONICS * expected[:, None])
-    value = (near @ phases).real
-    angle = expected + offset[value.argmax(1)]
-    for _ in range(4):  # Newton's method on a sum of cosines
-        phase = cross * np.exp(1j * HARMONICS * angle[:, None])
-        slope, bend = -phase.imag @ HARMONICS, -phase.real @ HARMONICS**2
-        step = -slope / np.where(bend < 0, bend, -np.inf)
-        angle = angle + np.clip(step, -0.05, 0.05)
-    likeness = (cross * np.exp(1j * HARMONICS * angle[:, None])).real.sum(1)
-    likeness = np.where(blank, 0.0, likeness / np.where(blank, 1.0, energy))
-    return np.where(blank, np.nan, angle), likeness
 
 
 def handle_angles(

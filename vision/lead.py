@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from math import hypot
 
 from vision.align import Complex
-from vision.handle import TURNING, angle_between
+from vision.facing import angle_between
+from vision.handle import TURNING
 from vision.sighting import Sighting
 from vision.still import Portrait
 
