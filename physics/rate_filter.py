@@ -41,12 +41,18 @@ class Forward:
 
     Attributes
     ----------
+    drift : (n, 6) array
+        What the ice was known to do, taken out of the sightings: `physics.stretch.drift`.
+    steps : sequence of Step, three times
+        How place and rate go on from each time to the next.
     states : list of State, three times
         After the sighting at each time.
     looks : list of Look or None, three times
         What that sighting did; None where there was none or it was refused.
     """
 
+    drift: Floats
+    steps: tuple[Sequence[Step], Sequence[Step], Sequence[Step]]
     states: tuple[list[State], list[State], list[State]]
     looks: tuple[list[Look | None], list[Look | None], list[Look | None]]
 
@@ -70,17 +76,14 @@ def filtered(stretch: Stretch) -> Smoothed:
     seen : (n,) int array
         Whether the sighting of the place at each time was used.
     """
-    along, turning = steps(stretch)
-    known = drift(stretch, along)
-    moves, turns = _listed(along), _listed(turning)
-    way = _forward(stretch, known, moves, turns)
+    way = forward(stretch)
     n = len(stretch.t)
     mean, spread = np.empty((n, 6)), np.empty((n, 6))
     for states, looks, on, at in zip(
-        way.states, way.looks, (moves, moves, turns), ([0, 2], [1, 3], [4, 5]), strict=True
+        way.states, way.looks, way.steps, ([0, 2], [1, 3], [4, 5]), strict=True
     ):
         mean[:, at], spread[:, at] = _smoothed(states, looks, on)
-    mean += known
+    mean += way.drift
     mean[stretch.rest, 2:4], mean[stretch.idle, 5] = 0.0, 0.0
     return mean, spread, np.array([look is not None for look in way.looks[0]], int)
 
@@ -88,12 +91,8 @@ def filtered(stretch: Stretch) -> Smoothed:
 def forward(stretch: Stretch) -> Forward:
     """Go forward through one stretch: what each sighting told that was not expected."""
     along, turning = steps(stretch)
-    return _forward(stretch, drift(stretch, along), _listed(along), _listed(turning))
-
-
-def _forward(
-    stretch: Stretch, known: Floats, moves: Sequence[Step], turns: Sequence[Step]
-) -> Forward:
+    known = drift(stretch, along)
+    moves, turns = _listed(along), _listed(turning)
     places, rates = stretch.start
     anywhere = (ANYWHERE_SD[0], ANYWHERE_SD[0], ANYWHERE_SD[1])
     lasting = (stretch.slow**2).tolist()
@@ -102,7 +101,7 @@ def _forward(
         for place, rate, sd, error in zip(places, rates, anywhere, lasting[0], strict=True)
     )
     values = (stretch.z - known[:, [0, 1, 4]]).tolist()
-    out = Forward(([], [], []), ([], [], []))
+    out = Forward(known, (moves, moves, turns), ([], [], []), ([], [], []))
     refused = wrong = 0
     for k, ((zx, zy, angle), (rx, ry, error), slow) in enumerate(
         zip(values, (stretch.sd**2).tolist(), lasting, strict=True)
