@@ -9,7 +9,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.segments import breaks
+from physics.breaks import breaks
 from physics.shot_fit import Meeting
 from physics.traces import Trace
 

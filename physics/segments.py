@@ -1,153 +1,32 @@
-"""Where a motion of one kind ends: the paths of single stones cut into pieces.
-
-A free stone on ice moves for a while with nearly constant acceleration. `breaks` finds the
-times at which a path stops being such a motion: a push, a wall, a stop, a change of the ice.
-"""
+"""The paths of single stones cut into pieces: at hits, and where a motion of one kind ends."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.stretch import PLACE_MEMORY
-from physics.traces import LASTING, Trace
+from physics.breaks import FEWEST, breaks
+from physics.traces import Trace
 
 Floats = NDArray[np.float64]
 
-SPEED_SD, ACCELERATION_SD = 3.0, 0.5
-"""Prior of a segment's velocity (m/s) and acceleration (m/s²) when looking for breaks."""
+BESIDE = 0.6
+"""Usual times between sightings before or after a hit within which one may show its other side."""
 
-BREAK_COST = 12.0
-"""Cost of a break in units of −2 log likelihood: one change in some hundred samples."""
+SLOW = 0.15
+"""Mean speed of a stone that is taken to rest, its radii per second: on ice it would stop within a
+quarter of a second and three millimetres."""
 
-FEWEST = 4
-"""Sightings that make a segment; fewer are taken for outliers."""
+SLOW_END = 0.12
+"""How much faster a stone may be at the end of a glide that ends at rest, m/s: a second's glide on
+ice, of which the last frames may be missing."""
 
-STILL = 25.0
-"""Squared normalised shift of a mean place, two axes, below which it is no trace of a motion."""
-
-PLACE = 0.002
-"""Places that are all this near to their median, m, are one, whatever their errors: those of a
-camera that wanders are alike in all frames."""
-
-ALIKE = 1.25
-"""Share of a place's variance by which the errors of neighbouring frames are alike."""
-
-OUTLIER = 16.0
-"""Squared normalised error, two axes, at which a sample costs no more."""
-
-
-def breaks(t: Floats, xy: Floats, sd: Floats, lasting: float = LASTING) -> list[float]:
-    """Find the times at which a path stops being one motion of constant acceleration.
-
-    The partition with the highest marginal likelihood, found exactly by pruned dynamic
-    programming (Killick et al., 2012, J. Am. Stat. Assoc. 107, 1590), the likelihood of each
-    segment coming from a recursive least-squares filter of place, velocity and acceleration. Of
-    the breaks that white errors leave those are kept that lasting errors do not explain.
-
-    Parameters
-    ----------
-    t, xy, sd : (n,), (n, 2), (n, 2) arrays
-        Times, places and their standard deviations.
-    lasting : float
-        Share of the places' variance by which those within `PLACE_MEMORY` err alike.
-
-    Returns
-    -------
-    list of float
-        Times between the last sample of one segment and the first of the next, s.
-    """
-    # The same paths are asked for again: for hits, for what moves, for the filter.
-    return list(_breaks(np.column_stack([t, xy, sd]).tobytes(), lasting))
-
-
-@lru_cache(maxsize=64)
-def _breaks(samples: bytes, lasting: float) -> tuple[float, ...]:
-    """As `breaks`, of rows of time, place and standard deviations."""
-    t, xy, sd = np.split(np.frombuffer(samples).reshape(-1, 5), [1, 3], axis=1)
-    t, n = t[:, 0], len(t)
-    variance = np.mean(sd**2, axis=1)
-    white = (1 + ALIKE) * variance
-    if n < 6 or _at_one_place(xy, white):
-        return ()
-    sought = _starts(t, xy, white, np.ones(n, bool))
-    if not sought:
-        return ()
-    # As often as sightings err alike they say the same once more: only what stands out of that is
-    # a break. Where it is, their scatter tells best.
-    alike = 2 * PLACE_MEMORY / float(np.median(np.diff(t)))
-    held = (1 + max(ALIKE, lasting * alike)) * variance
-    starts = _starts(t, xy, held, np.isin(np.arange(n), sought))
-    return tuple(0.5 * float(t[j - 1] + t[j]) for j in starts)
-
-
-def _starts(t: Floats, xy: Floats, variance: Floats, may: NDArray[np.bool_]) -> list[int]:
-    """Find the samples, of those that may, at which all segments but the first begin."""
-    n = len(t)
-    best = np.full(n + 1, np.inf)
-    best[0] = -BREAK_COST
-    origin = np.zeros(n + 1, dtype=int)
-    starts, cost = np.empty(0, dtype=int), np.empty(0)
-    # Mean (two axes) and covariance of place, velocity and acceleration, side by side.
-    state = np.empty((0, 3, 5))
-    for j in range(n):
-        tau = t[j] - t[starts]
-        phi = np.stack([np.ones_like(tau), tau, 0.5 * tau * tau], axis=1)
-        expected = (phi[:, None] @ state)[:, 0]
-        error, gain = xy[j] - expected[:, :2], expected[:, 2:]
-        total = (gain * phi) @ np.ones(3) + variance[j]
-        distance = (error * error) @ np.ones(2) / total
-        ok = distance < OUTLIER
-        cost = cost + np.where(ok, distance + 2 * np.log(total / variance[j]), OUTLIER)
-        share = np.where(ok, 1.0 / total, 0.0)[:, None]
-        state += (gain * share)[:, :, None] * np.concatenate([error, -gain], axis=1)[:, None]
-        if may[j] or not j:
-            # A segment that begins here knows its place and nothing of its motion.
-            first = np.zeros((1, 3, 5))
-            first[0, 0, :2] = xy[j]
-            first[0, :, 2:] = np.diag([variance[j], SPEED_SD**2, ACCELERATION_SD**2])
-            starts = np.append(starts, j)
-            cost = np.append(cost, best[j] + BREAK_COST)
-            state = np.concatenate([state, first])
-        pick = int(cost.argmin())
-        best[j + 1], origin[j + 1] = cost[pick], starts[pick]
-        keep = (cost < best[j + 1] + 40.0) | (starts > j - 8)
-        if not keep.all():
-            starts, cost, state = starts[keep], cost[keep], state[keep]
-    found: list[int] = []
-    j = int(origin[n])
-    while j > 0:
-        found.append(j)
-        j = int(origin[j])
-    return found[::-1]
-
-
-def _at_one_place(xy: Floats, variance: Floats) -> bool:
-    """Whether places show no trace of a motion, over the whole or over any shorter stretch.
-
-    Most stones rest most of the time, and to see that is a thousand times cheaper than to
-    look for breaks. A break would show in the mean place over one of the stretches of
-    `FEWEST` sightings and of twice, four times … as many.
-    """
-    if np.abs(xy - np.median(xy, axis=0)).max() < PLACE:
-        return True
-    weights = 1 / variance
-    total = np.concatenate([[0.0], np.cumsum(weights)])
-    centre = weights @ xy / total[-1]
-    sums = np.concatenate([np.zeros((1, 2)), np.cumsum(weights[:, None] * (xy - centre), axis=0)])
-    length = FEWEST
-    while length <= len(xy):
-        step = max(length // 2, 1)
-        shift = np.sum((sums[length::step] - sums[:-length:step]) ** 2, axis=1)
-        if np.any(shift > STILL * (total[length::step] - total[:-length:step])):
-            return False
-        length *= 2
-    return True
+CURVED = 6
+"""Sightings from which the speed at the end of a stretch is told by a parabola, not a line."""
 
 
 @dataclass(frozen=True)
@@ -207,7 +86,7 @@ def cut(path: Trace, hits: Sequence[tuple[int, float]], radius: float) -> list[P
     for k in range(len(bounds) - 1):
         inside = np.flatnonzero(path.between(bounds[k], bounds[k + 1]))
         # A frame beside a hit may belong to its other side: it has no say in where breaks are.
-        margin = 0.6 * path.step
+        margin = BESIDE * path.step
         sure = inside[
             (path.t[inside] > bounds[k] + margin) & (path.t[inside] < bounds[k + 1] - margin)
         ]
@@ -244,10 +123,14 @@ def _motion(path: Trace, samples: NDArray[Any]) -> _Motion:
     sd = float(np.mean(path.sd[samples]))
     slope = tau @ path.xy[samples] / (tau @ tau)
     last = slope
-    if len(t) >= 6:
+    if len(t) >= CURVED:
         coefficients = np.polynomial.polynomial.polyfit(tau / tau[-1], path.xy[samples], 2)
         last = (coefficients[1] + 2 * coefficients[2]) / tau[-1]
     return _Motion(slope, sd / float(np.sqrt(tau @ tau)), last)
+
+
+def _speed(velocity: Floats) -> float:
+    return float(np.hypot(*velocity))
 
 
 def _piece(
@@ -260,15 +143,8 @@ def _piece(
     radius: float,
 ) -> Piece:
     motion = _motion(path, samples)
-    slow = 0.15 * radius
-    speed = float(np.hypot(*motion.velocity))
-    if opens is None:
-        rest = speed < slow + 2 * min(motion.stderr, 1e3)
-        if len(samples) < 2:
-            rest = True
-    else:
-        # Who was hit moves, unless a long look says otherwise.
-        rest = False
+    slow = _speed(motion.velocity) < SLOW * radius + 2 * motion.stderr
+    rest = slow and opens is None  # who was hit moves
     return Piece(path.stone, start, end, samples, rest, False, opens, closes)
 
 
@@ -282,7 +158,7 @@ def _with_stops(path: Trace, run: list[Piece], radius: float) -> list[Piece]:
             slow_end = last.rest or last.stops
             if not slow_end:
                 motion = _motion(path, last.samples)
-                slow_end = float(np.hypot(*motion.last)) < 0.15 * radius + 0.12 + 3 * motion.stderr
+                slow_end = _speed(motion.last) < SLOW * radius + SLOW_END + 3 * motion.stderr
             if slow_end:
                 samples = np.concatenate([last.samples, piece.samples])
                 out[-1] = replace(
