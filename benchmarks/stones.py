@@ -117,8 +117,8 @@ def clips_table() -> pd.DataFrame:
         stones = track_stones(clip, cameras)
         spent = time.process_time() - start
         table = stones.sightings.assign(seen=1)
-        for axis in ("sd_x", "sd_y"):
-            table[axis] = np.hypot(table[axis], table["sd_place"])
+        for axis in "xy":
+            table[f"sd_{axis}"] = np.hypot(table[f"sd_{axis}"], table[f"sd_place_{axis}"])
         score = score_tracks(table, truth)
         rows.append(
             {

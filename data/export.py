@@ -14,7 +14,7 @@ from data.files import check_folder, whole_file
 from data.tracks import SIGHTING_COLUMNS
 from data.trk import TEXT_COLUMNS
 
-_CSV_COLUMNS = tuple(name for name in SIGHTING_COLUMNS if name != "sd_place")
+_CSV_COLUMNS = tuple(name for name in SIGHTING_COLUMNS if not name.startswith("sd_place"))
 
 
 def write_text(sightings: pd.DataFrame, path: Path) -> None:

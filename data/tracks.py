@@ -50,12 +50,14 @@ tables what they say; empty where nothing is known.
 """
 
 SIGHTING_COLUMNS: tuple[str, ...] = (
-    "stone", "frame", "t", "x", "y", "theta", "sd_x", "sd_y", "sd_theta", "sd_place", "team",
+    "stone", "frame", "t", "x", "y", "theta", "sd_x", "sd_y", "sd_theta",
+    "sd_place_x", "sd_place_y", "team",
 )  # fmt: skip
 """Columns of a table of sightings: measured places, before any filter. sd may be NaN.
 
-``sd_x`` and ``sd_y`` are of what differs from sighting to sighting, ``sd_place`` (m, per axis) of
-what the sightings of a stone share and no filter averages out: the camera, the scale.
+``sd_x`` and ``sd_y`` are of what differs from sighting to sighting, ``sd_place_x`` and
+``sd_place_y`` (m) of what the sightings of a stone share and no filter averages out: the camera,
+the scale.
 """
 
 _NUMBERS = tuple(name for name in SIGHTING_COLUMNS if name not in ("stone", "team"))

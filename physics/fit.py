@@ -249,9 +249,9 @@ class _Solver:
         full = along_x.T @ (weights[:, :1] * along_x) + along_y.T @ (weights[:, 1:] * along_y)
         xy = weights * trace.xy[piece.samples]
         value = along_x.T @ xy[:, 0] + along_y.T @ xy[:, 1]
-        drift = speed * float(np.median(trace.sd_scale[piece.samples]))
+        drift = speed * np.median(trace.sd_scale[piece.samples], axis=0)
         change = self.prior.change / (speed + SLOWEST) ** 2
-        known = np.square([drift, drift, change]) / self.inflation
+        known = np.square([*drift, change]) / self.inflation
         normal, right, self.further[i] = eliminated(full, value, known)
         return normal, right
 

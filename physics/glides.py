@@ -86,7 +86,9 @@ def _each(
         slowing = np.array([0.0, 0.0, -along[0], 0.0, 0.0, -along[1]])
         aside = np.array([0.0, 0.0, -along[1], 0.0, 0.0, along[0]])  # to the left
         bend = _bend(known[piece.stone].sd_place[piece.samples], size, end - float(t[0]))
-        sd, sd_aside = (float(np.hypot(np.sqrt(s @ cov @ s), bend)) for s in (slowing, aside))
+        bent, bent_aside = np.hypot(*(bend * along)), np.hypot(*(bend * along[::-1]))
+        sd = float(np.hypot(np.sqrt(slowing @ cov @ slowing), bent))
+        sd_aside = float(np.hypot(np.sqrt(aside @ cov @ aside), bent_aside))
         if sd / GRAVITY > WORST:
             continue
         mu = float(slowing @ fit.theta[own]) / GRAVITY
@@ -94,22 +96,22 @@ def _each(
         glides.append(
             Glide(piece.stone, float(t[0]), end, mu, sd / GRAVITY, turn, sd_aside / size, size)
         )
-        bends.append(bend)
+        bends.append(bent)
         slopes.append(np.zeros(len(fit.theta)))
         slopes[-1][own] = slowing
     rows = np.array(slopes).reshape(len(glides), len(fit.theta))
     return tuple(glides), rows @ fit.theta, rows @ fit.cov @ rows.T + np.diag(np.square(bends))
 
 
-def _bend(sd_place: Floats, speed: float, duration: float) -> float:
-    """Error of a deceleration, m/s², from the error that places share.
+def _bend(sd_place: Floats, speed: float, duration: float) -> Floats:
+    """Error of a deceleration on either axis, m/s², from the error that places share.
 
     Places whose error is s at one end, the other or between bend the path in time like an
     acceleration of which s is the sagitta, a T² / 8. Over less than `PLACE_REACH` either side
     of the middle the error is much the same throughout and bends less.
     """
     share = min(1.0, speed * duration / (2 * PLACE_REACH))
-    return 8 * share * float(np.median(sd_place)) / duration**2
+    return np.asarray(8 * share * np.median(sd_place, axis=0) / duration**2)
 
 
 def stop_time(x: Floats, origin: float, last: float) -> float:

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from data.errors import InputError
 from data.results import SimulationScore
@@ -193,10 +194,10 @@ def _rest_sd(table: pd.DataFrame, found: SimulationScore) -> dict[str, float | N
     return {name: spread.get(name) for name in found.rest_error}
 
 
-def _shared(known: Mapping[str, Trace], start: float) -> dict[str, float]:
-    """Tell what stones near each other share of the errors of their places, m."""
+def _shared(known: Mapping[str, Trace], start: float) -> dict[str, NDArray[np.float64]]:
+    """Tell what stones near each other share of the errors of their places, x and y, m."""
     return {
-        name: float(trace.sd_place[np.argmin(np.abs(trace.t - start))])
+        name: trace.sd_place[np.argmin(np.abs(trace.t - start))]
         for name, trace in known.items()
         if len(trace.t)
     }

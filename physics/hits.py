@@ -128,7 +128,7 @@ def _states(
     for i, stone in enumerate(fit.meetings[k].stones):
         trace = known[stone]
         # What all places near each other share is no scatter that the fit could see.
-        shared = float(trace.sd_place[np.argmin(np.abs(trace.t - fit.time(k)))])
+        shared = trace.sd_place[np.argmin(np.abs(trace.t - fit.time(k)))]
         place = (*xy[i].tolist(), *np.hypot(spread[i], shared).tolist())
         for when, side in enumerate(out):
             side[stone] = _state(place, speeds[when][i], errors[when][i], spins[i][when])

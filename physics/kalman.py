@@ -85,7 +85,7 @@ def smoothed(
         but not this one, or at which its sighting was refused as an outlier. Angles and spins
         are NaN where the stone's angle was not seen from one hit to the next, velocities where
         it was seen once. The standard deviations of places include what the sightings share
-        (``sd_place``).
+        (``sd_place_x``, ``sd_place_y``).
     """
     known = traces(sightings)
     if not known:
@@ -157,9 +157,9 @@ def _track(
         if 0 < k < len(hits) and np.isfinite(z[at, 0]).sum() < 2:
             _bridge(hits, part, t, mean, spread, at)
     _widen(hits, part, t, mean, spread)
-    spread[:, :2] = np.hypot(spread[:, :2], trace.sd_place[row][:, None])
+    spread[:, :2] = np.hypot(spread[:, :2], trace.sd_place[row])
     size = np.hypot(mean[:, 2], mean[:, 3])
-    spread[:, 2:4] = np.hypot(spread[:, 2:4], (UNSEEN_SCALE * trace.sd_scale[row] * size)[:, None])
+    spread[:, 2:4] = np.hypot(spread[:, 2:4], UNSEEN_SCALE * trace.sd_scale[row] * size[:, None])
     untold = spread[:, 5] > UNTOLD
     if not np.isfinite(trace.theta).any():
         untold[:] = True

@@ -59,7 +59,7 @@ def shared_error(
             np.add.reduceat(values, edges) / counts.reshape(-1, *[1] * (values.ndim - 1))
         )
 
-    gain = (-(cov @ slopes.T) * weights).reshape(len(cov), -1, 2) / sd * size[:, None]
+    gain = (-(cov @ slopes.T) * weights).reshape(len(cov), -1, 2) / sd * size
     sums = np.add.reduceat(gain, edges, axis=1)
     middle = mean(xy)
     correlation = alike(middle)
@@ -70,8 +70,8 @@ def shared_error(
     bent = mean(slopes.reshape(len(xy), 2, -1) * sd[:, :, None])
     left = np.stack(
         [
-            mean(size) ** 2
-            + 2 * mean(size) * np.einsum("gm,mg->g", bent[:, axis], field[axis])
+            mean(size)[:, axis] ** 2
+            + 2 * mean(size)[:, axis] * np.einsum("gm,mg->g", bent[:, axis], field[axis])
             + np.einsum("gm,mk,gk->g", bent[:, axis], out, bent[:, axis])
             for axis in range(2)
         ],

@@ -47,7 +47,7 @@ class Doubt:
         Of the turn of the paths at 1 m/s, rad/s.
     size : float
         Of the stones' radius, as a part of it.
-    shared : mapping of str to float
+    shared : mapping of str to (2,) array
         Of each stone's place, m, what stones near each other have in common.
     """
 
@@ -58,7 +58,7 @@ class Doubt:
     friction: float = 0.0
     turn: float = 0.0
     size: float = 0.0
-    shared: Mapping[str, float] = field(default_factory=dict)
+    shared: Mapping[str, Floats] = field(default_factory=dict)
 
 
 def draws(shot: Shot, doubt: Doubt, count: int = DRAWS, seed: int = 0) -> list[Simulation]:
@@ -159,9 +159,9 @@ def _drawn(shot: Shot, doubt: Doubt, rng: np.random.Generator) -> Shot:
 def _together(shot: Shot, doubt: Doubt, rng: np.random.Generator) -> Floats:
     """Draw what the places share: displacements of all stones, shape (n, 2), m."""
     xy = np.array([(stone.x, stone.y) for stone in shot.stones])
-    size = np.array([doubt.shared.get(stone.name, 0.0) for stone in shot.stones])
-    cov = np.outer(size, size) * alike(xy)
-    return rng.multivariate_normal(np.zeros(len(xy)), cov, 2, method="eigh").T
+    size = np.array([doubt.shared.get(stone.name, np.zeros(2)) for stone in shot.stones])
+    draws = rng.multivariate_normal(np.zeros(len(xy)), alike(xy), 2, method="eigh").T
+    return np.asarray(size * draws)
 
 
 def _moved(
@@ -169,7 +169,7 @@ def _moved(
 ) -> StoneStart:
     values = np.array([getattr(stone, name) for name in STATE])
     sd = doubt.states[stone.name].copy()
-    sd[:2] = np.sqrt(np.maximum(sd[:2] ** 2 - doubt.shared.get(stone.name, 0.0) ** 2, 0.0))
+    sd[:2] = np.sqrt(np.maximum(sd[:2] ** 2 - doubt.shared.get(stone.name, np.zeros(2)) ** 2, 0.0))
     moved = values + sd * rng.standard_normal(len(STATE))
     moved[:2] += together
     after = stone.omega_after

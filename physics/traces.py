@@ -14,6 +14,9 @@ Floats = NDArray[np.float64]
 SMALLEST_SD = 1e-5
 """Smallest standard deviation of a place, m: what no track at hand surpasses."""
 
+SHARED = "sd_place_x", "sd_place_y"
+"""Columns of what places share."""
+
 PLACE_REACH = 1.0
 """Distance over which the error that places share becomes another one, m."""
 
@@ -37,7 +40,7 @@ class Trace:
         Places and their standard deviations, m.
     theta, sd_theta : (n,) array
         Angle and its standard deviation, rad; NaN where unknown.
-    sd_place : (n,) array
+    sd_place : (n, 2) array
         Standard deviation of what the places share, m; 0 where unknown.
     lasting : float
         Share of the variance of places that lasts for a while.
@@ -59,7 +62,7 @@ class Trace:
 
     @property
     def sd_scale(self) -> Floats:
-        """Relative error of velocities by that of places, shape (n,).
+        """Relative error of velocities by that of places, shape (n, 2).
 
         What places share is alike for neighbours only: under way it changes, as if the stone
         had moved faster or slower.
@@ -99,7 +102,7 @@ def traces(sightings: Table) -> dict[str, Trace]:
     stones = np.asarray(sightings["stone"])
     columns = {
         name: np.asarray(sightings[name], float)
-        for name in ("t", "x", "y", "theta", "sd_x", "sd_y", "sd_theta", "sd_place")
+        for name in ("t", "x", "y", "theta", "sd_x", "sd_y", "sd_theta", *SHARED)
         if name in sightings
     }
     for name in np.unique(stones).tolist():
@@ -117,7 +120,7 @@ def traces(sightings: Table) -> dict[str, Trace]:
             sd=_filled(t, xy, sd, SMALLEST_SD, 0.005),
             theta=theta,
             sd_theta=_filled_angles(t[known], turned, own["sd_theta"], known),
-            sd_place=np.nan_to_num(own.get("sd_place", np.zeros(len(t)))),
+            sd_place=np.column_stack([np.nan_to_num(own.get(axis, 0 * t)) for axis in SHARED]),
             lasting=LASTING if np.isfinite(sd).any() else 0.0,
         )
     return out

@@ -112,7 +112,7 @@ class GlobalFit:
         map of the ice is off by several times that, alike for all sightings near each other.
         """
         traces = [trace for shot in self.shots for trace in shot.traces.values()]
-        shared = np.concatenate([(trace.sd_place[:, None] / trace.sd) ** 2 for trace in traces])
+        shared = np.concatenate([(trace.sd_place / trace.sd) ** 2 for trace in traces])
         return self.inflation / (1 + float(shared.mean()))
 
     def residuals(self) -> pd.DataFrame:

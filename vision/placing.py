@@ -21,9 +21,9 @@ Array = NDArray[np.float64]
 UNCOVERED = 0.75
 """Share of a cap that must be seen for its angle to be measured."""
 
-ASLANT = 0.015
-"""Standard error of how high the rim of a cap is seen, as a share of its height: a wall or a
-rounded rim is seen on the near side only."""
+ASLANT = 0.25
+"""Standard error along a slanting view, px per slant: the far edge of a cap hides what is behind
+it, on the near side a wall or a rounded rim is seen. Across the view there is none."""
 
 ASTRAY = 0.6
 """How far the map of a house is wrong, in residuals of its camera's edges per metre from the tee:
@@ -63,8 +63,8 @@ def sightings(
     rows = zip(seen.colour[chosen], spectra, *(column.tolist() for column in columns), strict=True)
     return [
         Sighting(
-            x, y, sd_x, sd_y, nan, colour, visible, score, tuple(outline), wall, tuple(bends),
-            (u, v), nan, spectrum.copy() if told else None,
+            x, y, sd_x, sd_y, (nan, nan), colour, visible, score, tuple(outline), wall,
+            tuple(bends), (u, v), nan, spectrum.copy() if told else None,
         )
         for colour, spectrum, (x, y), (sd_x, sd_y), visible, score, outline, wall, bends, (u, v),
         told in rows
@@ -80,17 +80,20 @@ def placed_by(camera: Camera, seen: Sequence[Sighting], disc: Stone) -> list[Sig
     shared = _shared_errors(camera, places, size, disc)
     told = zip(seen, places.tolist(), shared.tolist(), size.tolist(), strict=True)
     return [
-        sighting._replace(x=x, y=y, sd_place=sd, pixel_size=pixel)
-        for sighting, (x, y), sd, pixel in told
+        sighting._replace(x=x, y=y, sd_place=(sd_x, sd_y), pixel_size=pixel)
+        for sighting, (x, y), (sd_x, sd_y), pixel in told
     ]
 
 
 def _shared_errors(camera: Camera, places: Array, pixel: Array, disc: Stone) -> Array:
-    """Give the standard errors that no filter averages out, m: by camera and height of the cap."""
+    """Give the standard errors that no filter averages out, (n, 2), m: by camera and slant."""
     rms = camera.rms_px if np.isfinite(camera.rms_px) else USUAL_RMS_PX
-    aslant = ASLANT * disc.cap_height * np.hypot(*slants(camera, places).T)
+    aslant = ASLANT * slants(camera, places) if disc.cap_height else 0 * places
     if camera.error is None:
-        return np.asarray(np.hypot(GIVEN_ASTRAY * rms * pixel, aslant))
-    astray = ASTRAY * rms * pixel * np.hypot(*places.T)
-    stated = camera.place_sd(places, disc.cap_height)
-    return np.asarray(np.sqrt(stated**2 + astray**2 + aslant**2))
+        astray, stated = np.full(len(places), GIVEN_ASTRAY * rms), 0 * places
+    else:
+        astray = ASTRAY * rms * np.hypot(*places.T)
+        cov = camera.shared_place_cov(places, disc.cap_height)
+        stated = np.sqrt(np.diagonal(cov, axis1=1, axis2=2))
+    off = pixel[:, None] * np.hypot(aslant, astray[:, None])
+    return np.asarray(np.hypot(off, stated))

@@ -23,9 +23,9 @@ class Sighting(NamedTuple):
         Place on the ice under its centre by the camera at hand, m.
     sd_x, sd_y : float
         Standard error that is anew in each picture, m.
-    sd_place : float
-        Standard error, per axis, that the sightings of a stone share by the camera and the height
-        of the cap, m; NaN where it is not told yet.
+    sd_place : tuple of float
+        Standard error, x and y, that the sightings of a stone share by the camera and the slant of
+        the view, m; NaN where it is not told yet.
     colour : ndarray, shape (3,)
         Colour of the cap, L*a*b*.
     visible : float
@@ -55,7 +55,7 @@ class Sighting(NamedTuple):
     y: float
     sd_x: float
     sd_y: float
-    sd_place: float
+    sd_place: tuple[float, float]
     colour: Array
     visible: float
     score: float

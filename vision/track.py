@@ -125,8 +125,8 @@ def _rows(name: str, track: Track, team: str, disc: Stone, edge: float) -> Colum
     spectra: list[Complex | None] = [sighting.spectrum for sighting in track.sightings]
     theta, sd_theta = handle_angles(np.array(track.times), spectra, handle_radii(disc))
     seen = track.sightings
-    x, y, sd_x, sd_y, sd_place = np.array(
-        [(item.x, item.y, item.sd_x, item.sd_y, item.sd_place) for item in seen]
+    x, y, sd_x, sd_y, sd_place_x, sd_place_y = np.array(
+        [(item.x, item.y, item.sd_x, item.sd_y, *item.sd_place) for item in seen]
     ).T
     return {
         "stone": np.full(len(seen), name),
@@ -138,7 +138,8 @@ def _rows(name: str, track: Track, team: str, disc: Stone, edge: float) -> Colum
         "sd_x": sd_x,
         "sd_y": sd_y,
         "sd_theta": sd_theta,
-        "sd_place": np.hypot(sd_place, edge),
+        "sd_place_x": np.hypot(sd_place_x, edge),
+        "sd_place_y": np.hypot(sd_place_y, edge),
         "team": np.full(len(seen), team),
     }
 

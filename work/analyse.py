@@ -138,9 +138,10 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
 
 def _shared_error(sightings: pd.DataFrame) -> float | None:
     """Tell what places near each other share of their errors, m; None where it is not known."""
-    if "sd_place" not in sightings or sightings["sd_place"].isna().all():
+    either = sightings.reindex(columns=["sd_place_x", "sd_place_y"])
+    if either.isna().all(axis=None):
         return None
-    return float(sightings["sd_place"].median())
+    return float((0.5 * (either**2).sum(axis=1)).median() ** 0.5)
 
 
 def _pace(friction: Estimate) -> tuple[str, ...]:

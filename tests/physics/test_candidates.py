@@ -16,7 +16,7 @@ def straight(name: str, place: tuple[float, float], velocity: tuple[float, float
     t = np.arange(60) / 30
     xy = np.array(place) + t[:, None] * np.array(velocity)
     none = np.full(60, np.nan)
-    return Trace(name, t, xy, np.full((60, 2), 1e-3), none, none, np.zeros(60))
+    return Trace(name, t, xy, np.full((60, 2), 1e-3), none, none, np.zeros((60, 2)))
 
 
 @pytest.mark.parametrize(("beside", "count"), [(0.0, 1), (0.28, 1), (0.4, 0), (0.6, 0)])

@@ -256,7 +256,7 @@ def test_errors_that_places_share_are_in_that_of_restitution() -> None:
         for axis, first, second in (("x", x, y), ("y", y, x)):
             wave = np.sin(first + rng.uniform(0, 6)) * np.sin(second + rng.uniform(0, 6))
             seen[axis] += 0.006 * wave
-        seen["sd_place"] = 0.003
+        seen[["sd_place_x", "sd_place_y"]] = 0.003
         found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).restitution
         assert found.value is not None
         assert found.stderr is not None

@@ -15,7 +15,9 @@ def glide(duration: float, sd_place: float, wobble: float) -> pd.DataFrame:
     y = 1.5 * t - 0.05 * t**2
     seen = y + wobble * np.sin(2 * np.pi * y / y[-1])
     table = pd.DataFrame({"stone": "A", "frame": np.arange(len(t)), "t": t, "x": 0.0, "y": seen})
-    return check_sightings(table.assign(sd_x=0.001, sd_y=0.001, sd_place=sd_place))
+    return check_sightings(
+        table.assign(sd_x=0.001, sd_y=0.001, sd_place_x=sd_place, sd_place_y=sd_place)
+    )
 
 
 @pytest.mark.parametrize("duration", [1.0, 2.0, 4.0])

@@ -83,7 +83,9 @@ def test_what_a_map_shares_is_no_wrong_simulation() -> None:
     field, wave = 0.004, 2.0  # m, 1/m: errors of a map are taken to be alike over a metre
     seen["x"] += field * np.sin(wave * seen["y"])
     seen["y"] += field * np.cos(wave * (seen["x"] + 0.7 * seen["y"]))
-    told = estimate(seen.assign(sd_place=field), find_contacts(seen, RADIUS), radius=RADIUS)
+    told = estimate(
+        seen.assign(sd_place_x=field, sd_place_y=field), find_contacts(seen, RADIUS), radius=RADIUS
+    )
     untold = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
     assert told.whole is not None
     assert told.whole.inflation > POOR_FIT > told.whole.misfit

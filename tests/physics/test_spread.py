@@ -112,7 +112,7 @@ def test_what_two_places_share_moves_both_and_leaves_the_hit_as_it_is() -> None:
     stones = (StoneStart("A", 0.1, -0.3, 0.0, 1.0), StoneStart("B", 0.0, 0.0))
     shot = Shot(stones, PointMass(0.8), Constant(MU), NoCurl())
     size = np.array([0.005, 0.005, 0, 0, 0])
-    states, common = {"A": size, "B": size}, {"A": 0.005, "B": 0.005}
+    states, common = {"A": size, "B": size}, {name: np.full(2, 0.005) for name in "AB"}
     spread = {}
     for name, doubt in (("apart", Doubt(states, {})), ("shared", Doubt(states, {}, shared=common))):
         first, last = (

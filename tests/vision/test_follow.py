@@ -17,8 +17,8 @@ Place = tuple[float, float]
 
 def sighting(place: Place, colour: np.ndarray = RED, score: float = 3.0) -> Sighting:
     return Sighting(
-        *place, 0.002, 0.002, 0.001, colour, 1.0, score, (1.0, 1.0), 0.0, (0.0,) * 6, (0.0, 0.0),
-        0.0,
+        *place, 0.002, 0.002, (0.001, 0.001), colour, 1.0, score, (1.0, 1.0), 0.0, (0.0,) * 6,
+        (0.0, 0.0), 0.0,
     )  # fmt: skip
 
 

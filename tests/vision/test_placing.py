@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from data.sheet import STONE
+from data.sheet import STONE, Stone
 from tests.vision.test_follow import sighting
-from vision.camera import PARAMETERS, CameraError
-from vision.placing import ASTRAY, GIVEN_ASTRAY, placed_by
+from vision.camera import PARAMETERS, Camera, CameraError
+from vision.placing import ASLANT, ASTRAY, GIVEN_ASTRAY, placed_by
 from vision.pose import View, camera
 from vision.rig import OVERHEAD, start_rig
 
@@ -27,21 +27,35 @@ def test_places_are_those_under_the_pixels_with_the_caps_height_taken_out() -> N
     assert placed_by(DOWN, [], STONE) == []
 
 
-def test_what_sightings_share_is_the_camera_s_and_grows_where_it_looks_aslant() -> None:
-    pixels = DOWN.project(np.array(PLACES), STONE.cap_height).tolist()
+def stated(camera: Camera, disc: Stone = STONE) -> np.ndarray:
+    pixels = DOWN.project(np.array(PLACES), disc.cap_height).tolist()
     seen = [sighting((9.0, 9.0))._replace(pixel=(u, v)) for u, v in pixels]
-    errors = [s.sd_place for s in placed_by(DOWN, seen, STONE)]
-    assert errors == sorted(errors)
-    flat = [s.sd_place for s in placed_by(DOWN, seen, replace(STONE, cap_height=0.0))]
-    np.testing.assert_allclose(flat, GIVEN_ASTRAY * 0.2 * HEIGHT / FOCAL, rtol=0.01)
-    rough = placed_by(replace(DOWN, rms_px=2.0), seen, STONE)
-    assert all(s.sd_place > e for s, e in zip(rough, errors, strict=True))
+    return np.array([s.sd_place for s in placed_by(camera, seen, disc)])
+
+
+def test_what_sightings_share_is_the_camera_s_and_what_a_slant_hides() -> None:
+    pixel = HEIGHT / FOCAL
+    flat = stated(DOWN, replace(STONE, cap_height=0.0))
+    np.testing.assert_allclose(flat, GIVEN_ASTRAY * 0.2 * pixel, rtol=0.01)
+    aslant = ASLANT * np.abs(PLACES) / HEIGHT * pixel
+    np.testing.assert_allclose(stated(DOWN), np.hypot(flat, aslant), rtol=0.01)
+    assert (stated(replace(DOWN, rms_px=2.0)) > stated(DOWN)).all()
 
 
 def test_the_map_of_a_house_is_the_worse_the_farther_from_the_tee() -> None:
-    error = CameraError(np.zeros((PARAMETERS, PARAMETERS)), np.zeros((PARAMETERS, PARAMETERS)))
-    flat, pixels = replace(STONE, cap_height=0.0), DOWN.project(np.array(PLACES)).tolist()
-    seen = [sighting((9.0, 9.0))._replace(pixel=(u, v)) for u, v in pixels]
-    errors = [s.sd_place for s in placed_by(replace(DOWN, error=error), seen, flat)]
+    known = CameraError(np.zeros((PARAMETERS, PARAMETERS)), np.zeros((PARAMETERS, PARAMETERS)))
+    errors = stated(replace(DOWN, error=known), replace(STONE, cap_height=0.0))
     away = np.hypot(*np.array(PLACES).T)
-    np.testing.assert_allclose(errors, ASTRAY * 0.2 * HEIGHT / FOCAL * away, rtol=0.01)
+    expected = ASTRAY * 0.2 * HEIGHT / FOCAL * np.column_stack([away, away])
+    np.testing.assert_allclose(errors, expected, rtol=0.01)
+
+
+def test_a_camera_uncertain_on_one_axis_leaves_the_other_certain() -> None:
+    aside = np.zeros((PARAMETERS, PARAMETERS))
+    aside[4, 4] = 0.5**2
+    certain = CameraError(np.zeros_like(aside), np.zeros_like(aside))
+    doubted = stated(replace(DOWN, error=replace(certain, shared=aside)))
+    # Half a metre of the camera's place, seen from the height of the cap.
+    added = np.sqrt(doubted**2 - stated(replace(DOWN, error=certain)) ** 2)
+    np.testing.assert_allclose(added[:, 1], 0, atol=1e-5)
+    assert (added[:, 0] > 0.005).all()
