@@ -62,6 +62,11 @@ LEAST_FRAMES = 6
 ROUNDS = 4
 """Estimates of paint and noise, each followed by a fit."""
 
+FIRST, NEXT, LAST = 30, 1, 4
+"""Most steps of the first fit, of each after such an estimate, and of the last. Begun far off, the
+first must get to where it ends: else the paint is learned to be as ragged as the camera is wrong,
+and keeps it there."""
+
 
 def bundle(
     frames: Sequence[Marks],
@@ -221,9 +226,9 @@ class _Problem:
     ) -> tuple[_State, Array, Array, Array]:
         """Fit with the paint and the noise that the residuals show: state, covariance, both."""
         for step in range(ROUNDS):
-            state, cov = self.fit(state, paint, noise, 6 if step == 0 else 1)
+            state, cov = self.fit(state, paint, noise, FIRST if step == 0 else NEXT)
             paint, noise = self.spread(state, cov, paint, noise)
-        state, cov = self.fit(state, paint, noise, 4)
+        state, cov = self.fit(state, paint, noise, LAST)
         return state, cov, paint, noise
 
     def gain(self, state: _State, paint: Array, noise: Array) -> float:

@@ -12,7 +12,7 @@ from vision.rig import OVERHEAD, POSITION, R4, R8, start_rig
 VIEWS = [View(np.array([0.19, -0.02 * k, 0.03, 7.1 + 0.01 * k])) for k in range(5)]
 
 
-@pytest.mark.parametrize("height", [6.5, 8.5, 12.0])
+@pytest.mark.parametrize("height", [6.5, 8.5, 12.0, 19.0])
 def test_the_height_does_not_depend_on_where_the_fit_begins(height: float) -> None:
     rng = np.random.default_rng(4)
     rig = true_rig()
