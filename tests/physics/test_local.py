@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from physics.contacts import find_contacts
 from physics.local import estimate_locally
@@ -49,3 +50,11 @@ def test_a_short_glide_that_seems_to_gain_speed() -> None:
     # One glide cannot differ from another.
     assert "too little is seen to tell it from none" in str(found.friction_doubt)
     assert not [text for text in found.warnings if "friction" in text]
+
+
+@pytest.mark.parametrize(("restitution", "said"), [(1.1, 1), (0.99, 0)])
+def test_a_restitution_above_1_is_odd(restitution: float, said: int) -> None:
+    motion = hit_motion(1.2, 0.05, restitution=restitution)
+    seen = watch(motion, np.random.default_rng(8), sd=0.002)
+    found = estimate_locally(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    assert sum("is more than 1" in text for text in found.warnings) == said
