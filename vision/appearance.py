@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -89,6 +89,10 @@ class Appearance:
         return rank, float(differences[rank])
 
 
+Guess = Callable[[int], Appearance]
+"""What stones may look like before any is known, by the lightness of the white ice."""
+
+
 @lru_cache(maxsize=1)
 def _lab_of_table() -> Floats:
     steps = (np.arange(64) * 4 + 2).astype(np.uint8)
@@ -123,7 +127,7 @@ def any_stone(white: int = 210) -> Appearance:
 
 @lru_cache(maxsize=32)
 def any_grey_stone(white: int = 210) -> Appearance:
-    """As `any_stone`, in a recording without colours: caps darker or lighter than granite."""
+    """As `any_stone`, by lightness alone: caps darker or lighter than granite of any tinge."""
     light = _lab_of_table()[..., 0] / white
     granite = np.clip((light - 0.3) / 0.1, 0, 1) * np.clip((0.78 - light) / 0.1, 0, 1)
     return Appearance((1 - 2 * granite).astype(np.float32))
@@ -132,6 +136,19 @@ def any_grey_stone(white: int = 210) -> Appearance:
 def convincing(sightings: Iterable[Sighting]) -> list[Sighting]:
     """Those from which may be learned what stones look like."""
     return [sighting for sighting in sightings if sighting.score > CONVINCING]
+
+
+def by_colour(sightings: Iterable[Sighting]) -> list[list[Sighting]]:
+    """Group sightings by the colour of their caps, the largest group first."""
+    groups: list[list[Sighting]] = []
+    for sighting in sorted(sightings, key=lambda item: -item.score):
+        for group in groups:
+            if colour_difference(group[0].colour, sighting.colour) < UNLIKE:
+                group.append(sighting)
+                break
+        else:
+            groups.append([sighting])
+    return sorted(groups, key=len, reverse=True)
 
 
 def learn(sightings: Sequence[Sighting]) -> Appearance | None:
@@ -144,15 +161,7 @@ def learn(sightings: Sequence[Sighting]) -> Appearance | None:
     Appearance or None
         None where there are no sightings.
     """
-    groups: list[list[Sighting]] = []
-    for sighting in sorted(sightings, key=lambda item: -item.score):
-        for group in groups:
-            if colour_difference(group[0].colour, sighting.colour) < UNLIKE:
-                group.append(sighting)
-                break
-        else:
-            groups.append([sighting])
-    groups.sort(key=len, reverse=True)
+    groups = by_colour(sightings)
     groups = [group for group in groups[:MOST_COLOURS] if len(group) >= 0.08 * len(groups[0])]
     if not groups:
         return None

@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import hypot
 
+import numpy as np
+
 from data.sheet import STONE, Stone
 from vision.appearance import MOST_COLOURS, UNLIKE, Appearance, convincing, learn
 from vision.camera import Camera
 from vision.clip import Image
 from vision.sighting import Refusal, Sighting
-from vision.stones import NEAREST, Findings, search_picture
+from vision.stones import NEAREST, SEARCH, Findings, search_picture
+from vision.strangers import strangers
 
 
 def glance(pictures: Sequence[tuple[Image, Camera]], disc: Stone = STONE) -> list[Findings]:
@@ -27,7 +30,8 @@ def glance(pictures: Sequence[tuple[Image, Camera]], disc: Stone = STONE) -> lis
     list of Findings
         One per picture, with the places that were refused and why.
     """
-    first = [search_picture(image, camera, None, disc) for image, camera in pictures]
+    nothing = np.empty((0, 2))
+    first = strangers([(image, camera, nothing) for image, camera in pictures], disc, SEARCH)
     appearance = learn(convincing(stone for found in first for stone in found.stones))
     if appearance is None:
         return first

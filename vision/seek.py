@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import Stone
-from vision.appearance import Appearance, any_grey_stone, any_stone, membership
+from vision.appearance import Appearance, Guess, any_grey_stone, any_stone, membership
 from vision.camera import Camera
 from vision.ice_map import IceMap, rectify
 from vision.lab import lab_of
@@ -58,7 +58,7 @@ class Candidates:
 def seek(
     image: Picture,
     camera: Camera,
-    appearance: Appearance | None,
+    appearance: Appearance | Guess | None,
     disc: Stone,
     bounds: Bounds,
     *,
@@ -71,8 +71,8 @@ def seek(
     ----------
     image, camera : Picture, Camera
         The picture, and its camera.
-    appearance : Appearance, optional
-        What stones look like; without it, what any stone looks like (as returned).
+    appearance : Appearance or Guess, optional
+        What stones look like, or may look like; without it, what any stone looks like.
     disc : Stone
         Sizes; a disc without a cap is sought by its rim.
     bounds : (x0, x1, y0, y1)
@@ -82,27 +82,28 @@ def seek(
     least : float
         Response, 0 to 2, from which a place is given.
     """
-    none = Candidates(np.empty((0, 2)), appearance)
+    known = appearance if isinstance(appearance, Appearance) else None
+    none = Candidates(np.empty((0, 2)), known)
     scale = radius_px / disc.radius
     ice = rectify(image, camera, bounds, scale=scale, height=disc.cap_height)
     if ice is None or not ice.valid.any():
         return none
-    if appearance is None and not is_plain(disc):
-        appearance = _unknown(ice, disc)
-    response = _response(ice, appearance, disc)
+    if known is None and not is_plain(disc):
+        known = _guessed(ice, appearance if callable(appearance) else None, disc)
+    response = _response(ice, known, disc)
     # Nearer than stones can be: paint of the cap's colour beside a stone may answer more strongly.
     peaks = _peaks(response, least, 1.1 * radius_px)
-    return Candidates(ice.place(peaks[:, 1], peaks[:, 0]), appearance)
+    return Candidates(ice.place(peaks[:, 1], peaks[:, 0]), known)
 
 
-def _unknown(ice: IceMap, disc: Stone) -> Appearance:
+def _guessed(ice: IceMap, guess: Guess | None, disc: Stone) -> Appearance:
     """Say what stones may look like on a piece of ice, before any is known."""
     lab = lab_of(ice.image)[ice.valid].astype(np.int32)
-    white = max(round(float(np.percentile(lab[:, 0], 75))), 60)
-    vivid = int((((lab[:, 1:] - 128) ** 2).sum(1) > VIVID**2).sum())
-    if vivid < 0.5 * np.pi * (disc.cap_radius * ice.scale) ** 2:
-        return any_grey_stone(white)  # not one cap of any colour is in view
-    return any_stone(white)
+    if guess is None:
+        vivid = int((((lab[:, 1:] - 128) ** 2).sum(1) > VIVID**2).sum())
+        coloured = vivid >= 0.5 * np.pi * (disc.cap_radius * ice.scale) ** 2  # half a cap of it
+        guess = any_stone if coloured else any_grey_stone
+    return guess(max(round(float(np.percentile(lab[:, 0], 75))), 60))
 
 
 def seek_about(

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import STONE, Stone
-from vision.appearance import Appearance
+from vision.appearance import Appearance, Guess
 from vision.camera import Camera
 from vision.measure import CLEARLY, Measures, measure_discs, well_within
 from vision.patch import EFFORT, is_plain
@@ -87,7 +87,7 @@ def plain_disc(radius: float) -> Stone:
 def search_picture(
     image: Picture,
     camera: Camera,
-    appearance: Appearance | None = None,
+    appearance: Appearance | Guess | None = None,
     disc: Stone = STONE,
     search: Search = SEARCH,
     bounds: Bounds | None = None,
@@ -101,8 +101,9 @@ def search_picture(
         BGR.
     camera : Camera
         The picture's camera; where its position is known, the height of the cap is taken out.
-    appearance : Appearance, optional
-        What stones look like here, from `learn`; without it, what any stone looks like.
+    appearance : Appearance or Guess, optional
+        What stones look like here, from `learn`, or may look like; without it, what any stone
+        looks like.
     disc : Stone
         Radius, cap radius and cap height; `plain_disc` for a disc without a cap.
     search : Search

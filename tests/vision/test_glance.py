@@ -28,11 +28,13 @@ def test_a_stone_of_another_colour_stays_though_it_convinces_less(
     )  # fmt: skip
 
     def search(image: object, camera: object, appearance: object, disc: object) -> Findings:
+        assert appearance is not None
         refused = tuple(
             Refusal(s.x, s.y, 0.4, "too little of a stone about it") for s in first[1:3]
         )
-        return Findings(first) if appearance is None else Findings(first[:1], refused)
+        return Findings(first[:1], refused)
 
+    monkeypatch.setattr(module, "strangers", lambda views, disc, search: [Findings(first)])
     monkeypatch.setattr(module, "search_picture", search)
     (found,) = glance([(np.zeros((4, 4, 3), np.uint8), Camera(0, 0.0, np.eye(3), (4, 4)))])
     assert [s.x for s in found.stones] == [0.0, 0.6]

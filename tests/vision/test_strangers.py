@@ -1,0 +1,68 @@
+from __future__ import annotations
+
+import numpy as np
+
+from data.sheet import STONE
+from tests.synthetic.clip import render_still
+from tests.synthetic.scene import Colour, Person, Scene
+from tests.vision.test_stones import (
+    BLUE,
+    CAMERA,
+    RED,
+    YELLOW,
+    camera_of,
+    look,
+    misses,
+    scene_of,
+    without_colours,
+)  # fmt: skip
+from vision.sighting import Sighting
+from vision.stones import FOLLOWING, plain_disc
+from vision.strangers import strangers
+
+BLACK, WHITE = (32, 30, 30), (232, 234, 234)
+PLACES = [(0.3, 0.2), (-0.35, 0.3), (1.4, 0.6), (0.1, 2.4)]
+
+
+def painted(*caps: Colour) -> Scene:
+    return scene_of([(x, y, cap) for (x, y), cap in zip(PLACES, caps, strict=True)])
+
+
+def seen(scene: Scene, known: list[tuple[float, float]] | None = None) -> tuple[Sighting, ...]:
+    image = np.asarray(render_still(scene, CAMERA), np.uint8)
+    places = np.array(known or []).reshape(-1, 2)
+    (found,) = strangers([(image, camera_of(CAMERA, scene), places)], STONE, FOLLOWING)
+    return found.stones
+
+
+def test_black_and_white_caps_are_found() -> None:
+    scene = painted(BLACK, WHITE, BLACK, WHITE)
+    assert not look(scene)  # by colour none is told
+    found = seen(scene)
+    assert len(found) == len(scene.stones)
+    assert misses(found, scene).max() < 0.010
+
+
+def test_of_one_coloured_and_one_white_team_both_are_found() -> None:
+    scene = painted(BLUE, WHITE, BLUE, WHITE)
+    assert misses(seen(scene), scene).max() < 0.010
+    assert len(seen(scene, PLACES[1:])) == 1  # nothing twice, and nothing of what is known
+
+
+def test_two_colours_are_both_teams() -> None:
+    scene = painted(RED, YELLOW, BLACK, YELLOW)
+    assert len(seen(scene)) == 3
+
+
+def test_people_are_no_stones_whatever_their_lightness() -> None:
+    scene = scene_of([(0.3, 0.2, RED)], people=(Person(((0.0, 0.5, 0.2, 1.0),)),))
+    assert len(seen(scene)) == 1
+
+
+def test_a_disc_without_a_cap_is_sought_by_its_rim() -> None:
+    scene = painted(RED, RED, RED, RED)
+    image = without_colours(scene)
+    none = np.empty((0, 2))
+    disc = plain_disc(STONE.radius)
+    (found,) = strangers([(image, camera_of(CAMERA, scene), none)], disc, FOLLOWING)
+    assert all(not stone.cap_samples.size for stone in found.stones)
