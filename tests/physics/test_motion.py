@@ -11,7 +11,6 @@ from scipy.optimize import brentq
 
 from data.sheet import GRAVITY, SHEET
 from physics.curl import FCV1Curl, NoCurl
-from physics.curve import curve
 from physics.ice import FCV1, Constant, Fit, IceLaw, Penner
 from physics.motion import Motion, Path
 
@@ -25,19 +24,6 @@ spins = st.floats(-6.0, 6.0)
 
 def along_y(speed: float, omega: float = 0.0) -> Motion:
     return Motion(0.0, 0.0, 0.0, 0.0, speed, omega)
-
-
-@pytest.mark.parametrize(
-    ("law", "expected"),
-    [
-        (Constant(0.0109), [0.0109, 0.0109, 0.0109, 0.0109]),
-        (FCV1(), [0.01179, 0.00815, 0.00724, 0.00692]),
-        (Penner(), [0.0146, 0.0080, 0.0057, 0.0046]),
-    ],
-)
-def test_friction_as_published(law: IceLaw, expected: list[float]) -> None:
-    friction = law.deceleration([0.3, 1.0, 2.0, 3.0]) / GRAVITY
-    assert friction == pytest.approx(expected, abs=6e-5)
 
 
 @settings(deadline=None)
@@ -187,24 +173,3 @@ def test_mirror_and_rotation(
     assert (two.x, two.y, two.theta) == pytest.approx((-one.x, one.y, -one.theta), abs=1e-9)
     turned = (c * one.x - s * one.y, s * one.x + c * one.y, one.theta)
     assert (three.x, three.y, three.theta) == pytest.approx(turned, abs=1e-9)
-
-
-@pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("curl", CURLS)
-def test_a_finer_curve_changes_nothing(law: IceLaw, curl: NoCurl | FCV1Curl) -> None:
-    coarse, fine = curve(law, curl, 4.0), curve(law, curl, 4.0, 2 * 2048)
-    for tau in np.linspace(0.1, 0.99 * coarse.tau[-1], 50):
-        one, s = coarse.cell(float(tau))
-        two, r = fine.cell(float(tau))
-        for name, a, b in zip(one._fields[:-1], one[:-1], two[:-1], strict=True):
-            at_s = a[0] + s * (a[1] + s * (a[2] + s * a[3]))
-            at_r = b[0] + r * (b[1] + r * (b[2] + r * b[3]))
-            # FCV1's loss of spin has a kink, which costs the spin the last digits.
-            bound = 1e-5 if name in ("loss", "unwound") else 1e-9
-            assert at_s == pytest.approx(at_r, abs=bound), name
-
-
-def test_fast_stones_have_their_own_curve() -> None:
-    path = Path(0.0, along_y(40.0, 1.0), FCV1(), FCV1Curl())
-    assert math.hypot(path.at(0.0).vx, path.at(0.0).vy) == pytest.approx(40.0, rel=1e-12)
-    assert path.at(1e6).vy == 0.0
