@@ -34,6 +34,9 @@ ASIDE = 2.0
 ROUGH = 0.5
 """What a house loses per pixel of residual in the small picture."""
 
+LEAST_MARKS = 30
+"""Edge points without which there is no camera; three whole circles give hundreds."""
+
 TILT_GAIN = 8.0
 """By how much the log likelihood must rise for a camera that does not hang over the tee."""
 
@@ -100,7 +103,7 @@ def fit_roughly(
     for share in (0.3, 0.2, 0.15):
         reach = max(share * thickness, 3.0)
         evidence = measure_marks(image, view.vector, rig, reach=reach, spacing=4, lines=False)
-        if len(evidence.marks) < 30:
+        if len(evidence.marks) < LEAST_MARKS:
             return None
         solution = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
         view, rig, rms = solution.views[0], solution.rig, float(solution.rms[0])
@@ -150,7 +153,7 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
     size = (image.shape[1], image.shape[0])
     view, rig = rescaled(best.view, 1 / factor), best.rig
     circles = measure_marks(image, view.vector, rig, reach=max(4 / factor, 6.0), lines=False)
-    if len(circles.marks) < 30:
+    if len(circles.marks) < LEAST_MARKS:
         return None
     fits = {
         kind: solve([circles.marks], [view], rig, size, prior=prior, sharing=SHARING)
@@ -164,7 +167,7 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
     edge = HALF_WAY
     for reach in (8.0, 6.0):
         evidence = measure_marks(image, view.vector, rig, reach=reach, edge=edge)
-        if len(evidence.marks) < 30:
+        if len(evidence.marks) < LEAST_MARKS:
             return None
         fit = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
         view, rig = fit.views[0], fit.rig

@@ -20,6 +20,15 @@ WHOLE = 0.6
 LEAST_SUPPORT = 0.3
 """The same for an inner circle that is there at all."""
 
+LEAST_OUTER, LEAST_COVERED = 0.35, 0.12
+"""The same for the 12-ft circle, of which a piece alone may be visible; and the least such piece."""
+
+IN_VIEW = 0.05
+"""Share of a circle that is visible, if it may be asked for."""
+
+DIMMEST, GREYEST = 80.0, 0.6
+"""Least of the three colours of ice, in grey levels and as a share of the greatest."""
+
 UNPAINTED = ((0.72, 1.1), (1.32, 1.7), (1.95, 6.0))
 """From where to where there is no edge of a circle, m; the third holds the rings of a house of
 which the 4-ft circle and the button were taken for all."""
@@ -39,14 +48,15 @@ house; spokes of a wheel do by up to 2."""
 def worth(evidence: Evidence) -> float:
     """How much of a house this is, up to 3.5; 0 where it is none."""
     support, covered = evidence.support, evidence.covered
-    if covered[0] < 0.12 or support[0] < 0.35:
+    if covered[0] < LEAST_COVERED or support[0] < LEAST_OUTER:
         return 0.0
-    seen = evidence.visible > 0.05
+    seen = evidence.visible > IN_VIEW
     # Edges of other things rarely stand as 3 : 2; where there are but 3 : 1, they must be whole
     # and what is around them ice.
     inner = support[1] > LEAST_SUPPORT or (support[2] > LEAST_SUPPORT and not seen[1])
     ice = evidence.palette[TWELVE, 0]
-    if not inner and (min(support[0], support[2]) < WHOLE or ice.min() < max(0.6 * ice.max(), 80)):
+    icy = ice.min() >= max(GREYEST * ice.max(), DIMMEST)
+    if not inner and not (min(support[0], support[2]) >= WHOLE and icy):
         return 0.0
     return float(covered.sum() + 0.5 * support[seen].mean())
 
