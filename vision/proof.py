@@ -21,7 +21,7 @@ LEAST_SUPPORT = 0.3
 """The same for an inner circle that is there at all."""
 
 LEAST_OUTER, LEAST_COVERED = 0.35, 0.12
-"""The same for the 12-ft circle, of which a piece alone may be visible; and the least such piece."""
+"""The same for the 12-ft circle, of which a piece alone may be seen; and the least such piece."""
 
 IN_VIEW = 0.05
 """Share of a circle that is visible, if it may be asked for."""
