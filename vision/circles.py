@@ -159,7 +159,7 @@ def fit_circles(
         base = may * (strength > strong).reshape(n, -1)
         for _ in range(3):
             w = base * _likely(target - change, scale)
-            typical = 1.4826 * _median(np.abs(target - change), w > 0)
+            typical = 1.4826 * medians(np.abs(target - change), w > 0)
             scale = np.maximum(np.minimum(scale, 3.5 * typical), least)
             solution = design.solve(w, target, prior)
             change = design.edges(solution)
@@ -206,8 +206,8 @@ def _bends(residual: Array, use: Flags) -> Array:
     return np.asarray(2 * (residual * use) @ _harmonics(residual.shape[1]) / count[:, None])
 
 
-def _median(values: Array, use: Flags) -> Array:
-    """Median of the chosen values of each row; 0 where there are none."""
+def medians(values: Array | NDArray[np.float32], use: Flags) -> Array:
+    """Median of the chosen values of each row, shape (n, m); 0 where there are none."""
     ranked = np.sort(np.where(use, values, np.inf), axis=1)
     count = use.sum(1)
     middle = ranked[np.arange(len(ranked)), np.maximum(count - 1, 0) // 2]

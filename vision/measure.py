@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from data.sheet import Stone
 from vision.appearance import Appearance, membership
-from vision.circles import fit_circles
+from vision.circles import fit_circles, medians
 from vision.patch import (
     CAP_END,
     EFFORT,
@@ -44,6 +44,11 @@ GRANITE = 0.15
 """What an edge of the granite says of the centre beside one of the cap: the granite is rounded,
 and paint that ends near it draws its outline aside, by up to 8 mm. Where the cap is covered it
 still tells the centre."""
+
+DARK = 0.5
+"""Lightness, as a share of that of the rest of a stone's granite, below which something covers it:
+its own dark side has 0.8 of it, dark clothes 0.05 to 0.5. What is lighter may be ice behind a low
+shoulder."""
 
 
 @dataclass(frozen=True)
@@ -205,7 +210,10 @@ def _stones(
     capped = summed((signal[..., in_cap] > 0) & seen_cap) > 0.4 * np.maximum(summed(seen_cap), 1)
     stone_like = (worth[..., in_ring] < 0.1) & (signal[..., in_ring] < 0.05) & seen_ring
     in_view = np.maximum(summed(seen_ring), 1)
+    light = summed(lab[..., in_ring, 0] * seen_ring) / in_view
     greyed = summed(stone_like) > 0.4 * in_view
+    level = medians(light, capped & greyed)
+    greyed &= light > DARK * level[:, None]
     cap_radius, rim_radius = np.array([disc.cap_radius, disc.radius]) * appearance.outline
     stony = capped & greyed
     at_cap, at_rim = rays.at(cap_radius), rays.at(rim_radius)
@@ -225,7 +233,6 @@ def _stones(
     )  # fmt: skip
     # All around, a stone's granite is of one lightness, and its cap is as large as any other's;
     # caps and shoulders of people are neither.
-    light = summed(lab[..., in_ring, 0] * seen_ring) / in_view
     count = np.maximum(stony.sum(1), 1)
     level = (light * stony).sum(1) / count
     uneven = np.sqrt(((light - level[:, None]) ** 2 * stony).sum(1) / count) / 40

@@ -54,6 +54,16 @@ def test_of_a_stone_half_covered_half_is_seen_and_its_place_is_known_less_well()
     np.testing.assert_allclose(half.sd[0], whole.sd[0])
 
 
+def test_dark_clothes_before_a_stone_are_not_taken_for_its_granite() -> None:
+    x, y = VIEW.project(PLACES[1:2], STONE.cap_height)[0].astype(int)
+    reach = round(0.6 * STONE.radius * float(VIEW.scale_at(PLACES[1])))
+    covered = PICTURE.copy()
+    covered[y - 60 : y + 60, x + reach : x + 90] = (10, 8, 8)
+    whole, less = measured(PLACES), measured(PLACES, covered)
+    assert less.visible[1] < whole.visible[1] - 0.1
+    assert less.evidence[1] > whole.evidence[1] - 1.0
+
+
 def test_of_a_plain_disc_the_rim_tells() -> None:
     seen = measure_discs([Look(PICTURE, VIEW, PLACES[:1])], None, plain_disc(STONE.radius))
     assert seen.ok[0]
