@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+import numpy as np
 import pandas as pd
 
 from data.errors import InputError
@@ -20,6 +21,7 @@ from physics.contacts import Contact
 from physics.finite_differences import by_finite_differences
 from physics.followed import fit_followed, followed
 from physics.local import Local, estimate_locally
+from physics.random_effects import random_effects
 from physics.shot_model import ice
 from physics.watched import loose_priors, watch
 from physics.whole_fit import GlobalFit
@@ -130,6 +132,8 @@ def estimate(
     restitution, friction, unsure = local.restitution, local.friction, local.friction_doubt
     fitted, doubt, end = _whole(local, radius, masses or {}, inertia)
     whole = fitted if doubt is None else None
+    if fitted is not None and doubt is not None and _fits(fitted):
+        restitution = _of_two(restitution, fitted["restitution"])
     if whole is not None and restitution.value is not None and whole.told("restitution"):
         restitution = whole["restitution"]
     if whole is not None and friction.value is not None and whole.told("friction"):
@@ -226,12 +230,29 @@ def _doubt(fit: GlobalFit, local: Estimate) -> str | None:
     """Say why what a fit of the whole shot gives is not to be used, None where it is."""
     if not followed(fit):
         return "whole shot: the simulator does not follow it; values beside the hits used"
-    if fit.misfit > POOR_FIT:
+    if not _fits(fit):
         return (
             "whole shot: the simulated paths differ from the tracks by more than their errors"
             f" (variance × {fit.misfit:.0f}); values beside the hits used"
         )
     return _disagreement(local, fit["restitution"])
+
+
+def _fits(fit: GlobalFit) -> bool:
+    """Whether a fit of the whole shot is as it was seen."""
+    return followed(fit) and fit.misfit <= POOR_FIT
+
+
+def _of_two(local: Estimate, whole: Estimate) -> Estimate:
+    """Return the first of two values that may disagree, with what they differ by in its error.
+
+    One of them errs by more than it says, and which is not known.
+    """
+    if local.value is None or local.stderr is None or whole.value is None or whole.stderr is None:
+        return local
+    values, errors = np.array([[local.value, whole.value], [local.stderr, whole.stderr]])
+    spread = random_effects(values, np.diag(errors**2)).spread
+    return Estimate(local.value, float(np.hypot(local.stderr, spread)))
 
 
 def _blunt(whole: Estimate, local: Estimate | Friction) -> bool:
@@ -259,5 +280,5 @@ def _disagreement(local: Estimate, whole: Estimate) -> str | None:
     return (
         f"restitution: {local.value:.3f} ± {local.stderr:.3f} beside the hits,"
         f" {whole.value:.3f} ± {whole.stderr:.3f} from the whole shot, which disagree;"
-        " the first used"
+        " the first used, its error widened by that"
     )

@@ -7,9 +7,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from data.results import Estimate
 from data.tracks import check_sightings
 from physics.contacts import find_contacts
-from physics.estimate import Estimates, estimate
+from physics.estimate import Estimates, _of_two, estimate
 from physics.local import estimate_locally
 from tests.physics.watch import RADIUS, airtable, discs, hit_motion, semireal, watch
 from tests.synthetic.physics import Ice, Impact, Start, simulate
@@ -320,3 +321,14 @@ def test_what_glides_alone_do_not_tell_is_no_doubt_where_the_whole_shot_does(
     assert "friction: ?" not in found.warnings
     monkeypatch.setattr("physics.estimate.POOR_FIT", 0.0)
     assert "friction: ?" in estimate(seen, contacts, radius=RADIUS).warnings
+
+
+def test_what_two_ways_differ_by_is_in_the_error() -> None:
+    """Both scatter about their mean as they should with a variance (d² - s1² - s2²) / 2 more."""
+    local = Estimate(0.82, 0.01)
+    found = _of_two(local, Estimate(0.88, 0.004))
+    assert found.value == 0.82
+    more = (0.06**2 - 0.01**2 - 0.004**2) / 2
+    assert found.stderr == pytest.approx(np.sqrt(0.01**2 + more), rel=1e-6)
+    assert _of_two(local, Estimate(0.825, 0.004)) == local
+    assert _of_two(local, Estimate()) == local
