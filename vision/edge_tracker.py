@@ -7,7 +7,7 @@ for several.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,10 +21,10 @@ from vision.normals import OUTSIDE, THIN, Normals, lay_out
 from vision.outline import PaintEdge
 from vision.paint import CIRCLES, FIXED, TWELVE, Marks, joined
 from vision.picture import Picture
-from vision.pose import View, project
+from vision.pose import View
 from vision.resection import ViewSolution, solve_views
 from vision.rig import R4, R8
-from vision.smear import LEAST_MOTION, USUAL, exposure
+from vision.smear import Shutter, reach_beyond, smear, weighed
 
 Array = NDArray[np.float64]
 
@@ -32,11 +32,9 @@ MOST_NORMALS = 48
 """Normals on each circle: paint is ragged, and by 32 the camera is placed .4 mm aside of what the
 whole circles tell, by these .3 mm; more gain little."""
 
-REACH, LEAST_REACH = 0.007, 6.0
-"""Half length of the normals in widths of the picture, and the least, px."""
-
-LONGER, MOST_REACH = 1.2, 0.04
-"""Half length of the normals in what a pan blurs edges by; and the most, widths of the picture."""
+TOO_SHORT = 2.0
+"""Where a picture is smeared so that normals should be this much longer, a pan has begun faster
+than the frame before could tell."""
 
 MARK_SD = 0.2
 """Least standard deviation of a mark, px."""
@@ -91,8 +89,8 @@ class EdgeTracker:
         The last one.
     support : float
         Share of the circles in the picture that it explained.
-    blur : float
-        How far a pan smears edges in the frames asked for last, px.
+    sweep : ndarray, shape (2,)
+        How far a pan smears edges along x and along y in the frames asked for last, px.
     """
 
     size: tuple[int, int]
@@ -101,8 +99,8 @@ class EdgeTracker:
     stride: int = 1
     fit: ViewSolution | None = None
     support: float = 0.0
-    blur: float = 0.0
-    _exposure: float = USUAL
+    sweep: Array = field(default_factory=lambda: np.zeros(2))
+    _shutter: Shutter = field(default_factory=Shutter)
     _last: tuple[View, Array, Normals, Array] | None = None
 
     def settle(
@@ -124,10 +122,11 @@ class EdgeTracker:
             The first of the frames, as many as went well; none where the first does not show
             enough of the circles.
         """
-        again = False
+        again, smeared = False, 0.0
         for _ in range(ROUNDS):
-            speeds = [now.aside(old) for now, old in zip(views, [last, *views], strict=False)]
-            self.blur = self._exposure * max(speeds)
+            steps = [now.sweep(old) for now, old in zip(views, [last, *views], strict=False)]
+            self.sweep = self._shutter.exposure * max(steps, key=np.linalg.norm)
+            self.sweep *= max(1.0, smeared / max(self.blur, 1e-3))
             normals, standing = self._laid(views, rig)
             if not _enough(rig, normals.visible, normals.visible):
                 return []
@@ -135,13 +134,16 @@ class EdgeTracker:
             evidence = evidence[: _leading([_enough(rig, e.visible, e.covered) for e in evidence])]
             if not evidence:
                 return []
-            fits = self._fitted([e.marks for e in evidence], views, rig)
+            marks = [weighed(e.marks, self.sweep, self.size[0]) for e in evidence]
+            evidence = [replace(e, marks=m) for e, m in zip(evidence, marks, strict=True)]
+            fits = self._fitted(marks, views, rig)
             settled = [
                 self._is_settled(*each, rig) for each in zip(views, evidence, fits, strict=False)
             ]
             count = _leading(settled)
             if count:
                 break
+            smeared = smear(evidence[0].slope)
             frames, views, again = frames[:1], [fits[0].view], True
         else:
             if not _enough(rig, evidence[0].visible, _explained(evidence[0], fits[0])):
@@ -149,12 +151,12 @@ class EdgeTracker:
             count = 1
         whole = count == len(frames) and not again
         self.stride = min(2 * count, LONGEST_STRIDE) if whole else max(count // 2, 1)
-        self.fit = fits[count - 1]
-        shown = evidence[count - 1]
+        self.fit, shown = fits[count - 1], evidence[count - 1]
         explained = _length(rig, _explained(shown, self.fit))
         self.support = explained / _length(rig, shown.visible)
         self._learn(shown.palette, count)
-        self._learn_exposure(shown.slope, normals, [last, *views][count - 1], self.fit.view, rig)
+        rim = normals.normal[:, normals.kinds.get(TWELVE, slice(0))]
+        self._shutter.learn(shown.slope, self.fit.view.sweep([last, *views][count - 1]) @ rim)
         return [
             Seen(frame.index, frame.t, fit.view, e.marks.pick(fit.inliers), True)
             for frame, e, fit in zip(frames, evidence[:count], fits, strict=False)
@@ -188,10 +190,14 @@ class EdgeTracker:
         return bool((away[known] < 0.5 * contrast[known]).all())
 
     @property
+    def blur(self) -> float:
+        """How far a pan smears edges, px."""
+        return float(np.linalg.norm(self.sweep))
+
+    @property
     def _reach(self) -> float:
-        """Half length of the normals, px: their outer quarters show what is beside the blur."""
-        least = max(REACH * self.size[0], LEAST_REACH)
-        return min(max(LONGER * self.blur, least), max(MOST_REACH * self.size[0], least))
+        """Half length of the normals, px."""
+        return reach_beyond(self.blur, self.size[0])
 
     def _laid(self, views: Sequence[View], rig: Array) -> tuple[Normals, Array]:
         """Give normals and where they stand in views, of which at least the first has them.
@@ -204,7 +210,9 @@ class EdgeTracker:
                 return normals, standing[: len(views)]
         normals, standing = self._lay(views, rig)
         # Where a pan smears a narrow band wider than it is, its edges are no longer half way.
-        standing = np.where(normals.reach < min(self.blur, self._reach), OUTSIDE, standing)
+        if normals.kinds:
+            across = np.minimum(np.abs(self.sweep @ normals.normal), normals.wanted)
+            standing = np.where(normals.reach < across, OUTSIDE, standing)
         self._last = views[0], rig, normals, standing
         return normals, standing
 
@@ -256,20 +264,8 @@ class EdgeTracker:
         most = np.clip(free, LEAST_SETTLED * self._reach, SETTLED * self._reach)
         least = max(GOOD_SUPPORT, STEADY * self.support)
         near = fit.view.aside(expected) < most
+        near &= reach_beyond(smear(evidence.slope), self.size[0]) < TOO_SHORT * self._reach
         return near and _enough(rig, evidence.visible, _explained(evidence, fit), least)
-
-    def _learn_exposure(
-        self, slope: Array, normals: Normals, before: View, now: View, rig: Array
-    ) -> None:
-        """Take in how long pictures are exposed, as the 12-ft edge shows it in a pan."""
-        if now.aside(before) < LEAST_MOTION or TWELVE not in normals.kinds:
-            return
-        rim = normals.kinds[TWELVE]
-        places = (normals.foot + normals.way * HOUSE.twelve_foot)[:, rim].T
-        two, one = (project(places, view.vector, rig, self.size) for view in (now, before))
-        told = exposure(slope, ((two - one).T * normals.normal[:, rim]).sum(0))
-        if told is not None:
-            self._exposure += 0.5 * (told - self._exposure)
 
     def _learn(self, palette: Array, frames: int) -> None:
         """Take in the colours of the edges in the last of so many frames."""

@@ -97,7 +97,7 @@ class HouseFollower:
         frame = frames[0]
         if piece is not None:
             seen = piece.follow(frames)
-            if seen and piece.lost:
+            if seen and (piece.lost or piece.leapt):
                 now = glimpse(frame.picture, seen[0].view, piece.rig, frame.t)
                 if self._is_elsewhere(piece, now):
                     seen, piece.lost = [], PATIENCE

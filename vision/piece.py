@@ -19,6 +19,7 @@ from vision.edge_tracker import HELD, LONGEST_STRIDE, EdgeTracker
 from vision.house_fit import SHARING, HouseFit
 from vision.ice_tracker import IceTracker
 from vision.joint import Seen
+from vision.leap import leapt
 from vision.paint import CENTRE_LINE, CIRCLES, EIGHT, FOUR, TEE_LINE, TWELVE, Marks
 from vision.picture import Picture
 from vision.pose import ROLL, View, camera
@@ -63,6 +64,8 @@ class Piece:
         How many of them fixed their camera themselves.
     lost : int
         Frames since the last that was followed.
+    leapt : bool
+        Whether the camera has turned farther than could be followed: it may be a cut as well.
     """
 
     size: tuple[int, int]
@@ -73,6 +76,7 @@ class Piece:
     glimpses: list[Glimpse] = field(default_factory=list)
     found: int = 0
     lost: int = 0
+    leapt: bool = False
     _refined: int = 0
     _picture: Picture | None = None
     _ice: IceTracker = field(default_factory=IceTracker)
@@ -93,6 +97,15 @@ class Piece:
             house nor its ice.
         """
         views = self._predicted(frames)
+        seen, self.leapt = self._settle(frames, views), False
+        if not seen and self._picture is not None:
+            self.leapt = True
+            view = leapt(self._picture, frames[0].picture, self.seen[-1].view, self.rig)
+            seen = [] if view is None else self._settle(frames[:1], [view])
+        return seen
+
+    def _settle(self, frames: Sequence[Frame], views: Sequence[View]) -> list[Seen]:
+        """Place frames near where they are expected, by the house or else by its ice."""
         last = self.seen[-1]
         seen = self.edges.settle(frames, views, self.rig, last.view)
         if seen:

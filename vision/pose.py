@@ -47,6 +47,11 @@ class View:
         """How far turning from another view moves the picture, px."""
         return float(np.abs(self.vector - other.vector)[:3].max() * self.focal)
 
+    def sweep(self, other: View) -> Array:
+        """How far turning from another view moves the picture's middle along x and y, px."""
+        turn = turning(self.vector) @ (self.vector - other.vector)[:3]
+        return self.focal * np.array([turn[1], -turn[0]])
+
 
 def rotation_matrix(vector: Array) -> Array:
     """Ice axes to camera axes (x right, y down, z forward), shape (3, 3), from a view's vector.

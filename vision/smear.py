@@ -1,9 +1,14 @@
-"""How long pictures are exposed, told by how far a pan smears the edges in them."""
+"""How far a pan smears edges, how long pictures are exposed by that, and how to measure in them."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
+
 import numpy as np
 from numpy.typing import NDArray
+
+from vision.normals import THIN
+from vision.paint import Marks
 
 Array = NDArray[np.float64]
 
@@ -18,6 +23,42 @@ SHARP = 2.5
 
 LEAST_MOTION, LEAST_EDGES = 12.0, 6
 """How far an edge must move along its normal from frame to frame to tell, px; and how many."""
+
+REACH, LEAST_REACH = 0.007, 6.0
+"""Half length of the normals in widths of the picture, and the least, px."""
+
+LONGER, MOST_REACH = 1.2, 0.04
+"""Half length of the normals in what a pan blurs edges by; and the most, widths of the picture."""
+
+LEAST_BLUR = 0.02
+"""Blur from which on the scatter of edges no longer tells how far they are off, widths of the
+picture."""
+
+SMEARED, THIN_SMEARED = 0.05, 0.2
+"""How far edges and thin lines are off, in what they are smeared by, as clips with truth show."""
+
+MOST_SMEARED = 0.9
+"""Share of the edges that are smeared by less than what is said of a picture: edges along a pan
+stay sharp, some are print."""
+
+
+@dataclass
+class Shutter:
+    """What is known of how long pictures are exposed.
+
+    Attributes
+    ----------
+    exposure : float
+        Share of the time from one picture to the next.
+    """
+
+    exposure: float = USUAL
+
+    def learn(self, slope: Array, motion: Array) -> None:
+        """Take in what one more picture tells, if it does; see `exposure`."""
+        told = exposure(slope, motion)
+        if told is not None:
+            self.exposure += 0.5 * (told - self.exposure)
 
 
 def exposure(slope: Array, motion: Array) -> float | None:
@@ -39,5 +80,37 @@ def exposure(slope: Array, motion: Array) -> float | None:
     told = np.isfinite(slope) & (slope > 0) & (np.abs(motion) > LEAST_MOTION)
     if told.sum() < LEAST_EDGES:
         return None
-    width = np.sqrt(np.maximum(slope[told] ** -2.0 - SHARP**2, 0.0))
-    return float(np.clip(np.median(width / np.abs(motion[told])), LEAST, MOST))
+    return float(np.clip(np.median(_width(slope[told]) / np.abs(motion[told])), LEAST, MOST))
+
+
+def smear(slope: Array) -> float:
+    """Tell how far the edges of a picture are smeared, px, by their slopes as for `exposure`."""
+    told = slope[np.isfinite(slope) & (slope > 0)]
+    return float(np.quantile(_width(told), MOST_SMEARED)) if len(told) >= LEAST_EDGES else 0.0
+
+
+def reach_beyond(blur: float, width: int) -> float:
+    """Half length of normals of which the outer quarters show what is beside a blur, px.
+
+    Parameters
+    ----------
+    blur : float
+        px.
+    width : int
+        Of the picture, px.
+    """
+    least = max(REACH * width, LEAST_REACH)
+    return min(max(LONGER * blur, least), max(MOST_REACH * width, least))
+
+
+def weighed(marks: Marks, sweep: Array, width: int) -> Marks:
+    """Let marks count the less, the farther a pan smears their edges along x and y, px."""
+    if np.linalg.norm(sweep) < LEAST_BLUR * width:
+        return marks
+    share = np.where(np.isin(marks.line, THIN), THIN_SMEARED, SMEARED)
+    return replace(marks, sd=np.hypot(marks.sd, share * np.abs(marks.normal @ sweep)))
+
+
+def _width(slope: Array) -> Array:
+    """Width of edges beyond that of sharp ones, px."""
+    return np.asarray(np.sqrt(np.maximum(slope**-2.0 - SHARP**2, 0.0)))

@@ -85,7 +85,7 @@ def test_the_hog_line_counts_once_it_is_known_where_no_pan_smears_it() -> None:
     known, unknown, smeared = (tracker(house) for _ in range(3))
     unknown.palette = house.evidence.palette.copy()
     unknown.palette[HOG_LINE] = np.nan
-    smeared.blur = 12.0
+    smeared.sweep = np.array([0.0, 12.0])
     shown = []
     for edges in (known, unknown, smeared):
         (lines,) = edges.lines([image], [house.view], house.rig)

@@ -104,3 +104,12 @@ def test_places_are_in_the_picture_up_to_its_edge() -> None:
     pixels, inside = pictured(ice, view.vector, rig, SIZE)
     np.testing.assert_array_equal(inside, [[True, True], [False, False]])
     np.testing.assert_allclose(pixels[0, 0], (640.0, 360.0), atol=1.0)
+
+
+def test_a_view_tells_how_far_turning_moves_the_middle_of_the_picture() -> None:
+    rig = start_rig(OVERHEAD)
+    one = aim((600.0, 400.0), 120.0, rig[POSITION], (1280, 720))
+    two = View(one.vector + np.array([0.02, -0.05, 0.0, 0.0]))
+    middle = camera(one, rig, (1280, 720)).ice(np.array([[639.5, 359.5]]))
+    moved = project(middle, two.vector, rig, (1280, 720))[0] - [639.5, 359.5]
+    np.testing.assert_allclose(two.sweep(one), moved, rtol=0.05)

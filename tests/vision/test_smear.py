@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from vision.smear import LEAST, MOST, SHARP, exposure
+from vision.smear import LEAST, MOST, SHARP, Shutter, exposure, smear
 
 MOTION = np.linspace(-60, 60, 49)
 
@@ -30,3 +30,20 @@ def test_it_lies_between_none_and_the_whole_time() -> None:
 def test_a_camera_at_rest_does_not_tell_it() -> None:
     assert exposure(slopes(0.5), 0.1 * MOTION) is None
     assert exposure(np.full(len(MOTION), np.nan), MOTION) is None
+
+
+def test_what_is_known_of_the_exposure_follows_the_pictures() -> None:
+    shutter = Shutter()
+    for _ in range(8):
+        shutter.learn(slopes(0.2), MOTION)
+    assert shutter.exposure == pytest.approx(0.2, abs=0.01)
+    shutter.learn(slopes(0.9), 0.1 * MOTION)  # a camera at rest
+    assert shutter.exposure == pytest.approx(0.2, abs=0.01)
+
+
+def test_the_smear_is_that_of_edges_across_the_motion() -> None:
+    around = np.linspace(0, 2 * np.pi, 48, endpoint=False)
+    slope = 1 / np.hypot(SHARP, 30 * np.cos(around))
+    slope[::6] = np.nan
+    assert smear(slope) == pytest.approx(30, rel=0.05)
+    assert smear(np.full(48, np.nan)) == 0.0
