@@ -10,9 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vision.normals import SAMPLES, THIN, Normals, Profiles
+from vision.paint import CIRCLES
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
+
+LIGHT = 0.75, 1.3
+"""How much darker or brighter than usual an edge may be: pictures fall off to their corners, and
+lamps shine on the ice."""
 
 MIN_CONTRAST = 10.0
 """Least difference of the two sides of an edge, grey levels."""
@@ -63,7 +68,11 @@ def steps(profile: Profiles, normals: Normals, known: Array) -> tuple[Profiles, 
     square = (difference * difference).sum(-2)
     # Each side looks like the line's own two colours; light may vary, hue may not.
     tolerance = np.maximum(0.25 * square, 12.0**2)
-    off = ends - sides
+    # Lit alike, both are brighter or darker than usual by one factor; beside straight lines there
+    # are edges of other things that differ by no more.
+    light = (ends * sides).sum((-3, -2)) / np.maximum((sides * sides).sum((-3, -2)), 1.0)
+    light = np.where(line < CIRCLES, np.clip(light, *LIGHT), 1.0)
+    off = ends - light[..., None, None, :] * sides
     good = ((off * off).sum(-3) < tolerance[..., None, :]).all(-2)
     axis = SHARPNESS @ difference
     axis /= np.maximum((axis * difference).sum(-2, keepdims=True), 1.0)

@@ -50,6 +50,21 @@ def test_what_has_other_colours_is_no_edge_of_the_circle() -> None:
     assert good.sum() == len(place) - len(place[::4])
 
 
+def test_light_may_fall_off_where_paint_is_pale_but_no_shadow_is_paint() -> None:
+    normals = circles()
+    place = np.full(len(normals.line), 12.3)
+    pale = ICE - [5.0, 25.0, 45.0]
+    known = UNKNOWN.copy()
+    known[:] = [ICE, pale]
+    light = np.linspace(0.8, 1.1, len(place))
+    assert steps((light * profiles(place, paint=pale)).astype(np.float32), normals, known)[1].all()
+    shadow = profiles(place, ice=ICE, paint=0.8 * ICE)
+    assert not steps(shadow, normals, known)[1].any()
+    assert not steps((0.5 * profiles(place, paint=pale)).astype(np.float32), normals, known)[
+        1
+    ].any()
+
+
 def test_a_faint_step_is_no_edge() -> None:
     normals = circles()
     faint = profiles(np.full(len(normals.line), 12.0), paint=ICE - MIN_CONTRAST / 2)
