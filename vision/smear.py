@@ -85,8 +85,10 @@ def exposure(slope: Array, motion: Array) -> float | None:
 
 def smear(slope: Array) -> float:
     """Tell how far the edges of a picture are smeared, px, by their slopes as for `exposure`."""
-    told = slope[np.isfinite(slope) & (slope > 0)]
-    return float(np.quantile(_width(told), MOST_SMEARED)) if len(told) >= LEAST_EDGES else 0.0
+    told = np.sort(slope[slope > 0])
+    if len(told) < LEAST_EDGES:
+        return 0.0
+    return float(_width(told[round((1 - MOST_SMEARED) * (len(told) - 1))]))
 
 
 def reach_beyond(blur: float, width: int) -> float:
@@ -111,6 +113,6 @@ def weighed(marks: Marks, sweep: Array, width: int) -> Marks:
     return replace(marks, sd=np.hypot(marks.sd, share * np.abs(marks.normal @ sweep)))
 
 
-def _width(slope: Array) -> Array:
+def _width(slope: Array | float) -> Array:
     """Width of edges beyond that of sharp ones, px."""
     return np.asarray(np.sqrt(np.maximum(slope**-2.0 - SHARP**2, 0.0)))
