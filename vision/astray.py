@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from vision.linear import Linear, Observations
 
 Array = NDArray[np.float64]
+Index = NDArray[np.int64]
 
 COPIED, REPEATED = 0.2, 0.6
 """How far pictures are aside, in residuals of their edges: those that move by much, and how much
@@ -31,28 +32,29 @@ NEAR = 2
 """Steps before and after a picture over which motion is averaged: shaking cameras turn back."""
 
 
-def motion(observed: Observations, at: Linear, views: Array) -> Array:
-    """Tell how far the edges of each frame move to the next frames, px.
+def motion(observed: Observations, at: Linear, views: Array, index: Index) -> Array:
+    """Tell how far the edges of each frame move from one frame of the clip to the next, px.
 
     Parameters
     ----------
     observed : Observations
-        Of frames that follow each other.
     at : Linear
     views : ndarray, shape (frames, 4)
+    index : ndarray of int, shape (frames,)
+        Of the frames in the clip, ascending: some between them may be missing.
 
     Returns
     -------
     ndarray, shape (frames,)
     """
     squares = np.zeros(max(len(views) - 1, 1))
-    for k, step in enumerate(np.diff(views, axis=0)):
+    for k, step in enumerate(np.diff(views, axis=0) / np.diff(index)[:, None]):
         part = observed.parts[k]
         along = observed.sd[part] * (step @ at.by_view[:, part])
         # Along normals there is half of what goes in any direction.
         squares[k] = 2 * along @ along / max(len(along), 1)
     near = [squares[max(k - NEAR, 0) : k + NEAR] for k in range(len(views))]
-    return np.sqrt([steps.mean() if len(steps) else 0.0 for steps in near])
+    return np.sqrt([steps.mean() for steps in near])
 
 
 def astray(moved: Array, rms: Array) -> Array:

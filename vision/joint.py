@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,7 +37,7 @@ JOINT_FRAMES = 12
 """Frames to which the shared part is fitted."""
 
 TOGETHER = 16
-"""Frames whose views are fitted in one go."""
+"""Most frames whose views are fitted in one go; one left alone would seem to stand still."""
 
 VIEW_SD = (np.inf, np.inf, 0.05, np.inf)
 """How far a view may lie from the provisional one: the roll is free where no line is seen."""
@@ -147,8 +148,8 @@ def _fit_frames(
     done: dict[int, Camera] = {}
     ready, waiting = [s for s in seen if s.key is None], [s for s in seen if s.key is not None]
     while ready:
-        for k in range(0, len(ready), TOGETHER):
-            cameras = fit_frames(ready[k : k + TOGETHER], shared, size, edge_sd)
+        for part in np.array_split(np.arange(len(ready)), ceil(len(ready) / TOGETHER)):
+            cameras = fit_frames([ready[k] for k in part], shared, size, edge_sd)
             done.update({camera.frame: camera for camera in cameras})
         ready = [
             _carried(s, s.key, done[s.key.frame])
@@ -195,7 +196,8 @@ def fit_frames(
     noisier = (NOISE_TRUST + square) / (NOISE_TRUST + free)
     by_view = at.by_view * weight
     by_shared, by_offset = by_rig(observed, at, views), by_measure(observed, at)
-    aside = astray(motion(observed, at, views), np.array([fit.rms for fit in fits]))
+    moved = motion(observed, at, views, np.array([s.index for s in seen]))
+    aside = astray(moved, np.array([fit.rms for fit in fits]))
     hold = 1 / np.square(VIEW_SD)
     identity, on_circle = piece_of(marks), marks.line < CIRCLES
     found = []

@@ -12,17 +12,19 @@ RIG = true_rig()
 SQUARE_ON = np.array([0.0, 0.0, 0.0, np.log(1200.0)])
 
 
-def moved(views: np.ndarray) -> np.ndarray:
+def moved(views: np.ndarray, every: int = 1) -> np.ndarray:
     rng = np.random.default_rng(0)
     seen = [marks(rng, view, RIG, 0.0) for view in views]
     frames = [m.pick(m.line < 3) for m in seen]  # normals all around
     observed = Observations(joined(frames), SIZE, counts=[len(m) for m in frames])
-    return motion(observed, linearised(observed, observed.points(RIG), views, RIG), views)
+    at = linearised(observed, observed.points(RIG), views, RIG)
+    return motion(observed, at, views, every * np.arange(len(views)))
 
 
 def test_a_turn_moves_the_picture_by_the_focal_length_times_its_angle() -> None:
     steps = np.outer(np.arange(6), [2e-3, 0.0, 0.0, 0.0])
     np.testing.assert_allclose(moved(SQUARE_ON + steps), 2.4, rtol=0.15)
+    np.testing.assert_allclose(moved(SQUARE_ON + steps, every=3), 0.8, rtol=0.15)
 
 
 def test_motion_is_that_of_the_time_about_a_frame_and_none_of_one_alone() -> None:

@@ -11,7 +11,7 @@ from tests.synthetic.camera import View as TrueView
 from vision.camera import Camera
 from vision.clip import open_clip
 from vision.follow_house import follow_house
-from vision.joint import Seen, fit_clip
+from vision.joint import TOGETHER, Seen, fit_clip
 from vision.keyframe import Keyframe
 from vision.paint import FIXED, TEE_LINE, TWELVE, Marks
 from vision.pose import View
@@ -52,10 +52,12 @@ def seen_marks(true: TrueView, rng: np.random.Generator, kinds: int, noise: floa
     return Marks(line, along, pixel, normal, np.full(len(line), 0.45))
 
 
-def clip(rng: np.random.Generator, kinds: int = 5, noise: float = 0.2) -> list[Seen]:
+def clip(
+    rng: np.random.Generator, kinds: int = 5, noise: float = 0.2, count: int = 8, zoom: float = 30.0
+) -> list[Seen]:
     found = []
-    for k in range(8):
-        true = true_view(0.1, 950.0 + 30 * k)
+    for k in range(count):
+        true = true_view(0.1, 950.0 + zoom * k)
         start = View(np.array([-0.1, 0.0, 0.0, np.log(true.focal)]))
         found.append(Seen(k, k / 25, start, seen_marks(true, rng, kinds, noise), True))
     return found
@@ -87,6 +89,13 @@ def test_less_seen_is_known_less_and_no_error() -> None:
     assert sds[0] < sds[1] < sds[2]
     assert any("y is up" in w for w in circle.warnings)
     assert whole.quality > one.quality > least.quality > 0
+
+
+def test_a_shaking_picture_is_aside_wherever_in_the_clip_it_is() -> None:
+    seen = clip(np.random.default_rng(6), count=TOGETHER + 1, zoom=0.5)
+    cameras = fit_clip(seen, start_rig(OVERHEAD), OVERHEAD, SIZE).cameras
+    aside = [np.sqrt(c.error.own[0, 0]) * c.f_px for c in cameras if c.error is not None]
+    np.testing.assert_allclose(aside, 0.15, rtol=0.35)
 
 
 def test_quality_falls_when_the_fit_is_bad() -> None:
