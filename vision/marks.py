@@ -148,7 +148,7 @@ def measure_along(
     rim = places.kinds.get(TWELVE, slice(0))
     value[..., rim] -= np.float32(edge.level)
     sample, rise, crossed = crossings(value)
-    step = 2 * float(normals.reach[0]) / (SAMPLES - 1) if wide else 1.0
+    step = 2 * normals.wanted / (SAMPLES - 1)
     slope = rise[..., rim] / step
     sample[..., rim] -= edge.beyond(slope) / step
     good &= crossed

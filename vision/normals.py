@@ -229,7 +229,7 @@ def lay_out(
     size : tuple of int
         Width and height of the picture, px.
     reach : float
-        Half length of the normals, px; across thin lines it is longer where these need it.
+        Half length of the normals, px; longer across thin lines, shorter across narrow bands.
     spacing : float
         Distance of neighbouring places on a circle, px.
     most : int
@@ -265,7 +265,7 @@ def lay_out(
     reaches[thin] = np.maximum(reach, LINE_REACH * scale[thin])
     reaches[hog] = np.minimum(reach, BAND * scale[hog])
     normal = np.stack([down[at], -across[at]]) / length[at]
-    reaches = np.minimum(np.repeat(reaches, counts), _beside(place, measure)[at])
+    reaches = np.fmin(np.repeat(reaches, counts), _beside(place, measure)[at])
     samples = _SHARES[:, None] * (normal * reaches).astype(np.float32)[:, None]
     visible = shown[:CIRCLES] / _COUNTS[:CIRCLES]
     return Normals(
@@ -275,7 +275,7 @@ def lay_out(
 
 
 def _beside(place: Array, measure: Array) -> Array:
-    """Half widths that may be looked at across the sheet's sides, px; no bound elsewhere."""
+    """Half widths to look at across the sheet's sides, px; inf elsewhere, NaN by one not seen."""
     bound = np.full(len(place), np.inf)
     left, right = (_LINE[: len(place)] == kind for kind in (LEFT, RIGHT))
     across = np.hypot(*(place[right] - place[left]).T)

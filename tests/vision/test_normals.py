@@ -8,7 +8,7 @@ from tests.vision.cameras import ice_points
 from vision.normals import BLOCK, OUTSIDE, THIN, lay_out
 from vision.paint import CIRCLES, LEFT, RIGHT, TEE_LINE, TWELVE
 from vision.pose import aim, project
-from vision.rig import OVERHEAD, start_rig
+from vision.rig import ANYWHERE, OVERHEAD, start_rig
 from vision.rig import POSITION as PLACE
 
 SIZE = (1280, 720)
@@ -74,6 +74,14 @@ def test_far_sides_are_looked_at_no_farther_than_they_are_wide() -> None:
         assert wide.min() < 0.7 * REACH
         np.testing.assert_allclose(normals.reach[side], np.minimum(wide, REACH), rtol=0.08)
     assert (normals.reach[normals.kinds[TWELVE]] == REACH).all()
+
+
+def test_a_side_is_looked_at_though_the_other_is_behind_the_camera() -> None:
+    beside = start_rig(ANYWHERE, (2.0, 0.0, 1.0))
+    camera = aim((1000.0, 500.0), 100.0, beside[PLACE], SIZE).vector
+    assert np.isnan(project(np.array([[2.3, 0.0]]), camera, beside, SIZE)).all()
+    normals = lay_out(camera, beside, SIZE, reach=REACH)
+    assert np.isfinite(normals.samples[..., normals.kinds[LEFT]]).all()
 
 
 def test_what_is_seen_of_each_circle_is_told() -> None:
