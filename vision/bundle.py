@@ -177,8 +177,8 @@ class _Problem:
         value += 2 * float(loss(state.offset / paint[self.family], WIDTH).sum())
         value += float((state.travel**2).sum()) / TRAVEL_SD**2
         value += float((self.hold * (state.views - self.start) ** 2).sum())
-        r = at.residual / noise[self.kind] / WIDTH
-        return (value + float(WIDTH**2 * np.log1p(r * r).sum())) / 2
+        value += 2 * float(loss(at.residual / noise[self.kind], WIDTH).sum())
+        return value / 2
 
     def normal(self, state: _State, at: Linear, paint: Array, noise: Array) -> tuple[Array, Array]:
         """Assemble the normal equations: matrix and right-hand side."""
