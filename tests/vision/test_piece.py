@@ -6,7 +6,8 @@ from functools import partial
 import numpy as np
 import pytest
 
-from tests.synthetic import PAINTS, render_still, sample_scene, tilted_camera
+from tests.synthetic import PAINTS, Key, render_still, sample_scene, tilted_camera
+from tests.synthetic.camera import CameraPath
 from tests.vision.places import RINGS
 from tests.vision.test_edge_tracker import filmed, tracker
 from vision import edge_tracker
@@ -55,6 +56,20 @@ def test_frames_are_followed_one_from_the_other() -> None:
     piece = followed(house, frames)
     assert [seen.index for seen in piece.seen] == [frame.index for frame in frames]
     assert piece.found == len(frames) and all(seen.found for seen in piece.seen)
+
+
+def test_a_camera_that_leaps_is_followed() -> None:
+    paths = [CameraPath((1280, 720), (0.0, 0.0, 9.0), (Key(0.0, x, 0.3, 120),)) for x in (0, 1.5)]
+    frames = [
+        Frame(i, i / 25, np.asarray(render_still(sample_scene(), path, 0.0), np.uint8))
+        for i, path in enumerate(paths)
+    ]
+    house = find_house(frames[0].image)
+    assert house is not None
+    piece = followed(house, frames)
+    assert piece.leapt and piece.found == 2
+    pixels = paths[1].at(0.0).project(np.c_[RINGS, np.zeros(len(RINGS))])
+    assert np.linalg.norm(piece.camera(piece.seen[1]).ice(pixels) - RINGS, axis=1).max() < 0.02
 
 
 def test_one_camera_explains_its_house_and_not_that_of_another() -> None:

@@ -65,4 +65,5 @@ def test_a_disc_without_a_cap_is_sought_by_its_rim() -> None:
     none = np.empty((0, 2))
     disc = plain_disc(STONE.radius)
     (found,) = strangers([(image, camera_of(CAMERA, scene), none)], disc, FOLLOWING)
+    assert len(found.stones) == len(scene.stones)
     assert all(not stone.cap_samples.size for stone in found.stones)
