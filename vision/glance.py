@@ -51,10 +51,10 @@ def _with_strangers(known: Findings, other: Findings, look: Appearance, disc: St
         least = NEAREST * disc.radius
         return all(hypot(place.x - s.x, place.y - s.y) > least for s in stones)
 
-    strangers = [
+    more = [
         stone
         for stone in other.stones
         if look.nearest(stone.colour)[1] > UNLIKE and apart(stone, known.stones)
     ]
-    refused = tuple(place for place in known.refused if apart(place, strangers))
-    return Findings((*known.stones, *strangers), refused)
+    refused = tuple(place for place in known.refused if apart(place, more))
+    return Findings((*known.stones, *more), refused)
