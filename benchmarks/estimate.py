@@ -3,9 +3,9 @@
 Run from the repository root: ``python -m benchmarks.estimate [--draws 60] [--local 200]
 [--first 0]``. Shots are drawn at random over noise (3 mm, 1 cm), frames a second (25, 30, 60),
 closing speeds (0.3 to 3 m/s), time in view on either side of a hit (0.5 to 3 s), one to three
-hits, restitution, friction between the stones and ice: of constant friction and no curl, or as
-FCV1 has it. They are moved by the small-step program
-in tests/synthetic, which shares no code with the library.
+hits, restitution, friction between the stones, and ice, every other time as FCV1 has it, else of
+constant friction without curl. They are moved by the small-step program in tests/synthetic, which
+shares no code with the library.
 """
 
 from __future__ import annotations

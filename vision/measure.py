@@ -39,7 +39,6 @@ Flags = NDArray[np.bool_]
 CLEARLY = 0.3
 """Worth from which a sample counts as one of the cap; of the granite, less than its negative."""
 
-
 GRANITE = 0.15
 """What an edge of the granite says of the centre beside one of the cap: the granite is rounded,
 and paint that ends near it draws its outline aside, by up to 8 mm. Where the cap is covered it
@@ -212,8 +211,7 @@ def _stones(
     in_view = np.maximum(summed(seen_ring), 1)
     light = summed(lab[..., in_ring, 0] * seen_ring) / in_view
     greyed = summed(stone_like) > 0.4 * in_view
-    level = medians(light, capped & greyed)
-    greyed &= light > DARK * level[:, None]
+    greyed &= light > DARK * medians(light, capped & greyed)[:, None]
     cap_radius, rim_radius = np.array([disc.cap_radius, disc.radius]) * appearance.outline
     stony = capped & greyed
     at_cap, at_rim = rays.at(cap_radius), rays.at(rim_radius)
@@ -261,12 +259,7 @@ def _stones(
 
 
 def _plain(
-    rays: Rays,
-    handle: Bytes,
-    places: Array,
-    scale: Array,
-    disc: Stone,
-    effort: Effort,
+    rays: Rays, handle: Bytes, places: Array, scale: Array, disc: Stone, effort: Effort
 ) -> Measures:
     n, pixel = len(places), 1 / scale
     # Colours mix in a blurred edge as they are coded: in L*a*b* its middle would lie elsewhere, by

@@ -89,11 +89,7 @@ def _shared_errors(camera: Camera, places: Array, pixel: Array, disc: Stone) -> 
     """Give the standard errors that no filter averages out, (n, 2), m: by camera and slant."""
     rms = camera.rms_px if np.isfinite(camera.rms_px) else USUAL_RMS_PX
     aslant = ASLANT * slants(camera, places) if disc.cap_height else 0 * places
-    if camera.error is None:
-        astray, stated = np.full(len(places), GIVEN_ASTRAY * rms), 0 * places
-    else:
-        astray = ASTRAY * rms * np.hypot(*places.T)
-        cov = camera.shared_place_cov(places, disc.cap_height)
-        stated = np.sqrt(np.diagonal(cov, axis1=1, axis2=2))
-    off = pixel[:, None] * np.hypot(aslant, astray[:, None])
-    return np.asarray(np.hypot(off, stated))
+    astray = GIVEN_ASTRAY if camera.error is None else ASTRAY * np.hypot(*places.T)[:, None]
+    off = pixel[:, None] * np.hypot(aslant, astray * rms)
+    stated = np.diagonal(camera.shared_place_cov(places, disc.cap_height), axis1=1, axis2=2)
+    return np.asarray(np.sqrt(off**2 + stated))
