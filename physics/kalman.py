@@ -156,14 +156,14 @@ def _track(
         at = np.flatnonzero(part == k)
         if 0 < k < len(hits) and np.isfinite(z[at, 0]).sum() < 2:
             _bridge(hits, part, t, mean, spread, at)
-    _widen(hits, part, t, mean, spread)
-    spread[:, :2] = np.hypot(spread[:, :2], trace.sd_place[row])
-    size = np.hypot(mean[:, 2], mean[:, 3])
-    spread[:, 2:4] = np.hypot(spread[:, 2:4], UNSEEN_SCALE * trace.sd_scale[row] * size[:, None])
     untold = spread[:, 5] > UNTOLD
     if not np.isfinite(trace.theta).any():
         untold[:] = True
     mean[untold, 4:], spread[untold, 4:] = np.nan, np.nan
+    _widen(hits, part, t, mean, spread)
+    spread[:, :2] = np.hypot(spread[:, :2], trace.sd_place[row])
+    size = np.hypot(mean[:, 2], mean[:, 3])
+    spread[:, 2:4] = np.hypot(spread[:, 2:4], UNSEEN_SCALE * trace.sd_scale[row] * size[:, None])
     if len(trace.t) == 1:
         # One look tells a place and an angle, but nothing of motion.
         mean[:, [2, 3, 5]], spread[:, [2, 3, 5]] = np.nan, np.nan

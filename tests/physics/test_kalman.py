@@ -95,6 +95,18 @@ def test_a_row_that_may_lie_on_the_other_side_of_a_hit_says_so() -> None:
     assert unsure["sd_vy"][before].iloc[-2] == pytest.approx(sure["sd_vy"][before].iloc[-2])
 
 
+def test_an_angle_seen_beside_a_hit_is_kept_whatever_becomes_of_the_spin() -> None:
+    t = np.arange(60) / 25
+    turned = 9.0 * np.minimum(t - 1.0, 0.0) - 9.0 * np.maximum(t - 1.0, 0.0)
+    seen = pd.DataFrame({"stone": "A", "t": t, "x": 0.0, "y": np.minimum(t - 1.0, 0.0)})
+    seen = check_sightings(seen.assign(theta=turned, sd_x=0.002, sd_y=0.002, sd_theta=0.01))
+    tracks = smooth(seen, [Contact(1.0, 0.005, ("A", "B"), (0.0, 1.0))], radius=RADIUS)
+    assert np.abs(tracks["theta"] - turned).max() < 0.05
+    beside = tracks["omega"][t == 1.0].item(), tracks["sd_omega"][t == 1.0].item()
+    assert beside[0] == pytest.approx(-9.0, abs=0.5)
+    assert beside[1] == pytest.approx(9.0, rel=0.05)  # half of what the hit changed
+
+
 def test_a_stone_at_rest_stays_at_rest() -> None:
     motion = hit_motion()
     seen = watch(motion, np.random.default_rng(34))
