@@ -237,7 +237,7 @@ class Results:
     """All that a run found out.
 
     ``masses`` has those given, in any unit, of all stones or none. ``shared_error`` is the standard
-    deviation (m) of what places near each other share, None where nothing is known of it.
+    deviation (m, per axis) of what places near each other share, None where nothing is known of it.
     ``teams`` has each stone's as in ``tracks.csv``, without those of which nothing is known.
     """
 

@@ -165,7 +165,7 @@ def _nonsense(numbers: Mapping[str, Array]) -> list[str]:
     frames = numbers["frame"][~np.isnan(numbers["frame"])]
     if not infinite and ((frames % 1 != 0) | (np.abs(frames) > _LAST_FRAME)).any():
         faults.append("column frame holds numbers that are no frames")
-    if any((numbers[name] < 0).any() for name in ("sd_x", "sd_y", "sd_theta")):
+    if any((numbers[name] < 0).any() for name in _NUMBERS if name.startswith("sd_")):
         faults.append("a standard deviation is negative")
     return faults
 

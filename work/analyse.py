@@ -137,11 +137,11 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
 
 
 def _shared_error(sightings: pd.DataFrame) -> float | None:
-    """Tell what places near each other share of their errors, m; None where it is not known."""
-    either = sightings.reindex(columns=["sd_place_x", "sd_place_y"])
-    if either.isna().all(axis=None):
-        return None
-    return float((0.5 * (either**2).sum(axis=1)).median() ** 0.5)
+    """Tell what places share of their errors, m per axis; None where it is not known."""
+    from physics.traces import SHARED
+
+    variance = (sightings.reindex(columns=list(SHARED)) ** 2).mean(axis=1)
+    return None if variance.isna().all() else float(variance.median() ** 0.5)
 
 
 def _pace(friction: Estimate) -> tuple[str, ...]:

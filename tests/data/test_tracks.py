@@ -73,6 +73,7 @@ def test_numbers_as_text_are_numbers() -> None:
         ({"frame": 0.5}, "no frames"),
         ({"frame": 1e300}, "no frames"),
         ({"sd_y": -0.1}, "a standard deviation is negative"),
+        ({"sd_place_x": -0.1}, "a standard deviation is negative"),
     ],
 )
 def test_faults_are_named(change: dict[str, object], reason: str) -> None:
