@@ -160,8 +160,8 @@ def _together(shot: Shot, doubt: Doubt, rng: np.random.Generator) -> Floats:
     """Draw what the places share: displacements of all stones, shape (n, 2), m."""
     xy = np.array([(stone.x, stone.y) for stone in shot.stones])
     size = np.array([doubt.shared.get(stone.name, np.zeros(2)) for stone in shot.stones])
-    draws = rng.multivariate_normal(np.zeros(len(xy)), alike(xy), 2, method="eigh").T
-    return np.asarray(size * draws)
+    shared = rng.multivariate_normal(np.zeros(len(xy)), alike(xy), 2, method="eigh").T
+    return np.asarray(size * shared)
 
 
 def _moved(
