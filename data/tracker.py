@@ -36,6 +36,9 @@ FARTHEST = 100.0
 SMALLEST = 0.001
 """m; what moves less than this in the whole table does not move."""
 
+SLOWEST_RATE = 1.0
+"""1/s; a glide of some seconds is not told by fewer rows."""
+
 
 @dataclass(frozen=True)
 class Imported:
@@ -137,7 +140,7 @@ def read_table(
     table = check_sightings(table, source)
     said = all(file.length_unit is not None for file in files)
     advice = UNIT_SAID if said else UNIT_NOT_SAID
-    warnings += _check_scale(table, source, advice)
+    warnings += _check_scale(table, source, advice) + _check_rate(rate, source)
     for stone, path in (angles or {}).items():
         track = read_angles(path, angle_unit, fps)
         table, notes = attach(table, stone, track, str(path))
@@ -254,3 +257,10 @@ def _check_scale(table: pd.DataFrame, source: str, advice: str) -> list[str]:
             " length unit"
         ]
     return []
+
+
+def _check_rate(rate: float | None, source: str) -> list[str]:
+    """Warn of rows so far apart in time that no motion shows."""
+    if rate is None or rate >= SLOWEST_RATE:
+        return []
+    return [f"{source}: rows are {1 / rate:.3g} s apart; for milliseconds name the column t (ms)"]

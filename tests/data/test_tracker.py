@@ -295,6 +295,15 @@ def test_what_does_not_move_is_warned_about(tmp_path: Path) -> None:
     assert "within 0.2 mm" in found.warnings[0]
 
 
+def test_times_that_may_be_milliseconds_are_warned_about(tmp_path: Path) -> None:
+    text = "stone,t,x,y\n" + "".join(f"A,{40 * k + 0.5},0.0,{0.05 * k}\n" for k in range(20))
+    (warning,) = read(tmp_path, text).warnings
+    assert "rows are 40 s apart" in warning
+    right = read(tmp_path, text.replace(",t,", ",t (ms),"))
+    assert right.fps == pytest.approx(25.0)
+    assert not right.warnings
+
+
 def test_one_picture_has_places_and_no_rate(tmp_path: Path) -> None:
     found = read(tmp_path, "stone,t,x,y\nA,0,1,1\nB,0,0,1\nC,0,0,2\n")
     assert found.fps is None
