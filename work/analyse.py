@@ -145,7 +145,10 @@ def _shared_error(sightings: pd.DataFrame) -> float | None:
 
 
 def _pace(friction: Estimate) -> tuple[str, ...]:
-    """Say so where stones slow as on no ice: a clip that runs k times too slowly shows μ / k²."""
+    """Say so where stones slow as on no ice.
+
+    A clip that runs k times too slowly shows μ / k², a table in a unit k times too short k μ.
+    """
     from physics.watched import FRICTION
 
     value, stderr = friction.value, friction.stderr
@@ -158,7 +161,8 @@ def _pace(friction: Estimate) -> tuple[str, ...]:
         times, pace = 1 / times, "fast"
     return (
         f"friction: {value:.2g} ± {stderr:.1g} is not that of curling ice; a clip in {pace} motion"
-        f" (about {times:.2g} times) would look so: then speeds are not real ones, e is",
+        f" (about {times:.2g} times) or tracks in another length unit would look so: then speeds"
+        " are not real ones, e is",
     )
 
 
