@@ -147,7 +147,7 @@ def _shared_error(sightings: pd.DataFrame) -> float | None:
 def _pace(friction: Estimate) -> tuple[str, ...]:
     """Say so where stones slow as on no ice.
 
-    A clip that runs k times too slowly shows μ / k², a table in a unit k times too short k μ.
+    A clip that runs k times too slowly shows μ / k², tracks k times too long k μ.
     """
     from physics.watched import FRICTION
 
