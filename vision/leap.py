@@ -65,6 +65,8 @@ def _shift(before: Image, now: Image) -> Array | None:
     """How far the middle of a picture has moved in another, px; None where it is not in it."""
     y, x = (side // MIDDLE for side in before.shape)
     middle = before[y:-y, x:-x]
+    if np.ptp(middle) == 0:
+        return None  # bare ice: OpenCV would find it anywhere
     found = cv2.matchTemplate(now, middle, cv2.TM_CCOEFF_NORMED)
     _, best, _, at = cv2.minMaxLoc(found)
     return np.array([at[0] - x, at[1] - y], float) if best > LIKE else None

@@ -37,6 +37,9 @@ picture."""
 SMEARED, THIN_SMEARED = 0.05, 0.2
 """How far edges and thin lines are off, in what they are smeared by, as clips with truth show."""
 
+LEARNING = 0.5
+"""Share that one more picture counts: a pan is soon over, and a second tells most of it."""
+
 MOST_SMEARED = 0.9
 """Share of the edges that are smeared by less than what is said of a picture: edges along a pan
 stay sharp, some are print."""
@@ -58,7 +61,7 @@ class Shutter:
         """Take in what one more picture tells, if it does; see `exposure`."""
         told = exposure(slope, motion)
         if told is not None:
-            self.exposure += 0.5 * (told - self.exposure)
+            self.exposure += LEARNING * (told - self.exposure)
 
 
 def exposure(slope: Array, motion: Array) -> float | None:

@@ -31,3 +31,10 @@ def test_another_scene_tells_no_turn() -> None:
     noise = np.random.default_rng(0).integers(0, 256, (18, 32, 3)).astype(np.uint8)
     other = np.repeat(np.repeat(noise, 40, axis=0), 40, axis=1)
     assert leapt(render_still(SCENE, BEFORE, 0.0), other, view, rig) is None
+
+
+def test_bare_ice_tells_no_turn() -> None:
+    view, rig = truth(BEFORE, 0.0)
+    one = render_still(SCENE, BEFORE, 0.0)
+    bare = np.full_like(one, 230)
+    assert leapt(bare, one, view, rig) is None
