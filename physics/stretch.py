@@ -44,7 +44,8 @@ PLACE_MEMORY, ANGLE_MEMORY = 0.3, 0.8
 LOSS_SD, MOST_LOSS_SD = (0.003, 0.06), (0.1, 1.0)
 """How much a slow stone loses speed (m/s²) and spin (rad/s²) otherwise than is known: times its
 speed, m/s, and at most. It is slowed more, and loses its spin faster (FCV1: 0.02 / (v + 0.06) and
-0.025 / v)."""
+0.025 / v). Of speed less is left open, for the mean of the glides has most of it; of spin more, for
+it is lost for longer than `MEMORY`."""
 
 GATE = 100.0
 """Squared normalised innovation beyond which a sighting is refused."""
