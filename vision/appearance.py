@@ -27,6 +27,10 @@ UNLIKE = 30.0
 """Difference of cap colours (L*a*b* units) from which they are two."""
 
 
+LEAST_CONTRAST = 0.4
+"""Least share of its contrast that a picture is taken to have kept: with less, noise is colour."""
+
+
 @dataclass(frozen=True)
 class Colour:
     """A colour in CIE L*a*b* (8-bit scaling of OpenCV): mean and covariance."""
@@ -89,8 +93,9 @@ class Appearance:
         return rank, float(differences[rank])
 
 
-Guess = Callable[[int], Appearance]
-"""What stones may look like before any is known, by the lightness of the white ice."""
+Guess = Callable[[int, int], Appearance]
+"""What stones may look like before any is known, by the lightness of the white ice and of the
+darkest on it."""
 
 
 @lru_cache(maxsize=1)
@@ -100,18 +105,29 @@ def _lab_of_table() -> Floats:
     return lab_of(bgr).reshape(64, 64, 64, 3).astype(np.float32)
 
 
-@lru_cache(maxsize=32)
-def any_stone(white: int = 210) -> Appearance:
+def any_stone(white: int = 210, black: int = 0) -> Appearance:
     """Appearance of stones before any is known: saturated caps, grey granite darker than ice.
 
     Parameters
     ----------
-    white : int
-        Lightness L* of the white ice in the picture, 0 to 255.
+    white, black : int
+        Lightness L* of the white ice in the picture and of the darkest on it, 0 to 255; the
+        latter tells nothing here, since on bare ice it is a stone's.
     """
+    return _coloured_stone(white, 0)
+
+
+def any_veiled_stone(white: int, black: int) -> Appearance:
+    """As `any_stone`, in a picture that haze, glare or a pale film has robbed of its contrast."""
+    return _coloured_stone(white, black)
+
+
+@lru_cache(maxsize=32)
+def _coloured_stone(white: int, black: int) -> Appearance:
     lab = _lab_of_table()
-    chroma = np.hypot(lab[..., 1] - 128, lab[..., 2] - 128)
-    light = lab[..., 0] / white
+    contrast = max(1 - black / white, LEAST_CONTRAST)
+    chroma = np.hypot(lab[..., 1] - 128, lab[..., 2] - 128) / contrast
+    light = (lab[..., 0] / white - 1) / contrast + 1
     # Blue caps are the darkest, and dark colours are never as far from grey as light ones.
     blue = np.clip((118 - lab[..., 2]) / 10, 0, 1)
     vivid = chroma / (1 - blue * (1 - np.clip(light / 0.4, 0.6, 1)))
@@ -126,7 +142,7 @@ def any_stone(white: int = 210) -> Appearance:
 
 
 @lru_cache(maxsize=32)
-def any_grey_stone(white: int = 210) -> Appearance:
+def any_grey_stone(white: int = 210, black: int = 0) -> Appearance:
     """As `any_stone`, by lightness alone: caps darker or lighter than granite of any tinge."""
     light = _lab_of_table()[..., 0] / white
     granite = np.clip((light - 0.3) / 0.1, 0, 1) * np.clip((0.78 - light) / 0.1, 0, 1)

@@ -103,7 +103,8 @@ def _guessed(ice: IceMap, guess: Guess | None, disc: Stone) -> Appearance:
         vivid = int((((lab[:, 1:] - 128) ** 2).sum(1) > VIVID**2).sum())
         coloured = vivid >= 0.5 * np.pi * (disc.cap_radius * ice.scale) ** 2  # half a cap of it
         guess = any_stone if coloured else any_grey_stone
-    return guess(max(round(float(np.percentile(lab[:, 0], 75))), 60))
+    black, white = np.percentile(lab[:, 0], [1, 75]).round().astype(int).tolist()
+    return guess(max(white, 60), black)
 
 
 def seek_about(

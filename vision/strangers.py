@@ -1,9 +1,9 @@
 """Stones of which nothing is known yet: coloured caps first, then any that are not as granite is.
 
 By colour a cap is told from almost everything on the ice, so this is looked for first. Two teams
-play, though: where fewer than two colours convince, caps that are black or white, or whose
-granite the picture has given a tinge, may be left, and these differ from their granite by their
-lightness.
+play: where fewer than two colours convince, the picture may have lost its contrast, or caps may be
+left that are black or white, or whose granite the picture has given a tinge. These differ from
+their granite by their lightness.
 """
 
 from __future__ import annotations
@@ -14,7 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import Stone
-from vision.appearance import MOST_COLOURS, any_grey_stone, by_colour, convincing
+from vision.appearance import (
+    MOST_COLOURS,
+    Guess,
+    any_grey_stone,
+    any_veiled_stone,
+    by_colour,
+    convincing,
+)
 from vision.camera import Camera
 from vision.patch import is_plain
 from vision.picture import Picture
@@ -22,16 +29,16 @@ from vision.stones import Findings, Search, search_picture
 
 Array = NDArray[np.float64]
 
+View = tuple[Picture, Camera, Array]
+"""A picture, its camera and the places of stones that need not be found, (n, 2), m."""
 
-def strangers(
-    views: Sequence[tuple[Picture, Camera, Array]], disc: Stone, search: Search
-) -> list[Findings]:
+
+def strangers(views: Sequence[View], disc: Stone, search: Search) -> list[Findings]:
     """Search a few pictures of one clip for stones of any colour.
 
     Parameters
     ----------
-    views : sequence of (Picture, Camera, ndarray of shape (n, 2))
-        Pictures, their cameras and the places of stones that need not be found, m.
+    views : sequence of View
     disc : Stone
         Size of the stones, or `vision.stones.plain_disc`.
     search : Search
@@ -40,28 +47,35 @@ def strangers(
     Returns
     -------
     list of Findings
-        One per picture. Of those told by their lightness only the convincing ones: a cap of hair
-        with grey about it is no stone.
+        One per picture. Of those that only contrast or lightness tell the convincing ones: a cap
+        of hair with grey about it is no stone.
     """
-    first = [
+    found = [
         search_picture(image, camera, None, disc, search, None, known)
         for image, camera, known in views
     ]
-    colours = by_colour(convincing(stone for found in first for stone in found.stones))
-    if is_plain(disc) or len(colours) >= MOST_COLOURS:
-        return first
-    return [
-        _with_shades(found, view, disc, search) for found, view in zip(first, views, strict=True)
-    ]
+    if is_plain(disc):
+        return found
+    first = not any(len(known) for _, _, known in views)
+    for guess in (any_veiled_stone, any_grey_stone) if first else (any_grey_stone,):
+        if _colours(found) < MOST_COLOURS:
+            found = _with_more(found, views, guess, disc, search)
+    return found
 
 
-def _with_shades(
-    found: Findings, view: tuple[Picture, Camera, Array], disc: Stone, search: Search
-) -> Findings:
-    """Add what only its lightness tells."""
-    image, camera, known = view
-    seen = np.array([(stone.x, stone.y) for stone in found.stones]).reshape(-1, 2)
-    more = search_picture(
-        image, camera, any_grey_stone, disc, search, None, np.concatenate([known, seen])
-    )
-    return Findings((*found.stones, *convincing(more.stones)), found.refused)
+def _colours(found: Sequence[Findings]) -> int:
+    """Count the colours of caps that convince."""
+    return len(by_colour(convincing(stone for one in found for stone in one.stones)))
+
+
+def _with_more(
+    found: Sequence[Findings], views: Sequence[View], guess: Guess, disc: Stone, search: Search
+) -> list[Findings]:
+    """Add what convinces by another guess."""
+    more = []
+    for one, (image, camera, known) in zip(found, views, strict=True):
+        seen = np.array([(stone.x, stone.y) for stone in one.stones]).reshape(-1, 2)
+        places = np.concatenate([known, seen])
+        other = search_picture(image, camera, guess, disc, search, None, places)
+        more.append(Findings((*one.stones, *convincing(other.stones)), one.refused))
+    return more

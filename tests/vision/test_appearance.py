@@ -11,6 +11,7 @@ from vision.appearance import (
     Colour,
     any_grey_stone,
     any_stone,
+    any_veiled_stone,
     colour_difference,
     colour_differences,
     learn,
@@ -64,6 +65,15 @@ def test_a_light_blue_cap_is_one_and_granite_as_pale_of_another_hue_is_none() ->
     look = any_stone(244)
     assert min(worth_of([(185, 144, 69), (190, 142, 64)], look)) > 0.3
     assert max(worth_of([(97, 107, 140), (112, 120, 150)], look)) < -0.3
+
+
+def test_what_a_veil_has_left_of_colours_is_told() -> None:
+    """Colours half as far from white as they are, where the darkest has a lightness of 128."""
+    pale = [tuple(255 - (255 - v) // 2 for v in colour) for colour in (RED, BLUE, GREY)]
+    red, blue, granite = worth_of(pale, any_veiled_stone(240, 128))
+    assert red > 0.9 and blue > 0.3
+    assert granite < -0.9
+    assert worth_of(pale, any_stone(240))[2] > -0.2, "in a clear picture this is no granite"
 
 
 def test_without_colours_caps_are_what_is_darker_or_lighter_than_granite() -> None:

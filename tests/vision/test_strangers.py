@@ -49,6 +49,23 @@ def test_of_one_coloured_and_one_white_team_both_are_found() -> None:
     assert len(seen(scene, PLACES[1:])) == 1  # nothing twice, and nothing of what is known
 
 
+def test_caps_are_found_where_the_picture_has_lost_half_its_contrast() -> None:
+    scene = painted(RED, YELLOW, BLUE, RED)
+    image = np.asarray(render_still(scene, CAMERA), float)
+    pale = (255 - 0.5 * (255 - image)).astype(np.uint8)
+    (found,) = strangers([(pale, camera_of(CAMERA, scene), np.empty((0, 2)))], STONE, FOLLOWING)
+    assert len(found.stones) == len(scene.stones)
+    assert misses(found.stones, scene).max() < 0.010
+
+
+def test_pale_ice_without_stones_stays_empty() -> None:
+    image = np.asarray(render_still(scene_of([]), CAMERA), float)
+    pale = (255 - 0.5 * (255 - image)).astype(np.uint8)
+    none = np.empty((0, 2))
+    (found,) = strangers([(pale, camera_of(CAMERA, scene_of([])), none)], STONE, FOLLOWING)
+    assert not found.stones
+
+
 def test_two_colours_are_both_teams() -> None:
     scene = painted(RED, YELLOW, BLACK, YELLOW)
     assert len(seen(scene)) == 3
