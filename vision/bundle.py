@@ -67,6 +67,10 @@ FIRST, NEXT, LAST = 30, 1, 4
 first must get to where it ends: else the paint is learned to be as ragged as the camera is wrong,
 and keeps it there."""
 
+SETTLED = 0.03
+"""Rise of the log likelihood by less than which a step ends a fit: a quarter of a standard
+error."""
+
 
 def bundle(
     frames: Sequence[Marks],
@@ -253,7 +257,7 @@ class _Problem:
             if not new <= cost:
                 damping = max(damping, 1e-6) * 30
                 continue
-            done = cost - new < 1e-3 * (1 + 1e-3 * cost)
+            done = cost - new < SETTLED
             state, at, cost = ahead, looked, new
             matrix, right = self.normal(state, at, paint, noise)
             if done:
