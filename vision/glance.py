@@ -11,6 +11,7 @@ from data.sheet import STONE, Stone
 from vision.appearance import MOST_COLOURS, UNLIKE, Appearance, convincing, learn
 from vision.camera import Camera
 from vision.clip import Image
+from vision.rays import Look
 from vision.sighting import Refusal, Sighting
 from vision.stones import NEAREST, SEARCH, Findings, search_picture
 from vision.strangers import strangers
@@ -31,7 +32,7 @@ def glance(pictures: Sequence[tuple[Image, Camera]], disc: Stone = STONE) -> lis
         One per picture, with the places that were refused and why.
     """
     nothing = np.empty((0, 2))
-    first = strangers([(image, camera, nothing) for image, camera in pictures], disc, SEARCH)
+    first = strangers([Look(image, camera, nothing) for image, camera in pictures], disc, SEARCH)
     appearance = learn(convincing(stone for found in first for stone in found.stones))
     if appearance is None:
         return first

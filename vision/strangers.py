@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from data.sheet import Stone
 from vision.appearance import (
@@ -22,23 +21,18 @@ from vision.appearance import (
     by_colour,
     convincing,
 )
-from vision.camera import Camera
 from vision.patch import is_plain
-from vision.picture import Picture
+from vision.rays import Look
 from vision.stones import Findings, Search, search_picture
 
-Array = NDArray[np.float64]
 
-View = tuple[Picture, Camera, Array]
-"""A picture, its camera and the places of stones that need not be found, (n, 2), m."""
-
-
-def strangers(views: Sequence[View], disc: Stone, search: Search) -> list[Findings]:
+def strangers(looks: Sequence[Look], disc: Stone, search: Search) -> list[Findings]:
     """Search a few pictures of one clip for stones of any colour.
 
     Parameters
     ----------
-    views : sequence of View
+    looks : sequence of Look
+        At pictures, with the places of stones that need not be found.
     disc : Stone
         Size of the stones, or `vision.stones.plain_disc`.
     search : Search
@@ -51,15 +45,15 @@ def strangers(views: Sequence[View], disc: Stone, search: Search) -> list[Findin
         of hair with grey about it is no stone.
     """
     found = [
-        search_picture(image, camera, None, disc, search, None, known)
-        for image, camera, known in views
+        search_picture(look.picture, look.camera, None, disc, search, None, look.places)
+        for look in looks
     ]
     if is_plain(disc):
         return found
-    first = not any(len(known) for _, _, known in views)
+    first = not any(len(look.places) for look in looks)
     for guess in (any_veiled_stone, any_grey_stone) if first else (any_grey_stone,):
         if _colours(found) < MOST_COLOURS:
-            found = _with_more(found, views, guess, disc, search)
+            found = _with_more(found, looks, guess, disc, search)
     return found
 
 
@@ -69,13 +63,13 @@ def _colours(found: Sequence[Findings]) -> int:
 
 
 def _with_more(
-    found: Sequence[Findings], views: Sequence[View], guess: Guess, disc: Stone, search: Search
+    found: Sequence[Findings], looks: Sequence[Look], guess: Guess, disc: Stone, search: Search
 ) -> list[Findings]:
     """Add what convinces by another guess."""
     more = []
-    for one, (image, camera, known) in zip(found, views, strict=True):
+    for one, look in zip(found, looks, strict=True):
         seen = np.array([(stone.x, stone.y) for stone in one.stones]).reshape(-1, 2)
-        places = np.concatenate([known, seen])
-        other = search_picture(image, camera, guess, disc, search, None, places)
+        places = np.concatenate([look.places, seen])
+        other = search_picture(look.picture, look.camera, guess, disc, search, None, places)
         more.append(Findings((*one.stones, *convincing(other.stones)), one.refused))
     return more

@@ -20,6 +20,7 @@ from vision.follower import PATIENCE, Follower, Patience, StoneView
 from vision.lead import Lead
 from vision.patch import is_plain
 from vision.placing import placed_by
+from vision.rays import Look
 from vision.sighting import Sighting
 from vision.stones import FOLLOWING, SEARCH, Search
 from vision.strangers import strangers
@@ -145,8 +146,8 @@ class Watch:
         """Stones of any colour that were not seen in the views so far."""
         # Too much on the ice answers faintly to any colour.
         search = replace(self._search, least_score=SEARCH.least_score)
-        pictures = [(view.frame.picture, view.camera, view.places) for view in views]
-        return [stone for found in strangers(pictures, self.disc, search) for stone in found.stones]
+        looks = [Look(view.frame.picture, view.camera, view.places) for view in views]
+        return [stone for found in strangers(looks, self.disc, search) for stone in found.stones]
 
     def _see(self, views: Sequence[StoneView]) -> None:
         """Follow what is known through views, and search the last of them if it is time."""

@@ -16,6 +16,7 @@ from tests.vision.test_stones import (
     scene_of,
     without_colours,
 )  # fmt: skip
+from vision.rays import Look
 from vision.sighting import Sighting
 from vision.stones import FOLLOWING, plain_disc
 from vision.strangers import strangers
@@ -31,7 +32,7 @@ def painted(*caps: Colour) -> Scene:
 def seen(scene: Scene, known: list[tuple[float, float]] | None = None) -> tuple[Sighting, ...]:
     image = np.asarray(render_still(scene, CAMERA), np.uint8)
     places = np.array(known or []).reshape(-1, 2)
-    (found,) = strangers([(image, camera_of(CAMERA, scene), places)], STONE, FOLLOWING)
+    (found,) = strangers([Look(image, camera_of(CAMERA, scene), places)], STONE, FOLLOWING)
     return found.stones
 
 
@@ -53,7 +54,7 @@ def test_caps_are_found_where_the_picture_has_lost_half_its_contrast() -> None:
     scene = painted(RED, YELLOW, BLUE, RED)
     image = np.asarray(render_still(scene, CAMERA), float)
     pale = (255 - 0.5 * (255 - image)).astype(np.uint8)
-    (found,) = strangers([(pale, camera_of(CAMERA, scene), np.empty((0, 2)))], STONE, FOLLOWING)
+    (found,) = strangers([Look(pale, camera_of(CAMERA, scene), np.empty((0, 2)))], STONE, FOLLOWING)
     assert len(found.stones) == len(scene.stones)
     assert misses(found.stones, scene).max() < 0.010
 
@@ -62,7 +63,7 @@ def test_pale_ice_without_stones_stays_empty() -> None:
     image = np.asarray(render_still(scene_of([]), CAMERA), float)
     pale = (255 - 0.5 * (255 - image)).astype(np.uint8)
     none = np.empty((0, 2))
-    (found,) = strangers([(pale, camera_of(CAMERA, scene_of([])), none)], STONE, FOLLOWING)
+    (found,) = strangers([Look(pale, camera_of(CAMERA, scene_of([])), none)], STONE, FOLLOWING)
     assert not found.stones
 
 
@@ -81,6 +82,6 @@ def test_a_disc_without_a_cap_is_sought_by_its_rim() -> None:
     image = without_colours(scene)
     none = np.empty((0, 2))
     disc = plain_disc(STONE.radius)
-    (found,) = strangers([(image, camera_of(CAMERA, scene), none)], disc, FOLLOWING)
+    (found,) = strangers([Look(image, camera_of(CAMERA, scene), none)], disc, FOLLOWING)
     assert len(found.stones) == len(scene.stones)
     assert all(not stone.cap_samples.size for stone in found.stones)
