@@ -22,8 +22,9 @@ _DIAGONAL = np.eye(_TERMS)
 _LEAST_POINTS = np.array([-1, 3, 5])
 """A term of the curve takes part if there are more points."""
 
-_HELD = 1e9
-"""What holds a term at 0 that does not take part: more than any line has points."""
+_HELD, _FREE = 1e9, 1e-12
+"""What holds a term at 0 that does not take part: more than any line has points; and one that does,
+so that points at one place have a curve too: by no more than rounding."""
 
 
 @dataclass(frozen=True)
@@ -99,7 +100,7 @@ def smooth(curves: Curves, offset: Array, good: Flags, least_sd: float) -> tuple
         use = keep.astype(np.float64)[..., None]
         count = keep.sum(-1)[..., None]
         # Few points do not bend a line: two for each term of the curve.
-        held = np.where(count > _LEAST_POINTS, 1e-9, _HELD)
+        held = np.where(count > _LEAST_POINTS, _FREE, _HELD)
         normal = (use.swapaxes(-1, -2) @ curves.squares).reshape(*runs, _TERMS, _TERMS)
         normal += held[..., None] * _DIAGONAL
         curve = np.linalg.solve(normal, pull @ use)
