@@ -16,7 +16,7 @@ from physics.curl import FCV1Curl, NoCurl
 from physics.ice import FCV1, Constant, IceLaw, Penner
 from physics.impact import Frictional, Impact, PointMass, RigidBody
 from physics.simulate import simulate
-from physics.simulation import SIMULATION_COLUMNS, Hit, Shot, Simulation, StoneStart
+from physics.simulation import Hit, Shot, Simulation, StoneStart
 
 R = 0.145
 LAWS: list[IceLaw] = [Constant(), FCV1(), Penner()]
@@ -415,48 +415,6 @@ def test_masses_count() -> None:
     assert hit.after["B"].vy - hit.after["A"].vy == pytest.approx(0.9 * hit.before["A"].vy)
 
 
-# --- samples and mistakes --------------------------------------------------------------------
-
-
-def test_samples_form_a_table() -> None:
-    sim = simulate(shot(StoneStart("B", 0, 0, theta=0.7), StoneStart("A", 0.05, -1, 0, 1.5)))
-    times = np.array([0.0, 0.5, 1.0, 100.0])
-    table = sim.sample(times)
-    assert tuple(table.columns) == SIMULATION_COLUMNS
-    assert table.stone.tolist() == ["A"] * 4 + ["B"] * 4
-    assert table.frame.tolist() == [0, 1, 2, 3] * 2
-    assert table.t.tolist() == times.tolist() * 2
-    b = table[table.stone == "B"].iloc[0]
-    assert (b.x, b.y, b.theta, b.vx, b.vy, b.omega) == (0, 0, 0.7, 0, 0, 0)
-    last = table.groupby("stone").last()
-    for name, rest in sim.rest.items():
-        assert (last.x[name], last.y[name], last.theta[name]) == (rest.x, rest.y, rest.theta)
-    assert sim.sample([]).empty
-    for wrong in ([-0.1], [math.nan]):
-        with pytest.raises(ValueError, match="finite times"):
-            sim.sample(wrong)
+def test_it_cannot_end_before_it_begins() -> None:
     with pytest.raises(ValueError, match="cannot end"):
         simulate(shot(StoneStart("A", 0, 0)), until=-1.0)
-
-
-def test_a_sample_at_a_hit_shows_the_state_after_it() -> None:
-    sim = simulate(shot(StoneStart("A", 0, -1, 0, 1.5), StoneStart("B", 0, 0)))
-    table = sim.sample([sim.hits[0].t]).set_index("stone")
-    assert table.vy["B"] == pytest.approx(sim.hits[0].after["B"].vy, rel=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("stones", "message"),
-    [
-        ((), "no stone"),
-        ((StoneStart("A", 0, 0), StoneStart("A", 1, 0)), "two stones named A"),
-        ((StoneStart("A", 0, math.nan),), "stone A: y = nan is not finite"),
-        ((StoneStart("A", 0, 0, mass=0),), "mass = 0 must be above 0"),
-        ((StoneStart("A", 0, 0, 1e9),), "vx = 1e.09 is out of all bounds"),
-        ((StoneStart("A", 0, 0), StoneStart("B", 0, 0)), "A and B lie on the same place"),
-        ((StoneStart("A", 0, 0, omega_after=(1.0, math.inf)),), "omega_after = inf"),
-    ],
-)
-def test_mistakes_are_told(stones: tuple[StoneStart, ...], message: str) -> None:
-    with pytest.raises(InputError, match=message):
-        simulate(shot(*stones))
