@@ -32,7 +32,7 @@ NEAR = 2
 """Steps before and after a picture over which motion is averaged: shaking cameras turn back."""
 
 
-def motion(observed: Observations, at: Linear, views: Array, index: Index) -> Array:
+def motion(observed: Observations, at: Linear, views: Array, places: Array, index: Index) -> Array:
     """Tell how far the edges of each frame move from one frame of the clip to the next, px.
 
     Parameters
@@ -40,6 +40,8 @@ def motion(observed: Observations, at: Linear, views: Array, index: Index) -> Ar
     observed : Observations
     at : Linear
     views : ndarray, shape (frames, 4)
+    places : ndarray, shape (frames, 3)
+        Where the camera is, m: one that glides on and turns back hardly moves the picture.
     index : ndarray of int, shape (frames,)
         Of the frames in the clip, ascending: some between them may be missing.
 
@@ -48,13 +50,15 @@ def motion(observed: Observations, at: Linear, views: Array, index: Index) -> Ar
     ndarray, shape (frames,)
     """
     squares = np.zeros(max(len(views) - 1, 1))
-    for k, step in enumerate(np.diff(views, axis=0) / np.diff(index)[:, None]):
+    steps = np.diff(np.hstack([views, -places]), axis=0) / np.diff(index)[:, None]
+    for k, step in enumerate(steps):
         part = observed.parts[k]
-        along = observed.sd[part] * (step @ at.by_view[:, part])
+        by_step = np.concatenate([at.by_view[:, part], at.by_place[:, part]])
+        along = observed.sd[part] * (step @ by_step)
         # Along normals there is half of what goes in any direction.
         squares[k] = 2 * along @ along / max(len(along), 1)
     near = [squares[max(k - NEAR, 0) : k + NEAR] for k in range(len(views))]
-    return np.sqrt([steps.mean() for steps in near])
+    return np.sqrt([around.mean() for around in near])
 
 
 def astray(moved: Array, rms: Array) -> Array:

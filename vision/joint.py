@@ -196,7 +196,7 @@ def fit_frames(
     noisier = (NOISE_TRUST + square) / (NOISE_TRUST + free)
     by_view = at.by_view * weight
     by_shared, by_offset = by_rig(observed, at, views), by_measure(observed, at)
-    moved = motion(observed, at, views, np.array([s.index for s in seen]))
+    moved = motion(observed, at, views, away, np.array([s.index for s in seen]))
     aside = astray(moved, np.array([fit.rms for fit in fits]))
     hold = 1 / np.square(VIEW_SD)
     identity, on_circle = piece_of(marks), marks.line < CIRCLES

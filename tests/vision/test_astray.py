@@ -7,24 +7,34 @@ from tests.vision.cameras import SIZE, marks, true_rig
 from vision.astray import COPIED, MUCH, NONE, REPEATED, astray, motion
 from vision.linear import Observations, linearised
 from vision.paint import joined
+from vision.rig import POSITION
 
 RIG = true_rig()
 SQUARE_ON = np.array([0.0, 0.0, 0.0, np.log(1200.0)])
 
 
-def moved(views: np.ndarray, every: int = 1) -> np.ndarray:
+def moved(views: np.ndarray, every: int = 1, glide: float = 0.0) -> np.ndarray:
     rng = np.random.default_rng(0)
     seen = [marks(rng, view, RIG, 0.0) for view in views]
     frames = [m.pick(m.line < 3) for m in seen]  # normals all around
     observed = Observations(joined(frames), SIZE, counts=[len(m) for m in frames])
     at = linearised(observed, observed.points(RIG), views, RIG)
-    return motion(observed, at, views, every * np.arange(len(views)))
+    number = np.arange(len(views))
+    places = RIG[POSITION] + np.outer(number, [glide, 0.0, 0.0])
+    return motion(observed, at, views, places, every * number)
 
 
 def test_a_turn_moves_the_picture_by_the_focal_length_times_its_angle() -> None:
     steps = np.outer(np.arange(6), [2e-3, 0.0, 0.0, 0.0])
     np.testing.assert_allclose(moved(SQUARE_ON + steps), 2.4, rtol=0.15)
     np.testing.assert_allclose(moved(SQUARE_ON + steps, every=3), 0.8, rtol=0.15)
+
+
+def test_a_camera_that_turns_to_what_it_glides_past_hardly_moves_the_picture() -> None:
+    glide = 2e-3 * RIG[POSITION][2]
+    there = np.outer(np.arange(6), [0.0, 2e-3, 0.0, 0.0])
+    np.testing.assert_allclose(moved(SQUARE_ON + 0 * there, glide=glide), 2.4, rtol=0.15)
+    assert (moved(SQUARE_ON + there, glide=glide) < 0.15).all()
 
 
 def test_motion_is_that_of_the_time_about_a_frame_and_none_of_one_alone() -> None:
