@@ -24,6 +24,7 @@ from vision.picture import Picture
 from vision.pose import View
 from vision.resection import ViewSolution, solve_views
 from vision.rig import R4, R8
+from vision.shelf import Kept
 from vision.smear import Shutter, reach_beyond, smear, weighed
 
 Array = NDArray[np.float64]
@@ -152,13 +153,12 @@ class EdgeTracker:
         whole = count == len(frames) and not again
         self.stride = min(2 * count, LONGEST_STRIDE) if whole else max(count // 2, 1)
         self.fit, shown = fits[count - 1], evidence[count - 1]
-        explained = _length(rig, _explained(shown, self.fit))
-        self.support = explained / _length(rig, shown.visible)
+        self.support = _length(rig, _explained(shown, self.fit)) / _length(rig, shown.visible)
         self._learn(shown.palette, count)
         rim = normals.normal[:, normals.kinds.get(TWELVE, slice(0))]
         self._shutter.learn(shown.slope, self.fit.view.sweep([last, *views][count - 1]) @ rim)
         return [
-            Seen(frame.index, frame.t, fit.view, e.marks.pick(fit.inliers), True)
+            Seen(frame.index, frame.t, fit.view, Kept(e.marks.pick(fit.inliers)), True)
             for frame, e, fit in zip(frames, evidence[:count], fits, strict=False)
         ]
 

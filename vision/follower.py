@@ -22,6 +22,7 @@ from vision.expected import ON_COURSE, SETTLED, look_beside, look_on_course
 from vision.lead import Lead
 from vision.rays import Look
 from vision.seek import Bounds
+from vision.shelf import Shelf
 from vision.sighting import Sighting
 from vision.still import portraits, unchanged
 from vision.stones import NEAREST, Search, search_picture
@@ -80,6 +81,12 @@ class StoneView:
     def places(self) -> Array:
         """Of the stones, m, shape (n, 2)."""
         return _places(self.sightings)
+
+    def put_aside(self, shelf: Shelf) -> None:
+        """Put aside how the caps of its stones look."""
+        for sighting in self.sightings:
+            if sighting.spectrum is not None:
+                sighting.spectrum.put_aside(shelf)
 
     def look(self, places: Sequence[Place]) -> Look:
         """Look at places on the ice in it."""

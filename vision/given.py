@@ -30,6 +30,7 @@ from vision.paint import TWELVE, Marks, fixed, joined
 from vision.placed import Placed, nobody
 from vision.pose import View, camera
 from vision.rings import SQUASHES, Guess
+from vision.shelf import Kept
 
 Array = NDArray[np.float64]
 
@@ -192,7 +193,7 @@ def _as_given(
     view, rig, prior = start(guess, clip.size)
     view, rig = y_up(view, rig, clip.size)
     marks = _marks(house, view, rig, clip.size)
-    track = fit_clip([Seen(frame.index, frame.t, view, marks, True)], rig, prior, clip.size)
+    track = fit_clip([Seen(frame.index, frame.t, view, Kept(marks), True)], rig, prior, clip.size)
     given = replace(track.cameras[0], rms_px=float("nan"), quality=0.0)
     cameras = []
     for done, other in enumerate(clip, 1):

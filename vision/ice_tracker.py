@@ -21,6 +21,7 @@ from vision.paint import Marks, joined
 from vision.picture import Picture
 from vision.pose import VIEW_SIZE, View
 from vision.resection import solve_view, solve_views
+from vision.shelf import Kept
 
 Array = NDArray[np.float64]
 
@@ -115,7 +116,7 @@ class IceTracker:
             key_now = keyframe(frame.index, frame.picture, fit.view, rig, fit.cov, key.drift)
             self.landmarks = Landmarks(key_now)
         return [
-            Seen(frame.index, frame.t, fit.view, each, False, key)
+            Seen(frame.index, frame.t, fit.view, Kept(each), False, key)
             for frame, fit, each in zip(frames, fits, marks, strict=False)
         ]
 

@@ -29,6 +29,7 @@ from vision.resection import solve_views
 from vision.rig import K1, K1_ZOOM, K2, POSITION, R4, R8, RIG_SIZE, Prior, zoom
 from vision.robust import WIDTH, inverse
 from vision.shared import ARC, Bundle, family, piece_of, sensitivity
+from vision.shelf import Kept
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -88,7 +89,7 @@ class Seen:
         Index in the clip and time, s.
     view : View
         Provisional.
-    marks : Marks
+    marks : Kept of Marks
         What was measured in it.
     found : bool
         Whether its circles fix its view; else it is carried by fixed points of the ice.
@@ -99,7 +100,7 @@ class Seen:
     index: int
     t: float
     view: View
-    marks: Marks
+    marks: Kept[Marks]
     found: bool
     key: Keyframe | None = None
 
@@ -125,10 +126,10 @@ def fit_clip(
     edge : PaintEdge
         The outer edge of the 12-ft circle: as well as it is made out, all lengths are known.
     """
-    good = [s for s in seen if s.found]
-    chosen = _spread(good)
+    chosen = _spread([s for s in seen if s.found])
     times = [s.t for s in chosen]
-    shared, _ = bundle([s.marks for s in chosen], times, [s.view for s in chosen], rig, size, prior)
+    marks, views = [s.marks.get() for s in chosen], [s.view for s in chosen]
+    shared, _ = bundle(marks, times, views, rig, size, prior)
     cameras = _fit_frames(seen, shared, size, edge.sd)
     sd = LONG_RANGE * np.sqrt(np.diag(shared.cov)[:RIG_SIZE])
     place, scale = shared.rig[POSITION], _scale_sd(chosen[-1].view, shared.rig, edge.sd)
@@ -149,28 +150,26 @@ def _fit_frames(
     ready, waiting = [s for s in seen if s.key is None], [s for s in seen if s.key is not None]
     while ready:
         for part in np.array_split(np.arange(len(ready)), ceil(len(ready) / TOGETHER)):
-            cameras = fit_frames([ready[k] for k in part], shared, size, edge_sd)
+            fresh = [ready[k] for k in part]
+            known = [_carried(s, s.key, done[s.key.frame]) if s.key else s for s in fresh]
+            cameras = fit_frames(known, shared, size, edge_sd)
             done.update({camera.frame: camera for camera in cameras})
-        ready = [
-            _carried(s, s.key, done[s.key.frame])
-            for s in waiting
-            if s.key is not None and s.key.frame in done
-        ]
+        ready = [s for s in waiting if s.key is not None and s.key.frame in done]
         waiting = [s for s in waiting if s.key is not None and s.key.frame not in done]
     return [done[s.index] for s in seen if s.index in done]
 
 
 def _carried(seen: Seen, key: Keyframe, by: Camera) -> Seen:
     """Give a frame that is carried by a keyframe the places that its camera tells, with errors."""
-    marks = replaced(seen.marks, key, by)
+    marks = replaced(seen.marks.get(), key, by)
     if by.error is None or marks.across is None:
-        return replace(seen, marks=marks)
+        return replace(seen, marks=Kept(marks))
     known = marks.line == FIXED
     ice = np.stack([marks.along[known], marks.across[known]], axis=-1)
     own = by.own_place_cov(ice)
     square = float(np.trace(own, axis1=-2, axis2=-1).mean()) / 2
     drift = float(np.hypot(np.sqrt(square), by.error.drift))
-    return replace(seen, marks=marks, key=replace(key, drift=drift))
+    return replace(seen, marks=Kept(marks), key=replace(key, drift=drift))
 
 
 def fit_frames(
@@ -180,10 +179,11 @@ def fit_frames(
 
     `edge_sd` is the standard error of the 12-ft circle's edge, px.
     """
-    marks = joined([s.marks for s in seen])
+    each = [s.marks.get() for s in seen]
+    marks = joined(each)
     marks = replace(marks, sd=marks.sd * shared.noise[family(marks.line)])
     offset, piece = shared.offsets(marks)
-    observed = Observations(marks, size, offset, [len(s.marks) for s in seen])
+    observed = Observations(marks, size, offset, [len(m) for m in each])
     away = shared.moved(np.array([s.t for s in seen]))
     observed.foot -= observed.each(away.T)
     fits = solve_views(observed, [s.view for s in seen], shared.rig, view_sd=VIEW_SD)
@@ -294,6 +294,6 @@ def _warnings(
             f" {sd[2]:.1f} m assumed); stones far from the picture's middle may be"
             " centimetres off"
         )
-    if not (np.concatenate([s.marks.line for s in seen]) >= CIRCLES).any():
+    if not any((s.marks.get().line >= CIRCLES).any() for s in seen):
         found.append("neither centre line nor tee line is seen; y is up in the picture")
     return tuple(found)

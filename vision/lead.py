@@ -8,6 +8,7 @@ from math import hypot
 from vision.align import Complex
 from vision.facing import angle_between
 from vision.handle import TURNING
+from vision.shelf import Kept
 from vision.sighting import Sighting
 from vision.still import Portrait
 
@@ -37,7 +38,7 @@ class Lead:
         Whether it was missed since.
     anchor : tuple of float
         The place that it has not left lately, m.
-    facing : ndarray, optional
+    facing : Kept of ndarray, optional
         How its cap looked when it came there (`vision.handle.cap_spectrum`).
     steady : int
         For how many sightings it has neither left nor turned.
@@ -51,7 +52,7 @@ class Lead:
     anchor: tuple[float, float]
     score: float
     missed: bool = False
-    facing: Complex | None = None
+    facing: Kept[Complex] | None = None
     steady: int = 0
     portrait: Portrait | None = None
 
@@ -117,5 +118,7 @@ class Lead:
         """Whether the cap faces elsewhere than when it came to its place, as far as is seen."""
         if self.facing is None or sighting.spectrum is None:
             return False
-        angle, likeness = angle_between(self.facing, sighting.spectrum, 0.0, TURNING.reach)
+        angle, likeness = angle_between(
+            self.facing.get(), sighting.spectrum.get(), 0.0, TURNING.reach
+        )
         return likeness > TURNING.least_likeness and abs(angle) > TURNED

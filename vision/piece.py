@@ -27,6 +27,7 @@ from vision.predict import MEMORY, predict
 from vision.replay import EVERY, Glimpse, cut_among, glimpse, shows_again
 from vision.resection import solve_view
 from vision.rig import Prior
+from vision.shelf import Kept, Shelf
 
 Array = NDArray[np.float64]
 
@@ -81,6 +82,7 @@ class Piece:
     _picture: Picture | None = None
     _ice: IceTracker = field(default_factory=IceTracker)
     _fresh: list[Picture] = field(default_factory=list)
+    _shelf: Shelf = field(default_factory=Shelf)
 
     @property
     def missed(self) -> int:
@@ -127,6 +129,7 @@ class Piece:
         ]
 
     def _add(self, seen: Seen, picture: Picture) -> None:
+        seen.marks.put_aside(self._shelf)
         self.seen.append(seen)
         self.found += seen.found
         self._picture, self.lost = picture, 0
@@ -175,7 +178,7 @@ class Piece:
         self._refined += 1
         self.rig = self._joint(self._spread()).rig
         for i, seen in list(enumerate(self.seen))[-MEMORY:]:  # by them the next are predicted
-            view = solve_view(seen.marks, seen.view, self.rig, self.size, view_sd=HELD).view
+            view = solve_view(seen.marks.get(), seen.view, self.rig, self.size, view_sd=HELD).view
             self.seen[i] = replace(seen, view=view)
 
     def _spread(self) -> list[Seen]:
@@ -186,7 +189,7 @@ class Piece:
 
     def _joint(self, frames: Sequence[Seen]) -> Solution:
         return solve(
-            [s.marks for s in frames], [s.view for s in frames], self.rig, self.size,
+            [s.marks.get() for s in frames], [s.view for s in frames], self.rig, self.size,
             prior=self.prior, iterations=10, sharing=SHARING,
         )  # fmt: skip
 
@@ -200,7 +203,7 @@ class Piece:
         # Of a wide line, the other edge may have been found this time.
         marks = marks.pick(np.isin(marks.line, (TWELVE, EIGHT, FOUR, CENTRE_LINE, TEE_LINE)))
         near = solve_view(marks, house.view, self.rig, self.size, width=1e3, iterations=30)
-        found = Seen(house.camera.frame, house.camera.t, near.view, marks, True)
+        found = Seen(house.camera.frame, house.camera.t, near.view, Kept(marks), True)
         joint = self._joint([*self._spread(), found])
         well = min(good.mean() for good in joint.inliers) > LEAST_EXPLAINED
         if not well or joint.rms[-1] > 1.3 * house.rms_px + SAME_RMS_PX:
@@ -230,7 +233,7 @@ class Piece:
         before, self.seen, self.edges.stride = self.seen, [], 1
         self._ice.forget()
         settled = self.edges.settle([frame], [view], self.rig, view)
-        first = settled[0] if settled else Seen(frame.index, frame.t, view, marks, True)
+        first = settled[0] if settled else Seen(frame.index, frame.t, view, Kept(marks), True)
         self._add(first, frame.picture)
         placed = [(frame, first)]
         left = [*reversed(waiting)]
@@ -260,7 +263,7 @@ class Piece:
             return [last[-1].view] * len(frames)
         vectors = np.array([seen.view.vector for seen in last])
         ahead = predict([seen.t for seen in last], vectors, [frame.t for frame in frames])
-        if not (last[-1].marks.line >= CIRCLES).any():
+        if not (last[-1].marks.get().line >= CIRCLES).any():
             ahead[:, ROLL] = vectors[-1, ROLL]  # circles do not tell it: it would run away
         return [View(vector) for vector in ahead]
 

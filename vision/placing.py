@@ -14,6 +14,7 @@ from vision.handle import cap_spectrum
 from vision.measure import Measures
 from vision.patch import handle_radii, slants
 from vision.rays import Look
+from vision.shelf import Kept
 from vision.sighting import Sighting
 
 Array = NDArray[np.float64]
@@ -64,7 +65,7 @@ def sightings(
     return [
         Sighting(
             x, y, sd_x, sd_y, (nan, nan), colour, visible, score, tuple(outline), wall,
-            tuple(bends), (u, v), nan, spectrum.copy() if told else None,
+            tuple(bends), (u, v), nan, Kept(spectrum.copy()) if told else None,
         )
         for colour, spectrum, (x, y), (sd_x, sd_y), visible, score, outline, wall, bends, (u, v),
         told in rows

@@ -8,6 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from vision.shelf import Kept
+
 Array = NDArray[np.float64]
 
 
@@ -44,7 +46,7 @@ class Sighting(NamedTuple):
         How long a pixel is there by the camera at hand, m; NaN where it is not told yet.
     cap_samples, granite_samples : ndarray, shape (n, 3)
         Colours of the cap and of the granite, for learning.
-    spectrum : ndarray or None
+    spectrum : Kept of ndarray or None
         How the cap looked around its centre (`vision.handle.cap_spectrum`); None where too little
         of it was seen to tell its angle.
     measured : bool
@@ -64,7 +66,7 @@ class Sighting(NamedTuple):
     bends: tuple[float, ...]
     pixel: tuple[float, float]
     pixel_size: float
-    spectrum: NDArray[np.complex64] | None = None
+    spectrum: Kept[NDArray[np.complex64]] | None = None
     cap_samples: Array = _NONE
     granite_samples: Array = _NONE
     measured: bool = True

@@ -12,7 +12,6 @@ import numpy as np
 from data.progress import Progress, no_progress
 from data.sheet import STONE, Stone
 from data.tracks import SIGHTING_COLUMNS, Columns, no_rows, order_of_motion
-from vision.align import Complex
 from vision.appearance import Appearance
 from vision.camera import Camera
 from vision.clip import Clip
@@ -122,7 +121,8 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
 
 
 def _rows(name: str, track: Track, team: str, disc: Stone, edge: float) -> Columns:
-    spectra: list[Complex | None] = [sighting.spectrum for sighting in track.sightings]
+    kept = [sighting.spectrum for sighting in track.sightings]
+    spectra = [None if spectrum is None else spectrum.get() for spectrum in kept]
     theta, sd_theta = handle_angles(np.array(track.times), spectra, handle_radii(disc))
     seen = track.sightings
     x, y, sd_x, sd_y, sd_place_x, sd_place_y = np.array(

@@ -21,6 +21,7 @@ from vision.lead import Lead
 from vision.patch import is_plain
 from vision.placing import placed_by
 from vision.rays import Look
+from vision.shelf import Shelf
 from vision.sighting import Sighting
 from vision.stones import FOLLOWING, SEARCH, Search
 from vision.strangers import strangers
@@ -75,7 +76,8 @@ class Watch:
         self.disc, self._search, self._pace, self._patience = disc, search, pace, patience
         self._lessons: list[Sighting] = []
         self._waiting: list[StoneView] = []
-        self._recent: deque[StoneView] = deque(maxlen=pace.memory)
+        self._recent: deque[StoneView] = deque()
+        self._shelf = Shelf()
         self._leads: list[Lead] = []
         self._since = pace.memory
         self._seen: list[tuple[int, float, Camera, list[Sighting]]] = []
@@ -154,6 +156,8 @@ class Watch:
         if self._knows:
             self._leads = self._follower.follow(views, self._leads)
         self._recent.extend(views)
+        while len(self._recent) > self._pace.memory:
+            self._recent.popleft().put_aside(self._shelf)
         self._since += len(views)
         if self._since >= self._pace.memory:
             self._search_for_new(views[-1])

@@ -17,6 +17,7 @@ from vision.paint import FIXED, TEE_LINE, TWELVE, Marks
 from vision.pose import View
 from vision.resection import solve_view
 from vision.rig import OVERHEAD, start_rig
+from vision.shelf import Kept
 
 SIZE = (1280, 720)
 SAMPLE = pipeline.sample_clip()
@@ -59,7 +60,7 @@ def clip(
     for k in range(count):
         true = true_view(0.1, 950.0 + zoom * k)
         start = View(np.array([-0.1, 0.0, 0.0, np.log(true.focal)]))
-        found.append(Seen(k, k / 25, start, seen_marks(true, rng, kinds, noise), True))
+        found.append(Seen(k, k / 25, start, Kept(seen_marks(true, rng, kinds, noise)), True))
     return found
 
 
@@ -83,7 +84,9 @@ def test_less_seen_is_known_less_and_no_error() -> None:
     whole = fit_clip(clip(rng), start_rig(OVERHEAD), OVERHEAD, SIZE).cameras[0]
     circle = fit_clip(clip(rng, 1), start_rig(OVERHEAD), OVERHEAD, SIZE)
     one = circle.cameras[0]
-    few = [Seen(s.index, s.t, s.view, s.marks.pick(np.arange(5)), True) for s in clip(rng)]
+    few = [
+        Seen(s.index, s.t, s.view, Kept(s.marks.get().pick(np.arange(5))), True) for s in clip(rng)
+    ]
     least = fit_clip(few, start_rig(OVERHEAD), OVERHEAD, SIZE).cameras[0]
     sds = [float(np.sqrt(np.trace(c.place_cov((1.0, 1.0))))) for c in (whole, one, least)]
     assert sds[0] < sds[1] < sds[2]
@@ -136,7 +139,7 @@ def test_fixed_points_may_join() -> None:
     key = Keyframe(
         0, first.view, start_rig(OVERHEAD), np.zeros((9, 16), np.uint8), none, none, 0.003
     )
-    frames.append(Seen(8, 8 / 25, first.view, fixed, False, key))
+    frames.append(Seen(8, 8 / 25, first.view, Kept(fixed), False, key))
     cameras = fit_clip(frames, start_rig(OVERHEAD), OVERHEAD, SIZE).cameras
     camera = cameras[-1]
     assert not camera.found and camera.quality == 0

@@ -5,6 +5,7 @@ import pytest
 
 from tests.vision.test_follow import sighting
 from vision.lead import DECELERATION, STEADY, Lead
+from vision.shelf import Kept
 
 NEAR, STILL = 0.02, 0.004
 
@@ -47,10 +48,10 @@ def test_a_cap_that_turns_on_the_spot_does_not_rest() -> None:
         return (cap * np.exp(-1j * np.arange(1, 18) * angle)[:, None, None]).astype(np.complex64)
 
     for spin, rests in ((0.0, True), (0.5, False)):
-        lead = Lead.to(sighting((0.3, 0.2))._replace(spectrum=facing(0.0)), 0.0)
+        lead = Lead.to(sighting((0.3, 0.2))._replace(spectrum=Kept(facing(0.0))), 0.0)
         for count in range(1, STEADY + 2):
             t = count / 25
-            seen = sighting((0.3, 0.2))._replace(spectrum=facing(spin * t))
+            seen = sighting((0.3, 0.2))._replace(spectrum=Kept(facing(spin * t)))
             lead = lead.on(seen, t, NEAR, STILL)
         assert lead.rests is rests
 

@@ -94,7 +94,7 @@ def test_where_no_line_is_seen_the_roll_stays_nearly_what_it_was(
     monkeypatch.setattr(edge_tracker, "lay_out", partial(lay_out, lines=False))
     frames, house = filmed()
     piece = followed(house, frames)
-    assert not any((seen.marks.line >= CIRCLES).any() for seen in piece.seen[1:])
+    assert not any((seen.marks.get().line >= CIRCLES).any() for seen in piece.seen[1:])
     roll = np.array([seen.view.vector[ROLL] for seen in piece.seen])
     assert np.abs(np.diff(roll)).max() < np.radians(0.25)
     assert np.abs(roll - roll[0]).max() < np.radians(2.0)

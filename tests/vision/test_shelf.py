@@ -1,0 +1,43 @@
+"""Things put aside in a file without a name."""
+
+import gc
+import tracemalloc
+
+import numpy as np
+
+from vision.shelf import Kept, Shelf
+
+
+def test_what_was_put_aside_is_had_again_in_any_order() -> None:
+    shelf, rng = Shelf(), np.random.default_rng(1)
+    arrays = [rng.normal(size=size) for size in (3, 50_000, 1, 700)]
+    kept = [Kept(array) for array in arrays]
+    for each in kept[:3]:
+        each.put_aside(shelf)
+    np.testing.assert_array_equal(kept[1].get(), arrays[1])
+    kept[3].put_aside(shelf)  # written behind all, though another was read last
+    for each, array in [*zip(kept, arrays, strict=True)][::-1]:
+        np.testing.assert_array_equal(each.get(), array)
+
+
+def test_memory_holds_no_more_than_where_things_lie() -> None:
+    shelf = Shelf()
+    tracemalloc.start()
+    begin = tracemalloc.get_traced_memory()[0]
+    kept = []
+    for number in range(200):
+        kept.append(Kept(np.full(10_000, float(number))))
+        kept[-1].put_aside(shelf)
+    held = tracemalloc.get_traced_memory()[0] - begin
+    tracemalloc.stop()
+    assert held < 200 * 1_000
+    assert all(each.get()[0] == number for number, each in enumerate(kept))
+
+
+def test_a_thing_outlives_whoever_put_it_aside() -> None:
+    kept = Kept("as it was")
+    kept.put_aside(Shelf())
+    gc.collect()
+    assert kept.get() == "as it was"
+    del kept
+    gc.collect()  # the file closes without a warning
