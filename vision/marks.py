@@ -31,6 +31,10 @@ EDGE_SD = 0.45
 LEAST_PAIRS = 3
 """Neighbours on a circle that must both show it to tell how far their edges scatter."""
 
+CLEAR = 0.4
+"""Share of a normal that is shorter than the rest within which an edge on it must lie: nearer its
+end the colours beside it are the edge's own, and it would be drawn to where it was expected."""
+
 LEAST_ON_LINE, LEAST_SHARE = 8, 0.3
 """Edge points that the side of the sheet or a wide line must have, and the share of normals."""
 
@@ -151,8 +155,10 @@ def measure_along(
     step = 2 * normals.wanted / (SAMPLES - 1)
     slope = rise[..., rim] / step
     sample[..., rim] -= edge.beyond(slope) / step
-    good &= crossed
-    offset = (sample / (SAMPLES // 2) - 1) * normals.reach[:wide]
+    off = sample / (SAMPLES // 2) - 1
+    shorter = normals.reach[:wide] < normals.wanted
+    good &= crossed & ~(shorter & (np.abs(off) > CLEAR))
+    offset = off * normals.reach[:wide]
     within = points[:, 0, wide::BLOCK] > OUTSIDE
     stripes, shown = find_stripes(colours[..., wide:], places.blocks, within)
     offset, good = np.append(offset, stripes, axis=-1), np.append(good, shown, axis=-1)

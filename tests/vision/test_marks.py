@@ -9,7 +9,7 @@ from tests.synthetic import PAINTS, Paint, render_still, sample_scene, still_cam
 from tests.synthetic.scene import Scene
 from vision.marks import measure_marks, profiles
 from vision.normals import SAMPLES, lay_out
-from vision.paint import CENTRE_LINE, LEFT, RIGHT, TEE_LINE
+from vision.paint import CENTRE_LINE, LEFT, RIGHT, TEE_LINE, TWELVE
 from vision.pose import View
 from vision.rig import OVERHEAD, start_rig
 
@@ -68,6 +68,16 @@ def test_lines_and_sides_are_measured() -> None:
         on = marks.pick(marks.line == kind)
         assert len(on) >= 3
         assert abs(np.median(on.pixel[:, axis] - middle[axis] - 90 * place)) < 0.6
+
+
+@pytest.mark.parametrize(("aside", "clear"), [(1.0, True), (3.0, False)])
+def test_sides_near_the_end_of_their_short_normals_do_not_count(aside: float, clear: bool) -> None:
+    paint = PAINTS["navy-orange"]
+    view, rig = truth(paint)
+    turned = view.vector + np.array([0.0, aside / view.focal, 0.0, 0.0])
+    line = measure_marks(still(paint), turned, rig, reach=7).marks.line
+    assert (line == TWELVE).sum() > 100
+    assert ((line == LEFT).any(), (line == RIGHT).any()) == (clear, clear)
 
 
 def test_bare_ice_gives_no_edges() -> None:
