@@ -20,12 +20,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from vision.arrow import Arrow
 from vision.linear import Linear, Observations, by_measure, by_rig, linearised
 from vision.paint import Marks, joined
 from vision.pose import VIEW_SIZE, View
 from vision.resection import VIEW_SD
 from vision.rig import POSITION, RIG_SIZE, Prior
-from vision.robust import WIDTH, inverse, loss
+from vision.robust import WIDTH, loss
 from vision.shared import BINS, Bundle, family, piece_of, polynomials
 
 Array = NDArray[np.float64]
@@ -108,10 +109,11 @@ def bundle(
         if moving.gain(state, paint, noise) > MOVES:
             problem, found = moving, moving.learn(state, paint, noise)
     state, cov, _, noise = found
-    shared = problem.shared + len(problem.pieces)
-    known = cov[:shared, :shared]
+    offsets = np.arange(problem.shared + state.views.size, len(cov))
+    known = np.concatenate([np.arange(problem.shared), offsets])
+    cov = cov[np.ix_(known, known)]
     views = tuple(View(v) for v in state.views)
-    return Bundle(state.rig, state.travel, span, problem.pieces, state.offset, known, noise), views
+    return Bundle(state.rig, state.travel, span, problem.pieces, state.offset, cov, noise), views
 
 
 @dataclass(frozen=True)
@@ -123,17 +125,17 @@ class _State:
 
     def moved(self, step: Array) -> _State:
         shared = RIG_SIZE + self.travel.size
-        cut = shared + len(self.offset)
+        cut = shared + self.views.size
         return _State(
             self.rig + step[:RIG_SIZE],
             self.travel + step[RIG_SIZE:shared].reshape(-1, 3),
-            self.offset + step[shared:cut],
-            self.views + step[cut:].reshape(-1, VIEW_SIZE),
+            self.offset + step[cut:],
+            self.views + step[shared:cut].reshape(-1, VIEW_SIZE),
         )
 
 
 class _Problem:
-    """Residuals, normal equations and variances; unknowns in the order rig, travel, offsets, views.
+    """Residuals, normal equations and variances; unknowns in the order rig, travel, views, offsets.
 
     The marks are ordered by frames and, within a frame, by the pieces they lie on: a run of marks
     is what one frame shows of one piece.
@@ -159,9 +161,9 @@ class _Problem:
         self.first = np.flatnonzero(changes)
         self.basis = basis[number]
         self.shared = RIG_SIZE + 3 * basis.shape[1]
-        self.run_piece = self.shared + self.piece[self.first]
-        cut = self.shared + len(self.pieces)
-        self.run_view = cut + VIEW_SIZE * number[self.first] + np.arange(VIEW_SIZE)[:, None]
+        self.run_piece = self.piece[self.first]
+        of_view = VIEW_SIZE * number[self.first] + np.arange(VIEW_SIZE)[:, None]
+        self.run_view = self.shared + of_view
         self.of_piece = np.zeros((len(self.first), len(self.pieces)))
         self.of_piece[np.arange(len(self.first)), self.piece[self.first]] = 1.0
         self.prior = prior
@@ -184,46 +186,45 @@ class _Problem:
         value += 2 * float(loss(at.residual / noise[self.kind], WIDTH).sum())
         return value / 2
 
-    def normal(self, state: _State, at: Linear, paint: Array, noise: Array) -> tuple[Array, Array]:
+    def normal(self, state: _State, at: Linear, paint: Array, noise: Array) -> tuple[Arrow, Array]:
         """Assemble the normal equations: matrix and right-hand side."""
-        rig, paints = slice(0, self.shared), slice(self.shared, self.shared + len(self.pieces))
+        rig, cut = slice(0, self.shared), self.shared + state.views.size
         held = np.concatenate(
             [
                 1 / self.prior.sd**2,
                 np.full(state.travel.size, 1 / TRAVEL_SD**2),
-                1 / (paint[self.family] ** 2 + (state.offset / WIDTH) ** 2),
                 np.tile(self.hold, len(state.views)),
+                1 / (paint[self.family] ** 2 + (state.offset / WIDTH) ** 2),
             ]
         )
         away = [
             state.rig - self.prior.mean,
             state.travel.ravel(),
-            state.offset,
             (state.views - self.start).ravel(),
+            state.offset,
         ]
         right = held * np.concatenate(away)
-        matrix = np.zeros((len(held), len(held)))
         w = 1 / (noise[self.kind] ** 2 + (at.residual / WIDTH) ** 2)
         by_shared, by_offset = by_rig(self.observed, at, state.views), by_measure(self.observed, at)
         along = (self.basis.T[:, None] * by_shared[POSITION]).reshape(-1, len(w))
         by_shared = np.concatenate([by_shared, along])
         shared, own, pull = by_shared * w, at.by_view * w, w * at.residual
-        matrix[rig, rig] = shared @ by_shared.T
+        dense, border = np.diag(held[:cut]), np.zeros((cut, len(self.pieces)))
+        dense[rig, rig] += shared @ by_shared.T
         right[rig] += by_shared @ pull
         for k, part in enumerate(self.observed.parts):
-            view = slice(paints.stop + VIEW_SIZE * k, paints.stop + VIEW_SIZE * (k + 1))
-            matrix[view, view] = own[:, part] @ at.by_view[:, part].T
-            matrix[view, rig] = own[:, part] @ by_shared[:, part].T
+            view = slice(self.shared + VIEW_SIZE * k, self.shared + VIEW_SIZE * (k + 1))
+            dense[view, view] += own[:, part] @ at.by_view[:, part].T
+            dense[view, rig] = own[:, part] @ by_shared[:, part].T
+            dense[rig, view] = dense[view, rig].T
             right[view] += own[:, part] @ at.residual[part]
         if len(self.first):
             runs = np.add.reduceat(np.concatenate([shared, own]) * by_offset, self.first, axis=1)
-            matrix[paints, rig] = (runs[rig] @ self.of_piece).T
-            matrix[self.run_view, self.run_piece] = runs[self.shared :]
-        matrix = np.tril(matrix) + np.tril(matrix, -1).T
-        held[paints] += np.bincount(self.piece, w * by_offset**2, len(self.pieces))
-        right[paints] += np.bincount(self.piece, by_offset * pull, len(self.pieces))
-        matrix.flat[:: len(held) + 1] += held
-        return matrix, right
+            border[rig] = runs[rig] @ self.of_piece
+            border[self.run_view, self.run_piece] = runs[self.shared :]
+        right[cut:] += np.bincount(self.piece, by_offset * pull, len(self.pieces))
+        diagonal = held[cut:] + np.bincount(self.piece, w * by_offset**2, len(self.pieces))
+        return Arrow(dense, border, diagonal), right
 
     def learn(
         self, state: _State, paint: Array, noise: Array
@@ -238,7 +239,7 @@ class _Problem:
     def gain(self, state: _State, paint: Array, noise: Array) -> float:
         """By how much the cost falls to where linear residuals have its least."""
         matrix, right = self.normal(state, self.see(state), paint, noise)
-        return 0.5 * float(right @ np.linalg.solve(matrix, right))
+        return 0.5 * float(right @ matrix.solve(right))
 
     def fit(
         self, state: _State, paint: Array, noise: Array, iterations: int
@@ -248,9 +249,7 @@ class _Problem:
         cost, damping = self.cost(state, at, paint, noise), 1e-6
         matrix, right = self.normal(state, at, paint, noise)
         for _ in range(iterations):
-            damped = matrix.copy()
-            damped.flat[:: len(right) + 1] *= 1 + damping
-            ahead = state.moved(-np.asarray(np.linalg.solve(damped, right), np.float64))
+            ahead = state.moved(-matrix.solve(right, damping))
             ahead = self.settled(ahead, self.see(ahead), noise)
             looked = self.see(ahead)
             new = self.cost(ahead, looked, paint, noise)
@@ -262,7 +261,7 @@ class _Problem:
             matrix, right = self.normal(state, at, paint, noise)
             if done:
                 break
-        return state, inverse(matrix)
+        return state, matrix.inverse()
 
     def settled(self, state: _State, at: Linear, noise: Array) -> _State:
         """Let each view follow what it shares with the others, by a step of its own.
@@ -281,7 +280,7 @@ class _Problem:
 
     def spread(self, state: _State, cov: Array, paint: Array, noise: Array) -> tuple[Array, Array]:
         """Estimate the paint's and the marks' standard deviations anew."""
-        variance = np.diagonal(cov)[self.shared :][: len(self.pieces)]
+        variance = np.diagonal(cov)[len(cov) - len(self.pieces) :]
         sure = 1 / (1 + (state.offset / paint[self.family] / WIDTH) ** 2)
         squares, counts = PAINT_TRUST * PAINT_SD**2, np.full(FAMILIES, PAINT_TRUST)
         off = sure * (state.offset**2 + variance)
