@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vision.arrow import Arrow
-from vision.linear import Linear, Observations, by_measure, by_rig, linearised
+from vision.linear import Linear, Observations, by_measure, by_rig, linearised, view_equations
 from vision.paint import Marks, joined
 from vision.pose import VIEW_SIZE, View
 from vision.resection import VIEW_SD
@@ -212,28 +212,30 @@ class _Problem:
         dense, border = np.diag(held[:cut]), np.zeros((cut, len(self.pieces)))
         dense[rig, rig] += shared @ by_shared.T
         right[rig] += by_shared @ pull
+        matrices, rights = view_equations(self.observed, at, w)
+        right[self.shared : cut] += rights.ravel()
         for k, part in enumerate(self.observed.parts):
             view = slice(self.shared + VIEW_SIZE * k, self.shared + VIEW_SIZE * (k + 1))
-            dense[view, view] += own[:, part] @ at.by_view[:, part].T
+            dense[view, view] += matrices[k]
             dense[view, rig] = own[:, part] @ by_shared[:, part].T
             dense[rig, view] = dense[view, rig].T
-            right[view] += own[:, part] @ at.residual[part]
         if len(self.first):
             runs = np.add.reduceat(np.concatenate([shared, own]) * by_offset, self.first, axis=1)
             border[rig] = runs[rig] @ self.of_piece
             border[self.run_view, self.run_piece] = runs[self.shared :]
         right[cut:] += np.bincount(self.piece, by_offset * pull, len(self.pieces))
-        diagonal = held[cut:] + np.bincount(self.piece, w * by_offset**2, len(self.pieces))
-        return Arrow(dense, border, diagonal), right
+        held[cut:] += np.bincount(self.piece, w * by_offset**2, len(self.pieces))
+        return Arrow(dense, border, held[cut:]), right
 
     def learn(
         self, state: _State, paint: Array, noise: Array
     ) -> tuple[_State, Array, Array, Array]:
         """Fit with the paint and the noise that the residuals show: state, covariance, both."""
+        at = self.see(state)
         for step in range(ROUNDS):
-            state, cov = self.fit(state, paint, noise, FIRST if step == 0 else NEXT)
-            paint, noise = self.spread(state, cov, paint, noise)
-        state, cov = self.fit(state, paint, noise, LAST)
+            state, at, cov = self.fit(state, at, paint, noise, FIRST if step == 0 else NEXT)
+            paint, noise = self.spread(state, at, cov, paint, noise)
+        state, _, cov = self.fit(state, at, paint, noise, LAST)
         return state, cov, paint, noise
 
     def gain(self, state: _State, paint: Array, noise: Array) -> float:
@@ -242,10 +244,9 @@ class _Problem:
         return 0.5 * float(right @ matrix.solve(right))
 
     def fit(
-        self, state: _State, paint: Array, noise: Array, iterations: int
-    ) -> tuple[_State, Array]:
-        """Gauss-Newton with damping; the state and its covariance."""
-        at = self.see(state)
+        self, state: _State, at: Linear, paint: Array, noise: Array, iterations: int
+    ) -> tuple[_State, Linear, Array]:
+        """Gauss-Newton with damping; the state, what is seen from it, and its covariance."""
         cost, damping = self.cost(state, at, paint, noise), 1e-6
         matrix, right = self.normal(state, at, paint, noise)
         for _ in range(iterations):
@@ -261,7 +262,7 @@ class _Problem:
             matrix, right = self.normal(state, at, paint, noise)
             if done:
                 break
-        return state, matrix.inverse()
+        return state, at, matrix.inverse()
 
     def settled(self, state: _State, at: Linear, noise: Array) -> _State:
         """Let each view follow what it shares with the others, by a step of its own.
@@ -270,15 +271,14 @@ class _Problem:
         along the tangent of that valley would leave it where it bends.
         """
         w = 1 / (noise[self.kind] ** 2 + (at.residual / WIDTH) ** 2)
-        own = at.by_view * w
-        views = state.views.copy()
-        for k, part in enumerate(self.observed.parts):
-            matrix = own[:, part] @ at.by_view[:, part].T + np.diag(self.hold)
-            right = own[:, part] @ at.residual[part] + self.hold * (views[k] - self.start[k])
-            views[k] -= np.linalg.solve(matrix, right)
-        return replace(state, views=views)
+        matrices, right = view_equations(self.observed, at, w)
+        right += self.hold * (state.views - self.start)
+        step = np.linalg.solve(matrices + np.diag(self.hold), right[..., None])[..., 0]
+        return replace(state, views=state.views - step)
 
-    def spread(self, state: _State, cov: Array, paint: Array, noise: Array) -> tuple[Array, Array]:
+    def spread(
+        self, state: _State, at: Linear, cov: Array, paint: Array, noise: Array
+    ) -> tuple[Array, Array]:
         """Estimate the paint's and the marks' standard deviations anew."""
         variance = np.diagonal(cov)[len(cov) - len(self.pieces) :]
         sure = 1 / (1 + (state.offset / paint[self.family] / WIDTH) ** 2)
@@ -287,7 +287,7 @@ class _Problem:
         squares = squares + np.bincount(self.family, off, FAMILIES) / LOST
         counts = counts + np.bincount(self.family, sure, FAMILIES)
         fresh = np.sqrt(squares / counts)
-        residual, kinds = self.see(state).residual, self.kind
+        residual, kinds = at.residual, self.kind
         w = 1 / (1 + (residual / noise[kinds] / WIDTH) ** 2)
         # What the fit has taken up: one per unknown, as far as the data rather than priors fix it.
         taken = np.bincount(self.family, 1 - variance / paint[self.family] ** 2, FAMILIES)

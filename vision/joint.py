@@ -21,7 +21,7 @@ from vision.astray import astray, motion
 from vision.bundle import LOST, NOISE_TRUST, bundle
 from vision.camera import PARAMETERS, Camera, CameraError
 from vision.keyframe import Keyframe, replaced
-from vision.linear import Observations, by_measure, by_rig, linearised
+from vision.linear import Observations, by_measure, by_rig, linearised, view_equations
 from vision.outline import HALF_WAY, PaintEdge
 from vision.paint import CIRCLES, FIXED, Marks, ice_frame, joined, measures
 from vision.pose import VIEW_SIZE, View, camera, project, turning
@@ -195,28 +195,28 @@ def fit_frames(
     free = np.maximum(observed.summed(weight) - VIEW_SIZE, 0.0)
     noisier = (NOISE_TRUST + square) / (NOISE_TRUST + free)
     by_view = at.by_view * weight
+    normals, _ = view_equations(observed, at, weight)
+    # Linearised at the same place as the rest: else errors would not cancel.
+    covs = inverse(normals + np.diag(1 / np.square(VIEW_SD)))
     by_shared, by_offset = by_rig(observed, at, views), by_measure(observed, at)
     moved = motion(observed, at, views, away, np.array([s.index for s in seen]))
     aside = astray(moved, np.array([fit.rms for fit in fits]))
-    hold = 1 / np.square(VIEW_SD)
+    count = RIG_SIZE + len(shared.pieces)
     identity, on_circle = piece_of(marks), marks.line < CIRCLES
     found = []
     for k, (s, fit, part) in enumerate(zip(seen, fits, observed.parts, strict=True)):
-        normal = by_view[:, part] @ at.by_view[:, part].T + np.diag(hold)
-        cov = inverse(normal)  # linearised at the same place as the rest, else errors do not cancel
-        rig = shared.rig.copy()
+        cov, rig = covs[k], shared.rig.copy()
         rig[POSITION] += away[k]
-        spread = LONG_RANGE**2 * shared.cov_at(s.t)
         follows = sensitivity(
-            by_view[:, part], by_shared[:, part], by_offset[part], cov, piece[part], len(spread)
+            by_view[:, part], by_shared[:, part], by_offset[part], cov, piece[part], count
         )
-        both = np.concatenate([follows, np.eye(RIG_SIZE, len(spread))])
+        both = np.concatenate([follows, np.eye(RIG_SIZE, count)])
         to_camera = _parameters(views[k], rig, size)
         turned = np.zeros(PARAMETERS)
         turned[:2] = aside[k] / fit.view.focal
         common, own = to_camera @ both, to_camera[:, :VIEW_SIZE]
         error = CameraError(
-            common @ spread @ common.T,
+            LONG_RANGE**2 * shared.covariance(common, s.t),
             LONG_RANGE**2 * noisier[k] * own @ cov @ own.T + np.diag(turned**2),
             _scale_sd(fit.view, rig, edge_sd),
             0.0 if s.key is None else s.key.drift,

@@ -155,6 +155,15 @@ def linearised(observed: Observations, points: Array, views: Array, rig: Array) 
     return Linear(residual, by_view, by_place, by_k1, r2)
 
 
+def view_equations(observed: Observations, at: Linear, weight: Array) -> tuple[Array, Array]:
+    """Give the normal equations of each frame's view, shapes (frames, 4, 4) and (frames, 4)."""
+    own = at.by_view * weight
+    matrices = [own[:, part] @ at.by_view[:, part].T for part in observed.parts]
+    return np.array(matrices), np.array(
+        [own[:, part] @ at.residual[part] for part in observed.parts]
+    )
+
+
 def by_rig(observed: Observations, at: Linear, views: Array) -> Array:
     """Differentiate the residuals by the rig, shape (14, n)."""
     found = np.zeros((RIG_SIZE, len(observed.line)))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from vision.linear import Linear, Observations, linearised
+from vision.linear import Linear, Observations, linearised, view_equations
 from vision.paint import Marks
 from vision.pose import VIEW_SIZE, View
 from vision.robust import WIDTH, inverse, loss, spread
@@ -129,13 +129,12 @@ def solve_views(
         damping = np.where(better, np.maximum(damping / 10, 1e-9), 10 * damping)
         at = tried if better.all() else linearised(observed, points, now, rig)
         residual = at.residual
-    weighted = at.by_view / (1 + (residual / width) ** 2)
+    information, _ = view_equations(observed, at, 1 / (1 + (residual / width) ** 2))
+    information[:, _DIAGONAL, _DIAGONAL] += hold + 1e-9
     found = []
     for k, part in enumerate(observed.parts):
-        information = weighted[:, part] @ at.by_view[:, part].T
-        information[_DIAGONAL, _DIAGONAL] += hold + 1e-9
         rms, inliers = spread(residual[part], observed.sd[part], width)
-        found.append(ViewSolution(View(now[k]), information, rms, inliers, float(cost[k])))
+        found.append(ViewSolution(View(now[k]), information[k], rms, inliers, float(cost[k])))
     return found
 
 
@@ -150,9 +149,8 @@ def _descent(
     step, residual, scale = np.zeros_like(away), at.residual, 1 / width
     for _ in range(REWEIGHTINGS):
         last, relative = step, scale * residual
-        weighted = at.by_view / (1 + relative * relative)
-        normal = np.array([weighted[:, p] @ at.by_view[:, p].T for p in observed.parts])
-        right = np.array([weighted[:, p] @ at.residual[p] for p in observed.parts]) + hold * away
+        normal, right = view_equations(observed, at, 1 / (1 + relative * relative))
+        right += hold * away
         normal[:, _DIAGONAL, _DIAGONAL] *= 1 + damping[:, None]
         normal[:, _DIAGONAL, _DIAGONAL] += hold + 1e-9
         step = -np.asarray(np.linalg.solve(normal, right[..., None]))[..., 0]

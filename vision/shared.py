@@ -65,16 +65,12 @@ class Bundle:
         """How far the camera is from the rig's place at these times, shape (n, 3), m."""
         return polynomials(t, self.span, len(self.travel)) @ self.travel
 
-    def cov_at(self, t: float) -> Array:
-        """Covariance of rig and offsets at a time, shape (14 + c, 14 + c)."""
-        count = len(self.travel)
-        if not count:
-            return self.cov
-        others = [k for k in range(len(self.cov)) if not RIG_SIZE <= k < RIG_SIZE + 3 * count]
-        onto = np.eye(len(self.cov))[others]
-        basis = polynomials(np.array([t]), self.span, count)[0]
-        onto[POSITION, RIG_SIZE : RIG_SIZE + 3 * count] = np.kron(basis, np.eye(3))
-        return np.asarray(onto @ self.cov @ onto.T)
+    def covariance(self, by: Array, t: float) -> Array:
+        """Covariance at a time of what follows rig and offsets by `by`, (k, 14 + c): (k, k)."""
+        basis = polynomials(np.array([t]), self.span, len(self.travel))[0]
+        along = np.kron(basis, by[:, POSITION])
+        whole = np.concatenate([by[:, :RIG_SIZE], along, by[:, RIG_SIZE:]], axis=1)
+        return np.asarray(whole @ self.cov @ whole.T)
 
     def offsets(self, marks: Marks) -> tuple[Array, Index]:
         """Offset of the paint under each mark, m, and the place of its piece; 0, −1 if unseen."""
