@@ -31,7 +31,7 @@ class Solution:
 
     Attributes
     ----------
-    rig : ndarray, shape (14,)
+    rig : ndarray, shape (15,)
         Shared part, in the order of `vision.rig.Prior`.
     views : tuple of View
         One per frame.
@@ -67,7 +67,7 @@ def solve(
     frames : sequence of Marks
     views : sequence of View
         Start values, one per frame, and the centres of a weak prior (`VIEW_SD`).
-    rig : ndarray, shape (14,)
+    rig : ndarray, shape (15,)
         Start values of the shared part.
     size : tuple of int
         Width and height of the picture, px.

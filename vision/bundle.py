@@ -91,7 +91,7 @@ def bundle(
         Of the frames, s, ascending.
     views : sequence of View
         Start values, one per frame, and the centres of a weak prior (`VIEW_SD`).
-    rig : ndarray, shape (14,)
+    rig : ndarray, shape (15,)
         Start values of the shared part.
     size : tuple of int
         Width and height of the picture, px.

@@ -113,7 +113,7 @@ class EdgeTracker:
         ----------
         frames, views : sequences of Frame and View
             One or more frames, and where they are expected.
-        rig : ndarray, shape (14,)
+        rig : ndarray, shape (15,)
         last : View
             That of the frame before them.
 

@@ -72,7 +72,7 @@ class IceTracker:
             One or more frames, and where they are expected.
         last, picture : Seen, Picture
             The frame before them, and its picture.
-        rig : ndarray, shape (14,)
+        rig : ndarray, shape (15,)
         edges : EdgeTracker
             Measures the lines, and the rings as soon as they should be in view again.
 

@@ -26,7 +26,7 @@ from vision.outline import HALF_WAY, PaintEdge
 from vision.paint import CIRCLES, FIXED, Marks, ice_frame, joined, measures
 from vision.pose import VIEW_SIZE, View, camera, project, turning
 from vision.resection import solve_views
-from vision.rig import K1, K1_ZOOM, K2, POSITION, R4, R8, RIG_SIZE, Prior, zoom
+from vision.rig import K1, K1_BEND, K1_ZOOM, K2, POSITION, R4, R8, RIG_SIZE, Prior, zoom
 from vision.robust import WIDTH, inverse
 from vision.shared import ARC, Bundle, family, piece_of, sensitivity
 from vision.shelf import Kept
@@ -118,7 +118,7 @@ def fit_clip(
     ----------
     seen : sequence of Seen
         The frames in order, at least one of them found.
-    rig : ndarray, shape (14,)
+    rig : ndarray, shape (15,)
         Start values of what they share.
     prior : Prior
     size : tuple of int
@@ -240,14 +240,14 @@ def _scale_sd(view: View, rig: Array, edge_sd: float) -> float:
 
 
 def _parameters(view: Array, rig: Array, size: tuple[int, int]) -> Array:
-    """Change of a camera's parameters by view and rig, shape (9, 4 + 14)."""
+    """Change of a camera's parameters by view and rig, shape (9, 4 + 15)."""
     found = np.zeros((PARAMETERS, VIEW_SIZE + RIG_SIZE))
     found[:3, :3] = turning(view)
     found[3, 3] = 1.0
     found[4:7, VIEW_SIZE:][:, POSITION] = np.eye(3)
-    found[7, 3] = rig[K1_ZOOM]
-    found[7, VIEW_SIZE + K1] = 1.0
-    found[7, VIEW_SIZE + K1_ZOOM] = zoom(view[3], size)
+    z = zoom(view[3], size)
+    found[7, 3] = rig[K1_ZOOM] + 2 * z * rig[K1_BEND]
+    found[7, VIEW_SIZE + np.array([K1, K1_ZOOM, K1_BEND])] = 1.0, z, z * z
     found[8, VIEW_SIZE + K2] = 1.0
     return found
 

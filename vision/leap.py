@@ -36,7 +36,7 @@ def leapt(before: Picture, now: Picture, view: View, rig: Array) -> View | None:
     ----------
     before, now : Picture
         The picture of the view, and the next one.
-    view, rig : View, ndarray of shape (14,)
+    view, rig : View, ndarray of shape (15,)
         The camera of the picture before.
 
     Returns

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from vision.paint import MEASURED, Marks, ice_frame, measures
 from vision.pose import VIEW_SIZE, rotation_matrix, turning
-from vision.rig import K1, K1_ZOOM, K2, POSITION, RIG_SIZE, zoom
+from vision.rig import K1, K1_BEND, K1_ZOOM, K2, POSITION, RIG_SIZE, zoom
 
 Array = NDArray[np.float64]
 Value = TypeVar("Value", np.float64, np.bool_)
@@ -114,7 +114,7 @@ def linearised(observed: Observations, points: Array, views: Array, rig: Array) 
     points : ndarray, shape (3, n)
         Places of the marks relative to the camera, m.
     views : ndarray, shape (4,) or (frames, 4)
-    rig : ndarray, shape (14,)
+    rig : ndarray, shape (15,)
     """
     views = views.reshape(-1, VIEW_SIZE)
     rotations = [rotation_matrix(view) for view in views]
@@ -126,7 +126,8 @@ def linearised(observed: Observations, points: Array, views: Array, rig: Array) 
         z = np.where(hidden, 1.0, z)
     lens = observed.each(np.exp(views[:, 3]) / observed.radius) / z
     q = p[:2] * lens
-    k1 = observed.each(rig[K1] + rig[K1_ZOOM] * zoom(views[:, 3], observed.size))
+    zoomed = zoom(views[:, 3], observed.size)
+    k1 = observed.each(rig[K1] + zoomed * (rig[K1_ZOOM] + zoomed * rig[K1_BEND]))
     k2 = rig[K2]
     r2 = q[0] * q[0] + q[1] * q[1]
     stretch = 1 + r2 * (k1 + k2 * r2)
@@ -150,7 +151,7 @@ def linearised(observed: Observations, points: Array, views: Array, rig: Array) 
     moment[2] = p[0] * by_point[1] - p[1] * by_point[0]
     by_view = np.empty((VIEW_SIZE, p.shape[1]))
     by_view[:3] = observed.turned([turning(view).T for view in views], moment)
-    by_view[3] = by_log_f + by_k1 * rig[K1_ZOOM]
+    by_view[3] = by_log_f + by_k1 * observed.each(rig[K1_ZOOM] + 2 * zoomed * rig[K1_BEND])
     by_place = observed.turned([rotation.T for rotation in rotations], by_point)
     return Linear(residual, by_view, by_place, by_k1, r2)
 
@@ -165,13 +166,14 @@ def view_equations(observed: Observations, at: Linear, weight: Array) -> tuple[A
 
 
 def by_rig(observed: Observations, at: Linear, views: Array) -> Array:
-    """Differentiate the residuals by the rig, shape (14, n)."""
+    """Differentiate the residuals by the rig, shape (15, n)."""
     found = np.zeros((RIG_SIZE, len(observed.line)))
     found[POSITION] = -at.by_place
     found[K1] = at.by_k1
     found[K2] = at.by_k1 * at.r2
-    zoomed = zoom(views.reshape(-1, VIEW_SIZE)[:, 3], observed.size)
-    found[K1_ZOOM] = at.by_k1 * observed.each(zoomed)
+    zoomed = observed.each(zoom(views.reshape(-1, VIEW_SIZE)[:, 3], observed.size))
+    found[K1_ZOOM] = at.by_k1 * zoomed
+    found[K1_BEND] = at.by_k1 * zoomed**2
     column = MEASURED[observed.line]
     unknown = np.flatnonzero(column >= 0)
     found[column[unknown], unknown] = by_measure(observed, at)[unknown]

@@ -106,7 +106,7 @@ def project(ice: Array, view: Array, rig: Array, size: tuple[int, int]) -> Array
         Places on the ice, m.
     view : ndarray, shape (4,)
         A `View`'s vector.
-    rig : ndarray, shape (14,)
+    rig : ndarray, shape (15,)
     size : tuple of int
         Width and height of the picture, px.
 

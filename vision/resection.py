@@ -80,7 +80,7 @@ def solve_view(
     marks : Marks
     view : View
         Start, and the centre of the weak prior `view_sd`.
-    rig : ndarray, shape (14,)
+    rig : ndarray, shape (15,)
     size : tuple of int
         Width and height of the picture, px.
     view_sd : array_like, shape (4,)

@@ -37,7 +37,7 @@ class Bundle:
 
     Attributes
     ----------
-    rig : ndarray, shape (14,)
+    rig : ndarray, shape (15,)
     travel : ndarray, shape (d, 3)
         Coefficients of the camera's motion; none if it stays where it is.
     span : tuple of float
@@ -46,7 +46,7 @@ class Bundle:
         Identities of the pieces of paint, ascending (see `piece_of`).
     offset : ndarray, shape (c,)
         How far each lies off its line, m.
-    cov : ndarray, shape (14 + 3 d + c, 14 + 3 d + c)
+    cov : ndarray, shape (15 + 3 d + c, 15 + 3 d + c)
         Covariance of rig, travel and offsets.
     noise : ndarray, shape (3,)
         Standard deviation of a single mark on a circle, on a line, of a fixed point, in stated
@@ -66,7 +66,7 @@ class Bundle:
         return polynomials(t, self.span, len(self.travel)) @ self.travel
 
     def covariance(self, by: Array, t: float) -> Array:
-        """Covariance at a time of what follows rig and offsets by `by`, (k, 14 + c): (k, k)."""
+        """Covariance at a time of what follows rig and offsets by `by`, (k, 15 + c): (k, k)."""
         basis = polynomials(np.array([t]), self.span, len(self.travel))[0]
         along = np.kron(basis, by[:, POSITION])
         whole = np.concatenate([by[:, :RIG_SIZE], along, by[:, RIG_SIZE:]], axis=1)
@@ -108,7 +108,7 @@ def sensitivity(
     ----------
     by_view : ndarray, shape (4, n)
         Derivatives of a frame's residuals, times their weights.
-    by_shared, by_offset : ndarray, shapes (14, n) and (n,)
+    by_shared, by_offset : ndarray, shapes (15, n) and (n,)
         Derivatives by the rig, and by a shift of the paint under the mark.
     cov : ndarray, shape (4, 4)
         Of the view.

@@ -10,6 +10,7 @@ from vision.rig import (
     BACK_Y,
     HOG_Y,
     K1,
+    K1_BEND,
     K1_ZOOM,
     K2,
     OVERHEAD,
@@ -48,11 +49,12 @@ def test_cameras_of_broadcasts_are_within_the_prior() -> None:
 
 def test_the_first_radial_term_goes_with_the_zoom() -> None:
     rig = start_rig(OVERHEAD)
-    rig[[K1, K1_ZOOM, K2]] = -0.05, 0.02, 0.01
+    rig[[K1, K1_ZOOM, K1_BEND, K2]] = -0.05, 0.02, 0.005, 0.01
     wide, long = math.log(2560.0), math.log(2 * 2560.0)
     assert zoom(wide, SIZE) == pytest.approx(0.0)
     assert distortion(rig, wide, SIZE) == pytest.approx((-0.05, 0.01))
-    assert distortion(rig, long, SIZE) == pytest.approx((-0.05 + 0.02 * math.log(2), 0.01))
+    twice = -0.05 + 0.02 * math.log(2) + 0.005 * math.log(2) ** 2
+    assert distortion(rig, long, SIZE) == pytest.approx((twice, 0.01))
 
 
 def test_a_start_does_not_change_the_prior() -> None:
