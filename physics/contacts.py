@@ -52,7 +52,8 @@ def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
 
     Every approach of two stones to about 2R is a candidate. All are fitted at once as hits,
     and the one whose impulse is least significant is struck off until all that are left
-    changed the motion of both their stones.
+    changed the motion of both their stones. Where several show nothing (of hits between two
+    sightings none is seen by itself), the pair that lies farthest from touching is struck off.
 
     Parameters
     ----------
@@ -73,7 +74,7 @@ def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
         pieces, cuts = cut_all(known, meetings, radius, cuts)
         fit = fit_shot(known, pieces, meetings, radius, deceleration=Deceleration(0.0, 0.5, 0.5))
         evidence = [_evidence(fit, k, radius) for k in range(len(meetings))]
-        weakest = int(np.argmin(evidence))
+        weakest = min(range(len(meetings)), key=lambda k: (evidence[k], -_misfit(fit, k, radius)))
         if evidence[weakest] >= SIGNIFICANT:
             return _contacts(fit)
         struck = meetings[weakest]
@@ -110,6 +111,12 @@ def cut_all(
     return [piece for name in known for piece in cuts[name]], cuts
 
 
+def _misfit(fit: ShotFit, k: int, radius: float) -> float:
+    """How far from touching the two discs of meeting k are at its time, in units of 2R."""
+    apart = np.diff(fit.encounter(k).places, axis=0)
+    return abs(float(np.hypot(*apart[0])) / (2 * radius) - 1)
+
+
 def _evidence(fit: ShotFit, k: int, radius: float) -> float:
     """How many standard errors the impulse of meeting k is away from none; 0 if no hit."""
 
@@ -129,10 +136,9 @@ def _evidence(fit: ShotFit, k: int, radius: float) -> float:
     push, push_cov = fit.propagate([k], along)
     error = np.sqrt(np.diag(push_cov))
     state = fit.encounter(k)
-    distance = float(np.hypot(*(state.places[1] - state.places[0])))
     closing = float((state.before[0] - state.before[1]) @ state.normal)
     unsure = float(push_cov[3, 3] ** 0.5)
-    if push[0] < 3 * error[0] or abs(distance / (2 * radius) - 1) > REACH - 1:
+    if push[0] < 3 * error[0] or _misfit(fit, k, radius) > REACH - 1:
         return 0.0
     if closing + 2 * unsure < push[0] / MOST_PUSH or push[0] < 0.2 * radius:
         return 0.0

@@ -55,6 +55,17 @@ def test_chain_of_hits_two_frames_apart(shared: Path) -> None:
         assert hits[1].t == pytest.approx(2.3937, abs=0.02)
 
 
+def test_two_side_by_side_are_hit_between_two_sightings() -> None:
+    rng = np.random.default_rng(6)
+    motion = hit_motion(2.0, 0.155, others=(Start(0.325, 0.0),))
+    assert [(hit.first, hit.second) for hit in motion.hits] == [(0, 1), (0, 2)]
+    assert motion.hits[1].t - motion.hits[0].t < 0.8 / 30
+    for _ in range(5):
+        # The two that are hit lie within reach of each other, too.
+        hits = find_contacts(watch(motion, rng, sd=0.002), RADIUS)
+        assert [hit.stones for hit in hits] == [("A", "B"), ("A", "C")]
+
+
 def test_stones_that_touch_at_rest_hit_only_when_one_is_hit() -> None:
     rng = np.random.default_rng(4)
     frozen = Start(0.0, 2 * RADIUS + 0.002)
