@@ -56,7 +56,7 @@ def rings_seen(spectra: Complex) -> NDArray[np.bool_]:
     return np.asarray((spectra != 0).any(1).any(-1))  # five times as fast as at once
 
 
-def align(spectra: Complex, angles: Array, radii: Array, sd_shift: float) -> Alignment:
+def align(spectra: Complex, angles: Array, radii: Array, sd_shift: Array) -> Alignment:
     """Turn and shift pictures of a cap onto their mean.
 
     Parameters
@@ -67,8 +67,8 @@ def align(spectra: Complex, angles: Array, radii: Array, sd_shift: float) -> Ali
         Where to begin, rad; within a few tenths of the truth.
     radii : ndarray, shape (rings,)
         m.
-    sd_shift : float
-        Standard deviation of the shifts, m, per axis.
+    sd_shift : ndarray, shape (n,)
+        Standard deviations of the shifts, m, per axis.
     """
     seen = rings_seen(spectra)
     weight = ring_weights(radii)

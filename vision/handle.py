@@ -33,7 +33,11 @@ MANY = 0.1
 """Share of pictures unlike those before from which on another one to begin with is tried."""
 
 SPREAD = 0.3
-"""How far angles must spread for light and turning cap to be told apart by half, rad."""
+"""How far a harmonic must turn for light and turning cap to be told apart by half, rad."""
+
+BEFORE, ALIKE = 2.0, 0.001
+"""How much less like its mean than usual a picture is where something else lies before the cap (a
+hand or a broom turns what is seen by a few tenths of a radian), and what is unlike by rounding."""
 
 
 @dataclass(frozen=True)
@@ -53,8 +57,8 @@ class Turning:
     rounds : int
         How often the mean picture is built anew.
     shift : float
-        How far from where it is expected the handle's picture lies, a standard deviation, m:
-        by the height of the handle and the error of the centre.
+        How far from where it is expected the handle's picture lies by its height, a standard
+        deviation, m.
     """
 
     reach: float = 0.30
@@ -92,6 +96,7 @@ def handle_angles(
     times: Array,
     spectra: Sequence[Complex | None],
     radii: Array,
+    sd_centre: Array,
     turning: Turning = TURNING,
 ) -> tuple[Array, Array]:
     """Angle of one stone in every frame, continuous, its zero in the first frame seen.
@@ -105,6 +110,8 @@ def handle_angles(
         rings; None where the cap is not seen well.
     radii : ndarray, shape (rings,)
         Of the rings at one height, m.
+    sd_centre : ndarray, shape (n,)
+        Standard error per axis of the centres about which the cap was unrolled, m.
     turning : Turning
         How angles are followed.
 
@@ -124,9 +131,12 @@ def handle_angles(
     if good.sum() < 0.5 * len(seen):
         # Most frames do not look like the mean: there is nothing on the cap to go by.
         return theta, sd
-    fit = align(best.pictures[good], best.angles[good], radii, turning.shift)
     rows = seen[good]
-    theta[rows], sd[rows] = fit.angle, LASTING * fit.sd
+    aside = np.hypot(turning.shift, sd_centre[rows])
+    fit = align(best.pictures[good], best.angles[good], radii, aside)
+    unlike = np.maximum(1 - best.likeness[good] ** 2, ALIKE)
+    covered = np.maximum(unlike / (BEFORE * np.median(unlike)), 1.0)
+    theta[rows], sd[rows] = fit.angle, LASTING * covered**2 * fit.sd
     return theta - theta[rows[0]], sd
 
 
@@ -168,7 +178,7 @@ def unturned(pictures: Complex, angles: Array, shown: NDArray[np.bool_]) -> Comp
     """Part of the pictures of a turning cap that does not turn with it: light and shadow.
 
     Least squares on each harmonic, F(t) = S + R exp(−i k θ(t)), S held near 0 as far as the
-    angles differ too little to tell the two apart.
+    harmonic turns too little to tell the two apart.
 
     Parameters
     ----------
@@ -185,10 +195,8 @@ def unturned(pictures: Complex, angles: Array, shown: NDArray[np.bool_]) -> Comp
     phase = np.exp(-1j * ORDERS * angles[:, None])[:, :, None, None]
     along, back = _mean(phase * shown, shown), _mean(pictures * phase.conj(), shown)
     share = 1 - np.abs(along) ** 2
-    return np.asarray(
-        (_mean(pictures, shown) - along * back) / (share + (SPREAD * ORDERS[:, None, None]) ** 2),
-        np.complex64,
-    )
+    light = (_mean(pictures, shown) - along * back) / (share + SPREAD**2)
+    return np.asarray(light, np.complex64)
 
 
 def _followed(times: Array, pictures: Complex, turning: Turning) -> Array:

@@ -27,7 +27,7 @@ def test_angles_are_found_from_beside_them() -> None:
     true = np.linspace(0, 5, 30)
     pictures = spectra(true.tolist(), [(0.0, 0.0)] * 30)
     rough = true + np.where(np.arange(30) % 2, 0.05, -0.05)
-    fit = align(pictures, rough, RADII, 0.001)
+    fit = align(pictures, rough, RADII, np.full(len(rough), 0.001))
     error = fit.angle - true
     assert np.std(error) < 0.003
     assert np.abs(fit.shift).max() < 2e-4
@@ -41,7 +41,7 @@ def test_a_shift_is_told_from_a_turn() -> None:
     shifts = [
         (-a * float(np.sin(t)), a * float(np.cos(t))) for a, t in zip(aside, true, strict=True)
     ]
-    fit = align(spectra(true.tolist(), shifts), true, RADII, 0.003)
+    fit = align(spectra(true.tolist(), shifts), true, RADII, np.full(len(true), 0.003))
     assert np.std(fit.angle - true) < 0.01
     found = fit.shift[:, 1] - fit.shift[:, 1].mean()
     assert found == pytest.approx(aside, abs=0.0008)
@@ -52,7 +52,7 @@ def test_errors_grow_with_the_noise() -> None:
     rngs = [np.random.default_rng([2, k]) for k in range(40)]
     quiet = spectra(true.tolist(), [(0.0, 0.0)] * 40)
     noisy = np.array([cap_spectrum(patch(a, r), RADII) for a, r in zip(true, rngs, strict=True)])
-    sure, unsure = (align(each, true, RADII, 0.001) for each in (quiet, noisy))
+    sure, unsure = (align(each, true, RADII, np.full(len(true), 0.001)) for each in (quiet, noisy))
     assert np.median(unsure.sd) > 3 * np.median(sure.sd)
     assert 0.2 < np.std(unsure.angle - true) / np.median(unsure.sd) < 1.5
 

@@ -1,14 +1,19 @@
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import cv2
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from vision.handle import cap_spectrum, handle_angles
+from vision.handle import cap_spectrum
+from vision.handle import handle_angles as angles_about
 
 RAYS = 64
 RADII = np.linspace(0.012, 0.09, 8)
+SURE = 0.0005
+"""Standard error of a centre, m, where the whole cap is seen."""
 
 
 def patch(
@@ -26,6 +31,14 @@ def patch(
         grain = cv2.GaussianBlur(rng.normal(0, 1, value.shape[:2]), (0, 0), 2.5)
         value = value + 6 * (grain / grain.std())[..., None]
     return np.asarray(np.clip(value, 0, 255), np.uint8)
+
+
+def handle_angles(
+    times: NDArray[np.float64],
+    spectra: Sequence[NDArray[np.complex64] | None],
+    radii: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    return angles_about(times, spectra, radii, np.full(len(times), SURE))
 
 
 def spectrum(turn: float, rng: np.random.Generator | None = None) -> NDArray[np.complex64]:
@@ -141,3 +154,31 @@ def test_a_cap_that_a_slanting_view_hides_at_first_is_told_once_it_is_seen() -> 
     theta, _ = handle_angles(times, pictures, RADII)
     assert np.isnan(theta[:15]).all()
     assert np.abs(theta - true - np.nanmedian(theta - true))[15:].max() < 0.03
+
+
+def test_something_before_the_cap_leaves_the_angle_open() -> None:
+    rng = np.random.default_rng(7)
+    times = np.arange(80) / 25
+    true = 0.7 * times
+    pictures = [spectrum(a, rng) for a in true]
+    for index in range(60, 70):  # a dark bar over a part of it
+        covered = patch(true[index], rng)
+        covered[5:12] = 20
+        pictures[index] = cap_spectrum(covered, RADII)
+    theta, sd = handle_angles(times, pictures, RADII)
+    told = np.isfinite(theta)
+    off = np.abs(theta - true - np.nanmedian(theta - true))
+    assert told[:60].all()
+    assert (off[told] < 2 * sd[told]).all()
+    assert (~told[60:70] | (sd[60:70] > 2 * np.nanmedian(sd))).all()
+
+
+def test_what_is_unrolled_about_an_unsure_centre_is_less_sure() -> None:
+    rng = np.random.default_rng(8)
+    times = np.arange(60) / 25
+    pictures = [spectrum(a, rng) for a in 0.9 * times]
+    unsure = np.where(times < 0.2, 0.004, SURE)
+    _, before = handle_angles(times, pictures, RADII)
+    _, sd = angles_about(times, pictures, RADII, unsure)
+    assert (sd[:5] > before[:5]).all()
+    assert sd[5:] == pytest.approx(before[5:], rel=0.02)
