@@ -30,6 +30,15 @@ FULL_STEP = 400.0
 SURE_STEP = 150.0
 """Step of both sides together that is proof of the direction even if the cross is faint."""
 
+SURE_CROSS, FAINT_CROSS = 6.0, 25.0
+"""By how many spreads of all others a cross must stand out to be one, where no sides are seen; and
+below how many it is given up for them if it does not run along them: brooms and shadows, too, make
+crosses."""
+
+TURNS = tuple(np.radians(v) for v in (np.arange(-44.0, 45.0, 2.0), np.arange(-2.0, 2.1, 0.25)))
+"""Turns that are tried to find the sides' direction: all over, then about the best; the step at a
+side is lost when it is 3° aside."""
+
 LEAST_BACK = 5.0
 """Grey levels by which the back line must stand out to tell the end at which it is."""
 
@@ -63,32 +72,19 @@ LEAST_IN_PART = 5
 def upright(image: Image, view: View, rig: Array) -> tuple[View, Array]:
     """Turn the ice's axes onto the centre and tee lines, if these can be seen.
 
-    Of several crosses that stand out, the sheet's sides tell the true one: they run along it.
-    They also tell the centre line from the tee line where the camera stands beside the sheet;
-    y then points away from the back line, or where that is not seen to the end of the sheet that
-    is higher in the picture.
+    Of several crosses that stand out, the sheet's sides tell the true one: they run along it. If
+    none does, and none is clear, they tell the direction themselves. They also tell the centre
+    line from the tee line where the camera stands beside the sheet; y then points away from the
+    back line, or where that is not seen to the end of the sheet that is higher in the picture.
     """
     view, rig = y_up(view, rig, (image.shape[1], image.shape[0]))
-    score = _cross_score(image, view, rig)
-    turn = STEP * (np.arange(QUARTER_STEPS) - QUARTER_STEPS // 2)
-    noise = float(np.median(score)) + 1e-9
-    spread = float(np.median(np.abs(score - noise))) + 0.05 * noise
-    score -= 0.02 * noise * np.abs(np.degrees(turn)) / 10
-    best, best_worth, sure = 0, -np.inf, False
-    for top in _peaks(score, CANDIDATES, apart=6):
-        strength = _strength(image, *turned(view, rig, float(turn[top])))
-        worth = (score[top] - noise) / (score.max() - noise) + strength / FULL_STEP
-        if worth > best_worth:
-            best, best_worth = top, worth
-            sure = score[top] - noise > 6 * spread or strength > SURE_STEP
-    if not sure:
+    turn, clear, along = _best_cross(image, view, rig)
+    by_sides, strength = _along_sides(image, view, rig) if clear < FAINT_CROSS else (0.0, 0.0)
+    if strength > along + SURE_STEP:
+        turn = by_sides
+    elif clear < SURE_CROSS and along < SURE_STEP:
         return view, rig
-    # The middle of the plateau: a line is wider than a step of the angle.
-    near = np.arange(best - 3, best + 4)
-    height = score[near % QUARTER_STEPS] - noise
-    weight = np.clip(height - 0.5 * height.max(), 0, None)
-    aside = float((weight * near).sum() / weight.sum()) - best
-    level = turned(view, rig, float(turn[best] + STEP * aside))
+    level = turned(view, rig, turn)
     sideways = _upwards(image, *turned(*level, QUARTER))
     if _strength(image, *sideways) > _strength(image, *level) + SURE_STEP:
         backwards = turned(*sideways, np.pi)
@@ -116,6 +112,38 @@ def clearness(image: Image, view: View, rig: Array) -> float:
 def _strength(image: Image, view: View, rig: Array) -> float:
     """Add up the steps at both sides of the sheet, grey levels."""
     return sum(step for _, _, step in _side_steps(image, view, rig))
+
+
+def _best_cross(image: Image, view: View, rig: Array) -> tuple[float, float, float]:
+    """Find the turn at which a cross stands out, by the lines or by the sides along it.
+
+    Returns the turn, rad; by how many spreads of all others the cross stands out; and the step at
+    both sides, grey levels.
+    """
+    score = _cross_score(image, view, rig)
+    turn = STEP * (np.arange(QUARTER_STEPS) - QUARTER_STEPS // 2)
+    noise = float(np.median(score)) + 1e-9
+    spread = float(np.median(np.abs(score - noise))) + 0.05 * noise
+    score -= noise + 0.02 * noise * np.abs(np.degrees(turn)) / 10
+    peaks = _peaks(score, CANDIDATES, apart=6)
+    along = np.array([_strength(image, *turned(view, rig, float(turn[top]))) for top in peaks])
+    which = int((score[peaks] / score.max() + along / FULL_STEP).argmax())
+    best = peaks[which]
+    # The middle of the plateau: a line is wider than a step of the angle.
+    near = np.arange(best - 3, best + 4)
+    height = score[near % QUARTER_STEPS]
+    weight = np.clip(height - 0.5 * height.max(), 0, None)
+    aside = float((weight * near).sum() / weight.sum()) - best
+    return float(turn[best]) + STEP * aside, float(score[best] / spread), float(along[which])
+
+
+def _along_sides(image: Image, view: View, rig: Array) -> tuple[float, float]:
+    """Find the turn that lays the axes along the sheet's sides, rad, and the step at these."""
+    found = 0.0
+    for turns in TURNS:
+        steps = [_strength(image, *turned(view, rig, float(found + turn))) for turn in turns]
+        found += float(turns[int(np.argmax(steps))])
+    return found, max(steps)
 
 
 def _back_line(image: Image, view: View, rig: Array) -> float:

@@ -90,3 +90,22 @@ def test_from_beside_the_sheet_y_points_away_from_the_back_line(ahead: float) ->
     across, down = path.at(0.0).project(np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])).T
     seen = np.stack([SIZE[0] - 1 - down, across], axis=-1)
     np.testing.assert_allclose(found.camera.ice(seen), [[0.0, 1.0], [1.0, 0.0]], atol=0.02)
+
+
+@pytest.mark.parametrize("turn", [-0.2, 0.01, 0.4])
+def test_where_no_line_is_seen_the_sheets_sides_give_the_rotation(turn: float) -> None:
+    view, rig = level()
+    image = np.full((SIZE[1], SIZE[0], 3), 60, np.uint8)
+    corners = np.array([[-2.3, -4.0], [2.3, -4.0], [2.3, 4.0], [-2.3, 4.0]])
+    corners = np.round(project(corners, view.vector, rig, SIZE)).astype(int)
+    cv2.fillPoly(image, [corners], (225, 225, 225))
+    # A broom handle across the tee is no line.
+    handle = np.round(project(np.array([[0.1, 0.3], [0.4, 1.2]]), view.vector, rig, SIZE))
+    cv2.line(image, *handle.astype(int).tolist(), (40, 40, 40), 2, cv2.LINE_AA)
+    spun = cv2.warpAffine(
+        image, cv2.getRotationMatrix2D((479.5, 269.5), np.degrees(turn), 1.0), SIZE,
+        borderValue=(60, 60, 60),
+    )  # fmt: skip
+    noise = np.random.default_rng(0).integers(0, 12, spun.shape, dtype=np.uint8)
+    found, _ = upright(spun + noise, *level())
+    assert abs(found.vector[2]) == pytest.approx(abs(turn), abs=np.radians(0.4))
