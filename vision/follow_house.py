@@ -38,6 +38,9 @@ second. What is found then is followed back through the frames kept."""
 LOOK_BACK = 30
 """Frames kept while the house has not been found, to be followed backwards from the first find."""
 
+MOST_SPANS = 5
+"""Runs of frames left out that one warning names: more are for the table of cameras."""
+
 PATIENCE = 12
 """Frames in a row that may fail before following gives up and only finding is left."""
 
@@ -57,6 +60,7 @@ class HouseFollower:
     def __init__(self, size: tuple[int, int], first: HouseFit | None = None) -> None:
         self._size = size
         self._first = first
+        self._first_frame, self._last_frame = -1, -1
         self._pieces: list[Piece] = []
         self._piece: Piece | None = None
         self._ahead: list[Frame] = []
@@ -73,6 +77,9 @@ class HouseFollower:
             Frames placed thereby, in order, with provisional cameras: as a rule this one, or
             some and this one; after a find also those before it; none where no house is seen.
         """
+        if self._first_frame < 0:
+            self._first_frame = frame.index
+        self._last_frame = frame.index
         self._ahead.append(frame)
         placed: list[tuple[Frame, Camera]] = []
         while len(self._ahead) >= self._stride:
@@ -170,7 +177,9 @@ class HouseFollower:
         else:
             best, which = pieces[0], "the one given"
         track = fit_clip(best.seen, best.rig, best.prior, self._size, best.edges.edge)
-        return replace(track, warnings=(*_left_out(best, pieces, which), *track.warnings))
+        unseen = _unseen(pieces, self._first_frame, self._last_frame)
+        left_out = *_left_out(best, pieces, which), *unseen
+        return replace(track, warnings=(*left_out, *track.warnings))
 
     def _start(self, frame: Frame, house: HouseFit) -> list[tuple[Frame, Camera]]:
         """Begin a piece, or go on with one that shows the same; then follow it back."""
@@ -255,6 +264,20 @@ def _left_out(best: Piece, pieces: Sequence[Piece], which: str) -> tuple[str, ..
     )
 
 
+def _unseen(pieces: Sequence[Piece], first: int, last: int) -> tuple[str, ...]:
+    """Say in which frames of `first` to `last` the house is not followed."""
+    seen = sorted(s.index for piece in pieces for s in piece.seen)
+    ends = zip([first - 1, *seen], [*seen, last + 1], strict=True)
+    gaps = [_frames(a + 1, b - 1) for a, b in ends if b > a + 1]
+    if not gaps:
+        return ()
+    shown = gaps if len(gaps) <= MOST_SPANS else [*gaps[:MOST_SPANS], "…"]
+    return (f"the house is not made out in frames {', '.join(shown)}; they are left out",)
+
+
 def _span(piece: Piece) -> str:
-    first, last = piece.seen[0].index, piece.seen[-1].index
+    return _frames(piece.seen[0].index, piece.seen[-1].index)
+
+
+def _frames(first: int, last: int) -> str:
     return f"{first}" if first == last else f"{first} to {last}"

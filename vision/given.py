@@ -99,12 +99,7 @@ def follow_given(
     fit = fit_given(frame.image, house, frame=frame.index, t=frame.t)
     if fit is None:
         return _as_given(clip, frame, house, progress, placed)
-    track = follow_house(clip, progress, fit, placed)
-    before = track.cameras[0].frame - clip.first
-    if before <= 0:
-        return track
-    note = f"house {house}: it is not followed back to the first {before} frames; they are left out"
-    return replace(track, warnings=(note, *track.warnings))
+    return follow_house(clip, progress, fit, placed)
 
 
 def hypotheses(house: GivenHouse, size: tuple[int, int]) -> list[Guess]:

@@ -82,6 +82,7 @@ def test_after_a_cut_back_the_same_camera_goes_on() -> None:
     assert [c.frame for c in track.cameras] == [*range(10), *range(18, frames)]
     assert worst(track, path) < 0.003
     assert not any("pieces" in w for w in track.warnings)
+    assert any("frames 10 to 17; they are left out" in w for w in track.warnings)
 
 
 def test_another_camera_s_house_is_left_out() -> None:
