@@ -26,6 +26,8 @@ MOST_COLOURS = 2
 UNLIKE = 30.0
 """Difference of cap colours (L*a*b* units) from which they are two."""
 
+PURE = 55.0
+"""How far from grey a colour without any red counts for at least, L*a*b* units."""
 
 LEAST_CONTRAST = 0.4
 """Least share of its contrast that a picture is taken to have kept: with less, noise is colour."""
@@ -105,6 +107,14 @@ def _lab_of_table() -> Floats:
     return lab_of(bgr).reshape(64, 64, 64, 3).astype(np.float32)
 
 
+@lru_cache(maxsize=1)
+def _without_red() -> Floats:
+    """How far the colours of the table are from having any red in them, 0 to 1."""
+    steps = np.arange(64, dtype=np.float32) * 4 + 2
+    blue, green, red = np.ix_(steps, steps, steps)
+    return np.asarray(np.maximum(1 - red / np.maximum(blue, green), 0), np.float32)
+
+
 def any_stone(white: int = 210, black: int = 0) -> Appearance:
     """Appearance of stones before any is known: saturated caps, grey granite darker than ice.
 
@@ -128,6 +138,9 @@ def _coloured_stone(white: int, black: int) -> Appearance:
     contrast = max(1 - black / white, LEAST_CONTRAST)
     chroma = np.hypot(lab[..., 1] - 128, lab[..., 2] - 128) / contrast
     light = (lab[..., 0] / white - 1) / contrast + 1
+    # No teal and no dark green is far from grey, be it as pure as can be; black is not told.
+    pure = PURE * _without_red() * np.clip((light - 0.1) / 0.1, 0, 1) / contrast
+    chroma = np.maximum(chroma, pure)
     # Blue caps are the darkest, and dark colours are never as far from grey as light ones.
     blue = np.clip((118 - lab[..., 2]) / 10, 0, 1)
     vivid = chroma / (1 - blue * (1 - np.clip(light / 0.4, 0.6, 1)))

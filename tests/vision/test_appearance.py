@@ -60,6 +60,13 @@ def test_a_dark_blue_cap_is_one_and_granite_that_red_paint_tinges_is_none() -> N
     assert max(worth_of([(45, 42, 66), (47, 45, 60)], dim)) < 0.1
 
 
+def test_teal_and_dark_green_caps_are_some_and_neither_hair_nor_wood_nor_black_is() -> None:
+    """Teals and dark greens are no farther from grey than hair: but there is no red in them."""
+    look = any_stone(215)
+    assert min(worth_of([(150, 140, 20), (74, 71, 12), (40, 70, 15), (33, 58, 12)], look)) > 0.3
+    assert max(worth_of([(40, 60, 90), (110, 150, 190), (24, 22, 10)], look)) < 0.1
+
+
 def test_a_light_blue_cap_is_one_and_granite_as_pale_of_another_hue_is_none() -> None:
     """A cap of chroma 30, as a clip without colour tags shows it."""
     look = any_stone(244)
