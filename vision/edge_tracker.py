@@ -17,7 +17,7 @@ from vision.clip import Frame
 from vision.joint import Seen
 from vision.linear import Observations
 from vision.marks import Evidence, measure_along
-from vision.normals import OUTSIDE, THIN, Normals, lay_out
+from vision.normals import OUTSIDE, Normals, lay_out
 from vision.outline import PaintEdge
 from vision.paint import CIRCLES, FIXED, TWELVE, Marks, joined
 from vision.picture import Picture
@@ -26,6 +26,7 @@ from vision.resection import ViewSolution, solve_views
 from vision.rig import R4, R8
 from vision.shelf import Kept
 from vision.smear import Shutter, reach_beyond, smear, weighed
+from vision.stations import THIN
 
 Array = NDArray[np.float64]
 

@@ -9,8 +9,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.normals import SAMPLES, THIN, Normals, Profiles
+from vision.normals import SAMPLES, Normals, Profiles
 from vision.paint import CIRCLES
+from vision.stations import THIN
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]

@@ -14,11 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vision.edges import crossings, steps
-from vision.normals import BLOCK, OUTSIDE, SAMPLES, THIN, Normals, Profiles, lay_out
+from vision.normals import OUTSIDE, SAMPLES, Normals, Profiles, lay_out
 from vision.outline import HALF_WAY, PaintEdge
 from vision.paint import CIRCLES, FIXED, TWELVE, Marks
 from vision.picture import Picture, channels_at
 from vision.runs import Curves, Runs, smooth
+from vision.stations import BLOCK, THIN
 from vision.stripes import Blocks, find_stripes
 
 Array = NDArray[np.float64]

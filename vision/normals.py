@@ -8,27 +8,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import HOUSE, SHEET
-from vision.paint import (
-    BACK_LINE,
-    CENTRE_LINE,
-    CIRCLES,
-    HOG_LINE,
-    LEFT,
-    RIGHT,
-    TEE_LINE,
-    ice_frame,
-    measures,
-)
+from vision.paint import CIRCLES, HOG_LINE, LEFT, RIGHT, ice_frame, measures
 from vision.pose import project
+from vision.stations import BLOCK, ON_ALL, ON_CIRCLES, THIN, Stations
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 Profiles = NDArray[np.float32]
-
-THIN = (CENTRE_LINE, TEE_LINE, BACK_LINE)
-"""Lines a centimetre or two wide; all others are edges between two colours."""
 
 SAMPLES = 25
 """Samples along a normal; odd, the middle one at the point itself."""
@@ -43,9 +30,6 @@ BAND = 0.05
 is painted there, so that however far it is blurred or away, its other edge does not draw this one
 aside."""
 
-BLOCK = 6
-"""Neighbouring normals of a thin line that are measured together."""
-
 MOST_BLOCKS, MOST_STEPS = 18, 40
 """Most marks of a thin line, and of the edge of a wide one."""
 
@@ -59,66 +43,8 @@ _LITTLE = 1e-3
 OUTSIDE = -1e4
 """Coordinate of what is no longer in the picture, px: nothing is seen there."""
 
-CLOSER = 4
-"""How much closer blocks lie beyond the house: some lines are painted there alone, and end soon."""
-
 LEAST, LEAST_BLOCKS = 8, 3
 """Fewer normals than this are no line; of a thin line, fewer blocks."""
-
-
-def _candidates() -> list[tuple[int, Array]]:
-    """Kinds of line, and the places along each where it may be measured."""
-    angle = np.linspace(-np.pi, np.pi, 360, endpoint=False)
-    lengthwise = np.arange(-4.0, SHEET.hog_line + 3, 0.04)
-    across = np.arange(-SHEET.half_width_min, SHEET.half_width_min, 0.03)
-    # Between, the 12-ft circle touches the back line.
-    beside = _blocks(np.arange(0.76, SHEET.half_width_min, 0.03))
-    return [
-        *((kind, angle) for kind in range(CIRCLES)),
-        (LEFT, lengthwise[::3]),
-        (RIGHT, lengthwise[::3]),
-        (HOG_LINE, across[::2]),
-        (CENTRE_LINE, _blocks(lengthwise)),
-        (TEE_LINE, _blocks(across)),
-        (BACK_LINE, np.concatenate([-beside[::-1], beside])),
-    ]
-
-
-def _blocks(along: Array) -> Array:
-    """Leave out what is no whole block."""
-    return along[: len(along) // BLOCK * BLOCK]
-
-
-_CANDIDATES = _candidates()
-_KINDS = np.array([kind for kind, _ in _CANDIDATES])
-_SPACING = np.array([along[1] - along[0] for _, along in _CANDIDATES])
-_COUNTS = np.array([len(along) for _, along in _CANDIDATES])
-_STARTS = np.cumsum(_COUNTS) - _COUNTS
-_ALONG = np.concatenate([along for _, along in _CANDIDATES])
-_LINE = np.repeat(_KINDS, _COUNTS)
-_FOOT, _WAY = ice_frame(_LINE, _ALONG)
-
-# Candidates are kept by groups: on a thin line a block, else one alone.
-_GROUP = np.where(np.isin(_KINDS, THIN), BLOCK, 1)
-_GROUPS = _COUNTS // _GROUP
-_FIRST_GROUP = np.cumsum(_GROUPS) - _GROUPS
-_GROUP_SIZE = np.repeat(_GROUP, _GROUPS)
-_GROUP_START = np.cumsum(_GROUP_SIZE) - _GROUP_SIZE
-_BEYOND = np.abs(_ALONG[_GROUP_START + _GROUP_SIZE // 2]) > HOUSE.twelve_foot
-_SHARE = np.where((_GROUP_SIZE > 1) & _BEYOND, CLOSER, 1)
-
-
-def _neighbours() -> tuple[Index, Index]:
-    """Index of the candidate after and before each one on the same line."""
-    ahead, behind = np.arange(len(_ALONG)) + 1, np.arange(len(_ALONG)) - 1
-    for kind, first, count in zip(_KINDS, _STARTS, _COUNTS, strict=True):
-        last, closed = first + count - 1, kind < CIRCLES
-        ahead[last] = first if closed else last
-        behind[first] = last if closed else first
-    return ahead, behind
-
-
-_AHEAD, _BEHIND = _neighbours()
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,8 +124,7 @@ class Normals:
         point, (across, down) = seen[:, :count], seen[:, count:] - seen[:, :count]
         if not np.abs(point - self.point).max() < MOST_MOVED * size[0]:
             return None
-        reach, (x, y), (w, h) = self.wanted, point, size
-        inside = (x > reach) & (y > reach) & (x < w - 1 - reach) & (y < h - 1 - reach)
+        inside = _within(point, self.wanted, size)
         if not inside.all():
             blocks = inside[self.wide :].reshape(-1, BLOCK)
             inside[self.wide :] = np.repeat(blocks.all(1), BLOCK)
@@ -237,63 +162,66 @@ def lay_out(
     lines : bool
         Whether the lines are laid out beside the circles.
     """
-    upto = len(_KINDS) if lines else CIRCLES
-    count, groups = int(_COUNTS[:upto].sum()), int(_GROUPS[:upto].sum())
-    measure = np.repeat(measures(rig)[_KINDS[:upto]], _COUNTS[:upto])
-    place = project((_FOOT[:, :count] + _WAY[:, :count] * measure).T, view, rig, size)
-    x, y = place.T
-    across, down = (v[_AHEAD[:count]] - v[_BEHIND[:count]] for v in (x, y))
+    on = ON_ALL if lines else ON_CIRCLES
+    measure = measures(rig)[on.line]
+    place = project((on.foot + on.way * measure).T, view, rig, size).T
+    across, down = place[:, on.ahead] - place[:, on.behind]
     length = np.sqrt(across * across + down * down)
-    w, h = size
-    inside = (x > reach) & (y > reach) & (x < w - 1 - reach) & (y < h - 1 - reach)
-    shown = np.add.reduceat(inside, _STARTS[:upto], dtype=np.int64)
-    span = np.add.reduceat(np.where(inside, length, 0.0), _STARTS[:upto]) / 2
-    scale = span / np.maximum(shown * _SPACING[:upto], 1e-9)
-    wanted = np.where(_GROUP[:upto] > 1, min(most // 6, MOST_BLOCKS), min(most // 2, MOST_STEPS))
+    inside = _within(place, reach, size)
+    shown = np.add.reduceat(inside, on.start, dtype=np.int64)
+    span = np.add.reduceat(np.where(inside, length, 0.0), on.start) / 2
+    scale = span / np.maximum(shown * on.spacing, 1e-9)
+    thin, hog = on.group > 1, on.kind == HOG_LINE
+    wanted = np.where(thin, min(most // 6, MOST_BLOCKS), min(most // 2, MOST_STEPS))
     wanted[:CIRCLES] = np.clip(span[:CIRCLES] / spacing, 12, most)
-    kept = _thinned(inside, wanted, groups)
-    at = np.flatnonzero(np.repeat(kept, _GROUP_SIZE[:groups]))
-    counts = _GROUP[:upto] * np.add.reduceat(kept, _FIRST_GROUP[:upto], dtype=np.int64)
+    kept = _thinned(inside, wanted, on)
+    at = np.flatnonzero(np.repeat(kept, on.group_size))
+    counts = on.group * np.add.reduceat(kept, on.first_group, dtype=np.int64)
     ends = np.cumsum(counts)
     kinds = {
         int(kind): slice(int(end - n), int(end))
-        for kind, n, end in zip(_KINDS[:upto], counts, ends, strict=True)
+        for kind, n, end in zip(on.kind, counts, ends, strict=True)
         if n
     }
-    reaches = np.full(upto, reach)
-    thin, hog = _GROUP[:upto] > 1, _KINDS[:upto] == HOG_LINE
+    reaches = np.full(len(counts), reach)
     reaches[thin] = np.maximum(reach, LINE_REACH * scale[thin])
     reaches[hog] = np.minimum(reach, BAND * scale[hog])
     normal = np.stack([down[at], -across[at]]) / length[at]
-    reaches = np.fmin(np.repeat(reaches, counts), _beside(place, measure)[at])
+    reaches = np.fmin(np.repeat(reaches, counts), _beside(place, measure, on.line)[at])
     samples = _SHARES[:, None] * (normal * reaches).astype(np.float32)[:, None]
-    visible = shown[:CIRCLES] / _COUNTS[:CIRCLES]
     return Normals(
-        kinds, _LINE[at], _ALONG[at], _FOOT[:, at], _WAY[:, at], place.T[:, at], normal, reach,
-        reaches, visible, samples,
+        kinds, on.line[at], on.along[at], on.foot[:, at], on.way[:, at], place[:, at], normal,
+        reach, reaches, shown[:CIRCLES] / on.count[:CIRCLES], samples,
     )  # fmt: skip
 
 
-def _beside(place: Array, measure: Array) -> Array:
+def _within(place: Array, margin: float, size: tuple[int, int]) -> Flags:
+    """Whether places, (2, n), lie in the picture, so far from its rim."""
+    (x, y), (w, h) = place, size
+    return np.asarray(
+        (x > margin) & (y > margin) & (x < w - 1 - margin) & (y < h - 1 - margin), bool
+    )
+
+
+def _beside(place: Array, measure: Array, line: Index) -> Array:
     """Half widths to look at across the sheet's sides, px; inf elsewhere, NaN by one not seen."""
-    bound = np.full(len(place), np.inf)
-    left, right = (_LINE[: len(place)] == kind for kind in (LEFT, RIGHT))
-    across = np.hypot(*(place[right] - place[left]).T)
+    bound = np.full(len(line), np.inf)
+    left, right = line == LEFT, line == RIGHT
+    across = np.hypot(*(place[:, right] - place[:, left]))
     bound[left] = bound[right] = BAND * across / (measure[right] - measure[left])
     return bound
 
 
-def _thinned(inside: Flags, wanted: Index, groups: int) -> Flags:
-    """Keep so many groups of each kind as are wanted of those that lie inside."""
-    whole = np.logical_and.reduceat(inside, _GROUP_START[:groups])
-    first, sizes = _FIRST_GROUP[: len(wanted)], _GROUPS[: len(wanted)]
-    share = whole * _SHARE[:groups]
+def _thinned(inside: Flags, wanted: Index, on: Stations) -> Flags:
+    """Keep so many groups on each line as are wanted of those that lie inside."""
+    whole = np.logical_and.reduceat(inside, on.group_start)
+    share, first = whole * on.share, on.first_group
     total = np.cumsum(share)
-    number = total - share - np.repeat(total[first] - share[first], sizes)
+    number = total - share - np.repeat(total[first] - share[first], on.groups)
     have = np.add.reduceat(whole, first, dtype=np.int64)
     shares = np.add.reduceat(share, first, dtype=np.int64)
-    enough = have >= np.where(_GROUP[: len(wanted)] > 1, LEAST_BLOCKS, LEAST)
-    ratio = np.repeat(np.minimum(wanted / np.maximum(shares, 1), 1.0) * enough, sizes)
+    enough = have >= np.where(on.group > 1, LEAST_BLOCKS, LEAST)
+    ratio = np.repeat(np.minimum(wanted / np.maximum(shares, 1), 1.0) * enough, on.groups)
     # Of those in each equal share of a line the middle one: both ends are alike.
     before, after = (np.floor(n * ratio + 0.5) for n in (number, number + share))
     return np.asarray(whole & (after > before))

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.normals import THIN
 from vision.paint import Marks
+from vision.stations import THIN
 
 Array = NDArray[np.float64]
 

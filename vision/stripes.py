@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import HOUSE
-from vision.normals import BLOCK, LEAST_BLOCKS, SAMPLES, THIN, Normals, Profiles
+from vision.normals import LEAST_BLOCKS, SAMPLES, Normals, Profiles
 from vision.runs import Runs
+from vision.stations import BLOCK, THIN
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

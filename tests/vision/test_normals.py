@@ -5,11 +5,12 @@ import pytest
 
 from data.sheet import HOUSE
 from tests.vision.cameras import ice_points
-from vision.normals import BLOCK, OUTSIDE, THIN, lay_out
+from vision.normals import OUTSIDE, lay_out
 from vision.paint import CIRCLES, LEFT, RIGHT, TEE_LINE, TWELVE
 from vision.pose import aim, project
 from vision.rig import ANYWHERE, OVERHEAD, start_rig
 from vision.rig import POSITION as PLACE
+from vision.stations import BLOCK, THIN
 
 SIZE = (1280, 720)
 POSITION = (0.1, -0.2, 8.5)

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from data.sheet import HOUSE
-from vision.normals import BLOCK, SAMPLES, Normals, lay_out
+from vision.normals import SAMPLES, Normals, lay_out
 from vision.paint import CENTRE_LINE, TEE_LINE
 from vision.pose import aim
 from vision.rig import OVERHEAD, start_rig
+from vision.stations import BLOCK
 from vision.stripes import Blocks, find_stripes
 
 SIZE = (1280, 720)
