@@ -193,7 +193,7 @@ def unturned(pictures: Complex, angles: Array, shown: NDArray[np.bool_]) -> Comp
     ndarray, shape (orders, rings, channels)
     """
     phase = np.exp(-1j * ORDERS * angles[:, None])[:, :, None, None]
-    along, back = _mean(phase * shown, shown), _mean(pictures * phase.conj(), shown)
+    along, back = _mean(phase * shown, shown), _mean(turned(pictures, -angles), shown)
     share = 1 - np.abs(along) ** 2
     light = (_mean(pictures, shown) - along * back) / (share + SPREAD**2)
     return np.asarray(light, np.complex64)
