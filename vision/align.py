@@ -27,6 +27,9 @@ HARMONICS = ORDERS[1:-1]
 _ROUNDS = 6
 """How often angles and shifts are found anew against the mean that they give."""
 
+TOGETHER = 128
+"""Pictures that are brought nearer to their mean at a time: more take memory, and no less time."""
+
 ALIKE = 2.5
 """How much larger errors are than if every ring, harmonic and colour erred for itself."""
 
@@ -75,31 +78,43 @@ def align(spectra: Complex, angles: Array, radii: Array, sd_shift: Array) -> Ali
     often = np.maximum(seen.sum(0), 1)[:, None].astype(np.float32)
     angle, shift = angles.astype(float), np.zeros((len(angles), 2))
     sd = np.full(len(angles), np.nan)
+    parts = [slice(begin, begin + TOGETHER) for begin in range(0, len(angles), TOGETHER)]
     for _ in range(_ROUNDS):
-        upright = turned(spectra, -angle)
-        mean = upright.sum(0) / often
+        mean = np.sum([turned(spectra[k], -angle[k]).sum(0) for k in parts], axis=0) / often
         slopes = _slopes(mean, radii, weight)
-        flat = slopes.reshape(3, -1)
-        moved = np.concatenate([np.zeros((len(angle), 1)), shift], axis=1)
-        model = mean[1:-1] + (moved.astype(np.float32) @ flat).reshape(-1, *slopes.shape[1:])
-        model *= seen[:, None, :, None]
-        here = upright[:, 1:-1]
-        gain = _product(here, model) / np.maximum(_product(model, model), 1e-12)
-        rest = here * (1 / np.maximum(gain, 0.1)).astype(np.float32)[:, None, None, None] - model
-        count = 2 * rest[0, :, 0].size * np.maximum(seen.sum(1), 1)
-        noise = ALIKE**2 * _product(rest, rest) / count
-        by_ring = np.einsum("pkrc,qkrc->rpq", slopes.conj(), slopes).real
-        normal = np.einsum("nr,rpq->npq", seen.astype(float), by_ring)
-        prior = np.diag([0.0, 1.0, 1.0]) * (noise / sd_shift**2)[:, None, None]
-        normal += prior + 1e-12 * np.eye(3)
-        pull = (rest.reshape(len(rest), -1) @ flat.conj().T).real
-        pull -= np.einsum("npq,nq->np", prior, moved)
-        inverse = np.linalg.inv(normal)
-        step = np.einsum("npq,nq->np", inverse, pull)
-        angle = angle + np.clip(step[:, 0], -0.1, 0.1)
-        shift = shift + step[:, 1:]
-        sd = np.sqrt(inverse[:, 0, 0] * noise)
+        for k in parts:
+            upright = turned(spectra[k], -angle[k])[:, 1:-1]
+            step, sd[k] = _step(upright, seen[k], shift[k], sd_shift[k], mean[1:-1], slopes)
+            angle[k] += np.clip(step[:, 0], -0.1, 0.1)
+            shift[k] += step[:, 1:]
     return Alignment(angle, sd, shift)
+
+
+def _step(
+    here: Complex,
+    seen: NDArray[np.bool_],
+    shift: Array,
+    sd_shift: Array,
+    mean: Complex,
+    slopes: Complex,
+) -> tuple[Array, Array]:
+    """Tell by how much farther upright pictures are turned and shifted, (n, 3), and the sd."""
+    flat = slopes.reshape(3, -1)
+    moved = np.concatenate([np.zeros((len(shift), 1)), shift], axis=1)
+    model = mean + (moved.astype(np.float32) @ flat).reshape(-1, *slopes.shape[1:])
+    model *= seen[:, None, :, None]
+    gain = _product(here, model) / np.maximum(_product(model, model), 1e-12)
+    rest = here * (1 / np.maximum(gain, 0.1)).astype(np.float32)[:, None, None, None] - model
+    count = 2 * rest[0, :, 0].size * np.maximum(seen.sum(1), 1)
+    noise = ALIKE**2 * _product(rest, rest) / count
+    by_ring = np.einsum("pkrc,qkrc->rpq", slopes.conj(), slopes).real
+    normal = np.einsum("nr,rpq->npq", seen.astype(float), by_ring)
+    prior = np.diag([0.0, 1.0, 1.0]) * (noise / sd_shift**2)[:, None, None]
+    normal += prior + 1e-12 * np.eye(3)
+    pull = (rest.reshape(len(rest), -1) @ flat.conj().T).real
+    pull -= np.einsum("npq,nq->np", prior, moved)
+    inverse = np.linalg.inv(normal)
+    return np.einsum("npq,nq->np", inverse, pull), np.sqrt(inverse[:, 0, 0] * noise)
 
 
 def _product(first: Complex, second: Complex) -> Array:
