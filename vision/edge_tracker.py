@@ -48,7 +48,7 @@ SETTLED, LEAST_SETTLED = 0.4, 0.1
 """Correction below which the edges need not be measured anew, half lengths of the normals; and in
 however fast a pan."""
 
-ROUNDS = 3
+ROUNDS = 6
 """How often the edges of a frame are measured at most."""
 
 LEAST_ARC = 1.2
@@ -143,11 +143,12 @@ class EdgeTracker:
                 self._is_settled(*each, rig) for each in zip(views, evidence, fits, strict=False)
             ]
             count = _leading(settled)
-            if count:
+            stays = again and fits[0].view.aside(views[0]) < LEAST_SETTLED * self._reach
+            if count or stays:
                 break
             smeared = smear(evidence[0].slope)
             frames, views, again = frames[:1], [fits[0].view], True
-        else:
+        if not count:
             if not _enough(rig, evidence[0].visible, _explained(evidence[0], fits[0])):
                 return []
             count = 1

@@ -34,6 +34,10 @@ Array = NDArray[np.float64]
 REFINE_AT = (8, 40, 160)
 """Numbers of frames at which what they share is fitted anew on the way."""
 
+REFINE_ZOOM = 0.2
+"""Change of log focal length beyond what was seen by then after which it is due as well: the lens
+goes with the zoom, and what it is beyond that is not known."""
+
 REFINE_FRAMES = 6
 """Of all frames so many, spread over them, say what they share on the way."""
 
@@ -78,7 +82,8 @@ class Piece:
     found: int = 0
     lost: int = 0
     leapt: bool = False
-    _refined: int = 0
+    _due: tuple[float, ...] = (*REFINE_AT, np.inf)
+    _zooms: tuple[float, float] = (-np.inf, np.inf)
     _picture: Picture | None = None
     _ice: IceTracker = field(default_factory=IceTracker)
     _fresh: list[Picture] = field(default_factory=list)
@@ -172,10 +177,15 @@ class Piece:
 
     def _refine(self) -> None:
         """Fit anew what the frames share, at first often, so that the way on is more precise."""
-        due = REFINE_AT[self._refined :]
-        if not due or not self.seen[-1].found or self.found < due[0]:
+        last = self.seen[-1]
+        if not last.found:
             return
-        self._refined += 1
+        log_f, (shortest, longest) = float(last.view.vector[3]), self._zooms
+        enough = self.found >= self._due[0]
+        if not enough and shortest - REFINE_ZOOM < log_f < longest + REFINE_ZOOM:
+            return
+        self._zooms = min(log_f, shortest), max(log_f, longest)
+        self._due = self._due[enough:]
         self.rig = self._joint(self._spread()).rig
         for i, seen in list(enumerate(self.seen))[-MEMORY:]:  # by them the next are predicted
             view = solve_view(seen.marks.get(), seen.view, self.rig, self.size, view_sd=HELD).view
@@ -231,6 +241,7 @@ class Piece:
             that wait, in order.
         """
         before, self.seen, self.edges.stride = self.seen, [], 1
+        self._zooms = (float(view.vector[3]),) * 2
         self._ice.forget()
         settled = self.edges.settle([frame], [view], self.rig, view)
         first = settled[0] if settled else Seen(frame.index, frame.t, view, Kept(marks), True)

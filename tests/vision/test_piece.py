@@ -6,12 +6,12 @@ from functools import partial
 import numpy as np
 import pytest
 
-from tests.synthetic import PAINTS, Key, render_still, sample_scene, tilted_camera
+from tests.synthetic import PAINTS, Key, cached_clip, render_still, sample_scene, tilted_camera
 from tests.synthetic.camera import CameraPath
 from tests.vision.places import RINGS
 from tests.vision.test_edge_tracker import filmed, tracker
 from vision import edge_tracker
-from vision.clip import Frame
+from vision.clip import Frame, open_clip
 from vision.edge_tracker import EdgeTracker
 from vision.house import find_house
 from vision.house_fit import HouseFit
@@ -70,6 +70,21 @@ def test_a_camera_that_leaps_is_followed() -> None:
     assert piece.leapt and piece.found == 2
     pixels = paths[1].at(0.0).project(np.c_[RINGS, np.zeros(len(RINGS))])
     assert np.linalg.norm(piece.camera(piece.seen[1]).ice(pixels) - RINGS, axis=1).max() < 0.02
+
+
+def test_a_lens_that_bends_with_the_zoom_is_learned_on_the_way() -> None:
+    scene = replace(sample_scene(), paint=PAINTS["navy-orange"])
+    keys = (
+        Key(0.0, 0.0, 0.1, 75, k1=-0.1),
+        Key(0.5, 0.0, 0.1, 75, k1=-0.1),
+        Key(1.2, 0.0, 0.1, 185, k1=0.06),
+    )
+    file, _ = cached_clip(scene, CameraPath((1280, 720), (-0.1, 0.1, 8.5), keys), duration=1.2)
+    frames = list(open_clip([file]))
+    house = find_house(frames[0].image)
+    assert house is not None
+    piece = followed(house, frames)
+    assert piece.edges.support > 0.8
 
 
 def test_one_camera_explains_its_house_and_not_that_of_another() -> None:
