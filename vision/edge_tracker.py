@@ -136,13 +136,9 @@ class EdgeTracker:
             evidence = evidence[: _leading([_enough(rig, e.visible, e.covered) for e in evidence])]
             if not evidence:
                 return []
-            marks = [weighed(e.marks, self.sweep, self.size[0]) for e in evidence]
-            evidence = [replace(e, marks=m) for e, m in zip(evidence, marks, strict=True)]
-            fits = self._fitted(marks, views, rig)
-            settled = [
-                self._is_settled(*each, rig) for each in zip(views, evidence, fits, strict=False)
-            ]
-            count = _leading(settled)
+            fits = self._fitted([e.marks for e in evidence], views, rig)
+            each = zip(views, evidence, fits, strict=False)
+            count = _leading([self._is_settled(*one, rig) for one in each])
             stays = again and fits[0].view.aside(views[0]) < LEAST_SETTLED * self._reach
             if count or stays:
                 break
@@ -241,10 +237,11 @@ class EdgeTracker:
     def _measured(
         self, pictures: Sequence[Picture], normals: Normals, standing: Array
     ) -> list[Evidence]:
-        return measure_along(
+        found = measure_along(
             pictures[: len(standing)], normals, standing,
             least_sd=MARK_SD, palette=self.palette, edge=self.edge,
         )  # fmt: skip
+        return [replace(e, marks=weighed(e.marks, self.sweep, self.size[0])) for e in found]
 
     def _fitted(
         self, marks: Sequence[Marks], views: Sequence[View], rig: Array
