@@ -7,7 +7,7 @@ rim of a plain disc) give the centre, and what lies between them the evidence fo
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from data.sheet import Stone
 from vision.appearance import Appearance, membership
 from vision.circles import fit_circles, medians
+from vision.contrast import by_hue, by_lightness, mean_colours
 from vision.patch import (
     CAP_END,
     EFFORT,
@@ -72,6 +73,9 @@ class Measures:
         Share of the rays on which the cap was seen, whatever is around it.
     evidence : ndarray, shape (n,)
         For a stone 0 to about 3, for a plain disc 0 to 1.
+    light : ndarray, shape (n, 2)
+        Where the edge of the cap by its lightness alone has its middle, off the centre, m; NaN
+        where it was not found.
     bends : ndarray, shape (n, 6)
         How the edge of cap or disc is bent (`vision.circles.Fits`), m.
     outline : ndarray, shape (n, circles)
@@ -94,6 +98,7 @@ class Measures:
     visible: Array
     uncovered: Array
     evidence: Array
+    light: Array
     bends: Array
     outline: Array
     wall: Array
@@ -174,12 +179,6 @@ def _template(disc: Stone, effort: Effort) -> Array:
     return np.asarray(cap / cap.sum() - ring / ring.sum())
 
 
-def _mean_of(values: Floats, use: Floats) -> Array:
-    """Mean colours (n, 3) of samples (n, rays, radii, 3) by weights; 0 where there are none."""
-    total = use.reshape(len(use), 1, -1) @ values.reshape(len(values), -1, 3)
-    return np.asarray(total[:, 0] / np.maximum(use.sum((1, 2)), 1)[:, None], float)
-
-
 def _stones(
     rays: Rays,
     handle: Bytes,
@@ -197,11 +196,9 @@ def _stones(
     if not rays.inside.all():
         worth *= rays.inside
     of_cap, of_ring = worth[..., in_cap] > CLEARLY, worth[..., in_ring] < -CLEARLY
-    cap = _mean_of(lab[..., in_cap, :], of_cap.astype(np.float32))
-    granite = _mean_of(lab[..., in_ring, :], of_ring.astype(np.float32))
-    # Bolts and highlights are light and dark alike; the hue is what ends at the cap's edge.
-    apart = np.array([0.1, 1.0, 1.0]) * (cap - granite)
-    apart /= np.maximum(((cap - granite) * apart).sum(1), 1.0)[:, None]
+    cap = mean_colours(lab[..., in_cap, :], of_cap.astype(np.float32))
+    granite = mean_colours(lab[..., in_ring, :], of_ring.astype(np.float32))
+    apart = by_hue(cap, granite)
     along = apart.astype(np.float32)[:, None, :, None]
     half = ((granite * apart).sum(1) + 0.5).astype(np.float32)[:, None, None]
     signal = (lab[..., : in_ring.stop, :] @ along)[..., 0] - half
@@ -229,6 +226,11 @@ def _stones(
         rays, (cap_rim, granite_rim), appearance.slack, effort.edge_reach, 0.25 * pixel,
         effort.rounds, appearance.wall,
     )  # fmt: skip
+    steps = by_lightness(cap, granite).astype(np.float32)[:, None, None]
+    light_rim = replace(cap_rim, fall=falls[..., 0] * steps)
+    lit = fit_circles(
+        rays, (light_rim,), appearance.slack, effort.edge_reach, 0.25 * pixel, 1, appearance.wall
+    )
     # All around, a stone's granite is of one lightness, and its cap is as large as any other's;
     # caps and shoulders of people are neither.
     count = np.maximum(stony.sum(1), 1)
@@ -249,6 +251,7 @@ def _stones(
         visible=visible,
         uncovered=(capped & at_cap).mean(1),
         evidence=fit.shares.sum(1) - uneven - 0.5 * misfit + 0.5 * response,
+        light=np.where(lit.ok[:, None], lit.shift - fit.shift, np.nan),
         bends=fit.bends,
         outline=fit.radii / np.array([disc.cap_radius, disc.radius]),
         wall=fit.wall,
@@ -276,10 +279,11 @@ def _plain(
         centre=places + fit.shift,
         shift=np.hypot(fit.shift[:, 0], fit.shift[:, 1]),
         sd=_errors(fit.covariance, pixel, np.zeros(n)),
-        colour=_mean_of(rays.lab.astype(np.float32), within.astype(np.float32)),
+        colour=mean_colours(rays.lab.astype(np.float32), within.astype(np.float32)),
         visible=visible,
         uncovered=visible,
         evidence=fit.shares[:, 0],
+        light=np.full((n, 2), np.nan),
         bends=fit.bends,
         outline=fit.radii / disc.radius,
         wall=fit.wall,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import nan
 from typing import NamedTuple
 
 import numpy as np
@@ -44,6 +45,9 @@ class Sighting(NamedTuple):
         Where the picture shows the middle of the cap, px.
     pixel_size : float
         How long a pixel is there by the camera at hand, m; NaN where it is not told yet.
+    light : tuple of float
+        Where the edge of the cap by its lightness alone has its middle, off (x, y), m; NaN where
+        it was not found.
     cap_samples, granite_samples : ndarray, shape (n, 3)
         Colours of the cap and of the granite, for learning.
     spectrum : Kept of ndarray or None
@@ -66,6 +70,7 @@ class Sighting(NamedTuple):
     bends: tuple[float, ...]
     pixel: tuple[float, float]
     pixel_size: float
+    light: tuple[float, float] = (nan, nan)
     spectrum: Kept[NDArray[np.complex64]] | None = None
     cap_samples: Array = _NONE
     granite_samples: Array = _NONE

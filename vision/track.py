@@ -17,10 +17,12 @@ from vision.camera import Camera
 from vision.clip import Clip
 from vision.follow import Gate, Track, follow
 from vision.handle import handle_angles
+from vision.late import seen_late
 from vision.naming import names_by_motion
 from vision.patch import handle_radii, is_plain
 from vision.rejoin import rejoined
 from vision.roundness import edge_error
+from vision.steady import steadied
 from vision.stones import FOLLOWING, Search
 from vision.watch import Watch
 
@@ -115,15 +117,16 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
     edge = edge_error([track.sightings for track in tracks])
     team = _teams(named, watch.appearance)
     rows = [_rows(name, named[name], team[name], disc, edge) for name in sorted(named)]
+    late = seen_late({names[number]: tracks[int(number)] for number in rest}, cameras, disc)
     return StoneTracks(
-        {name: np.concatenate([part[name] for part in rows]) for name in SIGHTING_COLUMNS}
+        {name: np.concatenate([part[name] for part in rows]) for name in SIGHTING_COLUMNS}, late
     )
 
 
 def _rows(name: str, track: Track, team: str, disc: Stone, edge: float) -> Columns:
     kept = [sighting.spectrum for sighting in track.sightings]
     spectra = [None if spectrum is None else spectrum.get() for spectrum in kept]
-    seen = track.sightings
+    seen = steadied(track.times, track.sightings)
     x, y, sd_x, sd_y, sd_place_x, sd_place_y = np.array(
         [(item.x, item.y, item.sd_x, item.sd_y, *item.sd_place) for item in seen]
     ).T

@@ -64,11 +64,25 @@ def test_dark_clothes_before_a_stone_are_not_taken_for_its_granite() -> None:
     assert less.evidence[1] > whole.evidence[1] - 1.0
 
 
+def test_a_lamp_from_one_side_draws_the_edge_by_lightness_aside() -> None:
+    seen = measured(PLACES)
+    assert np.hypot(*seen.light.T).max() < 0.003
+    x, y = VIEW.project(PLACES[1:2], STONE.cap_height)[0]
+    down, across = np.mgrid[: PICTURE.shape[0], : PICTURE.shape[1]]
+    near = np.hypot(across - x, down - y) < 0.97 * STONE.radius * float(VIEW.scale_at(PLACES[1]))
+    lit = 1 + 0.35 * near * np.sign(across - x)
+    shaded = np.clip(PICTURE * lit[..., None], 0, 255).astype(np.uint8)
+    again = measured(PLACES, shaded)
+    aside = np.abs(again.light - seen.light)
+    assert aside[1].max() > 2 * aside[[0, 2]].max() + 2e-4
+
+
 def test_of_a_plain_disc_the_rim_tells() -> None:
     seen = measure_discs([Look(PICTURE, VIEW, PLACES[:1])], None, plain_disc(STONE.radius))
     assert seen.ok[0]
     assert seen.evidence[0] > 0.5
     assert seen.outline.shape == (1, 1)
+    assert np.isnan(seen.light).all()
 
 
 @pytest.mark.parametrize("aside", [-12, -5, 0, 5, 12])

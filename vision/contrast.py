@@ -1,0 +1,55 @@
+"""By what a cap differs from the granite around it: by its hue, and by its lightness."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Floats = NDArray[np.float32]
+
+LIGHT = 0.1
+"""What lightness has to say beside hue: bolts and highlights are light and dark alike; the hue is
+what ends at the cap's edge."""
+
+MOST_LIGHT = 0.03
+"""Most that lightness has of the say of a vivid hue: lamps from one side draw the edge of a cap
+that is much lighter than its granite aside, and that of a dark one to the other side."""
+
+FAINT, VIVID = 40.0, 60.0
+"""Difference of hue (L*a*b* units) up to which lightness is needed, and from which it is not: pale
+and dark caps have 30 to 45, red and yellow ones 70 to 90, and in a grey picture none has any."""
+
+
+def mean_colours(values: Floats, use: Floats) -> Array:
+    """Mean colours (n, 3) of samples (n, rays, radii, 3) by weights; 0 where there are none."""
+    total = use.reshape(len(use), 1, -1) @ values.reshape(len(values), -1, 3)
+    return np.asarray(total[:, 0] / np.maximum(use.sum((1, 2)), 1)[:, None], float)
+
+
+def by_hue(cap: Array, granite: Array) -> Array:
+    """Weights of L*a*b* by which caps are 1 more than their granite, mostly by hue.
+
+    Parameters
+    ----------
+    cap, granite : ndarray, shape (n, 3)
+        Their colours.
+
+    Returns
+    -------
+    ndarray, shape (n, 3)
+    """
+    apart = cap - granite
+    hue = np.hypot(apart[:, 1], apart[:, 2])
+    most = MOST_LIGHT * hue**2 / np.maximum(apart[:, 0] ** 2, 1.0)
+    vivid = np.interp(hue, [FAINT, VIVID], [0.0, 1.0])
+    light = LIGHT - vivid * np.maximum(LIGHT - most, 0.0)
+    along = apart.copy()
+    along[:, 0] *= light
+    return np.asarray(along / np.maximum((apart * along).sum(1), 1.0)[:, None])
+
+
+def by_lightness(cap: Array, granite: Array) -> Array:
+    """Weight of the lightness by which caps are 1 more than their granite, shape (n,)."""
+    apart = (cap - granite)[:, 0]
+    return np.asarray(1 / np.where(np.abs(apart) < 1, 1.0, apart))
