@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from physics.glides import stop_time
 from physics.shot_fit import ShotFit
-from physics.stretch import ANGLE_MEMORY, GATE, PLACE_MEMORY
+from physics.stretch import ANGLE_MEMORY, GATE, LOSS_SD, MOST_LOSS_SD, PLACE_MEMORY
 from physics.traces import Trace, level, local_residuals
 
 Floats = NDArray[np.float64]
@@ -63,12 +63,15 @@ class Run:
         Times, s.
     off : (n,) array
         What x, y or θ differ by from the motion, in their stated standard deviations.
+    free : float
+        How many numbers of the motion they tell.
     """
 
     stone: str
     samples: NDArray[np.int64]
     t: Floats
     off: Floats
+    free: float
 
 
 def noises(fit: ShotFit, known: Mapping[str, Trace]) -> dict[str, Noise]:
@@ -120,11 +123,11 @@ def _places(fit: ShotFit, known: Mapping[str, Trace], axis: int) -> Iterator[Run
         tau = np.minimum(trace.t[samples], stop_time(x, fit.origins[i], np.inf)) - fit.origins[i]
         path = np.stack([np.ones_like(tau), tau, 0.5 * tau * tau], axis=1) @ x[axis]
         off = (trace.xy[samples, axis] - path) / trace.sd[samples, axis]
-        yield Run(piece.stone, samples, trace.t[samples], off)
+        yield Run(piece.stone, samples, trace.t[samples], off, 3.0)
 
 
 def _angles(fit: ShotFit, known: Mapping[str, Trace]) -> Iterator[Run]:
-    """Angles of each piece that moves against a steady loss of spin."""
+    """Angles of each piece that moves against a steady loss of spin, as large as ice takes it."""
     for i, piece in enumerate(fit.pieces):
         trace = known[piece.stone]
         stop = stop_time(fit.theta[6 * i : 6 * i + 6].reshape(2, 3), fit.origins[i], np.inf)
@@ -133,13 +136,21 @@ def _angles(fit: ShotFit, known: Mapping[str, Trace]) -> Iterator[Run]:
         if piece.rest or len(samples) < FEWEST:
             continue
         t, theta, sd = trace.t[samples], trace.theta[samples], trace.sd_theta[samples]
-        tau, weight = (t - t[0]) / (t[-1] - t[0]), 1 / sd
-        off = np.zeros_like(t)
+        tau = t - t[0]
+        basis = np.stack([np.ones_like(tau), tau, 0.5 * tau * tau], axis=1)
+        # What bends more than a stone of that speed loses spin is an error, and one that lasts.
+        way = float(np.hypot(*(trace.xy[samples[-1]] - trace.xy[samples[0]])))
+        loss = min(LOSS_SD[1] * tau[-1] / max(way, 1e-6), MOST_LOSS_SD[1])
+        alike = max(1.0, 2 * ANGLE_MEMORY / float(np.median(np.diff(t))))
+        held = np.array([[0.0, 0.0, np.sqrt(alike) / loss]])
+        weight, off = 1 / sd, np.zeros_like(t)
         for _ in range(4):  # what lies far off has less and less of a say
-            curve = np.polynomial.polynomial.polyfit(tau, theta, 2, w=weight)
-            off = (theta - np.polynomial.polynomial.polyval(tau, curve)) / sd
+            rows = np.concatenate([weight[:, None] * basis, held])
+            curve = np.linalg.lstsq(rows, np.append(weight * theta, 0.0), rcond=None)[0]
+            off = (theta - basis @ curve) / sd
             weight = 1 / sd / np.maximum(np.abs(off) / (WILD * level(off[:, None]) + 1e-9), 1.0)
-        yield Run(piece.stone, samples, t, off)
+        known_before = held @ np.linalg.inv(rows.T @ rows) @ held.T
+        yield Run(piece.stone, samples, t, off, 3.0 - float(known_before[0, 0]))
 
 
 def _errors(
@@ -194,7 +205,7 @@ def _slows(runs: Sequence[Run], white: Mapping[str, float], memory: float) -> di
         size = white.get(run.stone, white[""])
         usual = WILD * max(1.0, size, level(run.off[:, None]))
         n = len(run.off)
-        excess = float(np.sum(np.clip(run.off, -usual, usual) ** 2)) - size**2 * (n - 3)
+        excess = float(np.sum(np.clip(run.off, -usual, usual) ** 2)) - size**2 * (n - run.free)
         unit = n * _left(run.t, memory)
         weight = float(np.median(np.diff(run.t))) / memory
         for name in (run.stone, ""):

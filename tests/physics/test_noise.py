@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from physics.contacts import cut_all, find_contacts
 from physics.fit import fit_shot
-from physics.glides import FREE
 from physics.noise import Noise, noises
+from physics.shot_fit import Deceleration
 from physics.stretch import ANGLE_MEMORY, PLACE_MEMORY
 from physics.traces import traces
 from tests.physics.watch import RADIUS, hit_motion, lasting, watch
@@ -39,7 +39,9 @@ def told(seen: pd.DataFrame) -> dict[str, Noise]:
     known = traces(seen)
     cut, _ = cut_all(known, find_contacts(seen, RADIUS), RADIUS)
     pieces = [replace(piece, opens=None, closes=None) for piece in cut]
-    return noises(fit_shot(known, pieces, (), RADIUS, deceleration=FREE), known)
+    return noises(
+        fit_shot(known, pieces, (), RADIUS, deceleration=Deceleration(0.0, 3.0, 3.0)), known
+    )
 
 
 def usual(each: list[pd.DataFrame]) -> tuple[Floats, Floats]:
@@ -84,6 +86,16 @@ def test_a_sighting_that_lies_off_is_a_worse_one() -> None:
     assert np.median(noise.white[others, 0]) == pytest.approx(
         np.median(plain.white[others, 0]), rel=0.3
     )
+
+
+def test_an_angle_that_bends_more_than_ice_turns_a_stone_is_wrong() -> None:
+    seen = shots()[0]
+    bent = seen.copy()
+    after = (seen["stone"] == "B") & (seen["t"] > 1.6)
+    bent.loc[after, "theta"] -= 0.5 * (seen["t"][after] - 1.6) ** 2
+    noise, plain = told(bent)["B"], told(seen)["B"]
+    assert noise.slow[-1, 2] > 3 * plain.slow[-1, 2]
+    assert noise.white[-1, 2] == pytest.approx(plain.white[-1, 2], rel=0.3)
 
 
 def test_stones_that_never_move_err_as_is_stated() -> None:
