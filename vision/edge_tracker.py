@@ -6,6 +6,7 @@ for several.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
@@ -190,7 +191,7 @@ class EdgeTracker:
     @property
     def blur(self) -> float:
         """How far a pan smears edges, px."""
-        return float(np.linalg.norm(self.sweep))
+        return math.hypot(*self.sweep)
 
     @property
     def _reach(self) -> float:
