@@ -102,6 +102,14 @@ def season_text(shots: pd.DataFrame, pooled: Mapping[str, Pooled]) -> list[str]:
     return lines
 
 
+def _watched(results: Results, used: int) -> str:
+    """How much was read, and of how much of it the stones are known."""
+    read, lasts = results.input.frames, f"{results.input.duration:.2f} s"
+    if used < read:
+        return f"{count(read, 'frame')}; stones in {used} of them, over {lasts}"
+    return f"{count(read, 'frame')}, {lasts}"
+
+
 def summary(
     results: Results,
     tracks: pd.DataFrame,
@@ -115,7 +123,7 @@ def summary(
     lines = [
         f"input       {', '.join(results.input.files[:3])}"
         f"{' …' if len(results.input.files) > 3 else ''}: "
-        f"{count(results.input.frames, 'frame')}, {results.input.duration:.2f} s",
+        + _watched(results, tracks["frame"].nunique()),
         f"stones      {len(names)} ({', '.join(names)}); moved: {', '.join(moved) or 'none'}",
     ]
     for hit in results.collisions:

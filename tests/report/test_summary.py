@@ -26,6 +26,16 @@ def test_the_summary_says_how_far_the_last_places_may_be_off(shot):
     assert "at the end" not in summary(unknown, shot.tracks)
 
 
+def test_the_summary_says_of_how_much_of_a_clip_the_stones_are_known(shot):
+    used = shot.tracks["frame"].nunique()
+    read = replace(shot.results.input, frames=used, duration=4.13)
+    text = summary(replace(shot.results, input=read), shot.tracks)
+    assert f": {used} frames, 4.13 s" in text
+    more = replace(read, frames=used + 55)
+    text = summary(replace(shot.results, input=more), shot.tracks)
+    assert f": {used + 55} frames; stones in {used} of them, over 4.13 s" in text
+
+
 def test_the_summary_says_who_lies_shot_in_the_unit_asked_for(shot):
     text = summary(shot.results, shot.tracks, house=HOUSE)
     (line,) = [line for line in text.splitlines() if line.startswith("shot stone")]
