@@ -30,6 +30,10 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
+GREY = 10.0
+"""Distance from grey within which a cap has no colour, L*a*b* units."""
+
+
 @dataclass(frozen=True)
 class StoneTracks:
     """The stones of a clip.
@@ -119,7 +123,8 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
     rows = [_rows(name, named[name], team[name], disc, edge) for name in sorted(named)]
     late = seen_late({names[number]: tracks[int(number)] for number in rest}, cameras, disc)
     return StoneTracks(
-        {name: np.concatenate([part[name] for part in rows]) for name in SIGHTING_COLUMNS}, late
+        {name: np.concatenate([part[name] for part in rows]) for name in SIGHTING_COLUMNS},
+        (*late, *_without_colour(watch.appearance)),
     )
 
 
@@ -146,6 +151,17 @@ def _rows(name: str, track: Track, team: str, disc: Stone, edge: float) -> Colum
         "sd_place_y": np.hypot(sd_place_y, edge),
         "team": np.full(len(seen), team),
     }
+
+
+def _without_colour(appearance: Appearance | None) -> tuple[str, ...]:
+    """Warn where caps are told by their lightness alone, and all are alike."""
+    caps = () if appearance is None else appearance.caps
+    if len(caps) != 1 or np.hypot(*(caps[0].mean[1:] - 128)) > GREY:
+        return ()
+    return (
+        f"only caps without colour are made out, {caps[0].name}; stones whose caps are about as"
+        " light as their granite would be missed",
+    )
 
 
 def _teams(tracks: Mapping[str, Track], appearance: Appearance | None) -> dict[str, str]:

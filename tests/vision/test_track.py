@@ -15,6 +15,8 @@ from physics.kalman import smooth
 from physics.rate_filter import filtered, forward
 from physics.stretch import Smoothed, Stretch
 from tests.scoring import score_tracks
+from tests.synthetic.clip import render_still
+from tests.vision.test_stones import CAMERA, RED, camera_of, scene_of, without_colours
 from vision.camera import Camera
 from vision.clip import open_clip
 from vision.stick import stick_cameras
@@ -80,6 +82,19 @@ def test_a_clip_without_stones_says_so(tmp_path: Path) -> None:
     stones = track_stones(clip, (camera,))
     assert stones.sightings.empty
     assert stones.warnings == ("no stones were found on the ice",)
+
+
+@pytest.mark.parametrize(("grey", "warned"), [(True, 1), (False, 0)])
+def test_where_caps_of_one_lightness_are_all_that_is_told_the_others_are_warned_of(
+    tmp_path: Path, grey: bool, warned: int
+) -> None:
+    import cv2
+
+    scene, path = scene_of([(0.3, 0.2, RED), (1.4, 0.6, RED)]), tmp_path / "ice.png"
+    cv2.imwrite(str(path), without_colours(scene) if grey else render_still(scene, CAMERA))
+    stones = track_stones(open_clip([path]), (camera_of(CAMERA, scene),))
+    assert len(stones.sightings) == 2
+    assert ["without colour" in text for text in stones.warnings] == [True] * warned
 
 
 @pytest.mark.parametrize("name", ["pyeongchang_two_hits", "lgt_glancing"])
