@@ -3,8 +3,8 @@
 CPU time, all threads, of the whole of ``curlshot track`` against that of decoding the same clip
 with OpenCV alone, in the same run: of either as a process of its own, with the start of Python
 and the most memory held, and within one, with its parts. Without a clip, one is rendered: 12 s of
-1080 lines with eight stones, two sweepers and a camera that pans and zooms. What memory a clip of
-three times the length takes is told by ``--lengths``.
+1080 lines with eight stones, two sweepers and a camera that pans and zooms. What memory longer
+clips take is told by ``--lengths``: of one that shows 4 s of it forth and back, again and again.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 from pkgutil import resolve_name
 from typing import Any
@@ -30,9 +31,13 @@ import pandas as pd
 
 import pipeline
 from command.threads import LIMITS
+from report.encode import Encoder
 from tests.synthetic.camera import broadcast_camera
 from tests.synthetic.clip import cached_clip
 from tests.synthetic.scenes import random_scene, sweepers
+from vision.clip import open_clip
+
+FPS = 30.0
 
 PARTS = {
     "camera, frame by frame": "vision.follow_house.HouseFollower.look",
@@ -64,12 +69,34 @@ print(next(line for line in open("/proc/self/status") if "VmHWM" in line).split(
 """Tells the most memory that was held, kB; what rusage tells may be that of who asks."""
 
 
-def long_clip(size: tuple[int, int] = (1920, 1080), duration: float = 12.0) -> Path:
+def long_clip(duration: float = 12.0) -> Path:
     scene = random_scene(np.random.default_rng(11), resting=7)
     scene = replace(scene, people=sweepers(scene, duration))
-    scale = size[0] / 1920
-    view = broadcast_camera(size=size, end=6.0, px_per_m=(190.0 * scale, 147.0 * scale))
-    return cached_clip(scene, view, fps=30.0, duration=duration)[0]
+    view = broadcast_camera(size=(1920, 1080), end=6.0, px_per_m=(190.0, 147.0))
+    return cached_clip(scene, view, fps=FPS, duration=duration)[0]
+
+
+def forth_and_back(clip: Path, times: int, path: Path) -> int:
+    """Write a clip that shows another so many times, every other one backwards; its frames."""
+    images = [frame.image for frame in open_clip([clip])]
+    shown = [images[:0:-1] if number % 2 else images[:-1] for number in range(times)]
+    with Encoder(path, images[0].shape[1::-1], FPS) as film:
+        for index, image in enumerate(chain.from_iterable(shown)):
+            film.add(image, index / FPS)
+    return sum(map(len, shown))
+
+
+def lengths() -> pd.DataFrame:
+    """Tell the most memory, MB, that a short clip and a long one take."""
+    clip = long_clip(duration=4.0)
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        for times in (3, 16):
+            path = Path(folder) / f"{times}.mp4"
+            frames = forth_and_back(clip, times, path)
+            seconds, held = tracked(path)
+            rows.append({"frames": frames, "MB": held, "ms/frame": 1e3 * seconds / frames})
+    return pd.DataFrame(rows).round(1)
 
 
 def process(code: str, *arguments: str) -> tuple[float, float]:
@@ -161,9 +188,7 @@ def main() -> None:
     parser.add_argument("--lengths", action="store_true", help="memory by length of the clip only")
     arguments = parser.parse_args()
     if arguments.lengths:
-        for duration in (4.0, 12.0):
-            _, held = tracked(long_clip((1280, 720), duration))
-            print(f"{duration:.0f} s of 720 lines: {held:.0f} MB at most")
+        print(lengths().to_string(index=False))
         return
     for clip in arguments.clips or [long_clip()]:
         frames = decoded(clip)  # from now on the file is at hand
