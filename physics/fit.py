@@ -14,17 +14,24 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.fit_rules import SLOWEST, meeting_rules, slowing
+from physics.fit_rules import meeting_rules, slowing
 from physics.normal_equations import eliminated, inverse_of_blocks
 from physics.residuals import huber_weights, inflation
 from physics.segments import Piece
 from physics.shot_fit import Deceleration, Meeting, ShotFit
+from physics.slowing import LEAST, MOST, course, stop_after
 from physics.traces import Trace
 
 Floats = NDArray[np.float64]
 
+STEPS = 15
+"""Most Gauss-Newton steps: most fits settle in seven."""
+
 FARTHEST = 100.0
 """Longest step of any state (SI units), so that a fit of nonsense ends."""
+
+FIXED = 1e-4
+"""How well a power that is not to be found is known."""
 
 STILL_SD = 1e-5
 """How still a stone at rest lies, m/s and m/s²."""
@@ -40,7 +47,6 @@ def fit_shot(
     deceleration: Deceleration | None = None,
     momentum: bool = True,
     still: Sequence[Floats] = (),
-    iterations: int = 15,
 ) -> ShotFit:
     """Fit all pieces and the times of all meetings at once.
 
@@ -62,14 +68,12 @@ def fit_shot(
         Whether each pair's momentum is held (otherwise only their paths are joined).
     still : sequence of (n, 2) array
         Normalised residuals of stones that never move, for how alike errors are in time.
-    iterations : int
-        Most Gauss-Newton steps.
     """
     solver = _Solver(
         traces, pieces, meetings, radius, masses or {}, deceleration or Deceleration(), momentum
     )
     solver.still = [(residuals, 1) for residuals in still]
-    return solver.solve(iterations)
+    return solver.solve()
 
 
 class _Solver:
@@ -90,17 +94,18 @@ class _Solver:
         self.prior, self.momentum = deceleration, momentum
         self.still: list[tuple[Floats, int]] = []
         self.inflation = 1.0
-        self.size = 6 * len(self.pieces) + len(self.meetings)
+        self.size = 7 * len(self.pieces) + len(self.meetings)
         opened = {(p.opens, p.stone): i for i, p in enumerate(pieces) if p.opens is not None}
         self.sides = {
             (p.closes, p.stone): (i, opened[p.closes, p.stone])
             for i, p in enumerate(pieces)
             if p.closes is not None
         }
-        self.further = np.zeros((len(self.pieces), 3, 7))
+        self.further = np.zeros((len(self.pieces), 2, 8))
         self.blocks = self._blocks()
         self.origins = np.array([self._origin(piece) for piece in pieces])
         self.theta = np.zeros(self.size)
+        self.theta[len(self.theta) - len(self.pieces) :] = self.prior.fall
         for k, meeting in enumerate(self.meetings):
             self.theta[6 * len(self.pieces) + k] = meeting.t
         for i, piece in enumerate(self.pieces):
@@ -113,7 +118,7 @@ class _Solver:
         for (k, _), pair in self.sides.items():
             for rank in pair:
                 group[group == group[rank]] = group[count + k]
-        unknowns = np.concatenate([np.repeat(group[:count], 6), group[count:]])
+        unknowns = np.concatenate([np.repeat(group[:count], 6), group[count:], group[:count]])
         order = np.argsort(unknowns, kind="stable")
         return np.split(order, np.flatnonzero(np.diff(unknowns[order])) + 1)
 
@@ -139,10 +144,10 @@ class _Solver:
         if degree:
             self.theta[[6 * i + 1, 6 * i + 4]] = line[1]
 
-    def solve(self, iterations: int) -> ShotFit:
-        first = 6 * len(self.pieces)
+    def solve(self) -> ShotFit:
+        first, last = 6 * len(self.pieces), self.size - len(self.pieces)
         settled = False
-        for _ in range(iterations):
+        for _ in range(STEPS):
             self._assign()
             data, right = self._data()
             rules, rules_right = self._rules()
@@ -152,6 +157,7 @@ class _Solver:
             for k in range(len(self.meetings)):
                 step[first + k] = np.clip(step[first + k], *self._room(k))
             step[:first] = np.clip(step[:first], -FARTHEST, FARTHEST)
+            step[last:] = np.clip(self.theta[last:] + step[last:], LEAST, MOST) - self.theta[last:]
             scale = np.sqrt(np.maximum(np.diag(cov), 1e-24))
             settled = bool(np.all(np.abs(step) < 0.02 * scale))
             self.theta = self.theta + step
@@ -171,7 +177,7 @@ class _Solver:
     def _room(self, k: int) -> tuple[float, float]:
         """Least and most that the time of meeting k may move in one step."""
         meeting = self.meetings[k]
-        times = self.theta[6 * len(self.pieces) :]
+        times = self.theta[6 * len(self.pieces) : self.size - len(self.pieces)]
         loose = meeting.looseness
         low = max(meeting.t - 3 * loose - times[k], -loose)
         high = min(meeting.t + 3 * loose - times[k], loose)
@@ -193,32 +199,32 @@ class _Solver:
             for rank, samples in ((i, both[early]), (j, both[~early])):
                 self.pieces[rank] = _with_samples(self.pieces[rank], samples)
 
-    def _basis(self, i: int) -> Floats:
-        """Rows 1, τ, τ²/2 of a piece's sightings; τ stands still once the stone does."""
+    def _own(self, i: int) -> NDArray[np.int64]:
+        """Which unknowns are those of a piece: its state, and the power that slows it."""
+        return np.append(np.arange(6 * i, 6 * i + 6), self.size - len(self.pieces) + i)
+
+    def _tau(self, i: int) -> Floats:
+        """Return times of a piece's sightings from its origin, s; no more once it rests."""
         piece = self.pieces[i]
         tau = self.traces[piece.stone].t[piece.samples] - self.origins[i]
-        state = self.theta[6 * i : 6 * i + 6].reshape(2, 3)
-        braking = -float(state[:, 1] @ state[:, 2])
-        if piece.rest or braking > 1e-9:
-            stop = float(state[:, 1] @ state[:, 1]) / braking if braking > 1e-9 else 0.0
-            # The velocity vanishes there, so that the stop's own shift is of second order.
-            tau = np.minimum(tau, stop) if not piece.rest else np.zeros_like(tau)
-        return np.stack([np.ones_like(tau), tau, 0.5 * tau * tau], axis=1)
+        return np.asarray(np.minimum(tau, 0.0 if piece.rest else stop_after(*self._motion(i))))
 
-    def _residuals(self, i: int, basis: Floats) -> Floats:
+    def _motion(self, i: int) -> tuple[Floats, float]:
+        """State of a piece at its origin, shape (2, 3), and the power that slows it."""
+        own = self.theta[self._own(i)]
+        return own[:6].reshape(2, 3), float(own[6])
+
+    def _course(self, i: int) -> tuple[Floats, Floats]:
+        """Places of a piece at its sightings, and their derivatives by its unknowns."""
+        x, power = self._motion(i)
+        return course(x, self._tau(i), power)
+
+    def _residuals(self, i: int, fitted: Floats) -> Floats:
         piece = self.pieces[i]
         trace = self.traces[piece.stone]
-        own = self.theta[6 * i : 6 * i + 6]
-        further = self.further[i] @ np.append(-own, 1.0)
-        fitted = basis @ own.reshape(2, 3).T + self._bend(i, basis) * further[2]
-        fitted += basis[:, 1:2] * further[:2]
-        return np.asarray((trace.xy[piece.samples] - fitted) / trace.sd[piece.samples])
-
-    def _bend(self, i: int, basis: Floats) -> Floats:
-        """By how much places change with the change of the deceleration, shape (n, 2)."""
-        velocity = self.theta[[6 * i + 1, 6 * i + 4]]
-        along = velocity / max(float(np.hypot(*velocity)), 1e-9)
-        return np.asarray(basis[:, 1:2] ** 3 / 6 * along)
+        drift = self.further[i] @ np.append(-self.theta[self._own(i)], 1.0)
+        off = trace.xy[piece.samples] - fitted - self._tau(i)[:, None] * drift
+        return np.asarray(off / trace.sd[piece.samples])
 
     def _data(self) -> tuple[Floats, Floats]:
         """Set up the normal equations of the sightings, outliers weighted down."""
@@ -227,31 +233,27 @@ class _Solver:
             if not len(piece.samples):
                 continue
             trace = self.traces[piece.stone]
-            basis = self._basis(i)
-            weights = huber_weights(self._residuals(i, basis)) / trace.sd[piece.samples] ** 2
-            block, value = self._seen(i, basis, weights)
-            own = slice(6 * i, 6 * i + 6)
-            normal[own, own], right[own] = block, value
+            own = self._own(i)
+            fitted, slopes = self._course(i)
+            weights = huber_weights(self._residuals(i, fitted)) / trace.sd[piece.samples] ** 2
+            seen = trace.xy[piece.samples] - fitted + slopes @ self.theta[own]
+            normal[np.ix_(own, own)], right[own] = self._seen(i, seen, slopes, weights)
         return normal, right
 
-    def _seen(self, i: int, basis: Floats, weights: Floats) -> tuple[Floats, Floats]:
+    def _seen(self, i: int, seen: Floats, slopes: Floats, weights: Floats) -> tuple[Floats, Floats]:
         """Set up the normal equations of one piece's sightings, of its own unknowns.
 
-        Three further unknowns are eliminated at once: what the sightings say of the velocity is
-        wrong by what they share, on either axis, and the deceleration changes as the stone slows.
+        Two further unknowns are eliminated at once: what the sightings say of the velocity is
+        wrong by what they share, on either axis.
         """
         piece = self.pieces[i]
-        trace = self.traces[piece.stone]
         speed = float(np.hypot(*self.theta[[6 * i + 1, 6 * i + 4]]))
-        tau, none, bend = basis[:, 1], np.zeros_like(basis), self._bend(i, basis)
-        along_x = np.column_stack([basis, none, tau, none[:, 0], bend[:, 0]])
-        along_y = np.column_stack([none, basis, none[:, 0], tau, bend[:, 1]])
-        full = along_x.T @ (weights[:, :1] * along_x) + along_y.T @ (weights[:, 1:] * along_y)
-        xy = weights * trace.xy[piece.samples]
-        value = along_x.T @ xy[:, 0] + along_y.T @ xy[:, 1]
-        drift = speed * np.median(trace.sd_scale[piece.samples], axis=0)
-        change = self.prior.change / (speed + SLOWEST) ** 2
-        known = np.square([*drift, change]) / self.inflation
+        shared = self._tau(i)[:, None, None] * np.eye(2)
+        rows = np.concatenate([slopes, shared], axis=2).reshape(-1, 9)
+        full = rows.T @ (weights.reshape(-1, 1) * rows)
+        value = rows.T @ (weights * seen).ravel()
+        drift = speed * np.median(self.traces[piece.stone].sd_scale[piece.samples], axis=0)
+        known = drift**2 / self.inflation
         normal, right, self.further[i] = eliminated(full, value, known)
         return normal, right
 
@@ -261,6 +263,10 @@ class _Solver:
         first = 6 * len(self.pieces)
         for i, piece in enumerate(self.pieces):
             place, speed, change = ([6 * i + k, 6 * i + 3 + k] for k in range(3))
+            power = self.size - len(self.pieces) + i
+            known = max(self.prior.sd_fall, FIXED) ** -2
+            normal[power, power] += known
+            right[power] += known * self.prior.fall
             normal[place, place] += 1e-8
             if piece.rest:
                 normal[speed, speed] += STILL_SD**-2
@@ -286,7 +292,7 @@ class _Solver:
     def _excess(self, parameters: float) -> float:
         """Factor for residuals larger than stated, and alike from frame to frame."""
         runs = [
-            (self._residuals(i, self._basis(i)), 1 if piece.rest else 3)
+            (self._residuals(i, self._course(i)[0]), 1 if piece.rest else 3)
             for i, piece in enumerate(self.pieces)
             if len(piece.samples)
         ]

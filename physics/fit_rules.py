@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from physics.shot_fit import Deceleration, Meeting
+from physics.slowing import moment
 
 Floats = NDArray[np.float64]
 
@@ -20,9 +22,8 @@ MOMENTUM_SD = 0.0015
 DOUBT = 2.5
 """Normalised violation beyond which distance and momentum are no longer believed."""
 
-SLOW, SLOWEST = 0.015, 0.06
-"""What the deceleration of a slow stone may differ from the others', m²/s³, and the speed (m/s)
-at which that grows no more: FCV1's (Uehara and Ito, 2021), whose friction has such a term."""
+SLOWEST = 0.06
+"""Speed below which a stone is slowed as there, m/s: as by FCV1 (Uehara and Ito, 2021)."""
 
 
 def slowing(speed: Floats, prior: Deceleration) -> tuple[Floats, Floats]:
@@ -33,9 +34,21 @@ def slowing(speed: Floats, prior: Deceleration) -> tuple[Floats, Floats]:
     along = speed / size
     across = np.array([-along[1], along[0]])
     # The slower a stone the more it is slowed, by all ice laws but the constant one.
-    width = max(prior.along, SLOW / (size + SLOWEST))
+    log = np.log(max(size, SLOWEST))
+    mean = prior.mean * float(np.exp(-prior.fall * log))
+    width = float(np.hypot(prior.along, prior.sd_fall * mean * log))
     precision = np.outer(along, along) / width**2 + np.outer(across, across) / prior.across**2
-    return precision, -prior.mean * along
+    return precision, -mean * along
+
+
+@dataclass(frozen=True)
+class _State:
+    """Place and velocity of one stone at a meeting, and their derivatives by all unknowns."""
+
+    place: Floats
+    speed: Floats
+    by_place: Floats
+    by_speed: Floats
 
 
 def meeting_rules(
@@ -77,47 +90,45 @@ def meeting_rules(
     values: list[float] = []
     sd: list[float] = []
 
-    def rule(value: float, width: float) -> Floats:
-        row = np.zeros(len(theta))
+    def rule(value: float, width: float, row: Floats) -> None:
         rows.append(row)
         values.append(value)
         sd.append(width)
-        return row
 
-    def state(i: int) -> tuple[Floats, Floats, Floats, Floats, Floats]:
-        tau = t - origins[i]
-        x = theta[6 * i : 6 * i + 6].reshape(2, 3)
-        one, slope = np.array([1.0, tau, 0.5 * tau * tau]), np.array([0.0, 1.0, tau])
-        return x @ one, x @ slope, x[:, 2], one, slope
+    def state(i: int) -> _State:
+        at_power = i - len(origins)
+        now = moment(theta[6 * i : 6 * i + 6].reshape(2, 3), t - origins[i], float(theta[at_power]))
+        own = [*range(6 * i, 6 * i + 6), at_power]
+        by_place, by_speed = np.zeros((2, len(theta))), np.zeros((2, len(theta)))
+        by_place[:, own], by_speed[:, own] = now.by_place, now.by_speed
+        by_place[:, at], by_speed[:, at] = now.speed, now.change
+        return _State(now.place, now.speed, by_place, by_speed)
 
-    rule(t - meeting.t, 2 * meeting.looseness)[at] = 1.0
+    timed = np.zeros(len(theta))
+    timed[at] = 1.0
+    rule(t - meeting.t, 2 * meeting.looseness, timed)
     states = [(state(i), state(j)) for i, j in ranks]
-    for (i, j), (old, new) in zip(ranks, states, strict=True):
+    for old, new in states:
         for axis in range(2):
-            row = rule(new[0][axis] - old[0][axis], 1e-3 * radius)
-            row[6 * j + 3 * axis : 6 * j + 3 * axis + 3] = new[3]
-            row[6 * i + 3 * axis : 6 * i + 3 * axis + 3] = -old[3]
-            row[at] = new[1][axis] - old[1][axis]
+            width = 1e-3 * radius
+            rule(new.place[axis] - old.place[axis], width, new.by_place[axis] - old.by_place[axis])
     believed = len(rows)
-    apart = states[1][0][0] - states[0][0][0]
+    first, second = (old for old, _ in states)
+    apart = second.place - first.place
     distance = max(float(np.hypot(*apart)), 1e-9)
     normal = apart / distance
-    row = rule(distance - 2 * radius, DISTANCE_SD * 2 * radius)
-    for sign, (i, _), (old, _) in zip((-1.0, 1.0), ranks, states, strict=True):
-        for axis in range(2):
-            row[6 * i + 3 * axis : 6 * i + 3 * axis + 3] = sign * normal[axis] * old[3]
-        row[at] += sign * float(normal @ old[1])
+    rule(
+        distance - 2 * radius, DISTANCE_SD * 2 * radius, normal @ (second.by_place - first.by_place)
+    )
     if masses is not None:
         masses = masses / masses.mean()
-        speed = sum(float(np.hypot(*old[1])) for old, _ in states)
+        speed = sum(float(np.hypot(*old.speed)) for old, _ in states)
+        change = np.array([new.speed - old.speed for old, new in states])
+        slopes = np.array([new.by_speed - old.by_speed for old, new in states])
         for axis in range(2):
-            change = [float(new[1][axis] - old[1][axis]) for old, new in states]
-            row = rule(float(masses @ change), MOMENTUM_SD * speed + 1e-4)
-            for mass, (i, j), (old, new) in zip(masses, ranks, states, strict=True):
-                row[6 * j + 3 * axis : 6 * j + 3 * axis + 3] += mass * new[4]
-                row[6 * i + 3 * axis : 6 * i + 3 * axis + 3] -= mass * old[4]
-                row[at] += mass * float(new[2][axis] - old[2][axis])
-    width = np.array(sd)
-    doubt = np.abs(values) / (DOUBT * width)
+            width = MOMENTUM_SD * speed + 1e-4
+            rule(float(masses @ change[:, axis]), width, masses @ slopes[:, axis])
+    widths = np.array(sd)
+    doubt = np.abs(values) / (DOUBT * widths)
     doubt[:believed] = 0.0
-    return np.array(rows), np.array(values), width * np.sqrt(1 + doubt**2)
+    return np.array(rows), np.array(values), widths * np.sqrt(1 + doubt**2)

@@ -15,7 +15,7 @@ from data.results import Estimate, Prediction
 from physics.contacts import cut_all
 from physics.estimate import Estimates
 from physics.fit import fit_shot
-from physics.glides import FREE
+from physics.glides import free
 from physics.global_fit import fit_shots
 from physics.hindcast import explained_until, score
 from physics.impact import Frictional, Impact, PointMass
@@ -99,7 +99,7 @@ def _before(
     pieces, _ = cut_all(known, (), radius)
     if not pieces:
         return None
-    loose = fit_shot(known, pieces, (), radius, deceleration=FREE, masses=masses)
+    loose = fit_shot(known, pieces, (), radius, deceleration=free(radius), masses=masses)
     moving = {piece.stone for piece in pieces if not piece.rest}
     watched = watch(
         known, loose, radius, priors=LITERATURE, masses=masses, bystanders=sorted({*known} - moving)

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from data.tracks import TRACK_COLUMNS, Columns, Table, no_rows, teams
 from physics.contacts import Contact, cut_all
 from physics.fit import fit_shot
-from physics.glides import FREE, measure_glides, stop_time
+from physics.glides import free, measure_glides
 from physics.noise import Noise, noises
 from physics.rate_filter import filtered
 from physics.shot_fit import ShotFit
@@ -115,10 +115,10 @@ def _survey(
     """
     by_hits, _ = cut_all(known, contacts, radius)
     pieces = [replace(piece, opens=None, closes=None) for piece in by_hits]
-    loose = fit_shot(known, pieces, (), radius, deceleration=FREE)
+    loose = fit_shot(known, pieces, (), radius, deceleration=free(radius))
     _, friction, prior = measure_glides(loose, known, radius)
     # How sightings err is told against parabolas: none of their misfit is put down to the ice.
-    fit = fit_shot(known, pieces, (), radius, deceleration=replace(prior, change=0.0))
+    fit = fit_shot(known, pieces, (), radius, deceleration=replace(prior, fall=0.0, sd_fall=0.0))
     a = prior.mean if friction.value is not None else 0.0
     return fit, Model(max(a, 0.0), prior.along), noises(fit, known)
 
@@ -188,12 +188,9 @@ def _modes(
         place[inside] = i
         if piece.rest:
             continue
-        x = fit.theta[6 * i : 6 * i + 6].reshape(2, 3)
-        stop = stop_time(x, fit.origins[i], np.inf)
-        rest[inside] = t[inside] > stop
+        rest[inside] = t[inside] > fit.stop(i)
         idle[inside] = False  # it may spin on the spot for a while
-        tau = np.minimum(t[inside], stop) - fit.origins[i]
-        speed[inside] = x[:, 1] + tau[:, None] * x[:, 2]
+        speed[inside] = fit.speeds(i, t[inside])
     return place, rest, idle, speed
 
 

@@ -16,7 +16,7 @@ from data.results import Collision, Estimate, Friction, Glide
 from data.sheet import GRAVITY, STONE
 from physics.contacts import Contact, cut_all
 from physics.fit import fit_shot
-from physics.glides import FREE, measure_glides
+from physics.glides import free, measure_glides
 from physics.hits import Discs, measure_hits, pooled
 from physics.residuals import huber_weights
 from physics.segments import Piece
@@ -92,7 +92,7 @@ def estimate_locally(
             masses=masses, still=still, deceleration=slowing, momentum=momentum,
         )  # fmt: skip
 
-    glides, friction, prior = measure_glides(fit(pieces, FREE), known, radius)
+    glides, friction, prior = measure_glides(fit(pieces, free(radius)), known, radius)
     friction, doubt = _checked(friction, glides, prior)
     if not meetings:
         return Local(Estimate(), friction, (), glides, doubt, ("restitution: no hit seen",))

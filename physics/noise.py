@@ -14,7 +14,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.glides import stop_time
 from physics.shot_fit import ShotFit
 from physics.stretch import ANGLE_MEMORY, GATE, LOSS_SD, MOST_LOSS_SD, PLACE_MEMORY
 from physics.traces import Trace, level, local_residuals
@@ -119,9 +118,7 @@ def _places(fit: ShotFit, known: Mapping[str, Trace], axis: int) -> Iterator[Run
         trace, samples = known[piece.stone], piece.samples
         if piece.rest or len(samples) < FEWEST:
             continue
-        x = fit.theta[6 * i : 6 * i + 6].reshape(2, 3)
-        tau = np.minimum(trace.t[samples], stop_time(x, fit.origins[i], np.inf)) - fit.origins[i]
-        path = np.stack([np.ones_like(tau), tau, 0.5 * tau * tau], axis=1) @ x[axis]
+        path = fit.places(i, trace.t[samples])[:, axis]
         off = (trace.xy[samples, axis] - path) / trace.sd[samples, axis]
         yield Run(piece.stone, samples, trace.t[samples], off, 3.0)
 
@@ -130,8 +127,7 @@ def _angles(fit: ShotFit, known: Mapping[str, Trace]) -> Iterator[Run]:
     """Angles of each piece that moves against a steady loss of spin, as large as ice takes it."""
     for i, piece in enumerate(fit.pieces):
         trace = known[piece.stone]
-        stop = stop_time(fit.theta[6 * i : 6 * i + 6].reshape(2, 3), fit.origins[i], np.inf)
-        told = np.isfinite(trace.theta[piece.samples]) & (trace.t[piece.samples] < stop)
+        told = np.isfinite(trace.theta[piece.samples]) & (trace.t[piece.samples] < fit.stop(i))
         samples = piece.samples[told]
         if piece.rest or len(samples) < FEWEST:
             continue

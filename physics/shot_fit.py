@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physics.segments import Piece
+from physics.slowing import course, motion, stop_after
 
 Floats = NDArray[np.float64]
 
@@ -17,14 +18,15 @@ Floats = NDArray[np.float64]
 class Deceleration:
     """Prior of the acceleration on one piece, m/s².
 
-    ``mean`` against the motion with standard deviation ``along``; ``across`` it zero mean. With
-    the speed v (m/s) it changes by some ``change`` / v² in time, m/s³: 0 where it is constant.
+    ``mean`` against the motion at 1 m/s with standard deviation ``along``; ``across`` it zero
+    mean. At other speeds it goes as their power -p, p being ``fall`` ± ``sd_fall``.
     """
 
     mean: float = 0.0
     along: float = 1.0
     across: float = 1.0
-    change: float = 0.0
+    fall: float = 0.0
+    sd_fall: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -63,9 +65,10 @@ class ShotFit:
         With the samples as assigned at the end.
     meetings : tuple of Meeting
         As given.
-    theta : (6 P + M,) array
-        Per piece x, vx, ax, y, vy, ay at `origins`; then the times of the meetings.
-    cov : (6 P + M, 6 P + M) array
+    theta : (7 P + M,) array
+        Per piece x, vx, ax, y, vy, ay at `origins`; then the times of the meetings; then per
+        piece the power of its speed that slows it (`physics.slowing`).
+    cov : (7 P + M, 7 P + M) array
         Covariance, enlarged for residuals that are too big or alike from frame to frame.
     origins : (P,) array
         Time at which a piece's state is given, s.
@@ -84,13 +87,28 @@ class ShotFit:
     sides: Mapping[tuple[int, str], tuple[int, int]]
 
     def motion(self, rank: int, t: float, theta: Floats | None = None) -> tuple[Floats, Floats]:
-        """Place and velocity on piece `rank` at time t, without regard to a stop."""
+        """Place and velocity on piece `rank` at time t."""
         values = self.theta if theta is None else theta
         x = values[6 * rank : 6 * rank + 6].reshape(2, 3)
-        tau = t - self.origins[rank]
-        place: Floats = x @ np.array([1.0, tau, 0.5 * tau * tau])
-        speed: Floats = x @ np.array([0.0, 1.0, tau])
-        return place, speed
+        return motion(x, t - self.origins[rank], float(values[rank - len(self.pieces)]))
+
+    def places(self, rank: int, t: Floats) -> Floats:
+        """Places on piece `rank` at times t, shape (n, 2)."""
+        x = self.theta[6 * rank : 6 * rank + 6].reshape(2, 3)
+        return course(x, t - self.origins[rank], self.power(rank))[0]
+
+    def speeds(self, rank: int, t: Floats) -> Floats:
+        """Velocities on piece `rank` at times t, shape (n, 2)."""
+        return np.array([self.motion(rank, time)[1] for time in t.tolist()]).reshape(-1, 2)
+
+    def stop(self, rank: int) -> float:
+        """Time at which the stone of piece `rank` stops, s."""
+        x = self.theta[6 * rank : 6 * rank + 6].reshape(2, 3)
+        return float(self.origins[rank]) + stop_after(x, self.power(rank))
+
+    def power(self, rank: int) -> float:
+        """Power of its speed with which the stone of piece `rank` is slowed less."""
+        return float(self.theta[rank - len(self.pieces)])
 
     def time(self, k: int, theta: Floats | None = None) -> float:
         """Time of meeting k, s."""
@@ -129,6 +147,7 @@ class ShotFit:
         ranks = sorted({r for k in hits for s in self.meetings[k].stones for r in self.sides[k, s]})
         index = [6 * r + i for r in ranks for i in range(6)]
         index += [6 * len(self.pieces) + k for k in hits]
+        index += [len(self.theta) - len(self.pieces) + r for r in ranks]
         value = np.atleast_1d(function([self.encounter(k) for k in hits]))
         slopes = np.zeros((len(value), len(index)))
         for column, i in enumerate(index):

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.results import Estimate
-from physics.glides import stop_time
 from physics.noise import Noise
 from physics.rate_filter import filtered
 from physics.shot_fit import Encounter, ShotFit
@@ -111,9 +110,7 @@ def spin_on(
     row = samples[np.minimum(np.searchsorted(trace.t[samples], t), len(samples) - 1)]
     z = np.column_stack([trace.xy, trace.theta])[row]
     z[trace.t[row] != t] = np.nan
-    x = fit.theta[6 * rank : 6 * rank + 6].reshape(2, 3)
-    stop = stop_time(x, fit.origins[rank], np.inf)
-    speed = x[:, 1] + (np.minimum(t, stop) - fit.origins[rank])[:, None] * x[:, 2]
+    stop, speed = fit.stop(rank), fit.speeds(rank, t)
     one, spinning = np.zeros(len(t), dtype=int), np.zeros(len(t), dtype=bool)
     mean, spread, _ = filtered(
         Stretch(

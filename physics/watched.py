@@ -241,11 +241,7 @@ def _jumps(fit: ShotFit, one: int, two: int) -> bool:
     for rank in (one, two):
         piece = fit.pieces[rank]
         tau = t - fit.origins[rank]
-        x = fit.theta[6 * rank : 6 * rank + 6].reshape(2, 3)
-        v = np.zeros(2) if piece.rest else x[:, 1] + tau * x[:, 2]
-        if not piece.rest and rank == one and float(v @ x[:, 1]) < 0:
-            v = np.zeros(2)  # it has stopped
-        speeds.append(v)
+        speeds.append(np.zeros(2) if piece.rest else fit.motion(rank, t)[1])
         row = np.array([0.0, 1.0, tau])
         for axis in range(2):
             at = slice(6 * rank + 3 * axis, 6 * rank + 3 * axis + 3)

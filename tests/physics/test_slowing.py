@@ -1,0 +1,65 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from data.sheet import GRAVITY
+from physics.slowing import LONGEST, course, moment, motion, stop_after, time_left
+
+POWERS = st.floats(0.0, 0.8)
+SLOWED = np.array([[0.3, 1.2, -0.12], [0.1, 0.3, -0.03]])
+
+
+def test_constant_ice_gives_a_parabola_that_ends() -> None:
+    tau = np.array([-0.5, 0.0, 2.0, 10.0, 30.0])
+    places, _ = course(SLOWED, tau, 0.0)
+    ended = np.minimum(tau, 10.0)[:, None]
+    expected = SLOWED[:, 0] + ended * SLOWED[:, 1] + ended**2 / 2 * SLOWED[:, 2]
+    assert stop_after(SLOWED, 0.0) == pytest.approx(10.0)
+    assert places == pytest.approx(expected)
+
+
+def test_penner_s_ice_stops_a_stone_where_he_says() -> None:
+    mu, speed = 0.008, 2.0
+    x = np.array([[0.0, 0.0, 0.0], [0.0, speed, -mu * GRAVITY * speed**-0.5]])
+    places, _ = course(x, np.array([1e3]), 0.5)
+    assert places[0] == pytest.approx([0.0, speed**2.5 / (2.5 * mu * GRAVITY)])
+    _, going = motion(x, 5.0, 0.5)
+    assert going[1] ** 1.5 == pytest.approx(speed**1.5 - 1.5 * mu * GRAVITY * 5.0)
+
+
+@given(POWERS, st.floats(0.05, 0.95))
+def test_slopes_are_those_of_places_and_velocities(power: float, share: float) -> None:
+    tau = share * stop_after(SLOWED, power)
+    now = moment(SLOWED, tau, power)
+    for k in range(7):
+        ends = []
+        for sign in (1.0, -1.0):
+            x, p = SLOWED.copy(), power
+            if k < 6:
+                x[divmod(k, 3)] += sign * 1e-6
+            else:
+                p += sign * 1e-6
+            ends.append(motion(x, tau, p))
+        (place, speed), (other_place, other_speed) = ends
+        assert now.by_place[:, k] == pytest.approx((place - other_place) / 2e-6, abs=1e-4, rel=1e-4)
+        assert now.by_speed[:, k] == pytest.approx((speed - other_speed) / 2e-6, abs=1e-4, rel=1e-4)
+
+
+@given(POWERS, st.floats(0.05, 0.95))
+def test_deceleration_is_a_power_of_the_speed(power: float, share: float) -> None:
+    now = moment(SLOWED, share * stop_after(SLOWED, power), power)
+    slower = float(np.hypot(*now.speed) / np.hypot(*SLOWED[:, 1]))
+    ratio = float(np.hypot(*now.change) / np.hypot(*SLOWED[:, 2]))
+    assert ratio == pytest.approx(slower**-power)
+
+
+@pytest.mark.parametrize("a", [0.0, 0.05])
+def test_a_stone_that_nothing_slows_goes_on(a: float) -> None:
+    x = np.array([[0.0, 1.0, a], [0.0, 0.0, 0.0]])
+    assert time_left(x) == LONGEST
+    place, speed = motion(x, 2.0, 0.25)
+    assert place == pytest.approx([2.0 + 2.0 * a, 0.0], abs=1e-3)
+    assert speed == pytest.approx([1.0 + 2.0 * a, 0.0], abs=1e-3)
