@@ -23,12 +23,13 @@ from vision.camera import PARAMETERS, Camera, CameraError
 from vision.keyframe import Keyframe, replaced
 from vision.linear import Observations, by_measure, by_rig, linearised, view_equations
 from vision.outline import HALF_WAY, PaintEdge
-from vision.paint import CIRCLES, FIXED, Marks, ice_frame, joined, measures
-from vision.pose import VIEW_SIZE, View, camera, project, turning
+from vision.paint import CIRCLES, FIXED, Marks, joined
+from vision.pose import VIEW_SIZE, View, camera, turning
+from vision.quality import quality, warnings
 from vision.resection import solve_views
 from vision.rig import K1, K1_BEND, K1_ZOOM, K2, POSITION, R4, R8, RIG_SIZE, Prior, zoom
 from vision.robust import WIDTH, inverse
-from vision.shared import ARC, Bundle, family, piece_of, sensitivity
+from vision.shared import Bundle, family, piece_of, sensitivity
 from vision.shelf import Kept
 
 Array = NDArray[np.float64]
@@ -47,15 +48,6 @@ LONG_RANGE = 1.2
 """Errors of paint, and what compression does to edges, are alike over longer stretches than single
 pieces and marks tell: so much larger than these say are the standard errors, as clips with truth
 show."""
-
-UNTOLD = 0.7
-"""Share of its prior standard deviation above which the camera's height counts as assumed."""
-
-POOR, POOR_SHARE = 0.4, 0.1
-"""Quality below which a frame is poor, and the share of such frames that is worth a warning."""
-
-POOR_PX = 1.0
-"""Residual at which a fit is half as good as it might be, px."""
 
 
 @dataclass(frozen=True)
@@ -134,11 +126,12 @@ def fit_clip(
     sd = LONG_RANGE * np.sqrt(np.diag(shared.cov)[:RIG_SIZE])
     place, scale = shared.rig[POSITION], _scale_sd(chosen[-1].view, shared.rig, edge.sd)
     sd[POSITION] = np.hypot(sd[POSITION], scale * place)
+    lined = any((s.marks.get().line >= CIRCLES).any() for s in seen)
     return HouseTrack(
         tuple(cameras),
         np.array([HOUSE.twelve_foot, *shared.rig[[R8, R4]]]),
         sd[POSITION],
-        _warnings(seen, cameras, prior, shared.rig, sd),
+        warnings(cameras, float(place[2]), float(sd[2]), float(prior.sd[2]), lined),
     )
 
 
@@ -223,12 +216,10 @@ def fit_frames(
         )
         rms = fit.rms if s.found else float("nan")
         good = fit.inliers & on_circle[part]
-        quality = _explained(identity[part][good], fit.view, rig, size)
-        quality *= 1 / (1 + (rms / POOR_PX) ** 2) if s.found else 0.0
         found.append(
             camera(
                 fit.view, rig, size, frame=s.index, t=s.t, rms_px=rms, found=s.found,
-                error=error, quality=quality,
+                error=error, quality=quality(identity[part][good], rms, fit.view, rig, size),
             )
         )  # fmt: skip
     return found
@@ -252,48 +243,7 @@ def _parameters(view: Array, rig: Array, size: tuple[int, int]) -> Array:
     return found
 
 
-_ARCS = np.arange(-np.pi + ARC / 2, np.pi, ARC)
-_ON_CIRCLE = np.repeat(np.arange(CIRCLES), len(_ARCS))
-_FOOT, _WAY = ice_frame(_ON_CIRCLE, np.tile(_ARCS, CIRCLES))
-
-
-def _explained(pieces: Index, view: View, rig: Array, size: tuple[int, int]) -> float:
-    """Share of the pieces of the circles in the picture that are among these."""
-    places = _FOOT + _WAY * measures(rig)[_ON_CIRCLE]
-    x, y = project(places.T, view.vector, rig, size).T
-    w, h = size
-    shown = int(((x > 0) & (y > 0) & (x < w - 1) & (y < h - 1)).sum())
-    return min(len(set(pieces.tolist())) / max(shown, 1), 1.0)
-
-
 def _spread(seen: Sequence[Seen]) -> list[Seen]:
     """Frames for the joint fit, spread over the clip."""
     at = np.unique(np.round(np.linspace(0, len(seen) - 1, JOINT_FRAMES)).astype(int))
     return [seen[i] for i in at]
-
-
-def _warnings(
-    seen: Sequence[Seen], cameras: Sequence[Camera], prior: Prior, rig: Array, sd: Array
-) -> tuple[str, ...]:
-    found = []
-    poor = [c.frame for c in cameras if c.found and c.quality < POOR]
-    if len(poor) > POOR_SHARE * len(cameras):
-        found.append(
-            f"in {len(poor)} of {len(cameras)} frames ({poor[0]} to {poor[-1]}) the model explains"
-            " little of the rings; look at the sheet of curlshot check before trusting it"
-        )
-    lost = sum(not s.found for s in seen)
-    if lost:
-        found.append(
-            f"{lost} of {len(seen)} frames do not show the rings; there the camera is"
-            " carried by what is fixed to the ice"
-        )
-    if sd[2] > UNTOLD * prior.sd[2]:
-        found.append(
-            f"the camera's height cannot be told from this view ({rig[2]:.1f} ±"
-            f" {sd[2]:.1f} m assumed); stones far from the picture's middle may be"
-            " centimetres off"
-        )
-    if not any((s.marks.get().line >= CIRCLES).any() for s in seen):
-        found.append("neither centre line nor tee line is seen; y is up in the picture")
-    return tuple(found)

@@ -1,0 +1,95 @@
+"""How far the cameras of a clip are to be trusted, and what a person is told of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vision.camera import Camera
+from vision.paint import CIRCLES, ice_frame, measures
+from vision.pose import View, project
+from vision.shared import ARC
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+POOR, POOR_SHARE = 0.4, 0.1
+"""Quality below which a frame is poor, and the share of such frames that is worth a warning."""
+
+POOR_PX = 1.0
+"""Residual at which a fit is half as good as it might be, px."""
+
+UNTOLD = 0.7
+"""Share of its prior standard deviation above which the camera's height counts as assumed."""
+
+_ARCS = np.arange(-np.pi + ARC / 2, np.pi, ARC)
+_ON_CIRCLE = np.repeat(np.arange(CIRCLES), len(_ARCS))
+_FOOT, _WAY = ice_frame(_ON_CIRCLE, np.tile(_ARCS, CIRCLES))
+
+
+def quality(pieces: Index, rms: float, view: View, rig: Array, size: tuple[int, int]) -> float:
+    """Quality of a frame's camera, from 0 to 1.
+
+    Parameters
+    ----------
+    pieces : ndarray of int
+        Pieces of the circles that it explains (`vision.shared.piece_of`), as often as may be.
+    rms : float
+        Residual of their edges, px; NaN where the camera is carried.
+    view, rig, size
+        The camera.
+
+    Returns
+    -------
+    float
+        The share of the circles' pieces in the picture that is explained, less where the residual
+        is large; 0 where carried.
+    """
+    if math.isnan(rms):
+        return 0.0
+    places = _FOOT + _WAY * measures(rig)[_ON_CIRCLE]
+    x, y = project(places.T, view.vector, rig, size).T
+    w, h = size
+    shown = int(((x > 0) & (y > 0) & (x < w - 1) & (y < h - 1)).sum())
+    explained = min(len(set(pieces.tolist())) / max(shown, 1), 1.0)
+    return explained / (1 + (rms / POOR_PX) ** 2)
+
+
+def warnings(
+    cameras: Sequence[Camera], height: float, sd: float, prior_sd: float, lined: bool
+) -> tuple[str, ...]:
+    """Tell what a person should know before trusting the cameras of a clip.
+
+    Parameters
+    ----------
+    cameras : sequence of Camera
+    height, sd, prior_sd : float
+        Of the camera above the ice: as found, and its standard deviations after and before, m.
+    lined : bool
+        Whether a line was seen beside the circles.
+    """
+    found = []
+    poor = [c.frame for c in cameras if c.found and c.quality < POOR]
+    if len(poor) > POOR_SHARE * len(cameras):
+        found.append(
+            f"in {len(poor)} of {len(cameras)} frames ({poor[0]} to {poor[-1]}) the model explains"
+            " little of the rings; look at the sheet of curlshot check before trusting it"
+        )
+    carried = sum(not c.found for c in cameras)
+    if carried:
+        found.append(
+            f"{carried} of {len(cameras)} frames do not show the rings; there the camera is"
+            " carried by what is fixed to the ice"
+        )
+    if sd > UNTOLD * prior_sd:
+        found.append(
+            f"the camera's height cannot be told from this view ({height:.1f} ±"
+            f" {sd:.1f} m assumed); stones far from the picture's middle may be"
+            " centimetres off"
+        )
+    if not lined:
+        found.append("neither centre line nor tee line is seen; y is up in the picture")
+    return tuple(found)
