@@ -39,9 +39,10 @@ Floats = NDArray[np.float64]
 UNTOLD = 2.5
 """Standard deviation of a spin that nothing is known of, rad/s."""
 
-UNSEEN_SCALE = 0.5
+UNSEEN_SCALE = 0.8
 """Part of `Trace.sd_scale` that adds to the errors of velocities: the rest, which changes under
-way, is among the lasting errors of the places, which the filter knows."""
+way, is among the lasting errors of the places, which the filter knows. With as much .90 to .98 of
+the velocities of each of six kinds of clips lie within two standard errors."""
 
 
 def smooth(
