@@ -26,8 +26,12 @@ edge by hue is aside by has changed several times by then."""
 FEWEST = 12
 """Sightings from which the two edges are compared."""
 
+SLOWLY = 0.5
+"""Time in which hue wanders, s: lightness must steady a way over this as well as from picture to
+picture, else what draws it aside changes within a second, and it would lead the stone astray."""
+
 WILD = 4.0
-"""Bends of the way, in root mean squares, beyond which they say nothing of the scatter."""
+"""Jerks of the way, in root mean squares, beyond which they say nothing of the scatter: hits."""
 
 
 def steadied(times: Sequence[float], seen: Sequence[Sighting]) -> list[Sighting]:
@@ -48,7 +52,7 @@ def steadied(times: Sequence[float], seen: Sequence[Sighting]) -> list[Sighting]
         return out
     places = np.array([(seen[i].x, seen[i].y) for i in told.tolist()])
     aside = light[told] - _lasting(np.array(times)[told], light[told])
-    share, gain = _share(np.diff(places, 2, axis=0), np.diff(aside, 2, axis=0))
+    share, gain = _share(np.array(times)[told], places, aside)
     steady = (places + share * aside).tolist()
     for rank, (x, y) in zip(told.tolist(), steady, strict=True):
         one = out[rank]
@@ -64,20 +68,37 @@ def _lasting(times: Array, values: Array) -> Array:
     return np.asarray((total[end] - total[first]) / (end - first)[:, None])
 
 
-def _share(places: Array, aside: Array) -> tuple[float, float]:
-    """Tell the share of what lightness says at which a way bends least, and by how much less.
+def _share(times: Array, places: Array, aside: Array) -> tuple[float, float]:
+    """Tell by what share of what lightness says a way is steadied, and what is left of its scatter.
 
     Parameters
     ----------
+    times : ndarray, shape (n,)
     places, aside : ndarray, shape (n, 2)
-        Second differences of the places, and of what the edge by lightness lies off them, m.
+        The places, and what the edge by lightness lies off them beyond what lasts, m.
     """
-    size = np.hypot(*places.T)
-    near = size <= WILD * np.sqrt(np.mean(np.minimum(size, 3 * np.median(size)) ** 2))
-    bends, offers = places[near], aside[near]
-    power = float((offers**2).sum())
-    if not power or not bends.any():
+    slow = max(round(SLOWLY / float(np.median(np.diff(times)))), 1)
+    lags = [lag for lag in (1, slow) if len(times) >= 3 * lag + FEWEST]
+    jerks = [_jerks(places, aside, lag) for lag in lags]
+    share = min((_steadiest(*each) for each in jerks), default=0.0)
+    if not share:
         return 0.0, 1.0
-    share = float(np.clip(-(bends * offers).sum() / power, 0.0, 1.0))
-    left = ((bends + share * offers) ** 2).sum() / (bends**2).sum()
-    return share, float(np.sqrt(left))
+    way, offer = jerks[0]
+    return share, float(np.sqrt(((way + share * offer) ** 2).sum() / (way**2).sum()))
+
+
+def _jerks(places: Array, aside: Array, lag: int) -> tuple[Array, Array]:
+    """Third differences at a lag, which a glide does not show, but for those of hits."""
+    way, offer = (
+        z[3 * lag :] - 3 * z[2 * lag : -lag] + 3 * z[lag : -2 * lag] - z[: -3 * lag]
+        for z in (places, aside)
+    )
+    size = np.hypot(*way.T)
+    near = size <= WILD * np.sqrt(np.mean(np.minimum(size, 3 * np.median(size)) ** 2))
+    return way[near], offer[near]
+
+
+def _steadiest(way: Array, offer: Array) -> float:
+    """Share of what is offered at which a way jerks least, 0 to 1."""
+    power = float((offer**2).sum())
+    return float(np.clip(-(way * offer).sum() / power, 0.0, 1.0)) if power else 0.0

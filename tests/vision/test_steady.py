@@ -64,6 +64,17 @@ def test_lightness_that_scatters_more_than_hue_has_no_say(
     assert np.abs(after - before).std() < 0.1 * 1e-3
 
 
+def test_lightness_that_goes_astray_within_a_second_has_little_say() -> None:
+    times = np.arange(300) / RATE
+    way, rng = np.zeros((300, 2)), np.random.default_rng(8)
+    turning = 2e-3 * np.column_stack([np.cos(5 * times), np.sin(5 * times)])
+    hue, light = rng.normal(0, 4e-4, way.shape), turning + rng.normal(0, 1e-4, way.shape)
+    seen = seen_by(hue, light, way)
+    before, after = errors(seen, way), errors(steadied(times.tolist(), seen), way)
+    assert np.abs(after - before).max() < 0.5 * np.abs(turning).max()
+    assert after.std() < before.std()
+
+
 def test_lamps_may_draw_aside_to_another_side_after_a_while() -> None:
     times = np.arange(600) / RATE
     way = np.zeros((600, 2))
