@@ -59,10 +59,6 @@ LEAST_SUPPORT, GOOD_SUPPORT = 0.3, 0.5
 """Of the circles that are in the picture, this part must be seen; where it is less than the
 second, edges of others may have been taken for theirs, and are measured anew."""
 
-STEADY = 0.8
-"""Part of what was seen in the frame before that must be seen again, or the edges are measured
-anew: a view that was predicted badly may rest on wrong edges."""
-
 LEARNING = 0.1
 """How fast the colours of the edges are learned anew."""
 
@@ -90,8 +86,6 @@ class EdgeTracker:
         How many frames may be followed together: the more, the better they are predicted.
     fit : ViewSolution, optional
         The last one.
-    support : float
-        Share of the circles in the picture that it explained.
     sweep : ndarray, shape (2,)
         How far a pan smears edges along x and along y in the frames asked for last, px.
     """
@@ -101,7 +95,6 @@ class EdgeTracker:
     edge: PaintEdge
     stride: int = 1
     fit: ViewSolution | None = None
-    support: float = 0.0
     sweep: Array = field(default_factory=lambda: np.zeros(2))
     _shutter: Shutter = field(default_factory=Shutter)
     _last: tuple[View, Array, Normals, Array] | None = None
@@ -152,7 +145,6 @@ class EdgeTracker:
         whole = count == len(frames) and not again
         self.stride = min(2 * count, LONGEST_STRIDE) if whole else max(count // 2, 1)
         self.fit, shown = fits[count - 1], evidence[count - 1]
-        self.support = _length(rig, _explained(shown, self.fit)) / _length(rig, shown.visible)
         self._learn(shown.palette, count)
         rim = normals.normal[:, normals.kinds.get(TWELVE, slice(0))]
         self._shutter.learn(shown.slope, self.fit.view.sweep([last, *views][count - 1]) @ rim)
@@ -262,10 +254,9 @@ class EdgeTracker:
         """
         free = 0.5 * (self._reach - self.blur)
         most = np.clip(free, LEAST_SETTLED * self._reach, SETTLED * self._reach)
-        least = max(GOOD_SUPPORT, STEADY * self.support)
         near = fit.view.aside(expected) < most
         near &= reach_beyond(smear(evidence.slope), self.size[0]) < TOO_SHORT * self._reach
-        return near and _enough(rig, evidence.visible, _explained(evidence, fit), least)
+        return near and _enough(rig, evidence.visible, _explained(evidence, fit), GOOD_SUPPORT)
 
     def _learn(self, palette: Array, frames: int) -> None:
         """Take in the colours of the edges in the last of so many frames."""
