@@ -30,6 +30,9 @@ STEP = 1e-5
 SPIN_STEP = 1e-3
 """Difference of a spin for a derivative, rad/s."""
 
+STEPS = 80
+"""Most simulations of all shots along the way, derivatives not counted."""
+
 SETTLED = 0.02
 """Change in standard errors below which a fit has come to its end."""
 
@@ -40,7 +43,6 @@ def fit_shots(
     fixed: Mapping[str, float] | None = None,
     shared: Sequence[str] = (),
     start: Mapping[str, float] | None = None,
-    iterations: int = 80,
 ) -> GlobalFit:
     """Fit all unknowns of one or several shots to all their sightings at once.
 
@@ -54,15 +56,13 @@ def fit_shots(
         Unknowns of which all shots have the same, such as ``restitution``.
     start : mapping, optional
         Where to set out from, where not from the shots' own guesses.
-    iterations : int
-        Most simulations of all shots along the way, derivatives not counted.
 
     Raises
     ------
     InputError
         Where there is no shot or a name is unknown.
     """
-    return _Problem(shots, fixed or {}, shared, start or {}).solve(iterations)
+    return _Problem(shots, fixed or {}, shared, start or {}).solve()
 
 
 @dataclass
@@ -100,16 +100,16 @@ class _Problem:
         self.step = np.array([SPIN_STEP if n.endswith("omega") else STEP for n in self.names])
         self.sightings = sum(len(t.t) for shot in self.shots for t in shot.traces.values())
 
-    def solve(self, iterations: int) -> GlobalFit:
+    def solve(self) -> GlobalFit:
         guesses = [self.start.get(n, u.guess) for n, u in self.unknowns.items()]
         at = np.clip(np.array(guesses, float), self.low, self.high)
-        at, settled = self._descend(at, iterations)
+        at, settled = self._descend(at)
         residuals = [self._residuals(rank, at) for rank in range(len(self.shots))]
         runs = [(run, 3) for places, _ in residuals for run in places]
         free = 2 * self.sightings - len(at)
         self.noise = inflation(runs, free)
         if self.noise > 1.0:  # what is known beforehand has the more of a say
-            at, settled = self._descend(at, iterations)
+            at, settled = self._descend(at)
             residuals = [self._residuals(rank, at) for rank in range(len(self.shots))]
         slopes = self._slopes(at, residuals)
         normal, _ = self._normal(at, residuals, slopes)
@@ -135,13 +135,13 @@ class _Problem:
             settled,
         )
 
-    def _descend(self, at: Floats, iterations: int) -> tuple[Floats, bool]:
+    def _descend(self, at: Floats) -> tuple[Floats, bool]:
         """Levenberg and Marquardt's steps from a guess to the least cost."""
         damping = 1e-3
         residuals = [self._residuals(rank, at) for rank in range(len(self.shots))]
         cost = self._cost(at, residuals)
         slopes = self._slopes(at, residuals)
-        for _ in range(iterations):
+        for _ in range(STEPS):
             normal, right = self._normal(at, residuals, slopes)
             step = inverse(normal + damping * np.diag(np.diag(normal))) @ right
             new = np.clip(at + step, self.low, self.high)
