@@ -30,6 +30,10 @@ SLOWLY = 0.5
 """Time in which hue wanders, s: lightness must steady a way over this as well as from picture to
 picture, else what draws it aside changes within a second, and it would lead the stone astray."""
 
+JERK = 5
+"""Lags that a track must be long: three make one jerk. Of a track so short that not even half of
+`SLOWLY` is left for a lag, it is not known, and lightness has no say."""
+
 WILD = 4.0
 """Jerks of the way, in root mean squares, beyond which they say nothing of the scatter: hits."""
 
@@ -77,22 +81,28 @@ def _share(times: Array, places: Array, aside: Array) -> tuple[float, float]:
     places, aside : ndarray, shape (n, 2)
         The places, and what the edge by lightness lies off them beyond what lasts, m.
     """
-    slow = max(round(SLOWLY / float(np.median(np.diff(times)))), 1)
-    lags = [lag for lag in (1, slow) if len(times) >= 3 * lag + FEWEST]
-    jerks = [_jerks(places, aside, lag) for lag in lags]
-    share = min((_steadiest(*each) for each in jerks), default=0.0)
+    slow = SLOWLY / float(np.median(np.diff(times)))
+    lag = max(min(round(slow), len(times) // JERK), 1)
+    if 2 * lag < slow:
+        return 0.0, 1.0
+    jerks = [_jerks(times, places, aside, each) for each in (1, lag)]
+    share = min(_steadiest(*each) for each in jerks)
     if not share:
         return 0.0, 1.0
     way, offer = jerks[0]
     return share, float(np.sqrt(((way + share * offer) ** 2).sum() / (way**2).sum()))
 
 
-def _jerks(places: Array, aside: Array, lag: int) -> tuple[Array, Array]:
-    """Third differences at a lag, which a glide does not show, but for those of hits."""
-    way, offer = (
-        z[3 * lag :] - 3 * z[2 * lag : -lag] + 3 * z[lag : -2 * lag] - z[: -3 * lag]
-        for z in (places, aside)
-    )
+def _jerks(times: Array, places: Array, aside: Array, lag: int) -> tuple[Array, Array]:
+    """Third divided differences at a lag, of a unit weight each, but for those of hits.
+
+    A glide does not show in them, be the times even or not.
+    """
+    four = np.arange(len(times) - 3 * lag)[:, None] + lag * np.arange(4)
+    apart = times[four][:, :, None] - times[four][:, None] + np.eye(4)
+    weight = 1 / apart.prod(axis=2)
+    weight /= np.linalg.norm(weight, axis=1)[:, None]
+    way, offer = (np.einsum("nk,nkc->nc", weight, z[four]) for z in (places, aside))
     size = np.hypot(*way.T)
     near = size <= WILD * np.sqrt(np.mean(np.minimum(size, 3 * np.median(size)) ** 2))
     return way[near], offer[near]

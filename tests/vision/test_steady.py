@@ -75,6 +75,26 @@ def test_lightness_that_goes_astray_within_a_second_has_little_say() -> None:
     assert after.std() < before.std()
 
 
+def test_a_track_too_short_to_show_that_lightness_goes_astray_stays() -> None:
+    times = np.arange(30) / RATE
+    way, rng = np.zeros((30, 2)), np.random.default_rng(8)
+    turning = 2e-3 * np.column_stack([np.cos(5 * times), np.sin(5 * times)])
+    seen = seen_by(rng.normal(0, 4e-4, way.shape), turning, way)
+    assert steadied(times.tolist(), seen) == seen
+
+
+@pytest.mark.parametrize("dropped", [0.1, 0.5])
+def test_a_glide_is_steadied_where_pictures_are_dropped_too(dropped: float) -> None:
+    rng = np.random.default_rng(11)
+    times = (np.arange(400) / RATE)[rng.random(400) > dropped]
+    way = np.column_stack([0.1 * times, 3 - 1.4 * times + 0.04 * times**2])
+    hue, light = rng.normal(0, 7e-4, way.shape), rng.normal(0, 2e-4, way.shape)
+    after = steadied(times.tolist(), seen_by(hue, light, way))
+    left = errors(after, way).std() / hue.std()
+    assert left < 0.5
+    assert after[0].sd_x == pytest.approx(1e-3 * left, rel=0.25)
+
+
 def test_lamps_may_draw_aside_to_another_side_after_a_while() -> None:
     times = np.arange(600) / RATE
     way = np.zeros((600, 2))
