@@ -35,6 +35,9 @@ SURE_CROSS, FAINT_CROSS = 6.0, 25.0
 below how many it is given up for them if it does not run along them: brooms and shadows, too, make
 crosses."""
 
+NOTHING = 1e-9
+"""Score of a cross below which there is none, as where there is nothing about the tee."""
+
 TURNS = tuple(np.radians(v) for v in (np.arange(-44.0, 45.0, 2.0), np.arange(-2.0, 2.1, 0.25)))
 """Turns that are tried to find the sides' direction: all over, then about the best; the step at a
 side is lost when it is 3° aside."""
@@ -122,17 +125,17 @@ def _best_cross(image: Image, view: View, rig: Array) -> tuple[float, float, flo
     """
     score = _cross_score(image, view, rig)
     turn = STEP * (np.arange(QUARTER_STEPS) - QUARTER_STEPS // 2)
-    noise = float(np.median(score)) + 1e-9
+    noise = float(np.median(score)) + NOTHING
     spread = float(np.median(np.abs(score - noise))) + 0.05 * noise
     score -= noise + 0.02 * noise * np.abs(np.degrees(turn)) / 10
     peaks = _peaks(score, CANDIDATES, apart=6)
     along = np.array([_strength(image, *turned(view, rig, float(turn[top]))) for top in peaks])
-    which = int((score[peaks] / score.max() + along / FULL_STEP).argmax())
+    which = int((score[peaks] / max(score.max(), NOTHING) + along / FULL_STEP).argmax())
     best = peaks[which]
     # The middle of the plateau: a line is wider than a step of the angle.
     near = np.arange(best - 3, best + 4)
     height = score[near % QUARTER_STEPS]
-    weight = np.clip(height - 0.5 * height.max(), 0, None)
+    weight = np.maximum(height - 0.5 * height.max(), NOTHING)
     aside = float((weight * near).sum() / weight.sum()) - best
     return float(turn[best]) + STEP * aside, float(score[best] / spread), float(along[which])
 

@@ -45,10 +45,11 @@ def test_black_lines_that_end_at_the_house_give_the_rotation() -> None:
     assert abs(found.vector[2]) < np.radians(0.3)
 
 
-def test_without_lines_nothing_turns() -> None:
+@pytest.mark.parametrize("noise", [1, 6])
+def test_without_lines_nothing_turns(noise: int) -> None:
     view, rig = level()
     plain = np.full((SIZE[1], SIZE[0], 3), 220, np.uint8)
-    noisy = plain + np.random.default_rng(0).integers(0, 6, plain.shape, dtype=np.uint8)
+    noisy = plain + np.random.default_rng(0).integers(0, noise, plain.shape, dtype=np.uint8)
     found, same = upright(noisy, view, rig)
     np.testing.assert_array_equal(found.vector, view.vector)
     np.testing.assert_array_equal(same, rig)
