@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,7 +61,7 @@ class HouseFollower:
     def __init__(self, size: tuple[int, int], first: HouseFit | None = None) -> None:
         self._size = size
         self._first = first
-        self._first_frame, self._last_frame = -1, -1
+        self._looked: list[int] = []
         self._pieces: list[Piece] = []
         self._piece: Piece | None = None
         self._ahead: list[Frame] = []
@@ -77,9 +78,7 @@ class HouseFollower:
             Frames placed thereby, in order, with provisional cameras: as a rule this one, or
             some and this one; after a find also those before it; none where no house is seen.
         """
-        if self._first_frame < 0:
-            self._first_frame = frame.index
-        self._last_frame = frame.index
+        self._looked.append(frame.index)
         self._ahead.append(frame)
         placed: list[tuple[Frame, Camera]] = []
         while len(self._ahead) >= self._stride:
@@ -177,8 +176,7 @@ class HouseFollower:
         else:
             best, which = pieces[0], "the one given"
         track = fit_clip(best.seen, best.rig, best.prior, self._size, best.edges.edge)
-        unseen = _unseen(pieces, self._first_frame, self._last_frame)
-        left_out = *_left_out(best, pieces, which), *unseen
+        left_out = *_left_out(best, pieces, which), *_unseen(pieces, self._looked)
         return replace(track, warnings=(*left_out, *track.warnings))
 
     def _start(self, frame: Frame, house: HouseFit) -> list[tuple[Frame, Camera]]:
@@ -264,11 +262,11 @@ def _left_out(best: Piece, pieces: Sequence[Piece], which: str) -> tuple[str, ..
     )
 
 
-def _unseen(pieces: Sequence[Piece], first: int, last: int) -> tuple[str, ...]:
-    """Say in which frames of `first` to `last` the house is not followed."""
-    seen = sorted(s.index for piece in pieces for s in piece.seen)
-    ends = zip([first - 1, *seen], [*seen, last + 1], strict=True)
-    gaps = [_frames(a + 1, b - 1) for a, b in ends if b > a + 1]
+def _unseen(pieces: Sequence[Piece], looked: Sequence[int]) -> tuple[str, ...]:
+    """Say in which of the frames that were looked at the house is not followed."""
+    seen = {s.index for piece in pieces for s in piece.seen}
+    runs = [list(run) for known, run in groupby(looked, seen.__contains__) if not known]
+    gaps = [_frames(run[0], run[-1]) for run in runs]
     if not gaps:
         return ()
     shown = gaps if len(gaps) <= MOST_SPANS else [*gaps[:MOST_SPANS], "…"]

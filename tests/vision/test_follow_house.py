@@ -85,6 +85,18 @@ def test_after_a_cut_back_the_same_camera_goes_on() -> None:
     assert any("frames 10 to 17; they are left out" in w for w in track.warnings)
 
 
+def test_frames_that_the_clip_does_not_give_are_not_said_to_show_no_house() -> None:
+    clip, truth = cached_clip(SCENE, still_camera(target=(0.1, 0.6), px_per_m=100), duration=0.6)
+    follower = HouseFollower((1280, 720))
+    for frame in open_clip([clip]):
+        if frame.index not in (4, 5):
+            follower.look(frame)
+    track = follower.finish()
+    assert track is not None
+    assert len(track.cameras) == len(truth.camera) - 2
+    assert not track.warnings
+
+
 def test_another_camera_s_house_is_left_out() -> None:
     path = still_camera(target=(0.1, 0.6), px_per_m=100)
     other = tilted_camera(0.7, height=6.0, px_per_m=85)
