@@ -29,6 +29,7 @@ from vision.placed import Placed, nobody
 from vision.pose import View
 from vision.replay import Glimpse, glimpse, has_jumped, is_nearer, is_replay
 from vision.rig import ANYWHERE, OVERHEAD
+from vision.shelf import Shelf
 
 Array = NDArray[np.float64]
 
@@ -62,6 +63,7 @@ class HouseFollower:
         self._size = size
         self._first = first
         self._looked: list[int] = []
+        self._shelf = Shelf()
         self._pieces: list[Piece] = []
         self._piece: Piece | None = None
         self._ahead: list[Frame] = []
@@ -185,7 +187,7 @@ class HouseFollower:
         if piece is None:
             prior = OVERHEAD if house.overhead else ANYWHERE
             edges = EdgeTracker(self._size, house.evidence.palette, house.edge)
-            piece = Piece(self._size, house.rig, prior, edges)
+            piece = Piece(self._size, house.rig, prior, edges, self._shelf)
             view = house.view
             self._pieces.append(piece)
         self._piece = piece

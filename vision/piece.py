@@ -61,6 +61,8 @@ class Piece:
         What the frames share, provisionally, and what is known of it beforehand.
     edges : EdgeTracker
         Refines the views.
+    shelf : Shelf
+        Where the marks of the frames are put aside; the pieces of a clip share one.
     seen : list of Seen
         The frames so far.
     glimpses : list of Glimpse
@@ -77,6 +79,7 @@ class Piece:
     rig: Array
     prior: Prior
     edges: EdgeTracker
+    shelf: Shelf = field(default_factory=Shelf)
     seen: list[Seen] = field(default_factory=list)
     glimpses: list[Glimpse] = field(default_factory=list)
     found: int = 0
@@ -87,7 +90,6 @@ class Piece:
     _picture: Picture | None = None
     _ice: IceTracker = field(default_factory=IceTracker)
     _fresh: list[Picture] = field(default_factory=list)
-    _shelf: Shelf = field(default_factory=Shelf)
 
     @property
     def missed(self) -> int:
@@ -134,7 +136,7 @@ class Piece:
         ]
 
     def _add(self, seen: Seen, picture: Picture) -> None:
-        seen.marks.put_aside(self._shelf)
+        seen.marks.put_aside(self.shelf)
         self.seen.append(seen)
         self.found += seen.found
         self._picture, self.lost = picture, 0

@@ -6,9 +6,11 @@ import pickle
 import tempfile
 import weakref
 from collections.abc import Callable
+from contextlib import suppress
+from errno import ENOSPC
 from functools import partial
 from os import SEEK_END
-from typing import Any, Generic, TypeVar
+from typing import IO, Any, Generic, TypeVar
 
 T = TypeVar("T")
 
@@ -17,17 +19,27 @@ class Shelf:
     """A file without a name; it goes when nothing that lies on it is held any more."""
 
     def __init__(self) -> None:
-        self._file = tempfile.TemporaryFile()  # noqa: SIM115
-        weakref.finalize(self, self._file.close)
+        self._file: IO[bytes] | None = None
 
     def put(self, thing: T) -> Callable[[], T]:
-        """Write a thing to the file; what is given back reads it."""
+        """Write a thing to the file; what is given back reads it.
+
+        Raises
+        ------
+        OSError
+            There is no room for it.
+        """
+        if self._file is None:
+            self._file = tempfile.TemporaryFile(buffering=0)  # noqa: SIM115
+            weakref.finalize(self, self._file.close)
         data = pickle.dumps(thing, pickle.HIGHEST_PROTOCOL)
         begin = self._file.seek(0, SEEK_END)
-        self._file.write(data)
+        if self._file.write(data) < len(data):
+            raise OSError(ENOSPC, "no room to put something aside")
         return partial(self._read, begin, len(data))
 
     def _read(self, begin: int, size: int) -> Any:
+        assert self._file is not None
         self._file.seek(begin)
         return pickle.loads(self._file.read(size))
 
@@ -41,5 +53,6 @@ class Kept(Generic[T]):
         self.get: Callable[[], T] = lambda: thing
 
     def put_aside(self, shelf: Shelf) -> None:
-        """Keep it on a shelf from now on."""
-        self.get = shelf.put(self.get())
+        """Keep it on a shelf from now on; where there is no room for it, in memory as before."""
+        with suppress(OSError):
+            self.get = shelf.put(self.get())

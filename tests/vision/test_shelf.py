@@ -1,9 +1,14 @@
 """Things put aside in a file without a name."""
 
 import gc
+import io
+import tempfile
 import tracemalloc
+from collections.abc import Callable
+from typing import IO, NoReturn
 
 import numpy as np
+import pytest
 
 from vision.shelf import Kept, Shelf
 
@@ -32,6 +37,28 @@ def test_memory_holds_no_more_than_where_things_lie() -> None:
     tracemalloc.stop()
     assert held < 200 * 1_000
     assert all(each.get()[0] == number for number, each in enumerate(kept))
+
+
+class Full(io.BytesIO):
+    """A file of a few bytes."""
+
+    def write(self, data: bytes) -> int:  # type: ignore[override]
+        return super().write(data[:7])
+
+
+def no_file(**_: int) -> NoReturn:
+    raise OSError("nowhere to write")
+
+
+@pytest.mark.parametrize("opened", [no_file, lambda **_: Full()])
+def test_what_finds_no_room_stays_in_memory(
+    monkeypatch: pytest.MonkeyPatch, opened: Callable[..., IO[bytes]]
+) -> None:
+    monkeypatch.setattr(tempfile, "TemporaryFile", opened)
+    kept, shelf = [Kept(np.full(3, float(number))) for number in range(3)], Shelf()
+    for each in kept:
+        each.put_aside(shelf)
+    assert [each.get()[0] for each in kept] == [0, 1, 2]
 
 
 def test_a_thing_outlives_whoever_put_it_aside() -> None:
