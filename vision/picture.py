@@ -6,7 +6,7 @@ are, and colours are made where they are asked for.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -193,6 +193,15 @@ def lightness_at(picture: Picture, x: Floats, y: Floats) -> Image:
     if isinstance(picture, Planes):
         return np.asarray(cv2.remap(picture.luma, x, y, cv2.INTER_LINEAR), np.uint8)
     return np.asarray(cv2.cvtColor(colours_at(picture, x, y), cv2.COLOR_BGR2GRAY), np.uint8)
+
+
+def brightened(picture: Picture, gain: NDArray[np.float64]) -> Picture:
+    """Give a picture in another light: blue, green and red times a gain, shape (3,)."""
+    if np.all(gain == 1):
+        return picture
+    if isinstance(picture, Planes):
+        return replace(picture, to_bgr=gain[:, None] * picture.to_bgr, frame=None)
+    return np.asarray(cv2.transform(picture, np.diag(gain)), np.uint8)
 
 
 def image_of(picture: Picture) -> Image:

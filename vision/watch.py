@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 from data.sheet import STONE, Stone
 from vision.appearance import MOST_COLOURS, UNLIKE, Appearance, convincing, learn
+from vision.balance import Balance
 from vision.camera import Camera
 from vision.clip import Frame
 from vision.follower import PATIENCE, Follower, Patience, StoneView
@@ -78,12 +79,17 @@ class Watch:
         self._waiting: list[StoneView] = []
         self._recent: deque[StoneView] = deque()
         self._shelf = Shelf()
+        self._balance: Balance | None = None
         self._leads: list[Lead] = []
         self._since = pace.memory
         self._seen: list[tuple[int, float, Camera, list[Sighting]]] = []
 
     def look(self, frame: Frame, camera: Camera) -> None:
         """Take in a frame; it waits for some more, the first ones until the stones are learned."""
+        if self._balance is not None:
+            if not self._waiting:
+                self._balance.look(frame.picture, camera)
+            frame = replace(frame, picture=self._balance.evened(frame.picture))
         view = StoneView(frame, camera)
         self._waiting.append(view)
         self._seen.append((frame.index, frame.t, camera, view.sightings))
@@ -127,9 +133,11 @@ class Watch:
         return Follower(self.appearance, self.disc, self._search, self._patience)
 
     def _catch_up(self) -> None:
-        if not self._knows:
+        if self._waiting and not self._knows:
             self._recent.clear()
             self._learn(self._waiting)
+            if self._knows:
+                self._balance = Balance(self._waiting[-1].frame.picture, self._waiting[-1].camera)
         size = self._patience.block
         for begin in range(0, len(self._waiting), size):
             self._see(self._waiting[begin : begin + size])

@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from vision.clip import open_clip
-from vision.picture import Planes, channels_at, colours_at, image_of, reduced
+from vision.picture import Planes, brightened, channels_at, colours_at, image_of, reduced
 
 WIDTH, HEIGHT = 96, 64
 
@@ -111,3 +111,14 @@ def test_channels_are_the_colours_unrounded(tmp_path: Path) -> None:
     for picture in (planes, planes.image):
         seen = np.clip(np.moveaxis(channels_at(picture, x, y), 0, -1), 0, 255)
         assert np.abs(seen - colours_at(picture, x, y)).max() < 1
+
+
+def test_a_picture_in_another_light_has_each_colour_times_its_gain(tmp_path: Path) -> None:
+    planes, gain = first(write(tmp_path / "clip.mp4", smooth_picture(), "yuv420p")), [0.7, 0.9, 1.0]
+    before = colours_at(planes, *everywhere(planes.shape)).astype(float)
+    for picture in (planes, before.astype(np.uint8)):
+        lit = brightened(picture, np.array(gain))
+        after = colours_at(lit, *everywhere(planes.shape)).astype(float)
+        assert np.abs(after - before * gain).max() < 1.0
+        assert np.abs(image_of(lit) - after).mean() < 2.0
+    assert brightened(planes, np.ones(3)) is planes

@@ -12,6 +12,7 @@ from vision.watch import Watch
 
 AT_REST = [(0.3, 0.2, RED), (-0.8, 1.0, YELLOW), (0.9, -0.6, RED)]
 LATE = (-0.2, -0.5)
+PALE = (210, 150, 70)
 
 
 def picture(places: list[tuple[float, float, tuple[int, int, int]]]) -> Image:
@@ -87,3 +88,16 @@ def test_a_stone_that_spins_on_the_spot_is_measured_all_the_time() -> None:
             told[bool(spins)] += sighting.spectrum is not None
     assert told[True] > 25
     assert told[False] < 40
+
+
+def test_caps_are_known_in_a_light_that_has_wandered_and_after_a_fade() -> None:
+    places = [(x, y, PALE) for x, y, _ in AT_REST]
+    image, camera = picture(places) * 0.85, camera_of(CAMERA, scene_of(places))
+    watch = Watch()
+    for index in range(100):
+        faded = min(0.1 + 0.06 * index, 1.0)
+        yellow = np.array([1 - 0.004 * index, 1.0, 1 + 0.001 * index])
+        lit = (image * (faded * yellow)).clip(0, 255).astype(np.uint8)
+        watch.look(Frame(index, index / 25, lit), camera)
+    counts = [len(sightings) for _, _, sightings in watch.finish()]
+    assert counts[16:] == [3] * 84
