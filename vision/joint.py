@@ -126,7 +126,7 @@ def fit_clip(
     sd = LONG_RANGE * np.sqrt(np.diag(shared.cov)[:RIG_SIZE])
     place, scale = shared.rig[POSITION], _scale_sd(chosen[-1].view, shared.rig, edge.sd)
     sd[POSITION] = np.hypot(sd[POSITION], scale * place)
-    lined = any((s.marks.get().line >= CIRCLES).any() for s in seen)
+    lined = any(_shows_a_line(s.marks.get()) for s in seen)
     return HouseTrack(
         tuple(cameras),
         np.array([HOUSE.twelve_foot, *shared.rig[[R8, R4]]]),
@@ -241,6 +241,10 @@ def _parameters(view: Array, rig: Array, size: tuple[int, int]) -> Array:
     found[7, VIEW_SIZE + np.array([K1, K1_ZOOM, K1_BEND])] = 1.0, z, z * z
     found[8, VIEW_SIZE + K2] = 1.0
     return found
+
+
+def _shows_a_line(marks: Marks) -> bool:
+    return bool(((marks.line >= CIRCLES) & (marks.line != FIXED)).any())
 
 
 def _spread(seen: Sequence[Seen]) -> list[Seen]:

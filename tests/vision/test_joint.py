@@ -125,9 +125,10 @@ def test_places_scatter_as_their_covariance_by_a_views_own_marks() -> None:
     np.testing.assert_allclose(stated / scatter, 1.0, atol=0.2)
 
 
-def test_fixed_points_may_join() -> None:
+@pytest.mark.parametrize(("kinds", "lined"), [(5, True), (3, False)])
+def test_fixed_points_may_join_and_are_no_line(kinds: int, lined: bool) -> None:
     rng = np.random.default_rng(2)
-    frames = clip(rng)
+    frames = clip(rng, kinds)
     line = np.full(4, FIXED)
     along, across = np.array([1.0, -1.0, 1.0, -1.0]), np.array([1.0, 0.5, 1.0, 0.5])
     true = true_view(0.1, 950.0)
@@ -140,7 +141,9 @@ def test_fixed_points_may_join() -> None:
         0, first.view, start_rig(OVERHEAD), np.zeros((9, 16), np.uint8), none, none, 0.003
     )
     frames.append(Seen(8, 8 / 25, first.view, Kept(fixed), False, key))
-    cameras = fit_clip(frames, start_rig(OVERHEAD), OVERHEAD, SIZE).cameras
+    track = fit_clip(frames, start_rig(OVERHEAD), OVERHEAD, SIZE)
+    assert any("neither centre line" in text for text in track.warnings) is not lined
+    cameras = track.cameras
     camera = cameras[-1]
     assert not camera.found and camera.quality == 0
     assert np.isfinite(camera.place_cov((0.0, 0.0))).all()
