@@ -131,12 +131,13 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
 def _rows(name: str, track: Track, team: str, disc: Stone, edge: float) -> Columns:
     kept = [sighting.spectrum for sighting in track.sightings]
     spectra = [None if spectrum is None else spectrum.get() for spectrum in kept]
+    # Caps were unrolled about their centres as these were measured.
+    off = np.array([0.5 * (sighting.sd_x + sighting.sd_y) for sighting in track.sightings])
+    theta, sd_theta = handle_angles(np.array(track.times), spectra, handle_radii(disc), off)
     seen = steadied(track.times, track.sightings)
     x, y, sd_x, sd_y, sd_place_x, sd_place_y = np.array(
         [(item.x, item.y, item.sd_x, item.sd_y, *item.sd_place) for item in seen]
     ).T
-    off = 0.5 * (sd_x + sd_y)
-    theta, sd_theta = handle_angles(np.array(track.times), spectra, handle_radii(disc), off)
     return {
         "stone": np.full(len(seen), name),
         "frame": np.array(track.frames),
