@@ -128,7 +128,7 @@ def handle_angles(
     heights = np.split(pictures, pictures.shape[2] // len(radii), axis=2)
     best = max((_matched(times[seen], part, turning) for part in heights), key=_alike)
     good = best.likeness > turning.least_likeness
-    if good.sum() < 0.5 * len(seen):
+    if good.sum() < max(0.5 * len(seen), 2):
         # Most frames do not look like the mean: there is nothing on the cap to go by.
         return theta, sd
     rows = seen[good]

@@ -156,6 +156,13 @@ def test_a_cap_that_a_slanting_view_hides_at_first_is_told_once_it_is_seen() -> 
     assert np.abs(theta - true - np.nanmedian(theta - true))[15:].max() < 0.03
 
 
+def test_one_picture_and_one_of_something_else_tell_no_angle() -> None:
+    noise = np.random.default_rng(3).integers(0, 255, patch(0.0).shape, dtype=np.uint8)
+    pictures = [spectrum(0.0), cap_spectrum(noise, RADII)]
+    theta, sd = handle_angles(np.array([0.0, 0.04]), pictures, RADII)
+    assert np.isnan(theta).all() and np.isnan(sd).all()
+
+
 def test_something_before_the_cap_leaves_the_angle_open() -> None:
     rng = np.random.default_rng(7)
     times = np.arange(80) / 25
