@@ -20,16 +20,15 @@ from vision.contrast import by_hue, by_lightness, mean_colours
 from vision.patch import (
     CAP_END,
     EFFORT,
-    HANDLE_HEIGHT,
     RING_BEGIN,
     RING_END,
     Effort,
-    handle_radii,
     is_plain,
     profile_of,
     slants,
+    unrolled,
 )
-from vision.rays import Look, Rays, directions, sample_rays
+from vision.rays import Look, Rays, directions
 from vision.rims import Rim, falls_along, summed
 
 Array = NDArray[np.float64]
@@ -83,8 +82,7 @@ class Measures:
     wall : ndarray, shape (n,)
         How high the wall of the cap is, m; means nothing where it is not seen.
     handle : ndarray, shape (n, rays, rings, 3)
-        What is around the centre, L*a*b*: at the height of the handle, 0 where it shows more
-        than the cap, and beside it, for a stone, at the height of the cap.
+        What is around the centre (`vision.patch.unrolled`).
     worth : ndarray, shape (n, rays, radii)
         What the samples of `rays` may be: 1 cap, −1 granite, 0 neither.
     rays : Rays
@@ -126,40 +124,14 @@ def measure_discs(
     effort : Effort
         How each place is measured.
     """
-    sampled = sample_rays(looks, profile_of(disc, effort), effort.rays)
-    count = effort.radii
-    rays = Rays(
-        sampled.bgr[:, :, :count],
-        sampled.lab[:, :, :count],
-        sampled.inside[:, :, :count],
-        sampled.radius[:count],
-        sampled.angle,
-    )
-    pairs = sampled.lab[:, :, count:]
-    handle = (pairs[:, :, ::2] >> 1) + (pairs[:, :, 1::2] >> 1)
-    # A ring that leaves the picture tells no angle.
-    handle *= np.all(sampled.inside[:, :, count + 1 :: 2], axis=1)[:, None, :, None]
+    rays, handle = unrolled(looks, disc, effort)
     places = np.concatenate([look.places for look in looks])
     scale = np.concatenate([look.camera.scale_at(look.places) for look in looks])
-    slant = np.concatenate([slants(look.camera, look.places) for look in looks])
     if is_plain(disc):
         return _plain(rays, handle, places, scale, disc, effort)
     assert appearance is not None
-    # Behind the plane of the handle a slanting view shows the cap displaced. Rings that leave
-    # it show its edge, which stays while the stone turns: they are blanked.
-    tilt = np.hypot(slant[:, 0], slant[:, 1])
-    within = effort.handle_edge * disc.cap_radius - (HANDLE_HEIGHT - disc.cap_height) * tilt
-    handle *= (sampled.radius[count + 1 :: 2] < within[:, None])[:, None, :, None]
-    handle = np.concatenate([handle, _rings(rays, handle_radii(disc, effort))], axis=2)
+    slant = np.concatenate([slants(look.camera, look.places) for look in looks])
     return _stones(rays, handle, places, scale, slant, appearance, disc, effort)
-
-
-def _rings(rays: Rays, radii: Array) -> Bytes:
-    """Give what the rays show on rings; 0 where these are not wholly in the picture."""
-    outer = np.searchsorted(rays.radius, radii)
-    seen = (rays.lab[:, :, outer - 1] >> 1) + (rays.lab[:, :, outer] >> 1)
-    seen *= (np.all(rays.inside[:, :, outer], axis=1) & (outer > 0))[:, None, :, None]
-    return np.asarray(seen)
 
 
 def well_within(radius: Array, disc: Stone) -> tuple[slice, slice]:

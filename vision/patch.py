@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -10,9 +11,10 @@ from numpy.typing import NDArray
 
 from data.sheet import Stone
 from vision.camera import Camera
-from vision.rays import Profile, chained, straight
+from vision.rays import Look, Profile, Rays, chained, sample_rays, straight
 
 Array = NDArray[np.float64]
+Bytes = NDArray[np.uint8]
 
 HANDLE_HEIGHT = 0.15
 """How high above the ice the handle's grip is seen, m."""
@@ -108,3 +110,53 @@ def slants(camera: Camera, places: Array) -> Array:
     if camera.position is None:
         return np.zeros((len(places), 2))
     return np.asarray((places - camera.position[:2]) / camera.position[2])
+
+
+def unrolled(looks: Sequence[Look], disc: Stone, effort: Effort) -> tuple[Rays, Bytes]:
+    """Sample what pictures show of discs at places.
+
+    Parameters
+    ----------
+    looks : sequence of Look
+        Pictures of one size and n places in all.
+    disc : Stone
+        Size of the discs.
+    effort : Effort
+
+    Returns
+    -------
+    rays : Rays
+        Where the edges are.
+    handle : ndarray, shape (n, rays, rings, 3)
+        What is around the centre, L*a*b*: at the height of the handle, 0 where it shows more
+        than the cap, and beside it, for a stone, at the height of the cap.
+    """
+    sampled = sample_rays(looks, profile_of(disc, effort), effort.rays)
+    count = effort.radii
+    rays = Rays(
+        sampled.bgr[:, :, :count],
+        sampled.lab[:, :, :count],
+        sampled.inside[:, :, :count],
+        sampled.radius[:count],
+        sampled.angle,
+    )
+    pairs = sampled.lab[:, :, count:]
+    handle = np.asarray((pairs[:, :, ::2] >> 1) + (pairs[:, :, 1::2] >> 1))
+    # A ring that leaves the picture tells no angle.
+    handle *= np.all(sampled.inside[:, :, count + 1 :: 2], axis=1)[:, None, :, None]
+    if is_plain(disc):
+        return rays, handle
+    # Behind the plane of the handle a slanting view shows the cap displaced. Rings that leave
+    # it show its edge, which stays while the stone turns: they are blanked.
+    tilt = np.concatenate([np.hypot(*slants(look.camera, look.places).T) for look in looks])
+    within = effort.handle_edge * disc.cap_radius - (HANDLE_HEIGHT - disc.cap_height) * tilt
+    handle *= (sampled.radius[count + 1 :: 2] < within[:, None])[:, None, :, None]
+    return rays, np.concatenate([handle, _rings(rays, handle_radii(disc, effort))], axis=2)
+
+
+def _rings(rays: Rays, radii: Array) -> Bytes:
+    """Give what the rays show on rings; 0 where these are not wholly in the picture."""
+    outer = np.searchsorted(rays.radius, radii)
+    seen = (rays.lab[:, :, outer - 1] >> 1) + (rays.lab[:, :, outer] >> 1)
+    seen *= (np.all(rays.inside[:, :, outer], axis=1) & (outer > 0))[:, None, :, None]
+    return np.asarray(seen)

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from data.sheet import STONE
-from vision.patch import EFFORT, handle_radii, is_plain, profile_of, slants
+from vision.patch import EFFORT, handle_radii, is_plain, profile_of, slants, unrolled
 from vision.pose import View, camera
+from vision.rays import Look
 from vision.rig import OVERHEAD, start_rig
 from vision.stones import plain_disc
 
@@ -34,3 +35,23 @@ def test_rays_cover_the_cap_and_its_granite() -> None:
     disc = plain_disc(0.03)
     assert is_plain(disc) and not is_plain(STONE)
     assert profile_of(disc, EFFORT).node_height.max() == 0
+
+
+def test_rings_are_shown_that_lie_in_the_picture_and_on_the_cap_alone() -> None:
+    picture = np.full((720, 1280, 3), (60, 90, 200), np.uint8)
+    out = DOWN.ice(np.array([[1280.0 - 6, 400.0]]))[0]  # seen to a few pixels from its middle
+    look = Look(picture, DOWN, np.array([[0.3, 0.0], [4.0, 0.0], out]))
+    rays, handle = unrolled([look], STONE, EFFORT)
+    assert rays.lab.shape == (3, EFFORT.rays, EFFORT.radii, 3)
+    count = len(handle_radii(STONE))
+    assert handle.shape == (3, EFFORT.rays, 2 * count, 3)
+    shown = (handle > 0).any(-1)
+    assert (shown == shown[:, :1]).all()  # a ring as a whole or not at all
+    at_grip, at_cap = shown[:, 0, :count], shown[:, 0, count:]
+    assert at_grip[0].all() and at_cap[0, -4:].all()
+    # Aslant, the grip's plane lies before the cap's edge; at the picture's end nothing is whole.
+    assert at_grip[1, 0] and not at_grip[1, -1] and at_cap[1, -1]
+    assert not at_grip[2, -1] and not at_cap[2, -1]
+    np.testing.assert_array_equal(handle[0, 0, -1], rays.lab[0, 0, 20] & 254)
+    disc = plain_disc(0.03)
+    assert unrolled([look], disc, EFFORT)[1].shape == (3, EFFORT.rays, count, 3)
