@@ -18,6 +18,7 @@ from physics.fit_rules import meeting_rules, slowing
 from physics.normal_equations import eliminated, inverse_of_blocks
 from physics.residuals import huber_weights, inflation
 from physics.segments import Piece
+from physics.set_out import line, origin
 from physics.shot_fit import Deceleration, Meeting, ShotFit
 from physics.slowing import LEAST, MOST, course, stop_after
 from physics.traces import Trace
@@ -103,13 +104,14 @@ class _Solver:
         }
         self.further = np.zeros((len(self.pieces), 2, 8))
         self.blocks = self._blocks()
-        self.origins = np.array([self._origin(piece) for piece in pieces])
+        self.origins = np.array([origin(p, traces[p.stone], meetings) for p in pieces])
         self.theta = np.zeros(self.size)
         self.theta[len(self.theta) - len(self.pieces) :] = self.prior.fall
         for k, meeting in enumerate(self.meetings):
             self.theta[6 * len(self.pieces) + k] = meeting.t
         for i, piece in enumerate(self.pieces):
-            self._guess(i, piece)
+            states = self.theta[6 * i : 6 * i + 6].reshape(2, 3)
+            states[:, 0], states[:, 1] = line(piece, traces[piece.stone], self.origins[i])
 
     def _blocks(self) -> list[NDArray[np.int64]]:
         """Unknowns that depend on each other: pieces are tied to others by meetings alone."""
@@ -121,28 +123,6 @@ class _Solver:
         unknowns = np.concatenate([np.repeat(group[:count], 6), group[count:], group[:count]])
         order = np.argsort(unknowns, kind="stable")
         return np.split(order, np.flatnonzero(np.diff(unknowns[order])) + 1)
-
-    def _origin(self, piece: Piece) -> float:
-        if piece.opens is not None:
-            return self.meetings[piece.opens].t
-        if len(piece.samples):
-            return float(self.traces[piece.stone].t[piece.samples[0]])
-        return piece.start if np.isfinite(piece.start) else piece.end
-
-    def _guess(self, i: int, piece: Piece) -> None:
-        """Start from a straight line, or for the shortest pieces from the neighbours."""
-        trace = self.traces[piece.stone]
-        samples = piece.samples
-        if len(samples) < 3:
-            low = max(int(np.searchsorted(trace.t, piece.start)) - 1, 0)
-            high = min(int(np.searchsorted(trace.t, piece.end)) + 1, len(trace.t))
-            samples = np.arange(low, high)
-        tau = trace.t[samples] - self.origins[i]
-        degree = 0 if piece.rest or len(samples) < 2 else 1
-        line = np.polynomial.polynomial.polyfit(tau, trace.xy[samples], degree)
-        self.theta[[6 * i, 6 * i + 3]] = line[0]
-        if degree:
-            self.theta[[6 * i + 1, 6 * i + 4]] = line[1]
 
     def solve(self) -> ShotFit:
         first, last = 6 * len(self.pieces), self.size - len(self.pieces)
