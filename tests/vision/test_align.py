@@ -61,3 +61,15 @@ def test_rings_out_of_the_picture_are_known() -> None:
     picture = spectra([0.0], [(0.0, 0.0)])
     picture[:, :, 5:] = 0
     assert rings_seen(picture).tolist() == [[True] * 5 + [False] * 3]
+
+
+def test_pictures_are_aligned_alike_however_many_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    true = np.linspace(0, 4, 30)
+    pictures = spectra(true.tolist(), [(0.0, 0.0)] * 30)
+    sd_shift = np.linspace(0.0005, 0.002, 30)
+    whole = align(pictures, true, RADII, sd_shift)
+    monkeypatch.setattr("vision.align.TOGETHER", 7)
+    parts = align(pictures, true, RADII, sd_shift)
+    np.testing.assert_allclose(parts.angle, whole.angle, atol=1e-5)
+    np.testing.assert_allclose(parts.sd, whole.sd, rtol=1e-3)
+    np.testing.assert_allclose(parts.shift, whole.shift, atol=1e-6)
