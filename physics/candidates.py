@@ -31,11 +31,18 @@ def candidates(known: Mapping[str, Trace], radius: float) -> list[Meeting]:
     for first, second in combinations(sorted(known), 2):
         if first in moving or second in moving:
             found += _approaches(known[first], known[second], turns, radius)
-    return _causal(sorted(found, key=lambda meeting: meeting.t), known)
+    return causal(sorted(found, key=lambda meeting: meeting.t), known)
 
 
-def _causal(meetings: list[Meeting], known: Mapping[str, Trace]) -> list[Meeting]:
-    """Put a hit that sets a touching pair in motion before the hit of that pair."""
+def causal(meetings: Sequence[Meeting], known: Mapping[str, Trace]) -> list[Meeting]:
+    """Put a hit that sets a touching pair in motion before the hit of that pair.
+
+    Parameters
+    ----------
+    meetings : sequence of Meeting
+        In order of time.
+    known : mapping of str to Trace
+    """
     out = list(meetings)
     for i, late in enumerate(meetings):
         for j, early in enumerate(meetings[:i]):
@@ -104,15 +111,15 @@ def _meeting_times(
 ) -> list[float]:
     """List the times within one stretch of nearness at which the two may have met.
 
-    The closest approach; the first moment that is as close as noise can tell, since one may
-    follow the other from there; and the times at which the motion of both changed, since two
-    may lie side by side for long.
+    The closest approach; the first and the last moment that are as close as noise can tell, since
+    one may follow the other from there, or have touched it till then; and the times at which the
+    motion of both changed, since two may lie side by side for long.
     """
     k = int(run[np.argmin(distance[run])])
-    first = int(run[np.argmax(distance[run] < distance[k] + noise)])
+    close = run[distance[run] < distance[k] + noise]
     times = [_vertex(t, distance, k)]
     step = float(np.median(np.diff(t)))
-    further = [] if first == 0 else [_vertex(t, distance, first)]
+    further = [_vertex(t, distance, int(end)) for end in (close[0], close[-1]) if end]
     one, other = turns
     inside = [turn for turn in one if t[run[0]] <= turn <= t[run[-1]]]
     further += [turn for turn in inside if any(abs(turn - x) < 3 * step for x in other)]

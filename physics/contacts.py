@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from data.tracks import Table
-from physics.candidates import REACH, candidates
+from physics.candidates import REACH, candidates, causal
 from physics.fit import fit_shot
 from physics.segments import Piece, cut
 from physics.shot_fit import Deceleration, Encounter, Meeting, ShotFit
@@ -52,8 +53,9 @@ def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
 
     Every approach of two stones to about 2R is a candidate. All are fitted at once as hits,
     and the one whose impulse is least significant is struck off until all that are left
-    changed the motion of both their stones. Where several show nothing (of hits between two
-    sightings none is seen by itself), the pair that lies farthest from touching is struck off.
+    changed the motion of both their stones. Where several show no hit (of those between two
+    sightings none is seen by itself), one that pushes nothing goes first, and of these the pair
+    that lies farthest from touching.
 
     Parameters
     ----------
@@ -70,18 +72,31 @@ def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
     known = traces(sightings)
     meetings = candidates(known, radius)
     cuts: dict[str, list[Piece]] = {}
+    ordered = False
     while meetings:
         pieces, cuts = cut_all(known, meetings, radius, cuts)
         fit = fit_shot(known, pieces, meetings, radius, deceleration=Deceleration(0.0, 0.5, 0.5))
+        other = None if ordered else _other_order(fit, known)
+        if other is not None:
+            meetings, cuts, ordered = other, {}, True
+            continue
         evidence = [_evidence(fit, k, radius) for k in range(len(meetings))]
-        weakest = min(range(len(meetings)), key=lambda k: (evidence[k], -_misfit(fit, k, radius)))
-        if evidence[weakest] >= SIGNIFICANT:
+        weakest = min(range(len(meetings)), key=evidence.__getitem__)
+        if evidence[weakest].hit >= SIGNIFICANT:
             return _contacts(fit)
         struck = meetings[weakest]
         meetings = [meeting for meeting in meetings if meeting is not struck]
         cuts = {name: run for name, run in cuts.items() if name not in struck.stones}
-        cuts = _renumbered(cuts, weakest)
+        cuts, ordered = _renumbered(cuts, weakest), False
     return ()
+
+
+def _other_order(fit: ShotFit, known: Mapping[str, Trace]) -> list[Meeting] | None:
+    """Give the meetings of a fit at their times there in another order if cause asks for it."""
+    met = [replace(m, t=fit.encounter(k).t) for k, m in enumerate(fit.meetings)]
+    met.sort(key=lambda meeting: meeting.t)
+    other = causal(met, known)
+    return other if [m.stones for m in other] != [m.stones for m in met] else None
 
 
 def _renumbered(cuts: Mapping[str, list[Piece]], gone: int) -> dict[str, list[Piece]]:
@@ -111,14 +126,26 @@ def cut_all(
     return [piece for name in known for piece in cuts[name]], cuts
 
 
-def _misfit(fit: ShotFit, k: int, radius: float) -> float:
-    """How far from touching the two discs of meeting k are at its time, in units of 2R."""
-    apart = np.diff(fit.encounter(k).places, axis=0)
-    return abs(float(np.hypot(*apart[0])) / (2 * radius) - 1)
+class _Evidence(NamedTuple):
+    """What speaks for a meeting, in the order in which it counts.
+
+    Attributes
+    ----------
+    hit : float
+        How many standard errors its impulse is away from none; 0 if it can be no hit as it is.
+    pushed : bool
+        Whether anything drove its stones apart.
+    near : float
+        Minus how far they are from touching, in units of 2R.
+    """
+
+    hit: float
+    pushed: bool
+    near: float
 
 
-def _evidence(fit: ShotFit, k: int, radius: float) -> float:
-    """How many standard errors the impulse of meeting k is away from none; 0 if no hit."""
+def _evidence(fit: ShotFit, k: int, radius: float) -> _Evidence:
+    """Tell what speaks for meeting k."""
 
     def impulses(states: Sequence[Encounter]) -> Floats:
         state = states[0]
@@ -138,12 +165,12 @@ def _evidence(fit: ShotFit, k: int, radius: float) -> float:
     state = fit.encounter(k)
     closing = float((state.before[0] - state.before[1]) @ state.normal)
     unsure = float(push_cov[3, 3] ** 0.5)
-    if push[0] < 3 * error[0] or _misfit(fit, k, radius) > REACH - 1:
-        return 0.0
-    if closing + 2 * unsure < push[0] / MOST_PUSH or push[0] < 0.2 * radius:
-        return 0.0
-    least = float(np.min(push[1:3] + 2 * error[1:3]))
-    return 0.0 if least < SHARE * float(np.max(push[1:3])) else both
+    away = abs(float(np.hypot(*(state.places[1] - state.places[0]))) / (2 * radius) - 1)
+    pushed = bool(push[0] >= 3 * error[0])
+    possible = pushed and away <= REACH - 1 and push[0] >= 0.2 * radius
+    possible &= closing + 2 * unsure >= push[0] / MOST_PUSH
+    possible &= bool(np.min(push[1:3] + 2 * error[1:3]) >= SHARE * np.max(push[1:3]))
+    return _Evidence(both if possible else 0.0, pushed, -away)
 
 
 def _contacts(fit: ShotFit) -> tuple[Contact, ...]:

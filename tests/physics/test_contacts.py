@@ -132,3 +132,19 @@ def test_few_or_lonely_sightings_have_no_hits() -> None:
     assert find_contacts(seen.iloc[:1], RADIUS) == ()
     assert find_contacts(seen.iloc[:0], RADIUS) == ()
     assert find_contacts(seen.groupby("stone").head(2).reset_index(drop=True), RADIUS) == ()
+
+
+@pytest.mark.parametrize(
+    ("gap", "beyond", "speed", "sd"), [(0.0, 0.4, 0.75, 0.0015), (0.0005, 0.12, 1.7, 0.0008)]
+)
+def test_a_frozen_pair_is_hit_and_hits_on(
+    gap: float, beyond: float, speed: float, sd: float
+) -> None:
+    rng = np.random.default_rng(8)
+    aside = np.array([0.3, 0.954])
+    second = (2 * RADIUS + gap + 1e-5) * aside
+    third = second + (2 * RADIUS + beyond) * aside
+    motion = hit_motion(speed, -0.08, others=(Start(*second), Start(*third)))
+    for fps in (25.0, 30.0, 50.0):
+        hits = find_contacts(watch(motion, rng, fps=fps, sd=sd), RADIUS)
+        assert [hit.stones for hit in hits] == [("A", "B"), ("B", "C"), ("C", "D")]
