@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from data.results import Estimate, Friction, Glide
 from data.sheet import GRAVITY, curling_size
 from physics.random_effects import random_effects
 from physics.shot_fit import Deceleration, ShotFit
+from physics.slowing import speed_left
 from physics.traces import PLACE_REACH, Trace
 
 Floats = NDArray[np.float64]
@@ -55,8 +56,8 @@ def measure_glides(
         What to assume of a glide that is too short to tell.
     """
     law = free(radius)
-    glides, values, cov = _each(fit, known, radius, law.sd_fall)
-    pooled = random_effects(values, cov)
+    each = list(_each(fit, known, radius))
+    pooled = random_effects(*_at_one(fit, each, law))
     friction = _friction(pooled.mean)
     spread = pooled.spread if pooled.excess > CLEAR else 0.0
     usual = USUAL if curling_size(radius) else ANY
@@ -66,57 +67,91 @@ def measure_glides(
         share = sd**2 / (sd**2 + error**2)
         mean, sd = mean + share * (measured - mean), sd * error / float(np.hypot(sd, error))
     spread = float(np.sqrt(max(spread, LEAST_SPREAD) ** 2 + sd**2))
-    return glides, friction, replace(law, mean=mean, along=spread, across=spread)
+    return (
+        tuple(one.glide for one in each),
+        friction,
+        replace(law, mean=mean, along=spread, across=spread),
+    )
 
 
-def _each(
-    fit: ShotFit, known: Mapping[str, Trace], radius: float, sd_fall: float
-) -> tuple[tuple[Glide, ...], Floats, Floats]:
-    """Each glide that is long enough, and all their decelerations at 1 m/s with covariance.
+@dataclass(frozen=True)
+class _Told:
+    """A glide, and the deceleration that its piece tells at its speed half-way, m/s and m/s².
 
-    What is not known of the power of the speed that slows stones is not known of all of them
-    together.
+    ``by_fit`` are its derivatives by the unknowns of the fit, ``bent`` is its error from what
+    places share.
     """
-    glides: list[Glide] = []
-    slopes: list[Floats] = []
-    bends: list[float] = []
-    logs: list[float] = []
+
+    glide: Glide
+    rank: int
+    speed: float
+    value: float
+    by_fit: Floats
+    bent: float
+
+
+def _each(fit: ShotFit, known: Mapping[str, Trace], radius: float) -> Iterator[_Told]:
+    """Each glide that is long enough."""
     for i, piece in enumerate(fit.pieces):
         if piece.rest or len(piece.samples) < 5:
             continue
         t = known[piece.stone].t[piece.samples]
-        own = slice(6 * i, 6 * i + 6)
-        cov = fit.cov[own, own]
-        end = min(float(t[-1]), fit.stop(i))
-        speed = fit.motion(i, 0.5 * (float(t[0]) + end))[1]
-        size, first = float(np.hypot(*speed)), float(np.hypot(*fit.theta[[6 * i + 1, 6 * i + 4]]))
-        if size < radius or size * (end - float(t[0])) < radius:
+        start, end = float(t[0]), min(float(t[-1]), fit.stop(i))
+        middle = 0.5 * (start + end)
+        velocity = fit.motion(i, middle)[1]
+        speed = float(np.hypot(*velocity))
+        if speed < radius or speed * (end - start) < radius:
             continue
-        along = speed / size
-        slowing = np.array([0.0, 0.0, -along[0], 0.0, 0.0, -along[1]])
-        aside = np.array([0.0, 0.0, -along[1], 0.0, 0.0, along[0]])  # to the left
-        more = (first / size) ** fit.power(i)  # half-way, than at the origin
-        bend = _bend(known[piece.stone].sd_place[piece.samples], size, end - float(t[0]))
-        bent, bent_aside = np.hypot(*(bend * along)), np.hypot(*(bend * along[::-1]))
-        mu = more * float(slowing @ fit.theta[own]) / GRAVITY
-        sd = more * float(np.hypot(np.sqrt(slowing @ cov @ slowing), bent))
-        sd_aside = float(np.hypot(np.sqrt(aside @ cov @ aside), bent_aside))
-        if sd / GRAVITY > WORST:
+        along = velocity / speed
+        to_left = np.array([-along[1], along[0]])
+        slowing, by_fit = _acceleration(fit, i, middle, -along)
+        aside, aside_by_fit = _acceleration(fit, i, middle, to_left)
+        bend = _bend(known[piece.stone].sd_place[piece.samples], speed, end - start)
+        bent, bent_aside = (float(np.hypot(*(bend * way))) for way in (along, to_left))
+        sd = float(np.hypot(np.sqrt(by_fit @ fit.cov @ by_fit), bent)) / GRAVITY
+        sd_aside = float(np.hypot(np.sqrt(aside_by_fit @ fit.cov @ aside_by_fit), bent_aside))
+        if sd > WORST:
             continue
-        turn = float(aside @ fit.theta[own]) / size
-        glides.append(
-            Glide(piece.stone, float(t[0]), end, mu, sd / GRAVITY, turn, sd_aside / size, size)
+        glide = Glide(
+            piece.stone, start, end, slowing / GRAVITY, sd, aside / speed, sd_aside / speed, speed
         )
-        standard = first ** fit.power(i)
-        bends.append(standard * bent)
-        logs.append(float(np.log(size)))
-        slopes.append(np.zeros(len(fit.theta)))
-        slopes[-1][own] = standard * slowing
-    rows = np.array(slopes).reshape(len(glides), len(fit.theta))
-    values = rows @ fit.theta
-    unsure = sd_fall * values * logs
-    cov = rows @ fit.cov @ rows.T + np.diag(np.square(bends)) + np.outer(unsure, unsure)
-    return tuple(glides), values, cov
+        yield _Told(glide, i, speed, slowing, by_fit, bent)
+
+
+def _at_one(fit: ShotFit, each: Sequence[_Told], law: Deceleration) -> tuple[Floats, Floats]:
+    """Decelerations at 1 m/s, with covariance: the power that leads there is that of all."""
+    power, sd_power = _power(fit, [one.rank for one in each], law)
+    logs = np.log([one.speed for one in each])
+    scale = np.exp(power * logs)
+    values = scale * [one.value for one in each]
+    rows = np.array([one.by_fit for one in each]).reshape(len(each), len(fit.theta))
+    cov = rows @ fit.cov @ rows.T + np.diag([one.bent**2 for one in each])
+    unsure = sd_power * values * logs
+    return values, np.outer(scale, scale) * cov + np.outer(unsure, unsure)
+
+
+def _acceleration(fit: ShotFit, rank: int, t: float, way: Floats) -> tuple[float, Floats]:
+    """Acceleration of a piece in a direction, at a time, and its derivatives by `fit.theta`."""
+    own, power = fit.unknowns(rank), fit.power(rank)
+    x = fit.theta[own[:6]].reshape(2, 3)
+    slower = -float(np.log(speed_left(x, t - fit.origins[rank], power)))
+    slope = np.zeros(len(fit.theta))
+    slope[own[[2, 5]]] = np.exp(power * slower) * way
+    value = float(slope @ fit.theta)
+    slope[own[6]] = value * slower
+    return value, slope
+
+
+def _power(fit: ShotFit, ranks: Sequence[int], law: Deceleration) -> tuple[float, float]:
+    """Power of the speed that slows the stones of some pieces, and its standard error."""
+    if not law.sd_fall:
+        return law.fall, 0.0
+    # What is known beforehand is in the power of each piece, and counts but once.
+    known = law.sd_fall**-2
+    at = [fit.unknowns(rank)[6] for rank in ranks]
+    told = 1 / np.diag(fit.cov)[at]
+    every = known + float(np.sum(np.maximum(told - known, 0.0)))
+    return law.fall + float(told @ (fit.theta[at] - law.fall)) / every, every**-0.5
 
 
 def _bend(sd_place: Floats, speed: float, duration: float) -> Floats:

@@ -110,6 +110,10 @@ class ShotFit:
         """Power of its speed with which the stone of piece `rank` is slowed less."""
         return float(self.theta[rank - len(self.pieces)])
 
+    def unknowns(self, rank: int) -> NDArray[np.int64]:
+        """Where in `theta` those of piece `rank` are: its state, then its power."""
+        return np.append(np.arange(6 * rank, 6 * rank + 6), rank - len(self.pieces))
+
     def time(self, k: int, theta: Floats | None = None) -> float:
         """Time of meeting k, s."""
         values = self.theta if theta is None else theta

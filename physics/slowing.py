@@ -52,6 +52,12 @@ def stop_after(x: Floats, power: float) -> float:
     return time_left(x) / (1 + power)
 
 
+def speed_left(x: Floats, tau: float, power: float) -> float:
+    """Share of its speed at the origin that slowing leaves; parameters are those of `course`."""
+    q = 1 + power
+    return float(max(1 - q * tau / time_left(x), 0.0) ** (1 / q))
+
+
 def course(x: Floats, tau: Floats, power: float) -> tuple[Floats, Floats]:
     """Places at times from the origin, and how they depend on the motion there.
 

@@ -6,7 +6,7 @@ import pytest
 
 from data.sheet import GRAVITY
 from data.tracks import check_sightings
-from physics.estimate import estimate
+from physics.local import Local, estimate_locally
 
 
 def glide(duration: float, sd_place: float, wobble: float) -> pd.DataFrame:
@@ -15,19 +15,61 @@ def glide(duration: float, sd_place: float, wobble: float) -> pd.DataFrame:
     y = 1.5 * t - 0.05 * t**2
     seen = y + wobble * np.sin(2 * np.pi * y / y[-1])
     table = pd.DataFrame({"stone": "A", "frame": np.arange(len(t)), "t": t, "x": 0.0, "y": seen})
-    return check_sightings(
-        table.assign(sd_x=0.001, sd_y=0.001, sd_place_x=sd_place, sd_place_y=sd_place)
-    )
+    return table.assign(sd_x=0.001, sd_y=0.001, sd_place_x=sd_place, sd_place_y=sd_place)
+
+
+def local(table: pd.DataFrame) -> Local:
+    return estimate_locally(check_sightings(table), (), radius=0.1455)
 
 
 @pytest.mark.parametrize("duration", [1.0, 2.0, 4.0])
 def test_an_error_that_places_share_tells_in_the_friction(duration: float) -> None:
-    honest = estimate(glide(duration, 0.002, 0.002), (), radius=0.1455).friction
-    assert honest.value is not None and honest.stderr is not None
-    assert abs(honest.value - 0.1 / GRAVITY) < 2 * honest.stderr
-    assert honest.stderr < 0.02
-    told, blind = (
-        estimate(glide(duration, sd_place, 0.0), (), radius=0.1455).friction.stderr
-        for sd_place in (0.002, 0.0)
-    )
-    assert told is not None and blind is not None and blind < told
+    told = local(glide(duration, 0.002, 0.002))
+    assert told.friction.value is not None and told.friction.stderr is not None
+    assert abs(told.friction.value - 0.1 / GRAVITY) < 2 * told.friction.stderr
+    (honest,) = told.glides
+    (blind,) = local(glide(duration, 0.0, 0.0)).glides
+    assert honest.stderr is not None and blind.stderr is not None
+    assert 1.3 * blind.stderr < honest.stderr < 0.02
+
+
+def slowed(power: float, duration: float, turn: float = 0.0) -> pd.DataFrame:
+    """A stone of 2 m/s that 0.1 m/s² slow at 1 m/s, less by a power of its speed if faster."""
+    t = np.arange(0, duration, 1e-3)
+    q = 1 + power
+    speed = (2.0**q - 0.1 * q * t) ** (1 / q)
+    ways = np.stack([-np.sin(turn * t), np.cos(turn * t)], axis=1) * speed[:, None]
+    x, y = (np.cumsum(ways, axis=0) * 1e-3)[::40].T
+    table = pd.DataFrame({"stone": "A", "frame": np.arange(len(x)), "t": t[::40], "x": x, "y": y})
+    return table.assign(sd_x=0.003, sd_y=0.003)
+
+
+@pytest.mark.parametrize("power", [0.0, 0.25, 0.5])
+def test_errors_of_a_glide_s_friction_are_those_stated(power: float) -> None:
+    rng = np.random.default_rng(7)
+    table = slowed(power, 4.0)
+    off = []
+    for _ in range(40):
+        noisy = table.assign(**{k: table[k] + rng.normal(0, 0.003, len(table)) for k in "xy"})
+        (glide,) = local(noisy).glides
+        assert glide.friction is not None and glide.stderr is not None and glide.speed is not None
+        off.append((glide.friction - 0.1 / GRAVITY * glide.speed**-power) / glide.stderr)
+    assert 0.7 < np.sqrt(np.mean(np.square(off))) < 1.3
+
+
+def test_the_friction_at_1_m_s_is_as_unsure_as_the_power_of_the_speed() -> None:
+    """Glides at other speeds say more of both than one, however long."""
+    one = slowed(0.5, 3.0)
+    late = slowed(0.5, 16.0)
+    late = late[late["t"] > 12.5].assign(stone="B", x=2.0)
+    alone, both = local(one).friction, local(pd.concat([one, late])).friction
+    assert alone.stderr is not None and both.stderr is not None
+    assert both.stderr < 0.3 * alone.stderr
+    for friction in (alone, both):
+        assert friction.value is not None and friction.stderr is not None
+        assert abs(friction.value - 0.1 / GRAVITY) < 2 * friction.stderr
+
+
+def test_a_path_turns_at_its_rate_half_way() -> None:
+    (glide,) = local(slowed(0.25, 10.0, turn=0.01)).glides
+    assert glide.turn == pytest.approx(0.01, rel=0.03)
