@@ -54,9 +54,9 @@ def steadied(times: Sequence[float], seen: Sequence[Sighting]) -> list[Sighting]
     told = np.flatnonzero(whole & np.isfinite(light).all(1))
     if len(told) < FEWEST:
         return out
-    places = np.array([(seen[i].x, seen[i].y) for i in told.tolist()])
-    aside = light[told] - _lasting(np.array(times)[told], light[told])
-    share, gain = _share(np.array(times)[told], places, aside)
+    at, places = np.array(times)[told], np.array([(seen[i].x, seen[i].y) for i in told.tolist()])
+    aside = light[told] - _lasting(at, light[told])
+    share, gain = _share(at, places, aside)
     steady = (places + share * aside).tolist()
     for rank, (x, y) in zip(told.tolist(), steady, strict=True):
         one = out[rank]
