@@ -180,15 +180,17 @@ def _stones(
     in_view = np.maximum(summed(seen_ring), 1)
     light = summed(lab[..., in_ring, 0] * seen_ring) / in_view
     greyed = summed(stone_like) > 0.4 * in_view
-    greyed &= light > DARK * medians(light, capped & greyed)[:, None]
+    level = medians(light, capped & greyed)[:, None]
+    greyed &= light > DARK * level
     cap_radius, rim_radius = np.array([disc.cap_radius, disc.radius]) * appearance.outline
     stony = capped & greyed
     at_cap, at_rim = rays.at(cap_radius), rays.at(rim_radius)
     whole = np.ones(len(places))
-    lean = np.maximum(-slant @ directions(effort.rays)[1].T, 0)
+    behind = slant @ directions(effort.rays)[1].T
     cap_rim = Rim(
-        (falls @ along)[..., 0], stony, at_cap, cap_radius, 0.12 * cap_radius, 0.3, whole, lean=lean
-    )
+        (falls @ along)[..., 0], stony, at_cap, cap_radius, 0.12 * cap_radius, 0.3, whole,
+        lean=np.maximum(-behind, 0),
+    )  # fmt: skip
     edges = np.sqrt((falls * falls) @ np.ones(3, np.float32))
     # Seen aslant, the granite's outline is not a circle of one height.
     trust = 1 / (1 + (slant**2).sum(1) / effort.most_tilt**2)
@@ -204,10 +206,10 @@ def _stones(
         rays, (light_rim,), appearance.slack, effort.edge_reach, 0.25 * pixel, 1, appearance.wall
     )
     # All around, a stone's granite is of one lightness, and its cap is as large as any other's;
-    # caps and shoulders of people are neither.
-    count = np.maximum(stony.sum(1), 1)
-    level = (light * stony).sum(1) / count
-    uneven = np.sqrt(((light - level[:, None]) ** 2 * stony).sum(1) / count) / 40
+    # caps and shoulders of people are neither. Behind a shoulder that falls off ice may shine.
+    odd = light - level
+    odd = np.where(behind > effort.most_tilt, np.minimum(odd, 0), odd)
+    uneven = np.sqrt((odd**2 * stony).sum(1) / np.maximum(stony.sum(1), 1)) / 40
     misfit = ((fit.radii[:, 0] / cap_radius - 1) / (0.06 + appearance.slack)) ** 2
     visible = (stony & at_cap).mean(1)
     enough = (of_cap.mean((1, 2)) > 0.03) & (of_ring.mean((1, 2)) > 0.03)

@@ -39,7 +39,8 @@ class Effort:
     edge_reach : float
         Distance from the circle up to which an edge may count.
     most_tilt : float
-        Tangent of the view's angle to the vertical at which the granite's outline counts half.
+        Tangent of the view's angle to the vertical at which the granite's outline counts half, and
+        from which ice may be seen behind the far shoulder.
     rounds : int
         How often the edges are chosen about the circle that they gave.
     """

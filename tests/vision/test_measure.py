@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from data.sheet import STONE
+from tests.synthetic.camera import tilted_camera
 from tests.synthetic.clip import render_still
 from tests.vision.test_stones import CAMERA, RED, YELLOW, camera_of, scene_of
 from vision.appearance import any_stone
@@ -62,6 +63,22 @@ def test_dark_clothes_before_a_stone_are_not_taken_for_its_granite() -> None:
     whole, less = measured(PLACES), measured(PLACES, covered)
     assert less.visible[1] < whole.visible[1] - 0.1
     assert less.evidence[1] > whole.evidence[1] - 1.0
+
+
+def test_light_ice_behind_a_low_shoulder_hardly_counts_against_a_stone() -> None:
+    path, place = tilted_camera(np.radians(45)), np.array([[0.3, 2.9]])
+    scene = scene_of([(*place[0], RED)])
+    bare, camera = np.asarray(render_still(scene, path), np.uint8), camera_of(path, scene)
+    angle = np.linspace(np.radians(50), np.radians(130), 20)
+    arc = np.stack([np.cos(angle), np.sin(angle)], -1)
+    ring = [camera.project(place + r * STONE.radius * arc, 0.09) for r in (0.93, 1.1)]
+    outline = np.concatenate([ring[0], ring[1][::-1]]).round().astype(np.int32)
+    evidence = []
+    for grey in (115, 220):
+        behind = cv2.fillPoly(bare.copy(), [outline], (grey,) * 3)
+        seen = measure_discs([Look(behind, camera, place)], any_stone(), STONE)
+        evidence.append(seen.evidence[0])
+    assert evidence[1] > evidence[0] - 0.4
 
 
 def test_a_lamp_from_one_side_draws_the_edge_by_lightness_aside() -> None:
