@@ -39,6 +39,10 @@ BEFORE, ALIKE = 2.0, 0.001
 """How much less like its mean than usual a picture is where something else lies before the cap (a
 hand or a broom turns what is seen by a few tenths of a radian), and what is unlike by rounding."""
 
+WORST = 4.0
+"""By how much errors of covered pictures are larger at most than they say: the most unlike ones of
+60 clips err two to three times as much, and some of them for a second on end."""
+
 
 @dataclass(frozen=True)
 class Turning:
@@ -135,8 +139,8 @@ def handle_angles(
     aside = np.hypot(turning.shift, sd_centre[rows])
     fit = align(best.pictures[good], best.angles[good], radii, aside)
     unlike = np.maximum(1 - best.likeness[good] ** 2, ALIKE)
-    covered = np.maximum(unlike / (BEFORE * np.median(unlike)), 1.0)
-    theta[rows], sd[rows] = fit.angle, LASTING * covered**2 * fit.sd
+    covered = np.clip((unlike / (BEFORE * np.median(unlike))) ** 2, 1.0, WORST)
+    theta[rows], sd[rows] = fit.angle, LASTING * covered * fit.sd
     return theta - theta[rows[0]], sd
 
 
