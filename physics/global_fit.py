@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from data.errors import InputError
 from data.results import Estimate
 from physics.normal_equations import inverse
+from physics.off_centre import centred
 from physics.residuals import HUBER, huber_weights, inflation
 from physics.shared_error import shared_error
 from physics.shot_model import Unknown, Watched
@@ -147,7 +148,9 @@ class _Problem:
             new = np.clip(at + step, self.low, self.high)
             there = [self._residuals(rank, new) for rank in range(len(self.shots))]
             new_cost = self._cost(new, there)
-            small = float((new - at) @ normal @ (new - at)) < SETTLED**2 * len(at)
+            # Residuals larger than stated make errors that much larger.
+            settled = SETTLED**2 * len(at) * max(1.0, cost / self.sightings)
+            small = float((new - at) @ normal @ (new - at)) < settled
             if new_cost < cost:
                 at, residuals, cost = new, there, new_cost
                 damping = max(damping / 10, 1e-9)
@@ -165,27 +168,33 @@ class _Problem:
         return own_values(rank, len(self.shots), self.names, at, self.fixed, shot)
 
     def _residuals(self, rank: int, at: Floats) -> tuple[list[Floats], Floats]:
+        """Return residuals of each stone's places, and those of spins and of caps off centre."""
         shot = self.shots[rank]
         simulation = shot.replay(self._values(rank, at))
-        return shot.residuals(simulation), shot.spin_residuals(simulation)
+        runs = zip(shot.traces.values(), shot.residuals(simulation), strict=True)
+        places, beside = zip(*(centred(trace, run, self.noise) for trace, run in runs), strict=True)
+        return list(places), np.concatenate([shot.spin_residuals(simulation), *beside])
 
     def _cost(self, at: Floats, residuals: Sequence[tuple[list[Floats], Floats]]) -> float:
         data = sum(_huber(run) for places, _ in residuals for run in places) / self.noise
         return float(data) + self._elsewhere(at, residuals)
 
     def _elsewhere(self, at: Floats, residuals: Sequence[tuple[list[Floats], Floats]]) -> float:
-        spins = sum(_huber(spins[:, None]) for _, spins in residuals)
-        return float(spins + np.sum(((at - self.mean) / self.sd) ** 2))
+        spins, caps = 0.0, 0.0
+        for shot, (_, further) in zip(self.shots, residuals, strict=True):
+            spins += _huber(further[: len(shot.spins), None])
+            caps += float(np.sum(further[len(shot.spins) :] ** 2))
+        return float(spins + caps + np.sum(((at - self.mean) / self.sd) ** 2))
 
     def _slopes(
         self, at: Floats, residuals: Sequence[tuple[list[Floats], Floats]]
     ) -> list[tuple[Floats, Floats]]:
         """Differentiate all residuals of each shot; shapes (count, unknowns)."""
         out = []
-        for rank, (places, spins) in enumerate(residuals):
+        for rank, (places, further) in enumerate(residuals):
             flat = _flat(places)
             by_place = np.zeros((len(flat), len(at)))
-            by_spin = np.zeros((len(spins), len(at)))
+            by_further = np.zeros((len(further), len(at)))
             own = set(self._values(rank, at))
             for k, name in enumerate(self.names):
                 if name.removeprefix(f"{rank}:") not in own:
@@ -193,10 +202,10 @@ class _Problem:
                 sign = 1.0 if at[k] + self.step[k] <= self.high[k] else -1.0
                 moved = at.copy()
                 moved[k] += sign * self.step[k]
-                there, turned = self._residuals(rank, moved)
+                there, further_there = self._residuals(rank, moved)
                 by_place[:, k] = (_flat(there) - flat) / (sign * self.step[k])
-                by_spin[:, k] = (turned - spins) / (sign * self.step[k])
-            out.append((by_place, by_spin))
+                by_further[:, k] = (further_there - further) / (sign * self.step[k])
+            out.append((by_place, by_further))
         return out
 
     def _normal(
@@ -208,13 +217,15 @@ class _Problem:
         """Set up the normal equations: matrix and right-hand side of a step."""
         normal = np.diag(self.sd**-2.0)
         right = (self.mean - at) * self.sd**-2.0
-        for (places, spins), (by_place, by_spin) in zip(residuals, slopes, strict=True):
+        parts = zip(self.shots, residuals, slopes, strict=True)
+        for shot, (places, further), (by_place, by_further) in parts:
             weights = _weights(places) / self.noise
             normal += by_place.T @ (weights[:, None] * by_place)
             right -= by_place.T @ (weights * _flat(places))
-            turned = HUBER / np.maximum(np.abs(spins), HUBER)
-            normal += by_spin.T @ (turned[:, None] * by_spin)
-            right -= by_spin.T @ (turned * spins)
+            weights = HUBER / np.maximum(np.abs(further), HUBER)
+            weights[len(shot.spins) :] = 1.0
+            normal += by_further.T @ (weights[:, None] * by_further)
+            right -= by_further.T @ (weights * further)
         return normal, right
 
 

@@ -1,0 +1,47 @@
+"""Caps that sit beside the centres of their stones: an error of places that turns with them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physics.residuals import huber_weights
+from physics.traces import Trace
+
+Floats = NDArray[np.float64]
+
+
+def centred(trace: Trace, residuals: Floats, noise: float) -> tuple[Floats, Floats]:
+    """Take out of residuals what the stone's cap is beside its centre by, as far as it shows.
+
+    The cap stays where it is in the stone's frame. It is known to be in the middle to what
+    places are stated to share, `sd_place`, on either axis.
+
+    Parameters
+    ----------
+    trace : Trace
+        Sightings of the stone; without angles, or without `sd_place`, nothing is taken out.
+    residuals : (n, 2) array
+        Sighted less fitted places over their standard deviations.
+    noise : float
+        Factor on the stated variances of the places.
+
+    Returns
+    -------
+    residuals : (n, 2) array
+        Those that are left.
+    beside : (2,) array
+        By how much the cap is beside the centre, in its own standard deviations: a residual too.
+    """
+    size = float(np.median(trace.sd_place))
+    told = np.isfinite(trace.theta)
+    if not size or not told.any():
+        return residuals, np.zeros(2)
+    theta = np.interp(trace.t, trace.t[told], trace.theta[told])
+    cos, sin = np.cos(theta), np.sin(theta)
+    ways = np.stack([np.stack([cos, -sin], axis=1), np.stack([sin, cos], axis=1)], axis=1)
+    rows = size * ways / trace.sd[:, :, None]
+    weighted = rows * huber_weights(residuals)[:, :, None] / noise
+    normal = np.eye(2) + np.einsum("nai,naj->ij", weighted, rows)
+    beside = np.linalg.solve(normal, np.einsum("nai,na->i", weighted, residuals))
+    return residuals - rows @ beside, beside
