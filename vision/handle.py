@@ -58,6 +58,9 @@ class Turning:
         Time without a sighting after which a stone may be turned anyhow, s.
     least_likeness : float
         Correlation (0 to 1) with the stone's own picture below which nothing is said.
+    leading : float
+        Correlation from which on a picture has a say in how the next ones are expected to be
+        turned and to look: sweepers over a cap led angles round step by step, half a turn off.
     rounds : int
         How often the mean picture is built anew.
     shift : float
@@ -69,6 +72,7 @@ class Turning:
     most_spin: float = 3.0
     lost: float = 1.0
     least_likeness: float = 0.45
+    leading: float = 0.6
     rounds: int = 3
     shift: float = 0.001
 
@@ -235,8 +239,11 @@ def _followed_from(begin: int, times: Array, pictures: Complex, turning: Turning
             angle, likeness = angle_between(mean, pictures[index], expected, reach)
             if not likeness > turning.least_likeness:
                 continue
+            angles[index] = angle
+            if likeness < turning.leading:
+                continue
             spin += 0.3 * ((angle - angles[before]) / wait - spin)
-            angles[index], before = angle, index
+            before = index
             weight = min(weight + 1.0, 30.0)
             mean += (turned(pictures[index : index + 1], np.array([-angle]))[0] - mean) / weight
     return angles

@@ -180,6 +180,18 @@ def test_something_before_the_cap_leaves_the_angle_open() -> None:
     assert (~told[60:70] | (sd[60:70] > 2 * np.nanmedian(sd))).all()
 
 
+def test_what_goes_over_a_cap_step_by_step_does_not_lead_its_angle_away() -> None:
+    rng = np.random.default_rng(9)
+    times = np.arange(60) / 25
+    pictures = [spectrum(0.0, rng) for _ in times]
+    unlike = rng.normal(0, 27, patch(0.0).shape)
+    for index in range(20, 45):
+        over = np.clip(patch(0.12 * (index - 19), rng) + unlike, 0, 255)
+        pictures[index] = cap_spectrum(over.astype(np.uint8), RADII)
+    theta, _ = handle_angles(times, pictures, RADII)
+    assert np.abs(theta[[*range(20), *range(45, 60)]]).max() < 0.03
+
+
 def test_what_is_unrolled_about_an_unsure_centre_is_less_sure() -> None:
     rng = np.random.default_rng(8)
     times = np.arange(60) / 25
