@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physics.shot_fit import Deceleration, Meeting
-from physics.slowing import moment
+from physics.slowing import SLOWEST, moment
 
 Floats = NDArray[np.float64]
 
@@ -21,9 +21,6 @@ MOMENTUM_SD = 0.0015
 
 DOUBT = 2.5
 """Normalised violation beyond which distance and momentum are no longer believed."""
-
-SLOWEST = 0.06
-"""Speed below which a stone is slowed as there, m/s: as by FCV1 (Uehara and Ito, 2021)."""
 
 
 def slowing(speed: Floats, prior: Deceleration) -> tuple[Floats, Floats]:

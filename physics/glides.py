@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from data.results import Estimate, Friction, Glide
 from data.sheet import GRAVITY, curling_size
+from physics.ice import FCV1
 from physics.random_effects import random_effects
 from physics.shot_fit import Deceleration, ShotFit
 from physics.slowing import speed_left
@@ -27,6 +28,9 @@ LEAST_SPREAD = 0.01
 FALL, EVEN = Estimate(0.25, 0.2), Estimate(0.0, 0.0)
 """Power of the speed with which the deceleration of curling stones falls (0 on even ice, 1/2 in
 Penner's law, between in FCV1's), and that of anything that glides."""
+
+STEEPEST = 0.7
+"""Power of the speed beyond which FCV1's form, of two positive parts, follows no more."""
 
 CLEAR = 2.0
 """Excess of the misfit of one deceleration for all glides from which they are known to differ."""
@@ -57,8 +61,9 @@ def measure_glides(
     """
     law = free(radius)
     each = list(_each(fit, known, radius))
-    pooled = random_effects(*_at_one(fit, each, law))
-    friction = _friction(pooled.mean)
+    power, sd_power = _power(fit, [one.rank for one in each], law)
+    pooled = random_effects(*_at_one(fit, each, power, sd_power))
+    friction = _friction(pooled.mean, power, [one.speed for one in each])
     spread = pooled.spread if pooled.excess > CLEAR else 0.0
     usual = USUAL if curling_size(radius) else ANY
     mean, sd = float(usual.value or 0.0), float(usual.stderr or 0.0)
@@ -70,7 +75,7 @@ def measure_glides(
     return (
         tuple(one.glide for one in each),
         friction,
-        replace(law, mean=mean, along=spread, across=spread),
+        replace(law, mean=mean, along=spread, across=spread, fall=power),
     )
 
 
@@ -118,9 +123,10 @@ def _each(fit: ShotFit, known: Mapping[str, Trace], radius: float) -> Iterator[_
         yield _Told(glide, i, speed, slowing, by_fit, bent)
 
 
-def _at_one(fit: ShotFit, each: Sequence[_Told], law: Deceleration) -> tuple[Floats, Floats]:
+def _at_one(
+    fit: ShotFit, each: Sequence[_Told], power: float, sd_power: float
+) -> tuple[Floats, Floats]:
     """Decelerations at 1 m/s, with covariance: the power that leads there is that of all."""
-    power, sd_power = _power(fit, [one.rank for one in each], law)
     logs = np.log([one.speed for one in each])
     scale = np.exp(power * logs)
     values = scale * [one.value for one in each]
@@ -165,8 +171,22 @@ def _bend(sd_place: Floats, speed: float, duration: float) -> Floats:
     return np.asarray(8 * share * np.median(sd_place, axis=0) / duration**2)
 
 
-def _friction(deceleration: Estimate) -> Friction:
-    """Coefficient of friction that a deceleration, m/s², shows."""
+def _friction(deceleration: Estimate, power: float, speeds: Sequence[float]) -> Friction:
+    """Friction at 1 m/s that a deceleration there shows, and a law with it.
+
+    The law is that of `physics.ice.Fit` with FCV1's v_c: the same at 1 m/s as the power of the
+    speed, and at the mean of the speeds (m/s).
+    """
     if deceleration.value is None or deceleration.stderr is None:
         return Friction()
-    return Friction(deceleration.value / GRAVITY, deceleration.stderr / GRAVITY)
+    mu, stderr = deceleration.value / GRAVITY, deceleration.stderr / GRAVITY
+    steep = min(power, STEEPEST)
+    if steep <= 0 or mu <= 0:
+        return Friction(mu, stderr)
+    v_c = FCV1().v_c
+    mean = float(np.exp(np.mean(np.log(speeds))))
+    if abs(mean - 1) > 1e-3:
+        a = mu * (mean**-steep - 1) / (1 / (mean + v_c) - 1 / (1 + v_c))
+    else:
+        a = mu * steep * (1 + v_c) ** 2
+    return Friction(mu, stderr, "fit", a, v_c, mu - a / (1 + v_c))

@@ -118,10 +118,9 @@ def _survey(
     pieces = [replace(piece, opens=None, closes=None) for piece in by_hits]
     loose = fit_shot(known, pieces, (), radius, deceleration=free(radius))
     _, friction, prior = measure_glides(loose, known, radius)
-    # How sightings err is told against parabolas: none of their misfit is put down to the ice.
-    fit = fit_shot(known, pieces, (), radius, deceleration=replace(prior, fall=0.0, sd_fall=0.0))
+    fit = fit_shot(known, pieces, (), radius, deceleration=prior)
     a = prior.mean if friction.value is not None else 0.0
-    return fit, Model(max(a, 0.0), prior.along), noises(fit, known)
+    return fit, Model(max(a, 0.0), prior.along, prior.fall, prior.sd_fall), noises(fit, known)
 
 
 def _track(

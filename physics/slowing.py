@@ -20,6 +20,9 @@ LONGEST = 1e3
 TINY = 1e-12
 """Share of a motion that counts as none left: its logarithm is still a number."""
 
+SLOWEST = 0.06
+"""Speed below which a stone is slowed as there, m/s: as by FCV1 (Uehara and Ito, 2021)."""
+
 LEAST, MOST = -0.5, 1.0
 """Bounds of p: past any law of ice."""
 

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from physics.slowing import SLOWEST
+
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
@@ -58,11 +60,14 @@ PATIENCE = 2
 class Model:
     """How one stone's speed is expected to change.
 
-    ``a`` is the deceleration (m/s²), ``spread`` its deviation.
+    ``a`` is the deceleration at 1 m/s (m/s²), ``spread`` its deviation; at other speeds it goes
+    as their power -p, p being ``fall`` ± ``sd_fall``.
     """
 
     a: float
     spread: float
+    fall: float = 0.0
+    sd_fall: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -137,7 +142,11 @@ def steps(stretch: Stretch) -> tuple[Steps, Steps]:
     speed = np.maximum(np.hypot(stretch.speed[:-1, 0], stretch.speed[:-1, 1]), 1e-6)
     slower, turning = np.minimum(np.divide.outer(LOSS_SD, speed).T, MOST_LOSS_SD).T
     pivoting = np.where(rest[1:], MOST_LOSS_SD[1], turning)
-    along = _steps(stretch, rest, np.hypot(stretch.model.spread, slower), 0)
+    model = stretch.model
+    log = np.log(np.maximum(speed, SLOWEST))
+    unsure = model.sd_fall * model.a * np.exp(-model.fall * log) * log
+    deviation = np.sqrt(model.spread**2 + slower**2 + unsure**2)
+    along = _steps(stretch, rest, deviation, 0)
     return along, _steps(stretch, idle, pivoting, 1)
 
 
@@ -170,7 +179,8 @@ def drift(stretch: Stretch, along: Steps) -> Floats:
     dt = np.diff(stretch.t)[:, None]
     speed = stretch.speed[:-1]
     size = np.hypot(speed[:, 0], speed[:, 1])[:, None]
-    loss = np.minimum(stretch.model.a, size / dt)
+    model = stretch.model
+    loss = np.minimum(model.a * np.maximum(size, SLOWEST) ** -model.fall, size / dt)
     slowing = np.where(size < 1e-6, 0.0, -loss * speed / np.maximum(size, 1e-6))
     slowing[stretch.rest[1:]] = 0.0
     out = np.zeros((len(stretch.t), 6))

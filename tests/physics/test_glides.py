@@ -73,3 +73,16 @@ def test_the_friction_at_1_m_s_is_as_unsure_as_the_power_of_the_speed() -> None:
 def test_a_path_turns_at_its_rate_half_way() -> None:
     (glide,) = local(slowed(0.25, 10.0, turn=0.01)).glides
     assert glide.turn == pytest.approx(0.01, rel=0.03)
+
+
+def test_a_law_goes_with_the_friction_at_1_m_s() -> None:
+    table = slowed(0.5, 16.0)
+    late = local(table[table["t"] > 12.5])
+    (glide,), friction = late.glides, late.friction
+    assert friction.law == "fit" and glide.friction is not None and glide.speed is not None
+    assert friction.a is not None and friction.v_c is not None and friction.b is not None
+    assert friction.a / (1.0 + friction.v_c) + friction.b == pytest.approx(friction.value)
+    # Where it was seen it is as it was seen.
+    assert friction.a / (glide.speed + friction.v_c) + friction.b == pytest.approx(
+        glide.friction, rel=0.03
+    )

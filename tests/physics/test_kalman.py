@@ -44,6 +44,25 @@ def test_errors_are_as_large_as_stated() -> None:
     assert np.all(covered > 0.88)
 
 
+@pytest.mark.parametrize("speed", [0.5, 0.7, 2.0])
+def test_slow_stones_are_slowed_more_on_real_ice(speed: float) -> None:
+    """On ice that slows a stone by v^(-1/4) velocities are as good at the ends as is stated."""
+    rng = np.random.default_rng(2)
+    t = np.arange(0, 3.0, 0.04)
+    stop = speed**1.25 / 0.125
+    left = 1 - t / stop
+    y, vy = speed * stop / 1.8 * (1 - left**1.8), speed * left**0.8
+    pulls = []
+    for _ in range(8):
+        table = pd.DataFrame({"stone": "A", "frame": np.arange(len(t)), "t": t})
+        table["x"], table["y"] = rng.normal(0, 0.003, len(t)), rng.normal(y, 0.003)
+        tracks = smooth(check_sightings(table.assign(sd_x=0.003, sd_y=0.003)), (), radius=RADIUS)
+        off = np.column_stack([(tracks["y"] - y) / tracks["sd_y"], tracks["vy"] - vy])
+        off[:, 1] /= tracks["sd_vy"]
+        pulls.append(off[[0, -1]])
+    assert np.all(np.mean(np.square(pulls), axis=0) < 2)
+
+
 def test_smoothing_is_better_than_looking() -> None:
     motion = hit_motion(1.2, 0.08, after=1.5)
     seen = watch(motion, np.random.default_rng(32), sd=0.006)
@@ -160,7 +179,7 @@ def test_gaps_are_bridged_and_marked() -> None:
     off, sd = errors(tracks, motion)
     gap = (tracks["seen"] == 0).to_numpy()
     assert np.abs(off[gap, :2]).max() < 0.01
-    assert sd[gap, 0].max() > 1.3 * np.median(sd[~gap & (tracks["stone"] == "A"), 0])
+    assert sd[gap, 0].max() > 1.15 * np.median(sd[~gap & (tracks["stone"] == "A"), 0])
 
 
 def test_a_way_too_short_to_be_seen_twice_is_told_by_its_ends() -> None:
