@@ -1,9 +1,9 @@
 """One least-squares fit of a whole shot, hit by hit joined.
 
-Between hits each stone moves with an acceleration that is mostly against its motion, and changes
-little, until it stops. At a hit the paths on either side meet, the centres are two radii
-apart, and the momentum of the two stones is the same before and after. All of this is linear
-in the unknowns but for the times of the hits, so a few Gauss-Newton steps find it.
+Between hits each stone moves with an acceleration that is mostly against its motion, and grows
+as a power of the speed that is lost, until it stops. At a hit the paths on either side meet, the
+centres are two radii apart, and the momentum of the two stones is the same before and after. All
+of this is nearly linear in the unknowns, so a few Gauss-Newton steps find it.
 """
 
 from __future__ import annotations
