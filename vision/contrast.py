@@ -21,27 +21,19 @@ FAINT, VIVID = 40.0, 60.0
 and dark caps have 30 to 45, red and yellow ones 70 to 90, and in a grey picture none has any."""
 
 
-ASLANT = 0.8, 1.2
-"""Slant of the view (tangent of the angle to the vertical) up to which vivid hue is enough, and
-from which lightness has its say again: the wall of a cap has its hue, and only lightness tells it
-from the cap's top; by hue alone caps seen at 50 degrees lie 1.5 mm too far."""
-
-
 def mean_colours(values: Floats, use: Floats) -> Array:
     """Mean colours (n, 3) of samples (n, rays, radii, 3) by weights; 0 where there are none."""
     total = use.reshape(len(use), 1, -1) @ values.reshape(len(values), -1, 3)
     return np.asarray(total[:, 0] / np.maximum(use.sum((1, 2)), 1)[:, None], float)
 
 
-def by_hue(cap: Array, granite: Array, tilt: Array) -> Array:
+def by_hue(cap: Array, granite: Array) -> Array:
     """Weights of L*a*b* by which caps are 1 more than their granite, mostly by hue.
 
     Parameters
     ----------
     cap, granite : ndarray, shape (n, 3)
         Their colours.
-    tilt : ndarray, shape (n,)
-        Tangent of the angle from the vertical at which they are seen.
 
     Returns
     -------
@@ -50,7 +42,7 @@ def by_hue(cap: Array, granite: Array, tilt: Array) -> Array:
     apart = cap - granite
     hue = np.hypot(apart[:, 1], apart[:, 2])
     most = MOST_LIGHT * hue**2 / np.maximum(apart[:, 0] ** 2, 1.0)
-    vivid = np.interp(hue, [FAINT, VIVID], [0.0, 1.0]) * np.interp(tilt, ASLANT, [1.0, 0.0])
+    vivid = np.interp(hue, [FAINT, VIVID], [0.0, 1.0])
     light = LIGHT - vivid * np.maximum(LIGHT - most, 0.0)
     along = apart.copy()
     along[:, 0] *= light

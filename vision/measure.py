@@ -170,7 +170,7 @@ def _stones(
     of_cap, of_ring = worth[..., in_cap] > CLEARLY, worth[..., in_ring] < -CLEARLY
     cap = mean_colours(lab[..., in_cap, :], of_cap.astype(np.float32))
     granite = mean_colours(lab[..., in_ring, :], of_ring.astype(np.float32))
-    apart = by_hue(cap, granite, np.hypot(*slant.T))
+    apart = by_hue(cap, granite)
     along = apart.astype(np.float32)[:, None, :, None]
     half = ((granite * apart).sum(1) + 0.5).astype(np.float32)[:, None, None]
     signal = (lab[..., : in_ring.stop, :] @ along)[..., 0] - half
