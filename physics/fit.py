@@ -19,7 +19,7 @@ from physics.normal_equations import eliminated, inverse_of_blocks
 from physics.residuals import huber_weights, inflation
 from physics.segments import Piece
 from physics.set_out import line, origin
-from physics.shot_fit import Deceleration, Meeting, ShotFit
+from physics.shot_fit import Deceleration, Meeting, ShotFit, unknowns_of
 from physics.slowing import LEAST, MOST, course, stop_after
 from physics.traces import Trace
 
@@ -179,10 +179,6 @@ class _Solver:
             for rank, samples in ((i, both[early]), (j, both[~early])):
                 self.pieces[rank] = _with_samples(self.pieces[rank], samples)
 
-    def _own(self, i: int) -> NDArray[np.int64]:
-        """Which unknowns are those of a piece: its state, and the power that slows it."""
-        return np.append(np.arange(6 * i, 6 * i + 6), self.size - len(self.pieces) + i)
-
     def _tau(self, i: int) -> Floats:
         """Return times of a piece's sightings from its origin, s; no more once it rests."""
         piece = self.pieces[i]
@@ -191,7 +187,7 @@ class _Solver:
 
     def _motion(self, i: int) -> tuple[Floats, float]:
         """State of a piece at its origin, shape (2, 3), and the power that slows it."""
-        own = self.theta[self._own(i)]
+        own = self.theta[unknowns_of(i, len(self.pieces))]
         return own[:6].reshape(2, 3), float(own[6])
 
     def _course(self, i: int) -> tuple[Floats, Floats]:
@@ -202,7 +198,7 @@ class _Solver:
     def _residuals(self, i: int, fitted: Floats) -> Floats:
         piece = self.pieces[i]
         trace = self.traces[piece.stone]
-        drift = self.further[i] @ np.append(-self.theta[self._own(i)], 1.0)
+        drift = self.further[i] @ np.append(-self.theta[unknowns_of(i, len(self.pieces))], 1.0)
         off = trace.xy[piece.samples] - fitted - self._tau(i)[:, None] * drift
         return np.asarray(off / trace.sd[piece.samples])
 
@@ -213,7 +209,7 @@ class _Solver:
             if not len(piece.samples):
                 continue
             trace = self.traces[piece.stone]
-            own = self._own(i)
+            own = unknowns_of(i, len(self.pieces))
             fitted, slopes = self._course(i)
             weights = huber_weights(self._residuals(i, fitted)) / trace.sd[piece.samples] ** 2
             seen = trace.xy[piece.samples] - fitted + slopes @ self.theta[own]
@@ -243,7 +239,7 @@ class _Solver:
         first = 6 * len(self.pieces)
         for i, piece in enumerate(self.pieces):
             place, speed, change = ([6 * i + k, 6 * i + 3 + k] for k in range(3))
-            power = self.size - len(self.pieces) + i
+            power = unknowns_of(i, len(self.pieces))[6]
             known = max(self.prior.sd_fall, FIXED) ** -2
             normal[power, power] += known
             right[power] += known * self.prior.fall

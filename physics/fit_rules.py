@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.shot_fit import Deceleration, Meeting
-from physics.slowing import SLOWEST, moment
+from physics.shot_fit import Deceleration, Meeting, unknowns_of
+from physics.slowing import at_speed, moment
 
 Floats = NDArray[np.float64]
 
@@ -31,9 +31,8 @@ def slowing(speed: Floats, prior: Deceleration) -> tuple[Floats, Floats]:
     along = speed / size
     across = np.array([-along[1], along[0]])
     # The slower a stone the more it is slowed, by all ice laws but the constant one.
-    log = np.log(max(size, SLOWEST))
-    mean = prior.mean * float(np.exp(-prior.fall * log))
-    width = float(np.hypot(prior.along, prior.sd_fall * mean * log))
+    mean, unsure = at_speed(size, prior.mean, prior.fall, prior.sd_fall)
+    width = np.hypot(prior.along, unsure)
     precision = np.outer(along, along) / width**2 + np.outer(across, across) / prior.across**2
     return precision, -mean * along
 
@@ -93,9 +92,8 @@ def meeting_rules(
         sd.append(width)
 
     def state(i: int) -> _State:
-        at_power = i - len(origins)
-        now = moment(theta[6 * i : 6 * i + 6].reshape(2, 3), t - origins[i], float(theta[at_power]))
-        own = [*range(6 * i, 6 * i + 6), at_power]
+        own = unknowns_of(i, len(origins))
+        now = moment(theta[own[:6]].reshape(2, 3), t - origins[i], float(theta[own[6]]))
         by_place, by_speed = np.zeros((2, len(theta))), np.zeros((2, len(theta)))
         by_place[:, own], by_speed[:, own] = now.by_place, now.by_speed
         by_place[:, at], by_speed[:, at] = now.speed, now.change

@@ -55,6 +55,11 @@ class Encounter:
         return out
 
 
+def unknowns_of(rank: int, pieces: int) -> NDArray[np.int64]:
+    """Where among the unknowns of a fit those of one of its pieces are: its state, its power."""
+    return np.append(np.arange(6 * rank, 6 * rank + 6), rank - pieces)
+
+
 @dataclass(frozen=True)
 class ShotFit:
     """Result of `physics.fit.fit_shot`.
@@ -112,7 +117,7 @@ class ShotFit:
 
     def unknowns(self, rank: int) -> NDArray[np.int64]:
         """Where in `theta` those of piece `rank` are: its state, then its power."""
-        return np.append(np.arange(6 * rank, 6 * rank + 6), rank - len(self.pieces))
+        return unknowns_of(rank, len(self.pieces))
 
     def time(self, k: int, theta: Floats | None = None) -> float:
         """Time of meeting k, s."""

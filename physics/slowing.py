@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from math import log
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Floats = NDArray[np.float64]
 
@@ -25,6 +25,23 @@ SLOWEST = 0.06
 
 LEAST, MOST = -0.5, 1.0
 """Bounds of p: past any law of ice."""
+
+
+def at_speed(speed: ArrayLike, mean: float, power: float, sd_power: float) -> tuple[Floats, Floats]:
+    """Deceleration at speeds, m/s², and its standard error by that of the power.
+
+    Parameters
+    ----------
+    speed : array_like
+        m/s.
+    mean : float
+        Deceleration at 1 m/s, m/s².
+    power, sd_power : float
+        p and its standard error.
+    """
+    log = np.log(np.maximum(speed, SLOWEST))
+    value = np.asarray(mean * np.exp(-power * log))
+    return value, np.abs(sd_power * value * log)
 
 
 def time_left(x: Floats) -> float:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.slowing import SLOWEST
+from physics.slowing import at_speed
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -143,8 +143,7 @@ def steps(stretch: Stretch) -> tuple[Steps, Steps]:
     slower, turning = np.minimum(np.divide.outer(LOSS_SD, speed).T, MOST_LOSS_SD).T
     pivoting = np.where(rest[1:], MOST_LOSS_SD[1], turning)
     model = stretch.model
-    log = np.log(np.maximum(speed, SLOWEST))
-    unsure = model.sd_fall * model.a * np.exp(-model.fall * log) * log
+    unsure = at_speed(speed, model.a, model.fall, model.sd_fall)[1]
     deviation = np.sqrt(model.spread**2 + slower**2 + unsure**2)
     along = _steps(stretch, rest, deviation, 0)
     return along, _steps(stretch, idle, pivoting, 1)
@@ -180,7 +179,7 @@ def drift(stretch: Stretch, along: Steps) -> Floats:
     speed = stretch.speed[:-1]
     size = np.hypot(speed[:, 0], speed[:, 1])[:, None]
     model = stretch.model
-    loss = np.minimum(model.a * np.maximum(size, SLOWEST) ** -model.fall, size / dt)
+    loss = np.minimum(at_speed(size, model.a, model.fall, model.sd_fall)[0], size / dt)
     slowing = np.where(size < 1e-6, 0.0, -loss * speed / np.maximum(size, 1e-6))
     slowing[stretch.rest[1:]] = 0.0
     out = np.zeros((len(stretch.t), 6))

@@ -6,7 +6,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from data.sheet import GRAVITY
-from physics.slowing import LONGEST, course, moment, motion, stop_after, time_left
+from physics.slowing import (
+    LONGEST,
+    SLOWEST,
+    at_speed,
+    course,
+    moment,
+    motion,
+    stop_after,
+    time_left,
+)
 
 POWERS = st.floats(0.0, 0.8)
 SLOWED = np.array([[0.3, 1.2, -0.12], [0.1, 0.3, -0.03]])
@@ -63,3 +72,10 @@ def test_a_stone_that_nothing_slows_goes_on(a: float) -> None:
     place, speed = motion(x, 2.0, 0.25)
     assert place == pytest.approx([2.0 + 2.0 * a, 0.0], abs=1e-3)
     assert speed == pytest.approx([1.0 + 2.0 * a, 0.0], abs=1e-3)
+
+
+def test_a_deceleration_at_other_speeds_goes_as_their_power() -> None:
+    value, sd = at_speed([1.0, 0.25, 0.0], 0.1, 0.5, 0.2)
+    assert value == pytest.approx([0.1, 0.2, 0.1 * SLOWEST**-0.5])
+    # d a / d p = -a log v
+    assert sd == pytest.approx(0.2 * value * np.abs(np.log([1.0, 0.25, SLOWEST])))
