@@ -44,6 +44,8 @@ class Fits:
         How the innermost circle is bent: the lowest harmonics of how far its edges lie off it, m.
     shares : ndarray, shape (n, circles)
         Rays that agree, of those in the picture.
+    unbroken : ndarray, shape (n,)
+        How far around all circles are seen on one side, as a share of the rays.
     """
 
     ok: Flags
@@ -53,6 +55,7 @@ class Fits:
     covariance: Array
     bends: Array
     shares: Array
+    unbroken: Array
 
 
 @lru_cache(maxsize=8)
@@ -164,8 +167,8 @@ def fit_circles(
             solution = design.solve(w, target, prior)
             change = design.edges(solution)
     agree = (base > 0) & (np.abs(target - change) < 0.75 * scale[:, None]) & inside
-    shares = agree.reshape(n, circles, -1).sum(-1)
-    shares = shares / np.maximum(inside.reshape(n, circles, -1).sum(-1), 1)
+    agree = agree.reshape(n, circles, -1)
+    shares = agree.sum(-1) / np.maximum(inside.reshape(n, circles, -1).sum(-1), 1)
     # From here on circles that are known to lie aside have less of a say.
     base *= np.repeat([rim.say for rim in rims], len(rays.angle))
     for _ in range(2):
@@ -184,13 +187,27 @@ def fit_circles(
     first = slice(len(rays.angle))
     bends = _bends(residual[:, first], fits[:, first])
     return Fits(
-        count >= 8, solution[:, :2], radii, wall[0] + solution[:, -1], covariance, bends, shares
-    )
+        count >= 8, solution[:, :2], radii, wall[0] + solution[:, -1], covariance, bends, shares,
+        _unbroken(agree.all(1)),
+    )  # fmt: skip
 
 
 def _likely(residual: Array, scale: Array) -> Array:
     """Tukey's biweight of residuals, (n, edges), by the scale at each place."""
     return np.asarray(np.maximum(1 - (residual / scale[:, None]) ** 2, 0) ** 2)
+
+
+def _unbroken(agree: Flags) -> Array:
+    """Most that rays agree along one arc less those that do not, as a share of all, shape (n,).
+
+    The largest sum of neighbours on a ring (Kadane): one that does not pass the seam, or all less
+    the smallest.
+    """
+    total = np.zeros((len(agree), agree.shape[1] + 1))
+    np.cumsum(2.0 * agree - 1, axis=1, out=total[:, 1:])
+    most = (total - np.minimum.accumulate(total, axis=1)).max(1)
+    least = (total - np.maximum.accumulate(total, axis=1)).min(1)
+    return np.asarray(np.maximum(most, total[:, -1] - least) / agree.shape[1])
 
 
 @lru_cache(maxsize=8)

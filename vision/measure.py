@@ -50,6 +50,13 @@ its own dark side has 0.8 of it, dark clothes 0.05 to 0.5. What is lighter may b
 shoulder."""
 
 
+ON_ONE_SIDE = 0.2, 0.5
+"""From how far around both edges of a stone are seen on one side that counts for it, and up to how
+far it counts more. On clothes edges like a stone's lie here and there, on 0.1 to 0.35 of the way
+around at one side; of a stone that somebody covers by half 0.35 to 0.5 shows them. Before colours
+are learned, paint would profit as well."""
+
+
 @dataclass(frozen=True)
 class Measures:
     """What was seen at n places.
@@ -211,6 +218,10 @@ def _stones(
     odd = np.where(behind > effort.most_tilt, np.minimum(odd, 0), odd)
     uneven = np.sqrt((odd**2 * stony).sum(1) / np.maximum(stony.sum(1), 1)) / 40
     misfit = ((fit.radii[:, 0] / cap_radius - 1) / (0.06 + appearance.slack)) ** 2
+    evidence = fit.shares.sum(1) - uneven - 0.5 * misfit
+    if appearance.caps:
+        one_side = np.clip(fit.unbroken, *ON_ONE_SIDE) - ON_ONE_SIDE[0]
+        evidence += 2 * one_side - 0.25 * misfit
     visible = (stony & at_cap).mean(1)
     enough = (of_cap.mean((1, 2)) > 0.03) & (of_ring.mean((1, 2)) > 0.03)
     response = worth.mean(1) @ _template(disc, effort)
@@ -224,7 +235,7 @@ def _stones(
         colour=cap,
         visible=visible,
         uncovered=(capped & at_cap).mean(1),
-        evidence=fit.shares.sum(1) - uneven - 0.5 * misfit + 0.5 * response,
+        evidence=evidence + 0.5 * response,
         light=np.where(lit.ok[:, None], lit.shift - fit.shift, np.nan),
         bends=fit.bends,
         outline=fit.radii / np.array([disc.cap_radius, disc.radius]),

@@ -37,6 +37,19 @@ def test_what_covers_a_part_of_the_circle_does_not_draw_it_aside() -> None:
     assert abs(fits.shares[0, 0] - 38 / 48) < 0.03
 
 
+def test_what_agrees_on_one_side_is_told_from_as_much_here_and_there() -> None:
+    everywhere = np.ones(RAYS, bool)
+    edge = np.full(RAYS, RADIUS)
+    assert fitted(edge, everywhere).unbroken[0] > 0.9
+    one_side, scattered = edge.copy(), edge.copy()
+    one_side[:24] = 0.16
+    scattered[0::4] = scattered[1::4] = 0.16
+    across = np.roll(one_side, 36)  # seen on either side of where rays begin
+    seen = [float(fitted(e, everywhere).unbroken[0]) for e in (one_side, across, scattered)]
+    np.testing.assert_allclose(seen[:2], 0.5, atol=0.07)
+    assert seen[2] < 0.2
+
+
 def test_half_a_circle_is_known_less_well_across() -> None:
     inside = directions(RAYS)[1][:, 0] > 0.1
     fits = fitted(np.full(RAYS, RADIUS), inside)

@@ -8,11 +8,11 @@ from data.sheet import STONE
 from tests.synthetic.camera import tilted_camera
 from tests.synthetic.clip import render_still
 from tests.vision.test_stones import CAMERA, RED, YELLOW, camera_of, scene_of
-from vision.appearance import any_stone
+from vision.appearance import any_stone, learn
 from vision.camera import Camera
 from vision.measure import Measures, measure_discs
 from vision.rays import Look
-from vision.stones import plain_disc
+from vision.stones import plain_disc, search_picture
 
 PLACES = np.array([[0.3, 1.9], [-0.45, 0.3], [0.95, 0.1]])
 SCENE = scene_of([(x, y, cap) for (x, y), cap in zip(PLACES, (RED, YELLOW, RED), strict=True)])
@@ -53,6 +53,21 @@ def test_of_a_stone_half_covered_half_is_seen_and_its_place_is_known_less_well()
     assert half.uncovered[1] < 0.75
     assert half.sd[1].max() > 1.3 * whole.sd[1].max()
     np.testing.assert_allclose(half.sd[0], whole.sd[0])
+
+
+def test_half_a_stone_on_one_side_says_more_than_more_of_it_here_and_there() -> None:
+    learned = learn(search_picture(PICTURE, VIEW).stones)
+    x, y = VIEW.project(PLACES[1:2], STONE.cap_height)[0].astype(int)
+    down, across = np.mgrid[-40:40, -40:40]
+    stripes = np.sin(6 * np.arctan2(down, across)) > 0
+    seen = []
+    for hidden in (across >= 0, stripes):
+        covered = PICTURE.copy()
+        covered[y - 40 : y + 40, x - 40 : x + 40][hidden] = (60, 90, 60)
+        seen.append(measure_discs([Look(covered, VIEW, PLACES)], learned, STONE))
+    half, scattered = seen
+    assert half.visible[1] < scattered.visible[1] - 0.05
+    assert half.evidence[1] > scattered.evidence[1] + 0.05
 
 
 def test_dark_clothes_before_a_stone_are_not_taken_for_its_granite() -> None:
