@@ -1,4 +1,7 @@
-"""White balance: a clip's pictures in the light of the one of which colours were learned.
+"""Light: a clip's pictures bright enough to tell colours, and in the light of the first of them.
+
+What stones may look like holds for ice that is nearly white. In a picture that was taken or coded
+too dark, colours lie nearer to each other and to grey, by as much: it is brightened first.
 
 The white balance and the exposure of a camera wander, and so does the light: then caps no longer
 have the colours that were learned. Ice and paint keep theirs. So each place on the ice is compared
@@ -27,6 +30,23 @@ DARKEST, LIGHTEST = 40, 250
 CHANGED = 0.04
 """Least change of the light, a share, that is made good: learned colours hold within that, and
 a light that stays leaves the pictures as they are."""
+
+
+DIM, BRIGHT = 160, 210
+"""Coded white of the ice below which a picture is brightened, and to which; broadcasts show 205 to
+245."""
+
+MOST_BRIGHTENED = 5.0
+"""Most by which a picture is brightened: of a darker one noise and coding have left no colours."""
+
+
+def brightening(picture: Picture, camera: Camera) -> float:
+    """Tell by how much a picture is to be brightened; 1 where its ice is white enough."""
+    _, colours = _colours(picture, camera)
+    if len(colours) < LEAST_PLACES:
+        return 1.0
+    white = float(np.percentile(colours.max(1), 90))
+    return min(BRIGHT / max(white, 1.0), MOST_BRIGHTENED) if white < DIM else 1.0
 
 
 class Balance:
@@ -60,6 +80,13 @@ class Balance:
 
 
 def _seen(picture: Picture, camera: Camera) -> tuple[NDArray[np.intp], Array]:
+    """Tell which of the places a picture shows by whose colours the light is told, and these."""
+    places, colours = _colours(picture, camera)
+    tells = ((colours > DARKEST) & (colours < LIGHTEST)).all(1)
+    return places[tells], colours[tells]
+
+
+def _colours(picture: Picture, camera: Camera) -> tuple[NDArray[np.intp], Array]:
     """Tell which of the places a picture shows, and their colours, blue, green and red."""
     depth = PLACES @ camera.homography[2, :2] + camera.homography[2, 2]
     pixels = camera.project(PLACES)
@@ -67,6 +94,4 @@ def _seen(picture: Picture, camera: Camera) -> tuple[NDArray[np.intp], Array]:
     x, y = pixels[inside].astype(np.float32).T[..., None]
     if not len(x):
         return np.empty(0, np.intp), np.empty((0, 3))
-    colours = colours_at(picture, x, y)[:, 0]
-    tells = ((colours > DARKEST) & (colours < LIGHTEST)).all(1)
-    return np.flatnonzero(inside)[tells], colours[tells].astype(float)
+    return np.flatnonzero(inside), colours_at(picture, x, y)[:, 0].astype(float)

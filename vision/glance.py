@@ -9,8 +9,11 @@ import numpy as np
 
 from data.sheet import STONE, Stone
 from vision.appearance import MOST_COLOURS, UNLIKE, Appearance, convincing, learn
+from vision.balance import brightening
 from vision.camera import Camera
 from vision.clip import Image
+from vision.patch import is_plain
+from vision.picture import brightened, image_of
 from vision.rays import Look
 from vision.sighting import Refusal, Sighting
 from vision.stones import NEAREST, SEARCH, Findings, search_picture
@@ -32,6 +35,8 @@ def glance(pictures: Sequence[tuple[Image, Camera]], disc: Stone = STONE) -> lis
         One per picture, with the places that were refused and why.
     """
     nothing = np.empty((0, 2))
+    if not is_plain(disc):
+        pictures = [(_lit(image, camera), camera) for image, camera in pictures]
     first = strangers([Look(image, camera, nothing) for image, camera in pictures], disc, SEARCH)
     appearance = learn(convincing(stone for found in first for stone in found.stones))
     if appearance is None:
@@ -43,6 +48,11 @@ def glance(pictures: Sequence[tuple[Image, Camera]], disc: Stone = STONE) -> lis
         _with_strangers(known, other, appearance, disc)
         for known, other in zip(again, first, strict=True)
     ]
+
+
+def _lit(image: Image, camera: Camera) -> Image:
+    """Give a picture bright enough to tell colours."""
+    return image_of(brightened(image, np.full(3, brightening(image, camera))))
 
 
 def _with_strangers(known: Findings, other: Findings, look: Appearance, disc: Stone) -> Findings:

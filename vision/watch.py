@@ -12,14 +12,17 @@ from collections import deque
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from data.sheet import STONE, Stone
 from vision.appearance import MOST_COLOURS, UNLIKE, Appearance, convincing, learn
-from vision.balance import Balance
+from vision.balance import Balance, brightening
 from vision.camera import Camera
 from vision.clip import Frame
 from vision.follower import PATIENCE, Follower, Patience, StoneView
 from vision.lead import Lead
 from vision.patch import is_plain
+from vision.picture import brightened
 from vision.placing import placed_by
 from vision.rays import Look
 from vision.shelf import Shelf
@@ -80,12 +83,16 @@ class Watch:
         self._recent: deque[StoneView] = deque()
         self._shelf = Shelf()
         self._balance: Balance | None = None
+        self._gain = np.ones(3)
         self._leads: list[Lead] = []
         self._since = pace.memory
         self._seen: list[tuple[int, float, Camera, list[Sighting]]] = []
 
     def look(self, frame: Frame, camera: Camera) -> None:
         """Take in a frame; it waits for some more, the first ones until the stones are learned."""
+        if not self._knows:
+            self._gain = np.full(3, brightening(frame.picture, camera))
+        frame = replace(frame, picture=brightened(frame.picture, self._gain))
         if self._balance is not None:
             if not self._waiting:
                 self._balance.look(frame.picture, camera)

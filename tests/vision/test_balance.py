@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from tests.synthetic.clip import render_still
 from tests.vision.test_stones import CAMERA, RED, YELLOW, camera_of, scene_of
-from vision.balance import CHANGED, Balance
+from vision.balance import BRIGHT, CHANGED, DIM, MOST_BRIGHTENED, Balance, brightening
 from vision.camera import Camera
 from vision.picture import Image, image_of
 
@@ -90,3 +90,20 @@ def test_where_no_ice_is_seen_the_light_stays_as_it_was(picture: Image, camera: 
     away = Camera(1, 0.04, np.array([[1.0, 0, 1e5], [0, 1.0, 0], [0, 0, 1]]), camera.size)
     balance.look(picture, away)
     np.testing.assert_array_equal(image_of(balance.evened(picture)), before)
+
+
+@pytest.mark.parametrize("share", [0.6, 0.25])
+def test_a_dim_picture_is_brightened_until_its_ice_is_white(
+    picture: Image, camera: Camera, share: float
+) -> None:
+    white = np.percentile(picture.max(2), 90)
+    gain = brightening(lit(picture, np.full(3, share)), camera)
+    assert share * white < DIM
+    assert gain == pytest.approx(BRIGHT / (share * white), rel=0.03)
+
+
+def test_a_bright_picture_is_left_and_a_black_one_hardly_brightened(
+    picture: Image, camera: Camera
+) -> None:
+    assert brightening(picture, camera) == 1.0
+    assert brightening(np.zeros_like(picture), camera) == MOST_BRIGHTENED
