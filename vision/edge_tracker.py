@@ -88,6 +88,8 @@ class EdgeTracker:
         The last one.
     sweep : ndarray, shape (2,)
         How far a pan smears edges along x and along y in the frames asked for last, px.
+    smeared : float
+        How far the edges of the last frame are smeared, by what they look like, px.
     """
 
     size: tuple[int, int]
@@ -96,6 +98,7 @@ class EdgeTracker:
     stride: int = 1
     fit: ViewSolution | None = None
     sweep: Array = field(default_factory=lambda: np.zeros(2))
+    smeared: float = 0.0
     _shutter: Shutter = field(default_factory=Shutter)
     _last: tuple[View, Array, Normals, Array] | None = None
 
@@ -145,6 +148,7 @@ class EdgeTracker:
         whole = count == len(frames) and not again
         self.stride = min(2 * count, LONGEST_STRIDE) if whole else max(count // 2, 1)
         self.fit, shown = fits[count - 1], evidence[count - 1]
+        self.smeared = smear(shown.slope)
         self._learn(shown.palette, count)
         rim = normals.normal[:, normals.kinds.get(TWELVE, slice(0))]
         self._shutter.learn(shown.slope, self.fit.view.sweep([last, *views][count - 1]) @ rim)

@@ -44,6 +44,10 @@ REFINE_FRAMES = 6
 MOST_BLUR = 0.004
 """Blur of a picture beyond which it would not look like a sharp one of the same, widths of it."""
 
+MOST_SMEARED, LEAST_SMEARED = 0.0025, 0.1
+"""Blur of a picture beyond which a pan is on its way, widths of it; and the least share of a turn
+by which a pan so fast would smear the next: no cut smears pictures."""
+
 LEAST_EXPLAINED, SAME_RMS_PX = 0.8, 0.3
 """How much of a house, and of the frames before, one camera must explain to be the same; and by
 how much worse than another's it may explain the house, px."""
@@ -72,7 +76,8 @@ class Piece:
     lost : int
         Frames since the last that was followed.
     leapt : bool
-        Whether the camera has turned farther than could be followed: it may be a cut as well.
+        Whether the camera has turned farther than could be followed, and its pictures are sharp
+        all the same: it may be a cut as well.
     """
 
     size: tuple[int, int]
@@ -108,9 +113,12 @@ class Piece:
         views = self._predicted(frames)
         seen, self.leapt = self._settle(frames, views), False
         if not seen and self._picture is not None:
-            self.leapt = True
-            view = leapt(self._picture, frames[0].picture, self.seen[-1].view, self.rig)
+            last, before = self.seen[-1].view, self.edges.smeared
+            view = leapt(self._picture, frames[0].picture, last, self.rig)
             seen = [] if view is None else self._settle(frames[:1], [view])
+            leap = np.linalg.norm(seen[0].view.sweep(last)) if seen else np.inf
+            sharp = before < MOST_SMEARED * self.size[0]
+            self.leapt = bool(sharp and self.edges.smeared < LEAST_SMEARED * leap)
         return seen
 
     def _settle(self, frames: Sequence[Frame], views: Sequence[View]) -> list[Seen]:

@@ -72,6 +72,20 @@ def test_a_camera_that_leaps_is_followed() -> None:
     assert np.linalg.norm(piece.camera(piece.seen[1]).ice(pixels) - RINGS, axis=1).max() < 0.02
 
 
+def test_a_pan_too_fast_to_be_followed_is_no_cut() -> None:
+    """It smears its pictures, which a cut does not."""
+    keys = tuple(Key(t, x, 0.3, 120) for t, x in ((0.0, -0.6), (0.04, -0.6), (0.12, 1.4)))
+    path = CameraPath((1280, 720), (0.0, 0.0, 9.0), keys)
+    frames = [
+        Frame(i, t, np.asarray(render_still(sample_scene(), path, t, shutter=0.02), np.uint8))
+        for i, t in enumerate((0.0, 0.08))
+    ]
+    house = find_house(frames[0].image)
+    assert house is not None
+    piece = followed(house, frames)
+    assert piece.found == len(frames) and not piece.leapt
+
+
 def test_a_lens_that_bends_with_the_zoom_is_learned_on_the_way() -> None:
     scene = replace(sample_scene(), paint=PAINTS["navy-orange"])
     keys = (
