@@ -60,6 +60,9 @@ DEGREE = 3
 LEAST_FRAMES = 6
 """Fewer frames tell nothing of a camera's motion."""
 
+BLIND = 1e-9
+"""What holds a view that sees none of its marks."""
+
 ROUNDS = 4
 """Estimates of paint and noise, each followed by a fit."""
 
@@ -273,7 +276,8 @@ class _Problem:
         w = 1 / (noise[self.kind] ** 2 + (at.residual / WIDTH) ** 2)
         matrices, right = view_equations(self.observed, at, w)
         right += self.hold * (state.views - self.start)
-        step = np.linalg.solve(matrices + np.diag(self.hold), right[..., None])[..., 0]
+        held = np.diag(self.hold + BLIND)  # a step too far may end below the ice
+        step = np.linalg.solve(matrices + held, right[..., None])[..., 0]
         return replace(state, views=state.views - step)
 
     def spread(

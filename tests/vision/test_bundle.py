@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.vision.cameras import SIZE, marks, true_rig, views
-from vision.bundle import bundle
+from vision.bundle import FAMILIES, PAINT_SD, _Problem, _State, bundle
 from vision.pose import View
 from vision.resection import solve_view
 from vision.rig import OVERHEAD, POSITION, R4, R8, start_rig
@@ -42,3 +42,19 @@ def test_a_camera_moves_only_if_the_marks_say_so(speed: float) -> None:
     assert bool(len(found.travel)) == bool(speed)
     moved = found.moved(times)
     np.testing.assert_allclose(moved[:, 0], speed * (times - 0.5), atol=0.02)
+
+
+def test_a_step_that_ends_below_the_ice_is_no_end() -> None:
+    rng = np.random.default_rng(6)
+    rig, view = true_rig(), VIEWS[0]
+    problem = _Problem(
+        [marks(rng, view.vector, rig, 0.1)], np.zeros((1, 0)), [view], SIZE, OVERHEAD
+    )
+    above = _State(rig, np.zeros((0, 3)), np.zeros(len(problem.pieces)), view.vector[None])
+    below = rig.copy()
+    below[POSITION] = 0.0, 1.7, -1.4
+    state = _State(below, above.travel, above.offset, above.views)
+    noise = np.ones(FAMILIES)
+    state = problem.settled(state, problem.see(state), noise)
+    costs = [problem.cost(s, problem.see(s), PAINT_SD, noise) for s in (above, state)]
+    assert np.isfinite(state.views).all() and costs[1] > costs[0]
