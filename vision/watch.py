@@ -161,8 +161,8 @@ class Watch:
 
     def _of_any_colour(self, views: Iterable[StoneView]) -> list[Sighting]:
         """Stones of any colour that were not seen in the views so far."""
-        # Too much on the ice answers faintly to any colour.
-        search = replace(self._search, least_score=SEARCH.least_score)
+        # Too much on the ice answers faintly to any colour, and on a coarse map a dull cap does.
+        search = replace(self._search, least_score=SEARCH.least_score, radius_px=SEARCH.radius_px)
         looks = [Look(view.frame.picture, view.camera, view.places) for view in views]
         return [stone for found in strangers(looks, self.disc, search) for stone in found.stones]
 

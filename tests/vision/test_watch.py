@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.synthetic.camera import still_camera
 from tests.synthetic.clip import render_still
+from tests.synthetic.scenes import PAINTS
 from tests.vision.test_stones import BLUE, CAMERA, RED, YELLOW, camera_of, scene_of
 from vision.clip import Frame, Image
 from vision.watch import Watch
@@ -57,6 +59,17 @@ def test_a_stone_that_convinces_in_some_pictures_only_is_learned_from_these() ->
         # Of the pictures looked at first, every eighth, none is clear.
         watch.look(Frame(index, index / 25, clear if index in (2, 10, 20) else covered), camera)
     assert [len(sightings) for _, _, sightings in watch.finish()] == [1] * 24
+
+
+def test_a_dull_cap_on_vivid_paint_is_learned_beside_a_vivid_one() -> None:
+    path = still_camera(px_per_m=140.0, target=(0.0, 0.6), position=(0.3, -5.2, 8.0))
+    dull = (66, 62, 110)
+    scene = scene_of([(0.3, 0.25, dull), (-0.8, 1.0, YELLOW)], paint=PAINTS["navy-orange"])
+    image, camera = np.asarray(render_still(scene, path), np.uint8), camera_of(path, scene)
+    watch = Watch()
+    for index in range(24):
+        watch.look(Frame(index, index / 25, image), camera)
+    assert [len(sightings) for _, _, sightings in watch.finish()] == [2] * 24
 
 
 @pytest.mark.parametrize("jump", [0.02, 0.025, 0.03, 0.13])
