@@ -1,7 +1,7 @@
 """Where a path stops being one motion: the breaks of a single stone's way.
 
-A free stone on ice moves for a while with nearly constant acceleration. `breaks` finds the
-times at which a path stops being such a motion: a push, a wall, a stop, a change of the ice.
+A free stone on ice is slowed for a while as a power of its speed. `breaks` finds the times at
+which a path stops being such a motion: a push, a wall, a stop, a change of the ice.
 """
 
 from __future__ import annotations
@@ -11,13 +11,11 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from physics.one_glide import ACCELERATION_SD, OUTLIER, SPEED_SD, joined
 from physics.stretch import PLACE_MEMORY
 from physics.traces import LASTING
 
 Floats = NDArray[np.float64]
-
-SPEED_SD, ACCELERATION_SD = 3.0, 0.5
-"""Prior of a segment's velocity (m/s) and acceleration (m/s²) when looking for breaks."""
 
 BREAK_COST = 12.0
 """Cost of a break in units of −2 log likelihood: one change in some hundred samples."""
@@ -39,17 +37,15 @@ camera that wanders are alike in all frames."""
 ALIKE = 1.25
 """Share of a place's variance by which the errors of neighbouring frames are alike."""
 
-OUTLIER = 16.0
-"""Squared normalised error, two axes, at which a sample costs no more."""
-
 
 def breaks(t: Floats, xy: Floats, sd: Floats, lasting: float = LASTING) -> list[float]:
-    """Find the times at which a path stops being one motion of constant acceleration.
+    """Find the times at which a path stops being one glide.
 
     The partition with the highest marginal likelihood, found exactly by pruned dynamic
     programming (Killick et al., 2012, J. Am. Stat. Assoc. 107, 1590), the likelihood of each
     segment coming from a recursive least-squares filter of place, velocity and acceleration. Of
-    the breaks that white errors leave those are kept that lasting errors do not explain.
+    the breaks that white errors leave those are kept that neither lasting errors explain nor one
+    glide that slows the more the slower it is (`physics.one_glide`).
 
     Parameters
     ----------
@@ -84,6 +80,7 @@ def _breaks(samples: bytes, lasting: float) -> tuple[float, ...]:
     alike = 2 * PLACE_MEMORY / float(np.median(np.diff(t)))
     held = (1 + max(ALIKE, lasting * alike)) * variance
     starts = _starts(t, xy, held, np.isin(np.arange(n), sought))
+    starts = joined(t, xy, held, starts, BREAK_COST)
     return tuple(0.5 * float(t[j - 1] + t[j]) for j in starts)
 
 

@@ -12,6 +12,8 @@ from math import log
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from data.results import Estimate
+
 Floats = NDArray[np.float64]
 
 LONGEST = 1e3
@@ -22,6 +24,10 @@ TINY = 1e-12
 
 SLOWEST = 0.06
 """Speed below which a stone is slowed as there, m/s: as by FCV1 (Uehara and Ito, 2021)."""
+
+FALL = Estimate(0.25, 0.2)
+"""What is known of p beforehand for curling stones: 0 on even ice, 1/2 in Penner's law, between in
+FCV1's."""
 
 LEAST, MOST = -0.5, 1.0
 """Bounds of p: past any law of ice."""
