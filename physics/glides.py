@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from data.results import Estimate, Friction, Glide
 from data.sheet import GRAVITY, curling_size
 from physics.ice import FCV1
-from physics.random_effects import random_effects
+from physics.random_effects import random_effects, weighted_mean
 from physics.shot_fit import Deceleration, ShotFit
-from physics.slowing import speed_left
+from physics.slowing import FALL, speed_left
 from physics.traces import PLACE_REACH, Trace
 
 Floats = NDArray[np.float64]
@@ -25,12 +25,15 @@ Lubricants 10, 265) and of anything that glides, m/s²: only used where the glid
 LEAST_SPREAD = 0.01
 """Least spread of decelerations from glide to glide, m/s²: no ice law is exactly constant."""
 
-FALL, EVEN = Estimate(0.25, 0.2), Estimate(0.0, 0.0)
-"""Power of the speed with which the deceleration of curling stones falls (0 on even ice, 1/2 in
-Penner's law, between in FCV1's), and that of anything that glides."""
+EVEN = Estimate(0.0, 0.0)
+"""Power of the speed with which the deceleration of anything that glides falls."""
 
 STEEPEST = 0.7
 """Power of the speed beyond which FCV1's form, of two positive parts, follows no more."""
+
+TOLD = 3.0
+"""How much more probable a power of the speed must make the glides to be told: what counts as
+evidence at all (Kass and Raftery, 1995, J. Am. Stat. Assoc. 90, 773)."""
 
 CLEAR = 2.0
 """Excess of the misfit of one deceleration for all glides from which they are known to differ."""
@@ -63,12 +66,12 @@ def measure_glides(
     each = list(_each(fit, known, radius))
     power, sd_power = _power(fit, [one.rank for one in each], law)
     pooled = random_effects(*_at_one(fit, each, power, sd_power))
-    friction = _friction(pooled.mean, power, [one.speed for one in each])
+    friction = _friction(fit, each, law, power, sd_power)
     spread = pooled.spread if pooled.excess > CLEAR else 0.0
     usual = USUAL if curling_size(radius) else ANY
     mean, sd = float(usual.value or 0.0), float(usual.stderr or 0.0)
-    if friction.value is not None and friction.stderr is not None:
-        measured, error = friction.value * GRAVITY, max(friction.stderr * GRAVITY, 1e-6)
+    if pooled.mean.value is not None and pooled.mean.stderr is not None:
+        measured, error = pooled.mean.value, max(pooled.mean.stderr, 1e-6)
         share = sd**2 / (sd**2 + error**2)
         mean, sd = mean + share * (measured - mean), sd * error / float(np.hypot(sd, error))
     spread = float(np.sqrt(max(spread, LEAST_SPREAD) ** 2 + sd**2))
@@ -171,22 +174,61 @@ def _bend(sd_place: Floats, speed: float, duration: float) -> Floats:
     return np.asarray(8 * share * np.median(sd_place, axis=0) / duration**2)
 
 
-def _friction(deceleration: Estimate, power: float, speeds: Sequence[float]) -> Friction:
-    """Friction at 1 m/s that a deceleration there shows, and a law with it.
+def _friction(
+    fit: ShotFit, each: Sequence[_Told], law: Deceleration, power: float, sd_power: float
+) -> Friction:
+    """Friction that the glides show: the same at all speeds unless they tell that it falls.
 
-    The law is that of `physics.ice.Fit` with FCV1's v_c: the same at 1 m/s as the power of the
-    speed, and at the mean of the speeds (m/s).
+    If it does it is that at 1 m/s, with a law of `physics.ice.Fit`'s form with FCV1's v_c: the
+    same there and at the mean of the speeds. If not, what it would be at 1 m/s is in the error.
     """
-    if deceleration.value is None or deceleration.stderr is None:
+    flat = _at_one(fit, each, 0.0, 0.0)
+    even = random_effects(*flat).mean
+    if even.value is None or even.stderr is None:
         return Friction()
-    mu, stderr = deceleration.value / GRAVITY, deceleration.stderr / GRAVITY
-    steep = min(power, STEEPEST)
-    if steep <= 0 or mu <= 0:
-        return Friction(mu, stderr)
-    v_c = FCV1().v_c
-    mean = float(np.exp(np.mean(np.log(speeds))))
+    if not law.sd_fall:
+        return Friction(even.value / GRAVITY, even.stderr / GRAVITY)
+    speeds = np.array([one.speed for one in each])
+    values, cov = _at_one(fit, each, power, sd_power)
+    form = _form(speeds, power)
+    steep = values * (1 + form), cov + np.outer(values * form, values * form)
+    bent = random_effects(*steep).mean
+    value, stderr = float(bent.value or 0.0) / GRAVITY, float(bent.stderr or 0.0) / GRAVITY
+    if _odds(flat, steep, Estimate(power, sd_power), law) < TOLD:
+        usual = even.value / GRAVITY
+        return Friction(usual, float(np.hypot(stderr, usual - value)))
+    if power <= 0 or value <= 0:
+        return Friction(value, stderr)
+    v_c, mean = FCV1().v_c, float(np.exp(np.mean(np.log(speeds))))
+    fall = min(power, STEEPEST)
     if abs(mean - 1) > 1e-3:
-        a = mu * (mean**-steep - 1) / (1 / (mean + v_c) - 1 / (1 + v_c))
+        there = value / (1 + float(_form(np.array([mean]), fall)[0])) * mean**-fall
+        a = (there - value) / (1 / (mean + v_c) - 1 / (1 + v_c))
     else:
-        a = mu * steep * (1 + v_c) ** 2
-    return Friction(mu, stderr, "fit", a, v_c, mu - a / (1 + v_c))
+        a = value * fall * (1 + v_c) ** 2
+    return Friction(value, stderr, "fit", a, v_c, value - a / (1 + v_c))
+
+
+def _odds(
+    even: tuple[Floats, Floats], bent: tuple[Floats, Floats], power: Estimate, law: Deceleration
+) -> float:
+    """How much more probable the glides are by a power of the speed than without.
+
+    Of each by how probable the power 0 is beforehand and with it (Dickey, 1971, Annals of
+    Mathematical Statistics 42, 204); of all by how well they agree, `even` and `bent`.
+    """
+    value, error = float(power.value or 0.0), float(power.stderr or law.sd_fall)
+    each = (value / error) ** 2 - (law.fall / law.sd_fall) ** 2 + 2 * np.log(error / law.sd_fall)
+    misfits = [weighted_mean(*values, LEAST_SPREAD**2)[2] for values in (even, bent)]
+    return float(np.exp(np.clip(0.5 * (each + misfits[0] - misfits[1]), -50.0, 50.0)))
+
+
+def _form(speeds: Floats, power: float) -> Floats:
+    """Tell what a friction at 1 m/s is more than by a power of the speed, as a part, and unsure by.
+
+    FCV1's law and the power that falls alike at a speed are not alike at 1 m/s: half of that.
+    """
+    v_c = FCV1().v_c
+    falling = np.minimum(power * (speeds + v_c) ** 2 / speeds, speeds + v_c)
+    by_fcv1 = 1 + falling * (1 / (1 + v_c) - 1 / (speeds + v_c))
+    return np.asarray(0.5 * (by_fcv1 / speeds**power - 1))

@@ -50,7 +50,7 @@ def random_effects(values: Floats, cov: Floats) -> RandomEffects:
     free = len(values) - 1
     if free < 0:
         return RandomEffects()
-    mean, stderr, misfit = _mean(values, cov, 0.0)
+    mean, stderr, misfit = weighted_mean(values, cov, 0.0)
     if not free:
         return RandomEffects(Estimate(mean, stderr))
     excess = (misfit - free) / float(np.sqrt(2 * free))
@@ -59,15 +59,15 @@ def random_effects(values: Floats, cov: Floats) -> RandomEffects:
     low, high = 0.0, float(np.ptp(values)) ** 2 * (free + 1)
     for _ in range(HALVINGS):
         middle = (low + high) / 2
-        if _mean(values, cov, middle)[2] > free:
+        if weighted_mean(values, cov, middle)[2] > free:
             low = middle
         else:
             high = middle
-    mean, stderr, _ = _mean(values, cov, high)
+    mean, stderr, _ = weighted_mean(values, cov, high)
     return RandomEffects(Estimate(mean, stderr), float(np.sqrt(high)), excess)
 
 
-def _mean(values: Floats, cov: Floats, spread: float) -> tuple[float, float, float]:
+def weighted_mean(values: Floats, cov: Floats, spread: float) -> tuple[float, float, float]:
     """Weighted mean with a variance between the values, its error, and the misfit."""
     inverse = np.linalg.inv(cov + spread * np.eye(len(values)))
     weights = inverse.sum(axis=1)

@@ -64,7 +64,7 @@ def test_the_friction_at_1_m_s_is_as_unsure_as_the_power_of_the_speed() -> None:
     late = late[late["t"] > 12.5].assign(stone="B", x=2.0)
     alone, both = local(one).friction, local(pd.concat([one, late])).friction
     assert alone.stderr is not None and both.stderr is not None
-    assert both.stderr < 0.3 * alone.stderr
+    assert both.stderr < 0.4 * alone.stderr
     for friction in (alone, both):
         assert friction.value is not None and friction.stderr is not None
         assert abs(friction.value - 0.1 / GRAVITY) < 2 * friction.stderr
@@ -77,7 +77,7 @@ def test_a_path_turns_at_its_rate_half_way() -> None:
 
 def test_a_law_goes_with_the_friction_at_1_m_s() -> None:
     table = slowed(0.5, 16.0)
-    late = local(table[table["t"] > 12.5])
+    late = local(table[table["t"] > 10.0])
     (glide,), friction = late.glides, late.friction
     assert friction.law == "fit" and glide.friction is not None and glide.speed is not None
     assert friction.a is not None and friction.v_c is not None and friction.b is not None
@@ -86,3 +86,20 @@ def test_a_law_goes_with_the_friction_at_1_m_s() -> None:
     assert friction.a / (glide.speed + friction.v_c) + friction.b == pytest.approx(
         glide.friction, rel=0.03
     )
+
+
+@pytest.mark.parametrize("power", [0.0, 0.5])
+def test_a_friction_counts_as_constant_until_glides_tell_that_it_falls(power: float) -> None:
+    """At 2 m/s a power of the speed not known would be a tenth of it."""
+    table = slowed(power, 5.0)
+    blurred, sharp = (
+        local(table.assign(**{axis: table[axis] + rng.normal(0, sd, len(table)) for axis in "xy"},
+                           sd_x=sd, sd_y=sd)).friction
+        for rng, sd in ((np.random.default_rng(5), 0.01), (np.random.default_rng(5), 0.0005))
+    )  # fmt: skip
+    assert blurred.law == "constant" and sharp.law == ("fit" if power else "constant")
+    for friction in (blurred, sharp):
+        assert friction.value is not None and friction.stderr is not None
+        assert abs(friction.value - 0.1 / GRAVITY) < 2 * friction.stderr
+    if not power:
+        assert blurred.value == pytest.approx(0.1 / GRAVITY, rel=0.03)
