@@ -5,8 +5,8 @@
 Each variant is rendered from a seed of its own (other restitution, frictions, throw, spins,
 camera, rate and size of the picture: `tests.synthetic.scenes.sample_variant`), run as a clip,
 and laid beside its truth. Last places are those of the model `frictional`, in cm, their stated
-errors in brackets: from the states before the first hit with the laws of the shot itself, and
-with those of the literature.
+errors in brackets: of the shot again, with the start and the laws that fit the whole of it, and
+foretold from before the first hit with the laws of the literature.
 """
 
 from __future__ import annotations

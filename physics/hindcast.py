@@ -1,4 +1,4 @@
-"""The measured shot simulated again: from the states just before the first hit, with its own laws.
+"""The measured shot simulated again, with its own laws: as the fit of the whole of it has it.
 
 What is foretold with laws fixed in advance is in `physics.forecast`.
 """
@@ -6,6 +6,7 @@ What is foretold with laws fixed in advance is in `physics.forecast`.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -15,15 +16,17 @@ from numpy.typing import NDArray
 from data.errors import InputError
 from data.results import SimulationScore
 from data.sheet import STONE
+from physics.as_fitted import AsFitted, as_fitted, by_itself
 from physics.estimate import Estimates
 from physics.impact import Frictional, Impact, PointMass, RigidBody
 from physics.laws import Laws, measured_laws
 from physics.shot_model import STATE
 from physics.simulate import simulate
 from physics.simulation import Shot, StoneStart
-from physics.spread import Doubt, draws, path_spread, simulated_hits
+from physics.spread import Doubt, path_spread, simulated, simulated_hits
 from physics.traces import Trace
 from physics.watched import SUDDEN
+from physics.whole_fit import GlobalFit
 
 MOVED = 0.05
 """Distance by which a stone must move to count in the score, m."""
@@ -44,8 +47,9 @@ def simulate_measured(
 ) -> tuple[dict[str, pd.DataFrame], dict[str, SimulationScore], tuple[str, ...]]:
     """Simulate a measured shot with each impact model and score it against the tracks.
 
-    The start is the last state of `tracks` before the first hit, which rests on what was
-    seen before the hit alone; restitution and friction are those of `estimates`.
+    Start and laws are those of the fit of the whole shot, so that `frictional` tells how far the
+    simulator can follow the shot. Without such a fit the start is the last state of `tracks` before
+    the first hit, which rests on what was seen before it alone.
 
     Parameters
     ----------
@@ -87,6 +91,9 @@ def simulate_measured(
     clock = tracks.groupby("frame", sort=True)["t"].first()
     clock = clock[clock >= start]
     doubt = _doubt(tracks, start, estimates, laws)
+    usual = Frictional(laws.restitution.value or 0.0, laws.stone_friction.value or 0.0)
+    again = Shot(stones, usual, laws.ice, laws.curl, radius * (laws.size.value or 1.0))
+    may = _may_have_been(estimates.whole, again, doubt, start)
     ends = explained_until(tracks, estimates, start)
     warnings += [
         f"simulation: {name} is compared until {end:.2f} s; neither ice nor a hit in view"
@@ -100,23 +107,31 @@ def simulate_measured(
         if impact is None:
             scores[name] = SimulationScore(None, {}, notes[name])
             continue
+        shots = may.by(impact)
         try:
-            shot = Shot(stones, impact, laws.ice, laws.curl, radius * (laws.size.value or 1.0))
-            run = simulate(shot)
+            run = simulate(shots.likely)
         except InputError as error:
             scores[name] = SimulationScore(None, {}, f"cannot be simulated: {error}")
             continue
-        since = clock.to_numpy(float) - start
-        others = draws(shot, doubt)
+        since = clock.to_numpy(float) - shots.start
+        others = simulated(shots.others)
         table = run.sample(since).merge(path_spread(others, since), "left", ["stone", "t"])
         table["frame"] = clock.index.to_numpy()[table["frame"].to_numpy()]
-        table["t"] = table["t"] + start
+        table["t"] = table["t"] + shots.start
         samples[name] = table
         found = score(tracks, table, start, ends, notes.get(name))
         scores[name] = replace(
-            found, hits=simulated_hits(run, others, start), rest_sd=_rest_sd(table, found)
+            found, hits=simulated_hits(run, others, shots.start), rest_sd=_rest_sd(table, found)
         )
     return samples, scores, tuple(warnings)
+
+
+def _may_have_been(fit: GlobalFit | None, shot: Shot, doubt: Doubt, start: float) -> AsFitted:
+    """Shots that may have been the one seen: of the fit of the whole of it where that is so."""
+    if fit is not None:
+        with suppress(InputError):
+            return as_fitted(fit, shot, doubt, start)
+    return by_itself(shot, doubt, start)
 
 
 def _start_time(tracks: pd.DataFrame, estimates: Estimates) -> float:

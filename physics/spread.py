@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
@@ -68,10 +68,15 @@ def draws(shot: Shot, doubt: Doubt, count: int = DRAWS, seed: int = 0) -> list[S
     together (`physics.traces.alike`). Draws that cannot be simulated are left out.
     """
     rng = np.random.default_rng(seed)
+    return simulated(drawn(shot, doubt, rng) for _ in range(count))
+
+
+def simulated(shots: Iterable[Shot]) -> list[Simulation]:
+    """Simulate those of some shots that can be."""
     out = []
-    for _ in range(count):
+    for shot in shots:
         try:
-            out.append(simulate(_drawn(shot, doubt, rng)))
+            out.append(simulate(shot))
         except InputError:
             continue
     return out
@@ -132,7 +137,8 @@ def path_spread(others: Sequence[Simulation], times: Floats) -> pd.DataFrame:
     return pd.concat(tables, ignore_index=True)
 
 
-def _drawn(shot: Shot, doubt: Doubt, rng: np.random.Generator) -> Shot:
+def drawn(shot: Shot, doubt: Doubt, rng: np.random.Generator) -> Shot:
+    """Return a shot with all that is doubtful drawn from normal distributions."""
     together = _together(shot, doubt, rng)
     stones = tuple(
         _moved(stone, doubt, by, rng) for stone, by in zip(shot.stones, together, strict=True)

@@ -199,8 +199,8 @@ def _simulated(results: Results) -> list[Table]:
         Table(
             f"table_{_PAPER.get(model, 5 + k - len(_PAPER))}_{_plain(model)}",
             f"Simulated before and after each hit: {model}",
-            "From the measured state just before the first hit. — where the simulation has no such"
-            " hit; errors are those of the start, of e and of μ.",
+            "From the start that fits the shot best. — where the simulation has no such hit; errors"
+            " are those of the start, of e and of μ.",
             _STATES,
             tables.simulated_table(results.simulations[model], results.collisions),
         )

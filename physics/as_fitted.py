@@ -1,0 +1,109 @@
+"""A shot as the fit of the whole of it has it, and what else it may have been."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physics.impact import Impact
+from physics.simulate import simulate
+from physics.simulation import Shot, StoneStart
+from physics.spread import DRAWS, Doubt, drawn
+from physics.whole_fit import GlobalFit
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class AsFitted:
+    """Shots that may have been one that was seen.
+
+    Attributes
+    ----------
+    start : float
+        Time in the clip at which they begin, s.
+    likely : Shot
+        The one that fits best.
+    others : sequence of Shot
+        Drawn from what its errors leave open.
+    """
+
+    start: float
+    likely: Shot
+    others: Sequence[Shot]
+
+    def by(self, impact: Impact) -> AsFitted:
+        """Return them with the hits of another model, with their own restitution and friction."""
+        others = [_hit_by(other, impact) for other in self.others]
+        return AsFitted(self.start, _hit_by(self.likely, impact), others)
+
+
+def by_itself(shot: Shot, doubt: Doubt, at: float, count: int = DRAWS) -> AsFitted:
+    """Return a shot that begins at a time, s, with laws and states drawn each by itself."""
+    rng = np.random.default_rng(0)
+    return AsFitted(at, shot, [drawn(shot, doubt, rng) for _ in range(count)])
+
+
+def as_fitted(fit: GlobalFit, shot: Shot, doubt: Doubt, at: float, count: int = DRAWS) -> AsFitted:
+    """Return a shot as the fit of the whole of it has it.
+
+    Parameters
+    ----------
+    fit : GlobalFit
+        Of one shot; its unknowns are drawn together.
+    shot : Shot
+        As it is otherwise known: stones of which the fit knows nothing, angles, spins after hits.
+    doubt : Doubt
+        The errors of that.
+    at : float
+        Time of `shot`, s.
+    count : int
+        Number of draws.
+
+    Raises
+    ------
+    InputError
+        Where it cannot be simulated.
+    """
+    rng = np.random.default_rng(0)
+    seen = fit.shots[0]
+    since = at - seen.start
+
+    def joined(other: Shot, values: Floats) -> Shot:
+        whole = seen.shot(fit.state(values=values))
+        own = {stone.name: stone for stone in whole.stones}
+        stones = tuple(_joined(stone, own.get(stone.name), since) for stone in other.stones)
+        return replace(whole, stones=stones)
+
+    likely = joined(shot, fit.values)
+    run = simulate(likely, until=since)
+    turned = {stone.name: run.state(stone.name, since).theta for stone in shot.stones}
+    shot = replace(
+        shot, stones=tuple(replace(s, theta=2 * s.theta - turned[s.name]) for s in shot.stones)
+    )
+    bounds = {unknown.name: (unknown.low, unknown.high) for unknown in seen.unknowns}
+    low, high = np.array([bounds[name] for name in fit.names]).T
+    rows = rng.multivariate_normal(fit.values, fit.cov, count, method="eigh")
+    others = [joined(drawn(shot, doubt, rng), row) for row in np.clip(rows, low, high)]
+    return AsFitted(seen.start, joined(shot, fit.values), others)
+
+
+def _joined(stone: StoneStart, own: StoneStart | None, since: float) -> StoneStart:
+    """Return a stone as it was a time before, s: as the fit has it, else on a straight way."""
+    if own is None:
+        return replace(stone, x=stone.x - since * stone.vx, y=stone.y - since * stone.vy)
+    return replace(own, theta=stone.theta, omega_after=stone.omega_after)
+
+
+def _hit_by(shot: Shot, impact: Impact) -> Shot:
+    """Return a shot with the hits of another model, its restitution and friction kept."""
+    own: dict[str, Any] = {}
+    for item in fields(impact):  # type: ignore[arg-type]
+        if hasattr(shot.impact, item.name):
+            own[item.name] = getattr(shot.impact, item.name)
+    own["restitution"] = min(own["restitution"], 1.0)
+    return replace(shot, impact=replace(impact, **own))  # type: ignore[type-var]
