@@ -29,6 +29,12 @@ UNLIKE = 30.0
 PURE = 55.0
 """How far from grey a colour without any red counts for at least, L*a*b* units."""
 
+GREY = 10.0
+"""Distance from grey within which a cap has no colour, L*a*b* units."""
+
+ALIKE_GRANITE = 18.0
+"""Lightness by which granite differs from stone to stone, and over one, L*a*b* units."""
+
 LEAST_CONTRAST = 0.4
 """Least share of its contrast that a picture is taken to have kept: with less, noise is colour."""
 
@@ -162,6 +168,17 @@ def any_grey_stone(white: int = 210, black: int = 0) -> Appearance:
     return Appearance((1 - 2 * granite).astype(np.float32))
 
 
+def any_grey_stone_of(granite: Colour) -> Guess:
+    """As `any_grey_stone`, where the granite is known: caps lighter or darker than that."""
+
+    def guess(white: int, black: int) -> Appearance:
+        away = np.abs(_lab_of_table()[..., 0] - granite.mean[0])
+        stone = np.clip((ALIKE_GRANITE - away) / 8 + 0.5, 0, 1)
+        return Appearance((1 - 2 * stone).astype(np.float32))
+
+    return guess
+
+
 def convincing(sightings: Iterable[Sighting]) -> list[Sighting]:
     """Those from which may be learned what stones look like."""
     return [sighting for sighting in sightings if sighting.score > CONVINCING]
@@ -221,9 +238,14 @@ def colour_difference(first: Array, second: Array) -> float:
 
 
 def colour_differences(first: Array, second: Array) -> Array:
-    """Differences of cap colours, shapes (m, 3) and (n, 3): shape (m, n)."""
-    away = np.asarray(first, float)[:, None] - np.asarray(second, float)
-    return np.asarray(np.sqrt(away**2 @ [0.1, 1.0, 1.0]))
+    """Differences of cap colours, shapes (m, 3) and (n, 3): shape (m, n).
+
+    Caps without hue are told apart by their lightness alone, which counts for more there.
+    """
+    first, second = np.asarray(first, float)[:, None], np.asarray(second, float)
+    chroma = np.maximum(*(np.hypot(*(c[..., 1:] - 128).T).T for c in (first, second)))
+    light, green, blue = np.moveaxis((first - second) ** 2, -1, 0)
+    return np.asarray(np.sqrt(np.where(chroma < GREY, 0.35, 0.1) * light + green + blue))
 
 
 def _colour(samples: Array, floor: tuple[float, float, float]) -> Colour:

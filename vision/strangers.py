@@ -3,7 +3,8 @@
 By colour a cap is told from almost everything on the ice, so this is looked for first. Two teams
 play: where fewer than two colours convince, the picture may have lost its contrast, or caps may be
 left that are black or white, or whose granite the picture has given a tinge. These differ from
-their granite by their lightness.
+their granite by their lightness. In a recording without colours the caps of one team may differ
+from it by little: they are sought where the granite is known from the other team.
 """
 
 from __future__ import annotations
@@ -14,15 +15,20 @@ import numpy as np
 
 from data.sheet import Stone
 from vision.appearance import (
+    GREY,
     MOST_COLOURS,
+    Appearance,
     Guess,
     any_grey_stone,
+    any_grey_stone_of,
     any_veiled_stone,
     by_colour,
     convincing,
+    learn,
 )
 from vision.patch import is_plain
 from vision.rays import Look
+from vision.sighting import Sighting
 from vision.stones import Findings, Search, search_picture
 
 
@@ -54,12 +60,25 @@ def strangers(looks: Sequence[Look], disc: Stone, search: Search) -> list[Findin
     for guess in (any_veiled_stone, any_grey_stone) if first else (any_grey_stone,):
         if _colours(found) < MOST_COLOURS:
             found = _with_more(found, looks, guess, disc, search)
+    if _colours(found) == 1:
+        seen = learn(_convincing(found))
+        if seen is not None and seen.granite is not None and _is_grey(seen):
+            found = _with_more(found, looks, any_grey_stone_of(seen.granite), disc, search)
     return found
+
+
+def _convincing(found: Sequence[Findings]) -> list[Sighting]:
+    return convincing(stone for one in found for stone in one.stones)
 
 
 def _colours(found: Sequence[Findings]) -> int:
     """Count the colours of caps that convince."""
-    return len(by_colour(convincing(stone for one in found for stone in one.stones)))
+    return len(by_colour(_convincing(found)))
+
+
+def _is_grey(seen: Appearance) -> bool:
+    """Whether the caps have no hue."""
+    return all(np.hypot(*(cap.mean[1:] - 128)) < GREY for cap in seen.caps)
 
 
 def _with_more(

@@ -10,6 +10,7 @@ from vision.appearance import (
     Appearance,
     Colour,
     any_grey_stone,
+    any_grey_stone_of,
     any_stone,
     any_veiled_stone,
     colour_difference,
@@ -129,6 +130,22 @@ def test_colours_differ_by_hue_more_than_by_light() -> None:
     table = colour_differences(np.array([bright, other]), np.array([dim]))
     assert table.shape == (2, 1)
     assert table[0, 0] == pytest.approx(colour_difference(bright, dim))
+
+
+def test_caps_without_hue_differ_by_their_lightness() -> None:
+    light, dull, dim = (np.array([level, 128.0, 128.0]) for level in (190.0, 120.0, 160.0))
+    assert colour_difference(light, dim) < UNLIKE < colour_difference(light, dull)
+    red = np.array([120.0, 190.0, 160.0])  # beside a hue, lightness counts as it does among hues
+    assert colour_difference(dull, red) == pytest.approx(colour_difference(light, red), abs=4)
+
+
+def test_where_granite_is_known_what_is_a_little_darker_is_a_cap() -> None:
+    granite = Colour(lab((118, 118, 118)), np.eye(3))
+    dull, same = (84, 84, 84), (112, 112, 112)
+    assert worth_of([dull, same], any_grey_stone(230))[0] < 0
+    learned = worth_of([dull, same], any_grey_stone_of(granite)(230, 0))
+    assert learned[0] > 0.9
+    assert learned[1] < -0.9
 
 
 def test_the_nearest_cap_and_how_far_it_is() -> None:

@@ -21,7 +21,7 @@ from vision.sighting import Sighting
 from vision.stones import FOLLOWING, plain_disc
 from vision.strangers import strangers
 
-BLACK, WHITE = (32, 30, 30), (232, 234, 234)
+BLACK, WHITE, DULL = (32, 30, 30), (232, 234, 234), (77, 77, 77)
 PLACES = [(0.3, 0.2), (-0.35, 0.3), (1.4, 0.6), (0.1, 2.4)]
 
 
@@ -48,6 +48,13 @@ def test_of_one_coloured_and_one_white_team_both_are_found() -> None:
     scene = painted(BLUE, WHITE, BLUE, WHITE)
     assert misses(seen(scene), scene).max() < 0.010
     assert len(seen(scene, PLACES[1:])) == 1  # nothing twice, and nothing of what is known
+
+
+def test_caps_little_darker_than_granite_are_found_beside_light_ones() -> None:
+    scene = painted(WHITE, DULL, WHITE, DULL)
+    found = seen(scene)
+    assert len(found) == len(scene.stones)
+    assert misses(found, scene).max() < 0.010
 
 
 def test_caps_are_found_where_the_picture_has_lost_half_its_contrast() -> None:
