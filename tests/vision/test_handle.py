@@ -192,6 +192,25 @@ def test_what_goes_over_a_cap_step_by_step_does_not_lead_its_angle_away() -> Non
     assert np.abs(theta[[*range(20), *range(45, 60)]]).max() < 0.03
 
 
+def test_a_faint_handle_alike_at_both_ends_does_not_jump_by_half_a_turn() -> None:
+    rng = np.random.default_rng(10)
+    times = np.arange(100) / 25
+    true = 1.3 * times
+    angle = np.arange(RAYS) * (2 * np.pi / RAYS)
+    faint = cv2.GaussianBlur(rng.normal(0, 1, (RAYS, len(RADII))), (0, 0), 1.5)
+    pictures = []
+    for time, turn in zip(times, true, strict=True):
+        bar = 60 * np.cos(2 * (angle - turn))[:, None] * (RADII < 0.07) + 0 * RADII
+        grain = cv2.GaussianBlur(rng.normal(0, 1, bar.shape), (0, 0), 1.5)
+        value = 120 + bar + 12 * grain / grain.std()
+        value += (50 if 0.8 < time < 2.8 else 0) * faint / faint.std()
+        pictures.append(cap_spectrum(np.repeat(value[..., None], 3, -1).astype(np.uint8), RADII))
+    theta, _ = handle_angles(times, pictures, RADII)
+    told = np.isfinite(theta)
+    assert told.mean() > 0.5
+    assert np.abs(theta - true - np.median((theta - true)[told]))[told].max() < 0.5
+
+
 def test_what_is_unrolled_about_an_unsure_centre_is_less_sure() -> None:
     rng = np.random.default_rng(8)
     times = np.arange(60) / 25

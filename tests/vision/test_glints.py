@@ -1,0 +1,66 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from vision.glints import course, unlit
+from vision.handle import cap_spectrum, handle_angles
+
+RAYS = 64
+RADII = np.linspace(0.012, 0.09, 8)
+TIMES = np.arange(75) / 25
+
+
+def lit(turn: float, lamp: tuple[float, float], bright: float) -> NDArray[np.complex64]:
+    """A dark cap with a slightly paler bar, and a lamp mirrored on it somewhere."""
+    angle = np.arange(RAYS)[:, None] * (2 * np.pi / RAYS)
+    x, y = RADII * np.cos(angle), RADII * np.sin(angle)
+    aside, along = y * np.cos(turn) - x * np.sin(turn), x * np.cos(turn) + y * np.sin(turn)
+    bar = 1 / (1 + np.exp((np.abs(aside) - 0.012) / 0.003)) / (1 + np.exp((-along - 0.05) / 0.003))
+    far = (x - lamp[0]) ** 2 + (y - lamp[1]) ** 2
+    value = 50 + 30 * bar + bright * np.exp(-far / 0.02**2)
+    return cap_spectrum(np.repeat(value[..., None], 3, -1).astype(np.uint8), RADII)
+
+
+def lamp(t: float) -> tuple[float, float]:
+    """Where it is mirrored: it wanders over the cap as the stone goes on, m."""
+    return 0.04, 0.05 - 0.02 * t
+
+
+def pictures(spin: float, bright: float) -> NDArray[np.complex64]:
+    return np.array([lit(spin * t, lamp(t), bright) for t in TIMES])
+
+
+@pytest.mark.parametrize("spin", [-1.6, 0.8])
+def test_a_lamp_mirrored_on_a_cap_does_not_hold_its_angle(spin: float) -> None:
+    seen = pictures(spin, 150.0)
+    theta, sd = handle_angles(TIMES, list(seen), RADII, np.full(len(TIMES), 0.0005))
+    told = np.isfinite(theta)
+    assert told.mean() > 0.8
+    slope = np.polyfit(TIMES[told], theta[told], 1)[0]
+    assert slope == pytest.approx(spin, abs=0.03)
+    off = theta[told] - spin * TIMES[told]
+    assert (np.abs(off - np.median(off)) < 2 * sd[told]).mean() > 0.9
+
+
+def test_spins_are_told_from_stretch_to_stretch_whatever_light_is_on_a_cap() -> None:
+    spins = np.where(TIMES < 1.5, 1.4, -0.9)
+    turns = np.concatenate([[0.0], np.cumsum(spins[1:] * np.diff(TIMES))])
+    seen = [lit(a, lamp(t), 150.0) for a, t in zip(turns, TIMES, strict=True)]
+    told = np.gradient(course(TIMES, np.array(seen)), TIMES)
+    assert np.abs(told - spins)[(TIMES < 1.0) | (TIMES > 2.0)].max() < 0.25
+
+
+def test_pictures_too_few_for_a_spin_have_no_course() -> None:
+    assert not course(TIMES[:5], pictures(1.6, 150.0)[:5]).any()
+
+
+def test_light_is_taken_from_pictures_and_what_turns_is_left() -> None:
+    seen, dark = pictures(1.6, 150.0), pictures(1.6, 0.0)
+    parted = unlit(TIMES, seen, 1.6 * TIMES)
+    inner = np.s_[:, 3:-1]  # the light has most of what turns slowly
+    before = np.sum(np.abs(seen - dark)[inner] ** 2)
+    assert np.sum(np.abs(parted.pictures - dark)[inner] ** 2) < 0.1 * before
+    assert parted.share > 0.5 > 0.1 > unlit(TIMES, seen, 0.0 * TIMES).share
+    assert parted.told.min() > 0.1 and unlit(TIMES, seen, 0.0 * TIMES).told.max() < 0.1

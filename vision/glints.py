@@ -1,0 +1,176 @@
+"""Turning caps under lamps: what of their pictures turns, where the light on them changes.
+
+A lamp mirrored on a domed cap stays on the side of the lamp while the cap turns, and wanders
+over it as the stone goes on. Where that is brighter than the handle, pictures brought onto their
+mean are brought onto the light, and the angle stands still. So a cap's picture is taken for a
+sum of two: one that turns, R exp(−i k θ(t)) in its harmonic k, and one that changes slowly, along
+straight lines between knots of time. For given angles both are told by least squares; and over
+a second or so, in which a spin is constant, the spin is that which leaves least.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from vision.align import HARMONICS, ORDERS, Array, Complex, rings_seen
+
+KNOT = 0.4
+"""Time between the knots of the light, s."""
+
+FAINT = 0.05
+"""How little of a harmonic may be left beside the light for its turning part to be told by half."""
+
+SPANS, STEP, FEWEST = (0.9, 1.4), 0.25, 8
+"""Lengths of the stretches over which a spin is told and how far apart they are, s; pictures."""
+
+SPINS = np.linspace(-5.0, 5.0, 101)
+"""Spins that are tried, rad/s."""
+
+CHANGE, SUDDEN = 0.15, 2.0
+"""What a change of the spin from a stretch to the next costs, in shares of what is explained per
+rad/s, and from which on a larger one costs no more: hits change spins."""
+
+NOTHING = 0.2
+"""Share from which on a turning cap is seen in a stretch."""
+
+OFTEN = 0.9
+"""Share of the pictures that must show a ring for it to be used."""
+
+
+@dataclass(frozen=True)
+class Unlit:
+    """Pictures without the light on them.
+
+    Attributes
+    ----------
+    cap : ndarray, shape (orders, rings, channels)
+        What turns.
+    pictures : ndarray, shape (n, orders, rings, channels)
+        As they would be without the light.
+    share : float
+        How much of what no light explains turns, 0 to 1.
+    told : ndarray, shape (n,)
+        How much of what turns is unlike any light, by picture, 0 to 1.
+    """
+
+    cap: Complex
+    pictures: Complex
+    share: float
+    told: Array
+
+
+def unlit(times: Array, pictures: Complex, angles: Array) -> Unlit:
+    """Tell what turns in pictures of a cap from the light on it, if its angles are known.
+
+    Parameters
+    ----------
+    times : ndarray, shape (n,)
+        s, increasing.
+    pictures : ndarray, shape (n, orders, rings, channels)
+        Of the orders `vision.align.ORDERS`.
+    angles : ndarray, shape (n,)
+        rad.
+    """
+    flat = pictures.reshape(len(times), len(ORDERS), -1)
+    knots = _between_knots(times)
+    held = knots.T @ knots + 1e-6 * np.eye(knots.shape[1])
+    light = np.asarray(np.linalg.solve(held, knots.T), np.float64)
+    phase = np.exp(-1j * ORDERS * angles[:, None])
+    own = phase - knots @ (light @ phase)
+    slow = _times(knots, _times(light, flat))
+    left = np.sum(np.abs(own) ** 2, axis=0) + FAINT * len(times)
+    pull = np.einsum("nk,nkx->kx", own.conj(), flat - slow)
+    cap = pull / left[:, None]
+    size = np.sum(np.abs(cap[1:-1]) ** 2, axis=1)
+    explained = np.sum(np.abs(pull[1:-1]) ** 2, axis=1) / left[1:-1]
+    most = np.sum(np.abs((flat - slow)[:, 1:-1]) ** 2)
+    return Unlit(
+        np.asarray(cap.reshape(pictures.shape[1:]), np.complex64),
+        np.asarray((flat - slow + (phase - own)[:, :, None] * cap).reshape(pictures.shape)),
+        float(explained.sum() / max(most, 1e-12)),
+        np.abs(own[:, 1:-1]) ** 2 @ size / max(float(size.sum()), 1e-12),
+    )
+
+
+def _between_knots(times: Array) -> Array:
+    """Weights of the values at knots in the values at times, (n, knots), along straight lines."""
+    count = max(round(float(times[-1] - times[0]) / KNOT), 1) + 1
+    knots = np.linspace(times[0], times[-1], count)
+    return np.stack([np.interp(times, knots, row) for row in np.eye(count)], axis=1)
+
+
+def _times(matrix: Array, flat: Complex) -> Complex:
+    """Product of a matrix (m, n) and arrays (n, orders, …) along their first axis."""
+    product = matrix.astype(np.float32) @ flat.reshape(len(flat), -1)
+    return np.asarray(product.reshape(-1, *flat.shape[1:]))
+
+
+def course(times: Array, pictures: Complex) -> Array:
+    """Angles of a cap by its spins from stretch to stretch, whatever light is on it.
+
+    Parameters
+    ----------
+    times : ndarray, shape (n,)
+        s, increasing.
+    pictures : ndarray, shape (n, orders, rings, channels)
+        Of the orders `vision.align.ORDERS`.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        rad, 0 at first. A stretch in which nothing is seen to turn has no spin.
+    """
+    often = rings_seen(pictures).mean(0) > OFTEN
+    seen = pictures[:, 1:-1, often].reshape(len(times), len(HARMONICS), -1)
+    best, most = np.zeros(len(times)), 0.0
+    for span in SPANS:
+        each = list(_stretches(times, seen, span))
+        if not each:
+            continue
+        middles, shares = (np.array(column) for column in zip(*each, strict=True))
+        spin = np.interp(times, middles, _likely(shares))
+        steps = 0.5 * (spin[1:] + spin[:-1]) * np.diff(times)
+        angles = np.concatenate([[0.0], np.cumsum(steps)])
+        share = unlit(times, pictures, angles).share
+        if share > most:
+            best, most = angles, share
+    return best
+
+
+def _stretches(times: Array, seen: Complex, span: float) -> Iterator[tuple[float, Array]]:
+    """Middles of stretches, and what share of what changes in them each spin explains."""
+    for middle in np.arange(times[0] + span / 2, times[-1] - span / 2 + 1e-6, STEP):
+        inside = np.abs(times - middle) <= span / 2 + 1e-6
+        if inside.sum() < FEWEST:
+            yield float(middle), np.zeros(len(SPINS))
+            continue
+        tau = times[inside] - middle
+        line = np.linalg.qr(np.stack([np.ones_like(tau), tau], axis=1))[0]
+        turns = np.exp(-1j * np.outer(tau, SPINS))
+        phase = np.stack([turns**k for k in HARMONICS]).astype(np.complex64)
+        line32 = line.astype(np.float32)
+        phase -= line32 @ (line32.T @ phase)
+        part = np.moveaxis(seen[inside], 1, 0)
+        part = part - line32 @ (line32.T @ part)
+        left = np.sum(np.abs(phase) ** 2, axis=1) + FAINT * len(tau)
+        pull = np.sum(np.abs(phase.conj().transpose(0, 2, 1) @ part) ** 2, axis=2)
+        yield float(middle), np.sum(pull / left, axis=0) / max(np.sum(np.abs(part) ** 2), 1e-12)
+
+
+def _likely(shares: Array) -> Array:
+    """Spins from stretch to stretch, (n,), that explain most and change little."""
+    apart = np.minimum(np.abs(SPINS[:, None] - SPINS), SUDDEN)
+    best, links = shares[0], []
+    for share in shares[1:]:
+        ways = best[:, None] - CHANGE * apart
+        links.append(ways.argmax(0))
+        best = ways.max(0) + share
+    at = [int(best.argmax())]
+    for link in reversed(links):
+        at.append(int(link[at[-1]]))
+    chosen = np.array(at[::-1])
+    told = shares[np.arange(len(shares)), chosen]
+    return np.where(told > NOTHING, SPINS[chosen], 0.0)
