@@ -23,10 +23,12 @@ lamps shine on the ice."""
 MIN_CONTRAST = 10.0
 """Least difference of the two sides of an edge, grey levels."""
 
-_TO_CHROMA = np.array([[0.114, 0.587, 0.299], [0.5, -0.331, -0.169], [-0.081, -0.419, 0.5]])
+TO_CHROMA = np.array([[0.114, 0.587, 0.299], [0.5, -0.331, -0.169], [-0.081, -0.419, 0.5]])
+"""Luma and the two chromas of blue, green and red (ITU-R BT.601)."""
+
 _WORTH = np.array([1.0, 0.25, 0.25])
 
-SHARPNESS = np.asarray(_TO_CHROMA.T * _WORTH @ _TO_CHROMA, np.float32)
+SHARPNESS = np.asarray(TO_CHROMA.T * _WORTH @ TO_CHROMA, np.float32)
 """How much colours (blue, green, red) tell of where an edge is: most cameras and films keep what
 is not brightness (ITU-R BT.601) at half the resolution."""
 

@@ -16,6 +16,7 @@ from vision.adjust import solve
 from vision.camera import Camera
 from vision.lines import sides, upright
 from vision.marks import Evidence, measure_marks
+from vision.mixing import lit
 from vision.outline import HALF_WAY, PaintEdge, find_edge
 from vision.picture import Image
 from vision.pose import DOWN, View, aim, camera, rescaled, rotation_vector
@@ -172,6 +173,11 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
         fit = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
         view, rig = fit.views[0], fit.rig
         edge = find_edge(evidence.profile, evidence.step)
+    edge = lit(edge, image, view, rig, evidence)
+    if any(edge.light):
+        evidence = measure_marks(image, view.vector, rig, reach=6.0, edge=edge)
+        fit = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
+        view, rig = fit.views[0], fit.rig
     rms = float(fit.rms[0])
     found = camera(view, rig, size, frame=frame, t=t, rms_px=rms)
     if worth(evidence) == 0:

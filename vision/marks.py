@@ -79,6 +79,12 @@ class Evidence:
         return _mean_profile(self.rim.T[seen], self.crossing[seen])
 
     @property
+    def steepness(self) -> float:
+        """Usual slope of the profiles across the 12-ft edge, per px; 0 where none is seen."""
+        seen = self.slope[np.isfinite(self.slope)]
+        return float(np.median(seen)) if len(seen) else 0.0
+
+    @property
     def support(self) -> Array:
         """Covered part of what is visible, per circle; 0 where nothing is."""
         return np.divide(
@@ -152,6 +158,8 @@ def measure_along(
     value, good, found = steps(colours[..., :wide], normals, palette)
     rim = places.kinds.get(TWELVE, slice(0))
     value[..., rim] -= np.float32(edge.level)
+    for kind in range(CIRCLES):
+        value[..., places.kinds.get(kind, slice(0))] -= np.float32(edge.light[kind])
     sample, rise, crossed = crossings(value)
     step = 2 * normals.wanted / (SAMPLES - 1)
     slope = rise[..., rim] / step
@@ -182,7 +190,7 @@ def measure_along(
     place, normal = np.moveaxis(np.append(standing[..., :wide], middles, axis=3), 1, 0)
     pixel = place + places.normal * offset[:, None]
     crossing, slope = (np.where(good[:, rim], v, np.nan) for v in (sample[:, rim], slope))
-    profile = value[..., rim] + np.float32(edge.level)
+    profile = value[..., rim] + np.float32(edge.level + edge.light[TWELVE])
     return [
         Evidence(
             Marks(places.line, places.along, pixel[k].T, normal[k].T, sd[k]).pick(good[k]),

@@ -55,11 +55,15 @@ class PaintEdge:
     line : float
         How far the line moves the place half way between ice and paint off the edge, px, if the
         edge is blurred by much more than the line is wide: its depth times its width.
+    light : tuple of float
+        Levels at which the circles (12, 8 and 4 ft) are crossed beside that, as light was blurred
+        before it was coded (see `vision.mixing`).
     """
 
     level: float = 0.0
     sd: float = UNSEEN
     line: float = 0.0
+    light: tuple[float, ...] = (0.0, 0.0, 0.0)
 
     def beyond(self, slope: Array) -> Array:
         """How far beyond the edge profiles cross the level, px, by their slopes there, per px.

@@ -1,0 +1,80 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+
+from tests.synthetic import PAINTS, CameraPath, Light, Scene, render_still, still_camera
+from vision.house import find_house
+from vision.house_fit import HouseFit
+from vision.mixing import half_light
+from vision.paint import EIGHT, FOUR, TWELVE
+
+TIMES = 3
+SIZE = (640, 360)
+AROUND = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+RIM = 1.829 * np.stack([np.cos(AROUND), np.sin(AROUND)], axis=-1)
+SHARP = Light(softness=0.3, noise=0.0, glare=0.0, texture=0.0)
+
+
+def camera(size: tuple[int, int]) -> CameraPath:
+    px_per_m = 84 * size[0] / SIZE[0]
+    return still_camera(size=size, position=(0.1, -0.1, 9.0), target=(0.1, 0.2), px_per_m=px_per_m)
+
+
+def picture(paint: str, gamma: float, outline: bool = False) -> np.ndarray:
+    """A house drawn large and sharp, then blurred and reduced: codes, or light if gamma is 2.2."""
+    dark = (25.0, 22.0, 20.0) if outline else None
+    scene = replace(Scene(paint=replace(PAINTS[paint], outline=dark)), light=SHARP)
+    large = render_still(scene, camera((TIMES * SIZE[0], TIMES * SIZE[1]))) / 255.0
+    light = cv2.GaussianBlur(large**gamma, (0, 0), TIMES * 0.6)
+    small = 255 * cv2.resize(light, SIZE, interpolation=cv2.INTER_AREA) ** (1 / gamma)
+    noise = np.random.default_rng(5).normal(0, 1.0, small.shape)
+    luma = cv2.cvtColor(np.clip(small + noise, 0, 255).round().astype(np.uint8), cv2.COLOR_BGR2YUV)
+    chroma = cv2.resize(luma[..., 1:], None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
+    luma[..., 1:] = cv2.resize(chroma, SIZE, interpolation=cv2.INTER_LINEAR)
+    return cv2.cvtColor(luma, cv2.COLOR_YUV2BGR)
+
+
+def larger(found: HouseFit) -> float:
+    """How much larger the 12-ft circle is seen than it is, mm."""
+    true = camera(SIZE).at(0.0).project(np.c_[RIM, np.zeros(len(RIM))])
+    seen = found.camera.ice(true)
+    return 1e3 * float(((seen - RIM) * RIM).sum(1).mean() / 1.829)
+
+
+@pytest.mark.parametrize("paint", ["navy-orange", "teal-red", "purple-gold"])
+def test_the_edge_is_where_half_of_the_light_is(paint: str) -> None:
+    """Half way between the codes it would be 2.5 to 3.4 mm too large."""
+    mixed = find_house(picture(paint, 2.2))
+    assert mixed is not None
+    assert mixed.edge.light[TWELVE] < -0.08 and mixed.edge.light[EIGHT] > 0.08
+    assert abs(larger(mixed)) < 1.2
+
+
+@pytest.mark.parametrize("paint", ["navy-orange", "teal-red", "purple-gold"])
+def test_or_half_way_between_codes_that_were_blurred(paint: str) -> None:
+    coded = find_house(picture(paint, 1.0))
+    assert coded is not None
+    assert abs(coded.edge.light[TWELVE]) < 0.03
+    assert abs(larger(coded)) < 0.6
+
+
+@pytest.mark.parametrize("paint", ["navy-orange", "teal-red", "green-lime", "red-blue"])
+def test_an_outline_is_not_taken_for_light(paint: str) -> None:
+    found = find_house(picture(paint, 1.0, outline=True))
+    assert found is not None
+    assert not any(found.edge.light)
+
+
+def test_half_of_the_light_lies_beside_the_brighter_side() -> None:
+    palette = np.full((9, 2, 3), np.nan)
+    palette[TWELVE] = [[230.0] * 3, [40.0] * 3]
+    palette[EIGHT] = palette[TWELVE][::-1]
+    level = half_light(palette)
+    # Half of 230 ** 2.2 + 40 ** 2.2 is the light of code 169.5.
+    assert level[TWELVE] == pytest.approx((135 - 169.46) / 190, abs=2e-4)
+    assert level[EIGHT] == pytest.approx(-level[TWELVE])
+    assert level[FOUR] == 0.0
