@@ -22,8 +22,8 @@ Array = NDArray[np.float64]
 UNCOVERED = 0.75
 """Share of a cap that must be seen for its angle to be measured."""
 
-ASLANT = 0.25
-"""Standard error along a slanting view, px per slant: the far edge of a cap hides what is behind
+ASLANT = 0.0018
+"""Standard error along a slanting view, m per slant: the far edge of a cap hides what is behind
 it, on the near side a wall or a rounded rim is seen. Across the view there is none."""
 
 ASTRAY = 0.5
@@ -93,6 +93,6 @@ def _shared_errors(camera: Camera, places: Array, pixel: Array, disc: Stone) -> 
     rms = camera.rms_px if np.isfinite(camera.rms_px) else USUAL_RMS_PX
     aslant = ASLANT * slants(camera, places) if disc.cap_height else 0 * places
     astray = GIVEN_ASTRAY if camera.error is None else ASTRAY * np.hypot(*places.T)[:, None]
-    off = pixel[:, None] * np.hypot(aslant, astray * rms)
+    off = np.hypot(aslant, pixel[:, None] * astray * rms)
     stated = np.diagonal(camera.shared_place_cov(places, disc.cap_height), axis1=1, axis2=2)
     return np.asarray(np.sqrt(off**2 + stated))

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from data.progress import Progress, no_progress
 from data.sheet import STONE, Stone
@@ -21,7 +22,7 @@ from vision.late import seen_late
 from vision.naming import names_by_motion
 from vision.patch import handle_radii, is_plain
 from vision.rejoin import rejoined
-from vision.roundness import edge_error
+from vision.roundness import edge_errors
 from vision.steady import steadied
 from vision.stones import FOLLOWING, Search
 from vision.watch import Watch
@@ -118,9 +119,12 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
     named = {names[str(number)]: track for number, track in enumerate(tracks)}
     if not named:
         return StoneTracks(no_rows(SIGHTING_COLUMNS), ("no stones were found on the ice",))
-    edge = edge_error([track.sightings for track in tracks])
+    errors = edge_errors(
+        [track.sightings for track in named.values()], disc.cap_radius or disc.radius
+    )
+    edge = dict(zip(named, errors, strict=True))
     team = _teams(named, watch.appearance)
-    rows = [_rows(name, named[name], team[name], disc, edge) for name in sorted(named)]
+    rows = [_rows(name, named[name], team[name], disc, edge[name]) for name in sorted(named)]
     late = seen_late({names[number]: tracks[int(number)] for number in rest}, cameras, disc)
     return StoneTracks(
         {name: np.concatenate([part[name] for part in rows]) for name in SIGHTING_COLUMNS},
@@ -128,7 +132,7 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
     )
 
 
-def _rows(name: str, track: Track, team: str, disc: Stone, edge: float) -> Columns:
+def _rows(name: str, track: Track, team: str, disc: Stone, edge: NDArray[np.float64]) -> Columns:
     kept = [sighting.spectrum for sighting in track.sightings]
     spectra = [None if spectrum is None else spectrum.get() for spectrum in kept]
     # Caps were unrolled about their centres as these were measured.
@@ -148,8 +152,8 @@ def _rows(name: str, track: Track, team: str, disc: Stone, edge: float) -> Colum
         "sd_x": sd_x,
         "sd_y": sd_y,
         "sd_theta": sd_theta,
-        "sd_place_x": np.hypot(sd_place_x, edge),
-        "sd_place_y": np.hypot(sd_place_y, edge),
+        "sd_place_x": np.hypot(sd_place_x, edge[0]),
+        "sd_place_y": np.hypot(sd_place_y, edge[1]),
         "team": np.full(len(seen), team),
     }
 

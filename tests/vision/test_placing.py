@@ -37,7 +37,7 @@ def test_what_sightings_share_is_the_camera_s_and_what_a_slant_hides() -> None:
     pixel = HEIGHT / FOCAL
     flat = stated(DOWN, replace(STONE, cap_height=0.0))
     np.testing.assert_allclose(flat, GIVEN_ASTRAY * 0.2 * pixel, rtol=0.01)
-    aslant = ASLANT * np.abs(PLACES) / HEIGHT * pixel
+    aslant = ASLANT * np.abs(PLACES) / HEIGHT
     np.testing.assert_allclose(stated(DOWN), np.hypot(flat, aslant), rtol=0.01)
     assert (stated(replace(DOWN, rms_px=2.0)) > stated(DOWN)).all()
 

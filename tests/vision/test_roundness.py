@@ -1,17 +1,33 @@
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 
 from tests.vision.test_follow import sighting
-from vision.roundness import PIXELS, SHARE, USUAL, edge_error
+from vision.roundness import APART, MOST_APART, PIXELS, SHARE, SMALL, USUAL, edge_errors
 from vision.sighting import Sighting
 
 WAVES = np.array([1.0, -1.0, 1.0, 1.0, -1.0, 1.0])
+CAP, LARGE = 0.1, 1e6
 
 
-def bent(bend: float, visible: float = 1.0, pixel: float = 0.0) -> Sighting:
+def bent(
+    bend: float,
+    visible: float = 1.0,
+    pixel: float = 0.0,
+    light: tuple[float, float] = (np.nan, np.nan),
+) -> Sighting:
     return sighting((0.0, 1.0))._replace(
-        bends=tuple(bend * WAVES), visible=visible, pixel_size=pixel
+        bends=tuple(bend * WAVES), visible=visible, pixel_size=pixel, light=light
     )
+
+
+def edge_error(stones: Sequence[Sequence[Sighting]], radius: float = CAP) -> float:
+    """Give the one error of stones that differ in nothing."""
+    errors = edge_errors(stones, radius)
+    assert errors.shape == (len(stones), 2)
+    np.testing.assert_array_equal(errors, errors[0, 0])
+    return float(errors[0, 0])
 
 
 def test_the_more_the_edges_are_bent_the_larger_the_error() -> None:
@@ -25,9 +41,33 @@ def test_what_pixels_bend_moves_the_middle_no_further() -> None:
     waves = rng.normal(0, PIXELS * pixel, (200, 6))
     for share in (0.3, 0.6, 0.9):
         seen = [[bent(0, pixel=pixel)._replace(bends=tuple(w))] for w in (share * waves).tolist()]
-        assert edge_error(seen) == pytest.approx(share * PIXELS * pixel, rel=0.05)
-    shaped = edge_error([[bent(0.004, pixel=pixel)] * 9] * 20)
-    assert shaped == pytest.approx(SHARE * 0.004, rel=0.03)
+        assert edge_error(seen, LARGE) == pytest.approx(share * PIXELS * pixel, rel=0.05)
+    shaped = edge_error([[bent(0.006, pixel=pixel)] * 9] * 20, LARGE)
+    assert shaped == pytest.approx(SHARE * 0.006, rel=0.03)
+
+
+def test_of_a_few_pixels_the_middle_is_off_by_more_than_their_waves_say() -> None:
+    round_ones = [[bent(0.0, pixel=pixel)] * 9 for pixel in (0.0, 0.004, 0.016)]
+    by_waves, fine, coarse = edge_errors(round_ones, CAP) ** 2
+    fine, coarse = fine - by_waves, coarse - by_waves
+    np.testing.assert_allclose(np.sqrt(coarse), SMALL * 0.016**2 / CAP, rtol=1e-6)
+    np.testing.assert_allclose(coarse / fine, 4.0**4, rtol=1e-6)
+
+
+def test_edges_by_hue_and_by_lightness_that_differ_say_so_on_their_axis() -> None:
+    apart = bent(0.001, light=(-0.002, 0.0))
+    alike, differs, beyond, unseen = edge_errors(
+        [
+            [bent(0.001, light=(0.0, 0.0))] * 9,
+            [*[apart] * 8, bent(0.001, light=(0.02, 0.02)), bent(0.001)],
+            [bent(0.001, light=(0.0, 0.02))] * 9,
+            [bent(0.001)] * 9,
+        ],
+        CAP,
+    )
+    np.testing.assert_array_equal(alike, unseen)
+    added = np.sqrt(np.array([differs, beyond]) ** 2 - alike**2)
+    np.testing.assert_allclose(added, APART * np.array([[0.002, 0], [0, MOST_APART]]), atol=1e-9)
 
 
 def test_stones_count_alike_and_a_bad_moment_does_not() -> None:
@@ -42,5 +82,7 @@ def test_what_changes_from_picture_to_picture_is_no_bend() -> None:
 
 
 def test_stones_half_hidden_say_nothing() -> None:
-    assert edge_error([]) == edge_error([[bent(0.02, visible=0.5)]])
-    assert edge_error([]) == pytest.approx(SHARE * USUAL)
+    assert edge_error([[bent(0.02, visible=0.5)]]) == pytest.approx(SHARE * USUAL)
+    hidden, shown = edge_errors([[bent(0.02, visible=0.5)], [bent(0.0)]], CAP)
+    np.testing.assert_array_equal(hidden, shown)
+    assert edge_errors([], CAP).shape == (0, 2)
