@@ -56,6 +56,10 @@ far it counts more. On clothes edges like a stone's lie here and there, on 0.1 t
 around at one side; of a stone that somebody covers by half 0.35 to 0.5 shows them. Before colours
 are learned, paint would profit as well."""
 
+ENOUGH = 1.6
+"""Evidence that such an arc adds nothing to: what changes with it would look like a stone that has
+been pushed aside."""
+
 
 @dataclass(frozen=True)
 class Measures:
@@ -218,13 +222,13 @@ def _stones(
     odd = np.where(behind > effort.most_tilt, np.minimum(odd, 0), odd)
     uneven = np.sqrt((odd**2 * stony).sum(1) / np.maximum(stony.sum(1), 1)) / 40
     misfit = ((fit.radii[:, 0] / cap_radius - 1) / (0.06 + appearance.slack)) ** 2
-    evidence = fit.shares.sum(1) - uneven - 0.5 * misfit
-    if appearance.caps:
-        one_side = np.clip(fit.unbroken, *ON_ONE_SIDE) - ON_ONE_SIDE[0]
-        evidence += 2 * one_side - 0.25 * misfit
     visible = (stony & at_cap).mean(1)
     enough = (of_cap.mean((1, 2)) > 0.03) & (of_ring.mean((1, 2)) > 0.03)
     response = worth.mean(1) @ _template(disc, effort)
+    evidence = fit.shares.sum(1) - uneven - 0.5 * misfit + 0.5 * response
+    if appearance.caps:
+        more = 2 * (np.clip(fit.unbroken, *ON_ONE_SIDE) - ON_ONE_SIDE[0]) - 0.25 * misfit
+        evidence = np.where(evidence < ENOUGH, np.minimum(evidence + more, ENOUGH), evidence)
     # What displaces the edges of one side is made good by the other side, if that is seen.
     hidden = 0.04 * disc.radius * (1 - visible)
     return Measures(
@@ -235,7 +239,7 @@ def _stones(
         colour=cap,
         visible=visible,
         uncovered=(capped & at_cap).mean(1),
-        evidence=evidence + 0.5 * response,
+        evidence=evidence,
         light=np.where(lit.ok[:, None], lit.shift - fit.shift, np.nan),
         bends=fit.bends,
         outline=fit.radii / np.array([disc.cap_radius, disc.radius]),
