@@ -10,7 +10,7 @@ would meet, a hit is expected.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import hypot, inf, sqrt
 
 import numpy as np
@@ -24,6 +24,9 @@ from vision.sighting import Sighting
 Array = NDArray[np.float64]
 
 Pair = tuple[float, float]
+
+OPEN = 0.7
+"""Share of a stone that must be seen for nothing to cover it: what bends over it covers more."""
 
 _FORBIDDEN = 1e6
 """Cost of a pair that may not be: more than all others together."""
@@ -51,6 +54,9 @@ class Gate:
         Sightings that tell how a stone moves, so that a hit nobody sees is expected.
     least_score : float
         Evidence that the better part of a track's sightings must show.
+    least_open, brief : float
+        The same for a track no longer than `brief`, s, of what nothing covers: shoulders look like
+        a stone for a few frames where a person turns.
     deceleration : float
         Of a stone that glides unseen, m/s².
     restitution : float
@@ -65,6 +71,8 @@ class Gate:
     births: int = 5
     told: int = 3
     least_score: float = 0.0
+    least_open: float = 0.0
+    brief: float = 0.5
     deceleration: float = DECELERATION
     restitution: float = 0.85
 
@@ -172,9 +180,9 @@ def follow(
     """
     tracks: list[Track] = []
     closed: list[Track] = []
-    count = 0
+    count, begin, t = 0, inf, -inf
     for frame, t, sightings in frames:
-        count += 1
+        count, begin = count + 1, min(begin, t)
         for index in [i for i, track in enumerate(tracks) if _given_up(track, t, gate)][::-1]:
             closed.append(tracks.pop(index))
         taken = _assign(tracks, t, sightings, radius, gate)
@@ -186,6 +194,8 @@ def follow(
                 track.add(frame, t, sighting, radius)
                 tracks.append(track)
     births = min(gate.births, (count + 1) // 2)
+    if t - begin < 2 * gate.brief:  # all tracks are brief
+        gate = replace(gate, least_open=gate.least_score)
     return sorted(
         (
             track
@@ -198,8 +208,10 @@ def follow(
 
 def _convincing(track: Track, gate: Gate) -> bool:
     """Say whether the better quarter of the sightings shows enough."""
-    scores = [sighting.score for sighting in track.sightings]
-    return float(np.percentile(scores, 75)) >= gate.least_score
+    shown = float(np.percentile([sighting.score for sighting in track.sightings], 75))
+    visible = float(np.median([sighting.visible for sighting in track.sightings]))
+    brief = track.times[-1] - track.times[0] < gate.brief
+    return shown >= (gate.least_open if brief and visible > OPEN else gate.least_score)
 
 
 def _given_up(track: Track, t: float, gate: Gate) -> bool:

@@ -35,6 +35,10 @@ GREY = 10.0
 """Distance from grey within which a cap has no colour, L*a*b* units."""
 
 
+TOLD = Gate(least_score=1.1, least_open=1.5)
+"""Evidence in tracks of stones: in the open they show 2 to 3, half covered 1.2, shoulders 1.2."""
+
+
 @dataclass(frozen=True)
 class StoneTracks:
     """The stones of a clip.
@@ -112,7 +116,7 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
         As `track_stones`.
     """
     disc = watch.disc
-    gate = Gate(least_score=0.85 if is_plain(disc) else 1.1)
+    gate = Gate(least_score=0.85, least_open=0.85) if is_plain(disc) else TOLD
     tracks = rejoined(follow(watch.finish(cameras), disc.radius, gate), disc.radius, gate)
     moved, rest = names_by_motion(tracks, disc.radius)
     names = order_of_motion(dict(moved), rest)

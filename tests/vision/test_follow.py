@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from data.tracks import order_of_motion
-from vision.follow import Track, follow
+from vision.follow import Gate, Track, follow
 from vision.naming import names_by_motion
 from vision.sighting import Sighting
 
@@ -120,3 +120,18 @@ def test_colours_part_stones_that_swap_places_unseen() -> None:
     tracks = follow(clip([first, second], 3.0, colours=[RED, YELLOW]), R)
     for track in tracks:
         assert np.ptp([s.colour[2] for s in track.sightings]) < 1
+
+
+def test_what_looks_a_little_like_a_stone_for_a_moment_is_none() -> None:
+    gate = Gate(least_score=1.1, least_open=1.5)
+
+    def seen(score: float, visible: float, frames: int, of: int = 100) -> int:
+        shoulder = sighting((1.0, 0.0), score=score)._replace(visible=visible)
+        shown = [(i, i / 25, [shoulder] if i >= of - frames else []) for i in range(of)]
+        return len(follow(shown, R, gate))
+
+    assert seen(1.2, 0.9, 10) == 0
+    assert seen(1.2, 0.9, 30) == 1  # in the open for longer: dull, but it stays
+    assert seen(1.2, 0.5, 10) == 1  # half covered it cannot show more
+    assert seen(2.0, 0.9, 10) == 1
+    assert seen(1.2, 0.9, 10, of=12) == 1  # in a clip so short everything is brief
