@@ -27,6 +27,7 @@ from physics.fit import fit_shot
 from physics.glides import free, measure_glides
 from physics.noise import Noise, noises
 from physics.rate_filter import filtered
+from physics.shared_spin import share_spins
 from physics.shot_fit import ShotFit
 from physics.stretch import START_SD, Filter, Model, Stretch
 from physics.traces import Trace, traces
@@ -94,14 +95,15 @@ def smoothed(
     times, first = np.unique(np.asarray(sightings["t"], float), return_index=True)
     frames = np.asarray(sightings["frame"], int)[first]
     fit, model, noise = _survey(known, contacts, radius)
-    tables = []
+    each = {}
     for name, trace in known.items():
         inside = (times >= trace.t[0]) & (times <= trace.t[-1])
         hits = sorted((c for c in contacts if name in c.stones), key=lambda c: c.t)
-        tables.append(
-            _track(trace, times[inside], frames[inside], hits, fit, model, noise[name], run)
+        each[name] = _track(
+            trace, times[inside], frames[inside], hits, fit, model, noise[name], run
         )
-    team = teams(sightings)
+    share_spins(each, contacts)
+    team, tables = teams(sightings), list(each.values())
     tracks = {name: np.concatenate([table[name] for table in tables]) for name in tables[0]}
     tracks["team"] = np.array([team[stone] for stone in tracks["stone"].tolist()])
     return {name: tracks[name] for name in TRACK_COLUMNS}
