@@ -18,6 +18,9 @@ Floats = NDArray[np.float64]
 REACH = 1.15
 """Distance in units of 2R up to which two discs may touch (scale errors, covers, shape)."""
 
+TOUCHING = 1.02
+"""Distance in units of 2R up to which two discs touch, but for noise."""
+
 LITTLE = 0.25
 """Time within which a hit shows in where a stone is, s, unless six sightings take longer."""
 
@@ -31,11 +34,40 @@ def candidates(known: Mapping[str, Trace], radius: float) -> list[Meeting]:
     for first, second in combinations(sorted(known), 2):
         if first in moving or second in moving:
             found += _approaches(known[first], known[second], turns, radius)
+    found += _passed_on(found, known, radius)
     return causal(sorted(found, key=lambda meeting: meeting.t), known)
 
 
+def _passed_on(
+    meetings: Sequence[Meeting], known: Mapping[str, Trace], radius: float
+) -> list[Meeting]:
+    """Give the meetings of stones that touch one that is hit, where there are none yet.
+
+    A hit goes on through a row of stones that touch, each of which may hardly move.
+    """
+    out: list[Meeting] = []
+    for meeting in (every := list(meetings)):
+        for stone in meeting.stones:
+            for other in sorted({*known} - {*meeting.stones}):
+                first, second = sorted((stone, other))
+                a, b = known[first], known[second]
+                t, gap = meeting.t, max(a.gap(meeting.t), b.gap(meeting.t))
+                told = any(m.stones == (first, second) and abs(m.t - t) < 3 * gap for m in every)
+                if told or not max(a.t[0], b.t[0]) < t < min(a.t[-1], b.t[-1]):
+                    continue
+                before = np.array([t - gap])
+                apart = float(np.hypot(*(_at(b, before) - _at(a, before))[0]))
+                noise = 3 * np.sqrt(np.mean(a.sd**2) + np.mean(b.sd**2))
+                if apart < TOUCHING * 2 * radius + noise and (
+                    _moves(a, t, radius) and _moves(b, t, radius)
+                ):
+                    every.append(Meeting(t + 0.01 * gap, (first, second), gap))
+                    out.append(every[-1])
+    return out
+
+
 def causal(meetings: Sequence[Meeting], known: Mapping[str, Trace]) -> list[Meeting]:
-    """Put a hit that sets a touching pair in motion before the hit of that pair.
+    """Put the hits that set touching stones in motion, one after the other, before theirs.
 
     Parameters
     ----------
@@ -43,15 +75,47 @@ def causal(meetings: Sequence[Meeting], known: Mapping[str, Trace]) -> list[Meet
         In order of time.
     known : mapping of str to Trace
     """
-    out = list(meetings)
-    for i, late in enumerate(meetings):
-        for j, early in enumerate(meetings[:i]):
-            width = max(early.looseness, late.looseness)
-            if late.t - early.t > 2.5 * width or set(early.stones).isdisjoint(late.stones):
-                continue
-            if _closing(late, known, early.t) > 0 >= _closing(early, known, early.t):
-                out[j] = replace(early, t=late.t + 0.01 * width)
-    return sorted(out, key=lambda meeting: meeting.t)
+    times: dict[int, float] = {}
+    for k in range(len(meetings)):
+        if k in times:
+            continue
+        before = -np.inf
+        for j in _chain(meetings, k, known):
+            own = meetings[j]
+            times.setdefault(j, own.t if own.t > before else before + 0.01 * own.looseness)
+            before = times[j]
+    timed = [replace(meeting, t=times[k]) for k, meeting in enumerate(meetings)]
+    return sorted(timed, key=lambda meeting: meeting.t)
+
+
+def _chain(meetings: Sequence[Meeting], k: int, known: Mapping[str, Trace]) -> list[int]:
+    """Ranks of the meetings, of about the time of meeting k, that brought it about, and its own.
+
+    Those of its stones with others that came nearer; else from one whose stones did, hit by hit,
+    each of which sets a stone of the next in motion.
+    """
+    last = meetings[k]
+    if _closing(last, known, last.t) > 0:
+        return [k]
+    near: dict[tuple[str, str], int] = {}
+    for j, other in enumerate(meetings):
+        if abs(other.t - last.t) <= 2.5 * max(other.looseness, last.looseness):
+            near.setdefault(other.stones, j)
+    near.pop(last.stones, None)
+    led = [j for j in near.values() if _closing(meetings[j], known, last.t) > 0]
+    beside = [j for j in led if not {*meetings[j].stones}.isdisjoint(last.stones)]
+    if beside:
+        return [*beside, k]
+    chains = [[j] for j in led]
+    for chain in chains:
+        if not {*meetings[chain[-1]].stones}.isdisjoint(last.stones):
+            return [*chain, k]
+        chains += [
+            [*chain, j]
+            for pair, j in near.items()
+            if j not in chain and not {*pair}.isdisjoint(meetings[chain[-1]].stones)
+        ]
+    return [k]
 
 
 def _closing(meeting: Meeting, known: Mapping[str, Trace], time: float) -> float:
@@ -113,13 +177,17 @@ def _meeting_times(
 
     The closest approach; the first and the last moment that are as close as noise can tell, since
     one may follow the other from there, or have touched it till then; and the times at which the
-    motion of both changed, since two may lie side by side for long.
+    motion of both changed, since two may lie side by side for long. What is closest of a long
+    touch is chance.
     """
     k = int(run[np.argmin(distance[run])])
     close = run[distance[run] < distance[k] + noise]
-    times = [_vertex(t, distance, k)]
     step = float(np.median(np.diff(t)))
+    closest = _vertex(t, distance, k)
     further = [_vertex(t, distance, int(end)) for end in (close[0], close[-1]) if end]
+    times = [closest]
+    if t[close[-1]] - t[close[0]] > 3 * step:
+        times, further = [further[-1]], [*further[:-1], closest]
     one, other = turns
     inside = [turn for turn in one if t[run[0]] <= turn <= t[run[-1]]]
     further += [turn for turn in inside if any(abs(turn - x) < 3 * step for x in other)]

@@ -48,3 +48,27 @@ def test_candidates_of_a_row_come_in_the_order_of_cause() -> None:
     pairs = [meeting.stones for meeting in found]
     assert pairs.index(("A", "B")) < pairs.index(("B", "C"))
     assert all(one.t <= two.t for one, two in pairwise(found))
+
+
+def test_a_hit_is_passed_on_among_stones_that_touch() -> None:
+    """B and C move on together for long after the hit: nearest they are at any time of that."""
+    t = np.arange(0, 2, 0.04)
+    late = np.maximum(t - 1.0, 0.0)
+    up = {
+        "A": np.where(t < 1.0, 1.5 * (t - 1.0), 0.1 * late) - 2 * RADIUS,
+        "B": 0.2 * late,
+        "C": 2 * RADIUS + 0.2 * late,
+        "D": 4 * RADIUS + 1.0 * late,
+    }
+    noise = np.random.default_rng(1)
+    none = np.full(len(t), np.nan)
+    paths = {
+        name: Trace(
+            name, t, np.column_stack([0 * t, y]) + noise.normal(0, 1e-3, (len(t), 2)),
+            np.full((len(t), 2), 1e-3), none, none, np.zeros((len(t), 2)),
+        )
+        for name, y in up.items()
+    }  # fmt: skip
+    found = [m for m in candidates(paths, RADIUS) if abs(m.t - 1.0) < 0.06]
+    first = [m.stones for m in found]
+    assert first.index(("A", "B")) < first.index(("B", "C")) < first.index(("C", "D"))

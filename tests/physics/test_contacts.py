@@ -148,3 +148,19 @@ def test_a_frozen_pair_is_hit_and_hits_on(
     for fps in (25.0, 30.0, 50.0):
         hits = find_contacts(watch(motion, rng, fps=fps, sd=sd), RADIUS)
         assert [hit.stones for hit in hits] == [("A", "B"), ("B", "C"), ("C", "D")]
+
+
+@pytest.mark.parametrize(
+    ("fps", "sd", "seed"), [(25.0, 0.003, 1), (30.0, 0.001, 2), (50.0, 0.003, 3)]
+)
+def test_a_hit_goes_on_through_a_row_of_three(fps: float, sd: float, seed: int) -> None:
+    """All in one frame: which of the hits came first is told by what came nearer alone."""
+    rng = np.random.default_rng(seed)
+    for gap in (1e-5, 1e-3):
+        second = (2 * RADIUS + gap) * np.array([0.25, 0.968])
+        third = second + (2 * RADIUS + gap) * np.array([-0.5, 0.866])
+        motion = hit_motion(1.9, 0.05, after=1.6, others=(Start(*second), Start(*third)))
+        hits = find_contacts(watch(motion, rng, fps=fps, sd=sd), RADIUS)
+        pairs = [hit.stones for hit in hits]
+        assert pairs[:3] == [("A", "B"), ("B", "C"), ("C", "D")]
+        assert hits[2].t - hits[0].t < 0.03
