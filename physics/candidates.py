@@ -106,15 +106,14 @@ def _chain(meetings: Sequence[Meeting], k: int, known: Mapping[str, Trace]) -> l
     beside = [j for j in led if not {*meetings[j].stones}.isdisjoint(last.stones)]
     if beside:
         return [*beside, k]
-    chains = [[j] for j in led]
+    chains, reached = [[j] for j in led], {*led}
     for chain in chains:
-        if not {*meetings[chain[-1]].stones}.isdisjoint(last.stones):
+        stones = {*meetings[chain[-1]].stones}
+        if not stones.isdisjoint(last.stones):
             return [*chain, k]
-        chains += [
-            [*chain, j]
-            for pair, j in near.items()
-            if j not in chain and not {*pair}.isdisjoint(meetings[chain[-1]].stones)
-        ]
+        further = [j for pair, j in near.items() if j not in reached and stones & {*pair}]
+        chains += [[*chain, j] for j in further]
+        reached.update(further)
     return [k]
 
 
