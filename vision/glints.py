@@ -80,16 +80,17 @@ def unlit(times: Array, pictures: Complex, angles: Array) -> Unlit:
     light = np.asarray(np.linalg.solve(held, knots.T), np.float64)
     phase = np.exp(-1j * ORDERS * angles[:, None])
     own = phase - knots @ (light @ phase)
-    slow = _times(knots, _times(light, flat))
+    dark = flat - _times(knots, _times(light, flat))
     left = np.sum(np.abs(own) ** 2, axis=0) + FAINT * len(times)
-    pull = np.einsum("nk,nkx->kx", own.conj(), flat - slow)
-    cap = pull / left[:, None]
+    pull = np.einsum("nk,nkx->kx", own.conj().astype(np.complex64), dark)
+    cap = np.asarray(pull / left[:, None], np.complex64)
     size = np.sum(np.abs(cap[1:-1]) ** 2, axis=1)
     explained = np.sum(np.abs(pull[1:-1]) ** 2, axis=1) / left[1:-1]
-    most = np.sum(np.abs((flat - slow)[:, 1:-1]) ** 2)
+    most = np.sum(np.abs(dark[:, 1:-1]) ** 2)
+    dark += (phase - own).astype(np.complex64)[:, :, None] * cap  # what turns as slowly as light
     return Unlit(
-        np.asarray(cap.reshape(pictures.shape[1:]), np.complex64),
-        np.asarray((flat - slow + (phase - own)[:, :, None] * cap).reshape(pictures.shape)),
+        cap.reshape(pictures.shape[1:]),
+        dark.reshape(pictures.shape),
         float(explained.sum() / max(most, 1e-12)),
         np.abs(own[:, 1:-1]) ** 2 @ size / max(float(size.sum()), 1e-12),
     )

@@ -25,7 +25,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.align import ORDERS, Array, Complex, align, ring_weights, rings_seen, turned
+from vision.align import (
+    ORDERS,
+    TOGETHER,
+    Array,
+    Complex,
+    align,
+    ring_weights,
+    rings_seen,
+    turned,
+)
 from vision.facing import angle_between, angles_between
 from vision.glints import course, unlit
 
@@ -156,8 +165,10 @@ def handle_angles(
     pictures = np.array([spectra[index] for index in seen])
     heights = np.split(pictures, pictures.shape[2] // len(radii), axis=2)
     tried = [_matched(times[seen], part, turning) for part in heights]
-    which = max(range(len(tried)), key=lambda height: _alike(tried[height]))
-    best = _despite_light(times[seen], heights[which], tried[which], turning)
+    which = int(np.argmax([_alike(each) for each in tried]))
+    own, matched = heights[which].copy(), tried[which]
+    del pictures, heights, tried  # they take as much again each
+    best = _despite_light(times[seen], own, matched, turning)
     good = best.likeness > turning.least_likeness
     if good.sum() < max(0.5 * len(seen), 2):
         # Most frames do not look like the mean: there is nothing on the cap to go by.
@@ -237,16 +248,32 @@ def _onto_mean(pictures: Complex, angles: Array, turning: Turning) -> _Matched:
     shown = rings_seen(pictures)[:, None, :, None]
     own = pictures
     for _ in range(turning.rounds):
-        reference = _mean(turned(own[known], -angles[known]), shown[known])
-        angles[known], likeness[known] = angles_between(reference, own[known], angles[known], 0.2)
+        reference = _upright_mean(own, np.where(known, angles, np.nan), shown)
+        for part in _parts(np.flatnonzero(known)):
+            angles[part], likeness[part] = angles_between(reference, own[part], angles[part], 0.2)
         known = np.isfinite(angles)  # some show nothing but light
-        own = (pictures - unturned(pictures[known], angles[known], shown[known])) * shown
+        own = pictures - unturned(pictures[known], angles[known], shown[known])
+        own *= shown
     return _Matched(own, angles, likeness)
 
 
 def _mean(pictures: Complex, shown: NDArray[np.bool_]) -> Complex:
     """Mean of pictures (n, orders, rings, channels), each ring over those that show it."""
     return np.asarray(pictures.sum(0) / np.maximum(shown.sum(0), 1), np.complex64)
+
+
+def _parts(index: NDArray[np.intp]) -> list[NDArray[np.intp]]:
+    """Cut a list of pictures: what is worked out for all of them at once takes memory."""
+    return [index[begin : begin + TOGETHER] for begin in range(0, len(index), TOGETHER)]
+
+
+def _upright_mean(pictures: Complex, angles: Array, shown: NDArray[np.bool_]) -> Complex:
+    """Mean of the pictures whose angles are known, turned back by these: see `_mean`."""
+    known = np.flatnonzero(np.isfinite(angles))
+    total = np.zeros(pictures.shape[1:], np.complex64)
+    for part in _parts(known):
+        total += turned(pictures[part], -angles[part]).sum(0)
+    return np.asarray(total / np.maximum(shown[known].sum(0), 1), np.complex64)
 
 
 def unturned(pictures: Complex, angles: Array, shown: NDArray[np.bool_]) -> Complex:
@@ -267,8 +294,10 @@ def unturned(pictures: Complex, angles: Array, shown: NDArray[np.bool_]) -> Comp
     -------
     ndarray, shape (orders, rings, channels)
     """
-    phase = np.exp(-1j * ORDERS * angles[:, None])[:, :, None, None]
-    along, back = _mean(phase * shown, shown), _mean(turned(pictures, -angles), shown)
+    phase = np.exp(-1j * ORDERS * angles[:, None])
+    often = np.maximum(shown.sum(0), 1)
+    along = np.einsum("nk,nr->kr", phase, shown[:, 0, :, 0])[..., None] / often
+    back = _upright_mean(pictures, angles, shown)
     share = 1 - np.abs(along) ** 2
     light = (_mean(pictures, shown) - along * back) / (share + SPREAD**2)
     return np.asarray(light, np.complex64)
