@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from vision.adjust import Solution, solve
 from vision.camera import Camera
 from vision.clip import Frame
 from vision.edge_tracker import HELD, LONGEST_STRIDE, EdgeTracker
+from vision.egomotion import foretold
 from vision.house_fit import SHARING, HouseFit
 from vision.ice_tracker import IceTracker
 from vision.joint import Seen
@@ -43,6 +45,13 @@ REFINE_FRAMES = 6
 
 MOST_BLUR = 0.004
 """Blur of a picture beyond which it would not look like a sharp one of the same, widths of it."""
+
+SHAKEN = 0.0014
+"""How far a view may be from how the views before went on, widths of the picture: half of what
+spares a second look at the edges."""
+
+LEAPT = 0.03
+"""How far from where it should have gone on a view has leapt, widths of the picture."""
 
 MOST_SMEARED, LEAST_SMEARED = 0.0025, 0.1
 """Blur of a picture beyond which a pan is on its way, widths of it; and the least share of a turn
@@ -76,7 +85,7 @@ class Piece:
     lost : int
         Frames since the last that was followed.
     leapt : bool
-        Whether the camera has turned farther than could be followed, and its pictures are sharp
+        Whether the camera has turned farther than could be expected, and its pictures are sharp
         all the same: it may be a cut as well.
     """
 
@@ -95,6 +104,7 @@ class Piece:
     _picture: Picture | None = None
     _ice: IceTracker = field(default_factory=IceTracker)
     _fresh: list[Picture] = field(default_factory=list)
+    _shaken: bool = False
 
     @property
     def missed(self) -> int:
@@ -110,16 +120,53 @@ class Piece:
             The first of them, as many as went well; none where the first shows neither the
             house nor its ice.
         """
-        views = self._predicted(frames)
-        seen, self.leapt = self._settle(frames, views), False
+        expected = self._predicted(frames)
+        views = self._foretold(frames) or expected
+        last, before = self.seen[-1].view, self.edges.smeared
+        seen = self._settle(frames[: len(views)], views)
+        self._shaken = self._is_shaken(expected, views, seen)
+        far = bool(seen) and _length(seen[0].view.sweep(expected[0])) > LEAPT * self.size[0]
         if not seen and self._picture is not None:
-            last, before = self.seen[-1].view, self.edges.smeared
             view = leapt(self._picture, frames[0].picture, last, self.rig)
             seen = [] if view is None else self._settle(frames[:1], [view])
-            leap = np.linalg.norm(seen[0].view.sweep(last)) if seen else np.inf
-            sharp = before < MOST_SMEARED * self.size[0]
-            self.leapt = bool(sharp and self.edges.smeared < LEAST_SMEARED * leap)
+            far = bool(seen)
+        sharp = before < MOST_SMEARED * self.size[0]
+        self.leapt = (
+            far and sharp and self.edges.smeared < LEAST_SMEARED * _length(seen[0].view.sweep(last))
+        )
         return seen
+
+    def _foretold(self, frames: Sequence[Frame]) -> list[View]:
+        """Tell the views of the next frames by their pictures, if how they went on does not."""
+        last = self.seen[-1]
+        if not self._shaken or self._picture is None or abs(frames[0].index - last.index) > 2:
+            return []
+        views = foretold(self._picture, last.view, [frame.picture for frame in frames])
+        steps = [now.sweep(old) for now, old in zip(views, [last.view, *views], strict=False)]
+        most = LEAPT * self.size[0]
+        cuts = [_length(two - one) > most for one, two in pairwise(steps)]
+        return views[: [*cuts, True].index(True) + 1]
+
+    def _is_shaken(
+        self, expected: Sequence[View], views: Sequence[View], seen: Sequence[Seen]
+    ) -> bool:
+        """Whether the next views are better told by their pictures than by how these went on.
+
+        Parameters
+        ----------
+        expected, views : sequence of View
+            How they should have gone on, and where they were looked for.
+        seen : sequence of Seen
+        """
+        if not seen:
+            return True
+        near = zip(expected, seen, strict=False)
+        if len(seen) == len(views) and all(
+            one.view.aside(view) < SHAKEN * self.size[0] for view, one in near
+        ):
+            return False
+        first = seen[0].view
+        return views is expected or first.aside(views[0]) < first.aside(expected[0])
 
     def _settle(self, frames: Sequence[Frame], views: Sequence[View]) -> list[Seen]:
         """Place frames near where they are expected, by the house or else by its ice."""
@@ -287,6 +334,10 @@ class Piece:
         if not (last[-1].marks.get().line >= CIRCLES).any():
             ahead[:, ROLL] = vectors[-1, ROLL]  # circles do not tell it: it would run away
         return [View(vector) for vector in ahead]
+
+
+def _length(way: Array) -> float:
+    return float(np.linalg.norm(way))
 
 
 def _follows(seen: Seen, before: Seen) -> bool:

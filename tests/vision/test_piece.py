@@ -3,16 +3,25 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 
+import cv2
 import numpy as np
 import pytest
 
-from tests.synthetic import PAINTS, Key, cached_clip, render_still, sample_scene, tilted_camera
+from tests.synthetic import (
+    PAINTS,
+    Key,
+    cached_clip,
+    render_still,
+    sample_scene,
+    still_camera,
+    tilted_camera,
+)
 from tests.synthetic.camera import CameraPath
 from tests.vision.places import RINGS
 from tests.vision.test_edge_tracker import filmed, tracker
 from vision import edge_tracker
 from vision.clip import Frame, open_clip
-from vision.edge_tracker import EdgeTracker
+from vision.edge_tracker import LONGEST_STRIDE, EdgeTracker
 from vision.house import find_house
 from vision.house_fit import HouseFit
 from vision.normals import lay_out
@@ -20,6 +29,7 @@ from vision.outline import PaintEdge
 from vision.paint import CIRCLES, FIXED, joined
 from vision.piece import Piece
 from vision.pose import ROLL, aim, camera
+from vision.predict import MEMORY
 from vision.rig import OVERHEAD, start_rig
 
 SIZE = (640, 360)
@@ -127,3 +137,26 @@ def test_where_no_line_is_seen_the_roll_stays_nearly_what_it_was(
     roll = np.array([seen.view.vector[ROLL] for seen in piece.seen])
     assert np.abs(np.diff(roll)).max() < np.radians(0.25)
     assert np.abs(roll - roll[0]).max() < np.radians(2.0)
+
+
+def test_frames_of_a_shaken_camera_are_followed_together() -> None:
+    path = still_camera(target=(0.0, 0.3))
+    still, true = np.asarray(render_still(sample_scene(), path, 0.0), np.uint8), path.at(0.0)
+    k = np.array([[true.focal, 0, 639.5], [0, true.focal, 359.5], [0, 0, 1]])
+    rng = np.random.default_rng(8)
+    turns = [np.zeros(3), *rng.normal(0, 1, (12, 3)) * (0.008, 0.008, 0.001)]
+    warps = [k @ cv2.Rodrigues(turn)[0] @ np.linalg.inv(k) for turn in turns]
+    border = cv2.BORDER_REPLICATE
+    shown = [cv2.warpPerspective(still, warp, path.size, borderMode=border) for warp in warps]
+    frames = [Frame(i, i / 25, np.asarray(p, np.uint8)) for i, p in enumerate(shown)]
+    house = find_house(still)
+    assert house is not None
+    piece = followed(house, frames)
+    assert piece.found == len(frames)
+    assert piece.edges.stride == LONGEST_STRIDE
+    ice = path.at(0.0).project(np.c_[RINGS, np.zeros(len(RINGS))])
+    # Those before were placed while it was less known what frames share.
+    for seen, warp in list(zip(piece.seen, warps, strict=True))[-MEMORY:]:
+        pixels = np.c_[ice, np.ones(len(ice))] @ warp.T
+        off = piece.camera(seen).ice(pixels[:, :2] / pixels[:, 2:]) - RINGS
+        assert np.sqrt((off**2).sum(1).mean()) < 0.003
