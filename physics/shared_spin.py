@@ -19,8 +19,9 @@ from physics.contacts import Contact
 POOR = 0.1
 """Standard error of a spin, rad/s, from which others are asked for help."""
 
-SHORT = 0.4
-"""Time over which a spin stays the same, s."""
+SHORT, VAGUE = 0.4, 0.5
+"""Time over which a spin stays the same, s; of a longer stretch it is taken to do so only where its
+standard error, rad/s, is larger."""
 
 NEAR = 0.1
 """How far from a hit, s, a spin is that which the hit began or ended with: beside it rows may lie
@@ -76,7 +77,7 @@ def _help(
     if here is None or there is None or first is None or last is None:
         return
     t, spin, sd = (here.table[name] for name in ("t", "omega", "sd_omega"))
-    if here.sd < POOR or np.ptp(t[here.rows]) > SHORT:
+    if here.sd < (POOR if np.ptp(t[here.rows]) <= SHORT else VAGUE):
         return
     change = last.spin - first.spin
     implied = there.spin + (change if late else -change)

@@ -50,6 +50,8 @@ def test_spins_that_are_well_seen_stay() -> None:
 
 def test_a_long_stretch_keeps_what_was_seen_of_it() -> None:
     tables = shot()
+    for name in tables:
+        tables[name]["sd_omega"] = np.minimum(tables[name]["sd_omega"], 0.3)
     share_spins(tables, [FIRST, replace(SECOND, t=2.0)])
     assert (tables["B"]["omega"] == shot()["B"]["omega"]).all()
 
@@ -61,3 +63,13 @@ def test_a_stone_whose_spin_is_nowhere_told_tells_nothing() -> None:
         tables["C"][name][:] = np.nan
     share_spins(tables, [FIRST, SECOND])
     assert (tables["B"]["omega"] == shot()["B"]["omega"]).all()
+
+
+def test_a_long_stretch_of_which_hardly_anything_is_seen_is_told_as_well() -> None:
+    tables = shot()
+    for table in tables.values():
+        after = table["t"] > 1.0
+        table["omega"][after], table["sd_omega"][after] = table["omega"][after][0], 0.02
+    tables["B"]["sd_omega"][tables["B"]["t"] > 1.0] = 0.9
+    share_spins(tables, [FIRST])
+    assert tables["B"]["omega"][-1] == pytest.approx(-0.8, abs=0.1)
