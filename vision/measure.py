@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from data.sheet import Stone
 from vision.appearance import Appearance, membership
-from vision.circles import fit_circles, medians
+from vision.circles import WALL, fit_circles, medians
 from vision.contrast import by_hue, by_lightness, mean_colours
 from vision.patch import (
     CAP_END,
@@ -43,6 +43,15 @@ GRANITE = 0.15
 """What an edge of the granite says of the centre beside one of the cap: the granite is rounded,
 and paint that ends near it draws its outline aside, by up to 8 mm. Where the cap is covered it
 still tells the centre."""
+
+FLANK = 0.25
+"""How far from half-way between granite and cap, as a share of what they differ by, colours tell
+where the edge of the cap lies: a mark beside the rim, a wall below it and lamps mirrored in the
+granite are colours beyond that, and draw the middle of the whole step aside by up to 5 mm."""
+
+OPEN, NEAR = 0.75, 0.02
+"""Share of a stone to be seen for that, and how near to where it is looked for, m: of one half
+covered, or not yet come upon, whole steps tell more."""
 
 DARK = 0.5
 """Lightness, as a share of that of the rest of a stone's granite, below which something covers it:
@@ -184,7 +193,7 @@ def _stones(
     apart = by_hue(cap, granite)
     along = apart.astype(np.float32)[:, None, :, None]
     half = ((granite * apart).sum(1) + 0.5).astype(np.float32)[:, None, None]
-    signal = (lab[..., : in_ring.stop, :] @ along)[..., 0] - half
+    signal = (lab @ along)[..., 0] - half
     seen_cap, seen_ring = rays.inside[..., in_cap], rays.inside[..., in_ring]
     capped = summed((signal[..., in_cap] > 0) & seen_cap) > 0.4 * np.maximum(summed(seen_cap), 1)
     stone_like = (worth[..., in_ring] < 0.1) & (signal[..., in_ring] < 0.05) & seen_ring
@@ -211,6 +220,12 @@ def _stones(
         rays, (cap_rim, granite_rim), appearance.slack, effort.edge_reach, 0.25 * pixel,
         effort.rounds, appearance.wall,
     )  # fmt: skip
+    # Whether there is a stone is asked of whole steps of colour; where it is, of their middle.
+    middle = falls_along(np.clip(signal, -FLANK, FLANK)[..., None])[..., 0] / (2 * FLANK)
+    exact = fit_circles(
+        rays, (replace(cap_rim, fall=middle), granite_rim), appearance.slack, effort.edge_reach,
+        0.25 * pixel, effort.rounds, (appearance.wall[0], WALL[1]),
+    )  # fmt: skip
     steps = by_lightness(cap, granite).astype(np.float32)[:, None, None]
     light_rim = replace(cap_rim, fall=falls[..., 0] * steps)
     lit = fit_circles(
@@ -229,19 +244,23 @@ def _stones(
     if appearance.caps:
         more = 2 * (np.clip(fit.unbroken, *ON_ONE_SIDE) - ON_ONE_SIDE[0]) - 0.25 * misfit
         evidence = np.where(evidence < ENOUGH, np.minimum(evidence + more, ENOUGH), evidence)
+    near = np.hypot(fit.shift[:, 0], fit.shift[:, 1]) < NEAR
+    clear = (exact.ok & near & (visible > OPEN) & bool(appearance.caps))[:, None]
+    shift = np.where(clear, exact.shift, fit.shift)
+    covariance = np.where(clear[..., None], exact.covariance, fit.covariance)
     # What displaces the edges of one side is made good by the other side, if that is seen.
     hidden = 0.04 * disc.radius * (1 - visible)
     return Measures(
         ok=enough & fit.ok,
-        centre=places + fit.shift,
-        shift=np.hypot(fit.shift[:, 0], fit.shift[:, 1]),
-        sd=_errors(fit.covariance, pixel, hidden),
+        centre=places + shift,
+        shift=np.hypot(shift[:, 0], shift[:, 1]),
+        sd=_errors(covariance, pixel, hidden),
         colour=cap,
         visible=visible,
         uncovered=(capped & at_cap).mean(1),
         evidence=evidence,
-        light=np.where(lit.ok[:, None], lit.shift - fit.shift, np.nan),
-        bends=fit.bends,
+        light=np.where(lit.ok[:, None], lit.shift - shift, np.nan),
+        bends=np.where(clear, exact.bends, fit.bends),
         outline=fit.radii / np.array([disc.cap_radius, disc.radius]),
         wall=fit.wall,
         handle=handle,

@@ -8,7 +8,7 @@ from data.sheet import STONE
 from tests.synthetic.camera import tilted_camera
 from tests.synthetic.clip import render_still
 from tests.vision.test_stones import CAMERA, RED, YELLOW, camera_of, scene_of
-from vision.appearance import any_stone, learn
+from vision.appearance import Appearance, any_stone, learn
 from vision.camera import Camera
 from vision.measure import Measures, measure_discs
 from vision.rays import Look
@@ -22,8 +22,10 @@ PICTURE = np.asarray(render_still(SCENE, CAMERA), np.uint8)
 VIEW = camera_of(CAMERA, SCENE)
 
 
-def measured(places: np.ndarray, picture: np.ndarray = PICTURE) -> Measures:
-    return measure_discs([Look(picture, VIEW, places)], any_stone(), STONE)
+def measured(
+    places: np.ndarray, picture: np.ndarray = PICTURE, learned: Appearance | None = None
+) -> Measures:
+    return measure_discs([Look(picture, VIEW, places)], learned or any_stone(), STONE)
 
 
 @pytest.mark.parametrize("aside", [0.0, 0.02])
@@ -107,6 +109,21 @@ def test_a_lamp_from_one_side_draws_the_edge_by_lightness_aside() -> None:
     again = measured(PLACES, shaded)
     aside = np.abs(again.light - seen.light)
     assert aside[1].max() > 2 * aside[[0, 2]].max() + 2e-4
+
+
+@pytest.mark.parametrize("begin", [20, 200])
+def test_a_light_mark_beside_the_rim_does_not_draw_a_cap_aside(begin: int) -> None:
+    marked = PICTURE.copy()
+    scale = float(VIEW.scale_at(PLACES[1]))
+    x, y = VIEW.project(PLACES[1:2], STONE.cap_height)[0]
+    centre, size = (round(16 * x), round(16 * y)), round(16 * 0.0865 * scale)
+    cv2.ellipse(marked, centre, (size, size), 0, begin, begin + 120, (225,) * 3, 1, cv2.LINE_AA, 4)
+    marked = cv2.GaussianBlur(marked, (0, 0), 0.7)
+    plain = cv2.GaussianBlur(PICTURE, (0, 0), 0.7)
+    learned = learn(search_picture(PICTURE, VIEW).stones)
+    aside = measured(PLACES, marked, learned).centre - measured(PLACES, plain, learned).centre
+    assert np.hypot(*aside[1]) < 0.0004  # 0.001 where the whole step counts
+    np.testing.assert_allclose(aside[[0, 2]], 0, atol=2e-5)
 
 
 def test_of_a_plain_disc_the_rim_tells() -> None:
