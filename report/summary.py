@@ -140,7 +140,9 @@ def summary(
         off = f"— ({score.note or 'nothing to compare'})"
         if score.rmse is not None:
             off = f"{unit.little(score.rmse)} RMS off{_last(score, unit)}"
-        lines.append(f"simulated   {model}: {off}")
+        # Only a shot that was fitted as a whole begins with what fits it.
+        how = "" if results.laws is None else ", as fitted"
+        lines.append(f"simulated   {model}{how}: {off}")
     for model, guess in results.predictions.items():
         if guess.rmse is not None:
             lines.append(

@@ -21,7 +21,10 @@ def test_the_summary_says_how_far_the_last_places_may_be_off(shot):
         rest_sd={"A": 0.05},
     )
     text = summary(replace(shot.results, simulations={"frictional": score}), shot.tracks)
-    assert "frictional: 2.0 cm RMS off; at the end A 3.1 cm (± 5.0 cm)" in text
+    how = "frictional, as fitted" if shot.results.laws is not None else "frictional"
+    assert f"{how}: 2.0 cm RMS off; at the end A 3.1 cm (± 5.0 cm)" in text
+    apart = summary(replace(shot.results, laws=None), shot.tracks)
+    assert "simulated   frictional: " in apart and "as fitted" not in apart
     unknown = replace(shot.results, simulations={"frictional": replace(score, rest_sd={})})
     assert "at the end" not in summary(unknown, shot.tracks)
 
