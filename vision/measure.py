@@ -58,7 +58,6 @@ DARK = 0.5
 its own dark side has 0.8 of it, dark clothes 0.05 to 0.5. What is lighter may be ice behind a low
 shoulder."""
 
-
 ON_ONE_SIDE = 0.2, 0.5
 """From how far around both edges of a stone are seen on one side that counts for it, and up to how
 far it counts more. On clothes edges like a stone's lie here and there, on 0.1 to 0.35 of the way
@@ -221,11 +220,13 @@ def _stones(
         effort.rounds, appearance.wall,
     )  # fmt: skip
     # Whether there is a stone is asked of whole steps of colour; where it is, of their middle.
-    middle = falls_along(np.clip(signal, -FLANK, FLANK)[..., None])[..., 0] / (2 * FLANK)
-    exact = fit_circles(
-        rays, (replace(cap_rim, fall=middle), granite_rim), appearance.slack, effort.edge_reach,
-        0.25 * pixel, effort.rounds, (appearance.wall[0], WALL[1]),
-    )  # fmt: skip
+    exact = fit
+    if appearance.caps:
+        middle = falls_along(np.clip(signal, -FLANK, FLANK)[..., None])[..., 0] / (2 * FLANK)
+        exact = fit_circles(
+            rays, (replace(cap_rim, fall=middle), granite_rim), appearance.slack,
+            effort.edge_reach, 0.25 * pixel, effort.rounds, (appearance.wall[0], WALL[1]),
+        )  # fmt: skip
     steps = by_lightness(cap, granite).astype(np.float32)[:, None, None]
     light_rim = replace(cap_rim, fall=falls[..., 0] * steps)
     lit = fit_circles(
@@ -245,7 +246,7 @@ def _stones(
         more = 2 * (np.clip(fit.unbroken, *ON_ONE_SIDE) - ON_ONE_SIDE[0]) - 0.25 * misfit
         evidence = np.where(evidence < ENOUGH, np.minimum(evidence + more, ENOUGH), evidence)
     near = np.hypot(fit.shift[:, 0], fit.shift[:, 1]) < NEAR
-    clear = (exact.ok & near & (visible > OPEN) & bool(appearance.caps))[:, None]
+    clear = (exact.ok & near & (visible > OPEN))[:, None]
     shift = np.where(clear, exact.shift, fit.shift)
     covariance = np.where(clear[..., None], exact.covariance, fit.covariance)
     # What displaces the edges of one side is made good by the other side, if that is seen.
