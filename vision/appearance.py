@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from vision.circles import WALL
 from vision.clip import Image
-from vision.lab import bgr_of, lab_of
+from vision.lab import bgr_of, chroma, lab_of
 from vision.sighting import Sighting
 
 Array = NDArray[np.float64]
@@ -34,6 +34,10 @@ GREY = 10.0
 
 ALIKE_GRANITE = 18.0
 """Lightness by which granite differs from stone to stone, and over one, L*a*b* units."""
+
+LIGHT, LIGHT_OF_GREY = 0.1, 0.35
+"""What a difference of lightness counts beside one of hue, both squared; and where neither cap has
+a hue: 50 levels apart are two colours there."""
 
 LEAST_CONTRAST = 0.4
 """Least share of its contrast that a picture is taken to have kept: with less, noise is colour."""
@@ -58,6 +62,11 @@ class Colour:
         """The mean colour as ``#rrggbb``."""
         blue, green, red = self.bgr
         return f"#{red:02x}{green:02x}{blue:02x}"
+
+    @property
+    def grey(self) -> bool:
+        """Whether the mean colour has no hue to speak of."""
+        return bool(chroma(self.mean) < GREY)
 
     @property
     def bgr(self) -> tuple[int, int, int]:
@@ -142,14 +151,13 @@ def any_veiled_stone(white: int, black: int) -> Appearance:
 def _coloured_stone(white: int, black: int) -> Appearance:
     lab = _lab_of_table()
     contrast = max(1 - black / white, LEAST_CONTRAST)
-    chroma = np.hypot(lab[..., 1] - 128, lab[..., 2] - 128) / contrast
     light = (lab[..., 0] / white - 1) / contrast + 1
     # No teal and no dark green is far from grey, be it as pure as can be; black is not told.
     pure = PURE * _without_red() * np.clip((light - 0.1) / 0.1, 0, 1) / contrast
-    chroma = np.maximum(chroma, pure)
+    away = np.maximum(chroma(lab) / contrast, pure)
     # Blue caps are the darkest, and dark colours are never as far from grey as light ones.
     blue = np.clip((118 - lab[..., 2]) / 10, 0, 1)
-    vivid = chroma / (1 - blue * (1 - np.clip(light / 0.4, 0.6, 1)))
+    vivid = away / (1 - blue * (1 - np.clip(light / 0.4, 0.6, 1)))
     # Light blue ones are the palest; paint tinges granite red rather than blue.
     cap = np.clip((vivid - 28 + 8 * blue) / 14, 0, 1)
     granite = (
@@ -240,12 +248,12 @@ def colour_difference(first: Array, second: Array) -> float:
 def colour_differences(first: Array, second: Array) -> Array:
     """Differences of cap colours, shapes (m, 3) and (n, 3): shape (m, n).
 
-    Caps without hue are told apart by their lightness alone, which counts for more there.
+    Between caps without hue, lightness counts for more.
     """
     first, second = np.asarray(first, float)[:, None], np.asarray(second, float)
-    chroma = np.maximum(*(np.hypot(*(c[..., 1:] - 128).T).T for c in (first, second)))
-    light, green, blue = np.moveaxis((first - second) ** 2, -1, 0)
-    return np.asarray(np.sqrt(np.where(chroma < GREY, 0.35, 0.1) * light + green + blue))
+    grey = np.maximum(chroma(first), chroma(second)) < GREY
+    light, *hue = np.moveaxis((first - second) ** 2, -1, 0)
+    return np.asarray(np.sqrt(np.where(grey, LIGHT_OF_GREY, LIGHT) * light + sum(hue)))
 
 
 def _colour(samples: Array, floor: tuple[float, float, float]) -> Colour:

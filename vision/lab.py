@@ -60,6 +60,11 @@ def lab_of(bgr: Bytes) -> Bytes:
     return out.reshape(bgr.shape)
 
 
+def chroma(lab: Array | Floats) -> Array:
+    """How far colours in L*a*b*, not as whole bytes, shape (..., 3), are from grey, shape (...)."""
+    return np.asarray(np.hypot(lab[..., 1] - 128, lab[..., 2] - 128))
+
+
 def bgr_of(lab: Array) -> tuple[int, int, int]:
     """Blue, green and red of a colour in L*a*b*; the nearest where there is none."""
     root = np.linalg.solve(_TO_LAB[:, :3], np.asarray(lab, float) - _TO_LAB[:, 3])

@@ -15,9 +15,7 @@ import numpy as np
 
 from data.sheet import Stone
 from vision.appearance import (
-    GREY,
     MOST_COLOURS,
-    Appearance,
     Guess,
     any_grey_stone,
     any_grey_stone_of,
@@ -62,7 +60,7 @@ def strangers(looks: Sequence[Look], disc: Stone, search: Search) -> list[Findin
             found = _with_more(found, looks, guess, disc, search)
     if _colours(found) == 1:
         seen = learn(_convincing(found))
-        if seen is not None and seen.granite is not None and _is_grey(seen):
+        if seen is not None and seen.granite is not None and all(cap.grey for cap in seen.caps):
             found = _with_more(found, looks, any_grey_stone_of(seen.granite), disc, search)
     return found
 
@@ -74,11 +72,6 @@ def _convincing(found: Sequence[Findings]) -> list[Sighting]:
 def _colours(found: Sequence[Findings]) -> int:
     """Count the colours of caps that convince."""
     return len(by_colour(_convincing(found)))
-
-
-def _is_grey(seen: Appearance) -> bool:
-    """Whether the caps have no hue."""
-    return all(np.hypot(*(cap.mean[1:] - 128)) < GREY for cap in seen.caps)
 
 
 def _with_more(

@@ -31,10 +31,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-GREY = 10.0
-"""Distance from grey within which a cap has no colour, L*a*b* units."""
-
-
 TOLD = Gate(least_score=1.1, least_open=1.5)
 """Evidence in tracks of stones: in the open they show 2 to 3, half covered 1.2, shoulders 1.2."""
 
@@ -165,7 +161,7 @@ def _rows(name: str, track: Track, team: str, disc: Stone, edge: NDArray[np.floa
 def _without_colour(appearance: Appearance | None) -> tuple[str, ...]:
     """Warn where caps are told by their lightness alone, and all are alike."""
     caps = () if appearance is None else appearance.caps
-    if len(caps) != 1 or np.hypot(*(caps[0].mean[1:] - 128)) > GREY:
+    if len(caps) != 1 or not caps[0].grey:
         return ()
     return (
         f"only caps without colour are made out, {caps[0].name}; stones whose caps are about as"

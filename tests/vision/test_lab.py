@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from vision.lab import bgr_of, lab_of
+from vision.lab import bgr_of, chroma, lab_of
 
 
 def test_colours_are_those_of_opencv() -> None:
@@ -21,6 +21,11 @@ def test_colours_are_those_of_opencv() -> None:
 )
 def test_black_and_white_have_no_hue(bgr: tuple[int, ...], lab: tuple[int, ...]) -> None:
     assert lab_of(np.array([bgr], np.uint8)).tolist() == [list(lab)]
+
+
+def test_how_far_colours_are_from_grey() -> None:
+    lab = np.array([[[50.0, 128.0, 128.0], [50.0, 131.0, 132.0]], [[250.0, 128.0, 118.0]] * 2])
+    np.testing.assert_allclose(chroma(lab), [[0, 5], [10, 10]])
 
 
 def test_colours_come_back() -> None:
