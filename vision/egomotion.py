@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vision.keyframe import small_of
-from vision.picture import Image, Picture
+from vision.picture import Picture
 from vision.pose import DOWN, View, rotation_vector
 
 Array = NDArray[np.float64]
@@ -49,7 +49,7 @@ def foretold(before: Picture, view: View, pictures: Sequence[Picture]) -> list[V
     list of View
         Of the first of them, up to one that does not show the same scene.
     """
-    last = _small(before)
+    last = small_of(before, WIDEST)
     factor = before.shape[1] / last.shape[1]
     corners = cv2.goodFeaturesToTrack(
         last, MOST_CORNERS, LEAST_RESPONSE, APART, useHarrisDetector=True
@@ -58,7 +58,7 @@ def foretold(before: Picture, view: View, pictures: Sequence[Picture]) -> list[V
     for picture in pictures:
         if corners is None or len(corners) < LEAST_TOGETHER:
             break
-        now = _small(picture)
+        now = small_of(picture, WIDEST)
         there, ok, _ = cv2.calcOpticalFlowPyrLK(
             last, now, corners, np.zeros_like(corners), winSize=WINDOW, maxLevel=LEVELS,
             criteria=TERMINATION,
@@ -97,11 +97,3 @@ def turned(view: View, motion: Array, factor: float, shape: tuple[int, ...]) -> 
     vector = rotation_vector(turn @ view.rotation @ DOWN.T)
     stretch = float(np.log(np.hypot(motion[0, 0], motion[1, 0])))
     return View(np.append(vector, view.vector[3] + stretch))
-
-
-def _small(picture: Picture) -> Image:
-    grey = small_of(picture)
-    while grey.shape[1] > WIDEST:
-        half = (grey.shape[1] // 2, grey.shape[0] // 2)
-        grey = np.asarray(cv2.resize(grey, half, interpolation=cv2.INTER_AREA), np.uint8)
-    return grey

@@ -112,13 +112,13 @@ def replaced(marks: Marks, key: Keyframe, now: Camera) -> Marks:
     return replace(marks, along=ice[:, 0], across=ice[:, 1])
 
 
-def small_of(picture: Picture) -> Image:
-    """Halve the lightness of a picture until it is small: halving is quicker than any other."""
+def small_of(picture: Picture, widest: int = WIDEST) -> Image:
+    """Halve the lightness of a picture until it is no wider: halving is quicker than any other."""
     if isinstance(picture, Planes):
         grey = picture.luma
     else:
         grey = np.asarray(cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY), np.uint8)
-    while grey.shape[1] > WIDEST:
+    while grey.shape[1] > widest:
         half = (grey.shape[1] // 2, grey.shape[0] // 2)
         grey = np.asarray(cv2.resize(grey, half, interpolation=cv2.INTER_AREA), np.uint8)
     return grey
