@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, replace
+from itertools import islice
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from data.errors import InputError
 from physics.impact import Impact
 from physics.simulate import simulate
 from physics.simulation import Shot, StoneStart
@@ -16,6 +18,12 @@ from physics.spread import DRAWS, Doubt, drawn
 from physics.whole_fit import GlobalFit
 
 Floats = NDArray[np.float64]
+
+RULED_OUT = 9.0
+"""Mean square of a stone's way off the best fit, in errors of its places, that cannot be."""
+
+TRIES = 4
+"""Draws at most for each that is asked for."""
 
 
 @dataclass(frozen=True)
@@ -51,10 +59,15 @@ def by_itself(shot: Shot, doubt: Doubt, at: float, count: int = DRAWS) -> AsFitt
 def as_fitted(fit: GlobalFit, shot: Shot, doubt: Doubt, at: float, count: int = DRAWS) -> AsFitted:
     """Return a shot as the fit of the whole of it has it.
 
+    Other shots are drawn from the fits with all choices of laws, by their probabilities, the
+    unknowns of each together. Draws whose stones go elsewhere than they were seen are left out:
+    the errors are those of a linear fit, which knows nothing of hits that are missed, nor of the
+    friction at which stones begin to slide on each other.
+
     Parameters
     ----------
     fit : GlobalFit
-        Of one shot; its unknowns are drawn together.
+        Of one shot.
     shot : Shot
         As it is otherwise known: stones of which the fit knows nothing, angles, spins after hits.
     doubt : Doubt
@@ -73,23 +86,56 @@ def as_fitted(fit: GlobalFit, shot: Shot, doubt: Doubt, at: float, count: int = 
     seen = fit.shots[0]
     since = at - seen.start
 
-    def joined(other: Shot, values: Floats) -> Shot:
-        whole = seen.shot(fit.state(values=values))
-        own = {stone.name: stone for stone in whole.stones}
-        stones = tuple(_joined(stone, own.get(stone.name), since) for stone in other.stones)
+    def joined(other: Shot, own: GlobalFit, values: Floats) -> Shot:
+        whole = own.shots[0].shot(own.state(values=values))
+        known = {stone.name: stone for stone in whole.stones}
+        stones = tuple(_joined(stone, known.get(stone.name), since) for stone in other.stones)
         return replace(whole, stones=stones)
 
-    likely = joined(shot, fit.values)
+    likely = joined(shot, fit, fit.values)
     run = simulate(likely, until=since)
     turned = {stone.name: run.state(stone.name, since).theta for stone in shot.stones}
     shot = replace(
         shot, stones=tuple(replace(s, theta=2 * s.theta - turned[s.name]) for s in shot.stones)
     )
-    bounds = {unknown.name: (unknown.low, unknown.high) for unknown in seen.unknowns}
+    possible = islice(_possible(fit, rng, TRIES * count), count)
+    others = [joined(drawn(shot, doubt, rng), own, values) for own, values in possible]
+    return AsFitted(seen.start, joined(shot, fit, fit.values), others)
+
+
+def _possible(
+    fit: GlobalFit, rng: np.random.Generator, tries: int
+) -> Iterator[tuple[GlobalFit, Floats]]:
+    """Draw laws and values of their unknowns, and give those that the sightings allow."""
+    weights, fits = zip(*(fit.choices or ((1.0, fit),)), strict=True)
+    picked = rng.choice(len(fits), tries, p=weights)
+    rows = [iter(_rows(own, int(np.sum(picked == k)), rng)) for k, own in enumerate(fits)]
+    best = [own.shots[0].residuals(own.simulation()) for own in fits]
+    for k in picked.tolist():
+        values = next(rows[k])
+        if _off(fits[k], values, best[k]) < RULED_OUT:
+            yield fits[k], values
+
+
+def _rows(fit: GlobalFit, count: int, rng: np.random.Generator) -> Floats:
+    """Draw values of a fit's unknowns within their bounds, shape (count, n)."""
+    bounds = {unknown.name: (unknown.low, unknown.high) for unknown in fit.shots[0].unknowns}
     low, high = np.array([bounds[name] for name in fit.names]).T
     rows = rng.multivariate_normal(fit.values, fit.cov, count, method="eigh")
-    others = [joined(drawn(shot, doubt, rng), row) for row in np.clip(rows, low, high)]
-    return AsFitted(seen.start, joined(shot, fit.values), others)
+    return np.asarray(np.clip(rows, low, high))
+
+
+def _off(fit: GlobalFit, values: Floats, best: Sequence[Floats]) -> float:
+    """Mean square by which these values move the stone that they move most, in its errors."""
+    seen = fit.shots[0]
+    try:
+        there = seen.residuals(seen.replay(fit.state(values=values)))
+    except InputError:
+        return np.inf
+    return max(
+        float(np.mean((now - then) ** 2 / (fit.inflation + (trace.sd_place / trace.sd) ** 2)))
+        for now, then, trace in zip(there, best, seen.traces.values(), strict=True)
+    )
 
 
 def _joined(stone: StoneStart, own: StoneStart | None, since: float) -> StoneStart:

@@ -121,7 +121,9 @@ def simulate_measured(
         samples[name] = table
         found = score(tracks, table, start, ends, notes.get(name))
         scores[name] = replace(
-            found, hits=simulated_hits(run, others, shots.start), rest_sd=_rest_sd(table, found)
+            found,
+            hits=simulated_hits(run, others, shots.start),
+            rest_sd=_rest_sd(tracks, table, found),
         )
     return samples, scores, tuple(warnings)
 
@@ -202,9 +204,12 @@ def _doubt(tracks: pd.DataFrame, start: float, estimates: Estimates, laws: Laws)
     )
 
 
-def _rest_sd(table: pd.DataFrame, found: SimulationScore) -> dict[str, float | None]:
-    """Tell the standard deviation of the last place of each stone that is scored, m."""
-    last = table.groupby("stone")[["sd_x", "sd_y"]].last().dropna()
+def _rest_sd(
+    tracks: pd.DataFrame, table: pd.DataFrame, found: SimulationScore
+) -> dict[str, float | None]:
+    """Tell the standard deviation of each stone that is scored where it was last seen, m."""
+    both = tracks.loc[tracks["seen"] != 0, ["stone", "frame"]].merge(table, on=["stone", "frame"])
+    last = both.groupby("stone")[["sd_x", "sd_y"]].last().dropna()
     spread = dict(zip(last.index, np.hypot(last["sd_x"], last["sd_y"]).tolist(), strict=True))
     return {name: spread.get(name) for name in found.rest_error}
 

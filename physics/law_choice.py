@@ -84,7 +84,8 @@ def _with_others(
     """Put what the fits with other laws say into the errors of the best one.
 
     Every variance becomes the mean over the fits of their own and of the square of their
-    difference from the best.
+    difference from the best. What goes together in the best goes together no longer quite so:
+    where whole shots are drawn each is drawn from one of the `choices`.
     """
     weights = np.exp(-0.5 * (criteria - criteria.min()))
     weights /= weights.sum()
@@ -106,7 +107,8 @@ def _with_others(
         )
         for k in order
     )
-    return replace(best, cov=cov * np.outer(scale, scale), laws=laws)
+    choices = tuple((float(weights[k]), tried[k]) for k in order)
+    return replace(best, cov=cov * np.outer(scale, scale), laws=laws, choices=choices)
 
 
 def _told_by(fit: GlobalFit, best: GlobalFit) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -48,6 +48,8 @@ class GlobalFit:
         Whether the fit came to its end.
     laws : tuple of Law
         Choices of laws that were compared, the best first, if any.
+    choices : tuple of (float, GlobalFit)
+        The fits with these laws, each with its own covariance, and their probabilities.
     """
 
     names: tuple[str, ...]
@@ -63,6 +65,7 @@ class GlobalFit:
     inflation: float
     settled: bool
     laws: tuple[Law, ...] = ()
+    choices: tuple[tuple[float, GlobalFit], ...] = ()
 
     def __getitem__(self, name: str) -> Estimate:
         """Value and standard error of an unknown; 0 as error where it was held."""

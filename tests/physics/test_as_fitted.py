@@ -65,6 +65,29 @@ def test_draws_hang_together_as_the_fit_has_it() -> None:
     assert 1e-4 < np.hypot(*apart) < 0.01
 
 
+def test_draws_of_stones_that_stick_go_where_these_were_seen() -> None:
+    """Any friction above some does the same there; without it they end far from where they were."""
+    motion = hit_motion(
+        1.6, 0.03, before=1.2, after=3.0, stone_friction=0.2, others=[Start(0.02, 0.9)]
+    )
+    found = seen(1, motion)[1]
+    assert found.whole is not None
+    sliding = next(fit for _, fit in found.whole.choices if "stone_friction" in fit.names)
+    assert not sliding.told("stone_friction")
+    residuals = found.whole.residuals().set_index("stone")[["dx", "dy"]]
+    for fit in (found.whole, sliding):
+        may = fitted(replace(found, whole=fit))
+        assert len(may.others) == 24
+        rubs = [getattr(shot.impact, "stone_friction", 0.0) for shot in may.others]
+        assert np.std(rubs) > 0.05
+        at = float(motion.times[-1]) - may.start
+        runs = [simulate(shot) for shot in may.others]
+        for name in "ABC":
+            ends = [(run.state(name, at).x, run.state(name, at).y) for run in runs]
+            scatter = np.hypot(*np.std(ends, axis=0))
+            assert 1e-4 < scatter < np.hypot(*residuals.loc[name].std())
+
+
 def test_what_the_fit_knows_nothing_of_is_kept() -> None:
     other = StoneStart("D", 1.5, 2.0, 0.0, 0.4, theta=0.3)
     found = seen(2)[1]

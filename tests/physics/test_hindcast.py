@@ -76,6 +76,16 @@ def test_a_frame_that_may_lie_behind_the_hit_is_no_start() -> None:
     assert [hit.stones for hit in scores["frictional"].hits] == [("A", "B")]
 
 
+def test_the_error_of_the_last_place_is_of_where_a_stone_was_last_seen() -> None:
+    seen = watch(hit_motion(1.5, 0.1, after=3.0), np.random.default_rng(46))
+    seen = seen[(seen["stone"] == "A") | (seen["t"] < 1.6)].reset_index(drop=True)
+    samples, scores, _ = again(seen)
+    table = samples["frictional"].set_index(["stone", "frame"])
+    last = seen[seen["stone"] == "B"]["frame"].max()
+    there = table.loc[("B", last), ["sd_x", "sd_y"]].to_numpy(float)
+    assert scores["frictional"].rest_sd["B"] == pytest.approx(np.hypot(*there))
+
+
 def test_who_glides_only_is_no_part_of_the_score() -> None:
     seen = watch(hit_motion(), np.random.default_rng(42))
     early = seen[seen["t"] < 0.9].reset_index(drop=True)
