@@ -6,7 +6,7 @@ All places of a picture are treated at once: every array begins with the axis of
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import lru_cache
 
 import numpy as np
@@ -56,6 +56,10 @@ class Fits:
     bends: Array
     shares: Array
     unbroken: Array
+
+    def at_places(self, index: slice) -> Fits:
+        """Take those about some of the places."""
+        return Fits(*(getattr(self, field.name)[index] for field in fields(self)))
 
 
 @lru_cache(maxsize=8)
@@ -113,7 +117,7 @@ def fit_circles(
     reach: float,
     noise: Array,
     rounds: int = 2,
-    wall: tuple[float, float] = WALL,
+    wall: tuple[float, float | Array] = WALL,
 ) -> Fits:
     """Fit concentric circles to the edges on rays from centres that are nearly right.
 
@@ -136,7 +140,7 @@ def fit_circles(
     rounds : int
         How often edges are chosen.
     wall : tuple of float
-        Expected height of the wall, and the standard deviation of that, m.
+        Expected height of the wall, and the standard deviation of that, m; of all places or each.
     """
     n, circles = len(rays.inside), len(rims)
     expected = np.array([rim.radius for rim in rims])

@@ -59,6 +59,10 @@ class Rays:
         """Which rays show the place at this radius, shape (n, rays)."""
         return np.asarray(self.inside[..., np.searchsorted(self.radius, radius)])
 
+    def at_places(self, index: NDArray[np.intp]) -> Rays:
+        """Take those about some of the places."""
+        return Rays(self.bgr[index], self.lab[index], self.inside[index], self.radius, self.angle)
+
 
 @lru_cache(maxsize=8)
 def directions(rays: int) -> tuple[Array, Array]:

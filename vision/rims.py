@@ -6,7 +6,7 @@ All places of a picture are treated at once: every array begins with the axis of
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -58,6 +58,14 @@ class Rim:
     weight: Array
     say: float = 1.0
     lean: Array | None = None
+
+    def at_places(self, index: NDArray[np.intp]) -> Rim:
+        """Take those about some of the places."""
+        lean = None if self.lean is None else self.lean[index]
+        return replace(
+            self, fall=self.fall[index], use=self.use[index], inside=self.inside[index],
+            weight=self.weight[index], lean=lean,
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import astuple, replace
 
 import numpy as np
 from hypothesis import given, settings
@@ -35,6 +35,23 @@ def test_what_covers_a_part_of_the_circle_does_not_draw_it_aside() -> None:
     fits = fitted(edge, np.ones(RAYS, bool))
     assert np.hypot(*fits.shift[0]) < 0.001
     assert abs(fits.shares[0, 0] - 38 / 48) < 0.03
+
+
+def test_places_are_fitted_alike_one_by_one_and_several_together() -> None:
+    edge = RADIUS + 0.003 * directions(RAYS)[1][:, 0]
+    rays, rim = rim_of(edge, np.arange(RAYS) < 40, np.full((1, RAYS), 0.2))
+    noise, walls = np.array([0.0005, 0.0005, 0.002]), np.array([0.004, 0.001, 0.004])
+    three = np.zeros(3, np.intp)
+    together = fit_circles(
+        rays.at_places(three), (rim.at_places(three),), 0.05, 0.035, noise, wall=(0.001, walls)
+    )
+    for k in range(3):
+        alone = fit_circles(rays, (rim,), 0.05, 0.035, noise[k : k + 1], wall=(0.001, walls[k]))
+        for one, all_three in zip(astuple(alone), astuple(together), strict=True):
+            np.testing.assert_allclose(all_three[k], one[0], rtol=1e-9, atol=1e-12)
+    later = together.at_places(slice(1, None))
+    np.testing.assert_array_equal(later.shift, together.shift[1:])
+    assert abs(later.wall[0] - together.wall[0]) > 1e-5
 
 
 def test_what_agrees_on_one_side_is_told_from_as_much_here_and_there() -> None:
