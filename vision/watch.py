@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from data.sheet import STONE, Stone
-from vision.appearance import MOST_COLOURS, UNLIKE, Appearance, convincing, learn
+from vision.appearance import MOST_COLOURS, UNLIKE, Appearance, by_colour, convincing, learn
 from vision.balance import Balance, brightening
 from vision.camera import Camera
 from vision.clip import Frame
@@ -152,17 +152,24 @@ class Watch:
 
     def _learn(self, views: Iterable[StoneView]) -> None:
         views = list(views)[::-1]
-        found = self._of_any_colour(views[:: self._pace.lesson])
+        found = self._of_any_colour(views[:: self._pace.lesson], self._search.radius_px)
+        if len(by_colour([*self._lessons, *convincing(found)])) < MOST_COLOURS:
+            found = self._of_any_colour(views[:: self._pace.lesson])
         if found and not convincing(found):
             # A stone far away convinces in some pictures only.
             found = self._of_any_colour(views[1 :: self._pace.doubt])
         self._lessons += convincing(found)
         self.appearance = learn(self._lessons)
 
-    def _of_any_colour(self, views: Iterable[StoneView]) -> list[Sighting]:
-        """Stones of any colour that were not seen in the views so far."""
-        # Too much on the ice answers faintly to any colour, and on a coarse map a dull cap does.
-        search = replace(self._search, least_score=SEARCH.least_score, radius_px=SEARCH.radius_px)
+    def _of_any_colour(
+        self, views: Iterable[StoneView], radius_px: float = SEARCH.radius_px
+    ) -> list[Sighting]:
+        """Stones of any colour that were not seen in the views so far.
+
+        A dull cap on vivid paint answers too faintly on a map much coarser than that of `SEARCH`.
+        """
+        # Too much on the ice answers faintly to any colour.
+        search = replace(self._search, least_score=SEARCH.least_score, radius_px=radius_px)
         looks = [Look(view.frame.picture, view.camera, view.places) for view in views]
         return [stone for found in strangers(looks, self.disc, search) for stone in found.stones]
 

@@ -1,15 +1,20 @@
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from data.sheet import Stone
 from tests.synthetic.camera import still_camera
 from tests.synthetic.clip import render_still
 from tests.synthetic.scenes import PAINTS
 from tests.vision.test_stones import BLUE, CAMERA, RED, YELLOW, camera_of, scene_of
 from vision.clip import Frame, Image
+from vision.rays import Look
+from vision.stones import FOLLOWING, Findings, Search
+from vision.strangers import strangers
 from vision.watch import Watch
 
 AT_REST = [(0.3, 0.2, RED), (-0.8, 1.0, YELLOW), (0.9, -0.6, RED)]
@@ -70,6 +75,24 @@ def test_a_dull_cap_on_vivid_paint_is_learned_beside_a_vivid_one() -> None:
     for index in range(24):
         watch.look(Frame(index, index / 25, image), camera)
     assert [len(sightings) for _, _, sightings in watch.finish()] == [2] * 24
+
+
+def test_two_teams_that_a_coarse_map_shows_are_not_sought_on_a_fine_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    image, camera = picture(AT_REST), camera_of(CAMERA, scene_of(AT_REST))
+    maps: list[float] = []
+
+    def noted(looks: Sequence[Look], disc: Stone, search: Search) -> list[Findings]:
+        maps.append(search.radius_px)
+        return strangers(looks, disc, search)
+
+    monkeypatch.setattr("vision.watch.strangers", noted)
+    watch = Watch()
+    for index in range(24):
+        watch.look(Frame(index, index / 25, image), camera)
+    assert [len(sightings) for _, _, sightings in watch.finish()] == [3] * 24
+    assert maps == [FOLLOWING.radius_px]
 
 
 @pytest.mark.parametrize("jump", [0.02, 0.025, 0.03, 0.13])
