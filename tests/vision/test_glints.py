@@ -44,6 +44,16 @@ def test_a_lamp_mirrored_on_a_cap_does_not_hold_its_angle(spin: float) -> None:
     assert (np.abs(off - np.median(off)) < 2 * sd[told]).mean() > 0.9
 
 
+@pytest.mark.parametrize("missing", [range(5, 12), range(20, 27), range(10, 25)])
+def test_nor_does_it_where_pictures_are_missing(missing: range) -> None:
+    """The angle that follows the lamp turns a little, too: two radians less than the cap."""
+    seen = [None if k in missing else one for k, one in enumerate(pictures(0.8, 150.0))]
+    theta, sd = handle_angles(TIMES, seen, RADII, np.full(len(TIMES), 0.0005))
+    off = (theta - 0.8 * TIMES)[told := np.isfinite(theta)]
+    assert told.mean() > 0.6
+    assert (np.abs(off - np.median(off)) < 3 * sd[told]).mean() > 0.9
+
+
 def test_spins_are_told_from_stretch_to_stretch_whatever_light_is_on_a_cap() -> None:
     spins = np.where(TIMES < 1.5, 1.4, -0.9)
     turns = np.concatenate([[0.0], np.cumsum(spins[1:] * np.diff(TIMES))])
