@@ -81,7 +81,7 @@ class EdgeTracker:
     palette : ndarray, shape (9, 2, 3)
         Colours on either side of each kind of edge.
     edge : PaintEdge
-        Where the 12-ft circle ends in the profiles across it.
+        Where the circles are in the profiles across them.
     stride : int
         How many frames may be followed together: the more, the better they are predicted.
     fit : ViewSolution, optional

@@ -57,7 +57,7 @@ class HouseFit:
     overhead : bool
         Whether it looks like a camera that hangs over the tee.
     edge : PaintEdge
-        Where the 12-ft circle ends in the profiles across it.
+        Where the circles are in the profiles across them.
     """
 
     camera: Camera

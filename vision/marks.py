@@ -123,7 +123,7 @@ def measure_marks(
     lines : bool
         Whether lines are measured.
     edge : PaintEdge
-        Where the 12-ft circle ends in the profiles across it.
+        Where the circles are in the profiles across them.
     """
     h, w = picture.shape[:2]
     normals = lay_out(view, rig, (w, h), reach=reach, spacing=spacing, most=most, lines=lines)

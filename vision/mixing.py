@@ -74,8 +74,8 @@ def lit(edge: PaintEdge, picture: Picture, view: View, rig: Array, evidence: Evi
     Parameters
     ----------
     edge : PaintEdge
-        As it is if codes were blurred. One with a line beside it is left as it is: a line moves
-        channels apart as well.
+        As it is if codes were blurred. One with a line beside it stays there, but is less sure:
+        a line moves channels apart as well.
     picture : Picture
     view, rig : View, ndarray
         The camera, as in `vision.pose` and `vision.rig`.
