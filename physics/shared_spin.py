@@ -31,9 +31,6 @@ SLACK, UNLIKE = 0.05, 0.2
 """How far from the same the two changes are, rad/s, and as a share of them: stones are not quite
 equal, and of discs on tables nobody says here which is heavier."""
 
-ROUNDS = 2
-"""How often all hits are gone through: what one tells may help at another."""
-
 
 @dataclass(frozen=True)
 class _Side:
@@ -55,36 +52,39 @@ def share_spins(tables: Mapping[str, Columns], contacts: Sequence[Contact]) -> N
     contacts : sequence of Contact
         The hits.
     """
-    for _ in range(ROUNDS):
-        for hit in contacts:
-            if all(stone in tables for stone in hit.stones):
-                for own, other in (hit.stones, hit.stones[::-1]):
-                    for late in (False, True):
-                        _help(tables, contacts, hit, own, other, late)
+    left = [hit for hit in contacts if None not in _sides(tables, contacts, hit)]
+    while left:
+        # That of which most is known first: it may help at another. Each tells but once.
+        each = [[s for s in _sides(tables, contacts, hit) if s is not None] for hit in left]
+        k = min(range(len(left)), key=lambda k: sum(sorted(s.sd**2 for s in each[k])[:3]))
+        _share(each[k])
+        del left[k]
 
 
-def _help(
-    tables: Mapping[str, Columns],
-    contacts: Sequence[Contact],
-    hit: Contact,
-    own: str,
-    other: str,
-    late: bool,
-) -> None:
-    """Join a poorly seen spin before or after a hit with what the other three spins imply."""
-    here, there = (_side(tables[own], contacts, own, hit.t, at) for at in (late, not late))
-    first, last = (_side(tables[other], contacts, other, hit.t, at) for at in (False, True))
-    if here is None or there is None or first is None or last is None:
-        return
-    t, spin, sd = (here.table[name] for name in ("t", "omega", "sd_omega"))
-    if here.sd < (POOR if np.ptp(t[here.rows]) <= SHORT else VAGUE):
-        return
-    change = last.spin - first.spin
-    implied = there.spin + (change if late else -change)
-    variance = there.sd**2 + first.sd**2 + last.sd**2 + SLACK**2 + (UNLIKE * change) ** 2
-    share = variance / (variance + sd[here.rows] ** 2)
-    spin[here.rows] = share * spin[here.rows] + (1 - share) * implied
-    sd[here.rows] = np.sqrt(variance * (1 - share))
+def _share(sides: Sequence[_Side]) -> None:
+    """Join what is poorly seen of the four spins of a hit with what the other three imply."""
+    for k, here in enumerate(sides):
+        t, spin, sd = (here.table[name] for name in ("t", "omega", "sd_omega"))
+        if here.sd < (POOR if np.ptp(t[here.rows]) <= SHORT else VAGUE):
+            continue
+        there, (first, last) = sides[k ^ 1], sides[2:] if k < 2 else sides[:2]
+        change = last.spin - first.spin
+        implied = there.spin + (change if k % 2 else -change)
+        variance = there.sd**2 + first.sd**2 + last.sd**2 + SLACK**2 + (UNLIKE * change) ** 2
+        share = variance / (variance + sd[here.rows] ** 2)
+        spin[here.rows] = share * spin[here.rows] + (1 - share) * implied
+        sd[here.rows] = np.sqrt(variance * (1 - share))
+
+
+def _sides(
+    tables: Mapping[str, Columns], contacts: Sequence[Contact], hit: Contact
+) -> list[_Side | None]:
+    """Give the first stone before and after a hit, then the second; None where it is not told."""
+    return [
+        _side(tables[stone], contacts, stone, hit.t, late) if stone in tables else None
+        for stone in hit.stones
+        for late in (False, True)
+    ]
 
 
 def _side(

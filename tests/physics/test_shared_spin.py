@@ -73,3 +73,35 @@ def test_a_long_stretch_of_which_hardly_anything_is_seen_is_told_as_well() -> No
     tables["B"]["sd_omega"][tables["B"]["t"] > 1.0] = 0.9
     share_spins(tables, [FIRST])
     assert tables["B"]["omega"][-1] == pytest.approx(-0.8, abs=0.1)
+
+
+@pytest.mark.parametrize("told", [(0.03, 0.9, np.nan), (0.03, 0.9, 0.9), (0.3, 0.3, 0.3)])
+def test_a_hit_tells_but_once(told: tuple[float, float, float]) -> None:
+    """Errors of the spins of A and C after and of B between are those stated."""
+    rng = np.random.default_rng(3)
+    after, between, last = told
+    off = []
+    for _ in range(300):
+        turns = rng.normal(0, 0.5, 2)
+        # The other stone's changes: as far from the same as may be.
+        like = turns * rng.normal(1, 0.2, 2) + rng.normal(0, 0.05, 2)
+        seen = {
+            "A": [(0.0, 1.5, 0.03), (1.0, 1.5 + turns[0], after)],
+            "B": [(0.0, 0.0, 0.001), (1.0, like[0], between), (1.12, like[0] + turns[1], 0.03)],
+            "C": [(0.0, 0.0, 0.001), (1.12, like[1], last)],
+        }
+        tables = {
+            name: rows(
+                *((t, spin + rng.normal(0, sd if sd > 0 else 0.0), sd) for t, spin, sd in of)
+            )
+            for name, of in seen.items()
+        }
+        for table in tables.values():
+            for name in table:
+                table[name] = table[name][:35]  # so that A's last stretch is short
+        share_spins(tables, [FIRST, SECOND])
+        for name, k in (("A", 30), ("B", 26), ("C", 30)):
+            error = tables[name]["omega"][k] - seen[name][1][1]
+            off.append(error / tables[name]["sd_omega"][k])
+    each = np.sqrt(np.mean(np.square(off).reshape(-1, 3), axis=0))
+    assert all(0.85 < pull < 1.15 for pull in each[np.isfinite(each)])
