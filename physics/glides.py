@@ -219,7 +219,9 @@ def _odds(
     """
     value, error = float(power.value or 0.0), float(power.stderr or law.sd_fall)
     each = (value / error) ** 2 - (law.fall / law.sd_fall) ** 2 + 2 * np.log(error / law.sd_fall)
-    misfits = [weighted_mean(*values, LEAST_SPREAD**2)[2] for values in (even, bent)]
+    # Where neither makes them agree, what both leave is no evidence for either.
+    spread = max(LEAST_SPREAD, min(random_effects(*values).spread for values in (even, bent)))
+    misfits = [weighted_mean(*values, spread**2)[2] for values in (even, bent)]
     return float(np.exp(np.clip(0.5 * (each + misfits[0] - misfits[1]), -50.0, 50.0)))
 
 

@@ -103,3 +103,16 @@ def test_a_friction_counts_as_constant_until_glides_tell_that_it_falls(power: fl
         assert abs(friction.value - 0.1 / GRAVITY) < 2 * friction.stderr
     if not power:
         assert blurred.value == pytest.approx(0.1 / GRAVITY, rel=0.03)
+
+
+def test_glides_that_no_power_of_the_speed_explains_tell_none() -> None:
+    """Stones that are pushed or slowed anyhow: what a power leaves is as bad as without."""
+    tables = []
+    for k, (speed, slowing) in enumerate([(2.0, 0.1), (1.5, 0.02), (1.0, 0.3), (0.6, 0.2)]):
+        t = np.arange(0, 2, 0.04)
+        y = speed * t - 0.5 * slowing * t**2
+        tables.append(
+            pd.DataFrame({"stone": "ABCD"[k], "frame": range(50), "t": t, "x": k, "y": y})
+        )
+    friction = local(pd.concat(tables).assign(sd_x=0.003, sd_y=0.003)).friction
+    assert friction.law == "constant"
