@@ -15,6 +15,7 @@ from vision.picture import Picture, lightness_at
 from vision.pose import View, project
 
 Array = NDArray[np.float64]
+Floats = NDArray[np.float32]
 
 CELLS, FINER = 48, 2
 """Cells of a glimpse along each side, and samples of which each is the mean."""
@@ -49,11 +50,11 @@ class Glimpse:
     t : float
         When, s.
     grey : ndarray, shape (48, 48)
-        Lightness; NaN where the picture ends.
+        Lightness; NaN where the picture ends. All of a clip are kept: in single precision.
     """
 
     t: float
-    grey: Array
+    grey: Floats
 
 
 def glimpse(picture: Picture, view: View, rig: Array, t: float) -> Glimpse:
@@ -66,7 +67,8 @@ def glimpse(picture: Picture, view: View, rig: Array, t: float) -> Glimpse:
     across, down = (np.where(seen, v, -9.0).astype(np.float32).reshape(side) for v in (x, y))
     grey = lightness_at(picture, across, down).astype(np.float64)
     grey[~seen.reshape(side)] = np.nan
-    return Glimpse(t, np.asarray(cv2.resize(grey, (CELLS, CELLS), interpolation=cv2.INTER_AREA)))
+    small = cv2.resize(grey, (CELLS, CELLS), interpolation=cv2.INTER_AREA)
+    return Glimpse(t, np.asarray(small, np.float32))
 
 
 def is_replay(now: Glimpse, before: Sequence[Glimpse]) -> bool:
@@ -99,7 +101,7 @@ def shows_again(now: Glimpse, before: Sequence[Glimpse], like: Sequence[Glimpse]
     return _places(new) >= NEW_PLACES and bool(again.sum() > 0.5 * new.sum())
 
 
-def _differ(one: Array, other: Array) -> NDArray[np.bool_]:
+def _differ(one: Floats, other: Floats) -> NDArray[np.bool_]:
     return np.asarray(np.abs(one - other) > CHANGED)
 
 
