@@ -5,8 +5,9 @@
 Each variant is rendered from a seed of its own (other restitution, frictions, throw, spins,
 camera, rate and size of the picture: `tests.synthetic.scenes.sample_variant`), run as a clip,
 and laid beside its truth. Last places are those of the model `frictional`, in cm, their stated
-errors in brackets: of the shot again, with the start and the laws that fit the whole of it, and
-foretold from before the first hit with the laws of the literature.
+errors in brackets: of the shot again, with the start and the laws that fit the whole of it; from
+the last state before the first hit with the laws as measured; and from there with those of the
+literature.
 """
 
 from __future__ import annotations
@@ -16,8 +17,13 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
 import pipeline
+from data.results import SimulationScore
+from physics.contacts import find_contacts
+from physics.estimate import estimate
+from physics.hindcast import simulate_measured
 from tests.synthetic.clip import Truth, cached_clip
 from tests.synthetic.scenes import sample_variant
 
@@ -35,12 +41,14 @@ def rendered(seed: int) -> tuple[Path, Truth]:
 def row(seed: int) -> tuple[str, bool]:
     """Run one variant: the outcome as a line, and whether it keeps the bars."""
     clip, truth = rendered(seed)
-    done = pipeline.analyse(pipeline.measure([clip]))
+    measured = pipeline.measure([clip])
+    done = pipeline.analyse(measured)
     results, e, mu = done.results, truth.hits[0].restitution, truth.friction
     off_e = (results.restitution.value or np.nan) - e
     off_mu = (results.friction.value or np.nan) / mu - 1
     score = results.simulations["frictional"]
     again = {stone: off for stone, off in score.rest_error.items() if off is not None}
+    ahead = foretold(done.tracks, measured.sightings, results.radius)
     forecast = results.predictions["frictional"]
     kept = abs(off_e) <= 0.01 and abs(off_mu) <= 0.03 and max(again.values(), default=1.0) <= 0.03
     wide, high = truth.size
@@ -49,9 +57,16 @@ def row(seed: int) -> tuple[str, bool]:
         f"e {e:.3f} {off_e:+.4f} ± {results.restitution.stderr or np.nan:.4f}",
         f"mu {mu:.4f} {100 * off_mu:+.2f} ± {100 * (results.friction.stderr or np.nan) / mu:.2f} %",
         f"again {_places(again, score.rest_sd)}",
+        f"before {_places(ahead.rest_error, ahead.rest_sd)}",
         f"literature {_places(forecast.rest_error, forecast.rest_sd)}",
     ]
     return "  ".join([*cells, "yes" if kept else "NO"]), kept
+
+
+def foretold(tracks: pd.DataFrame, sightings: pd.DataFrame, radius: float) -> SimulationScore:
+    """Score the shot from its last state before the first hit, with the laws as measured."""
+    found = estimate(sightings, find_contacts(sightings, radius), radius=radius)
+    return simulate_measured(tracks, found, radius=radius, fitted=False)[1]["frictional"]
 
 
 def _places(errors: Mapping[str, float | None], stated: Mapping[str, float | None]) -> str:

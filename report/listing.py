@@ -162,6 +162,7 @@ def page_tables(
             tables.ice_table(results),
         ),
         _scores(results),
+        _foretold(results),
     ]
     return [table for table in made if len(table.frame)]
 
@@ -210,16 +211,35 @@ def _simulated(results: Results) -> list[Table]:
 
 
 def _scores(results: Results) -> Table:
-    scores = tables.score_table(results.simulations)
+    how = "as fitted to the whole shot" if results.laws else "from before the first hit"
+    return _off(
+        "models",
+        "Simulated against measured",
+        f"The shot again, {how}.",
+        tables.score_table(results.simulations),
+    )
+
+
+def _foretold(results: Results) -> Table:
+    known = {name: guess for name, guess in results.predictions.items() if guess.rmse is not None}
+    return _off(
+        "predictions",
+        "Predicted against measured",
+        "From what was seen before the first hit, with e and μ assumed.",
+        tables.score_table(known),
+    )
+
+
+def _off(name: str, title: str, note: str, scores: pd.DataFrame) -> Table:
     last_places = [
         Column(f"last place of {name}", str(name), "mm", factor=1000)
         for name in scores.columns
         if name not in ("model", "rmse", "note")
     ]
     return Table(
-        "models",
-        "Simulated against measured",
-        "Root mean square distance over all stones and times after the first hit, and the"
+        name,
+        title,
+        f"{note} Root mean square distance over all stones and times after the first hit, and the"
         " distance of the last places.",
         (
             Column("model", "model", kind="word"),

@@ -161,7 +161,7 @@ def summary(
 def _last(score: SimulationScore, unit: Unit) -> str:
     """How far the last places were off, and by how much errors of start and laws let them be."""
     off = [
-        f"{stone} {unit.little(error)} (± {unit.little(sd)})"
+        f"{stone} {unit.little(error, sd)} (± {unit.little(sd, error)})"
         for stone, error in score.rest_error.items()
         if error is not None and (sd := score.rest_sd.get(stone)) is not None
     ]

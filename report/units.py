@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Unit:
-    """A unit of length with a small one beside it.
+    """A unit of length with a small one beside it, and one for what is less than one of these.
 
     Attributes
     ----------
-    symbol, small : str
+    symbol, small, fine : str
         What is written after a number.
-    per_metre, small_per_metre : float
+    per_metre, small_per_metre, fine_per_metre : float
         How many make a metre.
     decimals : int
         Of a place on the ice.
@@ -24,17 +24,24 @@ class Unit:
     decimals: int
     small: str
     small_per_metre: float
+    fine: str
+    fine_per_metre: float
 
     def length(self, metres: float) -> str:
         """Write a length."""
         return f"{metres * self.per_metre:.{self.decimals}f} {self.symbol}"
 
-    def little(self, metres: float) -> str:
-        """Write a length of which the small unit has a few."""
+    def little(self, metres: float, beside: float = 0.0) -> str:
+        """Write a length of which the small unit has a few, or the fine one; as one beside it."""
+        if (
+            round(max(metres, beside) * self.fine_per_metre, 1)
+            < self.fine_per_metre / self.small_per_metre
+        ):
+            return f"{metres * self.fine_per_metre:.1f} {self.fine}"
         return f"{metres * self.small_per_metre:.1f} {self.small}"
 
 
-METRES = Unit("m", 1.0, 2, "cm", 100.0)
-FEET = Unit("ft", 1 / 0.3048, 1, "in", 1 / 0.0254)
+METRES = Unit("m", 1.0, 2, "cm", 100.0, "mm", 1000.0)
+FEET = Unit("ft", 1 / 0.3048, 1, "in", 1 / 0.0254, "in", 1 / 0.0254)
 UNITS = {unit.symbol: unit for unit in (METRES, FEET)}
 """By what a person writes."""

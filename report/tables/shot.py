@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from data.results import Collision, Glide, SimulationScore
+from data.results import Collision, Glide, Prediction, SimulationScore
 from data.sheet import STONE
 from physics.traces import traces
 
@@ -98,13 +98,13 @@ def glide_table(glides: Sequence[Glide]) -> pd.DataFrame:
     return pd.DataFrame([[getattr(g, name) for name in columns] for g in glides], columns=columns)
 
 
-def score_table(simulations: Mapping[str, SimulationScore]) -> pd.DataFrame:
+def score_table(scores: Mapping[str, SimulationScore] | Mapping[str, Prediction]) -> pd.DataFrame:
     """One row per model: root mean square distance, and per stone that of the last places, m."""
     rows = [
         {"model": model, "rmse": score.rmse, **score.rest_error, "note": score.note}
-        for model, score in simulations.items()
+        for model, score in scores.items()
     ]
-    stones = sorted({name for score in simulations.values() for name in score.rest_error})
+    stones = sorted({name for score in scores.values() for name in score.rest_error})
     return pd.DataFrame(rows, columns=["model", "rmse", *stones, "note"])
 
 

@@ -1,7 +1,10 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
+from data.results import Prediction
 from data.sheet import HOUSE
 from report.listing import page_tables
 
@@ -17,6 +20,20 @@ def test_the_tables_of_the_study_and_of_coaches_are_there(made):
     assert {"table_1_laws", "table_2_measured", "table_4_point-mass"} <= set(names)
     assert {"methods", "laws_tried", "ice"} <= set(names)
     assert "table_3_rigid-body" not in names  # it could not run
+
+
+def test_predictions_stand_beside_what_was_fitted(shot):
+    known = Prediction(0.02, {"A": 0.031}, {"A": 0.05})
+    results = replace(
+        shot.results, predictions={"frictional": known, "rigid-body": Prediction(None)}
+    )
+    made = {t.name: t for t in page_tables(results, shot.tracks)}
+    assert list(made["predictions"].frame["model"]) == ["frictional"]
+    assert list(made["predictions"].frame["A"]) == [0.031]
+    assert "as fitted" in made["models"].note
+    alone = page_tables(replace(results, laws=None, predictions={}), shot.tracks)
+    assert "predictions" not in [table.name for table in alone]
+    assert "from before" in next(table for table in alone if table.name == "models").note
 
 
 def test_without_a_house_there_is_nothing_for_coaches(shot):

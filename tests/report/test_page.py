@@ -135,6 +135,7 @@ def test_the_answer_comes_first(written):
     for words in ("A on B at", "1.2 cm rms", "no spins after the hit", "4 of 5 frames", "0.25 px"):
         assert said.index(words) < first
     assert "1.2.3" in said
+    assert "frictional, the shot again as fitted to the whole of it" in " ".join(said.split())
 
 
 def test_names_of_files_are_no_markup(written):

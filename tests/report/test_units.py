@@ -13,5 +13,14 @@ def test_a_foot_has_twelve_inches():
     assert METRES.little(0.0254) == "2.5 cm"
 
 
+def test_less_than_a_centimetre_is_in_millimetres():
+    assert METRES.little(0.01) == "1.0 cm"
+    assert METRES.little(0.00996) == "1.0 cm"
+    assert METRES.little(0.00994) == "9.9 mm"
+    assert METRES.little(0.0) == "0.0 mm"
+    assert METRES.little(0.004, beside=0.02) == "0.4 cm"
+    assert FEET.little(0.00254) == "0.1 in"
+
+
 def test_units_are_found_by_their_symbols():
     assert UNITS == {"m": METRES, "ft": FEET}
