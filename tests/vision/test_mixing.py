@@ -9,7 +9,8 @@ import pytest
 from tests.synthetic import PAINTS, CameraPath, Light, Scene, render_still, still_camera
 from vision.house import find_house
 from vision.house_fit import HouseFit
-from vision.mixing import half_light
+from vision.mixing import half_light, lit
+from vision.outline import PaintEdge
 from vision.paint import EIGHT, FOUR, TWELVE
 
 TIMES = 3
@@ -67,6 +68,19 @@ def test_an_outline_is_not_taken_for_light(paint: str) -> None:
     found = find_house(picture(paint, 1.0, outline=True))
     assert found is not None
     assert not any(found.edge.light)
+
+
+def test_what_a_line_or_no_colour_leaves_open_is_left_open() -> None:
+    image = picture("navy-orange", 2.2)
+    found = find_house(image)
+    assert found is not None
+    camera = found.view, found.rig, found.evidence
+    plain, lined = PaintEdge(sd=0.01), PaintEdge(sd=0.01, line=0.3)
+    assert any(lit(plain, image, *camera).light)
+    grey = np.repeat(cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)[..., None], 3, -1)
+    for edge, shown in ((lined, image), (plain, grey)):
+        left = lit(edge, shown, *camera)
+        assert not any(left.light) and left.sd > lit(plain, image, *camera).sd > edge.sd
 
 
 def test_half_of_the_light_lies_beside_the_brighter_side() -> None:
