@@ -220,3 +220,19 @@ def test_what_is_unrolled_about_an_unsure_centre_is_less_sure() -> None:
     _, sd = angles_about(times, pictures, RADII, unsure)
     assert (sd[:5] > before[:5]).all()
     assert sd[5:] == pytest.approx(before[5:], rel=0.02)
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_shade_that_stays_on_the_cap_is_not_believed_before_a_grip_that_turns(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    times = np.arange(100) / 25
+    true = 0.9 * times
+    shade = patch(0.3).astype(float)
+    pictures = []
+    for turn in true:
+        grain = [cv2.GaussianBlur(rng.normal(0, 1, shade.shape[:2]), (0, 0), 2.5) for _ in "12"]
+        grip, cap = (each[..., None] / each.std() for each in grain)
+        both = np.concatenate([patch(turn) + 7.5 * grip, shade + 7.0 * cap], axis=1)
+        pictures.append(cap_spectrum(np.clip(both, 0, 255).astype(np.uint8), RADII))
+    theta, _ = handle_angles(times, pictures, RADII)
+    assert abs(np.polyfit(times, theta - true, 1)[0]) < 0.02
