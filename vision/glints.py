@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from vision.align import HARMONICS, ORDERS, Array, Complex, rings_seen
 
@@ -77,10 +78,11 @@ def unlit(times: Array, pictures: Complex, angles: Array) -> Unlit:
     flat = pictures.reshape(len(times), len(ORDERS), -1)
     knots = _between_knots(times)
     held = knots.T @ knots + 1e-6 * np.eye(knots.shape[1])
-    light = np.asarray(np.linalg.solve(held, knots.T), np.float64)
     phase = np.exp(-1j * ORDERS * angles[:, None])
-    own = phase - knots @ (light @ phase)
-    dark = flat - _times(knots, _times(light, flat))
+    own = phase - knots @ np.linalg.solve(held, knots.T @ phase)
+    pulled = _times(knots.T, flat)
+    light = np.linalg.solve(held, pulled.reshape(len(held), -1)).reshape(pulled.shape)
+    dark = flat - _times(knots, light)
     left = np.sum(np.abs(own) ** 2, axis=0) + FAINT * len(times)
     pull = np.einsum("nk,nkx->kx", own.conj().astype(np.complex64), dark)
     cap = np.asarray(pull / left[:, None], np.complex64)
@@ -99,14 +101,18 @@ def unlit(times: Array, pictures: Complex, angles: Array) -> Unlit:
 def _between_knots(times: Array) -> Array:
     """Weights of the values at knots in the values at times, (n, knots), along straight lines."""
     count = max(round(float(times[-1] - times[0]) / KNOT), 1) + 1
-    knots = np.linspace(times[0], times[-1], count)
-    return np.stack([np.interp(times, knots, row) for row in np.eye(count)], axis=1)
+    place = (count - 1) * (times - times[0]) / (times[-1] - times[0])
+    before = np.minimum(place.astype(np.intp), count - 2)
+    rows, weights = np.arange(len(times)), np.zeros((len(times), count))
+    weights[rows, before], weights[rows, before + 1] = before + 1 - place, place - before
+    return weights
 
 
-def _times(matrix: Array, flat: Complex) -> Complex:
-    """Product of a matrix (m, n) and arrays (n, orders, …) along their first axis."""
-    product = matrix.astype(np.float32) @ flat.reshape(len(flat), -1)
-    return np.asarray(product.reshape(-1, *flat.shape[1:]))
+def _times(matrix: Array, values: Complex | NDArray[np.complex128]) -> Complex:
+    """Product of a matrix (m, n) and values (n, orders, …), both in single precision."""
+    parts = np.ascontiguousarray(values, np.complex64).reshape(len(values), -1).view(np.float32)
+    product = matrix.astype(np.float32) @ parts
+    return np.asarray(product.view(np.complex64).reshape(-1, *values.shape[1:]))
 
 
 def course(times: Array, pictures: Complex) -> Array:

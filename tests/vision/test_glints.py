@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from vision.align import ORDERS
 from vision.glints import course, unlit
 from vision.handle import cap_spectrum, handle_angles
 
@@ -74,3 +75,19 @@ def test_light_is_taken_from_pictures_and_what_turns_is_left() -> None:
     assert np.sum(np.abs(parted.pictures - dark)[inner] ** 2) < 0.1 * before
     assert parted.share > 0.5 > 0.1 > unlit(TIMES, seen, 0.0 * TIMES).share
     assert parted.told.min() > 0.1 and unlit(TIMES, seen, 0.0 * TIMES).told.max() < 0.1
+
+
+def test_light_along_straight_lines_between_knots_leaves_nothing_in_a_long_clip() -> None:
+    rng = np.random.default_rng(4)
+    times = np.concatenate([[0.0], np.sort(rng.uniform(0.0, 24.0, 600)), [24.0]])
+    shape = len(ORDERS), 2, 3
+    at_knots = rng.normal(size=(61, *shape)) + 1j * rng.normal(size=(61, *shape))
+    cap = rng.normal(size=shape) + 1j * rng.normal(size=shape)
+    before = np.minimum((times / 0.4).astype(int), 59)
+    part = (times / 0.4 - before)[:, None, None, None]
+    light = (1 - part) * at_knots[before] + part * at_knots[before + 1]
+    turning = np.exp(-1j * ORDERS * 1.5 * times[:, None])[..., None, None] * cap
+    found = unlit(times, np.asarray(light + turning, np.complex64), 1.5 * times)
+    left = np.abs(found.pictures - turning)[:, 3:]
+    assert left.mean() < 0.1 * np.abs(turning).mean()
+    assert found.share > 0.9
