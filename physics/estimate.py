@@ -7,7 +7,7 @@ follow the shot. The first is what the second is checked against.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -21,6 +21,7 @@ from physics.contacts import Contact
 from physics.finite_differences import by_finite_differences
 from physics.followed import fit_followed, followed
 from physics.local import Local, estimate_locally
+from physics.off_centre import centred_sightings
 from physics.random_effects import random_effects
 from physics.shot_model import ice
 from physics.watched import loose_priors, watch
@@ -128,9 +129,16 @@ def estimate(
     inertia : float
         k in I = k m R²; decides whether a contact can have slid throughout.
     """
-    local = estimate_locally(sightings, contacts, radius=radius, masses=masses, inertia=inertia)
+
+    def beside_hits(seen: pd.DataFrame) -> Local:
+        return estimate_locally(seen, contacts, radius=radius, masses=masses, inertia=inertia)
+
+    def centred(fit: GlobalFit) -> Estimate:
+        return beside_hits(centred_sightings(sightings, fit)).restitution
+
+    local = beside_hits(sightings)
     restitution, friction, unsure = local.restitution, local.friction, local.friction_doubt
-    fitted, doubt, end = _whole(local, radius, masses or {}, inertia)
+    fitted, doubt, end = _whole(local, radius, masses or {}, inertia, centred)
     whole = fitted if doubt is None else None
     if fitted is not None and doubt is not None and _fits(fitted):
         restitution = _of_two(restitution, fitted["restitution"])
@@ -200,11 +208,17 @@ def _friction(whole: GlobalFit) -> Friction:
 
 
 def _whole(
-    local: Local, radius: float, masses: Mapping[str, float], inertia: float
+    local: Local,
+    radius: float,
+    masses: Mapping[str, float],
+    inertia: float,
+    centred: Callable[[GlobalFit], Estimate],
 ) -> tuple[GlobalFit | None, str | None, str | None]:
     """Fit the whole shot through the simulator.
 
-    Say, second, why what it gives is not to be used, or else, third, how far it goes.
+    Say, second, why what it gives is not to be used, or else, third, how far it goes. It must agree
+    with the restitution beside the hits as sighted, or as `centred` has it, with what the fit has
+    caps beside the centres by taken out of the sightings.
     """
     if local.fit is None:
         return None, None, None
@@ -219,6 +233,9 @@ def _whole(
     except InputError as error:
         return None, f"whole shot: cannot be simulated ({error}); values beside the hits used", None
     doubt = _doubt(fit, local.restitution)
+    if doubt is not None and _fits(fit):
+        # Caps beside the centres turn with the stones; paths beside a hit take that for velocity.
+        doubt = doubt if _doubt(fit, centred(fit)) else None
     if doubt is None and end is not None and _blunt(fit["friction"], local.friction):
         doubt = (
             f"whole shot: the simulator follows it {end}, too short; values beside the hits used"

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from physics.residuals import huber_weights
 from physics.traces import Trace
+from physics.whole_fit import GlobalFit
 
 Floats = NDArray[np.float64]
 
@@ -45,3 +47,20 @@ def centred(trace: Trace, residuals: Floats, noise: float) -> tuple[Floats, Floa
     normal = np.eye(2) + np.einsum("nai,naj->ij", weighted, rows)
     beside = np.linalg.solve(normal, np.einsum("nai,na->i", weighted, residuals))
     return residuals - rows @ beside, beside
+
+
+def centred_sightings(sightings: pd.DataFrame, fit: GlobalFit) -> pd.DataFrame:
+    """Take out of sightings by what a fit of the whole shot has the caps beside the centres."""
+    out = sightings.copy()
+    shot = fit.shots[0]
+    runs = shot.residuals(fit.simulation())
+    for (stone, trace), run in zip(shot.traces.items(), runs, strict=True):
+        told = np.isfinite(trace.theta)
+        if not told.any():
+            continue
+        own = out["stone"] == stone
+        theta = np.interp(out.loc[own, "t"], trace.t[told], trace.theta[told])
+        x, y = np.median(trace.sd_place) * centred(trace, run, fit.inflation)[1]
+        out.loc[own, "x"] -= np.cos(theta) * x - np.sin(theta) * y
+        out.loc[own, "y"] -= np.sin(theta) * x + np.cos(theta) * y
+    return out

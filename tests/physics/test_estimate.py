@@ -332,3 +332,22 @@ def test_what_two_ways_differ_by_is_in_the_error() -> None:
     assert found.stderr == pytest.approx(np.sqrt(0.01**2 + more), rel=1e-6)
     assert _of_two(local, Estimate(0.825, 0.004)) == local
     assert _of_two(local, Estimate()) == local
+
+
+@pytest.mark.parametrize(("spin", "way"), [(3.0, np.pi), (-4.0, np.pi / 3), (-4.0, 0.0)])
+def test_a_cap_beside_the_centre_is_not_taken_for_velocity(spin: float, way: float) -> None:
+    """It turns with its stone: beside the hit that is velocity, over the whole shot it is not."""
+    starts = [Start(0.06, -1.6, 0.0, 1.5, 0.3, spin), Start(0.0, 0.0, 0.0, 0.0, 1.0)]
+    motion = simulate(starts, 4.0, ice=Ice(b=0.0109), impact=Impact(0.83), step=5e-4, keep_every=4)
+    seen = watch(motion, np.random.default_rng(3), sd=0.001)
+    own = seen["stone"] == "A"
+    seen.loc[own, "x"] += 0.006 * np.cos(seen["theta"] + way)
+    seen.loc[own, "y"] += 0.006 * np.sin(seen["theta"] + way)
+    seen[["sd_place_x", "sd_place_y"]] = 0.004
+    found = measure(seen)
+    beside = found.local.restitution
+    assert abs(float(beside.value or 0) - 0.83) > 3 * float(beside.stderr or 0)
+    assert found.whole is not None
+    assert found.restitution == found.whole["restitution"]
+    assert found.restitution.value == pytest.approx(0.83, abs=0.005)
+    assert not [text for text in found.warnings if "disagree" in text]
