@@ -191,9 +191,12 @@ def _friction(
     speeds = np.array([one.speed for one in each])
     values, cov = _at_one(fit, each, power, sd_power)
     form = _form(speeds, power)
-    steep = values * (1 + form), cov + np.outer(values * form, values * form)
-    bent = random_effects(*steep).mean
-    value, stderr = float(bent.value or 0.0) / GRAVITY, float(bent.stderr or 0.0) / GRAVITY
+    steep = values * (1 + form), cov
+    pooled = random_effects(*steep)
+    # How far the form leads astray is no error that glides tell of: it has no say in the weights.
+    lean = weighted_mean(values * form, cov, pooled.spread**2)[0]
+    value = float(pooled.mean.value or 0.0) / GRAVITY
+    stderr = float(np.hypot(pooled.mean.stderr or 0.0, lean)) / GRAVITY
     if _odds(flat, steep, Estimate(power, sd_power), law) < TOLD:
         usual = even.value / GRAVITY
         return Friction(usual, float(np.hypot(stderr, usual - value)))
