@@ -44,10 +44,11 @@ GRANITE = 0.15
 and paint that ends near it draws its outline aside, by up to 8 mm. Where the cap is covered it
 still tells the centre."""
 
-FLANK = 0.25
+FLANK = 0.37
 """How far from half-way between granite and cap, as a share of what they differ by, colours tell
 where the edge of the cap lies: a mark beside the rim, a wall below it and lamps mirrored in the
-granite are colours beyond that, and draw the middle of the whole step aside by up to 5 mm."""
+granite are colours beyond that, and draw the middle of the whole step aside by up to 5 mm. Of a
+narrower middle the level half-way says more, which is aside where granite is lit from one side."""
 
 OPEN, NEAR = 0.75, 0.02
 """Share of a stone to be seen for that, and how near to where it is looked for, m: of one half
