@@ -21,9 +21,10 @@ Array = NDArray[np.float64]
 WHOLE = 0.8
 """Share of the circle that must be seen."""
 
-PIXELS = 0.10
+PIXELS = 0.08
 """What pixels do to each wave around a circle, once around or several times, px, at most: rendered
-stones, which are round, show .04 to .10, sprites of filmed ones .08 to .20."""
+stones, which are round, show .04 to .10, sprites of filmed ones .08 to .20. What pixels are held
+for is not held for the stone's own: with .10 films lay outside of what is stated."""
 
 SHARE = 4.5
 """How far the middle may be off, per axis, in root mean squares of the harmonics that bend the
