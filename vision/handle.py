@@ -72,6 +72,10 @@ DOUBT = 1.25
 mean where the cap's are believed for that alone: beyond it no stone of three renderers and of films
 was told better at the grip, below it two in three where the two differ."""
 
+MOST_APART = 0.3
+"""How much of an error angles at two heights of which neither is clearly better tell of at most,
+rad: farther apart one of them has lost the stone."""
+
 UNTOLD = 0.1
 """Share of a cap's picture that no light explains below which it tells no angle."""
 
@@ -172,6 +176,7 @@ def handle_angles(
     heights = np.split(pictures, pictures.shape[2] // len(radii), axis=2)
     tried = [_matched(times[seen], part, turning) for part in heights]
     which = int(np.argmax([_alike(each) for each in tried]))
+    apart = _apart(tried)
     if which and _doubtful(*tried):
         best = _turning_more(times[seen], heights, tried, turning)
         del pictures, heights, tried  # they take as much again each
@@ -188,7 +193,8 @@ def handle_angles(
     fit = align(best.pictures[good], best.angles[good], radii, aside)
     unlike = np.maximum(1 - best.likeness[good] ** 2, ALIKE)
     covered = np.clip((unlike / (BEFORE * np.median(unlike))) ** 2, 1.0, WORST)
-    theta[rows], sd[rows] = fit.angle, LASTING * covered * fit.sd
+    theta[rows] = fit.angle
+    sd[rows] = np.hypot(LASTING * covered * fit.sd, apart[good])
     return theta - theta[rows[0]], sd
 
 
@@ -206,10 +212,23 @@ def _alike(matched: _Matched) -> float:
     return float((matched.likeness**2).sum())
 
 
-def _doubtful(grip: _Matched, cap: _Matched) -> bool:
-    """Whether pictures are hardly less alike at the height of the grip than at the cap's."""
-    count = len(grip.angles)
-    return count - _alike(grip) < DOUBT * (count - _alike(cap))
+def _doubtful(less: _Matched, more: _Matched) -> bool:
+    """Whether pictures are hardly less alike at one height than at the other."""
+    count = len(less.angles)
+    return count - _alike(less) < DOUBT * (count - _alike(more))
+
+
+def _apart(tried: Sequence[_Matched]) -> Array:
+    """How far apart the angles of both heights are where neither is clearly better, (n,), rad."""
+    count = len(tried[0].angles)
+    if len(tried) < 2 or not (_doubtful(*tried) and _doubtful(*tried[::-1])):
+        return np.zeros(count)
+    off = tried[1].angles - tried[0].angles
+    told = np.flatnonzero(np.isfinite(off))
+    if not len(told):
+        return np.zeros(count)
+    each = np.interp(np.arange(count), told, off[told])
+    return np.asarray(np.minimum(np.abs(each - np.median(off[told])), MOST_APART))
 
 
 def _turning_more(

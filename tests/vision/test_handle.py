@@ -236,3 +236,19 @@ def test_shade_that_stays_on_the_cap_is_not_believed_before_a_grip_that_turns(se
         pictures.append(cap_spectrum(np.clip(both, 0, 255).astype(np.uint8), RADII))
     theta, _ = handle_angles(times, pictures, RADII)
     assert abs(np.polyfit(times, theta - true, 1)[0]) < 0.02
+
+
+def test_where_grip_and_cap_tell_different_angles_errors_say_so() -> None:
+    times = np.arange(100) / 25
+
+    def told(other: float) -> NDArray[np.float64]:
+        rng = np.random.default_rng(4)
+        pictures = [
+            np.concatenate([spectrum(0.9 * t, rng), spectrum(other * t, rng)], axis=1)
+            for t in times
+        ]
+        return handle_angles(times, pictures, RADII)[1]
+
+    # 0.03 rad/s apart, and so up to 0.06 rad about the middle.
+    assert told(0.93)[[0, -1]].min() > 0.05
+    assert told(0.93)[50] < told(0.90)[50] + 0.01
