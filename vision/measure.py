@@ -54,6 +54,11 @@ OPEN, NEAR = 0.75, 0.02
 """Share of a stone to be seen for that, and how near to where it is looked for, m: of one half
 covered, or not yet come upon, whole steps tell more."""
 
+ASLANT = 0.35, 0.6
+"""Slants of the view from which on and up to which the middle of the step takes the place of the
+whole of it: there the wall below a cap is seen. From above there is none, and whole steps are as
+good, or better where granite is lit from one side."""
+
 DARK = 0.5
 """Lightness, as a share of that of the rest of a stone's granite, below which something covers it:
 its own dark side has 0.8 of it, dark clothes 0.05 to 0.5. What is lighter may be ice behind a low
@@ -219,7 +224,8 @@ def _stones(
     visible = (stony & at_cap).mean(1)
     # Whether there is a stone is asked of whole steps of colour; where it is, of their middle. Both
     # fits are made together: for the few places of most pictures that is as quick as one.
-    clear = np.flatnonzero((visible > OPEN) & bool(appearance.caps))
+    leaning = np.clip((np.hypot(*slant.T) - ASLANT[0]) / (ASLANT[1] - ASLANT[0]), 0.0, 1.0)
+    clear = np.flatnonzero((visible > OPEN) & (leaning > 0) & bool(appearance.caps))
     twice = np.concatenate([np.arange(len(places)), clear])
     middle = falls_along(np.clip(signal, -FLANK, FLANK)[..., None])[clear, ..., 0] / (2 * FLANK)
     falling = np.concatenate([cap_rim.fall, middle])
@@ -249,10 +255,11 @@ def _stones(
         more = 2 * (np.clip(fit.unbroken, *ON_ONE_SIDE) - ON_ONE_SIDE[0]) - 0.25 * misfit
         evidence = np.where(evidence < ENOUGH, np.minimum(evidence + more, ENOUGH), evidence)
     near = exact.ok & (np.hypot(fit.shift[clear, 0], fit.shift[clear, 1]) < NEAR)
-    rows = clear[near]
+    rows, more = clear[near], leaning[clear[near], None]
     shift, covariance, bends = fit.shift.copy(), fit.covariance.copy(), fit.bends.copy()
-    shift[rows], covariance[rows] = exact.shift[near], exact.covariance[near]
-    bends[rows] = exact.bends[near]
+    shift[rows] += more * (exact.shift[near] - shift[rows])
+    covariance[rows] += more[..., None] * (exact.covariance[near] - covariance[rows])
+    bends[rows] += more * (exact.bends[near] - bends[rows])
     # What displaces the edges of one side is made good by the other side, if that is seen.
     hidden = 0.04 * disc.radius * (1 - visible)
     return Measures(
