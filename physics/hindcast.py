@@ -140,10 +140,12 @@ def _may_have_been(fit: GlobalFit | None, shot: Shot, doubt: Doubt, start: float
 
 
 def _start_time(tracks: pd.DataFrame, estimates: Estimates) -> float:
-    """Time of the last frame before the first hit, or without a hit of the first frame."""
+    """Time of the last frame before the first hit; without one of the first with all that move."""
     times = np.unique(tracks["t"].to_numpy(float))
     if not estimates.collisions:
-        return float(times[0])
+        each = tracks.groupby("stone", sort=True)
+        way = np.hypot(*(each[axis].agg(np.ptp) for axis in ("x", "y")))
+        return float(each["t"].first()[way > MOVED].max()) if (way > MOVED).any() else times[0]
     before = times[times < min(hit.earliest for hit in estimates.collisions)]
     return float(before[-1] if len(before) else times[0])
 
@@ -159,7 +161,7 @@ def _states(
         late = early.empty
         row = group.iloc[0] if late else early.iloc[-1]
         if not estimates.collisions:
-            row = group.iloc[0]
+            row = group.iloc[max(int((group["t"] <= start).sum()) - 1, 0)]
         # A stone that comes into view later is where it lies; its way there is not known.
         ahead = 0.0 if late else start - float(row["t"])
         vx, vy = (0.0, 0.0) if late else (_or_zero(row["vx"]), _or_zero(row["vy"]))

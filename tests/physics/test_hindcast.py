@@ -97,6 +97,17 @@ def test_who_glides_only_is_no_part_of_the_score() -> None:
     assert set(samples) == MODELS
 
 
+def test_a_glide_that_comes_into_view_late_is_simulated_from_there() -> None:
+    """Were it taken back to the first frame at its speed then, it would lose what ice had slowed."""
+    seen = watch(hit_motion(), np.random.default_rng(42))
+    seen = seen[seen["t"] < 0.9]
+    late = seen[(seen["stone"] != "A") | (seen["t"] > 0.4)].reset_index(drop=True)
+    samples, scores, _ = again(late)
+    assert samples["frictional"]["t"].min() == late.loc[late["stone"] == "A", "t"].min()
+    assert scores["frictional"].rmse is not None
+    assert scores["frictional"].rmse < 0.006
+
+
 def test_without_spins_the_rigid_bodies_say_so() -> None:
     seen = watch(hit_motion(), np.random.default_rng(43))
     seen[["theta", "sd_theta"]] = np.nan
