@@ -36,6 +36,10 @@ which the 4-ft circle and the button were taken for all."""
 LEAST_STEP, WHOLE_AROUND = 20.0, 0.7
 """Grey levels by which an edge stands out, and its share of a circle, for one that is there."""
 
+ENOUGH_SEEN = 0.5
+"""Share of such a circle that must be in view. Without an 8-ft circle `LEAST_COVERED` is enough:
+the 4-ft circle may have been taken for the 12-ft one, and most around it may be out of view."""
+
 BARE = 0.35
 """How far what is within the 8-ft circle may be from the ice's colour and be bare, in steps from
 ice to paint."""
@@ -80,11 +84,16 @@ def is_house(image: Image, evidence: Evidence, view: View, rig: Array) -> bool:
     ringed = bare and evidence.support.min() > WHOLE
     if not ringed and clearness(image, view, rig) < CROSSED:
         return False
-    return not _is_target(image, view, rig)
+    return not _is_target(
+        image, view, rig, ENOUGH_SEEN if evidence.support[1] > LEAST_SUPPORT else LEAST_COVERED
+    )
 
 
-def _is_target(image: Image, view: View, rig: Array) -> bool:
-    """Whether there are whole circles where a house has none: between its own or around them."""
+def _is_target(image: Image, view: View, rig: Array, least: float) -> bool:
+    """Whether there are whole circles where a house has none: between its own or around them.
+
+    Of each, `least` of it must be in view.
+    """
     angle = np.linspace(0, 2 * np.pi, 72, endpoint=False)
     way = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
     size = (image.shape[1], image.shape[0])
@@ -100,6 +109,6 @@ def _is_target(image: Image, view: View, rig: Array) -> bool:
         square = (usual**2).sum(-1)
         alike = (step * usual[:, None]).sum(-1) > 0.5 * square[:, None]
         whole = (alike & within).sum(1) > WHOLE_AROUND * count
-        if (whole & (square > LEAST_STEP**2) & (count > 0.5 * len(angle))).any():
+        if (whole & (square > LEAST_STEP**2) & (count > least * len(angle))).any():
             return True
     return False

@@ -108,3 +108,11 @@ def test_bare_ice_between_the_paint_or_the_lines_prove_it(cross: bool) -> None:
 def test_a_circle_where_a_house_has_none_disproves_it(radius: float) -> None:
     more = sorted((*HOUSE, (radius, (90, 140, 60))), reverse=True)
     assert not proved(drawn(tuple(more)))
+
+
+@pytest.mark.parametrize("rings", [False, True])
+def test_the_4_ft_circle_is_not_taken_for_the_12_ft_one(rings: bool) -> None:
+    """Nor where less than half of the circles around it, three times as large, is in view."""
+    larger = tuple((3 * radius, colour) for radius, colour in HOUSE[:2]) if rings else ()
+    image = drawn((*larger, (1.829, RED), (0.619, ICE)))[70:-70]
+    assert proved(image) is not rings
