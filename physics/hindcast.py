@@ -145,7 +145,8 @@ def _start_time(tracks: pd.DataFrame, estimates: Estimates) -> float:
     if not estimates.collisions:
         each = tracks.groupby("stone", sort=True)
         way = np.hypot(*(each[axis].agg(np.ptp) for axis in ("x", "y")))
-        return float(each["t"].first()[way > MOVED].max()) if (way > MOVED).any() else times[0]
+        seen = each["t"].first().to_numpy(float)[way > MOVED]
+        return float(seen.max(initial=times[0]))
     before = times[times < min(hit.earliest for hit in estimates.collisions)]
     return float(before[-1] if len(before) else times[0])
 

@@ -98,7 +98,7 @@ def test_who_glides_only_is_no_part_of_the_score() -> None:
 
 
 def test_a_glide_that_comes_into_view_late_is_simulated_from_there() -> None:
-    """Were it taken back to the first frame at its speed then, it would lose what ice had slowed."""
+    """Taken back to the first frame at its speed then it would lack what ice had slowed."""
     seen = watch(hit_motion(), np.random.default_rng(42))
     seen = seen[seen["t"] < 0.9]
     late = seen[(seen["stone"] != "A") | (seen["t"] > 0.4)].reset_index(drop=True)
