@@ -144,8 +144,8 @@ def _start_time(tracks: pd.DataFrame, estimates: Estimates) -> float:
     times = np.unique(tracks["t"].to_numpy(float))
     if not estimates.collisions:
         each = tracks.groupby("stone", sort=True)
-        way = np.hypot(*(each[axis].agg(np.ptp) for axis in ("x", "y")))
-        seen = each["t"].first().to_numpy(float)[way > MOVED]
+        wide, high = (np.asarray(each[axis].agg(np.ptp), float) for axis in ("x", "y"))
+        seen = each["t"].first().to_numpy(float)[np.hypot(wide, high) > MOVED]
         return float(seen.max(initial=times[0]))
     before = times[times < min(hit.earliest for hit in estimates.collisions)]
     return float(before[-1] if len(before) else times[0])
