@@ -36,13 +36,9 @@ def centred(trace: Trace, residuals: Floats, noise: float) -> tuple[Floats, Floa
         By how much the cap is beside the centre, in its own standard deviations: a residual too.
     """
     size = float(np.median(trace.sd_place))
-    told = np.isfinite(trace.theta)
-    if not size or not told.any():
+    if not size or not np.isfinite(trace.theta).any():
         return residuals, np.zeros(2)
-    theta = np.interp(trace.t, trace.t[told], trace.theta[told])
-    cos, sin = np.cos(theta), np.sin(theta)
-    ways = np.stack([np.stack([cos, -sin], axis=1), np.stack([sin, cos], axis=1)], axis=1)
-    rows = size * ways / trace.sd[:, :, None]
+    rows = size * _turns(trace, trace.t) / trace.sd[:, :, None]
     weighted = rows * huber_weights(residuals)[:, :, None] / noise
     normal = np.eye(2) + np.einsum("nai,naj->ij", weighted, rows)
     beside = np.linalg.solve(normal, np.einsum("nai,na->i", weighted, residuals))
@@ -55,12 +51,17 @@ def centred_sightings(sightings: pd.DataFrame, fit: GlobalFit) -> pd.DataFrame:
     shot = fit.shots[0]
     runs = shot.residuals(fit.simulation())
     for (stone, trace), run in zip(shot.traces.items(), runs, strict=True):
-        told = np.isfinite(trace.theta)
-        if not told.any():
+        if not np.isfinite(trace.theta).any():
             continue
         own = out["stone"] == stone
-        theta = np.interp(out.loc[own, "t"], trace.t[told], trace.theta[told])
-        x, y = np.median(trace.sd_place) * centred(trace, run, fit.inflation)[1]
-        out.loc[own, "x"] -= np.cos(theta) * x - np.sin(theta) * y
-        out.loc[own, "y"] -= np.sin(theta) * x + np.cos(theta) * y
+        beside = np.median(trace.sd_place) * centred(trace, run, fit.inflation)[1]
+        out.loc[own, ["x", "y"]] -= _turns(trace, out.loc[own, "t"].to_numpy(float)) @ beside
     return out
+
+
+def _turns(trace: Trace, t: Floats) -> Floats:
+    """Rotations from a stone's frame to the ice at times, (n, 2, 2), by its angles where told."""
+    told = np.isfinite(trace.theta)
+    theta = np.interp(t, trace.t[told], trace.theta[told])
+    cos, sin = np.cos(theta), np.sin(theta)
+    return np.stack([np.stack([cos, -sin], axis=1), np.stack([sin, cos], axis=1)], axis=1)

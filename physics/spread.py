@@ -61,16 +61,6 @@ class Doubt:
     shared: Mapping[str, Floats] = field(default_factory=dict)
 
 
-def draws(shot: Shot, doubt: Doubt, count: int = DRAWS, seed: int = 0) -> list[Simulation]:
-    """Simulate a shot many times with all that is doubtful drawn from normal distributions.
-
-    What is drawn is independent but for what places share: stones near each other move
-    together (`physics.traces.alike`). Draws that cannot be simulated are left out.
-    """
-    rng = np.random.default_rng(seed)
-    return simulated(drawn(shot, doubt, rng) for _ in range(count))
-
-
 def simulated(shots: Iterable[Shot]) -> list[Simulation]:
     """Simulate those of some shots that can be."""
     out = []
@@ -138,7 +128,11 @@ def path_spread(others: Sequence[Simulation], times: Floats) -> pd.DataFrame:
 
 
 def drawn(shot: Shot, doubt: Doubt, rng: np.random.Generator) -> Shot:
-    """Return a shot with all that is doubtful drawn from normal distributions."""
+    """Return a shot with all that is doubtful drawn from normal distributions.
+
+    What is drawn is independent but for what places share: stones near each other move together
+    (`physics.traces.alike`).
+    """
     together = _together(shot, doubt, rng)
     stones = tuple(
         _moved(stone, doubt, by, rng) for stone, by in zip(shot.stones, together, strict=True)

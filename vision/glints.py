@@ -115,7 +115,7 @@ def _times(matrix: Array, values: Complex | NDArray[np.complex128]) -> Complex:
     return np.asarray(product.view(np.complex64).reshape(-1, *values.shape[1:]))
 
 
-def course(times: Array, pictures: Complex) -> Array:
+def course(times: Array, pictures: Complex) -> tuple[Array, float]:
     """Angles of a cap by its spins from stretch to stretch, whatever light is on it.
 
     Parameters
@@ -127,8 +127,10 @@ def course(times: Array, pictures: Complex) -> Array:
 
     Returns
     -------
-    ndarray, shape (n,)
+    angles : ndarray, shape (n,)
         rad, 0 at first. A stretch in which nothing is seen to turn has no spin.
+    share : float
+        How much of what no light explains turns by them: see `Unlit`.
     """
     often = rings_seen(pictures).mean(0) > OFTEN
     seen = pictures[:, 1:-1, often].reshape(len(times), len(HARMONICS), -1)
@@ -144,7 +146,7 @@ def course(times: Array, pictures: Complex) -> Array:
         share = unlit(times, pictures, angles).share
         if share > most:
             best, most = angles, share
-    return best
+    return best, most
 
 
 def _stretches(times: Array, seen: Complex, span: float) -> Iterator[tuple[float, Array]]:

@@ -264,8 +264,8 @@ def _despite_light(
     share = unlit(times, pictures, angles).share
     if share > TURNS and known.mean() > 1 - GAPS:
         return matched
-    other = course(times, pictures)
-    if unlit(times, pictures, other).share < LEAST:
+    other, share_of_course = course(times, pictures)
+    if share_of_course < LEAST:
         return matched
     dark, share_of_other = _onto_what_turns(times, pictures, other)
     if share_of_other > max(TURNS, CLEARLY * share) and _mostly_told(dark, turning):

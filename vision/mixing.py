@@ -124,7 +124,7 @@ def share_of_light(
     view, rig : View, ndarray
         The camera, as in `vision.pose` and `vision.rig`.
     slope : float
-        Of the profiles across the 12-ft edge half way, steps per px.
+        Of the profiles across the 12-ft edge half way, steps per px; more than 0.
 
     Returns
     -------
@@ -136,7 +136,7 @@ def share_of_light(
     normals = lay_out(
         view.vector, rig, (w, h), reach=REACH, spacing=SPACING, most=MOST, lines=False
     )
-    if not {TWELVE, EIGHT} <= normals.kinds.keys() or not slope > 0:
+    if not {TWELVE, EIGHT} <= normals.kinds.keys():
         return None
     colours = profiles([picture], normals, normals.point[None])[0].astype(np.float64)
     middle = np.array([[w - 1], [h - 1]]) / 2

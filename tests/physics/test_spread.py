@@ -13,12 +13,17 @@ from physics.ice import Constant
 from physics.impact import Frictional, PointMass
 from physics.kalman import smooth
 from physics.simulate import simulate
-from physics.simulation import Shot, StoneStart
-from physics.spread import Doubt, draws, path_spread, simulated_hits
+from physics.simulation import Shot, Simulation, StoneStart
+from physics.spread import Doubt, drawn, path_spread, simulated, simulated_hits
 from tests.physics.watch import RADIUS, hit_motion, watch
 
 MU, G = 0.0109, 9.81
 CERTAIN = np.zeros(5)
+
+
+def draws(shot: Shot, doubt: Doubt, count: int) -> list[Simulation]:
+    rng = np.random.default_rng(0)
+    return simulated(drawn(shot, doubt, rng) for _ in range(count))
 
 
 def test_a_glide_is_as_uncertain_as_its_closed_form_says() -> None:

@@ -59,12 +59,12 @@ def test_spins_are_told_from_stretch_to_stretch_whatever_light_is_on_a_cap() -> 
     spins = np.where(TIMES < 1.5, 1.4, -0.9)
     turns = np.concatenate([[0.0], np.cumsum(spins[1:] * np.diff(TIMES))])
     seen = [lit(a, lamp(t), 150.0) for a, t in zip(turns, TIMES, strict=True)]
-    told = np.gradient(course(TIMES, np.array(seen)), TIMES)
+    told = np.gradient(course(TIMES, np.array(seen))[0], TIMES)
     assert np.abs(told - spins)[(TIMES < 1.0) | (TIMES > 2.0)].max() < 0.25
 
 
 def test_pictures_too_few_for_a_spin_have_no_course() -> None:
-    assert not course(TIMES[:5], pictures(1.6, 150.0)[:5]).any()
+    assert not course(TIMES[:5], pictures(1.6, 150.0)[:5])[0].any()
 
 
 def test_light_is_taken_from_pictures_and_what_turns_is_left() -> None:
