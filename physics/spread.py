@@ -82,7 +82,7 @@ def simulated_hits(
     run : Simulation
         The one that counts.
     others : sequence of Simulation
-        From `draws`. A hit that fewer than half of them have gets no standard errors.
+        From `simulated`. A hit that fewer than half of them have gets no standard errors.
     start : float
         Time of its beginning in the clip, s.
     """
