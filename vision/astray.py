@@ -31,6 +31,10 @@ repeated is aside by no more than the camera has moved."""
 NEAR = 2
 """Steps before and after a picture over which motion is averaged: shaking cameras turn back."""
 
+LASTING = 12
+"""Frames before and after one that moves in which a picture that stands is aside as well: a film
+stands when a camera has hardly begun to move, and where it comes to rest it stays aside."""
+
 
 def motion(observed: Observations, at: Linear, views: Array, places: Array, index: Index) -> Array:
     """Tell how far the edges of each frame move from one frame of the clip to the next, px.
@@ -67,10 +71,13 @@ def astray(moved: Array, rms: Array) -> Array:
     Parameters
     ----------
     moved : ndarray, shape (frames,)
-        How far the edges move from frame to frame, px.
+        How far the edges move from frame to frame, px; of frames in the order of time.
     rms : ndarray, shape (frames,)
         Residual of the edges, px; NaN where there are none.
     """
     residual = np.nan_to_num(rms)
     shares = np.square(moved / np.maximum(residual, 1e-9))
-    return residual * (COPIED + REPEATED / (1 + shares / MUCH**2)) * shares / (shares + NONE**2)
+    about = np.pad(shares, LASTING)
+    lately: Array = np.lib.stride_tricks.sliding_window_view(about, 2 * LASTING + 1).max(-1)
+    aside: Array = residual * (COPIED + REPEATED / (1 + shares / MUCH**2))
+    return aside * lately / (lately + NONE**2)

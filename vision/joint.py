@@ -142,11 +142,15 @@ def _fit_frames(
     done: dict[int, Camera] = {}
     ready, waiting = [s for s in seen if s.key is None], [s for s in seen if s.key is not None]
     while ready:
+        cameras: list[Camera] = []
+        moved: list[float] = []
         for part in np.array_split(np.arange(len(ready)), ceil(len(ready) / TOGETHER)):
             fresh = [ready[k] for k in part]
             known = [_carried(s, s.key, done[s.key.frame]) if s.key else s for s in fresh]
-            cameras = fit_frames(known, shared, size, edge_sd)
-            done.update({camera.frame: camera for camera in cameras})
+            fitted, motions = fit_frames(known, shared, size, edge_sd)
+            cameras += fitted
+            moved += motions.tolist()
+        done.update({camera.frame: camera for camera in _put_aside(cameras, np.array(moved))})
         ready = [s for s in waiting if s.key is not None and s.key.frame in done]
         waiting = [s for s in waiting if s.key is not None and s.key.frame not in done]
     return [done[s.index] for s in seen if s.index in done]
@@ -165,12 +169,32 @@ def _carried(seen: Seen, key: Keyframe, by: Camera) -> Seen:
     return replace(seen, marks=Kept(marks), key=replace(key, drift=drift))
 
 
+def _put_aside(cameras: Sequence[Camera], moved: Array) -> list[Camera]:
+    """Add to the errors of cameras what a film may put their pictures aside; see `astray`."""
+    found = []
+    for one, aside in zip(
+        cameras, astray(moved, np.array([c.rms_px for c in cameras])), strict=True
+    ):
+        assert one.error is not None
+        own = one.error.own.copy()
+        own[[0, 1], [0, 1]] += (aside / one.f_px) ** 2
+        found.append(replace(one, error=replace(one.error, own=own)))
+    return found
+
+
 def fit_frames(
     seen: Sequence[Seen], shared: Bundle, size: tuple[int, int], edge_sd: float
-) -> list[Camera]:
-    """Fit frames' views with what they share held; the cameras, with their errors.
+) -> tuple[list[Camera], Array]:
+    """Fit frames' views with what they share held.
 
     `edge_sd` is the standard error of the 12-ft circle's edge, px.
+
+    Returns
+    -------
+    cameras : list of Camera
+        With their errors, but for what a film puts whole pictures aside.
+    moved : ndarray, shape (frames,)
+        How far the edges move from one frame to the next, px.
     """
     each = [s.marks.get() for s in seen]
     marks = joined(each)
@@ -193,7 +217,6 @@ def fit_frames(
     covs = inverse(normals + np.diag(1 / np.square(VIEW_SD)))
     by_shared, by_offset = by_rig(observed, at, views), by_measure(observed, at)
     moved = motion(observed, at, views, away, np.array([s.index for s in seen]))
-    aside = astray(moved, np.array([fit.rms for fit in fits]))
     count = RIG_SIZE + len(shared.pieces)
     identity, on_circle = piece_of(marks), marks.line < CIRCLES
     found = []
@@ -205,12 +228,10 @@ def fit_frames(
         )
         both = np.concatenate([follows, np.eye(RIG_SIZE, count)])
         to_camera = _parameters(views[k], rig, size)
-        turned = np.zeros(PARAMETERS)
-        turned[:2] = aside[k] / fit.view.focal
         common, own = to_camera @ both, to_camera[:, :VIEW_SIZE]
         error = CameraError(
             LONG_RANGE**2 * shared.covariance(common, s.t),
-            LONG_RANGE**2 * noisier[k] * own @ cov @ own.T + np.diag(turned**2),
+            LONG_RANGE**2 * noisier[k] * own @ cov @ own.T,
             _scale_sd(fit.view, rig, edge_sd),
             0.0 if s.key is None else s.key.drift,
         )
@@ -222,7 +243,7 @@ def fit_frames(
                 error=error, quality=quality(identity[part][good], rms, fit.view, rig, size),
             )
         )  # fmt: skip
-    return found
+    return found, moved
 
 
 def _scale_sd(view: View, rig: Array, edge_sd: float) -> float:

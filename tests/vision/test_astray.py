@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.vision.cameras import SIZE, marks, true_rig
-from vision.astray import COPIED, MUCH, NONE, REPEATED, astray, motion
+from vision.astray import COPIED, LASTING, MUCH, NONE, REPEATED, astray, motion
 from vision.linear import Observations, linearised
 from vision.paint import joined
 from vision.rig import POSITION
@@ -47,10 +47,19 @@ def test_motion_is_that_of_the_time_about_a_frame_and_none_of_one_alone() -> Non
 
 
 def test_pictures_that_hardly_move_are_aside_by_most_and_those_that_rest_by_nothing() -> None:
-    residual = np.full(4, 0.1)
-    rest, shake, pan, still = astray(residual * [0.0, 1.0, 100 * MUCH, NONE], residual)
-    assert rest == 0
-    assert shake == pytest.approx(0.1 * (COPIED + REPEATED), rel=0.1)
-    assert pan == pytest.approx(0.1 * COPIED, rel=0.01)
-    assert rest < still < shake
+    def aside(motion: float) -> float:
+        return float(astray(0.1 * np.full(3, motion), np.full(3, 0.1))[1])
+
+    assert aside(0.0) == 0
+    assert aside(1.0) == pytest.approx(0.1 * (COPIED + REPEATED), rel=0.1)
+    assert aside(100 * MUCH) == pytest.approx(0.1 * COPIED, rel=0.01)
+    assert 0 < aside(NONE) < aside(1.0)
     assert astray(np.ones(1), np.array([np.nan])) == [0.0]
+
+
+def test_a_film_that_stands_while_a_camera_begins_to_move_or_stops_is_aside() -> None:
+    step = np.where(np.arange(60) == 30, 0.1, 0.0)
+    found = astray(step, np.full(60, 0.1))
+    near = np.abs(np.arange(60) - 30) <= LASTING
+    assert (found[near] > 0.07).all()
+    assert not found[~near].any()
