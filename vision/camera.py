@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -92,8 +93,7 @@ class Camera:
 
     @property
     def _centre_and_radius(self) -> tuple[Array, float]:
-        w, h = self.size
-        return np.array([(w - 1) / 2, (h - 1) / 2]), float(np.hypot(w, h)) / 2
+        return _middle(self.size)
 
     def distort(self, undistorted: ArrayLike) -> Array:
         """Undistorted pixels to pixels of the picture, shape (..., 2)."""
@@ -101,9 +101,11 @@ class Camera:
         if self.k1 == 0 and self.k2 == 0:
             return u.copy()
         c, radius = self._centre_and_radius
-        q = (u - c) / radius
-        r2 = (q**2).sum(-1, keepdims=True)
-        return np.asarray(c + radius * q * (1 + self.k1 * r2 + self.k2 * r2**2))
+        away = u - c
+        x, y = away[..., 0], away[..., 1]
+        r2 = (x * x + y * y) / radius**2  # several times as fast as a sum over the last axis
+        away *= (1 + r2 * (self.k1 + self.k2 * r2))[..., None]
+        return np.asarray(c + away)
 
     def undistort(self, pixels: ArrayLike) -> Array:
         """Pixels of the picture to undistorted pixels, shape (..., 2); by Newton's method."""
@@ -247,6 +249,15 @@ class Camera:
         along, up = (p[..., 0, :] - p[..., 1, :]) / 2e-3, (p[..., 2, :] - p[..., 3, :]) / 2e-3
         area = along[..., 0] * up[..., 1] - along[..., 1] * up[..., 0]
         return np.asarray(np.sqrt(np.abs(area)))
+
+
+@lru_cache(maxsize=8)
+def _middle(size: tuple[int, int]) -> tuple[Array, float]:
+    """Middle and half diagonal of a picture, px."""
+    w, h = size
+    middle = np.array([(w - 1) / 2, (h - 1) / 2])
+    middle.flags.writeable = False
+    return middle, float(np.hypot(w, h)) / 2
 
 
 def _crossing(vectors: Array) -> Array:

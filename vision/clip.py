@@ -226,6 +226,7 @@ def _decoded(container: Any) -> Iterator[tuple[float, Planes]]:
     # Threads that decode side by side cost a sixth more in all, and hold pictures each.
     stream.codec_context.thread_count = 1
     begin, pixel = stream.start_time or 0, float(stream.sample_aspect_ratio or 1)
+    ticks, seconds = stream.time_base.denominator, stream.time_base.numerator
     packets = container.demux(stream)
     while True:
         try:
@@ -238,7 +239,7 @@ def _decoded(container: Any) -> Iterator[tuple[float, Planes]]:
         for frame in frames:
             stamp = frame.dts if frame.pts is None else frame.pts
             if stamp is not None:
-                yield float((stamp - begin) * stream.time_base), Planes.of(frame, pixel)
+                yield (stamp - begin) * seconds / ticks, Planes.of(frame, pixel)
 
 
 def _read_image(path: Path) -> Image | None:

@@ -27,10 +27,13 @@ def _offsets(reach: float) -> tuple[Array, NDArray[np.complex128]]:
 
 def _crossed(reference: Complex, spectra: Complex) -> tuple[Complex, Array]:
     """Products of a reference and pictures (n, harmonics), and the most that they come to (n,)."""
+    count, harmonics = len(spectra), len(HARMONICS)
     model, seen = reference[1:-1], spectra[:, 1:-1]
     shown = rings_seen(seen) @ (np.abs(model) ** 2).sum((0, 2))
-    energy = np.sqrt(shown * (np.abs(seen) ** 2).sum((1, 2, 3)))
-    return (model.conj() * seen).sum((2, 3)), energy
+    rows, parts = seen.reshape(count, harmonics, 1, -1), seen.reshape(count, 1, -1)
+    size = (parts @ parts.conj().swapaxes(1, 2))[:, 0, 0].real
+    cross = rows @ model.conj().reshape(harmonics, -1, 1)
+    return cross[..., 0, 0], np.sqrt(shown * size)
 
 
 def _nearest(cross: Complex, expected: Array, reach: float) -> tuple[Array, Array]:

@@ -12,6 +12,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
+from itertools import accumulate
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +31,9 @@ SPANS, STEP, FEWEST = (0.9, 1.4), 0.25, 8
 
 SPINS = np.linspace(-5.0, 5.0, 101)
 """Spins that are tried, rad/s."""
+
+TICKS = 6
+"""Digits of a second to which times within a stretch are told: a micro is 10⁻⁴ rad at most."""
 
 CHANGE, SUDDEN = 0.15, 2.0
 """What a change of the spin from a stretch to the next costs, in shares of what is explained per
@@ -157,16 +162,35 @@ def _stretches(times: Array, seen: Complex, span: float) -> Iterator[tuple[float
             yield float(middle), np.zeros(len(SPINS))
             continue
         tau = times[inside] - middle
-        line = np.linalg.qr(np.stack([np.ones_like(tau), tau], axis=1))[0]
-        turns = np.exp(-1j * np.outer(tau, SPINS))
-        phase = np.stack([turns**k for k in HARMONICS]).astype(np.complex64)
-        line32 = line.astype(np.float32)
-        phase -= line32 @ (line32.T @ phase)
+        # Where frames follow each other evenly, these are the same again and again.
+        line, phase, left = _tried(np.round(tau, TICKS).tobytes())
         part = np.moveaxis(seen[inside], 1, 0)
-        part = part - line32 @ (line32.T @ part)
-        left = np.sum(np.abs(phase) ** 2, axis=1) + FAINT * len(tau)
-        pull = np.sum(np.abs(phase.conj().transpose(0, 2, 1) @ part) ** 2, axis=2)
+        part = part - line @ (line.T @ part)
+        pull = np.sum(np.abs(phase @ part) ** 2, axis=2)
         yield float(middle), np.sum(pull / left, axis=0) / max(np.sum(np.abs(part) ** 2), 1e-12)
+
+
+@lru_cache(maxsize=32)
+def _tried(tau: bytes) -> tuple[NDArray[np.float32], Complex, Array]:
+    """Tell what all spins turn in pictures at times from the middle of a stretch, s.
+
+    Returns
+    -------
+    line : ndarray, shape (n, 2)
+        Orthonormal columns that light follows: what stays and what changes evenly.
+    phase : ndarray, shape (harmonics, spins, n)
+        Turns the harmonics back by each spin, without what such a light explains.
+    left : ndarray, shape (harmonics, spins)
+        How much of each turning harmonic light leaves.
+    """
+    times = np.frombuffer(tau)
+    line = np.linalg.qr(np.stack([np.ones_like(times), times], axis=1))[0].astype(np.float32)
+    turn = np.exp(-1j * np.outer(times, SPINS))
+    turns = accumulate([turn ** HARMONICS[0], *[turn] * (len(HARMONICS) - 1)], np.multiply)
+    phase = np.array([*turns], np.complex64)
+    phase -= line @ (line.T @ phase)
+    left = np.sum(np.abs(phase) ** 2, axis=1) + FAINT * len(times)
+    return line, np.ascontiguousarray(phase.conj().transpose(0, 2, 1)), left
 
 
 def _likely(shares: Array) -> Array:

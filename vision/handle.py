@@ -393,5 +393,6 @@ def _followed_from(begin: int, times: Array, pictures: Complex, turning: Turning
             spin += 0.3 * ((angle - angles[before]) / wait - spin)
             before = index
             weight = min(weight + 1.0, 30.0)
-            mean += (turned(pictures[index : index + 1], np.array([-angle]))[0] - mean) / weight
+            phase = np.exp(1j * angle * ORDERS).astype(np.complex64)
+            mean += (pictures[index] * phase[:, None, None] - mean) / weight
     return angles

@@ -7,7 +7,7 @@ are, and colours are made where they are asked for.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import av
@@ -144,8 +144,13 @@ def _upright(values: Image, turns: int) -> Image:
 
 def _to_bgr(frame: av.VideoFrame) -> NDArray[np.float64]:
     """Matrix, shape (3, 4), from luma, both chromas and 1 to blue, green and red."""
-    red, blue = _WEIGHTS.get(frame.colorspace, (0.299, 0.114))
     full = frame.color_range == ColorRange.JPEG or frame.format.name == "yuvj420p"
+    return _matrix(int(frame.colorspace), full)
+
+
+@lru_cache(maxsize=4)
+def _matrix(space: int, full: bool) -> NDArray[np.float64]:
+    red, blue = _WEIGHTS.get(space, (0.299, 0.114))
     light, colour, black = (1.0, 1.0, 0.0) if full else (255 / 219, 255 / 224, 16.0)
     green = 1 - red - blue
     by_blue, by_red = 2 * colour * (1 - blue), 2 * colour * (1 - red)
@@ -156,7 +161,9 @@ def _to_bgr(frame: av.VideoFrame) -> NDArray[np.float64]:
             [light, 0.0, by_red],
         ]
     )
-    return np.column_stack([matrix, -matrix @ [black, 128.0, 128.0]])
+    found = np.column_stack([matrix, -matrix @ [black, 128.0, 128.0]])
+    found.flags.writeable = False  # all pictures of a clip share it
+    return found
 
 
 Picture = Image | Planes

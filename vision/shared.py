@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from vision.paint import CIRCLES, FIXED, Marks
@@ -68,7 +67,7 @@ class Bundle:
     def covariance(self, by: Array, t: float) -> Array:
         """Covariance at a time of what follows rig and offsets by `by`, (k, 15 + c): (k, k)."""
         basis = polynomials(np.array([t]), self.span, len(self.travel))[0]
-        along = np.kron(basis, by[:, POSITION])
+        along = (basis[:, None] * by[:, None, POSITION]).reshape(len(by), -1)
         whole = np.concatenate([by[:, :RIG_SIZE], along, by[:, RIG_SIZE:]], axis=1)
         return np.asarray(whole @ self.cov @ whole.T)
 
@@ -96,7 +95,10 @@ def polynomials(t: Array, span: tuple[float, float], degree: int) -> Array:
     """Legendre polynomials of the 1st to this degree over a span of time, shape (n, degree)."""
     first, last = span
     share = np.clip(2 * (t - first) / max(last - first, 1e-9) - 1, -1, 1)
-    return np.asarray(legendre.legvander(share, degree)[:, 1:])
+    found = np.ones((degree + 1, len(t)))
+    for k in range(1, degree + 1):  # Bonnet's recursion
+        found[k] = ((2 * k - 1) * share * found[k - 1] - (k - 1) * found[k - 2]) / k
+    return found[1:].T
 
 
 def sensitivity(

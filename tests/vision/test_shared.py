@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from numpy.polynomial import legendre
 
 from vision.paint import CIRCLES, FIXED, LEFT, TWELVE, Marks
 from vision.rig import POSITION, RIG_SIZE
@@ -62,3 +63,10 @@ def test_a_view_follows_what_is_held_as_its_normal_equations_say() -> None:
     moved += np.where(piece >= 0, by_offset * np.append(change[RIG_SIZE:], 0.0)[piece], 0.0)
     best = np.linalg.lstsq(by_view.T, -moved, rcond=None)[0]
     np.testing.assert_allclose(follows @ change, best, atol=1e-9)
+
+
+def test_polynomials_are_those_of_legendre() -> None:
+    x = np.linspace(-1, 1, 7)
+    told = polynomials(3 + 2 * x, (1.0, 5.0), 4)
+    assert np.allclose(told, legendre.legvander(x, 4)[:, 1:])
+    assert polynomials(x, (0.0, 1.0), 0).shape == (7, 0)
