@@ -5,9 +5,9 @@
 Each variant is rendered from a seed of its own (other restitution, frictions, throw, spins,
 camera, rate and size of the picture: `tests.synthetic.scenes.sample_variant`), run as a clip,
 and laid beside its truth. Last places are those of the model `frictional`, in cm, their stated
-errors in brackets: of the shot again, with the start and the laws that fit the whole of it; from
-the last state before the first hit with the laws as measured; and from there with those of the
-literature.
+errors in brackets: of the shot again, with the start and the laws that fit the whole of it; as
+predicted from what was seen before the first hit, with the laws as measured; and as predicted with
+those of the literature.
 """
 
 from __future__ import annotations
@@ -20,12 +20,15 @@ import numpy as np
 import pandas as pd
 
 import pipeline
-from data.results import SimulationScore
+from data.results import Estimate, Prediction
 from physics.contacts import find_contacts
 from physics.estimate import estimate
-from physics.hindcast import simulate_measured
+from physics.forecast import predict
+from physics.laws import measured_laws
+from physics.watched import Priors
 from tests.synthetic.clip import Truth, cached_clip
 from tests.synthetic.scenes import sample_variant
+from work.analyse import Run
 
 DURATION = 6.0
 
@@ -48,7 +51,7 @@ def row(seed: int) -> tuple[str, bool]:
     off_mu = (results.friction.value or np.nan) / mu - 1
     score = results.simulations["frictional"]
     again = {stone: off for stone, off in score.rest_error.items() if off is not None}
-    ahead = foretold(done.tracks, measured.sightings, results.radius)
+    ahead = foretold(done, measured.sightings)
     forecast = results.predictions["frictional"]
     kept = abs(off_e) <= 0.01 and abs(off_mu) <= 0.03 and max(again.values(), default=1.0) <= 0.03
     wide, high = truth.size
@@ -63,10 +66,14 @@ def row(seed: int) -> tuple[str, bool]:
     return "  ".join([*cells, "yes" if kept else "NO"]), kept
 
 
-def foretold(tracks: pd.DataFrame, sightings: pd.DataFrame, radius: float) -> SimulationScore:
-    """Score the shot from its last state before the first hit, with the laws as measured."""
-    found = estimate(sightings, find_contacts(sightings, radius), radius=radius)
-    return simulate_measured(tracks, found, radius=radius, fitted=False)[1]["frictional"]
+def foretold(done: Run, sightings: pd.DataFrame) -> Prediction:
+    """Predict the shot from what was seen before its first hit, with the laws as measured."""
+    results = done.results
+    laws = measured_laws(results, results.radius)
+    friction = Estimate(results.friction.value, results.friction.stderr)
+    found = estimate(sightings, find_contacts(sightings, results.radius), radius=results.radius)
+    assumed = Priors(laws.restitution, laws.stone_friction, friction, laws.size)
+    return predict(sightings, done.tracks, found, radius=results.radius, laws=assumed)["frictional"]
 
 
 def _places(errors: Mapping[str, float | None], stated: Mapping[str, float | None]) -> str:

@@ -15,7 +15,7 @@ from physics.impact import Impact
 from physics.simulate import simulate
 from physics.simulation import Shot, StoneStart
 from physics.spread import DRAWS, Doubt, drawn
-from physics.whole_fit import GlobalFit
+from physics.whole_fit import GlobalFit, within
 
 Floats = NDArray[np.float64]
 
@@ -119,10 +119,7 @@ def _possible(
 
 def _rows(fit: GlobalFit, count: int, rng: np.random.Generator) -> Floats:
     """Draw values of a fit's unknowns within their bounds, shape (count, n)."""
-    bounds = {unknown.name: (unknown.low, unknown.high) for unknown in fit.shots[0].unknowns}
-    low, high = np.array([bounds[name] for name in fit.names]).T
-    rows = rng.multivariate_normal(fit.values, fit.cov, count, method="eigh")
-    return np.asarray(np.clip(rows, low, high))
+    return within(fit, rng.multivariate_normal(fit.values, fit.cov, count, method="eigh"))
 
 
 def _off(fit: GlobalFit, values: Floats, best: Sequence[Floats]) -> float:

@@ -16,15 +16,13 @@ from physics.contacts import cut_all
 from physics.estimate import Estimates
 from physics.fit import fit_shot
 from physics.glides import free
-from physics.global_fit import fit_shots
 from physics.hindcast import explained_until, score
 from physics.impact import Frictional, Impact, PointMass
-from physics.law_choice import STRAIGHT
+from physics.law_choice import STRAIGHT, fit_with_chosen_laws
 from physics.simulate import simulate
-from physics.simulation import Simulation
 from physics.traces import traces
-from physics.watched import LITERATURE, watch
-from physics.whole_fit import GlobalFit
+from physics.watched import LITERATURE, Priors, watch
+from physics.whole_fit import GlobalFit, within
 
 Floats = NDArray[np.float64]
 
@@ -34,6 +32,10 @@ AFTER = 1.16
 DRAWS = 48
 """Simulated shots from which the spread of the last places is taken."""
 
+ASSUMED = replace(LITERATURE, size=Estimate(1.0, 0.0))
+"""Laws of a shot of which nothing is known: those of the literature, and stones that meet at two
+radii."""
+
 
 def predict(
     sightings: pd.DataFrame,
@@ -42,13 +44,13 @@ def predict(
     *,
     radius: float,
     masses: Mapping[str, float] | None = None,
-    restitution: Estimate = LITERATURE.restitution,
-    friction: Estimate = LITERATURE.friction,
+    laws: Priors = ASSUMED,
 ) -> dict[str, Prediction]:
     """Predict a shot from what was seen before its first hit and score it against the tracks.
 
-    The states come from a fit through the simulator to the sightings before the hit; of what
-    follows nothing is used but to score the outcome.
+    The states come from a fit through the simulator to all sightings before the hit, with the
+    friction and the curl that these ask for; of what follows nothing is used but to score the
+    outcome.
 
     Parameters
     ----------
@@ -62,8 +64,8 @@ def predict(
         Of the discs, m.
     masses : mapping, optional
         Stone to mass in any unit; equal where absent.
-    restitution, friction : Estimate
-        Assumed beforehand, with their standard errors; those of the literature by default.
+    laws : Priors
+        What is assumed of hits and ice, with standard errors.
 
     Returns
     -------
@@ -72,29 +74,29 @@ def predict(
     """
     if not estimates.collisions:
         return {}
-    first = min(hit.t for hit in estimates.collisions)
+    first = min(hit.earliest for hit in estimates.collisions)
     rigid = Prediction(None, note="needs spins after the hit, which only the shot itself tells")
-    fit = _before(sightings[sightings["t"] < first], radius, masses or {}, restitution, friction)
+    fit = _before(sightings[sightings["t"] < first], radius, masses or {}, laws)
     if fit is None:
         note = "too little is seen before the first hit"
         return {name: Prediction(None, note=note) for name in ("point-mass", "frictional")}
     out = {}
     for name in ("point-mass", "frictional"):
         try:
-            out[name] = _scored(fit, name, tracks, estimates, first, restitution, friction)
+            out[name] = _scored(fit, name, tracks, estimates, first, laws)
         except InputError as error:
             out[name] = Prediction(None, note=f"cannot be simulated: {error}")
     return {"point-mass": out["point-mass"], "rigid-body": rigid, "frictional": out["frictional"]}
 
 
 def _before(
-    sightings: pd.DataFrame,
-    radius: float,
-    masses: Mapping[str, float],
-    restitution: Estimate,
-    friction: Estimate,
+    sightings: pd.DataFrame, radius: float, masses: Mapping[str, float], laws: Priors
 ) -> GlobalFit | None:
-    """Fit the states of all stones to what was seen before the hit; None where none moves."""
+    """Fit the states of all stones to what was seen before the hit; None where none moves.
+
+    What is assumed of the ice is known beforehand but not held: where it is wrong, it would draw
+    places and velocities aside.
+    """
     known = traces(sightings)
     pieces, _ = cut_all(known, (), radius)
     if not pieces:
@@ -102,17 +104,28 @@ def _before(
     loose = fit_shot(known, pieces, (), radius, deceleration=free(radius), masses=masses)
     moving = {piece.stone for piece in pieces if not piece.rest}
     watched = watch(
-        known, loose, radius, priors=LITERATURE, masses=masses, bystanders=sorted({*known} - moving)
+        known, loose, radius, priors=laws, masses=masses, bystanders=sorted({*known} - moving)
     )
     if watched is None:
         return None
-    laws = {
-        "restitution": restitution.value or 0.0,
-        "friction": friction.value or 0.0,
-        "stone_friction": LITERATURE.stone_friction.value or 0.0,
-        "size": 1.0,
+    held = {name: law.value or 0.0 for name, law in _laws(laws).items()}
+    if laws.friction.stderr:
+        del held["friction"]
+    return fit_with_chosen_laws(watched, held)
+
+
+MOST = (1.0, 1.0, 1.0, 1.3)
+"""Bounds of what is drawn, in the order of `_laws`."""
+
+
+def _laws(laws: Priors) -> dict[str, Estimate]:
+    """Laws by the names of their unknowns."""
+    return {
+        "restitution": laws.restitution,
+        "stone_friction": laws.stone_friction,
+        "friction": laws.friction,
+        "size": laws.size,
     }
-    return fit_shots([watched], fixed=laws | STRAIGHT)
 
 
 def _scored(
@@ -121,26 +134,23 @@ def _scored(
     tracks: pd.DataFrame,
     estimates: Estimates,
     first: float,
-    restitution: Estimate,
-    friction: Estimate,
+    laws: Priors,
 ) -> Prediction:
-    start = fit.shots[0].start
     clock = tracks.groupby("frame", sort=True)["t"].first()
     clock = clock[clock >= first]
     if clock.empty:
         return Prediction(None, note="nothing is seen after the first hit")
-    times = clock.to_numpy(float) - start
-    table = _run(fit, fit.state(), model, float(times[-1])).sample(times)
+    likely = {name: law.value or 0.0 for name, law in _laws(laws).items()}
+    table = _sampled(fit, fit.state(), likely, model, first, clock.to_numpy(float))
     table["frame"] = clock.index.to_numpy()[table["frame"].to_numpy()]
-    table["t"] += start
     found = score(tracks, table, first, explained_until(tracks, estimates, first), None)
-    spread = _spread(fit, model, times[-1], restitution, friction)
+    spread = _spread(fit, laws, model, first, float(clock.iloc[-1]))
     return Prediction(
         found.rmse,
         found.rest_error,
         {name: spread[name] for name in found.rest_error if name in spread},
-        restitution,
-        friction,
+        laws.restitution,
+        laws.friction,
         found.note,
         _errors_at(tracks, table, first + AFTER, found.rest_error),
     )
@@ -165,29 +175,50 @@ def _errors_at(
     return out
 
 
-def _run(fit: GlobalFit, values: Mapping[str, float], model: str, end: float) -> Simulation:
-    shot = fit.shots[0].shot(values)
-    e = values["restitution"]
-    impact: Impact = PointMass(e)
+def _sampled(
+    fit: GlobalFit,
+    values: Mapping[str, float],
+    laws: Mapping[str, float],
+    model: str,
+    first: float,
+    times: Floats,
+) -> pd.DataFrame:
+    """Simulate a shot as fitted up to its first hit, from there with given laws, at some times."""
+    seen = fit.shots[0]
+    approach = seen.shot(values)
+    run = simulate(approach, until=first - seen.start)
+    # The stones may meet a little sooner than they were seen to.
+    lasts = min([first - seen.start, *(hit.t for hit in run.hits[:1])])
+    stones = []
+    for stone in approach.stones:
+        now = run.paths[stone.name][0].at(lasts)
+        stones.append(
+            replace(stone, x=now.x, y=now.y, vx=now.vx, vy=now.vy, omega=now.omega, theta=now.theta)
+        )
+    onward = seen.shot({**values, **STRAIGHT, **laws})
+    impact: Impact = PointMass(laws["restitution"])
     if model == "frictional":
-        impact = Frictional(e, values["stone_friction"], fit.shots[0].inertia)
-    return simulate(replace(shot, impact=impact), until=end)
+        impact = Frictional(laws["restitution"], laws["stone_friction"], seen.inertia)
+    since = times - seen.start - lasts
+    rest = simulate(replace(onward, stones=tuple(stones), impact=impact), until=float(since[-1]))
+    table = rest.sample(since)
+    table["t"] += seen.start + lasts
+    return table
 
 
-def _spread(
-    fit: GlobalFit, model: str, end: float, restitution: Estimate, friction: Estimate
-) -> dict[str, float]:
+def _spread(fit: GlobalFit, laws: Priors, model: str, first: float, end: float) -> dict[str, float]:
     """Spread of each stone's last place over what is not known of states and laws, m."""
     rng = np.random.default_rng(0)
-    between = LITERATURE.stone_friction
-    laws = {"restitution": restitution, "friction": friction, "stone_friction": between}
-    states = rng.multivariate_normal(fit.values, fit.cov, DRAWS, method="eigh")
+    weights, fits = zip(*(fit.choices or ((1.0, fit),)), strict=True)
     ends: dict[str, list[Floats]] = {}
-    for row in states:
-        values = fit.state(values=row)
-        for name, law in laws.items():
-            drawn = rng.normal(law.value or 0.0, law.stderr or 0.0)
-            values[name] = float(np.clip(drawn, 1e-5, 1.0))
-        for stone, group in _run(fit, values, model, end).sample(np.array([end])).groupby("stone"):
+    for k in rng.choice(len(fits), DRAWS, p=weights).tolist():
+        own: GlobalFit = fits[k]
+        row = within(own, rng.multivariate_normal(own.values, own.cov, method="eigh"))
+        drawn = {
+            name: float(np.clip(rng.normal(law.value or 0.0, law.stderr or 0.0), 1e-5, most))
+            for (name, law), most in zip(_laws(laws).items(), MOST, strict=True)
+        }
+        table = _sampled(own, own.state(values=row), drawn, model, first, np.array([end]))
+        for stone, group in table.groupby("stone"):
             ends.setdefault(str(stone), []).append(group[["x", "y"]].to_numpy(float)[0])
     return {name: float(np.hypot(*np.std(np.array(xy), axis=0))) for name, xy in ends.items()}

@@ -44,7 +44,6 @@ def simulate_measured(
     *,
     radius: float,
     masses: Mapping[str, float] | None = None,
-    fitted: bool = True,
 ) -> tuple[dict[str, pd.DataFrame], dict[str, SimulationScore], tuple[str, ...]]:
     """Simulate a measured shot with each impact model and score it against the tracks.
 
@@ -62,8 +61,6 @@ def simulate_measured(
         Of the discs, m.
     masses : mapping, optional
         Stone to mass in any unit; equal where absent.
-    fitted : bool
-        Whether to begin with the start that fits the whole shot where there is one.
 
     Returns
     -------
@@ -96,7 +93,7 @@ def simulate_measured(
     doubt = _doubt(tracks, start, estimates, laws)
     usual = Frictional(laws.restitution.value or 0.0, laws.stone_friction.value or 0.0)
     again = Shot(stones, usual, laws.ice, laws.curl, radius * (laws.size.value or 1.0))
-    may = _may_have_been(estimates.whole if fitted else None, again, doubt, start)
+    may = _may_have_been(estimates.whole, again, doubt, start)
     ends = explained_until(tracks, estimates, start)
     warnings += [
         f"simulation: {name} is compared until {end:.2f} s; neither ice nor a hit in view"

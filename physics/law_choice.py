@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -20,8 +20,8 @@ STICKING = {"stone_friction": 2.0}
 """Stones that stop sliding on each other before they part: any greater friction does the same."""
 
 
-def fit_with_chosen_laws(shot: Watched) -> GlobalFit:
-    """Fit a shot with the laws that the sightings ask for.
+def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None) -> GlobalFit:
+    """Fit a shot with the laws that the sightings ask for, some unknowns held if `fixed`.
 
     Friction that depends on the speed and curl are each taken up, and friction between stones
     is kept as an unknown, where the sightings are the more probable for it. Otherwise the
@@ -31,7 +31,7 @@ def fit_with_chosen_laws(shot: Watched) -> GlobalFit:
     (Buckland et al., 1997, Biometrics 53, 603). So is what Penner's law gives where friction
     falls: the one that is reported follows any ice but not to the last per cent.
     """
-    held = dict(STRAIGHT)
+    held = STRAIGHT | dict(fixed or {})
     best = fit_shots([shot], fixed=held)
     tried, criteria, least = [best], [0.0], 0.0
     for name in ("slope", "turn"):

@@ -63,11 +63,10 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
     from data.tracks import teams
     from physics.contacts import find_contacts
     from physics.estimate import estimate
-    from physics.forecast import predict
+    from physics.forecast import ASSUMED, predict
     from physics.hindcast import simulate_measured
     from physics.kalman import smooth
     from physics.posterior import sample_posterior, summarise
-    from physics.watched import LITERATURE
     from vision.camera import camera_table
 
     sightings, radius = measured.sightings, settings.radius
@@ -89,8 +88,11 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
         estimates,
         radius=radius,
         masses=masses,
-        restitution=_assumed(settings.restitution, LITERATURE.restitution),
-        friction=_assumed(settings.friction, LITERATURE.friction),
+        laws=replace(
+            ASSUMED,
+            restitution=_assumed(settings.restitution, ASSUMED.restitution),
+            friction=_assumed(settings.friction, ASSUMED.friction),
+        ),
     )
     of_team = teams(tracks)
     drawn = sample_posterior(estimates, settings.samples, np.random.default_rng(0))

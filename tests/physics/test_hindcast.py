@@ -134,15 +134,12 @@ def test_what_is_seen_after_the_hit_does_not_move_the_start_without_a_fit_of_the
     tracks = smooth(seen, hits, radius=RADIUS)
     other = tracks.copy()
     other.loc[other["t"] > hits[0].t, ["x", "y"]] += 0.5
-    for estimates, fitted in ((replace(found, whole=None), True), (found, False)):
-        one, two = (
-            simulate_measured(t, estimates, radius=RADIUS, fitted=fitted)[0]
-            for t in (tracks, other)
-        )
-        pd.testing.assert_frame_equal(one["frictional"], two["frictional"])
-        start = one["frictional"].groupby("stone")[["x", "y"]].first()
-        last = tracks[tracks["t"] < hits[0].t].groupby("stone")[["x", "y"]].last()
-        np.testing.assert_allclose(start, last, atol=1e-9)
+    alone = replace(found, whole=None)
+    one, two = (simulate_measured(t, alone, radius=RADIUS)[0] for t in (tracks, other))
+    pd.testing.assert_frame_equal(one["frictional"], two["frictional"])
+    start = one["frictional"].groupby("stone")[["x", "y"]].first()
+    last = tracks[tracks["t"] < hits[0].t].groupby("stone")[["x", "y"]].last()
+    np.testing.assert_allclose(start, last, atol=1e-9)
 
 
 def test_stones_that_grip_each_other_are_simulated_so() -> None:
