@@ -16,7 +16,7 @@ from vision.linear import Linear, Observations
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-COPIED, REPEATED = 0.2, 0.6
+COPIED, REPEATED = 0.24, 0.72
 """How far pictures are aside, in residuals of their edges: those that move by much, and how much
 more those are that hardly move."""
 

@@ -9,7 +9,7 @@ import pytest
 from tests.synthetic import PAINTS, CameraPath, Light, Scene, render_still, still_camera
 from vision.house import find_house
 from vision.house_fit import HouseFit
-from vision.mixing import half_light, lit
+from vision.mixing import half_light, likely, lit
 from vision.outline import PaintEdge
 from vision.paint import EIGHT, FOUR, TWELVE
 
@@ -81,6 +81,29 @@ def test_what_a_line_or_no_colour_leaves_open_is_left_open() -> None:
     for edge, shown in ((lined, image), (plain, grey)):
         left = lit(edge, shown, *camera)
         assert not any(left.light) and left.sd > lit(plain, image, *camera).sd > edge.sd
+
+
+@pytest.mark.parametrize("measured", [-0.2, 0.05, 0.5, 0.9, 1.1])
+def test_a_share_of_light_is_as_likely_as_among_those_measured_alike(measured: float) -> None:
+    rng = np.random.default_rng(3)
+    count, sd = 400_000, 0.25
+    computer, lens, any_of_them = np.zeros(count), rng.uniform(0.8, 1, count), rng.random(count)
+    share = np.concatenate([computer, lens, any_of_them])
+    alike = share[np.abs(share + rng.normal(0, sd, share.shape) - measured) < 0.01]
+    mean, spread = likely(measured, sd)
+    assert mean == pytest.approx(alike.mean(), abs=0.02)
+    assert spread == pytest.approx(alike.std(), abs=0.02)
+
+
+@pytest.mark.parametrize("paint", ["navy-orange", "teal-red", "purple-gold", "blue-red"])
+@pytest.mark.parametrize("gamma", [1.0, 2.2])
+def test_the_scale_is_as_good_as_is_said_if_the_colours_tell_what_was_blurred(
+    paint: str, gamma: float
+) -> None:
+    found = find_house(picture(paint, gamma))
+    assert found is not None
+    stated = 1e3 * found.edge.sd / 84
+    assert abs(larger(found)) < 2 * stated < 2.6
 
 
 def test_half_of_the_light_lies_beside_the_brighter_side() -> None:
