@@ -53,6 +53,8 @@ class Patience:
         Pictures that are looked at together.
     wait : float
         Time for which a stone is still looked for where it is expected, s.
+    rest : float
+        The same for one that rested: who covers it may do so for long, and show it now and then.
     trust : float
         Time from one measurement of a stone that looks unchanged to the next, s; it is due when
         a block begins.
@@ -62,6 +64,7 @@ class Patience:
 
     block: int = 8
     wait: float = 0.3
+    rest: float = 2.0
     trust: float = 0.5
     reach: float = 1.5
 
@@ -160,7 +163,7 @@ class Follower:
             if nearby is not None:
                 view.sightings.append(nearby)
                 going.append((lead.on(nearby, t, near, still), nearby))
-            elif abs(t - lead.t) < self.patience.wait:
+            elif abs(t - lead.t) < (self.patience.rest if lead.rests else self.patience.wait):
                 going.append((replace(lead, missed=True), None))
         return self._portrayed(view, going)
 

@@ -39,6 +39,9 @@ CHANGED, CONTRAST = 3.0, 0.05
 """Rest of the lightness that says that something has changed: in grey levels, and what a share
 of the picture's own contrast adds."""
 
+LEAST_LEFT = 0.5
+"""Share of its contrast that a stone keeps in any light: what covers it evenly has none."""
+
 
 @dataclass(frozen=True)
 class Portrait:
@@ -158,9 +161,12 @@ def unchanged(
     change = np.array(lightness) - np.array([p.lightness for p in known])
     found = (np.array([p.inverse for p in known]) @ change[..., None])[..., 0]
     rest = change - (np.array([p.design for p in known]) @ found[..., None])[..., 0]
-    shift = found[..., :2] / (1 + found[..., 2:3])  # gradients have changed with the contrast
+    kept = 1 + found[..., 2]
+    # Gradients have changed with the contrast.
+    shift = found[..., :2] / np.maximum(kept, LEAST_LEFT)[..., None]
     left = np.sqrt((rest**2).mean(-1))
     still = (left < np.array([p.most for p in known])) & (np.abs(shift).max(-1) < MOST_SHIFT)
+    still &= kept > LEAST_LEFT
     moved = places + np.linalg.solve(scale, shift[..., None])[..., 0]
     columns = (still.tolist(), moved.tolist(), (middle + shift).tolist())
     return [

@@ -40,6 +40,8 @@ class Pace:
     memory : int
         Pictures that are kept to learn from and to follow stones back through; when so many are
         new, the last of them is searched.
+    hurry : int
+        The same while a stone that rested is hidden: hit unseen, it may show for a moment only.
     lesson : int
         Each how manieth of them is looked at to learn what the stones look like.
     doubt : int
@@ -49,6 +51,7 @@ class Pace:
     """
 
     memory: int = 24
+    hurry: int = 8
     lesson: int = 8
     doubt: int = 2
     lessons: int = 200
@@ -181,8 +184,14 @@ class Watch:
         while len(self._recent) > self._pace.memory:
             self._recent.popleft().put_aside(self._shelf)
         self._since += len(views)
-        if self._since >= self._pace.memory:
+        if self._since >= (self._pace.hurry if self._hidden(views[-1]) else self._pace.memory):
             self._search_for_new(views[-1])
+
+    def _hidden(self, view: StoneView) -> bool:
+        """Whether a view shows the place of a stone that is missed there."""
+        missed = np.array([lead.place for lead in self._leads if lead.missed]).reshape(-1, 2)
+        seen = view.camera.project(missed, self.disc.cap_height)
+        return bool(np.any(np.all((seen > 0) & (seen < view.camera.size), axis=1)))
 
     def _search_for_new(self, view: StoneView) -> None:
         """Search all the ice; follow what is found back through the last pictures."""

@@ -52,6 +52,14 @@ def test_what_moves_turns_or_is_covered_is_not_taken_for_the_same(known: list[Po
     assert seen[0] is not None and seen[2] is not None
 
 
+def test_an_even_cover_is_not_taken_for_a_light_without_contrast(known: list[Portrait]) -> None:
+    covered = picture()
+    u, v = known[1].sighting.pixel
+    covered[round(v) - 40 : round(v) + 40, round(u) - 40 : round(u) + 40] = (60, 90, 60)
+    seen = unchanged([(covered, VIEW)], known, STONE)[0]
+    assert [sighting is None for sighting in seen] == [False, True, False]
+
+
 def test_a_place_without_any_pattern_has_no_portrait(known: list[Portrait]) -> None:
     blank = np.full_like(picture(), 200)
     assert portraits(blank, VIEW, 0.0, [known[0].sighting], STONE) == [None]

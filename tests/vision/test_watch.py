@@ -12,6 +12,8 @@ from tests.synthetic.clip import render_still
 from tests.synthetic.scenes import PAINTS
 from tests.vision.test_stones import BLUE, CAMERA, RED, YELLOW, camera_of, scene_of
 from vision.clip import Frame, Image
+from vision.follower import StoneView
+from vision.lead import Lead
 from vision.rays import Look
 from vision.stones import FOLLOWING, Findings, Search
 from vision.strangers import strangers
@@ -93,6 +95,32 @@ def test_two_teams_that_a_coarse_map_shows_are_not_sought_on_a_fine_one(
         watch.look(Frame(index, index / 25, image), camera)
     assert [len(sightings) for _, _, sightings in watch.finish()] == [3] * 24
     assert maps == [FOLLOWING.radius_px]
+
+
+def test_a_stone_that_is_hit_under_cover_is_found_in_the_moment_that_shows_it() -> None:
+    here, there = picture(AT_REST), picture([(0.3, -0.3, RED), *AT_REST[1:]])
+    camera = camera_of(CAMERA, scene_of(AT_REST))
+    watch = Watch()
+    for index in range(70):
+        image = (here if index < 30 else there).copy()
+        if 26 <= index < 33 or 42 <= index < 66:
+            for x, y in camera.project(np.array([(0.3, 0.2), (0.3, -0.3)]), 0.12).astype(int):
+                image[y - 50 : y + 50, x - 50 : x + 50] = (60, 90, 60)
+        watch.look(Frame(index, index / 25, image), camera)
+    counts = [len(sightings) for _, _, sightings in watch.finish()]
+    assert counts == [3] * 26 + [2] * 7 + [3] * 9 + [2] * 24 + [3] * 4
+
+
+def test_stones_out_of_the_picture_are_not_hidden() -> None:
+    camera = camera_of(CAMERA, scene_of(AT_REST))
+    view = StoneView(Frame(0, 0.0, picture(AT_REST)), camera)
+    watch = Watch()
+    hidden = []
+    for place in ((0.3, 0.2), (9.0, 0.2)):
+        lead = Lead(place, (0.0, 0.0), 0.0, place, 1.0, missed=True)
+        watch._leads = [lead]
+        hidden.append(watch._hidden(view))
+    assert hidden == [True, False]
 
 
 @pytest.mark.parametrize("jump", [0.02, 0.025, 0.03, 0.13])
