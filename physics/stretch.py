@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physics.slowing import at_speed
+from physics.spin_end import spin_ends
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -26,6 +27,9 @@ the rough velocity (m/s): an impulse that rubs turns a stone by μ / (k R) of wh
 
 LEAST_JUMP = 0.02
 """Of the rough velocity, m/s."""
+
+ENDED_SD = 1.0
+"""How much a spin changes that ends at once as its stone comes to rest, rad/s."""
 
 STILL_SD = (1e-3, 1e-3)
 """How still a stone at rest lies, m/s and rad/s."""
@@ -145,17 +149,22 @@ def steps(stretch: Stretch) -> tuple[Steps, Steps]:
     model = stretch.model
     unsure = at_speed(speed, model.a, model.fall, model.sd_fall)[1]
     deviation = np.sqrt(model.spread**2 + slower**2 + unsure**2)
-    along = _steps(stretch, rest, deviation, 0)
-    return along, _steps(stretch, idle, pivoting, 1)
+    ends = spin_ends(stretch.t, stretch.z[:, 2], stretch.sd[:, 2], rest)
+    still = np.zeros(len(ends))
+    along = _steps(stretch, rest, deviation, still, 0)
+    return along, _steps(stretch, idle, pivoting, np.where(ends, ENDED_SD, still), 1)
 
 
-def _steps(stretch: Stretch, still: Bools, deviation: Floats, kind: int) -> Steps:
-    """Give the steps of a pair of that kind by what its acceleration deviates by."""
+def _steps(stretch: Stretch, still: Bools, deviation: Floats, sudden: Floats, kind: int) -> Steps:
+    """Give the steps of a pair of that kind.
+
+    By what its acceleration deviates by, and what else its rate changes by at once.
+    """
     dt = np.diff(stretch.t)
     was, ends = still[:-1], still[1:]
     density = deviation**2 * MEMORY
     change = np.hypot(*np.diff(stretch.speed, axis=0).T) + LEAST_JUMP
-    jump = np.where(np.diff(stretch.piece) != 0, JUMP_SD[kind] * change, 0.0)
+    jump = np.where(np.diff(stretch.piece) != 0, JUMP_SD[kind] * change, sudden)
     jump = np.where(was, START_SD[kind], jump) ** 2  # at any moment of the step
     stopped = np.where(stretch.idle[1:], STILL_SD[kind], STOPPED_SD)
     # What was left of a motion ends somewhere in the step, be it stopped dead in full run.
