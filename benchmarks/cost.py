@@ -45,7 +45,7 @@ PARTS = {
     "stones, frame by frame": "vision.watch.Watch.look",
     "stones, placed in the end": "vision.watch.Watch.finish",
     "association": "vision.track.follow",
-    "angles": "vision.track.handle_angles",
+    "angles": "vision.track.angles_in_parts",
     "hits": "physics.contacts.find_contacts",
     "filter": "physics.kalman.smoothed",
 }

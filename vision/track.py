@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from data.progress import Progress, no_progress
 from data.sheet import STONE, Stone
 from data.tracks import SIGHTING_COLUMNS, Columns, no_rows, order_of_motion
+from vision.angles import angles_in_parts
 from vision.appearance import Appearance
 from vision.camera import Camera
 from vision.clip import Clip
 from vision.follow import Gate, Track, follow
-from vision.handle import handle_angles
 from vision.late import seen_late
 from vision.naming import names_by_motion
 from vision.patch import handle_radii, is_plain
@@ -133,11 +133,10 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
 
 
 def _rows(name: str, track: Track, team: str, disc: Stone, edge: NDArray[np.float64]) -> Columns:
-    kept = [sighting.spectrum for sighting in track.sightings]
-    spectra = [None if spectrum is None else spectrum.get() for spectrum in kept]
+    spectra = [sighting.spectrum for sighting in track.sightings]
     # Caps were unrolled about their centres as these were measured.
     off = np.array([0.5 * (sighting.sd_x + sighting.sd_y) for sighting in track.sightings])
-    theta, sd_theta = handle_angles(np.array(track.times), spectra, handle_radii(disc), off)
+    theta, sd_theta = angles_in_parts(np.array(track.times), spectra, handle_radii(disc), off)
     seen = steadied(track.times, track.sightings)
     x, y, sd_x, sd_y, sd_place_x, sd_place_y = np.array(
         [(item.x, item.y, item.sd_x, item.sd_y, *item.sd_place) for item in seen]
