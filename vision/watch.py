@@ -205,8 +205,14 @@ class Watch:
             self._follower.follow([*self._recent][-2::-1], leads)
 
     def _find(self, view: StoneView) -> list[Sighting]:
-        """Add to a view the stones of known colours that were not seen in it so far."""
-        fresh = self._follower.sought(view)
+        """Add to a view the stones of known colours that were not seen in it so far.
+
+        What lies there from the beginning is sought on a finer map, once.
+        """
+        first = not self._leads and not is_plain(self.disc)
+        radius_px = SEARCH.radius_px if first else self._search.radius_px
+        search = replace(self._search, radius_px=radius_px)
+        fresh = replace(self._follower, search=search).sought(view)
         view.sightings.extend(fresh)
         return fresh
 

@@ -3,6 +3,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 
@@ -77,6 +78,16 @@ def test_a_dull_cap_on_vivid_paint_is_learned_beside_a_vivid_one() -> None:
     for index in range(24):
         watch.look(Frame(index, index / 25, image), camera)
     assert [len(sightings) for _, _, sightings in watch.finish()] == [2] * 24
+
+
+def test_a_cap_of_which_little_is_coloured_is_seen_from_the_first_picture_on() -> None:
+    image, camera = picture(AT_REST), camera_of(CAMERA, scene_of(AT_REST))
+    x, y = camera.project(np.array(AT_REST[0][:2]), 0.12).astype(int).tolist()
+    cv2.circle(image, (x, y), 9, (150, 150, 150), -1)
+    watch = Watch()
+    for index in range(24):
+        watch.look(Frame(index, index / 25, image), camera)
+    assert [len(sightings) for _, _, sightings in watch.finish()] == [3] * 24
 
 
 def test_two_teams_that_a_coarse_map_shows_are_not_sought_on_a_fine_one(
