@@ -35,6 +35,9 @@ GREY = 10.0
 ALIKE_GRANITE = 18.0
 """Lightness by which granite differs from stone to stone, and over one, L*a*b* units."""
 
+DULL = 16.0
+"""Difference of hue from the granite from which a colour may be that of a cap, L*a*b* units."""
+
 LIGHT, LIGHT_OF_GREY = 0.1, 0.35
 """What a difference of lightness counts beside one of hue, both squared; and where neither cap has
 a hue: 50 levels apart are two colours there."""
@@ -183,6 +186,21 @@ def any_grey_stone_of(granite: Colour) -> Guess:
         away = np.abs(_lab_of_table()[..., 0] - granite.mean[0])
         stone = np.clip((ALIKE_GRANITE - away) / 8 + 0.5, 0, 1)
         return Appearance((1 - 2 * stone).astype(np.float32))
+
+    return guess
+
+
+def any_dull_stone_of(granite: Colour) -> Guess:
+    """As `any_stone`, where the granite is known: caps of another hue, be it as dull as it may."""
+
+    def guess(white: int, black: int) -> Appearance:
+        lab = _lab_of_table()
+        light = lab[..., 0] / white
+        away = np.hypot(lab[..., 1] - granite.mean[1], lab[..., 2] - granite.mean[2])
+        cap = np.clip((away - DULL) / 8, 0, 1)
+        stone = np.clip(1.5 - away / DULL, 0, 1)
+        stone *= np.clip((light - 0.08) / 0.1, 0, 1) * np.clip((0.78 - light) / 0.1, 0, 1)
+        return Appearance((cap - stone).astype(np.float32))
 
     return guess
 

@@ -17,6 +17,7 @@ from data.sheet import Stone
 from vision.appearance import (
     MOST_COLOURS,
     Guess,
+    any_dull_stone_of,
     any_grey_stone,
     any_grey_stone_of,
     any_veiled_stone,
@@ -60,8 +61,10 @@ def strangers(looks: Sequence[Look], disc: Stone, search: Search) -> list[Findin
             found = _with_more(found, looks, guess, disc, search)
     if _colours(found) == 1:
         seen = learn(_convincing(found))
-        if seen is not None and seen.granite is not None and all(cap.grey for cap in seen.caps):
-            found = _with_more(found, looks, any_grey_stone_of(seen.granite), disc, search)
+        if seen is not None and seen.granite is not None:
+            grey = all(cap.grey for cap in seen.caps)
+            guess_of = any_grey_stone_of if grey else any_dull_stone_of
+            found = _with_more(found, looks, guess_of(seen.granite), disc, search)
     return found
 
 

@@ -9,6 +9,7 @@ from vision.appearance import (
     UNLIKE,
     Appearance,
     Colour,
+    any_dull_stone_of,
     any_grey_stone,
     any_grey_stone_of,
     any_stone,
@@ -146,6 +147,16 @@ def test_where_granite_is_known_what_is_a_little_darker_is_a_cap() -> None:
     learned = worth_of([dull, same], any_grey_stone_of(granite)(230, 0))
     assert learned[0] > 0.9
     assert learned[1] < -0.9
+
+
+def test_beside_a_known_granite_any_other_hue_is_a_cap() -> None:
+    granite = Colour(lab((120, 126, 122)), np.diag([225.0, 81.0, 81.0]))
+    worth = worth_of(
+        [(84, 76, 124), (96, 102, 104), (235, 238, 236)], any_dull_stone_of(granite)(230, 0)
+    )
+    assert worth[0] > 0.9
+    assert worth[1] < -0.9
+    assert abs(worth[2]) < 0.1
 
 
 def test_the_nearest_cap_and_how_far_it_is() -> None:

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from data.sheet import STONE
@@ -22,6 +24,7 @@ from vision.stones import FOLLOWING, plain_disc
 from vision.strangers import strangers
 
 BLACK, WHITE, DULL = (32, 30, 30), (232, 234, 234), (77, 77, 77)
+MAROON = (84, 76, 124)
 PLACES = [(0.3, 0.2), (-0.35, 0.3), (1.4, 0.6), (0.1, 2.4)]
 
 
@@ -55,6 +58,22 @@ def test_caps_little_darker_than_granite_are_found_beside_light_ones() -> None:
     found = seen(scene)
     assert len(found) == len(scene.stones)
     assert misses(found, scene).max() < 0.010
+
+
+def test_dull_caps_are_found_beside_vivid_ones_by_what_they_differ_from_the_granite() -> None:
+    scene = painted(BLUE, MAROON, BLUE, MAROON)
+    assert len(look(scene)) == 2
+    found = seen(scene)
+    assert len(found) == len(scene.stones)
+    assert misses(found, scene).max() < 0.010
+
+
+def test_beside_one_vivid_team_no_person_in_dull_clothes_is_a_stone() -> None:
+    scene = scene_of([(x, y, BLUE) for x, y in PLACES[:2]])
+    people = tuple(
+        Person(((0.0, x, y, 1.0),), shirt=MAROON, trousers=(96, 94, 92)) for x, y in PLACES[2:]
+    )
+    assert len(seen(replace(scene, people=people))) == 2
 
 
 def test_caps_are_found_where_the_picture_has_lost_half_its_contrast() -> None:
