@@ -33,6 +33,10 @@ does, and as those of the others of its shot do."""
 WILD = 3.0
 """Standard deviations beyond which a sighting is worse than it says."""
 
+WORSE = 2.0
+"""How many times as large as usual an error that lasts may be: what a sighting is worse than that,
+as one cut by the picture's edge, goes with it, and is no error of the next ones."""
+
 MOST = 60
 """So many sightings of a stretch are enough to tell how much of a lasting error a fit takes."""
 
@@ -100,8 +104,14 @@ def noises(fit: ShotFit, known: Mapping[str, Trace]) -> dict[str, Noise]:
         stated = np.column_stack([trace.sd, trace.sd_theta])
         white = np.column_stack([errors[name][0] for errors in each])
         slow = np.array([errors[name][1] for errors in each])
-        out[name] = Noise(white * stated, slow * _filled(stated))
+        out[name] = _noise(white * stated, slow * _filled(stated))
     return out
+
+
+def _noise(white: Floats, slow: Floats) -> Noise:
+    """Let what few sightings are much worse by than the others be anew in them."""
+    lasting = np.minimum(slow, WORSE * np.median(slow, axis=0))
+    return Noise(np.sqrt(white**2 + slow**2 - lasting**2), lasting)
 
 
 def _filled(stated: Floats) -> Floats:

@@ -87,11 +87,13 @@ def _moved(looks: Sequence[Look], places: Array, chosen: NDArray[np.intp]) -> li
     """Look again at the chosen ones, at these places."""
     ends = np.cumsum([len(look.places) for look in looks])
     parts = np.split(chosen, np.searchsorted(chosen, ends[:-1]))
-    return [
-        replace(look, places=places[part])
-        for look, part in zip(looks, parts, strict=True)
-        if len(part)
-    ]
+    again = []
+    for look, part, end in zip(looks, parts, ends.tolist(), strict=True):
+        own = part - (end - len(look.places))
+        drift = None if look.drift is None else look.drift[own]
+        if len(part):
+            again.append(replace(look, places=places[part], drift=drift))
+    return again
 
 
 def _found(

@@ -91,9 +91,10 @@ class StoneView:
             if sighting.spectrum is not None:
                 sighting.spectrum.put_aside(shelf)
 
-    def look(self, places: Sequence[Place]) -> Look:
-        """Look at places on the ice in it."""
-        return Look(self.frame.picture, self.camera, _array(places))
+    def look(self, places: Sequence[Place], drift: Sequence[Place] | None = None) -> Look:
+        """Look at places on the ice in it, which drift so far from picture to picture."""
+        moving = None if drift is None else _array(drift)
+        return Look(self.frame.picture, self.camera, _array(places), moving)
 
 
 @dataclass(frozen=True)
@@ -131,12 +132,13 @@ class Follower:
         """
         for begin in range(0, len(views), self.patience.block):
             block = views[begin : begin + self.patience.block]
-            for view, seen in zip(block, self._ahead(block, leads), strict=True):
-                leads = self._step(view, leads, seen)
+            step = _time_between(block, leads)
+            for view, seen in zip(block, self._ahead(block, leads, step), strict=True):
+                leads = self._step(view, leads, seen, step)
         return list(leads)
 
     def _step(
-        self, view: StoneView, leads: Sequence[Lead], ahead: Sequence[Foreseen]
+        self, view: StoneView, leads: Sequence[Lead], ahead: Sequence[Foreseen], step: float
     ) -> list[Lead]:
         """Add to a view the stones to which leads point; some were measured ahead."""
         if not leads:
@@ -145,7 +147,7 @@ class Follower:
         apart = NEAREST * self.disc.radius
         near, still = ON_COURSE * self.disc.radius, STILL * self.disc.radius
         expected = [lead.at(t) for lead in leads]
-        found = self._measured(view, leads, expected, ahead)
+        found = self._measured(view, leads, expected, ahead, step)
         going: list[tuple[Lead, Sighting | None]] = []
         lost: list[Lead] = []
         # The best first: of two leads to one stone, the other is lost.
@@ -167,7 +169,9 @@ class Follower:
                 going.append((replace(lead, missed=True), None))
         return self._portrayed(view, going)
 
-    def _ahead(self, views: Sequence[StoneView], leads: Sequence[Lead]) -> list[list[Foreseen]]:
+    def _ahead(
+        self, views: Sequence[StoneView], leads: Sequence[Lead], step: float
+    ) -> list[list[Foreseen]]:
         """Measure at once what views show of stones that rest or keep their course."""
         if not leads:
             return [[] for _ in views]
@@ -187,9 +191,10 @@ class Follower:
         looks = []
         for view, seen in zip(views, alike, strict=True):
             expected = [lead.at(view.frame.t) for lead in leads]
-            others = [place for i, place in enumerate(expected) if i not in seen]
+            others = [i for i in range(len(leads)) if i not in seen]
             out.append([(expected[i], sighting) for i, sighting in seen.items()])
-            looks.append(view.look(others))
+            drift = [leads[i].drift(step) for i in others]
+            looks.append(view.look([expected[i] for i in others], drift))
         if any(len(look.places) for look in looks):
             measured = iter(look_on_course(looks, self.appearance, self.disc, self.search))
             for so_far, look in zip(out, looks, strict=True):
@@ -202,6 +207,7 @@ class Follower:
         leads: Sequence[Lead],
         expected: Sequence[Place],
         ahead: Sequence[Foreseen],
+        step: float,
     ) -> list[Sighting | None]:
         """Look at each stone where it is expected, unless it was measured ahead."""
         nearest = [_nearest(ahead, place) for place in expected]
@@ -212,7 +218,8 @@ class Follower:
             if found[index] is None and away > SETTLED * self.disc.radius
         ]
         if others:
-            look = view.look([expected[i] for i in others])
+            drift = [leads[i].drift(step) for i in others]
+            look = view.look([expected[i] for i in others], drift)
             seen = look_on_course([look], self.appearance, self.disc, self.search)
             for index, sighting in zip(others, seen, strict=True):
                 found[index] = sighting
@@ -222,7 +229,8 @@ class Follower:
             if not lead.missed and _score(sighting) < DOUBTFUL * lead.score
         ]
         if astray:
-            look = view.look([expected[i] for i in astray])
+            drift = [leads[i].drift(step) for i in astray]
+            look = view.look([expected[i] for i in astray], drift)
             seen = look_beside(look, self.appearance, self.disc, self.search)
             for index, sighting in zip(astray, seen, strict=True):
                 found[index] = max(found[index], sighting, key=_score)
@@ -270,6 +278,13 @@ class Follower:
             view.places,
         )
         return [sighting.without_samples() for sighting in found.stones]
+
+
+def _time_between(views: Sequence[StoneView], leads: Sequence[Lead]) -> float:
+    """Time from one picture to the next, s; 0 where nothing tells it."""
+    times = [view.frame.t for view in views]
+    gaps = np.abs(np.diff(times)) if len(times) > 1 else [abs(times[0] - lead.t) for lead in leads]
+    return float(np.min(gaps)) if len(gaps) else 0.0
 
 
 def _away(sightings: Sequence[Sighting], x: float, y: float) -> float:

@@ -73,6 +73,10 @@ class Lead:
         (x, y), (vx, vy), mean = self.place, self.velocity, 0.5 * (1 + slower)
         return x + mean * vx * step, y + mean * vy * step
 
+    def drift(self, step: float) -> tuple[float, float]:
+        """How far the stone moves in so long, s, m."""
+        return self.velocity[0] * step, self.velocity[1] * step
+
     def _slowed(self, t: float) -> tuple[float, float]:
         """Tell what share of its velocity is left by then, and how long it moves till then, s."""
         lasts = hypot(*self.velocity) / DECELERATION

@@ -30,6 +30,7 @@ from vision.patch import (
 )
 from vision.rays import Look, Rays, directions
 from vision.rims import Rim, falls_along, summed
+from vision.smeared import middles, swept_share
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
@@ -100,6 +101,8 @@ class Measures:
     light : ndarray, shape (n, 2)
         Where the edge of the cap by its lightness alone has its middle, off the centre, m; NaN
         where it was not found.
+    swept : ndarray of bool, shape (n,)
+        Whether the centre is that of a cap that is smeared by its motion.
     bends : ndarray, shape (n, 6)
         How the edge of cap or disc is bent (`vision.circles.Fits`), m.
     outline : ndarray, shape (n, circles)
@@ -122,6 +125,7 @@ class Measures:
     uncovered: Array
     evidence: Array
     light: Array
+    swept: Flags
     bends: Array
     outline: Array
     wall: Array
@@ -156,7 +160,12 @@ def measure_discs(
         return _plain(rays, handle, places, scale, disc, effort)
     assert appearance is not None
     slant = np.concatenate([slants(look.camera, look.places) for look in looks])
-    return _stones(rays, handle, places, scale, slant, appearance, disc, effort)
+    still = [
+        np.zeros((len(look.places), 2)) if look.drift is None else look.drift for look in looks
+    ]
+    return _stones(
+        rays, handle, places, scale, slant, np.concatenate(still), appearance, disc, effort
+    )
 
 
 def well_within(radius: Array, disc: Stone) -> tuple[slice, slice]:
@@ -182,6 +191,7 @@ def _stones(
     places: Array,
     scale: Array,
     slant: Array,
+    drift: Array,
     appearance: Appearance,
     disc: Stone,
     effort: Effort,
@@ -260,8 +270,16 @@ def _stones(
     shift[rows] += more * (exact.shift[near] - shift[rows])
     covariance[rows] += more[..., None] * (exact.covariance[near] - covariance[rows])
     bends[rows] += more * (exact.bends[near] - bends[rows])
+    lightness = np.where(lit.ok[:, None], lit.shift - shift, np.nan)
     # What displaces the edges of one side is made good by the other side, if that is seen.
-    hidden = 0.04 * disc.radius * (1 - visible)
+    hidden = np.tile(0.04 * disc.radius * (1 - visible)[:, None], 2)
+    swept = np.zeros(len(places), bool)
+    fast = np.flatnonzero((swept_share(drift) > 0) & fit.ok & (visible > OPEN))
+    if len(fast):
+        part, by_edges = rays.at_places(fast), shift[fast]
+        swept[fast], shift[fast], off = middles(signal[fast], part, disc, by_edges, drift[fast])
+        hidden[fast] = np.hypot(hidden[fast], off)
+        lightness[swept] = np.nan
     return Measures(
         ok=enough & fit.ok,
         centre=places + shift,
@@ -271,7 +289,8 @@ def _stones(
         visible=visible,
         uncovered=(capped & at_cap).mean(1),
         evidence=evidence,
-        light=np.where(lit.ok[:, None], lit.shift - shift, np.nan),
+        light=lightness,
+        swept=swept,
         bends=bends,
         outline=fit.radii / np.array([disc.cap_radius, disc.radius]),
         wall=fit.wall,
@@ -298,12 +317,13 @@ def _plain(
         ok=fit.ok,
         centre=places + fit.shift,
         shift=np.hypot(fit.shift[:, 0], fit.shift[:, 1]),
-        sd=_errors(fit.covariance, pixel, np.zeros(n)),
+        sd=_errors(fit.covariance, pixel, np.zeros((n, 2))),
         colour=mean_colours(rays.lab.astype(np.float32), within.astype(np.float32)),
         visible=visible,
         uncovered=visible,
         evidence=fit.shares[:, 0],
         light=np.full((n, 2), np.nan),
+        swept=np.zeros(n, bool),
         bends=fit.bends,
         outline=fit.radii / disc.radius,
         wall=fit.wall,
@@ -316,4 +336,4 @@ def _plain(
 def _errors(covariance: Array, pixel: Array, hidden: Array) -> Array:
     # Half of the edges' misfit is the stone's own shape, which stays from picture to picture.
     own = 0.5 * np.maximum(np.diagonal(covariance, axis1=1, axis2=2), 0)
-    return np.asarray(np.sqrt(own + ((0.07 * pixel) ** 2 + hidden**2)[:, None]))
+    return np.asarray(np.sqrt(own + (0.07 * pixel[:, None]) ** 2 + hidden**2))

@@ -61,17 +61,17 @@ def sightings(
         seen.centre[chosen], seen.sd[chosen], seen.visible[chosen], seen.evidence[chosen],
         seen.outline[chosen], seen.wall[chosen], seen.bends[chosen],
         np.concatenate([np.empty((0, 2)), *pixels]), seen.uncovered[chosen] >= UNCOVERED,
-        seen.light[chosen],
+        seen.light[chosen], seen.swept[chosen],
     )  # fmt: skip
     rows = zip(seen.colour[chosen], spectra, *(column.tolist() for column in columns), strict=True)
     return [
         Sighting(
             x, y, sd_x, sd_y, (nan, nan), colour, visible, score, tuple(outline), wall,
             tuple(bends), (u, v), nan, (light_x, light_y),
-            Kept(spectrum.copy()) if told else None,
+            Kept(spectrum.copy()) if told else None, swept=swept,
         )
         for colour, spectrum, (x, y), (sd_x, sd_y), visible, score, outline, wall, bends, (u, v),
-        told, (light_x, light_y) in rows
+        told, (light_x, light_y), swept in rows
     ]  # fmt: skip
 
 

@@ -28,11 +28,21 @@ _MOST_ROWS = 32000
 
 @dataclass(frozen=True)
 class Look:
-    """A picture, its camera, and places on its ice, shape (n, 2), m."""
+    """A picture, its camera, and places on its ice.
+
+    Attributes
+    ----------
+    picture, camera : Picture, Camera
+    places : ndarray, shape (n, 2)
+        m.
+    drift : ndarray, shape (n, 2), optional
+        How far what is there moves from one picture to the next, m; None where that is not known.
+    """
 
     picture: Picture
     camera: Camera
     places: Array
+    drift: Array | None = None
 
 
 @dataclass(frozen=True)

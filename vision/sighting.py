@@ -55,6 +55,8 @@ class Sighting(NamedTuple):
         of it was seen to tell its angle.
     measured : bool
         Whether its edges were measured in this picture; else it looked as when they last were.
+    swept : bool
+        Whether its place is that of a cap smeared by its motion (`vision.smeared`).
     """
 
     x: float
@@ -75,6 +77,7 @@ class Sighting(NamedTuple):
     cap_samples: Array = _NONE
     granite_samples: Array = _NONE
     measured: bool = True
+    swept: bool = False
 
     def without_samples(self) -> Sighting:
         """Leave out what only learning needs."""

@@ -23,6 +23,7 @@ from vision.naming import names_by_motion
 from vision.patch import handle_radii, is_plain
 from vision.rejoin import rejoined
 from vision.roundness import edge_errors
+from vision.smeared import widened
 from vision.steady import steadied
 from vision.stones import FOLLOWING, Search
 from vision.watch import Watch
@@ -137,7 +138,7 @@ def _rows(name: str, track: Track, team: str, disc: Stone, edge: NDArray[np.floa
     # Caps were unrolled about their centres as these were measured.
     off = np.array([0.5 * (sighting.sd_x + sighting.sd_y) for sighting in track.sightings])
     theta, sd_theta = angles_in_parts(np.array(track.times), spectra, handle_radii(disc), off)
-    seen = steadied(track.times, track.sightings)
+    seen = steadied(track.times, widened(track.times, track.sightings))
     x, y, sd_x, sd_y, sd_place_x, sd_place_y = np.array(
         [(item.x, item.y, item.sd_x, item.sd_y, *item.sd_place) for item in seen]
     ).T

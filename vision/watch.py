@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from data.sheet import STONE, Stone
+from vision.again import measure_again
 from vision.appearance import MOST_COLOURS, UNLIKE, Appearance, by_colour, convincing, learn
 from vision.balance import Balance, brightening
 from vision.camera import Camera
@@ -195,7 +196,7 @@ class Watch:
 
     def _search_for_new(self, view: StoneView) -> None:
         """Search all the ice; follow what is found back through the last pictures."""
-        self._since = 0
+        not_searched, self._since = [*self._recent][-self._since - 1 :], 0
         fresh = self._find(view)
         if self._look_for_colours(view):
             fresh += self._find(view)
@@ -203,6 +204,8 @@ class Watch:
         self._leads += leads
         if self._knows:
             self._follower.follow([*self._recent][-2::-1], leads)
+        if self.appearance is not None:
+            measure_again(not_searched, self.appearance, self.disc, self._search)
 
     def _find(self, view: StoneView) -> list[Sighting]:
         """Add to a view the stones of known colours that were not seen in it so far.

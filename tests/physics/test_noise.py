@@ -106,3 +106,16 @@ def test_stones_that_never_move_err_as_is_stated() -> None:
     assert noise.white[:, :2] == pytest.approx(0.002)
     assert np.all(noise.slow == 0)
     assert np.isnan(noise.white[:, 2]).all()
+
+
+def test_what_a_few_sightings_are_much_worse_by_is_anew_in_them() -> None:
+    seen = shots(slow=0.004)[0]
+    before = told(seen)
+    for name, group in seen.groupby("stone"):
+        worse = seen.copy()
+        worse.loc[group.index[:3], ["sd_x", "sd_y"]] *= 20
+        after = told(worse)[str(name)]
+        usually = np.median(after.slow, axis=0)[:2]
+        assert np.all(after.slow[:3, :2] <= 2.001 * usually)
+        assert np.all(after.white[:3, :2] > 5 * before[str(name)].white[:3, :2])
+        np.testing.assert_allclose(after.slow[3:, :2], np.tile(usually, (len(group) - 3, 1)))

@@ -1,0 +1,32 @@
+from __future__ import annotations
+
+import numpy as np
+
+from data.sheet import STONE
+from tests.vision.test_smeared import LEARNED, PATH, PICTURES, VIEW
+from vision.again import drifts, measure_again
+from vision.clip import Frame
+from vision.follower import StoneView
+from vision.stones import FOLLOWING, search_picture
+
+
+def test_stones_whose_motion_shows_only_later_are_measured_again() -> None:
+    views = []
+    for k, picture in enumerate(PICTURES):
+        found = search_picture(picture, VIEW, LEARNED).stones
+        views.append(StoneView(Frame(k, 0.04 * k, picture), VIEW, list(found)))
+        assert len(found) == 1 and not found[0].swept
+    measure_again(views, LEARNED, STONE, FOLLOWING)
+    for view, truth in zip(views, PATH, strict=True):
+        assert view.sightings[0].swept
+        assert np.hypot(*(view.places[0] - truth)) < 0.0025
+
+
+def test_drifts_are_told_by_the_next_picture_or_by_the_one_before() -> None:
+    places = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 2.0]])
+    before = np.array([[1.0, 0.08], [0.0, 0.3]])
+    after = np.array([[0.1, 0.0], [1.01, 0.0]])
+    found = drifts(places, before, after, 0.2)
+    np.testing.assert_allclose(found, [[0.1, 0.0], [0.01, 0.0], [0.0, 0.0]], atol=1e-12)
+    found = drifts(places, before, np.empty((0, 2)), 0.2)
+    np.testing.assert_allclose(found, [[0.0, 0.0], [0.0, -0.08], [0.0, 0.0]], atol=1e-12)
