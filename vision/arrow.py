@@ -41,6 +41,12 @@ class Arrow:
         first = np.linalg.solve(schur, right[:count] - share @ right[count:])
         return np.concatenate([first, right[count:] / last - first @ share])
 
+    def last_variances(self) -> Array:
+        """Give what is on the diagonal of the last block of the inverse, shape (n,)."""
+        share = self.border / self.diagonal
+        dense = np.linalg.inv(self.dense - share @ self.border.T)
+        return np.asarray(1 / self.diagonal + ((dense @ share) * share).sum(0))
+
     def inverse(self) -> Array:
         """Give the inverse, shape (m + n, m + n)."""
         share = self.border / self.diagonal

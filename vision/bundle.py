@@ -167,8 +167,10 @@ class _Problem:
         self.run_piece = self.piece[self.first]
         of_view = VIEW_SIZE * number[self.first] + np.arange(VIEW_SIZE)[:, None]
         self.run_view = self.shared + of_view
-        self.of_piece = np.zeros((len(self.first), len(self.pieces)))
-        self.of_piece[np.arange(len(self.first)), self.piece[self.first]] = 1.0
+        self.by_piece = np.argsort(self.run_piece, kind="stable")
+        self.piece_first = np.searchsorted(
+            self.run_piece[self.by_piece], np.arange(len(self.pieces))
+        )
         self.prior = prior
         self.start = np.array([v.vector for v in views])
         self.hold = 1 / np.square(VIEW_SD)
@@ -224,7 +226,7 @@ class _Problem:
             dense[rig, view] = dense[view, rig].T
         if len(self.first):
             runs = np.add.reduceat(np.concatenate([shared, own]) * by_offset, self.first, axis=1)
-            border[rig] = runs[rig] @ self.of_piece
+            border[rig] = np.add.reduceat(runs[rig, self.by_piece], self.piece_first, axis=1)
             border[self.run_view, self.run_piece] = runs[self.shared :]
         right[cut:] += np.bincount(self.piece, by_offset * pull, len(self.pieces))
         held[cut:] += np.bincount(self.piece, w * by_offset**2, len(self.pieces))
@@ -236,10 +238,10 @@ class _Problem:
         """Fit with the paint and the noise that the residuals show: state, covariance, both."""
         at = self.see(state)
         for step in range(ROUNDS):
-            state, at, cov = self.fit(state, at, paint, noise, FIRST if step == 0 else NEXT)
-            paint, noise = self.spread(state, at, cov, paint, noise)
-        state, _, cov = self.fit(state, at, paint, noise, LAST)
-        return state, cov, paint, noise
+            state, at, matrix = self.fit(state, at, paint, noise, FIRST if step == 0 else NEXT)
+            paint, noise = self.spread(state, at, matrix.last_variances(), paint, noise)
+        state, _, matrix = self.fit(state, at, paint, noise, LAST)
+        return state, matrix.inverse(), paint, noise
 
     def gain(self, state: _State, paint: Array, noise: Array) -> float:
         """By how much the cost falls to where linear residuals have its least."""
@@ -248,8 +250,8 @@ class _Problem:
 
     def fit(
         self, state: _State, at: Linear, paint: Array, noise: Array, iterations: int
-    ) -> tuple[_State, Linear, Array]:
-        """Gauss-Newton with damping; the state, what is seen from it, and its covariance."""
+    ) -> tuple[_State, Linear, Arrow]:
+        """Gauss-Newton with damping; the state, what is seen from it, and the normal matrix."""
         cost, damping = self.cost(state, at, paint, noise), 1e-6
         matrix, right = self.normal(state, at, paint, noise)
         for _ in range(iterations):
@@ -265,7 +267,7 @@ class _Problem:
             matrix, right = self.normal(state, at, paint, noise)
             if done:
                 break
-        return state, at, matrix.inverse()
+        return state, at, matrix
 
     def settled(self, state: _State, at: Linear, noise: Array) -> _State:
         """Let each view follow what it shares with the others, by a step of its own.
@@ -281,10 +283,9 @@ class _Problem:
         return replace(state, views=state.views - step)
 
     def spread(
-        self, state: _State, at: Linear, cov: Array, paint: Array, noise: Array
+        self, state: _State, at: Linear, variance: Array, paint: Array, noise: Array
     ) -> tuple[Array, Array]:
-        """Estimate the paint's and the marks' standard deviations anew."""
-        variance = np.diagonal(cov)[len(cov) - len(self.pieces) :]
+        """Estimate the paint's and the marks' standard deviations anew; `variance` of offsets."""
         sure = 1 / (1 + (state.offset / paint[self.family] / WIDTH) ** 2)
         squares, counts = PAINT_TRUST * PAINT_SD**2, np.full(FAMILIES, PAINT_TRUST)
         off = sure * (state.offset**2 + variance)

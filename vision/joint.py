@@ -25,7 +25,7 @@ from vision.linear import Observations, by_measure, by_rig, linearised, view_equ
 from vision.outline import HALF_WAY, PaintEdge
 from vision.paint import CIRCLES, FIXED, Marks, joined
 from vision.pose import VIEW_SIZE, View, camera, turning
-from vision.quality import quality, warnings
+from vision.quality import ARC, quality, warnings
 from vision.resection import solve_views
 from vision.rig import K1, K1_BEND, K1_ZOOM, K2, POSITION, R4, R8, RIG_SIZE, Prior, zoom
 from vision.robust import WIDTH, inverse
@@ -44,7 +44,7 @@ TOGETHER = 16
 VIEW_SD = (np.inf, np.inf, 0.05, np.inf)
 """How far a view may lie from the provisional one: the roll is free where no line is seen."""
 
-LONG_RANGE = 1.2
+LONG_RANGE = 1.4
 """Errors of paint, and what compression does to edges, are alike over longer stretches than single
 pieces and marks tell: so much larger than these say are the standard errors, as clips with truth
 show."""
@@ -218,7 +218,7 @@ def fit_frames(
     by_shared, by_offset = by_rig(observed, at, views), by_measure(observed, at)
     moved = motion(observed, at, views, away, np.array([s.index for s in seen]))
     count = RIG_SIZE + len(shared.pieces)
-    identity, on_circle = piece_of(marks), marks.line < CIRCLES
+    identity, on_circle = piece_of(marks, ARC), marks.line < CIRCLES
     found = []
     for k, (s, fit, part) in enumerate(zip(seen, fits, observed.parts, strict=True)):
         cov, rig = covs[k], shared.rig.copy()

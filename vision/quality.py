@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from vision.camera import Camera
 from vision.paint import CIRCLES, ice_frame, measures
 from vision.pose import View, project
-from vision.shared import ARC
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -25,6 +24,9 @@ POOR_PX = 1.0
 UNTOLD = 0.7
 """Share of its prior standard deviation above which the camera's height counts as assumed."""
 
+ARC = np.radians(15.0)
+"""Length of a piece of a circle that counts as explained where one of its edges is, rad."""
+
 _ARCS = np.arange(-np.pi + ARC / 2, np.pi, ARC)
 _ON_CIRCLE = np.repeat(np.arange(CIRCLES), len(_ARCS))
 _FOOT, _WAY = ice_frame(_ON_CIRCLE, np.tile(_ARCS, CIRCLES))
@@ -36,7 +38,8 @@ def quality(pieces: Index, rms: float, view: View, rig: Array, size: tuple[int, 
     Parameters
     ----------
     pieces : ndarray of int
-        Pieces of the circles that it explains (`vision.shared.piece_of`), as often as may be.
+        Pieces of the circles, `ARC` long, that it explains (`vision.shared.piece_of`), as often as
+        may be.
     rms : float
         Residual of their edges, px; NaN where the camera is carried.
     view, rig, size

@@ -18,13 +18,10 @@ from vision.rig import POSITION, RIG_SIZE
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-ARC = np.radians(15.0)
-"""Length of a piece of a circle, rad."""
-
-PIECE = 0.12
-"""Length of a piece of a line, m: no more than from mark to mark. What a line's marks are aside
-stays in a picture that stays, and goes on along it in waves: marks of one piece would tell of a
-slope that is none."""
+ARC, PIECE = np.radians(5.0), 0.12
+"""Length of a piece of a circle, rad, and of a line, m: no more than from mark to mark. What marks
+are aside stays in a picture that stays, and goes on along a line in waves: marks of one piece would
+tell of a slope that is none, and draw the house aside."""
 
 BINS = 1000
 """Pieces a line may have; the identity of a piece is its line's number times this, plus its own."""
@@ -79,9 +76,9 @@ class Bundle:
         return np.where(known, self.offset[at], 0.0), np.where(known, at, -1)
 
 
-def piece_of(marks: Marks) -> Index:
-    """Identity of the piece of paint that each mark lies on."""
-    length = np.where(marks.line < CIRCLES, ARC, PIECE)
+def piece_of(marks: Marks, arc: float = ARC) -> Index:
+    """Identity of the piece of paint that each mark lies on; those of circles are `arc` long."""
+    length = np.where(marks.line < CIRCLES, arc, PIECE)
     number = np.floor(marks.along / length).astype(np.int64) + BINS // 2
     return np.asarray(marks.line * BINS + np.clip(number, 0, BINS - 1))
 

@@ -30,3 +30,9 @@ def test_solves_as_the_whole_matrix_does(case: tuple[Arrow, np.ndarray], damping
 def test_inverse_is_that_of_the_whole_matrix(case: tuple[Arrow, np.ndarray]) -> None:
     arrow, whole = case
     np.testing.assert_allclose(arrow.inverse() @ whole, np.eye(len(whole)), atol=1e-9)
+
+
+def test_variances_are_the_last_of_the_inverse(case: tuple[Arrow, np.ndarray]) -> None:
+    arrow, whole = case
+    last = np.linalg.inv(whole).diagonal()[len(arrow.dense) :]
+    np.testing.assert_allclose(arrow.last_variances(), last, rtol=1e-9)

@@ -79,6 +79,20 @@ def test_cameras_are_recovered_within_their_stated_errors(height: float) -> None
     assert np.mean(np.abs(np.concatenate(scaled)) < 2) > 0.92
 
 
+def test_noise_that_stays_with_the_picture_is_not_taken_for_new_in_every_frame() -> None:
+    true, off, scaled = true_view(0.1, 1000.0), [], []
+    start = View(np.array([-0.1, 0.0, 0.0, np.log(true.focal)]))
+    for seed in range(12):
+        marks = Kept(seen_marks(true, np.random.default_rng(seed), 5, 0.1))
+        seen = [Seen(k, k / 25, start, marks, True) for k in range(12)]
+        camera = fit_clip(seen, start_rig(OVERHEAD), OVERHEAD, SIZE).cameras[0]
+        off.append(camera.ice(true.project(np.c_[HOUSE, np.zeros(len(HOUSE))])) - HOUSE)
+        cov = camera.place_cov(HOUSE)
+        scaled.append(off[-1] / np.sqrt(np.diagonal(cov, axis1=-2, axis2=-1)))
+    assert np.sqrt(np.mean(np.square(off))) < 0.0005  # by pieces of several marks 0.0006
+    assert np.sqrt(np.mean(np.square(scaled))) < 1.0
+
+
 def test_less_seen_is_known_less_and_no_error() -> None:
     rng = np.random.default_rng(3)
     whole = fit_clip(clip(rng), start_rig(OVERHEAD), OVERHEAD, SIZE).cameras[0]

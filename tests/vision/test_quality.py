@@ -7,8 +7,8 @@ from tests.vision.cameras import SIZE, true_rig
 from vision.camera import Camera
 from vision.paint import CIRCLES
 from vision.pose import View
-from vision.quality import POOR, POOR_PX, quality, warnings
-from vision.shared import ARC, BINS
+from vision.quality import ARC, POOR, POOR_PX, quality, warnings
+from vision.shared import BINS
 
 RIG = true_rig()
 VIEW = View(np.array([0.0, 0.0, 0.0, np.log(1000.0)]))
