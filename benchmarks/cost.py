@@ -4,7 +4,8 @@ CPU time, all threads, of the whole of ``curlshot track`` against that of decodi
 with OpenCV alone, in the same run: of either as a process of its own, with the start of Python
 and the most memory held, and within one, with its parts. Without a clip, one is rendered: 12 s of
 1080 lines with eight stones, two sweepers and a camera that pans and zooms. What memory longer
-clips take is told by ``--lengths``: of one that shows 4 s of it forth and back, again and again.
+clips take is told by ``--lengths``: of it, and of it with its last second, in which all is at rest
+but the camera, shown backwards and forwards again and again.
 """
 
 from __future__ import annotations
@@ -15,11 +16,11 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections import defaultdict
-from collections.abc import Callable, Iterator
+from collections import defaultdict, deque
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
-from itertools import chain
+from itertools import cycle, islice
 from pathlib import Path
 from pkgutil import resolve_name
 from typing import Any
@@ -35,7 +36,7 @@ from report.encode import Encoder
 from tests.synthetic.camera import broadcast_camera
 from tests.synthetic.clip import cached_clip
 from tests.synthetic.scenes import random_scene, sweepers
-from vision.clip import open_clip
+from vision.clip import Image, open_clip
 
 FPS = 30.0
 
@@ -76,24 +77,26 @@ def long_clip(duration: float = 12.0) -> Path:
     return cached_clip(scene, view, fps=FPS, duration=duration)[0]
 
 
-def forth_and_back(clip: Path, times: int, path: Path) -> int:
-    """Write a clip that shows another so many times, every other one backwards; its frames."""
-    images = [frame.image for frame in open_clip([clip])]
-    shown = [images[:0:-1] if number % 2 else images[:-1] for number in range(times)]
-    with Encoder(path, images[0].shape[1::-1], FPS) as film:
-        for index, image in enumerate(chain.from_iterable(shown)):
+def lengthened(clip: Path, frames: int, path: Path) -> None:
+    """Write a clip of so many frames: another, then its last second backwards and forwards."""
+    source, count = open_clip([clip]), 0
+    last: deque[Image] = deque(maxlen=round(FPS))
+    with Encoder(path, source.size, FPS) as film:
+        for count, frame in enumerate(islice(source, frames), 1):
+            film.add(frame.image, (count - 1) / FPS)
+            last.append(frame.image)
+        sway = cycle([*reversed(last)][1:] + [*last][1:])
+        for index, image in zip(range(count, frames), sway, strict=False):
             film.add(image, index / FPS)
-    return sum(map(len, shown))
 
 
-def lengths() -> pd.DataFrame:
-    """Tell the most memory, MB, that a short clip and a long one take."""
-    clip = long_clip(duration=4.0)
-    rows = []
+def lengths(counts: Sequence[int] = (360, 1200, 3600)) -> pd.DataFrame:
+    """Tell the most memory, MB, and the time that clips of so many frames take."""
+    clip, rows = long_clip(), []
     with tempfile.TemporaryDirectory() as folder:
-        for times in (3, 16):
-            path = Path(folder) / f"{times}.mp4"
-            frames = forth_and_back(clip, times, path)
+        for frames in counts:
+            path = Path(folder) / f"{frames}.mp4"
+            lengthened(clip, frames, path)
             seconds, held = tracked(path)
             rows.append({"frames": frames, "MB": held, "ms/frame": 1e3 * seconds / frames})
     return pd.DataFrame(rows).round(1)
