@@ -238,6 +238,23 @@ def test_shade_that_stays_on_the_cap_is_not_believed_before_a_grip_that_turns(se
     assert abs(np.polyfit(times, theta - true, 1)[0]) < 0.02
 
 
+def test_a_cap_that_is_often_unlike_itself_is_less_sure_throughout() -> None:
+    times = np.arange(100) / 25
+
+    def told(unlike: int) -> float:
+        rng = np.random.default_rng(5)
+        pictures = [spectrum(0.9 * t, rng) for t in times]
+        for index in rng.permutation(100)[:unlike]:
+            pictures[index] = cap_spectrum(rng.integers(0, 255, (RAYS, len(RADII), 3)), RADII)
+        theta, sd = handle_angles(times, pictures, RADII)
+        assert np.nanstd(theta - 0.9 * times) < 0.03
+        return float(np.nanmedian(sd))
+
+    usual = told(0)
+    assert told(10) < 1.2 * usual  # something passed by
+    assert told(40) > 1.6 * usual  # nobody knows what the others show
+
+
 def test_where_grip_and_cap_tell_different_angles_errors_say_so() -> None:
     times = np.arange(100) / 25
 
