@@ -102,7 +102,7 @@ class Measures:
         Where the edge of the cap by its lightness alone has its middle, off the centre, m; NaN
         where it was not found.
     swept : ndarray of bool, shape (n,)
-        Whether the centre is that of a cap that is smeared by its motion.
+        Whether it was seen how far a fast stone's cap is smeared, and the centre goes by that.
     bends : ndarray, shape (n, 6)
         How the edge of cap or disc is bent (`vision.circles.Fits`), m.
     outline : ndarray, shape (n, circles)
@@ -279,7 +279,7 @@ def _stones(
         part, by_edges = rays.at_places(fast), shift[fast]
         swept[fast], shift[fast], off = middles(signal[fast], part, disc, by_edges, drift[fast])
         hidden[fast] = np.hypot(hidden[fast], off)
-        lightness[swept] = np.nan
+        lightness[fast[off.any(1)]] = np.nan
     return Measures(
         ok=enough & fit.ok,
         centre=places + shift,

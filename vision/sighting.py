@@ -56,7 +56,7 @@ class Sighting(NamedTuple):
     measured : bool
         Whether its edges were measured in this picture; else it looked as when they last were.
     swept : bool
-        Whether its place is that of a cap smeared by its motion (`vision.smeared`).
+        Whether its place goes by how far the motion smears its cap (`vision.smeared`).
     """
 
     x: float

@@ -26,6 +26,10 @@ SWEPT = 0.06, 0.08
 """How far a stone moves from picture to picture, m, from where on and up to where the middle of
 what it covered takes the place of that of its edges: they are smeared by about half of it."""
 
+SHORT = 0.022, 0.035
+"""Ways of a cap as they are made out, m, up to which it may be as sharp as one at rest, and from
+which on it is not: the exposure may be short, or the camera may follow the stone."""
+
 EXPOSED, UNSURE = 0.5, 0.5
 """Share of the time from one picture to the next for which film is exposed as a rule, and how far
 from that, as a share of it, it may be."""
@@ -127,17 +131,17 @@ def middles(
     Returns
     -------
     ok : ndarray of bool, shape (n,)
-        Whether the middle was found.
+        Whether it was found how far the cap is smeared.
     middle : ndarray, shape (n, 2)
         Off the places, m; that by the edges as far as these say more.
     off : ndarray, shape (n, 2)
-        Standard errors beyond those by the edges, m.
+        Standard errors beyond those by the edges, m; 0 where the edges say it all.
     """
     length = np.hypot(*drift.T)
     along = drift / length[:, None]
     used, middle, way = _fitted(signal, rays, disc, along, EXPOSED * length)
     ok = (used > FEWEST) & (np.hypot(*middle.T) < FARTHEST * disc.cap_radius)
-    share = ok * swept_share(drift)
+    share = ok * swept_share(drift) * np.clip((way - SHORT[0]) / (SHORT[1] - SHORT[0]), 0.0, 1.0)
     off = (OFF * share * way)[:, None] * np.abs(along)
     return ok, by_edges + share[:, None] * (middle - by_edges), off
 

@@ -91,6 +91,18 @@ def test_of_a_stone_that_is_known_to_move_the_place_is_that_of_mid_exposure(
     assert np.isnan(moving.light).all()
 
 
+@pytest.mark.parametrize("drift", [(-0.01, -0.1), (0.07, 0.05)])
+def test_a_fast_stone_that_is_sharp_is_told_by_its_edges(drift: tuple[float, float]) -> None:
+    picture = render_still(SCENES[4][1], CAMERA)
+    look = Look(picture, VIEW, PATH[1:2], np.array([drift]))
+    still = measure_discs([replace(look, drift=None)], LEARNED, STONE)
+    moving = measure_discs([look], LEARNED, STONE)
+    assert moving.swept.all()
+    np.testing.assert_array_equal(moving.centre, still.centre)
+    np.testing.assert_array_equal(moving.sd, still.sd)
+    assert np.isfinite(moving.light).all()
+
+
 def test_smeared_edges_say_less_of_where_a_fast_stone_is_along_its_way() -> None:
     times = [0.04 * k for k in range(6)]
     seen = [sighting((0.0, 0.1 * k))._replace(light=(0.001, 0.0), swept=k == 3) for k in range(6)]
