@@ -190,19 +190,26 @@ def any_grey_stone_of(granite: Colour) -> Guess:
     return guess
 
 
+def any_dull_stone(white: int, black: int) -> Appearance:
+    """As `any_stone`, with caps as dull as those of `any_dull_stone_of`, on grey granite."""
+    return _of_other_hue(128.0, 128.0, white)
+
+
 def any_dull_stone_of(granite: Colour) -> Guess:
     """As `any_stone`, where the granite is known: caps of another hue, be it as dull as it may."""
+    _, a, b = granite.mean.tolist()
+    return lambda white, black: _of_other_hue(a, b, white)
 
-    def guess(white: int, black: int) -> Appearance:
-        lab = _lab_of_table()
-        light = lab[..., 0] / white
-        away = np.hypot(lab[..., 1] - granite.mean[1], lab[..., 2] - granite.mean[2])
-        cap = np.clip((away - DULL) / 8, 0, 1)
-        stone = np.clip(1.5 - away / DULL, 0, 1)
-        stone *= np.clip((light - 0.08) / 0.1, 0, 1) * np.clip((0.78 - light) / 0.1, 0, 1)
-        return Appearance((cap - stone).astype(np.float32))
 
-    return guess
+def _of_other_hue(a: float, b: float, white: int) -> Appearance:
+    """Give the appearance of stones whose caps differ in hue from granite of this one."""
+    lab = _lab_of_table()
+    light = lab[..., 0] / white
+    away = np.hypot(lab[..., 1] - a, lab[..., 2] - b)
+    cap = np.clip((away - DULL) / 8, 0, 1)
+    stone = np.clip(1.5 - away / DULL, 0, 1)
+    stone *= np.clip((light - 0.08) / 0.1, 0, 1) * np.clip((0.78 - light) / 0.1, 0, 1)
+    return Appearance((cap - stone).astype(np.float32))
 
 
 def convincing(sightings: Iterable[Sighting]) -> list[Sighting]:

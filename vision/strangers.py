@@ -17,6 +17,7 @@ from data.sheet import Stone
 from vision.appearance import (
     MOST_COLOURS,
     Guess,
+    any_dull_stone,
     any_dull_stone_of,
     any_grey_stone,
     any_grey_stone_of,
@@ -59,6 +60,8 @@ def strangers(looks: Sequence[Look], disc: Stone, search: Search) -> list[Findin
     for guess in (any_veiled_stone, any_grey_stone) if first else (any_grey_stone,):
         if _colours(found) < MOST_COLOURS:
             found = _with_more(found, looks, guess, disc, search)
+    if first and not _colours(found):
+        found = _with_more(found, looks, any_dull_stone, disc, search)
     if _colours(found) == 1:
         seen = learn(_convincing(found))
         if seen is not None and seen.granite is not None:

@@ -24,7 +24,7 @@ from vision.stones import FOLLOWING, plain_disc
 from vision.strangers import strangers
 
 BLACK, WHITE, DULL = (32, 30, 30), (232, 234, 234), (77, 77, 77)
-MAROON = (84, 76, 124)
+MAROON, SLATE = (84, 76, 124), (124, 92, 78)
 PLACES = [(0.3, 0.2), (-0.35, 0.3), (1.4, 0.6), (0.1, 2.4)]
 
 
@@ -63,6 +63,13 @@ def test_caps_little_darker_than_granite_are_found_beside_light_ones() -> None:
 def test_dull_caps_are_found_beside_vivid_ones_by_what_they_differ_from_the_granite() -> None:
     scene = painted(BLUE, MAROON, BLUE, MAROON)
     assert len(look(scene)) == 2
+    found = seen(scene)
+    assert len(found) == len(scene.stones)
+    assert misses(found, scene).max() < 0.010
+
+
+def test_dull_caps_of_both_teams_are_found() -> None:
+    scene = painted(MAROON, SLATE, MAROON, SLATE)
     found = seen(scene)
     assert len(found) == len(scene.stones)
     assert misses(found, scene).max() < 0.010
