@@ -13,7 +13,7 @@ from data.sheet import GRAVITY, curling_size
 from physics.ice import FCV1
 from physics.random_effects import random_effects, weighted_mean
 from physics.shot_fit import Deceleration, ShotFit
-from physics.slowing import FALL, speed_left
+from physics.slowing import FALL, change_by, speed_left
 from physics.traces import PLACE_REACH, Trace
 
 Floats = NDArray[np.float64]
@@ -145,7 +145,7 @@ def _acceleration(fit: ShotFit, rank: int, t: float, way: Floats) -> tuple[float
     x = fit.theta[own[:6]].reshape(2, 3)
     slower = -float(np.log(speed_left(x, t - fit.origins[rank], power)))
     slope = np.zeros(len(fit.theta))
-    slope[own[[2, 5]]] = np.exp(power * slower) * way
+    slope[own[[2, 5]]] = change_by(t - fit.origins[rank], x, power, way)
     value = float(slope @ fit.theta)
     slope[own[6]] = value * slower
     return value, slope

@@ -1,13 +1,13 @@
 """How a gliding stone slows: by a deceleration that is a power of the speed it has left.
 
 With a(v) = a0 (v0 / v)^p the speed is v0 (1 - t / T)^(1 / (1 + p)), which ends at
-T = v0 / ((1 + p) a0): p is 0 on ice of constant friction and 1/2 in Penner's law.
+T = v0 / ((1 + p) a0): p is 0 on ice of constant friction and 1/2 in Penner's law. Ice also turns
+the path, the more so the slower the stone: its heading goes with the speed's power `BEND`.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import log
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,6 +28,13 @@ SLOWEST = 0.06
 FALL = Estimate(0.25, 0.2)
 """What is known of p beforehand for curling stones: 0 on even ice, 1/2 in Penner's law, between in
 FCV1's."""
+
+BEND = 0.5
+"""Power of the speed that the heading goes with: as it turns by v^(-0.8) a second (FCV1; Uehara and
+Ito, 2021), 0.2 + p."""
+
+NO_WAY = 1e-3
+"""Speed below which a motion has no direction, m/s."""
 
 LEAST, MOST = -0.5, 1.0
 """Bounds of p: past any law of ice."""
@@ -84,6 +91,94 @@ def speed_left(x: Floats, tau: float, power: float) -> float:
     return float(max(1 - q * tau / time_left(x), 0.0) ** (1 / q))
 
 
+def _left(tau: Floats, c: float, q: float) -> tuple[Floats, Floats]:
+    """Share of the time to the stop that is left, and of the speed."""
+    left = np.maximum(1 - q / c * tau, TINY)
+    return left, left ** (1 / q)
+
+
+def _of_places(tau: Floats, c: float, q: float) -> Floats:
+    """Tell what an acceleration at the origin does to places at times, shape (6, n).
+
+    Factors on its part along the motion and on that across it, then their derivatives by
+    `time_left`, then those by 1 + p.
+    """
+    left, share = _left(tau, c, q)
+    turning = share ** (1 + BEND)
+    # Integrals of the two over the time, and their derivatives by q.
+    k, m = 1 / (q + 1), 1 / (q + 1 + BEND)
+    one, more = c * k * (1 - left * share), c * m * (1 - left * turning)
+    decay, over = c / q**2 * left * np.log(left), tau / q
+    one_by_q = k * (decay * share - one) + over * share
+    more_by_q = m * ((1 + BEND) * decay * turning - more) + over * turning
+    along, across = c * (tau - one), c / BEND * (one - more)
+    return np.array(
+        [
+            along,
+            across,
+            2 / c * along - tau * (1 - share),
+            2 / c * across - tau / BEND * (share - turning),
+            -c * one_by_q,
+            c / BEND * (one_by_q - more_by_q),
+        ]
+    )
+
+
+def _of_velocities(tau: Floats, c: float, q: float) -> Floats:
+    """Tell what it does to velocities: as `_of_places`."""
+    left, share = _left(tau, c, q)
+    turned = share**BEND
+    along, across = c * (1 - share), c / BEND * share * (1 - turned)
+    now, aside = _of_changes(tau, c, q)
+    less = -share * (np.log(left) / q + tau / (c * left)) / q
+    return np.array(
+        [
+            along,
+            across,
+            (along - tau * now) / c,
+            (across - tau * aside) / c,
+            -c * less,
+            c / BEND * less * (1 - (1 + BEND) * turned),
+        ]
+    )
+
+
+def _of_changes(tau: Floats, c: float, q: float) -> tuple[Floats, Floats]:
+    """Factors on the acceleration at the origin, along and across, that give it at some times."""
+    left, share = _left(tau, c, q)
+    now = share / left
+    return now, ((1 + BEND) * share**BEND - 1) / BEND * now
+
+
+def _across(x: Floats) -> tuple[Floats, Floats]:
+    """Part of the acceleration across the motion, and its derivatives by it all, shape (2, 6)."""
+    speed, change = x[:, 1], x[:, 2]
+    square, slopes = float(speed @ speed), np.zeros((2, 6))
+    if square < NO_WAY**2:
+        return np.zeros(2), slopes
+    along = float(speed @ change) / square
+    slopes[:, [1, 4]] = -along * np.eye(2) - np.outer(speed, change - 2 * along * speed) / square
+    slopes[:, [2, 5]] = np.eye(2) - np.outer(speed, speed) / square
+    return change - along * speed, slopes
+
+
+def _bent(x: Floats, reach: Floats, c: float) -> tuple[Floats, Floats]:
+    """Tell what an acceleration does, shape (n, 2), and its derivatives by the motion and p.
+
+    ``reach`` is that of `_of_places` or `_of_velocities`.
+    """
+    aside, by_aside = _across(x)
+    ways = np.array([x[:, 2] - aside, aside])
+    by_motion = _by_motion(x, c)
+    rows = np.zeros((6, 2, 7))
+    rows[0, [0, 1], [2, 5]] = 1.0
+    rows[0, :, :6] -= by_aside
+    rows[1, :, :6] = by_aside
+    rows[2:4, :, :6] = ways[:, :, None] * by_motion
+    rows[4:, :, 6] = ways
+    return reach[:2].T @ ways, (reach.T @ rows.reshape(6, 14)).reshape(-1, 2, 7)
+
+
 def course(x: Floats, tau: Floats, power: float) -> tuple[Floats, Floats]:
     """Places at times from the origin, and how they depend on the motion there.
 
@@ -106,20 +201,11 @@ def course(x: Floats, tau: Floats, power: float) -> tuple[Floats, Floats]:
     c, q = time_left(x), 1 + power
     # The velocity vanishes at the stop, so that its own shift is of second order.
     tau = np.minimum(tau, c / q)
-    left = np.maximum(1 - q / c * tau, TINY)
-    speed, whole = left ** (1 / q), c * c / (q + 1)
-    way = speed * left  # that is left of all from the origin
-    bent = c * tau - whole * (1 - way)
-    by_c = tau * (1 + speed) - 2 * whole / c * (1 - way)
-    by_power = whole / (q + 1) * (1 - way) - whole / q**2 * way * np.log(left) - c / q * tau * speed
-    slopes = np.zeros((len(tau), 2, 7))
-    slopes[:, :, :6] = by_c[:, None, None] * np.outer(x[:, 2], _by_motion(x, c))
+    bent, slopes = _bent(x, _of_places(tau, c, q), c)
     for axis in range(2):
         slopes[:, axis, 3 * axis] += 1.0
         slopes[:, axis, 3 * axis + 1] += tau
-        slopes[:, axis, 3 * axis + 2] += bent
-    slopes[:, :, 6] = by_power[:, None] * x[:, 2]
-    return x[:, 0] + tau[:, None] * x[:, 1] + bent[:, None] * x[:, 2], slopes
+    return x[:, 0] + tau[:, None] * x[:, 1] + bent, slopes
 
 
 @dataclass(frozen=True)
@@ -143,30 +229,37 @@ class Moment:
 
 def moment(x: Floats, tau: float, power: float) -> Moment:
     """Return what `course` says of one time, and the like of the velocity."""
-    place, by_place = course(x, np.array([tau]), power)
+    times = np.array([tau])
+    place, by_place = course(x, times, power)
     c, q = time_left(x), 1 + power
-    left = 1 - q * tau / c
-    by_speed = np.zeros((2, 7))
-    if left <= 0:
-        return Moment(place[0], np.zeros(2), np.zeros(2), by_place[0], by_speed)
-    share = left ** (1 / q)
-    by_c = 1 - share - tau * share / left / c
-    by_speed[:, :6] = by_c * np.outer(x[:, 2], _by_motion(x, c))
+    if q * tau >= c:
+        return Moment(place[0], np.zeros(2), np.zeros(2), by_place[0], np.zeros((2, 7)))
+    bent, by_speed = _bent(x, _of_velocities(times, c, q), c)
     for axis in range(2):
-        by_speed[axis, 3 * axis + 1] += 1.0
-        by_speed[axis, 3 * axis + 2] += c * (1 - share)
-    by_speed[:, 6] = (c * share * log(left) / q**2 + tau * share / left / q) * x[:, 2]
-    now = motion(x, tau, power)
-    return Moment(now[0], now[1], share / left * x[:, 2], by_place[0], by_speed)
+        by_speed[:, axis, 3 * axis + 1] += 1.0
+    now, aside = _of_changes(times, c, q)
+    across = _across(x)[0]
+    change = now * (x[:, 2] - across) + aside * across
+    return Moment(place[0], x[:, 1] + bent[0], change, by_place[0], by_speed[0])
 
 
 def motion(x: Floats, tau: float, power: float) -> tuple[Floats, Floats]:
     """Place and velocity at one time; parameters are those of `course`."""
     c, q = time_left(x), 1 + power
-    tau = min(tau, c / q)
-    left = max(1 - q * tau / c, 0.0)
-    speed = left ** (1 / q)
-    bent = c * tau - c * c / (q + 1) * (1 - speed * left)
+    times = np.minimum([tau], c / q)
+    aside = _across(x)[0]
+    ways = np.stack([x[:, 2] - aside, aside])
+    place, speed = (
+        reach[:2, 0] @ ways for reach in (_of_places(times, c, q), _of_velocities(times, c, q))
+    )
     # At its stop a stone has no velocity across either.
-    going = x[:, 1] + c * (1 - speed) * x[:, 2] if left > 0 else np.zeros(2)
-    return x[:, 0] + tau * x[:, 1] + bent * x[:, 2], going
+    going = x[:, 1] + speed if q * tau < c else np.zeros(2)
+    return x[:, 0] + times[0] * x[:, 1] + place, going
+
+
+def change_by(tau: float, x: Floats, power: float, way: Floats) -> Floats:
+    """Factors on the acceleration at the origin, by axis, that give it at a time in a direction."""
+    now, aside = _of_changes(np.array([tau]), time_left(x), 1 + power)
+    square = float(x[:, 1] @ x[:, 1])
+    along = x[:, 1] * (x[:, 1] @ way) / square if square > NO_WAY**2 else way
+    return np.asarray(now * along + aside * (way - along))

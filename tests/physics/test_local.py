@@ -58,3 +58,22 @@ def test_a_restitution_above_1_is_odd(restitution: float, said: int) -> None:
     seen = watch(motion, np.random.default_rng(8), sd=0.002)
     found = estimate_locally(seen, find_contacts(seen, RADIUS), radius=RADIUS)
     assert sum("is more than 1" in text for text in found.warnings) == said
+
+
+@pytest.mark.parametrize("offset", [-0.13, 0.13])
+def test_ice_that_bends_slow_ways_leads_no_restitution_astray(offset: float) -> None:
+    # What is left of the first stone goes aside, slowly, and its way turns the more the slower it
+    # is: taken for a parabola its velocity across, which is along the normal, was 4 mm/s off.
+    reach = np.sqrt((2 * RADIUS) ** 2 - offset**2)
+    motion = simulate(
+        [Start(offset, -reach - 1.2, 0.0, 1.15, 0.3, 1.0), Start(0.0, 0.0)],
+        4.5,
+        ice=Ice(b=0.00885, a=0.00284, v_c=0.0639, curl=0.0082),
+        impact=Impact(0.83, 0.05),
+        step=5e-4,
+        keep_every=4,
+    )
+    seen = watch(motion, np.random.default_rng(1), fps=60, sd=1e-5)
+    seen[["sd_x", "sd_y"]] = 0.003
+    found = estimate_locally(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    assert found.restitution.value == pytest.approx(0.83, abs=0.002)
