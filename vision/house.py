@@ -42,6 +42,14 @@ LEAST_NEARER = 0.05
 """By what share of the picture's width a house beside must be nearer to its middle."""
 
 
+FLATTEST = np.tan(np.radians(66))
+"""How far aside of the tee the camera may stand, in heights: one beside the players sees stones
+from the side, and hardly any of them would be told."""
+
+LEVEL, NEARLY_LEVEL = 0.96, 0.9
+"""Foreshortening of circles from which on a camera is likely to hang over the tee, and may."""
+
+
 def find_house(image: Image, *, frame: int = 0, t: float = 0.0) -> HouseFit | None:
     """Find the house in a picture.
 
@@ -67,7 +75,10 @@ def find_house(image: Image, *, frame: int = 0, t: float = 0.0) -> HouseFit | No
 
 
 def _is_house(image: Image, found: HouseFit) -> bool:
-    return is_house(image, found.evidence, found.view, found.rig)
+    x, y, z = found.rig[POSITION]
+    return bool(np.hypot(x, y) < FLATTEST * z) and is_house(
+        image, found.evidence, found.view, found.rig
+    )
 
 
 def _middle_most(image: Image, small: Image, factor: float, found: HouseFit) -> HouseFit:
@@ -131,6 +142,14 @@ def _enlarged(guess: Guess, factor: float) -> Guess:
     return replace(guess, centre=(guess.centre + 0.5) * factor - 0.5, scale=guess.scale * factor)
 
 
+def _ways(guess: Guess) -> tuple[Guess, ...]:
+    """Ways in which a hypothesis may be seen, the likelier first: level, or tilted."""
+    level = replace(guess, foreshortening=1.0, lean=0.0)
+    if guess.foreshortening > LEVEL:
+        return level, guess
+    return (guess, level) if guess.foreshortening > NEARLY_LEVEL else (guess,)
+
+
 def _fits(
     image: Image,
     small: Image,
@@ -144,8 +163,11 @@ def _fits(
     aside = [abs(guess.centre[0] - image.shape[1] / 2) for guess in hypotheses]
     for k, guess in enumerate(hypotheses):
         here = _enlarged(guess, factor)
-        camera_there = start(here, (small.shape[1], small.shape[0]))
-        fitted = fit_roughly(small, *camera_there, here.scale, float(here.centre[0]))
+        for seen in _ways(here):
+            camera_there = start(seen, (small.shape[1], small.shape[0]))
+            fitted = fit_roughly(small, *camera_there, here.scale, float(here.centre[0]))
+            if fitted is not None:
+                break
         if fitted is not None:
             fits.append(fitted)
             if fitted.score > ENOUGH and aside[k] <= min(aside[k:]):

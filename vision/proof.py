@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from data.sheet import HOUSE
 from vision.lines import clearness
 from vision.marks import Evidence
 from vision.paint import EIGHT, TWELVE
@@ -32,6 +33,10 @@ DIMMEST, GREYEST = 80.0, 0.6
 UNPAINTED = ((0.72, 1.1), (1.32, 1.7), (1.95, 6.0))
 """From where to where there is no edge of a circle, m; the third holds the rings of a house of
 which the 4-ft circle and the button were taken for all."""
+
+AROUND, LEAST_AROUND = 1.05 * HOUSE.twelve_foot * HOUSE.eight_foot / HOUSE.four_foot, 0.2
+"""Just beyond where the 8-ft circle is if the 4-ft one was taken for the 12-ft, m; and the share of
+a circle there that must be in view to tell that it was not, where no 8-ft circle is seen."""
 
 LEAST_STEP, WHOLE_AROUND = 20.0, 0.7
 """Grey levels by which an edge stands out, and its share of a circle, for one that is there."""
@@ -84,9 +89,18 @@ def is_house(image: Image, evidence: Evidence, view: View, rig: Array) -> bool:
     ringed = bare and evidence.support.min() > WHOLE
     if not ringed and clearness(image, view, rig) < CROSSED:
         return False
-    return not _is_target(
-        image, view, rig, ENOUGH_SEEN if evidence.support[1] > LEAST_SUPPORT else LEAST_COVERED
+    if evidence.support[1] > LEAST_SUPPORT:
+        return not _is_target(image, view, rig, ENOUGH_SEEN)
+    return _shown(image, view, rig, AROUND) > LEAST_AROUND and not _is_target(
+        image, view, rig, LEAST_COVERED
     )
+
+
+def _shown(image: Image, view: View, rig: Array, radius: float) -> float:
+    """Share of a circle about the tee that is in the picture."""
+    angle = np.linspace(0, 2 * np.pi, 72, endpoint=False)
+    place = radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    return float(pictured(place, view.vector, rig, (image.shape[1], image.shape[0]))[1].mean())
 
 
 def _is_target(image: Image, view: View, rig: Array, least: float) -> bool:

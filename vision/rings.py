@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from data.sheet import HOUSE
 from vision.picture import Image
 from vision.rig import OVERHEAD, R4, R8
+from vision.tilt import Rounding, Tilt, rounded
 
 Array = NDArray[np.float64]
 
@@ -27,8 +28,8 @@ SQUASHES = np.array(
 )
 """Height over width of a circle's image, and how far its short axis leans from upright, rad."""
 
-RATIOS = np.array([1.0, *(OVERHEAD.mean[[R8, R4]] / HOUSE.twelve_foot)])
-"""Usual radii of the 12-, 8- and 4-ft edges, as shares of the first."""
+RADII = np.array([HOUSE.twelve_foot, *OVERHEAD.mean[[R8, R4]]])
+"""Usual radii of the 12-, 8- and 4-ft edges, m."""
 
 SMALLEST, LARGEST = 0.09, 0.85
 """Radii between which the 12-ft circle is looked for, as fractions of the picture's width."""
@@ -39,8 +40,8 @@ EDGE_LOW, EDGE_HIGH = 150, 300
 CELL = 4.0
 """Side of a cell of the votes, px."""
 
-MARGIN = 0.35
-"""How far outside the picture a centre may lie, as a fraction of its sides."""
+MARGIN = 0.3
+"""How far outside the picture a centre may lie, as a fraction of its width."""
 
 VOTERS = 1500
 """Edge points that vote."""
@@ -51,8 +52,15 @@ CENTRES = 3
 TRIED = 10
 """Centres about which radii are looked for."""
 
-GUESSES = 5
+GUESSES = 6
 """Hypotheses that are given."""
+
+SCALES, APART = 2, 0.3
+"""Sizes of rings that are given about one centre, and the least difference of their logarithms: the
+4-ft circle and the button in it, whole, may show better than what is in view of the others."""
+
+SAME_PLACE, SAME_SIZE = 0.05, 0.05
+"""How far apart hypotheses may be and be one, m, and in the logarithms of size and shape."""
 
 ANGLES = 72
 """Sectors in which a circle's edges are counted."""
@@ -89,31 +97,55 @@ def guesses(image: Image) -> list[Guess]:
     h, w = image.shape[:2]
     if len(points) < 60:
         return []
-    candidates: list[tuple[float, int, Array]] = []
-    for which, (squash, lean) in enumerate(SQUASHES):
-        stretch = _stretch(squash, lean)
-        votes = _votes(points @ stretch.T, _unit(gradients @ np.linalg.inv(stretch)), stretch, w, h)
-        candidates += [(height, which, place) for height, place in votes]
+    step = max(len(points) // VOTERS, 1)
+    candidates: list[tuple[float, Tilt, Array]] = []
+    for squash, lean in SQUASHES.tolist():
+        tilt = Tilt.of(squash, lean, (w, h))
+        votes = _votes(*tilt.level_edges(points[::step], gradients[::step]), tilt)
+        candidates += [(height, tilt, place) for height, place in votes]
     candidates.sort(key=lambda c: -c[0])
+    rings: list[tuple[float, float, Rounding]] = []
+    for _, tilt, place in candidates[:TRIED]:
+        edges = tilt.level_edges(points, gradients)
+        seen = Rounding(tilt, _sharpened(*edges, place))
+        aside = abs(float(tilt.pictured(seen.centre)[0]) / w - 0.5)
+        rings += [(score - aside, size, seen) for size, score in _radii(*edges, seen)[:1]]
+    rings.sort(key=lambda c: -c[0])
     found: list[Guess] = []
-    for _, which, place in candidates[:TRIED]:
-        squash, lean = SQUASHES[which]
-        stretch = _stretch(squash, lean)
-        p, g = points @ stretch.T, _unit(gradients @ np.linalg.inv(stretch))
-        middle = _sharpened(p, g, place)
-        scale, score = _radii(p, g, middle, stretch, w, h)
-        if score > 0:
-            centre = np.asarray(np.linalg.solve(stretch, middle), np.float64)
-            score -= abs(float(centre[0]) / w - 0.5)
-            found.append(Guess(centre, scale, float(squash), float(lean), score))
+    for _, size, seen in rings:
+        edges = seen.tilt.level_edges(points, gradients)
+        some = edges[0][::step], edges[1][::step]
+        # Rings that are round are told by other sizes than those that are not yet.
+        rounder = rounded(*some, seen, size * RADII)
+        sizes = _radii(*edges, rounder)
+        if size * RADII[0] ** 2 / RADII[2] < LARGEST * w:
+            sizes.append((size * RADII[0] / RADII[2], 0.0))  # The rings may be those within 4 ft.
+        for other, score in sizes:
+            new = abs(np.log(other / size)) > SAME_SIZE
+            own = rounded(*some, rounder, other * RADII) if new else rounder
+            guess = _guess(own, other, score)
+            if not any(_alike(guess, old) for old in found):
+                found.append(guess)
+        if len(found) >= GUESSES:
+            break
     found.sort(key=lambda c: -c.score)
-    return found[:GUESSES]
+    return found
 
 
-def _stretch(squash: float, lean: float) -> Array:
-    """Matrix that makes circles of their squashed images: it stretches along the short axis."""
-    short = np.array([np.sin(lean), np.cos(lean)])
-    return np.asarray(np.eye(2) + (1 / squash - 1) * np.outer(short, short))
+def _guess(seen: Rounding, scale: float, score: float) -> Guess:
+    """Say how the picture has rings that are round, of so many px per metre, about their tee."""
+    tee, *ends = seen.pictured(np.array([[0.0, 0.0], [0.01, 0.0], [0.0, 0.01]]))
+    way, (long, short), _ = np.linalg.svd(np.stack([end - tee for end in ends], -1) / 0.01)
+    lean = float(np.arctan(way[0, 1] / way[1, 1])) if way[1, 1] else np.pi / 2
+    aside = abs(float(tee[0]) / seen.tilt.size[0] - 0.5)
+    return Guess(tee, float(scale * long), float(short / long), lean, score - aside)
+
+
+def _alike(one: Guess, other: Guess) -> bool:
+    """Whether a fit would make the same of both."""
+    apart = float(np.hypot(*(one.centre - other.centre))) / other.scale
+    ratios = np.log([one.scale / other.scale, one.foreshortening / other.foreshortening])
+    return apart < SAME_PLACE and bool(np.abs(ratios).max() < SAME_SIZE)
 
 
 def _unit(vectors: Array) -> Array:
@@ -137,20 +169,17 @@ def _edges(image: Image) -> tuple[Array, Array]:
     return np.stack([x, y], axis=-1).astype(float), _unit(gradient)
 
 
-def _votes(
-    points: Array, gradients: Array, stretch: Array, w: int, h: int
-) -> list[tuple[float, Array]]:
+def _votes(points: Array, gradients: Array, tilt: Tilt) -> list[tuple[float, Array]]:
     """Places, also outside the picture, where most gradient lines meet: votes and place."""
-    corners = np.array([[0, 0], [w, 0], [0, h], [w, h]]) @ stretch.T
-    size = np.ptp(corners, axis=0)
-    low = corners.min(0) - MARGIN * size
-    across, down = ((1 + 2 * MARGIN) * size / CELL).astype(int) + 1
+    w, h = tilt.size
+    corners = tilt.level(np.array([[0.0, 0.0], [w, 0.0], [0.0, h], [w, h]]))
+    low = corners.min(0) - MARGIN * w
+    across, down = ((np.ptp(corners, axis=0) + 2 * MARGIN * w) / CELL).astype(int) + 1
     reach = np.arange(2, 0.62 * w / CELL, dtype=np.float32)
     rim = len(reach) + 2  # so wide that no line leaves the cells: that need not be looked after
     reach = np.concatenate([-reach, reach])
-    step = max(len(points) // VOTERS, 1)
-    start = ((points[::step] - low) / CELL + rim).astype(np.float32)
-    way = gradients[::step].astype(np.float32)
+    start = ((points - low) / CELL + rim).astype(np.float32)
+    way = gradients.astype(np.float32)
     cell = (start[:, 1:] + way[:, 1:] * reach).astype(np.int32) * (across + 2 * rim)
     cell += (start[:, :1] + way[:, :1] * reach).astype(np.int32)
     votes = np.bincount(cell.ravel(), minlength=(across + 2 * rim) * (down + 2 * rim))
@@ -182,11 +211,10 @@ def _sharpened(points: Array, gradients: Array, centre: Array) -> Array:
     return centre
 
 
-def _radii(
-    points: Array, gradients: Array, centre: Array, stretch: Array, w: int, h: int
-) -> tuple[float, float]:
-    """Pixels per metre that puts edges facing the centre at 12 : 8 : 4 ft, and its score."""
-    d = points - centre
+def _radii(points: Array, gradients: Array, seen: Rounding) -> list[tuple[float, float]]:
+    """Pixels per metre that put edges facing the centre at 12 : 8 : 4 ft, and their scores."""
+    w = seen.tilt.size[0]
+    d, gradients = seen.of_edges(points, gradients)
     r = np.hypot(d[:, 0], d[:, 1])
     facing = (d * gradients).sum(1) / np.maximum(r, 1e-9)
     tolerance = np.maximum(0.97 - 2.0 / np.maximum(r, 4.0), 0.8)
@@ -199,23 +227,28 @@ def _radii(
     kernel = np.ones((3, 1), np.uint8)
     arc = np.maximum(*(np.asarray(cv2.dilate(side, kernel)).mean(1) for side in held))
     clutter = cv2.blur(arc.reshape(-1, 1), (1, 21)).ravel()
-    visible = _visible(centre, stretch, largest, w, h)
+    visible = _visible(seen, largest)
     radius = np.arange(SMALLEST * w, LARGEST * w, 0.5)
-    at = np.round(radius[:, None] * RATIOS).astype(int)
+    at = np.round(radius[:, None] * RADII / RADII[0]).astype(int)
     got = np.clip(arc[at] - 0.7 * clutter[at], 0, None)
     share = np.where(visible[at] > 0.05, got / np.maximum(visible[at], 0.05), 0)
     # Full circles beat pieces of one; what should be seen and is not counts against.
     score = (got + 0.35 * share).sum(1)
     score[(share[:, 0] < 0.2) | ((share > 0.2).sum(1) < 2)] = 0
-    best = int(score.argmax())
-    return float(radius[best] / HOUSE.twelve_foot), float(score[best])
+    found = []
+    for _ in range(SCALES):
+        best = int(score.argmax())
+        if score[best] > 0:
+            found.append((float(radius[best] / HOUSE.twelve_foot), float(score[best])))
+        score[np.abs(np.log(radius / radius[best])) < APART] = 0
+    return found
 
 
-def _visible(centre: Array, stretch: Array, largest: int, w: int, h: int) -> Array:
+def _visible(seen: Rounding, largest: int) -> Array:
     """Fraction of the circle of each radius that lies in the picture."""
     angle = np.linspace(0, 2 * np.pi, ANGLES, endpoint=False)
-    back = np.linalg.inv(stretch)
-    (x0, y0), way = back @ centre, back @ np.stack([np.cos(angle), np.sin(angle)])
-    ring = np.arange(largest)[:, None]
-    x, y = x0 + ring * way[0], y0 + ring * way[1]
-    return np.asarray(((x > 1) & (x < w - 2) & (y > 1) & (y < h - 2)).mean(1))
+    way = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    some = np.arange(0, largest + 2, 3)
+    place = seen.pictured(some[:, None, None] * way)
+    share = ((place > 1) & (place < np.array(seen.tilt.size) - 2)).all(-1).mean(1)
+    return np.asarray(np.interp(np.arange(largest), some, share))

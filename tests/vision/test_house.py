@@ -69,6 +69,12 @@ def test_found_from_a_tilted_camera(tilt: float, bar: float) -> None:
         np.testing.assert_allclose(fit.camera.position, path.position, atol=0.5)
 
 
+def test_a_camera_beside_the_players_is_refused() -> None:
+    scene = replace(sample_scene(), paint=PAINTS["navy-orange"])
+    path = tilted_camera(np.radians(71), height=1.6, px_per_m=150)
+    assert find_house(render_still(scene, path, 1.0)) is None
+
+
 @pytest.mark.parametrize("roll", [-0.3, 0.3])
 def test_a_tilted_camera_may_lean(roll: float) -> None:
     path = tilted_camera(np.radians(50), roll=roll)
@@ -84,6 +90,16 @@ def test_part_of_the_house_is_enough(y: float) -> None:
     path = still_camera(target=(0.2, y), px_per_m=130)
     scene = replace(sample_scene(), paint=PAINTS["gold-purple"])
     assert rms(errors(find_house(render_still(scene, path, 1.0)), path)) < 0.01
+
+
+@pytest.mark.parametrize("tilt", [35, 50])
+@pytest.mark.parametrize("target", [(0.0, 1.6), (1.1, 0.9), (-1.2, -0.2), (0.3, -1.0)])
+def test_part_of_a_tilted_house_is_enough(target: tuple[float, float], tilt: float) -> None:
+    # The 4-ft circle and the button are seen whole, the others are not.
+    position = (0.0, -9.0 * float(np.tan(np.radians(tilt))), 9.0)
+    path = still_camera(position=position, target=target, px_per_m=310, roll=0.04)
+    scene = replace(sample_scene(), paint=PAINTS["navy-orange"])
+    assert rms(errors(find_house(render_still(scene, path, 1.0)), path)) < 0.015
 
 
 def test_people_may_stand_on_the_rings() -> None:

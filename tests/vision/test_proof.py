@@ -116,3 +116,12 @@ def test_the_4_ft_circle_is_not_taken_for_the_12_ft_one(rings: bool) -> None:
     larger = tuple((3 * radius, colour) for radius, colour in HOUSE[:2]) if rings else ()
     image = drawn((*larger, (1.829, RED), (0.619, ICE)))[70:-70]
     assert proved(image) is not rings
+
+
+@pytest.mark.parametrize(("tall", "wide"), [(540, 960), (400, 560)])
+def test_without_an_8_ft_circle_what_is_around_must_be_in_view(tall: int, wide: int) -> None:
+    image = drawn((HOUSE[0], HOUSE[2]))
+    rows, columns = (SIZE[1] - tall) // 2, (SIZE[0] - wide) // 2
+    image = image[rows : SIZE[1] - rows, columns : SIZE[0] - columns]
+    assert worth(seen(image)) > 0
+    assert proved(image) is (wide == SIZE[0])
