@@ -19,6 +19,7 @@ from physics.glides import free
 from physics.hindcast import explained_until, score
 from physics.impact import Frictional, Impact, PointMass
 from physics.law_choice import STRAIGHT, fit_with_chosen_laws
+from physics.shot_model import ice
 from physics.simulate import simulate
 from physics.traces import traces
 from physics.watched import LITERATURE, Priors, watch
@@ -94,6 +95,7 @@ def _before(
 ) -> GlobalFit | None:
     """Fit the states of all stones to what was seen before the hit; None where none moves.
 
+    Of a stone that something else than ice has moved, as a hand does, to what was seen since.
     What is assumed of the ice is known beforehand but not held: where it is wrong, it would draw
     places and velocities aside.
     """
@@ -108,6 +110,14 @@ def _before(
     )
     if watched is None:
         return None
+    moved = {
+        name: float(trace.t[-1])
+        for name, trace in watched.traces.items()
+        if len(trace.t) < len(known[name].t)
+    }
+    if moved:
+        since = sightings["stone"].map(moved).fillna(-np.inf).astype(float)
+        return _before(sightings[sightings["t"] > since], radius, masses, laws)
     held = {name: law.value or 0.0 for name, law in _laws(laws).items()}
     if laws.friction.stderr:
         del held["friction"]
@@ -195,7 +205,7 @@ def _sampled(
         stones.append(
             replace(stone, x=now.x, y=now.y, vx=now.vx, vy=now.vy, omega=now.omega, theta=now.theta)
         )
-    onward = seen.shot({**values, **STRAIGHT, **laws})
+    onward = replace(seen, ice=ice).shot({**values, **STRAIGHT, **laws})
     impact: Impact = PointMass(laws["restitution"])
     if model == "frictional":
         impact = Frictional(laws["restitution"], laws["stone_friction"], seen.inertia)

@@ -88,6 +88,18 @@ def test_friction_that_is_assumed_wrongly_does_not_move_the_start() -> None:
         assert error == pytest.approx(usual[stone], abs=0.002)
 
 
+def test_a_stone_that_was_pushed_is_predicted_from_what_was_seen_since() -> None:
+    seen = watch(hit_motion(1.2, 0.08, before=3.0), np.random.default_rng(8), sd=0.001)
+    usual = forecast(seen)["frictional"]
+    own = (seen["stone"] == "A") & (seen["t"] < 1.5)
+    pushed = seen.copy()
+    pushed.loc[own, "y"] += 0.7 * (1.5 - pushed.loc[own, "t"])  # by 0.7 m/s, with a hand
+    again = forecast(pushed)["frictional"]
+    for stone, error in again.rest_error.items():
+        assert error == pytest.approx(usual.rest_error[stone], abs=0.02)
+    assert set(again.rest_error) == {"A", "B"}
+
+
 def test_the_spread_of_last_places_is_as_stated() -> None:
     off = []
     for seed in range(10):
