@@ -195,13 +195,14 @@ def _methods(results: Results) -> Table:
 
 
 def _simulated(results: Results) -> list[Table]:
+    start = "start that fits the shot best" if results.laws else "state before the first hit"
     order = sorted(results.simulations, key=lambda model: (_PAPER.get(model, 5), model))
     return [
         Table(
             f"table_{_PAPER.get(model, 5 + k - len(_PAPER))}_{_plain(model)}",
             f"Simulated before and after each hit: {model}",
-            "From the start that fits the shot best. — where the simulation has no such hit; errors"
-            " are those of the start, of e and of μ.",
+            f"From the {start}. — where the simulation has no such hit; errors are those of the"
+            " start, of e and of μ.",
             _STATES,
             tables.simulated_table(results.simulations[model], results.collisions),
         )

@@ -31,9 +31,12 @@ def test_predictions_stand_beside_what_was_fitted(shot):
     assert list(made["predictions"].frame["model"]) == ["frictional"]
     assert list(made["predictions"].frame["A"]) == [0.031]
     assert "as fitted" in made["models"].note
-    alone = page_tables(replace(results, laws=None, predictions={}), shot.tracks)
-    assert "predictions" not in [table.name for table in alone]
-    assert "from before" in next(table for table in alone if table.name == "models").note
+    assert "fits the shot" in made["table_4_point-mass"].note
+    other = page_tables(replace(results, laws=None, predictions={}), shot.tracks)
+    alone = {table.name: table for table in other}
+    assert "predictions" not in alone
+    assert "from before" in alone["models"].note
+    assert "before the first hit" in alone["table_4_point-mass"].note
 
 
 def test_without_a_house_there_is_nothing_for_coaches(shot):
