@@ -24,6 +24,9 @@ TOUCHING = 1.02
 LITTLE = 0.25
 """Time within which a hit shows in where a stone is, s, unless six sightings take longer."""
 
+OUT_OF_SIGHT = 0.5
+"""Time out of sight, s, after which the sightings at its ends do not tell the way between them."""
+
 
 def candidates(known: Mapping[str, Trace], radius: float) -> list[Meeting]:
     """Find where two paths come within reach of a contact, in order of time."""
@@ -156,13 +159,28 @@ def _approaches(
     for run in np.split(near, np.flatnonzero(np.diff(far[near])) + 1):
         if not len(run):
             continue
-        both = turns.get(a.stone, ()), turns.get(b.stone, ())
-        times = _meeting_times(t, distance, run, noise, both)
+        low, high = t[run[0]], t[run[-1]]
+        one, other = ([x for x in turns.get(p.stone, ()) if low <= x <= high] for p in (a, b))
+        times = _meeting_times(t, distance, run, noise, (one, other))
+        times = _where_seen(_where_seen(times, one, b), other, a)
         for time in times:
             if _moves(a, time, radius) or _moves(b, time, radius):
                 gap = max(a.gap(time), b.gap(time))
                 out.append(Meeting(time, (a.stone, b.stone), gap))
     return out
+
+
+def _where_seen(times: list[float], turns: Sequence[float], hidden: Trace) -> list[float]:
+    """Give, for times while one stone is out of sight for long, those at which the other turned.
+
+    Of a stone out of sight no way is known: where two seem closest then is chance.
+    """
+    for turn in turns:
+        k = int(np.searchsorted(hidden.t, turn))
+        if 0 < k < len(hidden.t) and hidden.t[k] - hidden.t[k - 1] > OUT_OF_SIGHT:
+            low, high = hidden.t[k - 1], hidden.t[k] + 3 * hidden.step
+            times = [t for t in times if t in turns or not low < t < high] + [turn]
+    return sorted({*times})
 
 
 def _meeting_times(
@@ -188,8 +206,7 @@ def _meeting_times(
     if t[close[-1]] - t[close[0]] > 3 * step:
         times, further = [further[-1]], [*further[:-1], closest]
     one, other = turns
-    inside = [turn for turn in one if t[run[0]] <= turn <= t[run[-1]]]
-    further += [turn for turn in inside if any(abs(turn - x) < 3 * step for x in other)]
+    further += [turn for turn in one if any(abs(turn - x) < 3 * step for x in other)]
     for time in further:
         if min(abs(time - x) for x in times) > 3 * step:
             times.append(time)
