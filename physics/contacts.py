@@ -27,6 +27,9 @@ MOST_PUSH = 3.0
 SHARE = 0.15
 """Smallest part of the other's change of velocity that a stone must show in a hit."""
 
+FURTHER = 4
+"""How often hits that lie at the bounds of where they may are sought from there on."""
+
 
 @dataclass(frozen=True)
 class Contact:
@@ -72,7 +75,7 @@ def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
     known = traces(sightings)
     meetings = candidates(known, radius)
     cuts: dict[str, list[Piece]] = {}
-    ordered = False
+    ordered, beyond = False, FURTHER
     while meetings:
         pieces, cuts = cut_all(known, meetings, radius, cuts)
         fit = fit_shot(known, pieces, meetings, radius, deceleration=Deceleration(0.0, 0.5, 0.5))
@@ -83,7 +86,12 @@ def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
         evidence = [_evidence(fit, k, radius) for k in range(len(meetings))]
         weakest = min(range(len(meetings)), key=evidence.__getitem__)
         if evidence[weakest].hit >= SIGNIFICANT:
-            return _contacts(fit)
+            late = _at_bounds(fit) if beyond else set()
+            if not late:
+                return _contacts(fit)
+            meetings, beyond = _at_times(fit), beyond - 1
+            cuts = {name: run for name, run in cuts.items() if name not in late}
+            continue
         struck = meetings[weakest]
         meetings = [meeting for meeting in meetings if meeting is not struck]
         cuts = {name: run for name, run in cuts.items() if name not in struck.stones}
@@ -93,10 +101,20 @@ def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
 
 def _other_order(fit: ShotFit, known: Mapping[str, Trace]) -> list[Meeting] | None:
     """Give the meetings of a fit at their times there in another order if cause asks for it."""
-    met = [replace(m, t=fit.encounter(k).t) for k, m in enumerate(fit.meetings)]
-    met.sort(key=lambda meeting: meeting.t)
+    met = sorted(_at_times(fit), key=lambda meeting: meeting.t)
     other = causal(met, known)
     return other if [m.stones for m in other] != [m.stones for m in met] else None
+
+
+def _at_times(fit: ShotFit) -> list[Meeting]:
+    """Give the meetings of a fit at the times that it found."""
+    return [replace(m, t=fit.time(k)) for k, m in enumerate(fit.meetings)]
+
+
+def _at_bounds(fit: ShotFit) -> set[str]:
+    """Stones of the meetings that lie as far from where they were sought as they may."""
+    moved = [abs(fit.time(k) - m.t) / m.looseness for k, m in enumerate(fit.meetings)]
+    return {s for m, far in zip(fit.meetings, moved, strict=True) if far > 2.99 for s in m.stones}
 
 
 def _renumbered(cuts: Mapping[str, list[Piece]], gone: int) -> dict[str, list[Piece]]:
