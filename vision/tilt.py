@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 FOCAL = 2.0
-"""Usual focal length, in widths of the picture; with it a circle's near half looks the larger."""
+"""Usual focal length, in longer sides of the picture: with it a circle's near half looks larger."""
 
 NEAR, FACING = (0.1, 0.07, 0.05), 0.9
 """How near to a ring edges must be to tell its shape, in radii of the largest, time after time; and
@@ -51,7 +51,7 @@ class Tilt:
         """Tilt that makes circles `squash` as high as wide, the short axis leaning, rad."""
         short = np.array([np.sin(lean), np.cos(lean)])
         stretch = np.eye(2) + (1 / squash - 1) * np.outer(short, short)
-        return cls(stretch, short * np.sqrt(1 / squash**2 - 1) / (FOCAL * size[0]), size)
+        return cls(stretch, short * np.sqrt(1 / squash**2 - 1) / (FOCAL * max(size)), size)
 
     def level(self, points: Array) -> Array:
         """See places of the picture, shape (n, 2), from above, from its middle on."""

@@ -51,6 +51,15 @@ def test_the_middle_house_comes_before_its_neighbour() -> None:
     np.testing.assert_allclose(best.centre, (200, 95), atol=4)
 
 
+@pytest.mark.parametrize("squash", [1.0, 0.6])
+def test_rings_are_found_in_upright_pictures(squash: float) -> None:
+    upright = np.random.default_rng(2).integers(0, 256, (569, W, 3), np.uint8)
+    upright[200:380] = drawn((160, 90), 80, squash)
+    best = guesses(upright)[0]
+    np.testing.assert_allclose(best.centre, (160, 290), atol=4)
+    assert best.foreshortening == pytest.approx(squash, abs=0.11)
+
+
 def test_a_blank_picture_has_no_rings() -> None:
     assert guesses(np.full((H, W, 3), 128, np.uint8)) == []
 
