@@ -53,3 +53,23 @@ def test_it_ends_where_another_scene_begins(still: tuple[Image, View]) -> None:
     moved = turned(picture, view.focal, np.array([0.01, 0.0, 0.0]), 1.0)
     assert len(foretold(picture, view, [moved, crowd, moved])) == 1
     assert foretold(np.full_like(picture, 230), view, [moved]) == []
+
+
+def test_what_moves_as_one_in_a_small_part_of_the_picture_is_not_the_camera(
+    still: tuple[Image, View],
+) -> None:
+    _, view = still
+    rng = np.random.default_rng(5)
+    marks = np.full((480, 640, 3), 200, np.uint8)
+    there = marks.copy()
+    places = [(x, y) for x in range(60, 600, 90) for y in range(60, 440, 90)]
+    moved = 0
+    for x, y in places:
+        alike = x < 200  # ten of thirty
+        moved += alike
+        dx, dy = (6, 3) if alike else rng.integers(-9, 10, 2).tolist()
+        cv2.rectangle(marks, (x, y), (x + 24, y + 24), (40, 40, 40), -1)
+        cv2.rectangle(there, (x + dx, y + dy), (x + 24 + dx, y + 24 + dy), (40, 40, 40), -1)
+    assert moved >= 8 and len(places) == 30
+    assert foretold(marks, view, [there]) == []
+    assert len(foretold(marks, view, [np.roll(marks, (3, 6), (0, 1))])) == 1

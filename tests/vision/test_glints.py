@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 
 from vision.align import ORDERS
-from vision.glints import course, unlit
+from vision.glints import SPINS, _likely, course, unlit
 from vision.handle import cap_spectrum, handle_angles
 
 RAYS = 64
@@ -61,6 +61,27 @@ def test_spins_are_told_from_stretch_to_stretch_whatever_light_is_on_a_cap() -> 
     seen = [lit(a, lamp(t), 150.0) for a, t in zip(turns, TIMES, strict=True)]
     told = np.gradient(course(TIMES, np.array(seen))[0], TIMES)
     assert np.abs(told - spins)[(TIMES < 1.0) | (TIMES > 2.0)].max() < 0.25
+
+
+def test_a_cap_that_comes_to_rest_in_a_light_tells_no_angle_more() -> None:
+    still = np.minimum(TIMES, 1.5)
+    seen = [lit(1.4 * t, lamp(t), 150.0) for t in still]
+    theta, sd = handle_angles(TIMES, seen, RADII, np.full(len(TIMES), 0.0005))
+    off = (theta - 1.4 * still)[told := np.isfinite(theta)]
+    assert 0.45 < told.mean() < 0.65
+    assert (np.abs(off - np.median(off)) < 3 * sd[told]).all()
+
+
+@pytest.mark.parametrize(("stretches", "expected"), [(1, 1.0), (4, 3.0)])
+def test_a_spin_that_explains_little_more_in_one_stretch_is_none(
+    stretches: int, expected: float
+) -> None:
+    shares = np.zeros((9, len(SPINS)))
+    shares[:, np.abs(SPINS - 1.0) < 1e-6] = 0.5
+    shares[3 : 3 + stretches, np.abs(SPINS - 3.0) < 1e-6] = 0.7
+    spins = _likely(shares)
+    np.testing.assert_allclose(spins[3 : 3 + stretches], expected)
+    np.testing.assert_allclose(np.delete(spins, slice(3, 3 + stretches)), 1.0)
 
 
 def test_pictures_too_few_for_a_spin_have_no_course() -> None:
