@@ -41,7 +41,6 @@ by the rules of World Curling), within what a fit reaches."""
 LEAST_NEARER = 0.05
 """By what share of the picture's width a house beside must be nearer to its middle."""
 
-
 FLATTEST = np.tan(np.radians(66))
 """How far aside of the tee the camera may stand, in heights: one beside the players sees stones
 from the side, and hardly any of them would be told."""

@@ -171,7 +171,8 @@ def likely(share: float, sd: float) -> tuple[float, float]:
     As a rule a computer blurred codes, or a lens light: none of it is of light, or nearly all (from
     0.8 on, equally likely); one time in three it may be anything.
     """
-    weight = _EXPECTED * np.exp(-0.5 * ((_SHARES - share) / sd) ** 2)
+    far = ((_SHARES - share) / sd) ** 2
+    weight = _EXPECTED * np.exp(0.5 * (far.min() - far))  # the nearest one is never nothing
     weight /= weight.sum()
     mean = float(weight @ _SHARES)
     return mean, float(np.sqrt(weight @ (_SHARES - mean) ** 2))

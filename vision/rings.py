@@ -53,7 +53,7 @@ TRIED = 10
 """Centres about which radii are looked for."""
 
 GUESSES = 6
-"""Hypotheses that are given."""
+"""Hypotheses from which on no more are looked for."""
 
 SCALES, APART = 2, 0.3
 """Sizes of rings that are given about one centre, and the least difference of their logarithms: the

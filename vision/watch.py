@@ -210,7 +210,7 @@ class Watch:
     def _find(self, view: StoneView) -> list[Sighting]:
         """Add to a view the stones of known colours that were not seen in it so far.
 
-        What lies there from the beginning is sought on a finer map, once.
+        What lies there before any is known is sought on a finer map: it answers more clearly there.
         """
         first = not self._leads and not is_plain(self.disc)
         radius_px = SEARCH.radius_px if first else self._search.radius_px

@@ -95,6 +95,13 @@ def test_a_share_of_light_is_as_likely_as_among_those_measured_alike(measured: f
     assert spread == pytest.approx(alike.std(), abs=0.02)
 
 
+@pytest.mark.parametrize(("measured", "nearest"), [(1.2, 1.0), (0.504, 0.5), (-0.01, 0.0)])
+def test_a_share_of_light_that_is_measured_closely_is_the_nearest(
+    measured: float, nearest: float
+) -> None:
+    assert likely(measured, 1e-4)[0] == pytest.approx(nearest)
+
+
 @pytest.mark.parametrize("paint", ["navy-orange", "teal-red", "purple-gold", "blue-red"])
 @pytest.mark.parametrize("gamma", [1.0, 2.2])
 def test_the_scale_is_as_good_as_is_said_if_the_colours_tell_what_was_blurred(
