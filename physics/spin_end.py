@@ -28,6 +28,10 @@ steadily: of 64 clips whose truth is known 12 of 13 spins that ended so left 0.5
 0.2, and of one the rest was found too early to tell; of the others one left 0.4, the next 0.6."""
 
 
+SHARPEST = 1e-4
+"""Smallest standard deviation of an angle that counts, rad: a table without noise states none."""
+
+
 def spin_ends(t: Floats, theta: Floats, sd: Floats, rest: Bools) -> Bools:
     """Tell in which steps between the times a spin ends at once.
 
@@ -50,12 +54,12 @@ def spin_ends(t: Floats, theta: Floats, sd: Floats, rest: Bools) -> Bools:
         near = np.flatnonzero((away <= NEAR) & np.isfinite(theta))
         if len(near) < FEWEST:
             continue
-        tau, angle, weight = t[near] - t[row], theta[near], 1 / sd[near]
+        tau, angle, weight = t[near] - t[row], theta[near], 1 / np.maximum(sd[near], SHARPEST)
         most, best = BETTER * _left(tau, angle, weight, tau**2), -1
         for step in np.flatnonzero(away[1:] <= UNSURE):
             past = np.minimum(tau - (0.5 * (t[step] + t[step + 1]) - t[row]), 0.0)
             left = _left(past, angle, weight) if (past < 0).sum() > 1 else np.inf
-            if left < most:
+            if left < most - 1:  # by more than one error: exact angles leave rounding errors
                 most, best = left, int(step)
         if best >= 0:
             ends[best] = True

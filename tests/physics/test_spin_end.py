@@ -48,6 +48,14 @@ def test_says_nothing_without_angles_or_without_rest() -> None:
     assert not spin_ends(t, np.full_like(t, np.nan), sd, t > REST).any()
 
 
+def test_takes_angles_without_noise() -> None:
+    t, nothing = np.arange(0.0, 5.0, 1 / RATE), np.zeros(125)
+    ended = 1.3 * np.minimum(t, REST)
+    assert spin_ends(t, ended, nothing, t > REST).sum() == 1
+    for steady in (nothing + 0.3, 0.7 * t, 0.7 * t - 0.05 * t**2):
+        assert not spin_ends(t, steady, nothing, t > REST).any()
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_a_filter_keeps_a_spin_up_to_its_end(seed: int) -> None:
     t, theta, spin = _angles("at once", 3.0, seed)
