@@ -3,7 +3,9 @@ from __future__ import annotations
 import numpy as np
 
 from data.sheet import STONE
+from tests.synthetic.clip import render_still
 from tests.vision.test_smeared import LEARNED, PATH, PICTURES, VIEW
+from tests.vision.test_stones import CAMERA, RED, scene_of
 from vision.again import drifts, measure_again
 from vision.clip import Frame
 from vision.follower import StoneView
@@ -20,6 +22,17 @@ def test_stones_whose_motion_shows_only_later_are_measured_again() -> None:
     for view, truth in zip(views, PATH, strict=True):
         assert view.sightings[0].swept
         assert np.hypot(*(view.places[0] - truth)) < 0.0025
+
+
+def test_another_stone_in_the_next_picture_is_no_motion() -> None:
+    views = []
+    for k, place in enumerate([(0.3, 1.7), (0.3, 1.4)]):
+        picture = render_still(scene_of([(*place, RED)]), CAMERA)
+        found = search_picture(picture, VIEW, LEARNED).stones
+        views.append(StoneView(Frame(k, 0.04 * k, picture), VIEW, list(found)))
+    before = [list(view.sightings) for view in views]
+    measure_again(views, LEARNED, STONE, FOLLOWING)
+    assert [view.sightings for view in views] == before
 
 
 def test_drifts_are_told_by_the_next_picture_or_by_the_one_before() -> None:

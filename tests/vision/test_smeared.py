@@ -48,6 +48,17 @@ def test_a_smeared_cap_is_found_whatever_it_passes_over(exposure: float, heading
         assert 0.0002 < np.hypot(*off[0]) < 0.004
 
 
+def test_what_is_far_from_its_place_or_hardly_in_view_tells_no_middle() -> None:
+    drift = np.array([0.12, 0.0])
+    far = exposed(np.array([0.055, 0.0]), 0.5 * drift, -0.5)
+    hardly = replace(RAYS, inside=RAYS.inside & (np.arange(48) < 4)[:, None])
+    near = exposed(np.array([0.006, -0.004]), 0.5 * drift, -0.5)
+    for seen, rays in ((far, RAYS), (near, hardly)):
+        ok, middle, off = middles(seen, rays, STONE, np.array([[0.001, 0.002]]), drift[None])
+        assert not ok.any() and not off.any()
+        np.testing.assert_array_equal(middle, [[0.001, 0.002]])
+
+
 def test_what_is_covered_changes_as_it_is_said_to() -> None:
     rng = np.random.default_rng(4)
     a, b = rng.uniform(-0.14, 0.14, (2, 400))
@@ -101,6 +112,14 @@ def test_a_fast_stone_that_is_sharp_is_told_by_its_edges(drift: tuple[float, flo
     np.testing.assert_array_equal(moving.centre, still.centre)
     np.testing.assert_array_equal(moving.sd, still.sd)
     assert np.isfinite(moving.light).all()
+
+
+def test_a_fast_stone_that_is_half_covered_is_left_to_its_edges() -> None:
+    covered = PICTURES[1].copy()
+    x, y = VIEW.project(PATH[1:2], STONE.cap_height)[0].astype(int).tolist()
+    covered[y - 50 : y + 50, x : x + 50] = (60, 90, 60)
+    look = Look(covered, VIEW, PATH[1:2], (PATH[1] - PATH[0])[None])
+    assert not measure_discs([look], LEARNED, STONE).swept.any()
 
 
 def test_smeared_edges_say_less_of_where_a_fast_stone_is_along_its_way() -> None:
