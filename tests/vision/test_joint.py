@@ -90,7 +90,8 @@ def test_noise_that_stays_with_the_picture_is_not_taken_for_new_in_every_frame()
         cov = camera.place_cov(HOUSE)
         scaled.append(off[-1] / np.sqrt(np.diagonal(cov, axis1=-2, axis2=-1)))
     assert np.sqrt(np.mean(np.square(off))) < 0.0005  # by pieces of several marks 0.0006
-    assert np.sqrt(np.mean(np.square(scaled))) < 1.0
+    # Stated for what clips err beyond this noise (`LONG_RANGE`): twice as much, and no more.
+    assert 0.35 < np.sqrt(np.mean(np.square(scaled))) < 0.7
 
 
 def test_less_seen_is_known_less_and_no_error() -> None:
