@@ -57,6 +57,16 @@ def test_rings_are_made_round(part: slice) -> None:
     assert ((round_[:count] * facing[:count]).sum(1) > 0.999 * np.hypot(*round_[:count].T)).all()
 
 
+def test_edges_that_do_not_face_the_centre_do_not_make_rings_rounder() -> None:
+    ring, beside = 60 * CIRCLE, np.repeat(63 * CIRCLE[:60], 6, axis=0)
+    along = np.stack([-beside[:, 1], beside[:, 0]], -1) / 63
+    points, gradients = np.concatenate([ring, beside]), np.concatenate([CIRCLE, along])
+    level = Tilt.of(1.0, 0.0, SIZE)
+    found = rounded(points, gradients, Rounding(level, np.zeros(2)), np.array([60.0]))
+    off, _ = found.of_edges(ring, CIRCLE)
+    np.testing.assert_allclose(np.hypot(*off.T), 60, atol=0.2)
+
+
 def test_rings_without_edges_stay_as_they_are() -> None:
     seen = Rounding(Tilt.of(0.8, 0.0, SIZE), np.array([3.0, 4.0]))
     assert rounded(5 * CIRCLE, CIRCLE, seen, np.array([60.0, 40.0])) is seen
