@@ -15,12 +15,13 @@ from physics.impact import Impact
 from physics.simulate import simulate
 from physics.simulation import Shot, StoneStart
 from physics.spread import DRAWS, Doubt, drawn
-from physics.whole_fit import GlobalFit, within
+from physics.whole_fit import GlobalFit, draw_values
 
 Floats = NDArray[np.float64]
 
-RULED_OUT = 9.0
-"""Mean square of a stone's way off the best fit, in errors of its places, that cannot be."""
+RULED_OUT = 20.0
+"""Sum of squares of a stone's way off the best fit, in errors of its places, beyond one for each
+of their numbers, that cannot be."""
 
 TRIES = 4
 """Draws at most for each that is asked for."""
@@ -109,7 +110,7 @@ def _possible(
     """Draw laws and values of their unknowns, and give those that the sightings allow."""
     weights, fits = zip(*(fit.choices or ((1.0, fit),)), strict=True)
     picked = rng.choice(len(fits), tries, p=weights)
-    rows = [iter(_rows(own, int(np.sum(picked == k)), rng)) for k, own in enumerate(fits)]
+    rows = [iter(draw_values(own, int(np.sum(picked == k)), rng)) for k, own in enumerate(fits)]
     best = [own.shots[0].residuals(own.simulation()) for own in fits]
     for k in picked.tolist():
         values = next(rows[k])
@@ -117,20 +118,15 @@ def _possible(
             yield fits[k], values
 
 
-def _rows(fit: GlobalFit, count: int, rng: np.random.Generator) -> Floats:
-    """Draw values of a fit's unknowns within their bounds, shape (count, n)."""
-    return within(fit, rng.multivariate_normal(fit.values, fit.cov, count, method="eigh"))
-
-
 def _off(fit: GlobalFit, values: Floats, best: Sequence[Floats]) -> float:
-    """Mean square by which these values move the stone that they move most, in its errors."""
+    """Sum of squares, beyond one for each number, by which they move the stone they move most."""
     seen = fit.shots[0]
     try:
         there = seen.residuals(seen.replay(fit.state(values=values)))
     except InputError:
         return np.inf
     return max(
-        float(np.mean((now - then) ** 2 / (fit.inflation + (trace.sd_place / trace.sd) ** 2)))
+        float(np.sum((now - then) ** 2 / (fit.inflation + (trace.sd_place / trace.sd) ** 2) - 1))
         for now, then, trace in zip(there, best, seen.traces.values(), strict=True)
     )
 

@@ -23,7 +23,7 @@ from physics.shot_model import ice
 from physics.simulate import simulate
 from physics.traces import traces
 from physics.watched import LITERATURE, Priors, watch
-from physics.whole_fit import GlobalFit, within
+from physics.whole_fit import GlobalFit, draw_values
 
 Floats = NDArray[np.float64]
 
@@ -223,7 +223,7 @@ def _spread(fit: GlobalFit, laws: Priors, model: str, first: float, end: float) 
     ends: dict[str, list[Floats]] = {}
     for k in rng.choice(len(fits), DRAWS, p=weights).tolist():
         own: GlobalFit = fits[k]
-        row = within(own, rng.multivariate_normal(own.values, own.cov, method="eigh"))
+        row = draw_values(own, 1, rng)[0]
         drawn = {
             name: float(np.clip(rng.normal(law.value or 0.0, law.stderr or 0.0), 1e-5, most))
             for (name, law), most in zip(_laws(laws).items(), MOST, strict=True)

@@ -131,11 +131,12 @@ class GlobalFit:
         return pd.concat(tables, ignore_index=True)
 
 
-def within(fit: GlobalFit, values: Floats) -> Floats:
-    """Return values of a fit's unknowns, shape (…, n), held within their bounds."""
+def draw_values(fit: GlobalFit, count: int, rng: np.random.Generator) -> Floats:
+    """Draw values of a fit's unknowns, shape (count, n), held within their bounds."""
     bounds = {unknown.name: (unknown.low, unknown.high) for unknown in fit.shots[0].unknowns}
     low, high = np.array([bounds[name] for name in fit.names]).T
-    return np.asarray(np.clip(values, low, high))
+    rows = rng.multivariate_normal(fit.values, fit.cov, count, method="eigh")
+    return np.asarray(np.clip(rows, low, high))
 
 
 def own_values(
