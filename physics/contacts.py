@@ -14,6 +14,7 @@ from physics.candidates import REACH, candidates, causal
 from physics.fit import fit_shot
 from physics.segments import Piece, cut
 from physics.shot_fit import Deceleration, Encounter, Meeting, ShotFit
+from physics.side_by_side import worth_fitting
 from physics.traces import Trace, traces
 
 Floats = NDArray[np.float64]
@@ -73,7 +74,7 @@ def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
         In order of time.
     """
     known = traces(sightings)
-    meetings = candidates(known, radius)
+    meetings = worth_fitting(candidates(known, radius), known)
     cuts: dict[str, list[Piece]] = {}
     ordered, beyond = False, FURTHER
     while meetings:
