@@ -69,10 +69,11 @@ def test_found_from_a_tilted_camera(tilt: float, bar: float) -> None:
         np.testing.assert_allclose(fit.camera.position, path.position, atol=0.5)
 
 
-def test_a_camera_beside_the_players_is_refused() -> None:
+@pytest.mark.parametrize(("tilt", "height"), [(63.0, 5.0), (70.0, 5.0), (71.0, 1.6)])
+def test_a_camera_beside_the_players_is_refused(tilt: float, height: float) -> None:
     scene = replace(sample_scene(), paint=PAINTS["navy-orange"])
-    path = tilted_camera(np.radians(71), height=1.6, px_per_m=150)
-    assert find_house(render_still(scene, path, 1.0)) is None
+    path = tilted_camera(np.radians(tilt), height=height, px_per_m=150)
+    assert (find_house(render_still(scene, path, 1.0)) is None) is (tilt > 66)
 
 
 @pytest.mark.parametrize("roll", [-0.3, 0.3])
