@@ -20,7 +20,7 @@ the handle, what turns is told by its spin first (`vision.glints`).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,6 +46,11 @@ ODD, ODDEST = 0.2, 3.0
 """Share of a stone's pictures that their mean does not explain from which on its angles err more,
 in proportion, and how much more at most: of 210 stones of three renderers and of films those with
 0.3 and more had spins twice as far off, for their errors, as the others."""
+
+ODDER, DIM = 1.25, 3.0
+"""From which larger errors on they count again where less than `TURNS` of what no light explains
+turns, and how often at most: of seven stones there with spins more than two errors off that was
+less than half of that for five. Less odd ones are but covered by something for some time."""
 
 MANY = 0.1
 """Share of pictures unlike those before from which on another one to begin with is tried."""
@@ -200,17 +205,23 @@ def handle_angles(
     covered = np.clip((unlike / (BEFORE * np.median(unlike))) ** 2, 1.0, WORST)
     theta[rows] = fit.angle
     odd = np.clip((1 - _alike(best) / len(seen)) / ODD, 1.0, ODDEST)
+    dim = np.clip(TURNS / max(best.share, 1e-6) - 1, 0.0, DIM)
+    odd += dim * max(odd - ODDER, 0.0)
     sd[rows] = np.hypot(LASTING * odd * covered * fit.sd, apart[good])
     return theta - theta[rows[0]], sd
 
 
 @dataclass(frozen=True)
 class _Matched:
-    """Pictures of one height, their angles against their mean, and how like it they are."""
+    """Pictures of one height, their angles against their mean, and how like it they are.
+
+    And the share of what no light explains that turns, 1 where that is not told.
+    """
 
     pictures: Complex
     angles: Array
     likeness: Array
+    share: float = 1.0
 
 
 def _alike(matched: _Matched) -> float:
@@ -244,14 +255,13 @@ def _turning_more(
 
     Light and shade on the cap make pictures alike that do not turn.
     """
-    both, shares = [], []
+    both: list[_Matched] = []
     for pictures, matched in zip(heights, tried, strict=True):
         best = _despite_light(times, pictures, matched, turning)
         told = np.isfinite(best.angles)
         angles = np.interp(times, times[told], best.angles[told]) if told.any() else 0 * times
-        both.append(best)
-        shares.append(unlit(times, pictures, angles).share)
-    return both[int(np.argmax(shares))]
+        both.append(replace(best, share=unlit(times, pictures, angles).share))
+    return max(both, key=lambda each: each.share)
 
 
 def _matched(times: Array, pictures: Complex, turning: Turning) -> _Matched:
@@ -268,22 +278,21 @@ def _despite_light(
         return matched
     angles = np.interp(times, times[known], matched.angles[known])
     share = unlit(times, pictures, angles).share
+    matched = replace(matched, share=share)
     if share > TURNS and known.mean() > 1 - GAPS:
         return matched
     other, share_of_course = course(times, pictures)
     if share_of_course < LEAST:
         return matched
-    dark, share_of_other = _onto_what_turns(times, pictures, other)
-    if share_of_other > max(TURNS, CLEARLY * share) and _mostly_told(dark, turning):
+    dark = _onto_what_turns(times, pictures, other)
+    if dark.share > max(TURNS, CLEARLY * share) and _mostly_told(dark, turning):
         return dark
-    return max(matched, _onto_mean(pictures, other, turning), key=_alike)
+    onto = replace(_onto_mean(pictures, other, turning), share=share_of_course)
+    return max(matched, onto, key=_alike)
 
 
-def _onto_what_turns(times: Array, pictures: Complex, angles: Array) -> tuple[_Matched, float]:
-    """Turn pictures onto the part of them that turns, and tell how much of what no light explains.
-
-    The angles are known to some tenths of a radian.
-    """
+def _onto_what_turns(times: Array, pictures: Complex, angles: Array) -> _Matched:
+    """Turn pictures onto the part of them that turns, angles known to some tenths of a radian."""
     shown = rings_seen(pictures)[:, None, :, None]
     dark, likeness = unlit(times, pictures, angles), np.zeros(len(times))
     for reach in REACHES:
@@ -291,7 +300,7 @@ def _onto_what_turns(times: Array, pictures: Complex, angles: Array) -> tuple[_M
         angles = np.where(np.isfinite(told), told, angles)  # of a blank picture as expected
         dark = unlit(times, pictures, angles)
     likeness = np.where(dark.told > UNTOLD, likeness, 0.0)
-    return _Matched(dark.pictures * shown, angles, likeness), dark.share
+    return _Matched(dark.pictures * shown, angles, likeness, dark.share)
 
 
 def _mostly_told(matched: _Matched, turning: Turning) -> bool:

@@ -255,6 +255,24 @@ def test_a_cap_that_is_often_unlike_itself_is_less_sure_throughout() -> None:
     assert told(40) > 1.6 * usual  # nobody knows what the others show
 
 
+def test_a_cap_that_changes_otherwise_than_it_turns_is_less_sure_throughout() -> None:
+    times = np.arange(100) / 25
+
+    def told(spin: float) -> float:
+        rng = np.random.default_rng(5)
+        pictures = []
+        for t in times:  # a cap that flickers, its handle plain
+            grain = cv2.GaussianBlur(rng.normal(0, 1, (RAYS, len(RADII))), (0, 0), 2.5)
+            seen = patch(spin * t) + 15 * (grain / grain.std())[..., None]
+            pictures.append(cap_spectrum(np.clip(seen, 0, 255).astype(np.uint8), RADII))
+        theta, sd = handle_angles(times, pictures, RADII)
+        assert np.nanstd(theta - spin * times) < 0.1
+        return float(np.nanmedian(sd))
+
+    # What hardly turns may be light, and nothing else is known to turn.
+    assert told(0.2) > 1.8 * told(2.0)
+
+
 def test_where_grip_and_cap_tell_different_angles_errors_say_so() -> None:
     times = np.arange(100) / 25
 
