@@ -32,6 +32,10 @@ SLIDING = 0.02
 """Friction between two stones that a fit sets out from: low, so that they slide. Once they
 stick, more of it changes nothing and no slope leads back."""
 
+THROWN = 1.5
+"""Spin that a fit sets out from where none is seen before a hit, rad/s: either sign is reached from
+it, but of a spin of nothing, and of one after a hit, a fit may not come away."""
+
 SLOPE, KNEE, TURN = Estimate(0.001, 0.0015), Estimate(V_C, 0.04), Estimate(0.0, 0.01)
 """What is known of a and v_c in μ(v) = a / (v + v_c) + b, m/s (a is 0 in the constant law, 0.002
 in FCV1, some 0.0035 in Penner's), and of the turn of a path at 1 m/s, rad/s (0.0082 in FCV1)."""
@@ -168,7 +172,8 @@ def watch(
         own = [spin for rank in run for spin in _seen(fit, rank, known, noise, ends[name])]
         spins += own
         if run and not fit.pieces[run[0]].rest:
-            first = own[0].omega if own else 0.0
+            thrown = _seen(fit, run[0], known, noise, ends[name])
+            first = thrown[0].omega if thrown else THROWN
             states.append(Unknown(f"{name}.omega", first, prior=Estimate(0.0, 3.0)))
     pairs = tuple(_pair(fit.meetings[k].stones) for k in order)
     return Watched(

@@ -351,3 +351,17 @@ def test_a_cap_beside_the_centre_is_not_taken_for_velocity(spin: float, way: flo
     assert found.restitution == found.whole["restitution"]
     assert found.restitution.value == pytest.approx(0.83, abs=0.005)
     assert not [text for text in found.warnings if "disagree" in text]
+
+
+def test_whole_shot_is_followed_where_no_spin_is_seen_before_the_hit() -> None:
+    motion = hit_motion(0.9, -0.05, before=2.2, stone_friction=0.2)
+    seen, t = watch(motion, np.random.default_rng(8), sd=0.0005), motion.hits[0].t
+    thrown = seen["stone"] == "A"
+    seen.loc[thrown & (seen["t"] < t), "theta"] = np.nan
+    seen = seen[~(thrown & (seen["t"] > t - 1.9) & (seen["t"] < t + 0.16))].reset_index(drop=True)
+    told = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    value, stderr = told.restitution.value, told.restitution.stderr
+    assert value is not None and stderr is not None
+    assert told.whole is not None
+    assert stderr < 0.002
+    assert value == pytest.approx(0.83, abs=3 * stderr)
