@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from data.results import Estimate, Law
 from physics.global_fit import fit_shots
 from physics.shot_model import V_C, Watched, penner
+from physics.watched import THROWN
 from physics.whole_fit import GlobalFit
 
 STRAIGHT = {"slope": 0.0, "v_c": V_C, "turn": 0.0}
@@ -18,6 +19,10 @@ STRAIGHT = {"slope": 0.0, "v_c": V_C, "turn": 0.0}
 
 STICKING = {"stone_friction": 2.0}
 """Stones that stop sliding on each other before they part: any greater friction does the same."""
+
+
+LOST = 0.1
+"""Spin that ice takes on the way to a hit, rad/s."""
 
 
 def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None) -> GlobalFit:
@@ -32,12 +37,12 @@ def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None
     falls: the one that is reported follows any ice but not to the last per cent.
     """
     held = STRAIGHT | dict(fixed or {})
-    best = fit_shots([shot], fixed=held)
+    best = _turning(fit_shots([shot], fixed=held), shot, held)
     tried, criteria, least = [best], [0.0], 0.0
     for name in ("slope", "turn"):
         fewer = {key: value for key, value in held.items() if key != name}
         more = fit_shots([shot], fixed=fewer, start=_start(best))
-        if not more.settled:
+        if not more.settled or more.deviance > 1.5 * best.deviance:  # that is elsewhere, not freer
             continue
         criterion = least + _against(more, name)
         if criterion < least:
@@ -62,6 +67,25 @@ def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None
             if criteria[-1] < least:
                 best = stuck
     return _with_others(best, tried, np.array(criteria))
+
+
+def _turning(fit: GlobalFit, shot: Watched, held: Mapping[str, float]) -> GlobalFit:
+    """Fit again from spins of either sense where a fit has come to rest at a spin of nothing.
+
+    A spin that is lost before the hit changes nothing there, so that no slope leads back.
+    """
+    none = [
+        name
+        for name, value in zip(fit.names, fit.values.tolist(), strict=True)
+        if name.endswith("omega") and abs(value) < LOST
+    ]
+    if not none or not shot.hits:
+        return fit
+    spun = [
+        fit_shots([shot], fixed=held, start=dict.fromkeys(none, omega))
+        for omega in (-THROWN, THROWN)
+    ]
+    return min((fit, *spun), key=lambda each: (not each.settled, each.deviance))
 
 
 def _against(fit: GlobalFit, name: str) -> float:

@@ -353,11 +353,14 @@ def test_a_cap_beside_the_centre_is_not_taken_for_velocity(spin: float, way: flo
     assert not [text for text in found.warnings if "disagree" in text]
 
 
-def test_whole_shot_is_followed_where_no_spin_is_seen_before_the_hit() -> None:
-    motion = hit_motion(0.9, -0.05, before=2.2, stone_friction=0.2)
+@pytest.mark.parametrize(("offset", "angles"), [(-0.05, "after the hit"), (0.05, "none")])
+def test_whole_shot_is_followed_where_no_spin_is_seen_before_the_hit(
+    offset: float, angles: str
+) -> None:
+    motion = hit_motion(0.7, offset, before=2.2, stone_friction=0.2)
     seen, t = watch(motion, np.random.default_rng(8), sd=0.0005), motion.hits[0].t
     thrown = seen["stone"] == "A"
-    seen.loc[thrown & (seen["t"] < t), "theta"] = np.nan
+    seen.loc[thrown & (seen["t"] < t) | (angles == "none"), "theta"] = np.nan
     seen = seen[~(thrown & (seen["t"] > t - 1.9) & (seen["t"] < t + 0.16))].reset_index(drop=True)
     told = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
     value, stderr = told.restitution.value, told.restitution.stderr
