@@ -15,7 +15,7 @@ from physics.impact import Impact
 from physics.simulate import simulate
 from physics.simulation import Shot, StoneStart
 from physics.spread import DRAWS, Doubt, drawn
-from physics.whole_fit import GlobalFit, draw_values
+from physics.whole_fit import GlobalFit, draw_choices
 
 Floats = NDArray[np.float64]
 
@@ -108,14 +108,12 @@ def _possible(
     fit: GlobalFit, rng: np.random.Generator, tries: int
 ) -> Iterator[tuple[GlobalFit, Floats]]:
     """Draw laws and values of their unknowns, and give those that the sightings allow."""
-    weights, fits = zip(*(fit.choices or ((1.0, fit),)), strict=True)
-    picked = rng.choice(len(fits), tries, p=weights)
-    rows = [iter(draw_values(own, int(np.sum(picked == k)), rng)) for k, own in enumerate(fits)]
-    best = [own.shots[0].residuals(own.simulation()) for own in fits]
-    for k in picked.tolist():
-        values = next(rows[k])
-        if _off(fits[k], values, best[k]) < RULED_OUT:
-            yield fits[k], values
+    best: dict[int, list[Floats]] = {}
+    for own, values in draw_choices(fit, tries, rng):
+        if id(own) not in best:
+            best[id(own)] = own.shots[0].residuals(own.simulation())
+        if _off(own, values, best[id(own)]) < RULED_OUT:
+            yield own, values
 
 
 def _off(fit: GlobalFit, values: Floats, best: Sequence[Floats]) -> float:

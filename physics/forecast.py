@@ -23,7 +23,7 @@ from physics.shot_model import ice
 from physics.simulate import simulate
 from physics.traces import traces
 from physics.watched import LITERATURE, Priors, watch
-from physics.whole_fit import GlobalFit, draw_values
+from physics.whole_fit import GlobalFit, draw_choices
 
 Floats = NDArray[np.float64]
 
@@ -32,6 +32,9 @@ AFTER = 1.16
 
 DRAWS = 48
 """Simulated shots from which the spread of the last places is taken."""
+
+MOST = {"restitution": 1.0, "stone_friction": 1.0, "friction": 1.0, "size": 1.3}
+"""Bounds of what is drawn of the laws."""
 
 ASSUMED = replace(LITERATURE, size=Estimate(1.0, 0.0))
 """Laws of a shot of which nothing is known: those of the literature, and stones that meet at two
@@ -118,24 +121,10 @@ def _before(
     if moved:
         since = sightings["stone"].map(moved).fillna(-np.inf).astype(float)
         return _before(sightings[sightings["t"] > since], radius, masses, laws)
-    held = {name: law.value or 0.0 for name, law in _laws(laws).items()}
+    held = {name: law.value or 0.0 for name, law in vars(laws).items()}
     if laws.friction.stderr:
         del held["friction"]
     return fit_with_chosen_laws(watched, held)
-
-
-MOST = (1.0, 1.0, 1.0, 1.3)
-"""Bounds of what is drawn, in the order of `_laws`."""
-
-
-def _laws(laws: Priors) -> dict[str, Estimate]:
-    """Laws by the names of their unknowns."""
-    return {
-        "restitution": laws.restitution,
-        "stone_friction": laws.stone_friction,
-        "friction": laws.friction,
-        "size": laws.size,
-    }
 
 
 def _scored(
@@ -150,7 +139,7 @@ def _scored(
     clock = clock[clock >= first]
     if clock.empty:
         return Prediction(None, note="nothing is seen after the first hit")
-    likely = {name: law.value or 0.0 for name, law in _laws(laws).items()}
+    likely = {name: law.value or 0.0 for name, law in vars(laws).items()}
     table = _sampled(fit, fit.state(), likely, model, first, clock.to_numpy(float))
     table["frame"] = clock.index.to_numpy()[table["frame"].to_numpy()]
     found = score(tracks, table, first, explained_until(tracks, estimates, first), None)
@@ -219,14 +208,11 @@ def _sampled(
 def _spread(fit: GlobalFit, laws: Priors, model: str, first: float, end: float) -> dict[str, float]:
     """Spread of each stone's last place over what is not known of states and laws, m."""
     rng = np.random.default_rng(0)
-    weights, fits = zip(*(fit.choices or ((1.0, fit),)), strict=True)
     ends: dict[str, list[Floats]] = {}
-    for k in rng.choice(len(fits), DRAWS, p=weights).tolist():
-        own: GlobalFit = fits[k]
-        row = draw_values(own, 1, rng)[0]
+    for own, row in draw_choices(fit, DRAWS, rng):
         drawn = {
-            name: float(np.clip(rng.normal(law.value or 0.0, law.stderr or 0.0), 1e-5, most))
-            for (name, law), most in zip(_laws(laws).items(), MOST, strict=True)
+            name: float(np.clip(rng.normal(law.value or 0.0, law.stderr or 0.0), 1e-5, MOST[name]))
+            for name, law in vars(laws).items()
         }
         table = _sampled(own, own.state(values=row), drawn, model, first, np.array([end]))
         for stone, group in table.groupby("stone"):

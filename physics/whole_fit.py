@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -137,6 +137,17 @@ def draw_values(fit: GlobalFit, count: int, rng: np.random.Generator) -> Floats:
     low, high = np.array([bounds[name] for name in fit.names]).T
     rows = rng.multivariate_normal(fit.values, fit.cov, count, method="eigh")
     return np.asarray(np.clip(rows, low, high))
+
+
+def draw_choices(
+    fit: GlobalFit, count: int, rng: np.random.Generator
+) -> Iterator[tuple[GlobalFit, Floats]]:
+    """Draw choices of laws by their probabilities, each with values of its own unknowns."""
+    weights, fits = zip(*(fit.choices or ((1.0, fit),)), strict=True)
+    picked = rng.choice(len(fits), count, p=weights)
+    rows = [iter(draw_values(own, int(np.sum(picked == k)), rng)) for k, own in enumerate(fits)]
+    for k in picked.tolist():
+        yield fits[k], next(rows[k])
 
 
 def own_values(
