@@ -21,6 +21,10 @@ STICKING = {"stone_friction": 2.0}
 """Stones that stop sliding on each other before they part: any greater friction does the same."""
 
 
+ELSEWHERE = 1.5
+"""How many times the deviance of a fit one with more freedom must have to have come to rest
+elsewhere: it can be no larger where both follow the shot alike."""
+
 LOST = 0.1
 """Spin that ice takes on the way to a hit, rad/s."""
 
@@ -42,7 +46,7 @@ def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None
     for name in ("slope", "turn"):
         fewer = {key: value for key, value in held.items() if key != name}
         more = fit_shots([shot], fixed=fewer, start=_start(best))
-        if not more.settled or more.deviance > 1.5 * best.deviance:  # that is elsewhere, not freer
+        if not more.settled or more.deviance > ELSEWHERE * best.deviance:
             continue
         criterion = least + _against(more, name)
         if criterion < least:

@@ -33,8 +33,8 @@ SLIDING = 0.02
 stick, more of it changes nothing and no slope leads back."""
 
 THROWN = 1.5
-"""Spin that a fit sets out from where none is seen before a hit, rad/s: either sign is reached from
-it, but of a spin of nothing, and of one after a hit, a fit may not come away."""
+"""Spin that a fit sets out from where none is seen before a hit, rad/s: from a spin of nothing,
+which may be lost before the hit, no slope leads to another."""
 
 SLOPE, KNEE, TURN = Estimate(0.001, 0.0015), Estimate(V_C, 0.04), Estimate(0.0, 0.01)
 """What is known of a and v_c in μ(v) = a / (v + v_c) + b, m/s (a is 0 in the constant law, 0.002
@@ -169,11 +169,10 @@ def watch(
     for name in traces:
         run = runs.get(name, [])
         states += _state(name, known[name], fit, run, start)
-        own = [spin for rank in run for spin in _seen(fit, rank, known, noise, ends[name])]
-        spins += own
+        seen = [_seen(fit, rank, known, noise, ends[name]) for rank in run]
+        spins += [spin for of_piece in seen for spin in of_piece]
         if run and not fit.pieces[run[0]].rest:
-            thrown = _seen(fit, run[0], known, noise, ends[name])
-            first = thrown[0].omega if thrown else THROWN
+            first = seen[0][0].omega if seen[0] else THROWN
             states.append(Unknown(f"{name}.omega", first, prior=Estimate(0.0, 3.0)))
     pairs = tuple(_pair(fit.meetings[k].stones) for k in order)
     return Watched(

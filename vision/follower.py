@@ -193,8 +193,7 @@ class Follower:
             expected = [lead.at(view.frame.t) for lead in leads]
             others = [i for i in range(len(leads)) if i not in seen]
             out.append([(expected[i], sighting) for i, sighting in seen.items()])
-            drift = [leads[i].drift(step) for i in others]
-            looks.append(view.look([expected[i] for i in others], drift))
+            looks.append(_look_at(view, leads, expected, others, step))
         if any(len(look.places) for look in looks):
             measured = iter(look_on_course(looks, self.appearance, self.disc, self.search))
             for so_far, look in zip(out, looks, strict=True):
@@ -218,8 +217,7 @@ class Follower:
             if found[index] is None and away > SETTLED * self.disc.radius
         ]
         if others:
-            drift = [leads[i].drift(step) for i in others]
-            look = view.look([expected[i] for i in others], drift)
+            look = _look_at(view, leads, expected, others, step)
             seen = look_on_course([look], self.appearance, self.disc, self.search)
             for index, sighting in zip(others, seen, strict=True):
                 found[index] = sighting
@@ -229,8 +227,7 @@ class Follower:
             if not lead.missed and _score(sighting) < DOUBTFUL * lead.score
         ]
         if astray:
-            drift = [leads[i].drift(step) for i in astray]
-            look = view.look([expected[i] for i in astray], drift)
+            look = _look_at(view, leads, expected, astray, step)
             seen = look_beside(look, self.appearance, self.disc, self.search)
             for index, sighting in zip(astray, seen, strict=True):
                 found[index] = max(found[index], sighting, key=_score)
@@ -278,6 +275,17 @@ class Follower:
             view.places,
         )
         return [sighting.without_samples() for sighting in found.stones]
+
+
+def _look_at(
+    view: StoneView,
+    leads: Sequence[Lead],
+    expected: Sequence[Place],
+    which: Sequence[int],
+    step: float,
+) -> Look:
+    """Look where some of the stones are expected that drift as their leads do."""
+    return view.look([expected[i] for i in which], [leads[i].drift(step) for i in which])
 
 
 def _time_between(views: Sequence[StoneView], leads: Sequence[Lead]) -> float:

@@ -265,11 +265,11 @@ def _stones(
         more = 2 * (np.clip(fit.unbroken, *ON_ONE_SIDE) - ON_ONE_SIDE[0]) - 0.25 * misfit
         evidence = np.where(evidence < ENOUGH, np.minimum(evidence + more, ENOUGH), evidence)
     near = exact.ok & (np.hypot(fit.shift[clear, 0], fit.shift[clear, 1]) < NEAR)
-    rows, more = clear[near], leaning[clear[near], None]
+    rows, share = clear[near], leaning[clear[near], None]
     shift, covariance, bends = fit.shift.copy(), fit.covariance.copy(), fit.bends.copy()
-    shift[rows] += more * (exact.shift[near] - shift[rows])
-    covariance[rows] += more[..., None] * (exact.covariance[near] - covariance[rows])
-    bends[rows] += more * (exact.bends[near] - bends[rows])
+    shift[rows] += share * (exact.shift[near] - shift[rows])
+    covariance[rows] += share[..., None] * (exact.covariance[near] - covariance[rows])
+    bends[rows] += share * (exact.bends[near] - bends[rows])
     lightness = np.where(lit.ok[:, None], lit.shift - shift, np.nan)
     # What displaces the edges of one side is made good by the other side, if that is seen.
     hidden = np.tile(0.04 * disc.radius * (1 - visible)[:, None], 2)
