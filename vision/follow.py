@@ -196,19 +196,35 @@ def follow(
     births = min(gate.births, (count + 1) // 2)
     if t - begin < 2 * gate.brief:  # all tracks are brief
         gate = replace(gate, least_open=gate.least_score)
+    stones = [
+        track
+        for track in closed + tracks
+        if len(track.frames) >= births and _convincing(track, gate)
+    ]
     return sorted(
-        (
-            track
-            for track in closed + tracks
-            if len(track.frames) >= births and _convincing(track, gate)
-        ),
+        (track for track in stones if not any(_beneath(track, o, radius) for o in stones)),
         key=lambda track: (track.frames[0], track.sightings[0].x),
     )
 
 
+def _beneath(track: Track, other: Track, radius: float) -> bool:
+    """Whether a track lies where another is before and after: centres are never so near.
+
+    It is that stone, half covered by something of another colour.
+    """
+    if not other.times[0] < track.times[0] <= track.times[-1] < other.times[-1]:
+        return False
+    here, there = (np.array([(s.x, s.y) for s in one.sightings]).T for one in (track, other))
+    away = [np.interp(track.times, other.times, there[i]) - here[i] for i in (0, 1)]
+    return bool((np.hypot(*away) < radius).all())
+
+
 def _convincing(track: Track, gate: Gate) -> bool:
-    """Say whether the better quarter of the sightings shows enough."""
-    shown = float(np.percentile([sighting.score for sighting in track.sightings], 75))
+    """Say whether the better quarter of what was measured shows enough.
+
+    What looks unchanged shows nothing more.
+    """
+    shown = float(np.percentile([s.score for s in track.sightings if s.measured], 75))
     visible = float(np.median([sighting.visible for sighting in track.sightings]))
     brief = track.times[-1] - track.times[0] < gate.brief
     return shown >= (gate.least_open if brief and visible > OPEN else gate.least_score)

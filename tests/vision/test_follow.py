@@ -135,3 +135,44 @@ def test_what_looks_a_little_like_a_stone_for_a_moment_is_none() -> None:
     assert seen(1.2, 0.5, 10) == 1  # half covered it cannot show more
     assert seen(2.0, 0.9, 10) == 1
     assert seen(1.2, 0.9, 10, of=12) == 1  # in a clip so short everything is brief
+
+
+def test_what_looks_unchanged_is_no_more_evidence() -> None:
+    gate = Gate(least_score=1.15, least_open=1.5)
+
+    def kept(measured: float, then: float) -> int:
+        seen = [sighting((1.0, 0.0), score=measured)] * 10 + [
+            sighting((1.0, 0.0), score=then)._replace(measured=i == 0) for i in range(60)
+        ]
+        return len(follow([(i, i / 25, [one]) for i, one in enumerate(seen)], R, gate))
+
+    assert kept(1.0, 1.2) == 0
+    assert kept(1.0, 2.0) == 0  # one look in eleven
+    assert kept(1.2, 1.2) == 1
+
+
+def test_a_stone_that_a_jersey_half_covers_keeps_its_name() -> None:
+    def covered(t: float) -> bool:
+        return 1.0 < t < 2.0
+
+    def resting(t: float) -> Place | None:
+        return None if covered(t) else (0.5, 1.0)
+
+    def jersey(t: float) -> Place | None:
+        return (0.5, 1.02) if covered(t) else None
+
+    def beside(t: float) -> Place | None:
+        return (0.5, 1.0 + 2.1 * R) if covered(t) else None
+
+    def to_the_end(t: float) -> Place | None:
+        return (0.5, 1.0) if t > 1.0 else None
+
+    def away(t: float) -> Place | None:
+        return (0.5, 1.0) if t < 1.0 else None
+
+    colours = [YELLOW, RED]
+    (only,) = follow(clip([resting, jersey], colours=colours), R)
+    assert np.ptp([s.colour[2] for s in only.sightings]) < 1
+    assert len(follow(clip([resting, beside], colours=colours), R)) == 2
+    # One that stays where another one was before is another one.
+    assert len(follow(clip([away, to_the_end], colours=colours), R)) == 2
