@@ -157,7 +157,7 @@ def _write_run(
     from report.tables import residual_table
     from report.units import UNITS
 
-    write_tracks(done.tracks, stage / "tracks.csv")
+    write_tracks(done.tracks, stage / "tracks.csv", measured.table)
     write_table(done.simulations, stage / "simulation.csv")
     write_results(done.results, stage / "results.json")
     if done.cameras is not None:
@@ -359,7 +359,7 @@ def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:
     contacts = find_contacts(measured.table, settings.radius)
     tracks = smoothed(measured.table, contacts, radius=settings.radius)
     with staged(folder, replaces=_stale(folder, measured.files)) as stage:
-        write_tracks(tracks, stage / "tracks.csv")
+        write_tracks(tracks, stage / "tracks.csv", measured.table)
         write_table(camera_columns(measured.cameras), stage / "camera.csv")
     stones = set(tracks["stone"].tolist())
     lines = [

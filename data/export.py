@@ -11,10 +11,10 @@ import pandas as pd
 
 from data.errors import InputError
 from data.files import check_folder, whole_file
-from data.tracks import SIGHTING_COLUMNS
 from data.trk import TEXT_COLUMNS
 
-_CSV_COLUMNS = tuple(name for name in SIGHTING_COLUMNS if not name.startswith("sd_place"))
+_WHERE_TOLD = ("sd_place_x", "sd_place_y", "team")
+"""Columns of a CSV only where there is something in them."""
 
 
 def write_text(sightings: pd.DataFrame, path: Path) -> None:
@@ -67,8 +67,8 @@ def write_text(sightings: pd.DataFrame, path: Path) -> None:
 
 def write_csv(sightings: pd.DataFrame, path: Path) -> None:
     """Write one row per stone and time, every number with all its digits."""
-    known = [name for name in _CSV_COLUMNS if name != "team" or sightings["team"].any()]
-    table = sightings[known].assign(t=[_time(t) for t in sightings["t"]])
+    empty = [name for name in _WHERE_TOLD if sightings[name].isin(["", np.nan]).all()]
+    table = sightings.drop(columns=empty).assign(t=[_time(t) for t in sightings["t"]])
     with whole_file(path) as part:
         table.to_csv(part, index=False, lineterminator="\n")
 

@@ -25,7 +25,7 @@ from data.layouts import read_layout
 from data.project import is_project, read_project
 from data.stone_names import chosen, named_by_file, refuse_shared_names
 from data.track_file import TrackFile
-from data.tracks import check_sightings
+from data.tracks import LENGTHS, check_sightings
 
 FASTEST = 20.0
 """m/s; a stone is thrown at 2 to 4."""
@@ -194,7 +194,7 @@ def _to_si(path: Path, file: TrackFile, length_unit: str, angle_unit: str | None
         warnings.append(f"{path}: x and y taken in {unit} as the header says")
     tracks = file.tracks
     with np.errstate(over="ignore"):
-        for name in ("x", "y", "sd_x", "sd_y"):
+        for name in LENGTHS:
             if name in tracks:
                 tracks[name] = tracks[name] * LENGTH_UNITS[unit]
     if "theta" in tracks:

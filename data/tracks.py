@@ -60,6 +60,14 @@ SIGHTING_COLUMNS: tuple[str, ...] = (
 the scale.
 """
 
+LENGTHS = ("x", "y", "sd_x", "sd_y", "sd_place_x", "sd_place_y")
+"""Columns of sightings that are in a unit of length."""
+
+SEEN_AS = {f"seen_{name}": name for name in (*LENGTHS, "theta", "sd_theta")}
+"""Columns of ``tracks.csv`` beside `TRACK_COLUMNS`, and what of a sighting they hold: what was
+measured of the stone in that frame, before any filter; empty where nothing was. What is estimated
+from the table later rests on them."""
+
 _NUMBERS = tuple(name for name in SIGHTING_COLUMNS if name not in ("stone", "team"))
 
 FARTHEST = 1e6
@@ -228,9 +236,20 @@ def _texts(column: NDArray[Any]) -> list[str]:
     return ["" if value is None or value != value else str(value) for value in column.tolist()]
 
 
-def write_tracks(tracks: Table, path: Path) -> None:
-    """Write ``tracks.csv`` with `TRACK_COLUMNS` in their order."""
-    write_table(tracks, path, TRACK_COLUMNS)
+def write_tracks(tracks: Table, path: Path, sightings: Table | None = None) -> None:
+    """Write ``tracks.csv`` with `TRACK_COLUMNS` in their order.
+
+    Of which `sightings` they were made, if given, is written beside them (`SEEN_AS`).
+    """
+    table = {name: tracks[name] for name in TRACK_COLUMNS}
+    if sightings is not None:
+        rank = {
+            key: k for k, key in enumerate(zip(sightings["stone"], sightings["t"], strict=True))
+        }
+        rows = [rank.get(key, -1) for key in zip(tracks["stone"], tracks["t"], strict=True)]
+        for written, name in SEEN_AS.items():
+            table[written] = np.append(np.asarray(sightings[name], float), np.nan)[rows]
+    write_table(table, path)
 
 
 def read_tracks(path: Path) -> pd.DataFrame:

@@ -17,12 +17,14 @@ from numpy.typing import ArrayLike, NDArray
 from data.columns import LENGTH_UNITS
 from data.errors import InputError
 from data.track_file import TrackFile
+from data.tracks import LENGTHS
 
 Array = NDArray[np.float64]
 Frames = NDArray[np.int64]
 
 TEXT_COLUMNS: Mapping[str, str] = {
-    "theta": "theta(rad)", "sd_x": "sd_x(m)", "sd_y": "sd_y(m)", "sd_theta": "sd_theta(rad)"
+    "theta": "theta(rad)", "sd_x": "sd_x(m)", "sd_y": "sd_y(m)", "sd_theta": "sd_theta(rad)",
+    "sd_place_x": "sd_place_x(m)", "sd_place_y": "sd_place_y(m)",
 }  # fmt: skip
 """Columns of text in which this program gives Tracker what it has no columns for."""
 
@@ -93,7 +95,7 @@ class PointMass:
     texts : mapping of str to ndarray, shape (n,)
         What is in the columns of text that this program writes (`TEXT_COLUMNS`; m, rad); NaN
         where there is no number.
-    measured : ndarray, shape (n, 7)
+    measured : ndarray, shape (n, 9)
         `MEASURED` of each mark (s, m, rad), where this program wrote the project; else without
         rows.
     team : str
@@ -252,7 +254,7 @@ class Project:
         known = {"t": self.timing.times(frames), "frame": frames, "x": x, "y": y}
         metre = 1 / LENGTH_UNITS.get(self.length_unit, 1.0)
         texts = {
-            name: column[used] * (metre if name in ("sd_x", "sd_y") else 1.0)
+            name: column[used] * (metre if name in LENGTHS else 1.0)
             for name, column in track.texts.items()
         }
         return pd.DataFrame({"stone": track.name, **known, **texts})

@@ -22,7 +22,10 @@ Array = NDArray[np.float64]
 ANGLE_NAMES = {"ang", "angle", "theta"}
 """What a column of angles is called."""
 
-COMPANIONS = ("theta", "sd_x", "sd_y", "sd_theta", "frame")
+ERRORS = ("sd_x", "sd_y", "sd_theta", "sd_place_x", "sd_place_y")
+"""Standard deviations that a table may tell."""
+
+COMPANIONS = ("theta", *ERRORS, "frame")
 """What else a table may tell of a place."""
 
 _CENTRE = {"c", "cm", "com", "centre", "center", "pos", "position"}
@@ -156,7 +159,7 @@ def _named_pairs(table: TextTable, names: Sequence[str]) -> list[Place]:
         others = {} if frame is None else {"frame": frame}
         for k, name in enumerate(names):
             kind, _, whose = name.rpartition(f"_{stone}")
-            if not whose and kind in ("sd_x", "sd_y", "sd_theta"):
+            if not whose and kind in ERRORS:
                 others.setdefault(kind, k)
             elif _angle_of(name) in (stem, stone):
                 others.setdefault("theta", k)

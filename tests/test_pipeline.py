@@ -17,7 +17,7 @@ from data.errors import CurlshotError, InputError
 from data.files import staged
 from data.inputs import find_inputs
 from data.results_file import read_results
-from data.tracks import TRACK_COLUMNS
+from data.tracks import SEEN_AS, TRACK_COLUMNS
 from report.summary import summary
 from tests.scoring import read_truth, score_tracks
 
@@ -90,7 +90,7 @@ def test_run_writes_the_whole_contract(sample: pipeline.Run) -> None:
     assert sample.out is not None
     assert {item.name for item in sample.out.iterdir()} == CONTRACT
     tracks = pd.read_csv(sample.out / "tracks.csv")
-    assert tuple(tracks.columns) == TRACK_COLUMNS
+    assert tuple(tracks.columns) == (*TRACK_COLUMNS, *SEEN_AS)
     simulation = pd.read_csv(sample.out / "simulation.csv")
     assert tuple(simulation.columns) == ("model", *TRACK_COLUMNS)
     assert set(simulation["model"]) == {"point-mass", "rigid-body", "frictional"}
@@ -106,9 +106,10 @@ def test_run_writes_the_whole_contract(sample: pipeline.Run) -> None:
 def test_tracks_come_back_to_the_same_physics(sample: pipeline.Run) -> None:
     assert sample.out is not None
     again = pipeline.run([sample.out / "tracks.csv"])
-    first, second = sample.results.restitution, again.results.restitution
-    assert first.value is not None and second.value is not None and first.stderr is not None
-    assert abs(second.value - first.value) < 3 * first.stderr
+    for name in ("restitution", "friction"):
+        first, second = getattr(sample.results, name), getattr(again.results, name)
+        assert second.value == pytest.approx(first.value, rel=1e-6)
+        assert second.stderr == pytest.approx(first.stderr, rel=1e-3)
     assert len(again.results.collisions) == len(sample.results.collisions)
     assert again.cameras is None
 
