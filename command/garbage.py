@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import gc
 
 BETWEEN = 50_000
@@ -10,5 +11,9 @@ holds pictures is in no cycle and goes at once."""
 
 
 def collect_seldom() -> None:
-    """Look for unused cycles of objects a seventieth as often as Python does by itself."""
+    """Look for unused cycles of objects a seventieth as often as Python does by itself.
+
+    And for none at the end, when all goes with the process.
+    """
     gc.set_threshold(BETWEEN)
+    atexit.register(gc.freeze)

@@ -38,7 +38,7 @@ Index = NDArray[np.int64]
 JOINT_FRAMES = 12
 """Frames to which the shared part is fitted."""
 
-TOGETHER = 16
+TOGETHER = 32
 """Most frames whose views are fitted in one go; one left alone would seem to stand still."""
 
 VIEW_SD = (np.inf, np.inf, 0.05, np.inf)
@@ -201,7 +201,8 @@ def fit_frames(
     marks = replace(marks, sd=marks.sd * shared.noise[family(marks.line)])
     offset, piece = shared.offsets(marks)
     observed = Observations(marks, size, offset, [len(m) for m in each])
-    away = shared.moved(np.array([s.t for s in seen]))
+    times = np.array([s.t for s in seen])
+    away = shared.moved(times)
     observed.foot -= observed.each(away.T)
     fits = solve_views(observed, [s.view for s in seen], shared.rig, view_sd=VIEW_SD)
     views = np.array([fit.view.vector for fit in fits])
@@ -219,19 +220,23 @@ def fit_frames(
     moved = motion(observed, at, views, away, np.array([s.index for s in seen]))
     count = RIG_SIZE + len(shared.pieces)
     identity, on_circle = piece_of(marks, ARC), marks.line < CIRCLES
-    found = []
-    for k, (s, fit, part) in enumerate(zip(seen, fits, observed.parts, strict=True)):
-        cov, rig = covs[k], shared.rig.copy()
-        rig[POSITION] += away[k]
-        follows = sensitivity(
+    rigs = np.tile(shared.rig, (len(seen), 1))
+    rigs[:, POSITION] += away
+    by_both = np.array([_parameters(*each, size) for each in zip(views, rigs, strict=True)])
+    both = np.zeros((len(seen), VIEW_SIZE + RIG_SIZE, count))
+    both[:, VIEW_SIZE:] = np.eye(RIG_SIZE, count)
+    for follows, part, cov in zip(both, observed.parts, covs, strict=True):
+        follows[:VIEW_SIZE] = sensitivity(
             by_view[:, part], by_shared[:, part], by_offset[part], cov, piece[part], count
         )
-        both = np.concatenate([follows, np.eye(RIG_SIZE, count)])
-        to_camera = _parameters(views[k], rig, size)
-        common, own = to_camera @ both, to_camera[:, :VIEW_SIZE]
+    common = LONG_RANGE**2 * shared.covariances(by_both @ both, times)
+    own = by_both[..., :VIEW_SIZE]
+    own = LONG_RANGE**2 * noisier[:, None, None] * own @ covs @ np.swapaxes(own, 1, 2)
+    found = []
+    for k, (s, fit, part, rig) in enumerate(zip(seen, fits, observed.parts, rigs, strict=True)):
         error = CameraError(
-            LONG_RANGE**2 * shared.covariance(common, s.t),
-            LONG_RANGE**2 * noisier[k] * own @ cov @ own.T,
+            common[k].copy(),
+            own[k].copy(),
             _scale_sd(fit.view, rig, edge_sd),
             0.0 if s.key is None else s.key.drift,
         )

@@ -237,7 +237,7 @@ def _stones(
     leaning = np.clip((np.hypot(*slant.T) - ASLANT[0]) / (ASLANT[1] - ASLANT[0]), 0.0, 1.0)
     clear = np.flatnonzero((visible > OPEN) & (leaning > 0) & bool(appearance.caps))
     twice = np.concatenate([np.arange(len(places)), clear])
-    middle = falls_along(np.clip(signal, -FLANK, FLANK)[..., None])[clear, ..., 0] / (2 * FLANK)
+    middle = falls_along(np.clip(signal[clear], -FLANK, FLANK)[..., None])[..., 0] / (2 * FLANK)
     falling = np.concatenate([cap_rim.fall, middle])
     walls = np.where(np.arange(len(twice)) < len(places), appearance.wall[1], WALL[1])
     both = fit_circles(

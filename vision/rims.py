@@ -150,6 +150,8 @@ def falls_along(values: Floats | Bytes) -> Floats:
     slope = np.exp(-0.5 * (x / np.float32(_SMOOTH)) ** 2) * x
     slope /= (slope * x).sum()
     across = np.exp(-0.5 * (np.arange(-2, 3, dtype=np.float32) / 0.6) ** 2)
+    if not values.size:
+        return np.zeros(values.shape, np.float32)
     flat = values.reshape(-1, *values.shape[-2:])
     filtered = cv2.sepFilter2D(flat, cv2.CV_32F, -slope, across / across.sum())
     return np.asarray(filtered, np.float32).reshape(values.shape)

@@ -61,12 +61,16 @@ class Bundle:
         """How far the camera is from the rig's place at these times, shape (n, 3), m."""
         return polynomials(t, self.span, len(self.travel)) @ self.travel
 
-    def covariance(self, by: Array, t: float) -> Array:
-        """Covariance at a time of what follows rig and offsets by `by`, (k, 15 + c): (k, k)."""
-        basis = polynomials(np.array([t]), self.span, len(self.travel))[0]
-        along = (basis[:, None] * by[:, None, POSITION]).reshape(len(by), -1)
-        whole = np.concatenate([by[:, :RIG_SIZE], along, by[:, RIG_SIZE:]], axis=1)
-        return np.asarray(whole @ self.cov @ whole.T)
+    def covariances(self, by: Array, t: Array) -> Array:
+        """Covariances at n times of what follows rig and offsets by `by`, (n, k, 15 + c): k by k.
+
+        All at once: the matrix of all pieces is large, and is gone through once.
+        """
+        basis = polynomials(t, self.span, len(self.travel))
+        along = (basis[:, None, :, None] * by[..., None, POSITION]).reshape(*by.shape[:2], -1)
+        whole = np.concatenate([by[..., :RIG_SIZE], along, by[..., RIG_SIZE:]], axis=-1)
+        spread = (whole.reshape(-1, len(self.cov)) @ self.cov).reshape(whole.shape)
+        return np.asarray(spread @ np.swapaxes(whole, 1, 2))
 
     def offsets(self, marks: Marks) -> tuple[Array, Index]:
         """Offset of the paint under each mark, m, and the place of its piece; 0, −1 if unseen."""

@@ -15,3 +15,13 @@ def test_cycles_are_looked_for_seldom_but_are() -> None:
     )
     told = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, text=True)
     assert told.stdout.split() == ["0", "True"]
+
+
+def test_nothing_is_looked_for_at_the_end() -> None:
+    code = (
+        "import atexit, gc; from command.garbage import collect_seldom;"
+        "atexit.register(lambda: print(gc.get_freeze_count() > 0));"  # runs after what comes later
+        "collect_seldom()"
+    )
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, text=True)
+    assert told.stdout.split() == ["True"]

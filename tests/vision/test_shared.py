@@ -42,7 +42,7 @@ def test_the_errors_of_a_camera_s_motion_are_those_of_its_place_at_the_time(degr
     count = RIG_SIZE + 3 * degree + 2
     root = rng.normal(0, 1, (count, count))
     shared = bundle(np.zeros((degree, 3)), root @ root.T, np.arange(2), np.zeros(2))
-    at = shared.covariance(np.eye(RIG_SIZE + 2), 2.5)
+    at = shared.covariances(np.eye(RIG_SIZE + 2)[None], np.array([2.5]))[0]
     draws = (root @ rng.normal(0, 1, (count, 40000))).T
     basis = polynomials(np.array([2.5]), (1.0, 5.0), degree)[0]
     travel = draws[:, RIG_SIZE : RIG_SIZE + 3 * degree].reshape(len(draws), degree, 3)
