@@ -210,7 +210,8 @@ class Prediction:
     deviation (m, both axes together) of its predicted last place, from the errors of the states
     before the hit and of the ``restitution`` and ``friction`` assumed, each with its own.
     ``error_after`` per stone the distance between its predicted and measured place (m) 1.16 s
-    after the first hit, where the study of the 2018 Olympic final states its own, 5.6 cm.
+    after the first hit, where the study of the 2018 Olympic final states its own, 5.6 cm, and
+    ``sd_after`` as `rest_sd`, of the place then.
     """
 
     rmse: float | None
@@ -220,6 +221,7 @@ class Prediction:
     friction: Estimate = field(default_factory=Estimate)
     note: str | None = None
     error_after: Mapping[str, float | None] = field(default_factory=dict)
+    sd_after: Mapping[str, float | None] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

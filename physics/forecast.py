@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -143,15 +143,17 @@ def _scored(
     table = _sampled(fit, fit.state(), likely, model, first, clock.to_numpy(float))
     table["frame"] = clock.index.to_numpy()[table["frame"].to_numpy()]
     found = score(tracks, table, first, explained_until(tracks, estimates, first), None)
-    spread = _spread(fit, laws, model, first, float(clock.iloc[-1]))
+    soon, last = _spreads(fit, laws, model, first, (first + AFTER, float(clock.iloc[-1])))
+    after = _errors_at(tracks, table, first + AFTER, found.rest_error)
     return Prediction(
         found.rmse,
         found.rest_error,
-        {name: spread[name] for name in found.rest_error if name in spread},
+        {name: last[name] for name in found.rest_error if name in last},
         laws.restitution,
         laws.friction,
         found.note,
-        _errors_at(tracks, table, first + AFTER, found.rest_error),
+        after,
+        {name: soon[name] for name, off in after.items() if off is not None and name in soon},
     )
 
 
@@ -205,16 +207,24 @@ def _sampled(
     return table
 
 
-def _spread(fit: GlobalFit, laws: Priors, model: str, first: float, end: float) -> dict[str, float]:
-    """Spread of each stone's last place over what is not known of states and laws, m."""
+def _spreads(
+    fit: GlobalFit, laws: Priors, model: str, first: float, times: Sequence[float]
+) -> list[dict[str, float]]:
+    """Spread of each stone's place at some times over what is not known of states and laws, m."""
     rng = np.random.default_rng(0)
-    ends: dict[str, list[Floats]] = {}
+    places: list[dict[str, list[Floats]]] = [{} for _ in times]
+    until = np.unique(times)
     for own, row in draw_choices(fit, DRAWS, rng):
         drawn = {
             name: float(np.clip(rng.normal(law.value or 0.0, law.stderr or 0.0), 1e-5, MOST[name]))
             for name, law in vars(laws).items()
         }
-        table = _sampled(own, own.state(values=row), drawn, model, first, np.array([end]))
-        for stone, group in table.groupby("stone"):
-            ends.setdefault(str(stone), []).append(group[["x", "y"]].to_numpy(float)[0])
-    return {name: float(np.hypot(*np.std(np.array(xy), axis=0))) for name, xy in ends.items()}
+        table = _sampled(own, own.state(values=row), drawn, model, first, until)
+        for found, rank in zip(places, np.searchsorted(until, times).tolist(), strict=True):
+            now = table[table["frame"] == rank]
+            for stone, xy in zip(now["stone"], now[["x", "y"]].to_numpy(float), strict=True):
+                found.setdefault(str(stone), []).append(xy)
+    return [
+        {name: float(np.hypot(*np.std(np.array(xy), axis=0))) for name, xy in found.items()}
+        for found in places
+    ]

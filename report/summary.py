@@ -147,7 +147,7 @@ def summary(
         if guess.rmse is not None:
             lines.append(
                 f"predicted   {model}, from before the first hit, e and μ assumed:"
-                f" {unit.little(guess.rmse)} RMS off{_soon(guess, unit)}"
+                f" {unit.little(guess.rmse)} RMS off{_soon(guess, unit)}{_last(guess, unit)}"
             )
     if house is not None:
         lines.append(f"shot stone  {_shot_stone(results, tracks, house, unit)}")
@@ -158,24 +158,27 @@ def summary(
     return "\n".join(lines)
 
 
-def _last(score: SimulationScore, unit: Unit) -> str:
+def _last(score: SimulationScore | Prediction, unit: Unit) -> str:
     """How far the last places were off, and by how much errors of start and laws let them be."""
-    off = [
-        f"{stone} {unit.little(error, sd)} (± {unit.little(sd, error)})"
-        for stone, error in score.rest_error.items()
-        if error is not None and (sd := score.rest_sd.get(stone)) is not None
-    ]
-    return f"; at the end {', '.join(off)}" if off else ""
+    off = _each(score.rest_error, score.rest_sd, unit)
+    return f"; at the end {off}" if off else ""
 
 
 def _soon(guess: Prediction, unit: Unit) -> str:
     """How far stones were off a while after the first hit, where they were seen."""
-    off = [
-        f"{stone} {unit.little(error)}"
-        for stone, error in guess.error_after.items()
-        if error is not None
-    ]
-    return f"; {AFTER} s after it {', '.join(off)}" if off else ""
+    off = _each(guess.error_after, guess.sd_after, unit)
+    return f"; {AFTER} s after it {off}" if off else ""
+
+
+def _each(
+    errors: Mapping[str, float | None], stated: Mapping[str, float | None], unit: Unit
+) -> str:
+    """By how much each stone's place was off, and by how much it may be."""
+    return ", ".join(
+        f"{stone} {unit.little(error, sd)} (± {unit.little(sd, error)})"
+        for stone, error in errors.items()
+        if error is not None and (sd := stated.get(stone)) is not None
+    )
 
 
 def _shot_stone(results: Results, tracks: pd.DataFrame, house: House, unit: Unit) -> str:

@@ -118,6 +118,10 @@ def test_summary_says_what_a_person_asks(sample: pipeline.Run) -> None:
     text = summary(sample.results, sample.tracks, sample.out)
     for word in ("stones", "A on B", "B on C", "e = ", "μ = ", "±", "report.html"):
         assert word in text
+    said = [line for line in text.splitlines() if line.startswith("predicted")]
+    assert len(said) == 2
+    for line in said:  # three stones, soon after the hit and at the end
+        assert line.count("(±") == 6
 
 
 def test_single_picture_gives_positions_only(

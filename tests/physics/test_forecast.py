@@ -40,6 +40,10 @@ def test_last_places_are_predicted_from_before_the_hit() -> None:
     soon = frictional.error_after
     assert sorted(soon) == ["A", "B", "C"]
     assert all(error is not None and error < 0.02 for error in soon.values())
+    assert sorted(frictional.sd_after) == ["A", "B", "C"]
+    for stone, sd in frictional.sd_after.items():  # errors grow with time
+        assert sd is not None
+        assert (soon[stone] or 0.0) < 2 * sd < 2 * (frictional.rest_sd[stone] or 0.0)
     assert made["rigid-body"].rmse is None
     assert "spins" in (made["rigid-body"].note or "")
 
