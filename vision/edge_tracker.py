@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from data.sheet import HOUSE
 from vision.clip import Frame
+from vision.edges import MIN_CONTRAST
 from vision.joint import Seen
 from vision.linear import Observations
 from vision.marks import Evidence, measure_along
@@ -182,7 +183,7 @@ class EdgeTracker:
         contrast = np.linalg.norm(self.palette[:CIRCLES, 0] - self.palette[:CIRCLES, 1], axis=1)
         away = np.linalg.norm(self.palette[:CIRCLES] - palette[:CIRCLES], axis=2).max(1)
         known = np.isfinite(contrast) & np.isfinite(away)
-        return bool((away[known] < 0.5 * contrast[known]).all())
+        return bool((away < np.maximum(0.5 * contrast, MIN_CONTRAST))[known].all())
 
     @property
     def blur(self) -> float:

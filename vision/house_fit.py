@@ -166,18 +166,19 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
     rig = sides(image, view, rig)
     prior = OVERHEAD if overhead else ANYWHERE
     edge = HALF_WAY
-    for reach in (8.0, 6.0):
+    for reach in (8.0, 6.0, 6.0):
         evidence = measure_marks(image, view.vector, rig, reach=reach, edge=edge)
         if len(evidence.marks) < LEAST_MARKS:
             return None
         fit = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
         view, rig = fit.views[0], fit.rig
+        if any(edge.light):
+            break
         edge = find_edge(evidence.profile, evidence.step)
-    edge = lit(edge, image, view, rig, evidence)
-    if any(edge.light):
-        evidence = measure_marks(image, view.vector, rig, reach=6.0, edge=edge)
-        fit = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
-        view, rig = fit.views[0], fit.rig
+        if reach < 8.0:
+            edge = lit(edge, image, view, rig, evidence)
+            if not any(edge.light):
+                break
     rms = float(fit.rms[0])
     found = camera(view, rig, size, frame=frame, t=t, rms_px=rms)
     if worth(evidence) == 0:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from vision.edges import crossings, steps
 from vision.normals import OUTSIDE, SAMPLES, Normals, Profiles, lay_out
 from vision.outline import HALF_WAY, PaintEdge
+from vision.outlined import outlines, summed
 from vision.paint import CIRCLES, FIXED, TWELVE, Marks
 from vision.picture import Picture, channels_at
 from vision.runs import Curves, Runs, smooth
@@ -160,10 +161,15 @@ def measure_along(
     value[..., rim] -= np.float32(edge.level)
     for kind in range(CIRCLES):
         value[..., places.kinds.get(kind, slice(0))] -= np.float32(edge.light[kind])
-    sample, rise, crossed = crossings(value)
+    rising, inset = value.copy(), np.zeros((len(good), 1))
+    for k, one in enumerate(colours[..., :wide]):
+        for part in outlines(one, places.kinds, value[k], good[k], found[k]):
+            rising[k][:, part] = summed(value[k][:, part])
+            inset[k] += edge.within * (part == rim)
+    sample, rise, crossed = crossings(rising)
     step = 2 * normals.wanted / (SAMPLES - 1)
     slope = rise[..., rim] / step
-    sample[..., rim] -= edge.beyond(slope) / step
+    sample[..., rim] -= (edge.beyond(slope) + inset) / step
     off = sample / (SAMPLES // 2) - 1
     shorter = normals.reach[:wide] < normals.wanted
     good &= crossed & ~(shorter & (np.abs(off) > CLEAR))

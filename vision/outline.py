@@ -1,4 +1,4 @@
-"""Where the paint ends if a thin dark line is drawn along its edge.
+"""Where the paint ends if a thin dark line is drawn along its edge, or is all that is drawn.
 
 The rules measure the 12-ft circle to its outer edge, and an outline is part of it. Half way from
 paint to ice lies beyond that edge, for the line draws the profile down. So the mean profile is
@@ -38,6 +38,9 @@ DOUBT = 0.7
 """Share of the way from half way to the edge that is in doubt, as clips with truth show: under one
 blur, a narrow dark line looks much like a wider one that is less dark."""
 
+HALF_IN_DOUBT = 0.3
+"""The same of half the width of an outline that is drawn alone."""
+
 ROUNDS = 15
 """Steps of the fit (Levenberg, 1944)."""
 
@@ -55,6 +58,8 @@ class PaintEdge:
     line : float
         How far the line moves the place half way between ice and paint off the edge, px, if the
         edge is blurred by much more than the line is wide: its depth times its width.
+    within : float
+        How far within the edge the middle of an outline lies that is drawn alone, px.
     light : tuple of float
         Levels at which the circles (12, 8 and 4 ft) are crossed beside that, as light was blurred
         before it was coded (see `vision.mixing`).
@@ -63,6 +68,7 @@ class PaintEdge:
     level: float = 0.0
     sd: float = UNSEEN
     line: float = 0.0
+    within: float = 0.0
     light: tuple[float, ...] = (0.0, 0.0, 0.0)
 
     def beyond(self, slope: Array) -> Array:
@@ -94,9 +100,15 @@ def find_edge(profile: Array, step: float) -> PaintEdge:
     y = profile[known]
     if len(y) < 12:
         return HALF_WAY
-    mean: Array = np.array([0.0, np.log(WIDTH), np.log(BLUR), y[-3:].mean(), 0.0, y[:3].mean()])
+    ice, paint = float(y[:3].mean()), float(y[-3:].mean())
+    alone = y.max() - paint > 2 * (paint - ice)  # an outline, and ice behind it as well
+    outlined = x[y > 0.5 * (y.max() + ice)] if alone else np.zeros(1)
+    depth = y.max() - paint if alone else 0.0
+    mean: Array = np.array([outlined[0], np.log(WIDTH), np.log(BLUR), paint, depth, ice])
     weight = np.array([1.0, WIDTH_SPREAD, BLUR_SPREAD, 0.3, DEPTH_SD, 0.3]) ** -2.0
     now: Array = mean.copy()
+    if alone:
+        now[1] = np.log(np.ptp(outlined) + abs(step))
     damping = 1e-3
     value, slope = _model(x, now)
     cost = _cost(y - value, now - mean, weight)
@@ -112,8 +124,13 @@ def find_edge(profile: Array, step: float) -> PaintEdge:
             now, value, slope, cost, damping = tried, ahead, ahead_slope, new, damping / 5
         else:
             damping *= 10
+    covariance = np.linalg.inv(normal)
+    if alone:
+        half = 0.5 * float(np.exp(now[1]))
+        sd = half * np.hypot(np.sqrt(covariance[1, 1]), HALF_IN_DOUBT)
+        return PaintEdge(0.0, float(np.hypot(sd, BARE)), within=half)
     moved = now[0] - np.interp(0.0, y, x)
-    sd = np.sqrt(np.linalg.inv(normal)[0, 0] + (DOUBT * moved) ** 2 + BARE**2)
+    sd = np.sqrt(covariance[0, 0] + (DOUBT * moved) ** 2 + BARE**2)
     return PaintEdge(float(np.interp(now[0], x, y)), float(sd), float(now[4] * np.exp(now[1])))
 
 

@@ -49,6 +49,10 @@ BARE = 0.35
 """How far what is within the 8-ft circle may be from the ice's colour and be bare, in steps from
 ice to paint."""
 
+ALIKE = 12.0
+"""Difference of such colours that tells nothing, grey levels: where outlines alone are drawn, paint
+is ice as well."""
+
 CROSSED = 2.3
 """How much more centre and tee line must stand out than other lines through the tee to prove a
 house; spokes of a wheel do by up to 2."""
@@ -85,7 +89,8 @@ def is_house(image: Image, evidence: Evidence, view: View, rig: Array) -> bool:
     """
     ice, paint = evidence.palette[TWELVE]
     within = evidence.palette[EIGHT, 1]
-    bare = bool(np.linalg.norm(within - ice) < BARE * np.linalg.norm(paint - ice))
+    most = max(BARE * float(np.linalg.norm(paint - ice)), ALIKE)
+    bare = bool(np.linalg.norm(within - ice) < most)
     ringed = bare and evidence.support.min() > WHOLE
     if not ringed and clearness(image, view, rig) < CROSSED:
         return False

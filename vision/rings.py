@@ -8,6 +8,7 @@ Communications of the ACM 18, 120.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -27,6 +28,10 @@ SQUASHES = np.array(
     + [(0.65, -0.75), (0.65, 0.75)]
 )
 """Height over width of a circle's image, and how far its short axis leans from upright, rad."""
+
+NEARER, LEVEL = ((1.1, 0.0), (1 / 1.1, 0.0), (1.0, -0.15), (1.0, 0.15)), 0.9
+"""Factors and turns by which others are tried next to the best of these, if that is below so
+much: the more rings are squashed, the fewer lines meet where their shape is not quite right."""
 
 RADII = np.array([HOUSE.twelve_foot, *OVERHEAD.mean[[R8, R4]]])
 """Usual radii of the 12-, 8- and 4-ft edges, m."""
@@ -98,14 +103,15 @@ def guesses(image: Image) -> list[Guess]:
     if len(points) < 60:
         return []
     step = max(len(points) // VOTERS, 1)
-    candidates: list[tuple[float, Tilt, Array]] = []
-    for squash, lean in SQUASHES.tolist():
-        tilt = Tilt.of(squash, lean, (w, h))
-        votes = _votes(*tilt.level_edges(points[::step], gradients[::step]), tilt)
-        candidates += [(height, tilt, place) for height, place in votes]
-    candidates.sort(key=lambda c: -c[0])
+    some = points[::step], gradients[::step]
+    candidates = _candidates(*some, SQUASHES.tolist(), (w, h))
+    if candidates and candidates[0][1] < LEVEL:
+        _, squash, lean, *_ = candidates[0]
+        nearer = [(min(squash * by, 1.0), lean + turn) for by, turn in NEARER]
+        candidates += _candidates(*some, nearer, (w, h))
+        candidates.sort(key=lambda c: -c[0])
     rings: list[tuple[float, float, Rounding]] = []
-    for _, tilt, place in candidates[:TRIED]:
+    for *_, tilt, place in candidates[:TRIED]:
         edges = tilt.level_edges(points, gradients)
         seen = Rounding(tilt, _sharpened(*edges, place))
         aside = abs(float(tilt.pictured(seen.centre)[0]) / w - 0.5)
@@ -130,6 +136,18 @@ def guesses(image: Image) -> list[Guess]:
             break
     found.sort(key=lambda c: -c.score)
     return found
+
+
+def _candidates(
+    points: Array, gradients: Array, ways: Sequence[tuple[float, float]], size: tuple[int, int]
+) -> list[tuple[float, float, float, Tilt, Array]]:
+    """Centres of rings so squashed and leaning: votes, both of these, the tilt, and the place."""
+    found = []
+    for squash, lean in ways:
+        tilt = Tilt.of(squash, lean, size)
+        votes = _votes(*tilt.level_edges(points, gradients), tilt)
+        found += [(height, squash, lean, tilt, place) for height, place in votes]
+    return sorted(found, key=lambda c: -c[0])
 
 
 def _guess(seen: Rounding, scale: float, score: float) -> Guess:

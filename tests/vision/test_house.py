@@ -19,6 +19,7 @@ from tests.synthetic import (
     sweepers,
     tilted_camera,
 )
+from tests.synthetic.scene import Paint
 from tests.vision.places import RINGS
 from vision.camera import Camera
 from vision.house import find_house
@@ -40,6 +41,14 @@ def errors(fit: HouseFit | None, path: CameraPath, height: float = 0.0) -> np.nd
 
 def rms(values: np.ndarray) -> float:
     return float(np.sqrt((values**2).mean()))
+
+
+@pytest.mark.parametrize("tilt", [0.0, 0.7])
+def test_found_by_outlines_alone(tilt: float) -> None:
+    path = tilted_camera(tilt, px_per_m=130.0) if tilt else still_camera(px_per_m=130.0)
+    bare = Paint(*[(222, 226, 226)] * 4, outline=(150, 60, 30), outline_width=0.014)
+    fit = find_house(render_still(replace(sample_scene(), paint=bare), path, 1.0))
+    assert rms(errors(fit, path)) < 0.004
 
 
 @pytest.mark.parametrize("name", PAINTS)

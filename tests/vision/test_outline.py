@@ -49,6 +49,15 @@ def test_in_a_pan_the_edge_stays_where_it_is_at_rest(depth: float) -> None:
     assert abs(at_rest) < 0.02
 
 
+@pytest.mark.parametrize(("width", "blur"), [(1.5, 0.7), (2.6, 0.9), (4.0, 1.2)])
+def test_the_edge_of_an_outline_alone_is_its_outer_side(width: float, blur: float) -> None:
+    share = ndtr((X + width / 2) / blur) - ndtr((X - width / 2) / blur)
+    found = find_edge(share / share.max() - 0.5, STEP)
+    assert found.level == 0.0
+    assert found.within == pytest.approx(width / 2, abs=0.3)
+    assert abs(found.within - width / 2) < 2 * found.sd
+
+
 def test_too_little_of_a_profile_tells_nothing() -> None:
     assert find_edge(np.full(33, np.nan), STEP).level == 0.0
 

@@ -36,9 +36,12 @@ def test_the_rings_are_the_first_guess(
     assert best.foreshortening == pytest.approx(squash, abs=0.11)
 
 
-@pytest.mark.parametrize("lean", [-20.0, 20.0])
-def test_rings_that_lean_are_found(lean: float) -> None:
-    best = guesses(drawn((160, 90), 70, 0.55, lean))[0]
+@pytest.mark.parametrize(
+    ("squash", "lean"), [(0.55, -20.0), (0.55, 20.0), (0.55, -40.0), (0.46, 28.0), (0.42, 12.0)]
+)
+def test_rings_that_lean_are_found(squash: float, lean: float) -> None:
+    best = guesses(drawn((160, 90), 70, squash, lean))[0]
+    assert best.foreshortening == pytest.approx(squash, abs=0.06)
     np.testing.assert_allclose(best.centre, (160, 90), atol=4)
     # OpenCV turns an ellipse clockwise in the picture, its short axis too.
     assert best.lean == pytest.approx(-np.radians(lean), abs=0.2)
