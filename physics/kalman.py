@@ -102,7 +102,7 @@ def smoothed(
         each[name] = _track(
             trace, times[inside], frames[inside], hits, fit, model, noise[name], run
         )
-    share_spins(each, contacts)
+    share_spins(each, contacts, radius)
     team, tables = teams(sightings), list(each.values())
     tracks = {name: np.concatenate([table[name] for table in tables]) for name in tables[0]}
     tracks["team"] = np.array([team[stone] for stone in tracks["stone"].tolist()])

@@ -1,105 +1,227 @@
-"""Spins that are hardly seen between two hits, from those of the stones that were met there.
+"""Spins beside hits, from how hits change them: what one stone shows tells of the other's.
 
 In a hit both stones are rubbed by the same impulse at the same lever, so that the spins of equal
-stones change by the same amount. A stone that is hit twice within a few pictures shows little of
-its spin between; the other stones' changes tell it.
+stones change by the same amount, and that is as their velocities change along the line of the
+contact: an impulse that gives a disc Δv across the normal turns it by Δv / (k R) (Wang and Mason,
+1992, J. Appl. Mech. 59, 635). Light on a turning cap and few pictures make spins err alike all the
+way from one hit to the next; what a hit tells of one end of that way thus mends all of it, as far
+as the ice leaves a spin as it is.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from data.sheet import STONE, curling_size
 from data.tracks import Columns
 from physics.contacts import Contact
+from physics.stretch import LOSS_SD, MEMORY, MOST_LOSS_SD
 
-POOR = 0.1
-"""Standard error of a spin, rad/s, from which others are asked for help."""
-
-SHORT, VAGUE = 0.4, 0.5
-"""Time over which a spin stays the same, s; of a longer stretch it is taken to do so only where its
-standard error, rad/s, is larger."""
+Floats = NDArray[np.float64]
 
 NEAR = 0.1
-"""How far from a hit, s, a spin is that which the hit began or ended with: beside it rows may lie
+"""How far from a hit, s, states are those which the hit began or ended with: beside it rows may lie
 on its other side."""
 
-SLACK, UNLIKE = 0.05, 0.2
-"""How far from the same the two changes are, rad/s, and as a share of them: stones are not quite
-equal, and of discs on tables nobody says here which is heavier."""
+SLACK, UNLIKE, UNLIKE_STONES = 0.02, 0.2, 0.05
+"""How far from the same changes of spin are, rad/s, and as a share of them: of discs on tables
+nobody says here which is heavier, of stones how their mass is spread."""
+
+ASIDE = 0.007
+"""How far from its middle a disc is taken to be across the normal, besides what its places err by,
+a share of its radius: caps lie beside their stones' centres."""
+
+WILD = 3.0
+"""Standard errors beyond which a hit tells otherwise than what is seen, and is not heard."""
+
+
+End = tuple[str, int, bool]
+"""A stone, the rank of a hit of its own, and whether it is meant after that hit."""
+
+
+@dataclass(frozen=True)
+class _Way:
+    """A stone from one hit to the next: its table, its rows there, and those that tell its spin."""
+
+    table: Columns
+    rows: NDArray[np.intp]
+    told: NDArray[np.intp]
+
+    def spin_row(self, time: float) -> int:
+        """Row that tells the spin at a hit at either end of the way."""
+        return _best(self.table["t"], self.table["sd_omega"], self.told, time)
+
+    def state(self, time: float) -> tuple[Floats, Floats]:
+        """Velocity at a hit at either end of the way, m/s, and errors of it and of the place."""
+        t, x, y = (self.table[name] for name in ("t", "vx", "vy"))
+        v = np.stack([x, y], axis=1)
+        sd = np.stack([self.table[name] for name in ("sd_vx", "sd_vy", "sd_x", "sd_y")], axis=1)
+        row = _best(t, np.hypot(sd[:, 0], sd[:, 1]), self.rows, time)
+        inner = self.rows[np.abs(t[self.rows] - time) > abs(t[row] - time)]
+        if not len(inner):
+            return v[row], sd[row]
+        beyond = inner[np.abs(t[inner] - t[row]).argmin()]
+        slowing = (v[beyond] - v[row]) / (t[beyond] - t[row])
+        return v[row] + slowing * (time - t[row]), sd[row]
+
+    def alike(self, row: int) -> Floats:
+        """Covariance of the spins of the rows that tell one with that of one of them.
+
+        Spins of two rows differ by what the ice may do between them at most.
+        """
+        t, variance = self.table["t"][self.told], self.table["sd_omega"][self.told] ** 2
+        speed = np.hypot(self.table["vx"], self.table["vy"])[self.told]
+        loss = np.minimum(LOSS_SD[1] / np.maximum(speed, 1e-6), MOST_LOSS_SD[1]) ** 2 * MEMORY
+        so_far = np.concatenate([[0.0], np.cumsum(loss[:-1] * np.diff(t))])
+        at = int(np.searchsorted(self.told, row))
+        apart = np.abs(so_far - so_far[at])
+        most = np.sqrt(variance * variance[at])
+        return np.asarray(np.clip(0.5 * (variance + variance[at] - apart), 0.0, most))
 
 
 @dataclass(frozen=True)
 class _Side:
-    """A stone on one side of a hit: its table, its rows up to the next hit, spin and error."""
+    """A stone in a hit: its ways there and on, and the numbers of its spins where they are told."""
 
-    table: Columns
-    rows: NDArray[np.intp]
-    spin: float
-    sd: float
+    before: _Way
+    after: _Way
+    spin_before: int | None
+    spin_after: int | None
 
 
-def share_spins(tables: Mapping[str, Columns], contacts: Sequence[Contact]) -> None:
-    """Improve poorly seen spins of short stretches between hits, and their standard errors.
+def _best(t: Floats, sd: Floats, rows: NDArray[np.intp], time: float) -> int:
+    """Give the row of least error near a time."""
+    away = np.abs(t[rows] - time)
+    near = rows[away <= max(NEAR, float(away.min()))]
+    return int(near[sd[near].argmin()])
+
+
+def share_spins(tables: Mapping[str, Columns], contacts: Sequence[Contact], radius: float) -> None:
+    """Improve spins by how hits change them, and their standard errors.
 
     Parameters
     ----------
     tables : mapping
-        Stone to its rows of ``t``, ``omega`` and ``sd_omega``; the latter two are changed.
+        Stone to its rows of `data.tracks.TRACK_COLUMNS`; ``omega`` and ``sd_omega`` are changed.
     contacts : sequence of Contact
         The hits.
+    radius : float
+        Of the discs, m.
     """
-    left = [hit for hit in contacts if None not in _sides(tables, contacts, hit)]
-    while left:
-        # That of which most is known first: it may help at another. Each tells but once.
-        each = [[s for s in _sides(tables, contacts, hit) if s is not None] for hit in left]
-        k = min(range(len(left)), key=lambda k: sum(sorted(s.sd**2 for s in each[k])[:3]))
-        _share(each[k])
-        del left[k]
+    hits = {
+        stone: sorted((hit for hit in contacts if stone in hit.stones), key=lambda hit: hit.t)
+        for stone in tables
+    }
+    ways = {
+        (stone, k): way
+        for stone, own in hits.items()
+        for k, way in enumerate(_ways(tables[stone], [hit.t for hit in own]))
+    }
+    # The unknowns: the spin of each way at either hit, told by a row of it.
+    ends: list[tuple[_Way, int]] = []
+    number: dict[End, int] = {}
+    for (stone, k), way in ways.items():
+        for hit, late in ((k - 1, True), (k, False)):
+            if 0 <= hit < len(hits[stone]) and len(way.told):
+                number[stone, hit, late] = len(ends)
+                ends.append((way, way.spin_row(hits[stone][hit].t)))
+    if not ends:
+        return
+    before = np.array([way.table["omega"][row] for way, row in ends])
+    cov = np.zeros((len(ends), len(ends)))
+    for i, (way, row) in enumerate(ends):
+        for j, (other, there) in enumerate(ends):
+            if other is way:
+                cov[i, j] = way.alike(row)[np.searchsorted(way.told, there)]
+    mean, prior = before, np.diag(cov)
+    for met in sorted(contacts, key=lambda met: met.t):
+        sides = []
+        for stone in (stone for stone in met.stones if stone in hits):
+            k = hits[stone].index(met)
+            rows = [number.get((stone, k, late)) for late in (False, True)]
+            sides.append(_Side(ways[stone, k], ways[stone, k + 1], rows[0], rows[1]))
+        for seen, value, sd in _tells(met, sides, mean, cov, radius):
+            off, spread = value - seen @ mean, float(seen @ cov @ seen) + sd**2
+            if off**2 < WILD**2 * spread:
+                gain = cov @ seen / spread
+                mean, cov = mean + gain * off, cov - np.outer(gain, seen @ cov)
+    _spread_out(ends, mean - before, prior, prior - np.diag(cov))
 
 
-def _share(sides: Sequence[_Side]) -> None:
-    """Join what is poorly seen of the four spins of a hit with what the other three imply."""
-    for k, here in enumerate(sides):
-        t, spin, sd = (here.table[name] for name in ("t", "omega", "sd_omega"))
-        if here.sd < (POOR if np.ptp(t[here.rows]) <= SHORT else VAGUE):
-            continue
-        there, (first, last) = sides[k ^ 1], sides[2:] if k < 2 else sides[:2]
-        change = last.spin - first.spin
-        implied = there.spin + (change if k % 2 else -change)
-        variance = there.sd**2 + first.sd**2 + last.sd**2 + SLACK**2 + (UNLIKE * change) ** 2
-        share = variance / (variance + sd[here.rows] ** 2)
-        spin[here.rows] = share * spin[here.rows] + (1 - share) * implied
-        sd[here.rows] = np.sqrt(variance * (1 - share))
-
-
-def _sides(
-    tables: Mapping[str, Columns], contacts: Sequence[Contact], hit: Contact
-) -> list[_Side | None]:
-    """Give the first stone before and after a hit, then the second; None where it is not told."""
+def _ways(table: Columns, times: Sequence[float]) -> list[_Way]:
+    """Cut a stone's rows at its hits."""
+    part = np.searchsorted(np.array(times), table["t"], side="right")
+    moving = np.isfinite(table["sd_vx"])
+    told = np.isfinite(table["sd_omega"])
     return [
-        _side(tables[stone], contacts, stone, hit.t, late) if stone in tables else None
-        for stone in hit.stones
-        for late in (False, True)
+        _Way(table, np.flatnonzero((part == k) & moving), np.flatnonzero((part == k) & told))
+        for k in range(len(times) + 1)
     ]
 
 
-def _side(
-    table: Columns, contacts: Sequence[Contact], stone: str, time: float, late: bool
-) -> _Side | None:
-    """Give a stone before or after its hit at a time; None where its spin is not told."""
-    hits = [hit.t for hit in contacts if stone in hit.stones]
-    t, sd = table["t"], table["sd_omega"]
-    if late:
-        inside = (t >= time) & (t < min((hit for hit in hits if hit > time), default=np.inf))
-    else:
-        inside = (t < time) & (t >= max((hit for hit in hits if hit < time), default=-np.inf))
-    rows = np.flatnonzero(inside & np.isfinite(sd))
-    if not len(rows):
+def _tells(
+    hit: Contact, sides: Sequence[_Side], mean: Floats, cov: Floats, radius: float
+) -> Iterator[tuple[Floats, float, float]]:
+    """Give what a hit tells: a sum of spins by their weights, its value and standard error."""
+    unlike = UNLIKE_STONES if curling_size(radius) else UNLIKE
+    changes = []
+    for side in sides:
+        if side.spin_before is not None and side.spin_after is not None:
+            weights = np.zeros(len(mean))
+            weights[side.spin_after], weights[side.spin_before] = 1.0, -1.0
+            changes.append(weights)
+    if len(changes) == 2:
+        told = min(changes, key=lambda seen: float(seen @ cov @ seen))
+        yield changes[0] - changes[1], 0.0, float(np.hypot(SLACK, unlike * (told @ mean)))
+    rub = _rub(hit, sides, radius)
+    if changes and rub is not None:
+        yield changes[0], rub[0], float(np.hypot(rub[1], unlike * rub[0]))
+
+
+def _rub(hit: Contact, sides: Sequence[_Side], radius: float) -> tuple[float, float] | None:
+    """Change of spin that the velocities tell of, rad/s, and its standard error."""
+    ways = [way for side in sides for way in (side.before, side.after)]
+    if len(ways) < 4 or not all(len(way.rows) for way in ways):
         return None
-    near = rows[np.abs(t[rows] - time) <= max(NEAR, float(np.abs(t[rows] - time).min()))]
-    best = near[sd[near].argmin()]
-    return _Side(table, rows, float(table["omega"][best]), float(sd[best]))
+    states = [way.state(hit.t) for way in ways]
+    v1, w1, v2, w2 = (velocity for velocity, _ in states)
+    normal = np.array(hit.normal)
+    tangent = np.array([-normal[1], normal[0]])
+    lever = STONE.inertia * radius
+    changes = np.array([(w1 - v1) @ tangent, (v2 - w2) @ tangent]) / lever
+    each = np.array([tangent**2 @ sd[:2] ** 2 for _, sd in states]) / lever**2
+    weight = 1 / np.maximum(each[::2] + each[1::2], 1e-12)
+    # Where the normal is aslant, a part of the push is taken for a rub.
+    push, along = abs(float((w2 - v2) @ normal)), abs(float((v1 - v2) @ tangent))
+    aside = [hit.stderr_t * along, ASIDE * radius, ASIDE * radius]
+    aside += [float(np.sqrt(tangent**2 @ sd[2:] ** 2)) for _, sd in states[::2]]
+    slant = float(np.linalg.norm(aside)) / (2 * radius) * push / lever
+    error = float(np.hypot(np.sqrt(1 / weight.sum()), slant))
+    return float(weight @ changes / weight.sum()), error
+
+
+def _spread_out(
+    ends: Sequence[tuple[_Way, int]], change: Floats, prior: Floats, less: Floats
+) -> None:
+    """Change the spins of all rows by what was learned of that end of their way that is most like.
+
+    Parameters
+    ----------
+    ends : sequence of (_Way, int)
+    change, prior, less : ndarray, shape (n,)
+        By how much their spins changed, their variances before, and by how much these fell.
+    """
+    for way in {id(way): way for way, _ in ends}.values():
+        at = [i for i, (other, _) in enumerate(ends) if other is way]
+        like = np.array([way.alike(ends[i][1]) for i in at])
+        best = (like / np.sqrt(prior[at])[:, None]).argmax(0)
+        rows = np.arange(len(way.told))
+        omega, sd = way.table["omega"][way.told], way.table["sd_omega"][way.told]
+        gain = np.where(omega == 0, 0.0, like[best, rows] / prior[at][best])  # at rest it has none
+        way.table["omega"][way.told] = omega + gain * change[at][best]
+        variance = sd**2 - gain**2 * less[at][best]
+        way.table["sd_omega"][way.told] = np.sqrt(np.maximum(variance, 0.0))
