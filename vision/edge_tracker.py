@@ -179,9 +179,15 @@ class EdgeTracker:
         return [e.marks.pick(known[e.marks.line]) for e in measured]
 
     def looks_like(self, palette: Array) -> bool:
-        """Whether the circles have the same colours in a palette, as far as both know them."""
-        contrast = np.linalg.norm(self.palette[:CIRCLES, 0] - self.palette[:CIRCLES, 1], axis=1)
-        away = np.linalg.norm(self.palette[:CIRCLES] - palette[:CIRCLES], axis=2).max(1)
+        """Whether the circles have the same colours in a palette, as far as both know them.
+
+        In a picture that has faded all of them are brighter or darker by one factor.
+        """
+        own, other = self.palette[:CIRCLES], palette[:CIRCLES]
+        both = np.isfinite(own) & np.isfinite(other)
+        own = own * ((own * other)[both].sum() / max(float((own[both] ** 2).sum()), 1.0))
+        contrast = np.linalg.norm(own[:, 0] - own[:, 1], axis=1)
+        away = np.linalg.norm(own - other, axis=2).max(1)
         known = np.isfinite(contrast) & np.isfinite(away)
         return bool((away < np.maximum(0.5 * contrast, MIN_CONTRAST))[known].all())
 

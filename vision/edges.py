@@ -20,6 +20,10 @@ LIGHT = 0.75, 1.3
 """How much darker or brighter than usual an edge may be: pictures fall off to their corners, and
 lamps shine on the ice."""
 
+FADED = 0.8, 1.25
+"""How much darker or brighter than before a whole picture may be and be taken as it is: one that
+fades in or out goes beyond that."""
+
 MIN_CONTRAST = 10.0
 """Least difference of the two sides of an edge, grey levels."""
 
@@ -62,6 +66,8 @@ def steps(profile: Profiles, normals: Normals, known: Array) -> tuple[Profiles, 
     kinds = {kind: part for kind, part in normals.kinds.items() if kind not in THIN}
     sides = known.T.astype(np.float32)[..., line]
     new = [part for kind, part in kinds.items() if not np.isfinite(known[kind, 0, 0])]
+    if len(new) < len(kinds):
+        sides = sides * _faded(ends, sides, line)[..., None, None, None]
     if new:
         sides = np.broadcast_to(sides, ends.shape).copy()
     for part in new:
@@ -92,6 +98,17 @@ def steps(profile: Profiles, normals: Normals, known: Array) -> tuple[Profiles, 
         mean = np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0)
         palette[..., line[starts], :, :] = np.moveaxis(mean, (-1, -2, -3), (-3, -2, -1))
     return value, good, palette
+
+
+def _faded(ends: Profiles, sides: Profiles, line: NDArray[np.int64]) -> Profiles:
+    """Tell how much brighter each picture is than its circles' sides were, where it has faded."""
+    known = np.isfinite(sides[0, 0]) & (line < CIRCLES)
+    if not known.any():
+        return np.ones(ends.shape[:-3], np.float32)
+    before, now = sides[..., known], ends[..., known]
+    light = (now * before).sum((-3, -2)) / np.maximum((before * before).sum((-3, -2)), 1.0)
+    usual = np.median(light, axis=-1)
+    return np.where((usual > FADED[0]) & (usual < FADED[1]), np.float32(1), usual)
 
 
 def crossings(value: Profiles) -> tuple[Array, Array, Flags]:

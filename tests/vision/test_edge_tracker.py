@@ -98,4 +98,5 @@ def test_a_house_of_other_colours_is_told() -> None:
     _, house = filmed()
     edges = tracker(house)
     assert edges.looks_like(house.evidence.palette)
+    assert edges.looks_like(0.4 * house.evidence.palette)  # faded
     assert not edges.looks_like(house.evidence.palette[:, ::-1])

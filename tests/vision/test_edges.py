@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from vision.edges import MIN_CONTRAST, crossings, steps
 from vision.normals import SAMPLES, Normals, lay_out
@@ -60,9 +61,24 @@ def test_light_may_fall_off_where_paint_is_pale_but_no_shadow_is_paint() -> None
     assert steps((light * profiles(place, paint=pale)).astype(np.float32), normals, known)[1].all()
     shadow = profiles(place, ice=ICE, paint=0.8 * ICE)
     assert not steps(shadow, normals, known)[1].any()
-    assert not steps((0.5 * profiles(place, paint=pale)).astype(np.float32), normals, known)[
-        1
-    ].any()
+    light[::3] = 0.5
+    dim = steps((light * profiles(place, paint=pale)).astype(np.float32), normals, known)[1]
+    assert not dim[::3].any() and dim[1::3].all() and dim[2::3].all()
+
+
+@pytest.mark.parametrize("light", [0.25, 0.6, 1.4])
+def test_a_whole_picture_may_fade(light: float) -> None:
+    normals = circles()
+    place = np.full(len(normals.line), 12.3)
+    known = UNKNOWN.copy()
+    known[:] = [ICE, PAINT]
+    both = np.stack([light * profiles(place), profiles(place)]).astype(np.float32)
+    value, good, palette = steps(both, normals, known)
+    assert good.all()
+    np.testing.assert_allclose(value[0], value[1], atol=1e-3)
+    np.testing.assert_allclose(palette[0, TWELVE], light * palette[1, TWELVE], rtol=1e-4)
+    colours = light * profiles(place, ice=PAINT, paint=ICE)
+    assert not steps(colours.astype(np.float32), normals, known)[1].any()
 
 
 def test_a_faint_step_is_no_edge() -> None:

@@ -25,7 +25,7 @@ from tests.synthetic import (
 from tests.synthetic.travelling import Travelling
 from tests.vision.places import RINGS
 from vision.camera import Camera, apply_homography
-from vision.clip import open_clip
+from vision.clip import Frame, open_clip
 from vision.follow_house import HouseFollower, HouseTrack, follow_house
 
 SCENE = replace(sample_scene(), paint=PAINTS["navy-orange"])
@@ -127,6 +127,19 @@ def test_a_dissolve_from_another_camera_s_house_ends_its_piece() -> None:
     assert 15 < known[0] < 40
     assert known == list(range(known[0], frames))
     assert worst(track, path) < 0.005
+
+
+def test_a_house_is_followed_while_the_picture_fades_in() -> None:
+    path = broadcast_camera(end=1.0, size=(640, 360), px_per_m=(64.0, 56.0))
+    rng, follower = np.random.default_rng(1), HouseFollower((640, 360))
+    for k, light in enumerate(np.linspace(0.03, 1.0, 36)):
+        image = light * render_still(SCENE, path, k / 30) + rng.normal(0, 1, (360, 640, 3))
+        follower.look(Frame(k, k / 30, np.clip(image + 0.5, 0, 255).astype(np.uint8)))
+    track = follower.finish()
+    assert track is not None
+    assert sum(c.found for c in track.cameras) > 30
+    assert worst(track, path) < 0.005
+    assert not any("pieces" in warning for warning in track.warnings)
 
 
 def test_jumps_of_the_picture_are_followed() -> None:
