@@ -124,6 +124,24 @@ def test_light_that_does_not_turn_with_the_stone_is_taken_out() -> None:
     assert np.std(theta - true) < 0.004
 
 
+@pytest.mark.parametrize(("shade", "shift"), [(0.6, 0.0), (0.0, 0.008), (0.6, 0.008)])
+def test_a_handle_shaded_or_seen_aslant_is_not_held_back(shade: float, shift: float) -> None:
+    """It is lighter where it points to the lamp, and moves over the cap as the view steepens."""
+    share = np.arange(60) / 59
+    cap = np.array([80.0, 170.0, 150.0])
+    off = []
+    for start in np.arange(6) * np.pi / 3:
+        true = start + 1.6 * share
+        shown = [
+            cap + (patch(a, shift=(0, shift * (1 - q))) - cap) * (1 + shade * np.cos(a - 1.0))
+            for a, q in zip(true, share, strict=True)
+        ]
+        spectra = [cap_spectrum(np.clip(p, 0, 255).astype(np.uint8), RADII) for p in shown]
+        theta, _ = handle_angles(2.4 * share, spectra, RADII)
+        off.append(np.polyfit(true, theta, 1)[0] - 1)
+    assert np.sqrt(np.mean(np.square(off))) < (0.004 if shift == 0 else 0.012)
+
+
 def test_a_stone_that_comes_into_the_picture_is_told_by_what_is_seen_of_it() -> None:
     times = np.arange(60) / 25
     true = 0.8 * times
