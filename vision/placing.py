@@ -22,9 +22,11 @@ Array = NDArray[np.float64]
 UNCOVERED = 0.75
 """Share of a cap that must be seen for its angle to be measured."""
 
-ASLANT = 0.0018
-"""Standard error along a slanting view, m per slant: the far edge of a cap hides what is behind
-it, on the near side a wall or a rounded rim is seen. Across the view there is none."""
+ASLANT = ((0.35, 0.6, 0.9, 1.1), (0.003, 0.0018, 0.0018, 0.0035))
+"""Slants of the view, and the standard error along it, m per slant. From above the wall of a cap is
+not told from its top, and draws the near edge out; farther aslant it is measured. From where the
+far shoulder hides behind the cap, other things end at the far edge. Across the view there is no
+such error."""
 
 ASTRAY = 0.3
 """How far the map of a house is wrong, in residuals of its camera's edges per metre from the tee:
@@ -92,7 +94,9 @@ def placed_by(camera: Camera, seen: Sequence[Sighting], disc: Stone) -> list[Sig
 def _shared_errors(camera: Camera, places: Array, pixel: Array, disc: Stone) -> Array:
     """Give the standard errors that no filter averages out, (n, 2), m: by camera and slant."""
     rms = camera.rms_px if np.isfinite(camera.rms_px) else USUAL_RMS_PX
-    aslant = ASLANT * slants(camera, places) if disc.cap_height else 0 * places
+    slant = slants(camera, places)
+    each = np.asarray(np.interp(np.hypot(*slant.T), *ASLANT))
+    aslant = each[:, None] * slant if disc.cap_height else 0 * slant
     astray = GIVEN_ASTRAY if camera.error is None else ASTRAY * np.hypot(*places.T)[:, None]
     off = np.hypot(aslant, pixel[:, None] * astray * rms)
     stated = np.diagonal(camera.shared_place_cov(places, disc.cap_height), axis1=1, axis2=2)

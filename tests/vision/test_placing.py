@@ -37,9 +37,27 @@ def test_what_sightings_share_is_the_camera_s_and_what_a_slant_hides() -> None:
     pixel = HEIGHT / FOCAL
     flat = stated(DOWN, replace(STONE, cap_height=0.0))
     np.testing.assert_allclose(flat, GIVEN_ASTRAY * 0.2 * pixel, rtol=0.01)
-    aslant = ASLANT * np.abs(PLACES) / HEIGHT
+    aslant = ASLANT[1][0] * np.abs(PLACES) / HEIGHT
     np.testing.assert_allclose(stated(DOWN), np.hypot(flat, aslant), rtol=0.01)
     assert (stated(replace(DOWN, rms_px=2.0)) > stated(DOWN)).all()
+
+
+def test_a_cap_is_told_best_where_its_wall_is_seen_and_its_shoulder_behind_it() -> None:
+    def along(slant: float) -> float:
+        away = RIG.copy()
+        away[:2] = -slant * HEIGHT * np.array([0.6, 0.8])
+        down = camera(View(np.array([0, 0, 0, np.log(FOCAL)])), away, (9000, 9000))
+        pixel = down.project(np.zeros((1, 2)), STONE.cap_height)[0]
+        seen = [sighting((0.0, 0.0))._replace(pixel=(float(pixel[0]), float(pixel[1])))]
+        x, y = placed_by(replace(down, rms_px=0.0), seen, STONE)[0].sd_place
+        np.testing.assert_allclose(x / y, 0.75, rtol=1e-6)
+        return float(np.hypot(x, y)) / slant
+
+    from_above, aslant, steep = along(0.2), along(0.75), along(1.3)
+    np.testing.assert_allclose(along(0.1), from_above)
+    assert 1.5 * aslant < from_above < steep
+    assert along(0.6) < along(0.45) < from_above
+    assert aslant < along(1.0) < steep
 
 
 def test_the_map_of_a_house_is_the_worse_the_farther_from_the_tee() -> None:
