@@ -3,8 +3,8 @@
 By colour a cap is told from almost everything on the ice, so this is looked for first. Two teams
 play: where fewer than two colours convince, the picture may have lost its contrast, or caps may be
 left that are black or white, or whose granite the picture has given a tinge. These differ from
-their granite by their lightness. In a recording without colours the caps of one team may differ
-from it by little: they are sought where the granite is known from the other team.
+their granite by their lightness. Those that differ from it by little, or whose granite is as light
+as haze or too much light makes it, are sought where the granite is known from the other team.
 """
 
 from __future__ import annotations
@@ -65,9 +65,10 @@ def strangers(looks: Sequence[Look], disc: Stone, search: Search) -> list[Findin
     if _colours(found) == 1:
         seen = learn(_convincing(found))
         if seen is not None and seen.granite is not None:
-            grey = all(cap.grey for cap in seen.caps)
-            guess_of = any_grey_stone_of if grey else any_dull_stone_of
-            found = _with_more(found, looks, guess_of(seen.granite), disc, search)
+            hues = () if all(cap.grey for cap in seen.caps) else (any_dull_stone_of,)
+            for guess_of in (*hues, any_grey_stone_of):
+                if _colours(found) == 1:
+                    found = _with_more(found, looks, guess_of(seen.granite), disc, search)
     return found
 
 

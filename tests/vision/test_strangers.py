@@ -3,6 +3,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from data.sheet import STONE
 from tests.synthetic.clip import render_still
@@ -87,6 +88,16 @@ def test_caps_are_found_where_the_picture_has_lost_half_its_contrast() -> None:
     scene = painted(RED, YELLOW, BLUE, RED)
     image = np.asarray(render_still(scene, CAMERA), float)
     pale = (255 - 0.5 * (255 - image)).astype(np.uint8)
+    (found,) = strangers([Look(pale, camera_of(CAMERA, scene), np.empty((0, 2)))], STONE, FOLLOWING)
+    assert len(found.stones) == len(scene.stones)
+    assert misses(found.stones, scene).max() < 0.010
+
+
+@pytest.mark.parametrize("other", [BLACK, WHITE])
+def test_black_and_white_caps_are_found_in_haze_beside_vivid_ones(other: Colour) -> None:
+    scene = painted(YELLOW, other, YELLOW, other)
+    image = np.asarray(render_still(scene, CAMERA), float)
+    pale = (255 - 0.45 * (255 - image)).astype(np.uint8)
     (found,) = strangers([Look(pale, camera_of(CAMERA, scene), np.empty((0, 2)))], STONE, FOLLOWING)
     assert len(found.stones) == len(scene.stones)
     assert misses(found.stones, scene).max() < 0.010
