@@ -70,6 +70,9 @@ from the table later rests on them."""
 
 _NUMBERS = tuple(name for name in SIGHTING_COLUMNS if name not in ("stone", "team"))
 
+AT_ONCE = 2000
+"""Rows that are made texts together: of a long table these take more memory than its numbers."""
+
 FARTHEST = 1e6
 """No time (s), place (m) or velocity (m/s) of a written track is as large."""
 
@@ -222,11 +225,13 @@ def empty_tracks() -> pd.DataFrame:
 def write_table(table: Table, path: Path, columns: Sequence[str] | None = None) -> None:
     """Write a table as CSV, whole or not at all, nine significant digits, NaN as empty."""
     names = list(table) if columns is None else list(columns)
-    texts = [_texts(np.asarray(table[name])) for name in names]
+    values = [np.asarray(table[name]) for name in names]
     with whole_file(path) as part, part.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(names)
-        writer.writerows(zip(*texts, strict=True))
+        for begin in range(0, max(map(len, values), default=0), AT_ONCE):
+            texts = [_texts(column[begin : begin + AT_ONCE]) for column in values]
+            writer.writerows(zip(*texts, strict=True))
 
 
 def _texts(column: NDArray[Any]) -> list[str]:

@@ -1,7 +1,7 @@
 """How a stone is turned through however long a clip: part by part, held together by their means.
 
 The pictures of a cap take memory while its angle is told (`vision.handle`). So no more than some
-thousand are looked at together: a stone that moves shows fewer as a rule, one at rest as many in
+hundreds are looked at together: a stone that moves shows fewer as a rule, one at rest as many in
 minutes. Of a longer track each part is measured against its own mean picture, and that against the
 first part's: errors do not add up from part to part.
 """
@@ -18,7 +18,7 @@ from vision.facing import angles_between
 from vision.handle import handle_angles
 from vision.shelf import Kept
 
-MOST = 1000
+MOST = 500
 """Pictures that are looked at together at most."""
 
 

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from vision.appearance import colour_differences
 from vision.assign import assign
 from vision.lead import DECELERATION
+from vision.rows import Rows
 from vision.sighting import Sighting
 
 Array = NDArray[np.float64]
@@ -88,14 +89,14 @@ class Track:
     ----------
     frames, times : list
         Frame numbers and times, s, of the sightings.
-    sightings : list of Sighting
+    sightings : Rows
     colour : ndarray, shape (3,)
         Running mean of the cap's colour, L*a*b*.
     """
 
     frames: list[int] = field(default_factory=list)
     times: list[float] = field(default_factory=list)
-    sightings: list[Sighting] = field(default_factory=list)
+    sightings: Rows = field(default_factory=Rows)
     colour: Array = field(default_factory=lambda: np.zeros(3))
     _place: Pair = (0.0, 0.0)
     _velocity: Pair = (0.0, 0.0)
@@ -153,7 +154,7 @@ class Track:
         """Take in all of a track that begins after this one ends, and how it moves then."""
         self.frames += later.frames
         self.times += later.times
-        self.sightings += later.sightings
+        self.sightings.extend(later.sightings)
         self.colour = later.colour
         self._place, self._velocity = later._place, later._velocity
         self._covariance = later._covariance
@@ -214,7 +215,7 @@ def _beneath(track: Track, other: Track, radius: float) -> bool:
     """
     if not other.times[0] < track.times[0] <= track.times[-1] < other.times[-1]:
         return False
-    here, there = (np.array([(s.x, s.y) for s in one.sightings]).T for one in (track, other))
+    here, there = (one.sightings.columns("x", "y") for one in (track, other))
     away = [np.interp(track.times, other.times, there[i]) - here[i] for i in (0, 1)]
     return bool((np.hypot(*away) < radius).all())
 
@@ -224,10 +225,10 @@ def _convincing(track: Track, gate: Gate) -> bool:
 
     What looks unchanged shows nothing more.
     """
-    shown = float(np.percentile([s.score for s in track.sightings if s.measured], 75))
-    visible = float(np.median([sighting.visible for sighting in track.sightings]))
+    score, visible, measured = track.sightings.columns("score", "visible", "measured")
+    shown = float(np.percentile(score[measured > 0], 75))
     brief = track.times[-1] - track.times[0] < gate.brief
-    return shown >= (gate.least_open if brief and visible > OPEN else gate.least_score)
+    return shown >= (gate.least_open if brief and np.median(visible) > OPEN else gate.least_score)
 
 
 def _given_up(track: Track, t: float, gate: Gate) -> bool:

@@ -22,7 +22,7 @@ def first_motion(track: Track, radius: float) -> float | None:
     A stone moves when it leaves its first place for good by more than its jitter and a
     share of its radius; the time is carried back to when it was still there.
     """
-    places = np.array([(s.x, s.y) for s in track.sightings])
+    places = track.sightings.columns("x", "y").T
     times = np.array(track.times)
     if len(times) < 3:
         return None
@@ -78,7 +78,7 @@ def names_by_motion(
     for number, track in enumerate(tracks):
         start = first_motion(track, radius)
         if start is None:
-            x, y = np.median([(s.x, s.y) for s in track.sightings], axis=0)
+            x, y = np.median(track.sightings.columns("x", "y"), axis=1)
             rest.append((float(np.hypot(x, y)), str(number)))
         else:
             moved.append((start, -_first_speed(track), str(number)))

@@ -57,17 +57,21 @@ def edge_errors(stones: Sequence[Sequence[Sighting]], radius: float) -> Array:
     -------
     ndarray, shape (stones, 2)
     """
-    whole = [[s for s in each if s.visible > WHOLE] for each in stones]
-    seen = [each for each in whole if each]
-    bends = np.array([np.median([s.bends for s in each], axis=0) for each in seen])
-    sizes = np.array([np.median([s.pixel_size for s in each]) for each in seen])
-    bent = (USUAL_STONES * USUAL**2 + (bends**2).sum() / 6) / (USUAL_STONES + len(seen))
-    by_pixels = min(bent, PIXELS**2 * float((sizes**2).sum()) / max(len(seen), 1))
+    told, bends, pixels, apart = [], [], [], []
+    for k, each in enumerate(stones):  # one after the other: they may be made as they are asked for
+        whole = [s for s in each if s.visible > WHOLE]
+        if whole:
+            told.append(k)
+            bends.append(np.median([s.bends for s in whole], axis=0))
+            pixels.append(np.median([s.pixel_size for s in whole]))
+            apart.append(_apart(whole))
+    sizes = np.array(pixels)
+    bent = (USUAL_STONES * USUAL**2 + np.square(bends).sum() / 6) / (USUAL_STONES + len(told))
+    by_pixels = min(bent, PIXELS**2 * float((sizes**2).sum()) / max(len(told), 1))
     shape = by_pixels + SHARE**2 * (bent - by_pixels)
     found = np.full((len(stones), 2), shape)
-    told = [k for k, each in enumerate(whole) if each]
     found[told] += (SMALL * sizes**2 / radius)[:, None] ** 2
-    found[told] += np.reshape([_apart(each) for each in seen], (-1, 2)) ** 2
+    found[told] += np.reshape(apart, (-1, 2)) ** 2
     return np.asarray(np.sqrt(found))
 
 

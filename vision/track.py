@@ -135,11 +135,12 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
 
 
 def _rows(name: str, track: Track, team: str, disc: Stone, edge: NDArray[np.float64]) -> Columns:
-    spectra = [sighting.spectrum for sighting in track.sightings]
+    seen = [*track.sightings]
+    spectra = [sighting.spectrum for sighting in seen]
     # Caps were unrolled about their centres as these were measured.
-    off = np.array([0.5 * (sighting.sd_x + sighting.sd_y) for sighting in track.sightings])
+    off = np.array([0.5 * (sighting.sd_x + sighting.sd_y) for sighting in seen])
     theta, sd_theta = angles_in_parts(np.array(track.times), spectra, handle_radii(disc), off)
-    seen = steadied(track.times, widened(track.times, track.sightings))
+    seen = steadied(track.times, widened(track.times, seen))
     x, y, sd_x, sd_y, sd_place_x, sd_place_y = np.array(
         [(item.x, item.y, item.sd_x, item.sd_y, *item.sd_place) for item in seen]
     ).T

@@ -9,7 +9,7 @@ rarely.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,6 +26,7 @@ from vision.patch import is_plain
 from vision.picture import brightened
 from vision.placing import placed_by
 from vision.rays import Look
+from vision.rows import Rows
 from vision.shelf import Shelf
 from vision.sighting import Sighting
 from vision.stones import FOLLOWING, SEARCH, Search
@@ -90,7 +91,7 @@ class Watch:
         self._gain = np.ones(3)
         self._leads: list[Lead] = []
         self._since = pace.memory
-        self._seen: list[tuple[int, float, Camera, list[Sighting]]] = []
+        self._seen: dict[int, tuple[float, Sequence[Sighting]]] = {}
 
     def look(self, frame: Frame, camera: Camera) -> None:
         """Take in a frame; it waits for some more, the first ones until the stones are learned."""
@@ -103,7 +104,7 @@ class Watch:
             frame = replace(frame, picture=self._balance.evened(frame.picture))
         view = StoneView(frame, camera)
         self._waiting.append(view)
-        self._seen.append((frame.index, frame.t, camera, view.sightings))
+        self._seen[frame.index] = frame.t, view.sightings
         if len(self._waiting) >= (self._patience.block if self._knows else self._pace.memory):
             self._catch_up()
 
@@ -114,26 +115,26 @@ class Watch:
 
     def finish(
         self, cameras: Sequence[Camera] | None = None
-    ) -> list[tuple[int, float, list[Sighting]]]:
-        """Give the number, the time and the sightings of each frame.
+    ) -> Iterator[tuple[int, float, Sequence[Sighting]]]:
+        """Give the number, the time and the sightings of each frame, once.
 
         Parameters
         ----------
         cameras : sequence of Camera, optional
-            What is known of the cameras by now: it places the stones; frames without one are
-            left out. Else the cameras stand with which the frames were looked at.
+            What is known of the cameras by now: it places the stones, and tells the errors that
+            their sightings share; frames without one are left out. Else the places stand at which
+            they were seen.
         """
         self._catch_up()
         if self._since and self._recent:
             self._search_for_new(self._recent[-1])
-        final = {frame: camera for frame, _, camera, _ in self._seen}
-        if cameras is not None:
-            final = {camera.frame: camera for camera in cameras}
-        return [
-            (frame, t, placed_by(final[frame], seen, self.disc))
-            for frame, t, _, seen in self._seen
-            if frame in final
-        ]
+        final = None if cameras is None else {camera.frame: camera for camera in cameras}
+        for frame in [*self._seen]:
+            t, seen = self._seen.pop(frame)
+            if final is None:
+                yield frame, t, seen
+            elif frame in final:
+                yield frame, t, placed_by(final[frame], seen, self.disc)
 
     @property
     def _knows(self) -> bool:
@@ -183,10 +184,15 @@ class Watch:
             self._leads = self._follower.follow(views, self._leads)
         self._recent.extend(views)
         while len(self._recent) > self._pace.memory:
-            self._recent.popleft().put_aside(self._shelf)
+            self._put_aside(self._recent.popleft())
         self._since += len(views)
         if self._since >= (self._pace.hurry if self._hidden(views[-1]) else self._pace.memory):
             self._search_for_new(views[-1])
+
+    def _put_aside(self, view: StoneView) -> None:
+        """Keep of a view that is done what takes little memory."""
+        view.put_aside(self._shelf)
+        self._seen[view.frame.index] = view.frame.t, Rows(view.sightings)
 
     def _hidden(self, view: StoneView) -> bool:
         """Whether a view shows the place of a stone that is missed there."""

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -215,3 +216,16 @@ def test_teams_are_kept_in_all_that_is_written(tmp_path: Path) -> None:
     without = pd.read_csv(path).drop(columns="team")
     without.to_csv(path, index=False)
     assert teams(read_tracks(path)) == {"A": "", "B": ""}
+
+
+def test_a_long_table_is_written_whole_in_little_memory(tmp_path: Path) -> None:
+    table = {"t": np.arange(20_001) / 3, "n": np.arange(20_001)}
+    tracemalloc.start()
+    begin = tracemalloc.get_traced_memory()[0]
+    write_table(table, tmp_path / "long.csv")
+    most = tracemalloc.get_traced_memory()[1] - begin
+    tracemalloc.stop()
+    assert most < 1e6
+    read = pd.read_csv(tmp_path / "long.csv")
+    np.testing.assert_allclose(read["t"], table["t"], rtol=1e-8)
+    np.testing.assert_array_equal(read["n"], table["n"])

@@ -34,11 +34,15 @@ def followed(
             if not hidden(stone, t, state[:2]):
                 x, y = state[:2] + rng.normal(0, noise, 2)
                 seen.append(sighting((x, y)))
-                of_stone[id(seen[-1])] = stone
+                of_stone[x, y] = stone
         rng.shuffle(seen)
         frames.append((index, t, seen))
     tracks = follow(frames, R)
-    return tracks, [{of_stone[id(s)] for s in track.sightings} for track in tracks], len(of_stone)
+    return (
+        tracks,
+        [{of_stone[s.x, s.y] for s in track.sightings} for track in tracks],
+        len(of_stone),
+    )
 
 
 def nobody_switched(joined: list[set[int]], stones: int) -> bool:
