@@ -34,6 +34,14 @@ ENOUGH = 2.8
 ENOUGH_BESIDE = 2.5
 """The same for a house that lies just where a sheet beside has one; people stand on it."""
 
+FAINT = 0.4
+"""Least step of an edge, as a share of the usual one, where no house is found: pale paint, and
+outlines that are thin in the small picture."""
+
+BRIGHT, GREY, MOSTLY = 0.6, 0.2, 0.5
+"""Least lightness of ice, as a share of a picture's brightest tenth; by what share of that its
+colours differ; and how much of a picture must look so for pale paint to be looked for."""
+
 SPACINGS = (4.7, 5.0, 4.4)
 """How far apart the houses of neighbouring sheets may be, m: the width of a sheet (4.42 to 5.00 m
 by the rules of World Curling), within what a fit reaches."""
@@ -66,11 +74,20 @@ def find_house(image: Image, *, frame: int = 0, t: float = 0.0) -> HouseFit | No
     """
     small, factor = _reduced(image, WORK_WIDTH)
     half, share = _reduced(small, GUESS_WIDTH)
-    hypotheses = [_enlarged(_enlarged(guess, 1 / share), 1 / factor) for guess in guesses(half)]
-    for found in _fits(image, small, factor, hypotheses, frame, t):
-        if _is_house(image, found):
-            return _middle_most(image, small, factor, found)
+    for least in (1.0, FAINT) if _icy(half) else (1.0,):
+        rings = guesses(half, least)
+        hypotheses = [_enlarged(_enlarged(guess, 1 / share), 1 / factor) for guess in rings]
+        for found in _fits(image, small, factor, hypotheses, frame, t):
+            if _is_house(image, found):
+                return _middle_most(image, small, factor, found)
     return None
+
+
+def _icy(image: Image) -> bool:
+    """Whether most of a picture may be ice: as grey and nearly as bright as its brightest part."""
+    most, least = image.max(2).astype(float), image.min(2)
+    bright = most > BRIGHT * np.percentile(most, 90)
+    return float((bright & (most - least < GREY * most)).mean()) > MOSTLY
 
 
 def _is_house(image: Image, found: HouseFit) -> bool:

@@ -96,9 +96,12 @@ class Guess:
     score: float
 
 
-def guesses(image: Image) -> list[Guess]:
-    """Look for concentric rings in a small picture, some 320 px wide; the best first."""
-    points, gradients = _edges(image)
+def guesses(image: Image, least: float = 1.0) -> list[Guess]:
+    """Look for concentric rings in a small picture, some 320 px wide; the best first.
+
+    Edges count from this share of the usual step on.
+    """
+    points, gradients = _edges(image, least)
     h, w = image.shape[:2]
     if len(points) < 60:
         return []
@@ -170,7 +173,7 @@ def _unit(vectors: Array) -> Array:
     return np.asarray(vectors / np.hypot(vectors[:, 0], vectors[:, 1])[:, None])
 
 
-def _edges(image: Image) -> tuple[Array, Array]:
+def _edges(image: Image, least: float) -> tuple[Array, Array]:
     """Thinned edge points, shape (n, 2), and the unit gradients there."""
     soft = cv2.GaussianBlur(image, (0, 0), 1.0)
     gx = cv2.Scharr(soft, cv2.CV_16S, 1, 0)
@@ -181,7 +184,7 @@ def _edges(image: Image) -> tuple[Array, Array]:
         more = size[..., channel] > most
         dx[more], dy[more] = gx[more, channel], gy[more, channel]
         most = np.maximum(most, size[..., channel])
-    edges = cv2.Canny(dx, dy, EDGE_LOW, EDGE_HIGH, L2gradient=True)
+    edges = cv2.Canny(dx, dy, least * EDGE_LOW, least * EDGE_HIGH, L2gradient=True)
     y, x = np.nonzero(edges)
     gradient = np.stack([dx[y, x], dy[y, x]], axis=-1).astype(float)
     return np.stack([x, y], axis=-1).astype(float), _unit(gradient)

@@ -51,6 +51,14 @@ def test_found_by_outlines_alone(tilt: float) -> None:
     assert rms(errors(fit, path)) < 0.004
 
 
+def test_found_by_pale_paint() -> None:
+    ice, pale = (222, 226, 226), (208, 210, 210)
+    paint = Paint(twelve=pale, eight=ice, four=pale, button=ice, outline=None, logo="")
+    path = still_camera(px_per_m=130.0)
+    fit = find_house(render_still(replace(sample_scene(), paint=paint), path, 1.0))
+    assert rms(errors(fit, path)) < 0.004
+
+
 @pytest.mark.parametrize("name", PAINTS)
 def test_found_in_every_colour(name: str) -> None:
     rng = np.random.default_rng(len(name))
