@@ -31,6 +31,10 @@ STEP = 1e-5
 SPIN_STEP = 1e-3
 """Difference of a spin for a derivative, rad/s."""
 
+LOST, CROSSED = 0.1, 0.5
+"""Spins of less than the first, rad/s, may be lost on the way to a hit: they all do the same there,
+and only a difference as large as the second shows what more of it would do."""
+
 STEPS = 80
 """Most simulations of all shots along the way, derivatives not counted."""
 
@@ -199,12 +203,14 @@ class _Problem:
             for k, name in enumerate(self.names):
                 if name.removeprefix(f"{rank}:") not in own:
                     continue
-                sign = 1.0 if at[k] + self.step[k] <= self.high[k] else -1.0
+                step = self.step[k] if at[k] + self.step[k] <= self.high[k] else -self.step[k]
+                if name.endswith("omega") and abs(at[k]) < LOST:
+                    step = CROSSED
                 moved = at.copy()
-                moved[k] += sign * self.step[k]
+                moved[k] += step
                 there, further_there = self._residuals(rank, moved)
-                by_place[:, k] = (_flat(there) - flat) / (sign * self.step[k])
-                by_further[:, k] = (further_there - further) / (sign * self.step[k])
+                by_place[:, k] = (_flat(there) - flat) / step
+                by_further[:, k] = (further_there - further) / step
             out.append((by_place, by_further))
         return out
 

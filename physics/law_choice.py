@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.results import Estimate, Law
-from physics.global_fit import fit_shots
+from physics.global_fit import LOST, fit_shots
 from physics.shot_model import V_C, Watched, penner
 from physics.watched import THROWN
 from physics.whole_fit import GlobalFit
@@ -24,9 +24,6 @@ STICKING = {"stone_friction": 2.0}
 ELSEWHERE = 1.5
 """How many times the deviance of a fit one with more freedom must have to have come to rest
 elsewhere: it can be no larger where both follow the shot alike."""
-
-LOST = 0.1
-"""Spin that ice takes on the way to a hit, rad/s."""
 
 
 def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None) -> GlobalFit:
@@ -76,7 +73,8 @@ def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None
 def _turning(fit: GlobalFit, shot: Watched, held: Mapping[str, float]) -> GlobalFit:
     """Fit again from spins of either sense where a fit has come to rest at a spin of nothing.
 
-    A spin that is lost before the hit changes nothing there, so that no slope leads back.
+    A spin that is lost before the hit changes nothing there, and with it the stones may have come
+    to stick, so that no slope leads back.
     """
     none = [
         name

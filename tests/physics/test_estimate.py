@@ -353,11 +353,14 @@ def test_a_cap_beside_the_centre_is_not_taken_for_velocity(spin: float, way: flo
     assert not [text for text in found.warnings if "disagree" in text]
 
 
-@pytest.mark.parametrize(("offset", "angles"), [(-0.05, "after the hit"), (0.05, "none")])
+@pytest.mark.parametrize(
+    ("offset", "angles", "rubbing"),
+    [(-0.05, "after the hit", 0.2), (0.05, "none", 0.2), (-0.05, "none", 0.05)],
+)
 def test_whole_shot_is_followed_where_no_spin_is_seen_before_the_hit(
-    offset: float, angles: str
+    offset: float, angles: str, rubbing: float
 ) -> None:
-    motion = hit_motion(0.7, offset, before=2.2, stone_friction=0.2)
+    motion = hit_motion(0.7, offset, before=2.2, stone_friction=rubbing)
     seen, t = watch(motion, np.random.default_rng(8), sd=0.0005), motion.hits[0].t
     thrown = seen["stone"] == "A"
     seen.loc[thrown & (seen["t"] < t) | (angles == "none"), "theta"] = np.nan
