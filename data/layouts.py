@@ -41,10 +41,6 @@ from data.wide import (
 
 Array = NDArray[np.float64]
 
-EDITED, EDITS = 0.1, 0.1
-"""How far from each other, m, a place and what was measured of it are not without somebody having
-changed one of them, and in what share of a table's rows that says what he wants."""
-
 
 def read_layout(path: Path, fps: float | None) -> TrackFile:
     """Read the tracks in one file, in its own units.
@@ -104,13 +100,7 @@ def _tidy(table: TextTable, names: Sequence[str], fps: float | None) -> TrackFil
     tracks = pd.DataFrame({"stone": stones, "t": times} | {n: values[k] for n, k in wanted.items()})
     if "team" in names:
         tracks["team"] = [team.strip("\"'") for team in table.cells([names.index("team")])[0]]
-    if "seen_x" in tracks and "seen_y" in tracks:
-        tracks, notes = _as_seen(tracks, str(table.path))
-        warnings += notes
     used = tracks["x"].notna() & tracks["y"].notna()
-    if "seen" in tracks:
-        # What a filter carried is no measurement.
-        used &= tracks.pop("seen") != 0
     tracks = tracks[used]
     if "" in set(tracks["stone"]):
         row = int(np.flatnonzero(used.to_numpy() & (np.array(stones) == ""))[0])
@@ -118,25 +108,6 @@ def _tidy(table: TextTable, names: Sequence[str], fps: float | None) -> TrackFil
     if tracks.empty:
         raise InputError(f"{table.path}: no row with a place (x and y)")
     return TrackFile(tracks, decimals, angle_unit="rad", continuous=True, warnings=warnings)
-
-
-def _as_seen(tracks: pd.DataFrame, source: str) -> tuple[pd.DataFrame, list[str]]:
-    """Take what was measured for what a filter made of it, where a run has written both.
-
-    The filter's places are alike from row to row, and what is estimated from them is less sure
-    than it says. Who has moved or turned them means them, though.
-    """
-    measured = tracks[[name for name in SEEN_AS if name in tracks]].where(tracks["x"].notna())
-    filtered = tracks.drop(columns=measured.columns)
-    apart = np.hypot(tracks["x"] - tracks["seen_x"], tracks["y"] - tracks["seen_y"])
-    shown = apart[filtered["seen"] != 0] if "seen" in filtered else apart
-    if (shown > EDITED).mean() > EDITS:
-        return filtered, [
-            f"{source}: x and y are not where seen_x and seen_y are; taken as edited, and those"
-            " left out"
-        ]
-    kept = filtered.drop(columns=[*SEEN_AS.values(), "seen"], errors="ignore")
-    return kept.assign(**measured.rename(columns=SEEN_AS)), []
 
 
 def _without_header(table: TextTable, fps: float | None) -> TrackFile:

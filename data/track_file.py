@@ -15,7 +15,7 @@ class TrackFile:
     ----------
     tracks : DataFrame
         ``stone, t, x, y`` and, where the file has them, ``theta``, ``frame``, ``team`` and the sd
-        columns; t in s, all with a place.
+        columns; t in s, all with a place. Of a run's table ``seen`` and what it measured, too.
     decimals : int or None
         To how many decimals the times are printed; None where that does not matter.
     length_unit, angle_unit : str or None

@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from data.again import as_measured
 from data.angles import FASTEST_SPIN, attach, read_angles, spin_rate
 from data.clock import with_clock
 from data.columns import ANGLE_UNITS, LENGTH_UNITS, UNIT_NOT_SAID, UNIT_SAID
@@ -25,7 +26,7 @@ from data.layouts import read_layout
 from data.project import is_project, read_project
 from data.stone_names import chosen, named_by_file, refuse_shared_names
 from data.track_file import TrackFile
-from data.tracks import LENGTHS, check_sightings
+from data.tracks import LENGTHS, SEEN_AS, check_sightings
 
 FASTEST = 20.0
 """m/s; a stone is thrown at 2 to 4."""
@@ -133,6 +134,10 @@ def read_table(
         paths, files = chosen(paths, files, names)
     for path, file in zip(paths, files, strict=True):
         warnings += _to_si(path, file, length_unit, angle_unit)
+        file.tracks, notes = as_measured(file.tracks, str(path))
+        warnings += notes
+        if file.tracks.empty:
+            raise InputError(f"{path}: no row in which a stone was seen")
     source = ", ".join(str(path) for path in paths)
     refuse_shared_names(paths, files)
     table = pd.concat([file.tracks for file in files], ignore_index=True)
@@ -151,8 +156,12 @@ def read_table(
 
 
 def _checked_parquet(path: Path) -> TrackFile:
-    tracks = check_sightings(read_parquet(path), str(path))
-    return TrackFile(tracks, angle_unit="rad", continuous=True)
+    table = read_parquet(path)
+    tracks = check_sightings(table, str(path))
+    told = [name for name in ("seen", *SEEN_AS) if name in table]
+    beside = table[told].apply(pd.to_numeric, errors="coerce")
+    beside = beside.assign(stone=table["stone"].astype(str), t=pd.to_numeric(table["t"]))
+    return TrackFile(tracks.merge(beside, how="left"), angle_unit="rad", continuous=True)
 
 
 def _set_masses(

@@ -132,7 +132,7 @@ def check_sightings(table: pd.DataFrame, source: str = "tracks") -> pd.DataFrame
     stones = table["stone"].astype(str).to_numpy()
     teams = table["team"] if "team" in table.columns else pd.Series("", index=table.index)
     out = pd.DataFrame({"stone": stones, **numbers})
-    out["team"] = teams.fillna("").astype(str).str.strip().to_numpy()
+    out["team"] = teams.astype(object).fillna("").astype(str).str.strip().to_numpy()
     out = out[~(np.isnan(numbers["x"]) | np.isnan(numbers["y"]))]
     faults += _disorder(out["stone"].to_numpy(), out["t"].to_numpy())
     if out.empty:

@@ -8,9 +8,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from data.errors import InputError
 from data.export import write_csv, write_text
 from data.tracker import read_table
-from data.tracks import write_tracks
+from data.tracks import SEEN_AS, write_tracks
 from data.trk_write import plain_view, project_xml, write_trk
 from physics.contacts import find_contacts
 from physics.estimate import estimate
@@ -69,27 +70,95 @@ def test_what_was_measured_is_read_again(tmp_path: Path) -> None:
     np.testing.assert_allclose(measured(again.sightings), measured(sightings), rtol=1e-5)
 
 
-@pytest.mark.parametrize("change", ["turned", "centimetres", "other stone"])
-def test_places_that_were_edited_count(tmp_path: Path, change: str) -> None:
+def written(folder: Path) -> tuple[Path, pd.DataFrame, pd.DataFrame]:
+    """Return the file of a run's tracks, its table, and the sightings."""
     sightings = with_oddities()
     tracks = smooth(sightings, find_contacts(sightings, RADIUS), radius=RADIUS)
-    path = tmp_path / "tracks.csv"
+    path = folder / "tracks.csv"
     write_tracks(tracks, path, sightings)
-    table = pd.read_csv(path)
+    return path, pd.read_csv(path), sightings
+
+
+@pytest.mark.parametrize("change", ["turned", "shifted", "scaled", "other stone"])
+def test_places_that_were_edited_count(tmp_path: Path, change: str) -> None:
+    path, table, _ = written(tmp_path)
     if change == "turned":
         table[["x", "y"]] = -table[["x", "y"]]
-    elif change == "centimetres":
-        table[["x", "y"]] *= 100
+    elif change == "shifted":
+        table["x"] += 0.05
+    elif change == "scaled":
+        table[["x", "y"]] *= 1.05
     else:
         table.loc[table["stone"] == "A", "x"] += 1.0
     table.to_csv(path, index=False)
-    found = read_table([path], length_unit="cm" if change == "centimetres" else "m")
+    found = read_table([path])
     assert any("edited" in text for text in found.warnings)
     seen = table[table["seen"] != 0]
-    size = 0.01 if change == "centimetres" else 1.0
-    np.testing.assert_allclose(
-        found.sightings[["x", "y"]], size * seen[["x", "y"]].to_numpy(), rtol=1e-9
-    )
+    np.testing.assert_allclose(found.sightings[["x", "y"]], seen[["x", "y"]], rtol=1e-9)
+
+
+def test_places_in_another_unit_are_not_edited(tmp_path: Path) -> None:
+    path, table, sightings = written(tmp_path)
+    table[["x", "y", "sd_x", "sd_y"]] *= 100
+    table["theta"] = np.degrees(table["theta"])
+    table.to_csv(path, index=False)
+    found = read_table([path], length_unit="cm", angle_unit="deg")
+    assert not found.warnings
+    pd.testing.assert_frame_equal(found.sightings, sightings, rtol=1e-8, check_dtype=False)
+
+
+def test_single_places_that_were_edited_or_added_count(tmp_path: Path) -> None:
+    path, table, sightings = written(tmp_path)
+    one, other = 30, table.index[table["stone"] == "B"][10]
+    table.loc[one, "x"] += 0.3
+    table.loc[other, list(SEEN_AS)] = np.nan
+    table.loc[40, "y"] = np.nan  # struck out
+    table.to_csv(path, index=False)
+    found = read_table([path])
+    assert [text for text in found.warnings if " 1 of its places" in text and "edited" in text]
+    for row in (one, other):
+        mine = found.sightings[
+            (found.sightings[["stone", "t"]] == table.loc[row, ["stone", "t"]]).all(axis=1)
+        ]
+        np.testing.assert_allclose(mine[["x", "y"]], table.loc[[row], ["x", "y"]].astype(float))
+    assert len(found.sightings) == len(sightings) - 1
+
+
+def test_a_stone_without_measurements_keeps_its_places(tmp_path: Path) -> None:
+    """Rows of an older table beside those of this one."""
+    path, table, sightings = written(tmp_path)
+    old = table["stone"] == "B"
+    table.loc[old, list(SEEN_AS)] = np.nan
+    table.to_csv(path, index=False)
+    found = read_table([path]).sightings.set_index("stone")
+    kept = table[old & (table["seen"] == 1)]
+    np.testing.assert_allclose(found.loc["B", ["x", "sd_x"]], kept[["x", "sd_x"]])
+    measured = sightings.set_index("stone").loc["A", ["x", "y", "theta"]]
+    np.testing.assert_allclose(found.loc["A", ["x", "y", "theta"]], measured, rtol=1e-8)
+
+
+@pytest.mark.parametrize("measured", [True, False])
+def test_rows_that_a_filter_carried_alone_are_refused(tmp_path: Path, measured: bool) -> None:
+    path, table, _ = written(tmp_path)
+    carried = table[table["seen_x"].isna()]
+    assert len(carried)
+    if not measured:
+        carried = carried.drop(columns=list(SEEN_AS))
+    carried.to_csv(path, index=False)
+    with pytest.raises(InputError, match="no row in which a stone was seen"):
+        read_table([path])
+    table.drop(columns="seen").to_csv(path, index=False)
+    assert len(read_table([path]).sightings) == len(table) - len(carried)
+
+
+def test_parquet_of_a_run_s_table_is_read_alike(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, table, sightings = written(tmp_path)
+    monkeypatch.setattr("data.tracker.read_parquet", lambda _: table)
+    found = read_table([path.with_suffix(".parquet")])
+    assert not found.warnings
+    pd.testing.assert_frame_equal(found.sightings, sightings, rtol=1e-8, check_dtype=False)
 
 
 @pytest.mark.parametrize("rows", ["smoothed", "measured"])
