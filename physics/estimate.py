@@ -8,7 +8,7 @@ follow the shot. The first is what the second is checked against.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pandas as pd
@@ -32,6 +32,10 @@ POOR_FIT = 30.0
 
 BLUNT = 3.0
 """Times the error beside the hits from which a value of the whole shot says nothing new."""
+
+OTHER_ICE = 4.0
+"""Times the larger error from which the friction of the whole shot is not that of the glides: in
+good fits, on swept and uneven ice too, they differ by up to 2.7."""
 
 LED_ASTRAY = (
     "whole shot: something else than ice and hits moves a stone by its first hit;"
@@ -142,6 +146,8 @@ def estimate(
     whole = fitted if doubt is None else None
     if fitted is not None and doubt is not None and _fits(fitted):
         restitution = _of_two(restitution, fitted["restitution"])
+        wider = _of_two(Estimate(friction.value, friction.stderr), fitted["friction"])
+        friction = replace(friction, stderr=wider.stderr)
     if whole is not None and restitution.value is not None and whole.told("restitution"):
         restitution = whole["restitution"]
     if whole is not None and friction.value is not None and whole.told("friction"):
@@ -236,6 +242,7 @@ def _whole(
     if doubt is not None and _fits(fit):
         # Caps beside the centres turn with the stones; paths beside a hit take that for velocity.
         doubt = doubt if _doubt(fit, centred(fit)) else None
+    doubt = doubt or _other_ice(local.friction, fit["friction"])
     if doubt is None and end is not None and _blunt(fit["friction"], local.friction):
         doubt = (
             f"whole shot: the simulator follows it {end}, too short; values beside the hits used"
@@ -247,17 +254,19 @@ def _doubt(fit: GlobalFit, local: Estimate) -> str | None:
     """Say why what a fit of the whole shot gives is not to be used, None where it is."""
     if not followed(fit):
         return "whole shot: the simulator does not follow it; values beside the hits used"
-    if not _fits(fit):
+    if fit.misfit > POOR_FIT:
         return (
             "whole shot: the simulated paths differ from the tracks by more than their errors"
             f" (variance × {fit.misfit:.0f}); values beside the hits used"
         )
+    if fit.astray:
+        return "whole shot: stones are far from their simulated paths; values beside the hits used"
     return _disagreement(local, fit["restitution"])
 
 
 def _fits(fit: GlobalFit) -> bool:
     """Whether a fit of the whole shot is as it was seen."""
-    return followed(fit) and fit.misfit <= POOR_FIT
+    return followed(fit) and fit.misfit <= POOR_FIT and not fit.astray
 
 
 def _of_two(local: Estimate, whole: Estimate) -> Estimate:
@@ -275,6 +284,19 @@ def _of_two(local: Estimate, whole: Estimate) -> Estimate:
 def _blunt(whole: Estimate, local: Estimate | Friction) -> bool:
     """Whether a value of the whole shot is so much less sure that it says nothing new."""
     return bool(whole.stderr and local.stderr and whole.stderr > BLUNT * local.stderr)
+
+
+def _other_ice(local: Friction, whole: Estimate) -> str | None:
+    """Say so where the friction of the whole shot is not that of the glides."""
+    if local.value is None or not local.stderr or whole.value is None or whole.stderr is None:
+        return None
+    if abs(whole.value - local.value) <= OTHER_ICE * max(local.stderr, whole.stderr):
+        return None
+    return (
+        f"friction: {local.value:.4f} ± {local.stderr:.4f} from the glides,"
+        f" {whole.value:.4f} ± {whole.stderr:.4f} from the whole shot, which disagree;"
+        " the first used, its error widened by that"
+    )
 
 
 def _disagreement(local: Estimate, whole: Estimate) -> str | None:

@@ -38,6 +38,10 @@ and only a difference as large as the second shows what more of it would do."""
 STEPS = 80
 """Most simulations of all shots along the way, derivatives not counted."""
 
+FINER, LESS = 3, 2.0
+"""How often noise is told anew at most, where with what it was the fit has come to a better place:
+one with so many times less of it."""
+
 SETTLED = 0.02
 """Change in standard errors below which a fit has come to its end."""
 
@@ -110,12 +114,13 @@ class _Problem:
         at = np.clip(np.array(guesses, float), self.low, self.high)
         at, settled = self._descend(at)
         residuals = [self._residuals(rank, at) for rank in range(len(self.shots))]
-        runs = [(run, 3) for places, _ in residuals for run in places]
-        free = 2 * self.sightings - len(at)
-        self.noise = inflation(runs, free)
-        if self.noise > 1.0:  # what is known beforehand has the more of a say
-            at, settled = self._descend(at)
-            residuals = [self._residuals(rank, at) for rank in range(len(self.shots))]
+        for _ in range(FINER):
+            self.noise = self._noise(at, residuals)
+            if self.noise > 1.0:  # what is known beforehand has the more of a say
+                at, settled = self._descend(at)
+                residuals = [self._residuals(rank, at) for rank in range(len(self.shots))]
+            if self._noise(at, residuals) > self.noise / LESS:
+                break
         slopes = self._slopes(at, residuals)
         normal, _ = self._normal(at, residuals, slopes)
         cov = inverse(normal)
@@ -139,6 +144,11 @@ class _Problem:
             self.noise,
             settled,
         )
+
+    def _noise(self, at: Floats, residuals: Sequence[tuple[list[Floats], Floats]]) -> float:
+        """Return the factor on the variances of the sightings that their residuals ask for."""
+        runs = [(run, 3) for places, _ in residuals for run in places]
+        return inflation(runs, 2 * self.sightings - len(at))
 
     def _descend(self, at: Floats) -> tuple[Floats, bool]:
         """Levenberg and Marquardt's steps from a guess to the least cost."""

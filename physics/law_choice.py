@@ -42,9 +42,12 @@ def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None
     tried, criteria, least = [best], [0.0], 0.0
     for name in ("slope", "turn"):
         fewer = {key: value for key, value in held.items() if key != name}
-        more = fit_shots([shot], fixed=fewer, start=_start(best))
-        if not more.settled or more.deviance > ELSEWHERE * best.deviance:
+        more = _freer(shot, fewer, best)
+        if _elsewhere(more, best):
             continue
+        if best.astray and not more.astray:
+            best = fit_shots([shot], fixed=held, start=_start(more))
+            tried[criteria.index(least)] = best
         criterion = least + _against(more, name)
         if criterion < least:
             if name == "slope":  # where friction falls there is a knee to be found
@@ -68,6 +71,27 @@ def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None
             if criteria[-1] < least:
                 best = stuck
     return _with_others(best, tried, np.array(criteria))
+
+
+def _elsewhere(fit: GlobalFit, best: GlobalFit) -> bool:
+    """Whether a fit with more freedom has not come to an end where the one with less is."""
+    return not fit.settled or fit.deviance > ELSEWHERE * best.deviance
+
+
+def _freer(shot: Watched, held: Mapping[str, float], best: GlobalFit) -> GlobalFit:
+    """Fit with more freedom from where the fit with less is, or from where that one set out.
+
+    Under the wrong laws stones may have come to miss or to slide off each other, from where no
+    slope leads back.
+    """
+    more = fit_shots([shot], fixed=held, start=_start(best))
+    if not (_elsewhere(more, best) or more.astray):
+        return more
+    again = fit_shots([shot], fixed=held)
+    return min(
+        (more, again),
+        key=lambda fit: (not fit.settled, not fit.hits_as_seen, fit.astray, fit.deviance),
+    )
 
 
 def _turning(fit: GlobalFit, shot: Watched, held: Mapping[str, float]) -> GlobalFit:

@@ -15,6 +15,10 @@ from physics.simulation import Simulation
 
 Floats = NDArray[np.float64]
 
+ASTRAY = 10.0
+"""Errors of its places by which a stone is off its simulated path, most of the time, if the fit has
+come to rest in a wrong place: those of good fits are off by up to 4."""
+
 
 @dataclass(frozen=True)
 class GlobalFit:
@@ -117,6 +121,20 @@ class GlobalFit:
         traces = [trace for shot in self.shots for trace in shot.traces.values()]
         shared = np.concatenate([(trace.sd_place / trace.sd) ** 2 for trace in traces])
         return self.inflation / (1 + float(shared.mean()))
+
+    @property
+    def astray(self) -> bool:
+        """Whether a stone is far from its simulated path for at least half of its sightings.
+
+        `misfit` does not tell: there, all that is far off counts as little as an outlier does.
+        """
+        shots = ((shot, self.simulation(rank)) for rank, shot in enumerate(self.shots))
+        return any(
+            float(np.median(np.sum((run / np.hypot(1, trace.sd_place / trace.sd)) ** 2, axis=1)))
+            > 2 * ASTRAY**2
+            for shot, simulation in shots
+            for trace, run in zip(shot.traces.values(), shot.residuals(simulation), strict=True)
+        )
 
     def residuals(self) -> pd.DataFrame:
         """Sighted less fitted places: ``shot, stone, t, dx, dy`` (m) ``sd_x, sd_y`` (m)."""

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from data.results import Estimate
+from data.results import Estimate, Friction
 from data.tracks import check_sightings
 from physics.contacts import find_contacts
 from physics.estimate import Estimates, _of_two, estimate
@@ -332,6 +332,23 @@ def test_what_two_ways_differ_by_is_in_the_error() -> None:
     assert found.stderr == pytest.approx(np.sqrt(0.01**2 + more), rel=1e-6)
     assert _of_two(local, Estimate(0.825, 0.004)) == local
     assert _of_two(local, Estimate()) == local
+
+
+def test_friction_of_the_whole_shot_that_is_not_that_of_the_glides_is_not_used(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    seen = watch(hit_motion(), np.random.default_rng(13), sd=0.002)
+    contacts = find_contacts(seen, RADIUS)
+    local = estimate_locally(seen, contacts, radius=RADIUS)
+    for value, used in ((0.0112, True), (0.02, False)):
+        glides = replace(local, friction=Friction(value, 0.0004))
+        monkeypatch.setattr("physics.estimate.estimate_locally", lambda *_, r=glides, **__: r)
+        found = estimate(seen, contacts, radius=RADIUS)
+        assert (found.whole is not None) == used
+        assert (found.friction.value == value) != used
+    assert found.friction.stderr is not None
+    assert found.friction.stderr > 0.004
+    assert any("from the glides" in text and "disagree" in text for text in found.warnings)
 
 
 @pytest.mark.parametrize(("spin", "way"), [(3.0, np.pi), (-4.0, np.pi / 3), (-4.0, 0.0)])

@@ -95,3 +95,24 @@ def test_ice_of_another_law_is_recognised_and_counts_in_the_errors() -> None:
     assert found.friction.stderr is not None
     assert abs(float(found.friction.value or 0) - 0.008) < 2.5 * found.friction.stderr
     assert found.friction.stderr < 0.05 * 0.008
+
+
+def test_a_fit_that_has_come_to_rest_in_a_wrong_place_begins_anew() -> None:
+    """Constant friction lets stones of three hits in a row miss each other by centimetres."""
+    ice = Ice(b=0.00676, a=0.00217, v_c=0.0639, curl=0.0082)
+    stones = [
+        Start(-0.4346, 3.91, 0.3264, -1.9421, 0.0, 1.7),
+        *(Start(-0.15, 1.9), Start(-0.05, 0.75), Start(0.6, -1.1)),
+    ]
+    impact = Impact(0.85, stone_friction=0.12)
+    motion = simulate(stones, 4.96, ice=ice, impact=impact, step=5e-4, keep_every=4)
+    seen = watch(motion, np.random.default_rng(1), fps=25, sd=0.0005)
+    seen = seen[(seen["stone"] != "C") | (seen["t"] < 3.0)].reset_index(drop=True)
+    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    assert found.whole is not None
+    assert not found.whole.astray
+    assert found.friction.value == pytest.approx(ice.friction(1.0), abs=1e-4)
+    assert found.friction.stderr is not None
+    assert found.friction.stderr < 1e-4
+    assert found.restitution.value == pytest.approx(0.85, abs=0.001)
+    assert found.curl.value == pytest.approx(0.0082, abs=0.001)

@@ -72,6 +72,18 @@ def test_what_places_share_is_no_misfit() -> None:
     assert fit(watched(0.004)).misfit == pytest.approx(2.0 / (1 + 4))
 
 
+def test_stones_far_from_their_simulated_paths_are_astray() -> None:
+    """However much noise that is taken for, but not where places share it, nor for a few."""
+    assert not fit().astray
+    aside = replace(fit(), fixed={**HELD, "A.x": 0.033})
+    assert aside.misfit == fit().misfit
+    assert aside.astray
+    assert not replace(fit(watched(0.004)), fixed=aside.fixed).astray
+    trace = watched().traces["A"]
+    few = np.where(np.arange(30)[:, None] < 14, trace.xy + 1.0, trace.xy)
+    assert not fit(replace(watched(), traces={"A": replace(trace, xy=few)})).astray
+
+
 def test_of_several_shots_each_has_its_own_unknowns() -> None:
     names = ("restitution", "friction", "0:A.y", "1:A.y", "0:A.vy", "1:A.vy")
     several = replace(
