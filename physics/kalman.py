@@ -13,7 +13,7 @@ added to the places and, as an error of the scale, to the velocities in the end.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import erfc, sqrt
 from typing import TYPE_CHECKING
@@ -51,12 +51,13 @@ def smooth(
     contacts: Sequence[Contact],
     *,
     radius: float,
+    masses: Mapping[str, float] | None = None,
     run: Filter = filtered,
 ) -> pd.DataFrame:
     """Turn sightings into tracks, as a DataFrame: see `smoothed`."""
     import pandas as pd
 
-    return pd.DataFrame(smoothed(sightings, contacts, radius=radius, run=run))
+    return pd.DataFrame(smoothed(sightings, contacts, radius=radius, masses=masses, run=run))
 
 
 def smoothed(
@@ -64,6 +65,7 @@ def smoothed(
     contacts: Sequence[Contact],
     *,
     radius: float,
+    masses: Mapping[str, float] | None = None,
     run: Filter = filtered,
 ) -> Columns:
     """Turn sightings into tracks: one row per stone and time from its first to its last.
@@ -76,6 +78,8 @@ def smoothed(
         The hits; nothing on one side of a hit has a say on its other side.
     radius : float
         Of the discs, m.
+    masses : mapping, optional
+        Stone to mass in any unit; all are equal if not given.
     run : Filter
         Filters one stone from hit to hit; `physics.reference_filter.filtered` does it with
         matrices.
@@ -102,7 +106,7 @@ def smoothed(
         each[name] = _track(
             trace, times[inside], frames[inside], hits, fit, model, noise[name], run
         )
-    share_spins(each, contacts, radius)
+    share_spins(each, contacts, radius, masses)
     team, tables = teams(sightings), list(each.values())
     tracks = {name: np.concatenate([table[name] for table in tables]) for name in tables[0]}
     tracks["team"] = np.array([team[stone] for stone in tracks["stone"].tolist()])

@@ -1,11 +1,11 @@
 """Spins beside hits, from how hits change them: what one stone shows tells of the other's.
 
 In a hit both stones are rubbed by the same impulse at the same lever, so that the spins of equal
-stones change by the same amount, and that is as their velocities change along the line of the
-contact: an impulse that gives a disc Δv across the normal turns it by Δv / (k R) (Wang and Mason,
-1992, J. Appl. Mech. 59, 635). Light on a turning cap and few pictures make spins err alike all the
-way from one hit to the next; what a hit tells of one end of that way thus mends all of it, as far
-as the ice leaves a spin as it is.
+stones change by the same amount (of others, as their masses have it), and that is as their
+velocities change along the line of the contact: an impulse that gives a disc Δv across the normal
+turns it by Δv / (k R) (Wang and Mason, 1992, J. Appl. Mech. 59, 635). Light on a turning cap and
+few pictures make spins err alike all the way from one hit to the next; what a hit tells of one end
+of that way thus mends all of it, as far as the ice leaves a spin as it is.
 """
 
 from __future__ import annotations
@@ -85,12 +85,13 @@ class _Way:
 
 @dataclass(frozen=True)
 class _Side:
-    """A stone in a hit: its ways there and on, and the numbers of its spins where they are told."""
+    """A stone in a hit: its ways there and on, the numbers of its spins if told, and its mass."""
 
     before: _Way
     after: _Way
     spin_before: int | None
     spin_after: int | None
+    mass: float
 
 
 def _best(t: Floats, sd: Floats, rows: NDArray[np.intp], time: float) -> int:
@@ -100,7 +101,12 @@ def _best(t: Floats, sd: Floats, rows: NDArray[np.intp], time: float) -> int:
     return int(near[sd[near].argmin()])
 
 
-def share_spins(tables: Mapping[str, Columns], contacts: Sequence[Contact], radius: float) -> None:
+def share_spins(
+    tables: Mapping[str, Columns],
+    contacts: Sequence[Contact],
+    radius: float,
+    masses: Mapping[str, float] | None = None,
+) -> None:
     """Improve spins by how hits change them, and their standard errors.
 
     Parameters
@@ -111,7 +117,10 @@ def share_spins(tables: Mapping[str, Columns], contacts: Sequence[Contact], radi
         The hits.
     radius : float
         Of the discs, m.
+    masses : mapping, optional
+        Stone to mass in any unit; 1 where absent.
     """
+    masses = masses or {}
     hits = {
         stone: sorted((hit for hit in contacts if stone in hit.stones), key=lambda hit: hit.t)
         for stone in tables
@@ -143,7 +152,8 @@ def share_spins(tables: Mapping[str, Columns], contacts: Sequence[Contact], radi
         for stone in (stone for stone in met.stones if stone in hits):
             k = hits[stone].index(met)
             rows = [number.get((stone, k, late)) for late in (False, True)]
-            sides.append(_Side(ways[stone, k], ways[stone, k + 1], rows[0], rows[1]))
+            mass = masses.get(stone, 1.0)
+            sides.append(_Side(ways[stone, k], ways[stone, k + 1], rows[0], rows[1], mass))
         for seen, value, sd in _tells(met, sides, mean, cov, radius):
             off, spread = value - seen @ mean, float(seen @ cov @ seen) + sd**2
             if off**2 < WILD**2 * spread:
@@ -166,13 +176,21 @@ def _ways(table: Columns, times: Sequence[float]) -> list[_Way]:
 def _tells(
     hit: Contact, sides: Sequence[_Side], mean: Floats, cov: Floats, radius: float
 ) -> Iterator[tuple[Floats, float, float]]:
-    """Give what a hit tells: a sum of spins by their weights, its value and standard error."""
+    """Give what a hit tells: a sum of spins by their weights, its value and standard error.
+
+    Changes of spin and of velocity are those of a stone of the mean mass of the two: such a one
+    turns by as much as the other.
+    """
+    if len(sides) < 2:
+        return
+    mean_mass = float(np.mean([side.mass for side in sides]))
     unlike = UNLIKE_STONES if curling_size(radius) else UNLIKE
     changes = []
     for side in sides:
         if side.spin_before is not None and side.spin_after is not None:
             weights = np.zeros(len(mean))
-            weights[side.spin_after], weights[side.spin_before] = 1.0, -1.0
+            share = side.mass / mean_mass
+            weights[side.spin_after], weights[side.spin_before] = share, -share
             changes.append(weights)
     if len(changes) == 2:
         told = min(changes, key=lambda seen: float(seen @ cov @ seen))
@@ -185,18 +203,21 @@ def _tells(
 def _rub(hit: Contact, sides: Sequence[_Side], radius: float) -> tuple[float, float] | None:
     """Change of spin that the velocities tell of, rad/s, and its standard error."""
     ways = [way for side in sides for way in (side.before, side.after)]
-    if len(ways) < 4 or not all(len(way.rows) for way in ways):
+    if not all(len(way.rows) for way in ways):
         return None
     states = [way.state(hit.t) for way in ways]
     v1, w1, v2, w2 = (velocity for velocity, _ in states)
     normal = np.array(hit.normal)
     tangent = np.array([-normal[1], normal[0]])
     lever = STONE.inertia * radius
-    changes = np.array([(w1 - v1) @ tangent, (v2 - w2) @ tangent]) / lever
+    mass = np.array([side.mass for side in sides])
+    share = mass / mass.mean()
+    changes = share * np.array([(w1 - v1) @ tangent, (v2 - w2) @ tangent]) / lever
     each = np.array([tangent**2 @ sd[:2] ** 2 for _, sd in states]) / lever**2
-    weight = 1 / np.maximum(each[::2] + each[1::2], 1e-12)
+    weight = 1 / np.maximum(share**2 * (each[::2] + each[1::2]), 1e-12)
     # Where the normal is aslant, a part of the push is taken for a rub.
-    push, along = abs(float((w2 - v2) @ normal)), abs(float((v1 - v2) @ tangent))
+    push = abs(float(share[1] * (w2 - v2) @ normal))
+    along = abs(float((v1 - v2) @ tangent))
     aside = [hit.stderr_t * along, ASIDE * radius, ASIDE * radius]
     aside += [float(np.sqrt(tangent**2 @ sd[2:] ** 2)) for _, sd in states[::2]]
     slant = float(np.linalg.norm(aside)) / (2 * radius) * push / lever

@@ -80,7 +80,8 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
     )
     contacts = find_contacts(sightings, radius)
     estimates = estimate(sightings, contacts, radius=radius, masses=masses)
-    tracks = smooth(sightings, _timed(contacts, estimates.collisions), radius=radius)
+    timed = _timed(contacts, estimates.collisions)
+    tracks = smooth(sightings, timed, radius=radius, masses=masses)
     sampled, scores, notes = simulate_measured(tracks, estimates, radius=radius, masses=masses)
     predictions = predict(
         sightings,

@@ -96,6 +96,36 @@ def test_velocities_tell_what_a_hit_changes_spins_by(rub: float) -> None:
     assert 0.05 < tables["B"]["sd_omega"][40] < 0.2
 
 
+@pytest.mark.parametrize("masses", [{"A": 2.0, "B": 1.0}, {"A": 0.1, "B": 0.3}])
+def test_a_light_stone_turns_by_more(masses: dict[str, float]) -> None:
+    """Newton's law: Δω = R J / (m R² / 2), with one J for both; A's spin is well seen."""
+    turned = 0.6
+    change = {name: turned * masses["A"] / mass for name, mass in masses.items()}
+    tables = {
+        "A": rows((0.0, 1.5, 0.02), (1.0, 1.5 + change["A"], 0.02)),
+        "B": rows((0.0, 0.0, 0.001), (1.0, change["B"] - 0.3, 2.0)),
+    }
+    share_spins(tables, [FIRST], PUCK, masses)
+    assert tables["B"]["omega"][40] == pytest.approx(change["B"], abs=0.05)
+
+
+@pytest.mark.parametrize("heavy", ["A", "B"])
+def test_velocities_of_unequal_stones_tell_their_spins(heavy: str) -> None:
+    tables, lever = hit_by_law(0.05), 0.5 * STONE.radius
+    after = tables["A"]["t"] > 1.0
+    for column in ("vx", "vy"):  # half the change of velocity for twice the mass
+        start = tables[heavy][column][0]
+        tables[heavy][column] = start + 0.5 * (tables[heavy][column] - start)
+    light = "B" if heavy == "A" else "A"
+    tables[heavy]["omega"][after] -= 0.5 * 0.05 / lever
+    share_spins(tables, [FIRST], STONE.radius, {heavy: 2.0, light: 1.0})
+    start = {"A": 1.5, "B": 0.0}
+    for name, share in ((heavy, 0.5), (light, 1.0)):
+        assert tables[name]["omega"][40] == pytest.approx(
+            start[name] + share * 0.05 / lever, abs=0.1
+        )
+
+
 def test_velocities_that_tell_otherwise_than_angles_that_are_well_seen_are_not_heard() -> None:
     tables = hit_by_law(0.05)
     for table in tables.values():
