@@ -38,9 +38,10 @@ STILL = 0.03
 """How far from where it rests a stone may be seen, in radii."""
 
 DOUBTFUL = 0.85
-"""Share of the evidence of a moment ago below which a stone may rather be beside where it is
-expected, as after a hit: on paint of its cap's colour, one that has been pushed 25 mm aside still
-shows 0.6 to 0.75 of it where it was."""
+"""Share of a stone's usual evidence below which it may rather be beside where it is expected, as
+after a hit, and of what shows there, below which it is: on paint of its cap's colour, one that has
+been pushed 25 mm aside still shows 0.6 to 0.75 of it where it was; drawn aside by as much along
+paint as light as granite, 0.6 to 0.8."""
 
 
 @dataclass(frozen=True)
@@ -230,7 +231,8 @@ class Follower:
             look = _look_at(view, leads, expected, astray, step)
             seen = look_beside(look, self.appearance, self.disc, self.search)
             for index, sighting in zip(astray, seen, strict=True):
-                found[index] = max(found[index], sighting, key=_score)
+                if _score(found[index]) < DOUBTFUL * _score(sighting):
+                    found[index] = sighting
         return found
 
     def _portrayed(

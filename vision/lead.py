@@ -18,6 +18,10 @@ STEADY = 5
 DECELERATION = 0.1
 """Of a stone on ice, about, m/s²."""
 
+NEWEST = 0.2
+"""Share of the last sighting in the evidence that is usual for a stone: one that goes astray bit by
+bit, along the edge of paint as light as its granite, still falls below that."""
+
 TURNED = 0.06
 """A cap that has turned by more spins on the spot, rad."""
 
@@ -33,7 +37,7 @@ class Lead:
     t : float
         s.
     score : float
-        Evidence that it is a stone, when it was last seen.
+        Evidence that it is a stone, as was usual for it of late.
     missed : bool
         Whether it was missed since.
     anchor : tuple of float
@@ -104,7 +108,8 @@ class Lead:
         else:
             place = ahead_x + 0.6 * away_x, ahead_y + 0.6 * away_y
             velocity = vx + 0.3 * away_x / step, vy + 0.3 * away_y / step
-        left, score = hypot(x - self.anchor[0], y - self.anchor[1]), sighting.score
+        left = hypot(x - self.anchor[0], y - self.anchor[1])
+        score = self.score + NEWEST * (sighting.score - self.score)
         if left >= still or self._turned(sighting):
             return Lead(place, velocity, t, (x, y), score, facing=sighting.spectrum)
         return Lead(

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -95,3 +97,39 @@ def test_what_shows_clearly_less_than_a_moment_ago_is_looked_for_beside_too(
     monkeypatch.setattr("vision.follower.look_on_course", doubted)
     follower.follow([after], [Lead.to(s, 0.0) for s in known])
     assert seen([after], [moved]).max() < 0.003
+
+
+def test_a_stone_that_is_drawn_aside_bit_by_bit_is_found_again(
+    follower: Follower, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fading(looks: list[Look], *_: object) -> list[Sighting]:
+        nonlocal share
+        share *= 0.93
+        places = np.concatenate([look.places for look in looks])
+        near = [min(known, key=lambda s: np.hypot(s.x - x, s.y - y)) for x, y in places]
+        return [s._replace(score=share * s.score) for s in near]
+
+    share = 1.0
+    known = follower.sought(view(START, 0))
+    moved = [(x + 0.02, y) for x, y in START]
+    views = [view(moved, k) for k in range(1, 6)]
+    monkeypatch.setattr("vision.follower.look_on_course", fading)
+    leads = [Lead.to(s, 0.0) for s in known]
+    for each in views:
+        leads = follower.follow([each], leads)
+    assert seen(views[:1], [moved]).min() > 0.015
+    assert seen(views[-1:], [moved]).max() < 0.003
+
+
+def test_what_is_beside_a_stone_must_show_clearly_more(
+    follower: Follower, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def little_more(look: Look, *_: object) -> list[Sighting]:
+        near = [min(known, key=lambda s: np.hypot(s.x - x, s.y - y)) for x, y in look.places]
+        return [s._replace(x=s.x + 0.02, score=1.1 * s.score) for s in near]
+
+    known = follower.sought(view(START, 0))
+    after = view(START, 1)
+    monkeypatch.setattr("vision.follower.look_beside", little_more)
+    follower.follow([after], [replace(Lead.to(s, 0.0), score=2 * s.score) for s in known])
+    assert seen([after], [START]).max() < 0.003
