@@ -226,6 +226,8 @@ def _convincing(track: Track, gate: Gate) -> bool:
     What looks unchanged shows nothing more.
     """
     score, visible, measured = track.sightings.columns("score", "visible", "measured")
+    if not measured.any():
+        return False
     shown = float(np.percentile(score[measured > 0], 75))
     brief = track.times[-1] - track.times[0] < gate.brief
     return shown >= (gate.least_open if brief and np.median(visible) > OPEN else gate.least_score)

@@ -149,6 +149,8 @@ def test_what_looks_unchanged_is_no_more_evidence() -> None:
     assert kept(1.0, 1.2) == 0
     assert kept(1.0, 2.0) == 0  # one look in eleven
     assert kept(1.2, 1.2) == 1
+    never = [(i, i / 25, [sighting((1.0, 0.0))._replace(measured=False)]) for i in range(60)]
+    assert follow(never, R, gate) == []
 
 
 def test_a_stone_that_a_jersey_half_covers_keeps_its_name() -> None:

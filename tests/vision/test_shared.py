@@ -42,14 +42,16 @@ def test_the_errors_of_a_camera_s_motion_are_those_of_its_place_at_the_time(degr
     count = RIG_SIZE + 3 * degree + 2
     root = rng.normal(0, 1, (count, count))
     shared = bundle(np.zeros((degree, 3)), root @ root.T, np.arange(2), np.zeros(2))
-    at = shared.covariances(np.eye(RIG_SIZE + 2)[None], np.array([2.5]))[0]
+    times = np.array([1.5, 4.0])
+    stated = shared.covariances(np.tile(np.eye(RIG_SIZE + 2), (2, 1, 1)), times)
     draws = (root @ rng.normal(0, 1, (count, 40000))).T
-    basis = polynomials(np.array([2.5]), (1.0, 5.0), degree)[0]
     travel = draws[:, RIG_SIZE : RIG_SIZE + 3 * degree].reshape(len(draws), degree, 3)
-    here = np.concatenate([draws[:, :RIG_SIZE], draws[:, RIG_SIZE + 3 * degree :]], axis=1)
-    here[:, POSITION] += np.einsum("d,ndk->nk", basis, travel)
-    scale = np.sqrt(np.outer(at.diagonal(), at.diagonal()))
-    np.testing.assert_allclose(np.cov(here.T) / scale, at / scale, atol=0.03)
+    still = np.concatenate([draws[:, :RIG_SIZE], draws[:, RIG_SIZE + 3 * degree :]], axis=1)
+    for at, basis in zip(stated, polynomials(times, (1.0, 5.0), degree), strict=True):
+        here = still.copy()
+        here[:, POSITION] += np.einsum("d,ndk->nk", basis, travel)
+        scale = np.sqrt(np.outer(at.diagonal(), at.diagonal()))
+        np.testing.assert_allclose(np.cov(here.T) / scale, at / scale, atol=0.03)
 
 
 def test_a_view_follows_what_is_held_as_its_normal_equations_say() -> None:
