@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from physics.law_choice import fit_with_chosen_laws
 from physics.shot_model import Watched
 from physics.whole_fit import GlobalFit
 
 BEFORE = 0.1
 """How long before a hit that is not as simulated the shot is left, s: its time is not certain."""
+
+AWAY, QUIETER = 0.2, 2.0
+"""Time, s, in which nothing is seen if a clip shows something else, and how many times less noise
+the shot has before that if what comes after is not its continuation."""
 
 
 def fit_followed(shot: Watched) -> tuple[GlobalFit, str | None]:
@@ -35,6 +41,24 @@ def fit_followed(shot: Watched) -> tuple[GlobalFit, str | None]:
             return whole, None
         end = f"until {time - BEFORE:.2f} s: {why}"
         fit = fit_with_chosen_laws(shorter)
+    return _until_resumed(fit, end)
+
+
+def _until_resumed(fit: GlobalFit, end: str | None) -> tuple[GlobalFit, str | None]:
+    """Leave a shot where it is not shown for a while, if it does not go on from there as it was.
+
+    Such a clip may have lost time, or its map of the ice may be another one since.
+    """
+    shot = fit.shots[0]
+    seen = np.unique(np.concatenate([trace.t for trace in shot.traces.values()]))
+    steps = np.diff(seen)
+    away = steps > max(AWAY, 4 * float(np.median(steps)) if len(steps) else 0.0)
+    for time in seen[1:][away].tolist():
+        if followed(fit) and shot.until(time).hits:
+            part = fit_with_chosen_laws(shot.until(time))
+            if followed(part) and QUIETER * part.inflation < fit.inflation:
+                why = "what is shown from then on does not continue it"
+                return part, f"until {time:.2f} s: {why}"
     return fit, end
 
 

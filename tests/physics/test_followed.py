@@ -107,3 +107,16 @@ def test_hits_at_one_time_may_come_in_another_order() -> None:
     )  # fmt: skip
     more = replace(shot, hits=(*pairs, ("B", "C")), times=(first, last, last + 1))
     assert more.first_other_hit(run) == (last + 1, "B and C")
+
+
+@pytest.mark.parametrize("lost", [0.0, 0.02])
+def test_a_shot_is_left_where_the_clip_has_lost_time(lost: float) -> None:
+    seen = watch(hit_motion(), np.random.default_rng(4), sd=0.0005)
+    away = (seen["t"] > 1.8) & (seen["t"] < 2.2)
+    seen = seen[~away].reset_index(drop=True)
+    seen.loc[seen["t"] > 2.0, "t"] -= lost
+    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    assert found.whole is not None
+    assert any("does not continue it" in text for text in found.warnings) == (lost > 0)
+    assert found.friction.stderr is not None
+    assert abs(float(found.friction.value or 0) - 0.0109) < 3 * found.friction.stderr
