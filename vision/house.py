@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from vision.house_fit import HouseFit, RoughFit, fit_roughly, refine, start
 from vision.picture import Image
 from vision.pose import rescaled
-from vision.proof import is_house
+from vision.proof import is_house, stands_alone
 from vision.rig import ANYWHERE, POSITION
 from vision.rings import Guess, guesses
 
@@ -30,6 +30,10 @@ GUESS_WIDTH = 320
 
 ENOUGH = 2.8
 """A judgement at which nothing farther from the middle is tried: all of three circles, nearly."""
+
+TWO, LESS = 2.3, 1.0
+"""A judgement at which hypotheses are not tried that were seen by so much less than the best: two
+circles alone give less, and of a 4-ft circle taken for the 12-ft one there are no more."""
 
 ENOUGH_BESIDE = 2.5
 """The same for a house that lies just where a sheet beside has one; people stand on it."""
@@ -74,18 +78,25 @@ def find_house(image: Image, *, frame: int = 0, t: float = 0.0) -> HouseFit | No
     """
     small, factor = _reduced(image, WORK_WIDTH)
     half, share = _reduced(small, GUESS_WIDTH)
-    for least in (1.0, FAINT) if _icy(half) else (1.0,):
+    for least in (1.0, FAINT):
+        if least < 1 and not _icy(half):
+            break
         rings = guesses(half, least)
         hypotheses = [_enlarged(_enlarged(guess, 1 / share), 1 / factor) for guess in rings]
-        for found in _fits(image, small, factor, hypotheses, frame, t):
-            if _is_house(image, found):
-                return _middle_most(image, small, factor, found)
+        for fitted in _rough_fits(small, factor, hypotheses):
+            # The circles tell most of what is no house at once, what they cannot lines may.
+            if stands_alone(small, fitted.evidence, fitted.view, fitted.rig):
+                found = refine(image, fitted, factor, frame, t)
+                if found is not None and _is_house(image, found):
+                    return _middle_most(image, small, factor, found)
     return None
 
 
 def _icy(image: Image) -> bool:
     """Whether most of a picture may be ice: as grey and nearly as bright as its brightest part."""
-    most, least = image.max(2).astype(float), image.min(2)
+    blue, green, red = image[::2, ::2].astype(np.float32).transpose(2, 0, 1)
+    most = np.maximum(np.maximum(blue, green), red)
+    least = np.minimum(np.minimum(blue, green), red)
     bright = most > BRIGHT * np.percentile(most, 90)
     return float((bright & (most - least < GREY * most)).mean()) > MOSTLY
 
@@ -143,7 +154,12 @@ def fit_house(
     HouseFit or None
         From the hypothesis that explains most; None where the edges bear out none of them.
     """
-    return next(_fits(image, *_reduced(image, WORK_WIDTH), hypotheses, frame, t), None)
+    small, factor = _reduced(image, WORK_WIDTH)
+    for fitted in _rough_fits(small, factor, hypotheses):
+        found = refine(image, fitted, factor, frame, t)
+        if found is not None:
+            return found
+    return None
 
 
 def _reduced(image: Image, width: int) -> tuple[Image, float]:
@@ -166,19 +182,14 @@ def _ways(guess: Guess) -> tuple[Guess, ...]:
     return (guess, level) if guess.foreshortening > NEARLY_LEVEL else (guess,)
 
 
-def _fits(
-    image: Image,
-    small: Image,
-    factor: float,
-    hypotheses: Sequence[Guess],
-    frame: int,
-    t: float,
-) -> Iterator[HouseFit]:
-    """Fit hypotheses: what they become, that which explains most first."""
+def _rough_fits(small: Image, factor: float, hypotheses: Sequence[Guess]) -> list[RoughFit]:
+    """Fit hypotheses in a small picture: what they become, that which explains most first."""
     fits: list[RoughFit] = []
-    aside = [abs(guess.centre[0] - image.shape[1] / 2) for guess in hypotheses]
-    for k, guess in enumerate(hypotheses):
-        here = _enlarged(guess, factor)
+    there = [_enlarged(guess, factor) for guess in hypotheses]
+    aside = [abs(guess.centre[0] - small.shape[1] / 2) for guess in there]
+    for k, here in enumerate(there):
+        if here.score < there[0].score - LESS and any(fit.score > TWO for fit in fits):
+            continue
         for seen in _ways(here):
             camera_there = start(seen, (small.shape[1], small.shape[0]))
             fitted = fit_roughly(small, *camera_there, here.scale, float(here.centre[0]))
@@ -188,7 +199,4 @@ def _fits(
             fits.append(fitted)
             if fitted.score > ENOUGH and aside[k] <= min(aside[k:]):
                 break
-    for fitted in sorted(fits, key=lambda fit: -fit.score):
-        found = refine(image, fitted, factor, frame, t)
-        if found is not None:
-            yield found
+    return sorted(fits, key=lambda fit: -fit.score)

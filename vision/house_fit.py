@@ -18,6 +18,7 @@ from vision.lines import sides, upright
 from vision.marks import Evidence, measure_marks
 from vision.mixing import lit
 from vision.outline import HALF_WAY, PaintEdge, find_edge
+from vision.paint import TWELVE
 from vision.picture import Image
 from vision.pose import DOWN, View, aim, camera, rescaled, rotation_vector
 from vision.proof import worth
@@ -71,11 +72,12 @@ class HouseFit:
 
 @dataclass(frozen=True)
 class RoughFit:
-    """A hypothesis after the fit, in the small picture."""
+    """A hypothesis after the fit, in the small picture, and the circles there."""
 
     view: View
     rig: Array
     score: float
+    evidence: Evidence
 
 
 def fit_roughly(
@@ -101,17 +103,19 @@ def fit_roughly(
     size = (image.shape[1], image.shape[0])
     thickness = scale * (HOUSE.twelve_foot - HOUSE.eight_foot)
     rms = np.nan
-    for share in (0.3, 0.2, 0.15):
+    for k, share in enumerate((0.3, 0.2, 0.15)):
         reach = max(share * thickness, 3.0)
         evidence = measure_marks(image, view.vector, rig, reach=reach, spacing=4, lines=False)
-        if len(evidence.marks) < LEAST_MARKS:
+        # Rings without any of a 12-ft circle once they were fitted are no house, and most are such.
+        if len(evidence.marks) < LEAST_MARKS or (k > 0 and evidence.covered[TWELVE] == 0):
             return None
         solution = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
         view, rig, rms = solution.views[0], solution.rig, float(solution.rms[0])
-    explained = worth(measure_marks(image, view.vector, rig, reach=5.0, spacing=4, lines=False))
+    evidence = measure_marks(image, view.vector, rig, reach=5.0, spacing=4, lines=False)
+    explained = worth(evidence)
     aside = ASIDE * abs(centre / size[0] - 0.5)
     score = explained - aside - ROUGH * float(np.nan_to_num(rms, nan=9.0))
-    return RoughFit(view, rig, score) if explained > 0 else None
+    return RoughFit(view, rig, score, evidence) if explained > 0 else None
 
 
 def start(guess: Guess, size: tuple[int, int]) -> tuple[View, Array, Prior]:

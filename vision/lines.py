@@ -42,6 +42,10 @@ TURNS = tuple(np.radians(v) for v in (np.arange(-44.0, 45.0, 2.0), np.arange(-2.
 """Turns that are tried to find the sides' direction: all over, then about the best; the step at a
 side is lost when it is 3° aside."""
 
+DENSELY, SPARSELY, LEAST_ALONG = 0.1, 0.25, 0.75
+"""How far apart the sides are sampled, m, and where turns are tried all over; and how much of one
+must be in the picture."""
+
 LEAST_BACK = 5.0
 """Grey levels by which the back line must stand out to tell the end at which it is."""
 
@@ -112,9 +116,9 @@ def clearness(image: Image, view: View, rig: Array) -> float:
     return float(score[middle - NEAR : middle + NEAR + 1].max() / max(others.max(), 1e-9))
 
 
-def _strength(image: Image, view: View, rig: Array) -> float:
+def _strength(image: Image, view: View, rig: Array, every: float = DENSELY) -> float:
     """Add up the steps at both sides of the sheet, grey levels."""
-    return sum(step for _, _, step in _side_steps(image, view, rig))
+    return sum(step for _, _, step in _side_steps(image, view, rig, every))
 
 
 def _best_cross(image: Image, view: View, rig: Array) -> tuple[float, float, float]:
@@ -143,8 +147,8 @@ def _best_cross(image: Image, view: View, rig: Array) -> tuple[float, float, flo
 def _along_sides(image: Image, view: View, rig: Array) -> tuple[float, float]:
     """Find the turn that lays the axes along the sheet's sides, rad, and the step at these."""
     found = 0.0
-    for turns in TURNS:
-        steps = [_strength(image, *turned(view, rig, float(found + turn))) for turn in turns]
+    for turns, every in zip(TURNS, (SPARSELY, DENSELY), strict=True):
+        steps = [_strength(image, *turned(view, rig, found + turn), every) for turn in turns]
         found += float(turns[int(np.argmax(steps))])
     return found, max(steps)
 
@@ -254,17 +258,19 @@ def sides(image: Image, view: View, rig: Array) -> Array:
     return found
 
 
-def _side_steps(image: Image, view: View, rig: Array) -> list[tuple[int, float, float]]:
+def _side_steps(
+    image: Image, view: View, rig: Array, every: float = DENSELY
+) -> list[tuple[int, float, float]]:
     """Strongest step along each side: which side, its x, m, and its height, grey levels."""
     size = (image.shape[1], image.shape[0])
-    along = np.arange(-4.0, 9.0, 0.1)
+    along = np.arange(-4.0, 9.0, every)
     found = []
     for which, sign in ((SIDE_L, -1.0), (SIDE_R, 1.0)):
         across = sign * np.arange(SHEET.half_width_min - 0.1, SHEET.half_width_max + 0.1, 0.01)
         ice = np.stack(np.broadcast_arrays(across, along[:, None]), axis=-1)
         place, within = pictured(ice, view.vector, rig, size)
         inside = within.all(1)
-        if inside.sum() < 8:
+        if every * inside.sum() < LEAST_ALONG:
             continue
         colour = _colours(image, place[inside])
         step = np.linalg.norm(np.median(colour[:, 4:] - colour[:, :-4], axis=0), axis=-1)

@@ -41,6 +41,10 @@ blur, a narrow dark line looks much like a wider one that is less dark."""
 HALF_IN_DOUBT = 0.3
 """The same of half the width of an outline that is drawn alone."""
 
+LEAST_SIDE = 4
+"""Samples of a profile on either side without which no line is looked for: what paint and ice are
+like there is not known."""
+
 ROUNDS = 15
 """Steps of the fit (Levenberg, 1944)."""
 
@@ -98,7 +102,7 @@ def find_edge(profile: Array, step: float) -> PaintEdge:
     known = np.isfinite(profile)
     x = np.asarray(step * (np.arange(len(profile)) - len(profile) // 2)[known], np.float64)
     y = profile[known]
-    if len(y) < 12:
+    if len(y) < 12 or min(-x[0], x[-1]) < LEAST_SIDE * abs(step):
         return HALF_WAY
     ice, paint = float(y[:3].mean()), float(y[-3:].mean())
     alone = y.max() - paint > 2 * (paint - ice)  # an outline, and ice behind it as well

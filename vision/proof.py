@@ -94,6 +94,11 @@ def is_house(image: Image, evidence: Evidence, view: View, rig: Array) -> bool:
     ringed = bare and evidence.support.min() > WHOLE
     if not ringed and clearness(image, view, rig) < CROSSED:
         return False
+    return stands_alone(image, evidence, view, rig)
+
+
+def stands_alone(image: Image, evidence: Evidence, view: View, rig: Array) -> bool:
+    """Whether there are no other circles about those of a house, and that can be told."""
     if evidence.support[1] > LEAST_SUPPORT:
         return not _is_target(image, view, rig, ENOUGH_SEEN)
     return _shown(image, view, rig, AROUND) > LEAST_AROUND and not _is_target(

@@ -113,16 +113,15 @@ def guesses(image: Image, least: float = 1.0) -> list[Guess]:
         nearer = [(min(squash * by, 1.0), lean + turn) for by, turn in NEARER]
         candidates += _candidates(*some, nearer, (w, h))
         candidates.sort(key=lambda c: -c[0])
-    rings: list[tuple[float, float, Rounding]] = []
+    rings: list[tuple[float, float, Rounding, tuple[Array, Array]]] = []
     for *_, tilt, place in candidates[:TRIED]:
         edges = tilt.level_edges(points, gradients)
         seen = Rounding(tilt, _sharpened(*edges, place))
         aside = abs(float(tilt.pictured(seen.centre)[0]) / w - 0.5)
-        rings += [(score - aside, size, seen) for size, score in _radii(*edges, seen)[:1]]
+        rings += [(score - aside, size, seen, edges) for size, score in _radii(*edges, seen)[:1]]
     rings.sort(key=lambda c: -c[0])
     found: list[Guess] = []
-    for _, size, seen in rings:
-        edges = seen.tilt.level_edges(points, gradients)
+    for _, size, seen, edges in rings:
         some = edges[0][::step], edges[1][::step]
         # Rings that are round are told by other sizes than those that are not yet.
         rounder = rounded(*some, seen, size * RADII)
@@ -198,11 +197,12 @@ def _votes(points: Array, gradients: Array, tilt: Tilt) -> list[tuple[float, Arr
     across, down = ((np.ptp(corners, axis=0) + 2 * MARGIN * w) / CELL).astype(int) + 1
     reach = np.arange(2, 0.62 * w / CELL, dtype=np.float32)
     rim = len(reach) + 2  # so wide that no line leaves the cells: that need not be looked after
-    reach = np.concatenate([-reach, reach])
-    start = ((points - low) / CELL + rim).astype(np.float32)
-    way = gradients.astype(np.float32)
-    cell = (start[:, 1:] + way[:, 1:] * reach).astype(np.int32) * (across + 2 * rim)
-    cell += (start[:, :1] + way[:, :1] * reach).astype(np.int32)
+    reach = np.concatenate([-reach, reach])[:, None]
+    x, y = ((points - low) / CELL + rim).astype(np.float32).T.copy()
+    right, up = gradients.astype(np.float32).T.copy()
+    cell = (y + up * reach).astype(np.int32)
+    cell *= across + 2 * rim
+    cell += (x + right * reach).astype(np.int32)
     votes = np.bincount(cell.ravel(), minlength=(across + 2 * rim) * (down + 2 * rim))
     votes = votes.reshape(down + 2 * rim, -1)[rim:-rim, rim:-rim]
     heat = cv2.GaussianBlur(votes.astype(np.float32), (0, 0), 1.0)

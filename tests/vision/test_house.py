@@ -21,9 +21,11 @@ from tests.synthetic import (
 )
 from tests.synthetic.scene import Paint
 from tests.vision.places import RINGS
+from vision import house
 from vision.camera import Camera
-from vision.house import find_house
-from vision.house_fit import HouseFit
+from vision.house import find_house, fit_house
+from vision.house_fit import HouseFit, RoughFit, fit_roughly
+from vision.rings import guesses
 
 SIZE = (1280, 720)
 ANGLE = np.arange(16) * np.pi / 8
@@ -231,3 +233,23 @@ def test_real_close_ups_are_refused(shared: Path) -> None:
     for negative in known["negatives"]:
         image = cv2.imread(str(shared / "frames/images" / negative["file"]))
         assert find_house(np.asarray(image, np.uint8)) is None, negative["file"]
+
+
+def test_rings_seen_by_much_less_than_those_that_fit_are_not_tried(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    image = render_still(sample_scene(), still_camera(px_per_m=130.0), 1.0)
+    best, *_ = guesses(np.asarray(cv2.resize(image, (320, 180)), np.uint8))
+    there = replace(best, centre=4 * (best.centre + 0.5) - 0.5, scale=4 * best.scale)
+    tried = []
+
+    def fitted(*inputs: object) -> RoughFit | None:
+        tried.append(inputs)
+        return fit_roughly(*inputs)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(house, "ENOUGH", 9.0)
+    monkeypatch.setattr(house, "fit_roughly", fitted)
+    for less, count in ((0.5, 2), (1.5, 1)):
+        tried.clear()
+        assert fit_house(image, [there, replace(there, score=there.score - less)]) is not None
+        assert len(tried) == count

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.special import ndtr
 
-from vision.outline import find_edge
+from vision.outline import HALF_WAY, find_edge
 
 STEP = 0.375
 X = STEP * (np.arange(33) - 16)
@@ -33,6 +33,12 @@ def test_an_outline_belongs_to_the_paint(width: float, depth: float) -> None:
     found = np.interp(find_edge(noisy, STEP).level, noisy[12:19], X[12:19])
     assert abs(found - edge) < 0.15
     assert abs(found - edge) < 0.5 * abs(half_way - edge)
+
+
+def test_no_line_is_told_from_a_profile_that_ends_at_the_edge() -> None:
+    cut = profile(0.0, 1.2, 0.6, 0.9)
+    cut[19:] = np.nan
+    assert find_edge(cut, STEP) == HALF_WAY
 
 
 @pytest.mark.parametrize("depth", [0.6, -0.3])

@@ -12,7 +12,7 @@ from vision.house_fit import HouseFit
 from vision.marks import Evidence, measure_marks
 from vision.picture import Image
 from vision.pose import View, project
-from vision.proof import is_house, worth
+from vision.proof import is_house, stands_alone, worth
 from vision.rig import OVERHEAD, start_rig
 
 SCENE = replace(sample_scene(), paint=PAINTS["navy-orange"])
@@ -82,6 +82,8 @@ def test_a_circle_more_than_a_house_has_makes_a_target(low: tuple[Image, HouseFi
     target = picture.copy()
     cv2.polylines(target, [np.round(line).astype(np.int32)], True, (30, 200, 230), 6)
     assert not is_house(target, found.evidence, found.view, found.rig)
+    assert not stands_alone(target, found.evidence, found.view, found.rig)
+    assert stands_alone(picture, found.evidence, found.view, found.rig)
 
 
 def test_a_house_is_worth_most() -> None:
