@@ -54,8 +54,9 @@ def _until_resumed(fit: GlobalFit, end: str | None) -> tuple[GlobalFit, str | No
     steps = np.diff(seen)
     away = steps > max(AWAY, 4 * float(np.median(steps)) if len(steps) else 0.0)
     for time in seen[1:][away].tolist():
-        if followed(fit) and shot.until(time).hits:
-            part = fit_with_chosen_laws(shot.until(time))
+        shorter = shot.until(time)
+        if shorter.hits:
+            part = fit_with_chosen_laws(shorter)
             if followed(part) and QUIETER * part.inflation < fit.inflation:
                 why = "what is shown from then on does not continue it"
                 return part, f"until {time:.2f} s: {why}"

@@ -143,9 +143,10 @@ def share_spins(
     before = np.array([way.table["omega"][row] for way, row in ends])
     cov = np.zeros((len(ends), len(ends)))
     for i, (way, row) in enumerate(ends):
+        like = way.alike(row)
         for j, (other, there) in enumerate(ends):
             if other is way:
-                cov[i, j] = way.alike(row)[np.searchsorted(way.told, there)]
+                cov[i, j] = like[np.searchsorted(way.told, there)]
     mean, prior = before, np.diag(cov)
     for met in sorted(contacts, key=lambda met: met.t):
         sides = []

@@ -33,8 +33,12 @@ def painted(*caps: Colour) -> Scene:
     return scene_of([(x, y, cap) for (x, y), cap in zip(PLACES, caps, strict=True)])
 
 
-def seen(scene: Scene, known: list[tuple[float, float]] | None = None) -> tuple[Sighting, ...]:
-    image = np.asarray(render_still(scene, CAMERA), np.uint8)
+def seen(
+    scene: Scene, known: list[tuple[float, float]] | None = None, contrast: float = 1.0
+) -> tuple[Sighting, ...]:
+    image = (255 - contrast * (255 - np.asarray(render_still(scene, CAMERA), float))).astype(
+        np.uint8
+    )
     places = np.array(known or []).reshape(-1, 2)
     (found,) = strangers([Look(image, camera_of(CAMERA, scene), places)], STONE, FOLLOWING)
     return found.stones
@@ -86,29 +90,21 @@ def test_beside_one_vivid_team_no_person_in_dull_clothes_is_a_stone() -> None:
 
 def test_caps_are_found_where_the_picture_has_lost_half_its_contrast() -> None:
     scene = painted(RED, YELLOW, BLUE, RED)
-    image = np.asarray(render_still(scene, CAMERA), float)
-    pale = (255 - 0.5 * (255 - image)).astype(np.uint8)
-    (found,) = strangers([Look(pale, camera_of(CAMERA, scene), np.empty((0, 2)))], STONE, FOLLOWING)
-    assert len(found.stones) == len(scene.stones)
-    assert misses(found.stones, scene).max() < 0.010
+    found = seen(scene, contrast=0.5)
+    assert len(found) == len(scene.stones)
+    assert misses(found, scene).max() < 0.010
 
 
 @pytest.mark.parametrize("other", [BLACK, WHITE])
 def test_black_and_white_caps_are_found_in_haze_beside_vivid_ones(other: Colour) -> None:
     scene = painted(YELLOW, other, YELLOW, other)
-    image = np.asarray(render_still(scene, CAMERA), float)
-    pale = (255 - 0.45 * (255 - image)).astype(np.uint8)
-    (found,) = strangers([Look(pale, camera_of(CAMERA, scene), np.empty((0, 2)))], STONE, FOLLOWING)
-    assert len(found.stones) == len(scene.stones)
-    assert misses(found.stones, scene).max() < 0.010
+    found = seen(scene, contrast=0.45)
+    assert len(found) == len(scene.stones)
+    assert misses(found, scene).max() < 0.010
 
 
 def test_pale_ice_without_stones_stays_empty() -> None:
-    image = np.asarray(render_still(scene_of([]), CAMERA), float)
-    pale = (255 - 0.5 * (255 - image)).astype(np.uint8)
-    none = np.empty((0, 2))
-    (found,) = strangers([Look(pale, camera_of(CAMERA, scene_of([])), none)], STONE, FOLLOWING)
-    assert not found.stones
+    assert not seen(scene_of([]), contrast=0.5)
 
 
 def test_two_colours_are_both_teams() -> None:
