@@ -29,7 +29,7 @@ from vision.placed import Placed, nobody
 from vision.pose import View
 from vision.replay import Glimpse, glimpse, has_jumped, is_nearer, is_replay
 from vision.rig import ANYWHERE, OVERHEAD
-from vision.shelf import Shelf
+from vision.shelf import ROOM, Shelf
 
 Array = NDArray[np.float64]
 
@@ -63,7 +63,7 @@ class HouseFollower:
         self._size = size
         self._first = first
         self._looked: list[int] = []
-        self._shelf = Shelf()
+        self._shelf = Shelf(ROOM)
         self._pieces: list[Piece] = []
         self._piece: Piece | None = None
         self._ahead: list[Frame] = []

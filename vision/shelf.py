@@ -1,4 +1,4 @@
-"""Things put aside till the end of a clip: in a file without a name, not in memory."""
+"""Things put aside till the end of a clip: in a file without a name, but for the first of them."""
 
 from __future__ import annotations
 
@@ -14,11 +14,21 @@ from typing import IO, Any, Generic, TypeVar
 
 T = TypeVar("T")
 
+ROOM = 1000
+"""Things of a clip that may stay in memory: of a frame some 30 kB, of a cap 7 kB."""
+
 
 class Shelf:
-    """A file without a name; it goes when nothing that lies on it is held any more."""
+    """A file without a name; it goes when nothing that lies on it is held any more.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    room : int
+        How many things stay in memory all the same, the first ones: short clips need no file.
+    """
+
+    def __init__(self, room: int = 0) -> None:
+        self._room = room
         self._file: IO[bytes] | None = None
 
     def put(self, thing: T) -> Callable[[], T]:
@@ -29,6 +39,9 @@ class Shelf:
         OSError
             There is no room for it.
         """
+        if self._room > 0:
+            self._room -= 1
+            return lambda: thing
         if self._file is None:
             self._file = tempfile.TemporaryFile(buffering=0)  # noqa: SIM115
             weakref.finalize(self, self._file.close)

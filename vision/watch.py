@@ -27,7 +27,7 @@ from vision.picture import brightened
 from vision.placing import placed_by
 from vision.rays import Look
 from vision.rows import Rows
-from vision.shelf import Shelf
+from vision.shelf import ROOM, Shelf
 from vision.sighting import Sighting
 from vision.stones import FOLLOWING, SEARCH, Search
 from vision.strangers import strangers
@@ -86,7 +86,7 @@ class Watch:
         self._lessons: list[Sighting] = []
         self._waiting: list[StoneView] = []
         self._recent: deque[StoneView] = deque()
-        self._shelf = Shelf()
+        self._shelf = Shelf(ROOM)
         self._balance: Balance | None = None
         self._gain = np.ones(3)
         self._leads: list[Lead] = []

@@ -39,6 +39,15 @@ def test_memory_holds_no_more_than_where_things_lie() -> None:
     assert all(each.get()[0] == number for number, each in enumerate(kept))
 
 
+def test_the_first_things_stay_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tempfile, "TemporaryFile", no_file)
+    shelf, things = Shelf(room=2), [np.full(3, float(number)) for number in range(3)]
+    held = [shelf.put(thing) for thing in things[:2]]
+    assert all(get() is thing for get, thing in zip(held, things, strict=False))
+    with pytest.raises(OSError, match="nowhere to write"):
+        shelf.put(things[2])
+
+
 class Full(io.BytesIO):
     """A file of a few bytes."""
 
