@@ -104,6 +104,7 @@ class _Solver:
             if p.closes is not None
         }
         self.further = np.zeros((len(self.pieces), 2, 8))
+        self.courses: dict[int, tuple[Floats, Floats, Floats]] = {}
         self.blocks = self._blocks()
         self.origins = np.array([origin(p, traces[p.stone], meetings) for p in pieces])
         self.theta = np.zeros(self.size)
@@ -142,6 +143,7 @@ class _Solver:
             scale = np.sqrt(np.maximum(np.diag(cov), 1e-24))
             settled = bool(np.all(np.abs(step) < 0.02 * scale))
             self.theta = self.theta + (0.5 if done >= USUAL else 1.0) * step
+            self.courses.clear()
             self.inflation = self._excess(float(np.sum(cov * data)))
             if settled:
                 break
@@ -178,29 +180,37 @@ class _Solver:
             both = np.concatenate([self.pieces[i].samples, self.pieces[j].samples])
             early = self.traces[stone].t[both] < t
             for rank, samples in ((i, both[early]), (j, both[~early])):
-                self.pieces[rank] = _with_samples(self.pieces[rank], samples)
-
-    def _tau(self, i: int) -> Floats:
-        """Return times of a piece's sightings from its origin, s; no more once it rests."""
-        piece = self.pieces[i]
-        tau = self.traces[piece.stone].t[piece.samples] - self.origins[i]
-        return np.asarray(np.minimum(tau, 0.0 if piece.rest else stop_after(*self._motion(i))))
+                if len(samples) != len(self.pieces[rank].samples):
+                    self.pieces[rank] = replace(self.pieces[rank], samples=samples)
+                    self.courses.pop(rank, None)
 
     def _motion(self, i: int) -> tuple[Floats, float]:
         """State of a piece at its origin, shape (2, 3), and the power that slows it."""
         own = self.theta[unknowns_of(i, len(self.pieces))]
         return own[:6].reshape(2, 3), float(own[6])
 
-    def _course(self, i: int) -> tuple[Floats, Floats]:
-        """Places of a piece at its sightings, and their derivatives by its unknowns."""
-        x, power = self._motion(i)
-        return course(x, self._tau(i), power)
+    def _course(self, i: int) -> tuple[Floats, Floats, Floats]:
+        """Give times of a piece's sightings from its origin, s, its places, their derivatives.
 
-    def _residuals(self, i: int, fitted: Floats) -> Floats:
+        Times go on no more once it rests.
+        """
+        if i not in self.courses:
+            piece, (x, power) = self.pieces[i], self._motion(i)
+            tau = self.traces[piece.stone].t[piece.samples] - self.origins[i]
+            tau = np.minimum(tau, 0.0 if piece.rest else stop_after(x, power))
+            if piece.rest:
+                slopes = np.zeros((len(tau), 2, 7))
+                slopes[:, [0, 1], [0, 3]] = 1.0
+                self.courses[i] = tau, np.tile(x[:, 0], (len(tau), 1)), slopes
+            else:
+                self.courses[i] = tau, *course(x, tau, power)
+        return self.courses[i]
+
+    def _residuals(self, i: int) -> Floats:
         piece = self.pieces[i]
-        trace = self.traces[piece.stone]
+        trace, (tau, fitted, _) = self.traces[piece.stone], self._course(i)
         drift = self.further[i] @ np.append(-self.theta[unknowns_of(i, len(self.pieces))], 1.0)
-        off = trace.xy[piece.samples] - fitted - self._tau(i)[:, None] * drift
+        off = trace.xy[piece.samples] - fitted - tau[:, None] * drift
         return np.asarray(off / trace.sd[piece.samples])
 
     def _data(self) -> tuple[Floats, Floats]:
@@ -211,21 +221,26 @@ class _Solver:
                 continue
             trace = self.traces[piece.stone]
             own = unknowns_of(i, len(self.pieces))
-            fitted, slopes = self._course(i)
-            weights = huber_weights(self._residuals(i, fitted)) / trace.sd[piece.samples] ** 2
-            seen = trace.xy[piece.samples] - fitted + slopes @ self.theta[own]
-            normal[np.ix_(own, own)], right[own] = self._seen(i, seen, slopes, weights)
+            weights = huber_weights(self._residuals(i)) / trace.sd[piece.samples] ** 2
+            normal[np.ix_(own, own)], right[own] = self._seen(i, weights)
         return normal, right
 
-    def _seen(self, i: int, seen: Floats, slopes: Floats, weights: Floats) -> tuple[Floats, Floats]:
+    def _seen(self, i: int, weights: Floats) -> tuple[Floats, Floats]:
         """Set up the normal equations of one piece's sightings, of its own unknowns.
 
         Two further unknowns are eliminated at once: what the sightings say of the velocity is
         wrong by what they share, on either axis.
         """
-        piece = self.pieces[i]
-        speed = float(np.hypot(*self.theta[[6 * i + 1, 6 * i + 4]]))
-        shared = self._tau(i)[:, None, None] * np.eye(2)
+        piece, own = self.pieces[i], self.theta[unknowns_of(i, len(self.pieces))]
+        places = self.traces[piece.stone].xy[piece.samples]
+        if piece.rest:
+            of_place, normal, right = [0, 3], np.zeros((7, 7)), np.zeros(7)
+            normal[of_place, of_place], right[of_place] = weights.sum(0), (weights * places).sum(0)
+            return normal, right
+        tau, fitted, slopes = self._course(i)
+        seen = places - fitted + slopes @ own
+        speed = float(np.hypot(own[1], own[4]))
+        shared = tau[:, None, None] * np.eye(2)
         rows = np.concatenate([slopes, shared], axis=2).reshape(-1, 9)
         full = rows.T @ (weights.reshape(-1, 1) * rows)
         value = rows.T @ (weights * seen).ravel()
@@ -269,14 +284,8 @@ class _Solver:
     def _excess(self, parameters: float) -> float:
         """Factor for residuals larger than stated, and alike from frame to frame."""
         runs = [
-            (self._residuals(i, self._course(i)[0]), 1 if piece.rest else 3)
+            (self._residuals(i), 1 if piece.rest else 3)
             for i, piece in enumerate(self.pieces)
             if len(piece.samples)
         ]
         return inflation(runs, sum(run.size for run, _ in runs) - parameters, self.still)
-
-
-def _with_samples(piece: Piece, samples: NDArray[np.int64]) -> Piece:
-    if len(samples) == len(piece.samples):
-        return piece
-    return replace(piece, samples=samples)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physics.segments import Piece
-from physics.slowing import course, motion, stop_after
+from physics.slowing import course, motion, stop_after, velocities
 
 Floats = NDArray[np.float64]
 
@@ -104,7 +104,8 @@ class ShotFit:
 
     def speeds(self, rank: int, t: Floats) -> Floats:
         """Velocities on piece `rank` at times t, shape (n, 2)."""
-        return np.array([self.motion(rank, time)[1] for time in t.tolist()]).reshape(-1, 2)
+        x = self.theta[6 * rank : 6 * rank + 6].reshape(2, 3)
+        return velocities(x, t - self.origins[rank], self.power(rank))
 
     def stop(self, rank: int) -> float:
         """Time at which the stone of piece `rank` stops, s."""

@@ -247,14 +247,22 @@ def motion(x: Floats, tau: float, power: float) -> tuple[Floats, Floats]:
     """Place and velocity at one time; parameters are those of `course`."""
     c, q = time_left(x), 1 + power
     times = np.minimum([tau], c / q)
-    aside = _across(x)[0]
-    ways = np.stack([x[:, 2] - aside, aside])
-    place, speed = (
-        reach[:2, 0] @ ways for reach in (_of_places(times, c, q), _of_velocities(times, c, q))
-    )
+    bent = _of_places(times, c, q)[:2, 0] @ _ways(x)
+    return x[:, 0] + times[0] * x[:, 1] + bent, velocities(x, np.array([tau]), power)[0]
+
+
+def velocities(x: Floats, tau: Floats, power: float) -> Floats:
+    """Velocities at times, shape (n, 2), m/s; parameters are those of `course`."""
+    c, q = time_left(x), 1 + power
+    going = x[:, 1] + _of_velocities(np.minimum(tau, c / q), c, q)[:2].T @ _ways(x)
     # At its stop a stone has no velocity across either.
-    going = x[:, 1] + speed if q * tau < c else np.zeros(2)
-    return x[:, 0] + times[0] * x[:, 1] + place, going
+    return np.where(q * tau[:, None] < c, going, 0.0)
+
+
+def _ways(x: Floats) -> Floats:
+    """Acceleration at the origin along the motion and across it, shape (2, 2)."""
+    aside = _across(x)[0]
+    return np.array([x[:, 2] - aside, aside])
 
 
 def change_by(tau: float, x: Floats, power: float, way: Floats) -> Floats:
