@@ -5,7 +5,9 @@ from __future__ import annotations
 import glob
 import re
 from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
+from statistics import median_low
 
 from data.errors import InputError
 
@@ -49,6 +51,30 @@ def find_inputs(names: Sequence[str | Path]) -> tuple[Path, ...]:
     if not found:
         raise InputError("no input; name a clip, pictures or a table of tracks")
     return tuple(found)
+
+
+def picture_times(paths: Sequence[Path]) -> list[float] | None:
+    """When pictures were taken that are numbered in their names, in steps of most of them.
+
+    Pictures that were taken out of a sequence leave holes in its numbers, and time passed there.
+
+    Returns
+    -------
+    list of float or None
+        Starting with 0, one step from most pictures to the next; None where the names do not differ
+        by a rising number alone.
+    """
+    parts = [re.findall(r"\d+|\D+", path.name) for path in paths]
+    if len(paths) < 2 or len({len(p) for p in parts}) > 1:
+        return None
+    differ = [i for i, here in enumerate(zip(*parts, strict=True)) if len(set(here)) > 1]
+    if len(differ) != 1 or not all(p[differ[0]].isdecimal() for p in parts):
+        return None
+    numbers = [int(p[differ[0]]) for p in parts]
+    steps = [after - before for before, after in pairwise(numbers)]
+    if min(steps) <= 0:
+        return None
+    return [(number - numbers[0]) / median_low(steps) for number in numbers]
 
 
 def _natural(path: Path) -> list[tuple[int, str]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ import cv2
 import numpy as np
 
 from data.errors import InputError
-from data.inputs import IMAGE_SUFFIXES
+from data.inputs import IMAGE_SUFFIXES, picture_times
 from vision.picture import Image as Image
 from vision.picture import Picture, Planes, image_of
 
@@ -119,6 +120,7 @@ class Clip:
 
     def _read_images(self) -> Iterator[Frame]:
         rate = self.fps or DEFAULT_IMAGE_FPS
+        times = picture_times(self.files) or range(len(self.files))
         for index, path in enumerate(self.files):
             if index < self.first or (self.last is not None and index > self.last):
                 continue
@@ -128,7 +130,7 @@ class Clip:
             elif image.shape[1::-1] != self.size:
                 self._warn(f"{path}: not of the size of the first picture; left out")
             else:
-                yield Frame(index, index / rate, image)
+                yield Frame(index, times[index] / rate, image)
 
 
 def open_clip(
@@ -183,6 +185,13 @@ def _open_images(paths: Sequence[Path], fps: float | None, first: int, last: int
     if fps is None and len(paths) > 1:
         clip.warnings.append(
             f"pictures carry no times: {DEFAULT_IMAGE_FPS:g} a second assumed; say --fps"
+        )
+    times = picture_times(paths)
+    longest = max((b - a for a, b in pairwise(times)), default=1.0) if times else 1.0
+    if longest > 1.0:
+        clip.warnings.append(
+            f"{paths[0].parent}: pictures are missing, by the numbers in their names; up to"
+            f" {longest:g} steps of time are left between two that are there"
         )
     return clip
 

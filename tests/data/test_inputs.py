@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from data.errors import InputError
-from data.inputs import find_inputs
+from data.inputs import find_inputs, picture_times
 
 
 def made(folder: Path, *names: str) -> list[Path]:
@@ -49,3 +49,23 @@ def test_what_is_not_there_is_named(tmp_path: Path, name: str, said: str) -> Non
 def test_nothing_named_is_a_mistake() -> None:
     with pytest.raises(InputError, match="no input"):
         find_inputs([])
+
+
+@pytest.mark.parametrize(
+    ("names", "times"),
+    [
+        (["a 8.png", "a 9.png", "a 10.png"], [0, 1, 2]),
+        (["im_000.png", "im_001.png", "im_005.png", "im_006.png"], [0, 1, 5, 6]),
+        (["f005.jpg", "f010.jpg", "f015.jpg", "f025.jpg"], [0, 1, 2, 4]),
+        (["cam2_07.jpg", "cam2_08.jpg"], [0, 1]),
+        (["cam1_07.jpg", "cam2_08.jpg"], None),
+        (["7.png", "7b.png"], None),
+        (["a.png", "b.png"], None),
+        (["3.png", "2.png", "1.png"], None),
+        (["only.png"], None),
+    ],
+)
+def test_numbers_in_names_of_pictures_tell_their_times(
+    names: list[str], times: list[float] | None
+) -> None:
+    assert picture_times([Path(name) for name in names]) == times

@@ -193,6 +193,17 @@ def test_pictures_have_the_rate_that_is_given(tmp_path: Path, suffix: str) -> No
     assert [frame.t for frame in ranged] == pytest.approx([0.3, 0.4, 0.5])
 
 
+def test_pictures_that_are_missing_leave_their_time(tmp_path: Path) -> None:
+    paths = write_pictures(tmp_path, 8)
+    clip = open_clip([*paths[:3], *paths[5:]], fps=10)
+    assert [frame.index for frame in clip] == [0, 1, 2, 3, 4, 5]
+    assert [frame.t for frame in clip] == pytest.approx([0, 0.1, 0.2, 0.5, 0.6, 0.7])
+    (warning,) = clip.warnings
+    assert "missing" in warning
+    assert "up to 3 steps" in warning
+    assert not open_clip(paths, fps=10).warnings
+
+
 def test_a_single_picture_has_no_rate(tmp_path: Path) -> None:
     clip = open_clip(write_pictures(tmp_path, 1))
     (frame,) = clip
