@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from data.sheet import STONE, Stone
 from vision.appearance import Appearance
 from vision.measure import Measures, measure_discs
+from vision.patch import EFFORT
 from vision.placing import sightings
 from vision.rays import Look
 from vision.seek import seek_about
@@ -19,11 +21,18 @@ from vision.stones import FOLLOWING, Search, judge
 
 Array = NDArray[np.float64]
 
+ROUGH = replace(EFFORT, light=False)
+"""For a place from which another one follows that is measured anew."""
+
 ON_COURSE = 0.15
 """Within this many radii of where it is expected a stone need not be looked for."""
 
 SETTLED = 0.02
 """Measured from within this many radii of its centre, a stone's place depends no more on where."""
+
+SAME = 0.1
+"""Response that is strongest within this many radii of where a stone was measured is its own: of
+151 doubtful ones in eleven clips 129 answered so, and none of these was beside."""
 
 NEARBY = 0.35
 """How far from where it is expected a stone is measured, in radii."""
@@ -69,18 +78,38 @@ def look_on_course(
 
 
 def look_beside(
-    look: Look, appearance: Appearance | None, disc: Stone = STONE, search: Search = FOLLOWING
+    look: Look,
+    seen: Sequence[Sighting | None],
+    appearance: Appearance | None,
+    disc: Stone = STONE,
+    search: Search = FOLLOWING,
 ) -> list[Sighting | None]:
-    """Measure stones that have left their course by a little: as `look_on_course`."""
+    """Measure stones that have left their course by a little: as `look_on_course`.
+
+    Parameters
+    ----------
+    seen : sequence of Sighting or None
+        What was seen on their course: where nothing answers more strongly beside it than there,
+        nothing is measured.
+    """
     about = seek_about(
         look.picture, look.camera, look.places, appearance, disc,
         radius_px=search.radius_px, reach=NEARBY,
     )  # fmt: skip
-    seen = measure_discs([replace(look, places=about)], appearance, disc)
-    within = seen.ok & (seen.shift < NEARBY * disc.radius)
-    looks = [replace(look, places=np.where(within[:, None], seen.centre, about))]
-    seen = measure_discs(looks, appearance, disc)
-    return _found(seen, looks, np.ones(len(about), bool), disc, search)
+    known = np.array([(inf, inf) if s is None else (s.x, s.y) for s in seen]).reshape(-1, 2)
+    others = np.flatnonzero(np.hypot(*(about - known).T) > SAME * disc.radius)
+    out: list[Sighting | None] = [None] * len(about)
+    if not len(others):
+        return out
+    (at,) = _moved([look], about, others)
+    found = measure_discs([at], appearance, disc, ROUGH)
+    within = found.ok & (found.shift < NEARBY * disc.radius)
+    looks = [replace(at, places=np.where(within[:, None], found.centre, at.places))]
+    found = measure_discs(looks, appearance, disc)
+    beside = _found(found, looks, np.ones(len(others), bool), disc, search)
+    for i, sighting in zip(others.tolist(), beside, strict=True):
+        out[i] = sighting
+    return out
 
 
 def _moved(looks: Sequence[Look], places: Array, chosen: NDArray[np.intp]) -> list[Look]:

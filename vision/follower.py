@@ -229,7 +229,9 @@ class Follower:
         ]
         if astray:
             look = _look_at(view, leads, expected, astray, step)
-            seen = look_beside(look, self.appearance, self.disc, self.search)
+            seen = look_beside(
+                look, [found[i] for i in astray], self.appearance, self.disc, self.search
+            )
             for index, sighting in zip(astray, seen, strict=True):
                 if _score(found[index]) < DOUBTFUL * _score(sighting):
                     found[index] = sighting

@@ -100,7 +100,7 @@ class Measures:
         For a stone 0 to about 3, for a plain disc 0 to 1.
     light : ndarray, shape (n, 2)
         Where the edge of the cap by its lightness alone has its middle, off the centre, m; NaN
-        where it was not found.
+        where it was not found, or not sought.
     swept : ndarray of bool, shape (n,)
         Whether it was seen how far a fast stone's cap is smeared, and the centre goes by that.
     bends : ndarray, shape (n, 6)
@@ -247,11 +247,6 @@ def _stones(
         (appearance.wall[0], walls),
     )  # fmt: skip
     fit, exact = (both.at_places(part) for part in (slice(len(places)), slice(len(places), None)))
-    steps = by_lightness(cap, granite).astype(np.float32)[:, None, None]
-    light_rim = replace(cap_rim, fall=falls[..., 0] * steps)
-    lit = fit_circles(
-        rays, (light_rim,), appearance.slack, effort.edge_reach, 0.25 * pixel, 1, appearance.wall
-    )
     # All around, a stone's granite is of one lightness, and its cap is as large as any other's;
     # caps and shoulders of people are neither. Behind a shoulder that falls off ice may shine.
     odd = light - level
@@ -270,7 +265,15 @@ def _stones(
     shift[rows] += share * (exact.shift[near] - shift[rows])
     covariance[rows] += share[..., None] * (exact.covariance[near] - covariance[rows])
     bends[rows] += share * (exact.bends[near] - bends[rows])
-    lightness = np.where(lit.ok[:, None], lit.shift - shift, np.nan)
+    lightness = np.full((len(places), 2), np.nan)
+    if effort.light:
+        steps = by_lightness(cap, granite).astype(np.float32)[:, None, None]
+        light_rim = replace(cap_rim, fall=falls[..., 0] * steps)
+        lit = fit_circles(
+            rays, (light_rim,), appearance.slack, effort.edge_reach, 0.25 * pixel, 1,
+            appearance.wall,
+        )  # fmt: skip
+        lightness = np.where(lit.ok[:, None], lit.shift - shift, np.nan)
     # What displaces the edges of one side is made good by the other side, if that is seen.
     hidden = np.tile(0.04 * disc.radius * (1 - visible)[:, None], 2)
     swept = np.zeros(len(places), bool)

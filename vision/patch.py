@@ -43,6 +43,8 @@ class Effort:
         from which ice may be seen behind the far shoulder.
     rounds : int
         How often the edges are chosen about the circle that they gave.
+    light : bool
+        Whether it is told where the edge of the cap by its lightness alone has its middle.
     """
 
     rays: int = 48
@@ -57,6 +59,7 @@ class Effort:
     edge_reach: float = 0.035
     most_tilt: float = 0.15
     rounds: int = 2
+    light: bool = True
 
 
 EFFORT = Effort()

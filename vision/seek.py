@@ -35,6 +35,9 @@ MOST_PLACES = 60
 VIVID = 36.0
 """Distance from grey, L*a*b* units, from which a colour may be that of a cap."""
 
+BY_FOURIER = 121
+"""Weights from which on OpenCV correlates by Fourier transforms, whatever they are."""
+
 LEAST_IN_VIEW = 0.4
 """Share of cap or ring of which at least the mean is taken: less in view counts less."""
 
@@ -192,8 +195,22 @@ def _stone_response(ice: IceMap, appearance: Appearance, disc: Stone) -> Floats:
 
 
 def _filtered(values: Floats, kernel: Floats) -> Floats:
+    """Correlate a map with a kernel of as many rows as columns, an odd number."""
+    half = len(kernel) // 2
+    upper, lower = kernel[: half + 1], kernel[half:].copy()
+    if lower.size >= BY_FOURIER:
+        return _correlated(values, kernel, half)
+    # Directly, half by half: of a ring most weights are 0.
+    lower[0] = 0
+    return _correlated(values, upper, half) + _correlated(values, lower, 0)
+
+
+def _correlated(values: Floats, kernel: Floats, row: int) -> Floats:
+    """Correlate a map with a kernel about the middle of one of its rows; beyond the map is 0."""
+    anchor = kernel.shape[1] // 2, row
     return np.asarray(
-        cv2.filter2D(values, cv2.CV_32F, kernel, borderType=cv2.BORDER_CONSTANT), np.float32
+        cv2.filter2D(values, cv2.CV_32F, kernel, anchor=anchor, borderType=cv2.BORDER_CONSTANT),
+        np.float32,
     )
 
 

@@ -129,7 +129,10 @@ def search_picture(
         places = places[new]
     refused: list[Refusal] = []
     # The second time from the centre that the first has found, roughly.
-    rough = replace(search, least_evidence=search.least_again), replace(EFFORT, rounds=1)
+    rough = (
+        replace(search, least_evidence=search.least_again),
+        replace(EFFORT, rounds=1, light=False),
+    )
     for least, effort in (rough, (search, EFFORT)):
         if not len(places):
             return Findings((), tuple(refused))

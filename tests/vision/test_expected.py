@@ -21,7 +21,8 @@ def test_where_a_stone_is_expected_has_no_say_in_where_it_is(aside: float) -> No
     for turn in range(4):
         way = aside * np.array([np.cos(np.pi * turn / 2), np.sin(np.pi * turn / 2)])
         look = Look(image, camera, true + way)
-        seen = look_beside(look, learned) if aside > 0.02 else look_on_course([look], learned)
+        beside = aside > 0.02
+        seen = look_beside(look, [None] * 3, learned) if beside else look_on_course([look], learned)
         assert all(sighting is not None for sighting in seen)
         found[turn] = np.array([(s.x, s.y) for s in seen if s is not None])
     places = np.array(list(found.values()))
@@ -48,3 +49,16 @@ def test_where_no_stone_is_none_is_seen() -> None:
     assert first is not None
     assert bare is None
     assert beside is None  # a radius aside is no longer on course
+
+
+def test_beside_a_stone_that_answers_where_it_was_seen_nothing_is_measured() -> None:
+    scene = scene_of([(0.2, 0.9, RED), (-0.4, 0.2, YELLOW)])
+    image, camera = np.asarray(render_still(scene, CAMERA), np.uint8), camera_of(CAMERA, scene)
+    learned = learn(search_picture(image, camera).stones)
+    look = Look(image, camera, np.array([[0.2, 0.9], [-0.4, 0.2]]))
+    here = look_on_course([look], learned)
+    aside = [None if s is None else s._replace(x=s.x + 0.02) for s in here]
+    assert look_beside(look, [here[0], aside[1]], learned)[0] is None
+    _, beside = look_beside(look, [here[0], aside[1]], learned)
+    assert beside is not None
+    assert np.hypot(beside.x + 0.4, beside.y - 0.2) < 0.008

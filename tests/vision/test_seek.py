@@ -8,7 +8,7 @@ import pytest
 
 from data.sheet import STONE, Stone
 from vision.camera import Camera
-from vision.seek import seek, seek_about
+from vision.seek import _filtered, seek, seek_about
 
 SIZE = (640, 480)
 SCALE = 110.0
@@ -59,3 +59,13 @@ def test_a_disc_is_found_about_where_it_is_expected() -> None:
     aside = PLACES + 0.06 * np.array([(1, 0), (0, -1), (-0.7, 0.7), (-0.7, -0.7)])
     found = seek_about(image, ABOVE, aside, looks, STONE, radius_px=10.0, reach=0.8)
     assert np.linalg.norm(found - PLACES, axis=1).max() < 0.01
+
+
+@pytest.mark.parametrize("half", [3, 7, 9])  # directly, and by Fourier transforms
+def test_maps_are_correlated_alike_by_either_way(half: int) -> None:
+    rng = np.random.default_rng(3)
+    values = rng.normal(size=(31, 26)).astype(np.float32)
+    kernel = rng.normal(size=(2 * half + 1, 2 * half + 1)).astype(np.float32)
+    windows = np.lib.stride_tricks.sliding_window_view(np.pad(values, half), kernel.shape)
+    told = np.einsum("ijkl,kl->ij", windows.astype(float), kernel)
+    np.testing.assert_allclose(_filtered(values, kernel), told, atol=1e-4)
