@@ -109,7 +109,7 @@ def command_line(version: str) -> argparse.ArgumentParser:
         "estimate",
         "tracks to results.json",
         "  curlshot estimate shot/tracks.csv\n"
-        "  curlshot estimate pucks.csv --length-unit cm --radius 0.035 --mass 1=32 --mass 2=30\n",
+        "  curlshot estimate pucks.csv --length-unit cm --radius 0.035 --mass A=32 --mass B=30\n",
     )
     estimate_.add_argument("inputs", nargs="+", metavar="TRACKS", help="tables of tracks")
     radius_option(estimate_)

@@ -131,10 +131,10 @@ def summary(
             f"hit         {hit.stones[0]} on {hit.stones[1]} at {hit.t:.3f} s: "
             f"e = {plus_minus(hit.restitution, hit.stderr)}"
         )
+    law = "" if results.friction.value is None else f" ({results.friction.law})"
     lines += [
         f"restitution e = {plus_minus(results.restitution.value, results.restitution.stderr)}",
-        f"friction    μ = {plus_minus(results.friction.value, results.friction.stderr)}"
-        f" ({results.friction.law})",
+        f"friction    μ = {plus_minus(results.friction.value, results.friction.stderr)}{law}",
     ]
     for model, score in results.simulations.items():
         off = f"— ({score.note or 'nothing to compare'})"

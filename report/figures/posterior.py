@@ -69,7 +69,7 @@ def posterior_figure(laws: Joint | None, samples: pd.DataFrame | None = None) ->
                     _draw_two(ax, across, below, laws, samples)
                     ax.set_ylim(*ranges[below])
                 ax.set_xlim(*ranges[across])
-                ax.locator_params(axis="x", nbins=3)
+                ax.locator_params(axis="x", nbins=2, min_n_ticks=2, steps=[1, 2, 4, 5, 10])
                 ax.ticklabel_format(useOffset=False)
                 if i == count - 1:
                     ax.set_xlabel(NAMES[across])
@@ -128,7 +128,9 @@ def _draw_one(
         density = np.exp(-(((x - middle) / sd) ** 2) / 2) / (sd * np.sqrt(2 * np.pi))
         ax.plot(x, density, color=BLUE)
     ax.set_ylim(bottom=0)
-    ax.set_title(plus_minus(middle, sd), fontsize=8.5, fontweight="normal", loc="center")
+    ax.set_title(
+        f"{NAMES[name]}\n{plus_minus(middle, sd)}", fontsize=8.5, fontweight="normal", loc="center"
+    )
 
 
 def _draw_two(

@@ -13,6 +13,14 @@ from report.units import FEET
 from tests.report.glides import glide
 
 
+def test_the_law_is_named_beside_a_friction_that_is_known(shot):
+    friction = replace(shot.results.friction, value=0.0107, stderr=0.0002, law="fit")
+    text = summary(replace(shot.results, friction=friction), shot.tracks)
+    assert "friction    μ = 0.01070 ± 0.00020 (fit)\n" in text
+    none = replace(friction, value=None, stderr=None)
+    assert "friction    μ = —\n" in summary(replace(shot.results, friction=none), shot.tracks)
+
+
 def test_the_summary_says_how_far_the_last_places_may_be_off(shot):
     score = replace(
         shot.results.simulations["frictional"],
