@@ -11,7 +11,7 @@ edges of a ring the same way; this moves them against each other.
 from __future__ import annotations
 
 from dataclasses import replace
-from math import erf, pi, sqrt
+from math import erf, inf, pi, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,9 +49,11 @@ ASTRAY = 0.03
 APART = 2.5
 """How far the channels may contradict each other, or what is possible, in standard deviations."""
 
-UNTOLD, MOST_SD = 0.25, 0.5
-"""What is not known of the share of light where colours do not tell it; and they do not where their
-standard error is larger than the second."""
+UNTOLD = 0.25
+"""What is not known of the share of light where an outline hides it."""
+
+VAGUE = 0.5
+"""Standard error of a share that does not tell what is possible from what is not quite."""
 
 MOST_LINE = 0.15
 """Line beside the paint, px, from which on colours moved apart tell nothing of light."""
@@ -134,8 +136,8 @@ def share_of_light(
     Returns
     -------
     share, sd : float
-        From 0 (codes were blurred) to 1, and its standard error. None where the edges of the outer
-        ring do not tell: not in view, no colour, or moved by something else.
+        From 0 (codes were blurred) to 1, and its standard error; what is usual where the edges of
+        the outer ring have no colour. None where these are not in view, or moved by something else.
     """
     h, w = picture.shape[:2]
     normals = lay_out(
@@ -155,14 +157,15 @@ def share_of_light(
                 table.append(np.stack([np.full(good.sum(), drift), *aside[:, good], apart[good]]))
     told = np.array([_slope_of(np.hstack(t)) for t in tables if len(t) == 2]).reshape(-1, 2)
     if not len(told):
-        return None
+        return likely(0.0, inf)
     (moved, var), blur = told.T, 1 / (sqrt(2 * pi) * slope)
     mean, sd = np.average(moved, weights=1 / var), 1 / sqrt((1 / var).sum())
     contradict = np.abs(moved - mean) > APART * np.sqrt(var)
-    if contradict.any() or not -APART * sd < mean < MOST_SHARE * blur:
-        return None
     share_sd = float(sd / blur) / WHOLE
-    return likely(float(mean / blur) / WHOLE, share_sd) if share_sd < MOST_SD else None
+    beyond = APART * sd if share_sd > VAGUE else 0.0
+    if contradict.any() or not -APART * sd < mean < MOST_SHARE * blur + beyond:
+        return None
+    return likely(float(mean / blur) / WHOLE, share_sd)
 
 
 def likely(share: float, sd: float) -> tuple[float, float]:

@@ -70,17 +70,25 @@ def test_an_outline_is_not_taken_for_light(paint: str) -> None:
     assert not any(found.edge.light)
 
 
-def test_what_a_line_or_no_colour_leaves_open_is_left_open() -> None:
+def test_what_a_line_hides_is_left_open() -> None:
     image = picture("navy-orange", 2.2)
     found = find_house(image)
     assert found is not None
     camera = found.view, found.rig, found.evidence
-    plain, lined = PaintEdge(sd=0.01), PaintEdge(sd=0.01, line=0.3)
-    assert any(lit(plain, image, *camera).light)
+    plain, lined = (lit(PaintEdge(sd=0.01, line=line), image, *camera) for line in (0.0, 0.3))
+    assert any(plain.light) and not any(lined.light)
+    assert lined.sd > plain.sd > 0.01
+
+
+@pytest.mark.parametrize("gamma", [1.0, 2.2])
+def test_without_colour_the_edge_lies_between_the_two_and_as_unsure_as_that(gamma: float) -> None:
+    """Half way between codes it would be 3.1 mm too large where light was blurred."""
+    image = picture("navy-orange", gamma)
     grey = np.repeat(cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)[..., None], 3, -1)
-    for edge, shown in ((lined, image), (plain, grey)):
-        left = lit(edge, shown, *camera)
-        assert not any(left.light) and left.sd > lit(plain, image, *camera).sd > edge.sd
+    found = find_house(grey)
+    assert found is not None
+    assert -0.12 < found.edge.light[TWELVE] < -0.05
+    assert 0.6 < abs(larger(found)) < min(2.2, 2e3 * found.edge.sd / 84)
 
 
 @pytest.mark.parametrize("measured", [-0.2, 0.05, 0.5, 0.9, 1.1])
