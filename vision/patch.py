@@ -19,6 +19,10 @@ Bytes = NDArray[np.uint8]
 HANDLE_HEIGHT = 0.15
 """How high above the ice the handle's grip is seen, m."""
 
+HANDLE_HEIGHT_SD = 0.02
+"""How far from the heights at which a cap is unrolled what turns on it is seen, m: grips are 3 to
+5 cm above the cap, their feet and shades on it."""
+
 
 @dataclass(frozen=True)
 class Effort:

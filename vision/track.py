@@ -20,7 +20,7 @@ from vision.clip import Clip
 from vision.follow import Gate, Track, follow
 from vision.late import seen_late
 from vision.naming import names_by_motion
-from vision.patch import handle_radii, is_plain
+from vision.patch import HANDLE_HEIGHT_SD, handle_radii, is_plain
 from vision.rejoin import rejoined
 from vision.roundness import edge_errors
 from vision.smeared import widened
@@ -31,6 +31,7 @@ from vision.watch import Watch
 if TYPE_CHECKING:
     import pandas as pd
 
+Array = NDArray[np.float64]
 
 TOLD = Gate(least_score=1.15, least_open=1.5)
 """Evidence in tracks of stones: in the open they show 2 to 3, half covered 1.3 or more; people who
@@ -126,7 +127,10 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
     )
     edge = dict(zip(named, errors, strict=True))
     team = _teams(named, watch.appearance)
-    rows = [_rows(name, named[name], team[name], disc, edge[name]) for name in sorted(named)]
+    off = off_axis(named, cameras, disc)
+    rows = [
+        _rows(name, named[name], team[name], disc, edge[name], off[name]) for name in sorted(named)
+    ]
     late = seen_late({names[number]: tracks[int(number)] for number in rest}, cameras, disc)
     return StoneTracks(
         {name: np.concatenate([part[name] for part in rows]) for name in SIGHTING_COLUMNS},
@@ -134,11 +138,30 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
     )
 
 
-def _rows(name: str, track: Track, team: str, disc: Stone, edge: NDArray[np.float64]) -> Columns:
+def off_axis(
+    tracks: Mapping[str, Track], cameras: Sequence[Camera], disc: Stone
+) -> dict[str, Array]:
+    """How far aside the pictures of caps may have been unrolled, m: a standard error per axis.
+
+    By the errors of the centres and, in a slanting view, of the height at which the handle is.
+    """
+    unknown = np.array([0.0, 0.0, np.inf])
+    positions = {
+        camera.frame: unknown if camera.position is None else camera.position for camera in cameras
+    }
+    height_sd = 0.0 if is_plain(disc) else HANDLE_HEIGHT_SD
+    out = {}
+    for name, track in tracks.items():
+        seen = np.array([(s.x, s.y, s.sd_x, s.sd_y) for s in track.sightings])
+        at = np.array([positions[frame] for frame in track.frames])
+        slant = np.hypot(*(seen[:, :2] - at[:, :2]).T) / at[:, 2]
+        out[name] = np.hypot(seen[:, 2:].mean(1), height_sd * slant)
+    return out
+
+
+def _rows(name: str, track: Track, team: str, disc: Stone, edge: Array, off: Array) -> Columns:
     seen = [*track.sightings]
     spectra = [sighting.spectrum for sighting in seen]
-    # Caps were unrolled about their centres as these were measured.
-    off = np.array([0.5 * (sighting.sd_x + sighting.sd_y) for sighting in seen])
     theta, sd_theta = angles_in_parts(np.array(track.times), spectra, handle_radii(disc), off)
     seen = steadied(track.times, widened(track.times, seen))
     x, y, sd_x, sd_y, sd_place_x, sd_place_y = np.array(
