@@ -166,28 +166,23 @@ class _Evidence(NamedTuple):
 def _evidence(fit: ShotFit, k: int, radius: float) -> _Evidence:
     """Tell what speaks for meeting k."""
 
-    def impulses(states: Sequence[Encounter]) -> Floats:
+    def told(states: Sequence[Encounter]) -> Floats:
         state = states[0]
         change = state.after - state.before
-        return 0.5 * np.asarray(change[1] - change[0])
-
-    def along(states: Sequence[Encounter]) -> Floats:
-        state = states[0]
-        change = (state.after - state.before) @ state.normal
+        first, second = change @ state.normal
         closing = float((state.before[0] - state.before[1]) @ state.normal)
-        return np.array([change[1] - change[0], -change[0], change[1], closing])
+        impulse = 0.5 * (change[1] - change[0])
+        return np.array([*impulse, second - first, -first, second, closing])
 
-    value, cov = fit.propagate([k], impulses)
-    both = float(np.sqrt(value @ np.linalg.solve(cov + 1e-12 * np.eye(2), value)))
-    push, push_cov = fit.propagate([k], along)
-    error = np.sqrt(np.diag(push_cov))
+    value, cov = fit.propagate([k], told)
+    impulse, push = value[:2], value[2:]
+    both = float(np.sqrt(impulse @ np.linalg.solve(cov[:2, :2] + 1e-12 * np.eye(2), impulse)))
+    error = np.sqrt(np.diag(cov)[2:])
     state = fit.encounter(k)
-    closing = float((state.before[0] - state.before[1]) @ state.normal)
-    unsure = float(push_cov[3, 3] ** 0.5)
     away = abs(float(np.hypot(*(state.places[1] - state.places[0]))) / (2 * radius) - 1)
     pushed = bool(push[0] >= 3 * error[0])
     possible = pushed and away <= REACH - 1 and push[0] >= 0.2 * radius
-    possible &= closing + 2 * unsure >= push[0] / MOST_PUSH
+    possible &= bool(push[3] + 2 * error[3] >= push[0] / MOST_PUSH)
     possible &= bool(np.min(push[1:3] + 2 * error[1:3]) >= SHARE * np.max(push[1:3]))
     return _Evidence(both if possible else 0.0, pushed, -away)
 
