@@ -4,13 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from data.tracks import Columns
+from vision.projection import (
+    AROUND,
+    behind,
+    distort,
+    middle,
+    place_jacobian,
+    rotation,
+    scale_of,
+    shared_place_cov,
+    undistort,
+)
+from vision.projection import PARAMETERS as PARAMETERS
+from vision.projection import apply_homography as apply_homography
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -23,10 +35,6 @@ CAMERA_COLUMNS: tuple[str, ...] = (
 )  # fmt: skip
 
 
-PARAMETERS = 9
-"""Turn about the camera's own axes (3, rad), log focal length, place (3, m), k1, k2."""
-
-
 @dataclass(frozen=True)
 class CameraError:
     """How well a camera is known.
@@ -34,8 +42,8 @@ class CameraError:
     Attributes
     ----------
     shared, own : ndarray, shape (9, 9)
-        Covariance of the camera's parameters (see `PARAMETERS`): the part that a clip's frames
-        share and the part that each has for itself.
+        Covariance of the camera's parameters (`vision.projection.PARAMETERS`): the part that a
+        clip's frames share and the part that each has for itself.
     scale : float
         Standard deviation of the logarithm of all lengths: how well the yardstick is known.
     drift : float
@@ -93,36 +101,21 @@ class Camera:
 
     @property
     def _centre_and_radius(self) -> tuple[Array, float]:
-        return _middle(self.size)
+        return middle(self.size)
 
     def distort(self, undistorted: ArrayLike) -> Array:
         """Undistorted pixels to pixels of the picture, shape (..., 2)."""
         u = np.asarray(undistorted, float)
         if self.k1 == 0 and self.k2 == 0:
             return u.copy()
-        c, radius = self._centre_and_radius
-        away = u - c
-        x, y = away[..., 0], away[..., 1]
-        r2 = (x * x + y * y) / radius**2  # several times as fast as a sum over the last axis
-        away *= (1 + r2 * (self.k1 + self.k2 * r2))[..., None]
-        return np.asarray(c + away)
+        return distort(u, self.k1, self.k2, self.size)
 
     def undistort(self, pixels: ArrayLike) -> Array:
         """Pixels of the picture to undistorted pixels, shape (..., 2); by Newton's method."""
         p = np.asarray(pixels, float)
         if self.k1 == 0 and self.k2 == 0:
             return p.copy()
-        c, radius = self._centre_and_radius
-        d = (p - c) / radius
-        rd = np.sqrt((d * d).sum(-1, keepdims=True))
-        r = rd.copy()
-        for _ in range(6):
-            r2 = r * r
-            far = self.k2 * r2
-            slope = 1 + r2 * (3 * self.k1 + 5 * far)
-            r -= (r * (1 + r2 * (self.k1 + far)) - rd) / np.where(np.abs(slope) < 0.1, 0.1, slope)
-        scale = np.divide(r, rd, out=np.ones_like(r), where=rd > 1e-12)
-        return np.asarray(c + radius * d * scale)
+        return undistort(p, self.k1, self.k2, self.size)
 
     def project(self, ice: ArrayLike, height: float = 0.0) -> Array:
         """Points (x, y) in metres, `height` above the ice, to pixels, shape (..., 2).
@@ -132,8 +125,8 @@ class Camera:
         Without a known position the height is ignored.
         """
         xy = np.asarray(ice, float)
-        behind = self.behind(xy, height) if height else xy
-        return self.distort(apply_homography(self.homography, behind))
+        on_ice = self.behind(xy, height) if height else xy
+        return self.distort(apply_homography(self.homography, on_ice))
 
     def behind(self, ice: Array, height: Array | float) -> Array:
         """Ice points hidden behind points (x, y), shape (..., 2), that are `height` above the ice.
@@ -142,8 +135,7 @@ class Camera:
         """
         if self.position is None:
             return ice
-        rise = np.asarray(height, float)[..., None]
-        return np.asarray(ice + (ice - self.position[:2]) * rise / (self.position[2] - rise))
+        return behind(ice, height, self.position)
 
     def ice(self, pixels: ArrayLike, height: float = 0.0) -> Array:
         """Pixels to the place (x, y), m, of what is seen there `height` above the ice."""
@@ -160,16 +152,7 @@ class Camera:
 
         The homography is K [r1 r2 −R C] up to a factor.
         """
-        c, _ = self._centre_and_radius
-        found = np.empty((3, 3))
-        found[:, :2] = self.homography[:, :2]
-        found[:2, :2] -= c[:, None] * found[2, :2]
-        found[:2, :2] /= self.f_px
-        found[:, :2] /= np.linalg.norm(found[:, 0])
-        a, b = found[:, 0], found[:, 1]
-        # The cross product; np.cross takes several times as long.
-        found[:, 2] = a[[1, 2, 0]] * b[[2, 0, 1]] - a[[2, 0, 1]] * b[[1, 2, 0]]
-        return found
+        return rotation(self.homography, self.f_px, self.size)
 
     def place_cov(self, ice: ArrayLike, height: float = 0.0) -> Array:
         """Covariance of mapped points, shape (..., 2, 2), m²; zero where nothing is known of it.
@@ -198,9 +181,8 @@ class Camera:
         if self.error is None:
             return np.zeros((*xy.shape, 2))
         by_camera = self.place_jacobian(xy, height)
-        found = by_camera @ self.error.shared @ np.swapaxes(by_camera, -1, -2)
-        found += self.error.scale**2 * xy[..., :, None] * xy[..., None, :]
-        return np.asarray(found + self.error.drift**2 * np.eye(2))
+        error = self.error
+        return shared_place_cov(xy, by_camera, error.shared, error.scale, error.drift)
 
     def place_sd(self, ice: ArrayLike, height: float = 0.0) -> Array:
         """Give the standard deviation per axis, m, of mapped points: the part frames share.
@@ -223,57 +205,13 @@ class Camera:
         if self.position is None:
             raise ValueError("the camera's place is not known")
         xy = np.asarray(ice, float)
-        rotation = self.rotation
         away = np.concatenate([xy, np.full((*xy.shape[:-1], 1), height)], axis=-1) - self.position
-        p = away @ rotation.T
         _, radius = self._centre_and_radius
-        lens = self.f_px / radius / p[..., 2]
-        q = p[..., :2] * lens[..., None]
-        by_point = np.zeros((*xy.shape[:-1], 2, 3))
-        by_point[..., 0, 0] = by_point[..., 1, 1] = lens
-        by_point[..., 2] = -q / p[..., 2:]
-        moved = np.empty((*xy.shape[:-1], 2, PARAMETERS))
-        moved[..., :3] = by_point @ _crossing(-p)
-        moved[..., 3] = q
-        moved[..., 4:7] = -by_point @ rotation
-        r2 = (q**2).sum(-1, keepdims=True)
-        slope = 1 + r2 * (3 * self.k1 + 5 * self.k2 * r2)
-        moved[..., 7] = q * r2 / slope
-        moved[..., 8] = q * r2**2 / slope
-        return np.asarray(-np.linalg.solve(by_point @ rotation[:, :2], moved))
+        return place_jacobian(away, self.rotation, self.f_px / radius, self.k1, self.k2)
 
     def scale_at(self, ice: ArrayLike) -> Array:
         """Pixels per metre at ice points, shape (..., 2): root of the Jacobian's determinant."""
-        step = 1e-3 * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
-        p = self.project(np.asarray(ice, float)[..., None, :] + step)
-        along, up = (p[..., 0, :] - p[..., 1, :]) / 2e-3, (p[..., 2, :] - p[..., 3, :]) / 2e-3
-        area = along[..., 0] * up[..., 1] - along[..., 1] * up[..., 0]
-        return np.asarray(np.sqrt(np.abs(area)))
-
-
-@lru_cache(maxsize=8)
-def _middle(size: tuple[int, int]) -> tuple[Array, float]:
-    """Middle and half diagonal of a picture, px."""
-    w, h = size
-    middle = np.array([(w - 1) / 2, (h - 1) / 2])
-    middle.flags.writeable = False
-    return middle, float(np.hypot(w, h)) / 2
-
-
-def _crossing(vectors: Array) -> Array:
-    """Matrices, shape (..., 3, 3), by which rows are multiplied to be crossed with vectors."""
-    out = np.zeros((*vectors.shape, 3))
-    x, y, z = np.moveaxis(vectors, -1, 0)
-    out[..., 0, 1], out[..., 0, 2], out[..., 1, 2] = -z, y, -x
-    out[..., 1, 0], out[..., 2, 0], out[..., 2, 1] = z, -y, x
-    return out
-
-
-def apply_homography(matrix: Array, points: ArrayLike) -> Array:
-    """Map points, shape (..., 2), by a 3×3 homography."""
-    p = np.asarray(points, float)
-    q = p @ matrix[:, :2].T + matrix[:, 2]
-    return np.asarray(q[..., :2] / q[..., 2:])
+        return scale_of(self.project(np.asarray(ice, float)[..., None, :] + AROUND))
 
 
 def camera_columns(cameras: Sequence[Camera]) -> Columns:

@@ -25,10 +25,9 @@ from vision.patch import (
     Effort,
     is_plain,
     profile_of,
-    slants,
     unrolled,
 )
-from vision.rays import Look, Rays, directions
+from vision.rays import Look, Rays, cameras_of, directions
 from vision.rims import Rim, falls_along, summed
 from vision.smeared import middles, swept_share
 
@@ -155,17 +154,18 @@ def measure_discs(
     """
     rays, handle = unrolled(looks, disc, effort)
     places = np.concatenate([look.places for look in looks])
-    scale = np.concatenate([look.camera.scale_at(look.places) for look in looks])
+    by = cameras_of(looks)
+    scale = by.scale_at(places)
     if is_plain(disc):
         return _plain(rays, handle, places, scale, disc, effort)
     assert appearance is not None
-    slant = np.concatenate([slants(look.camera, look.places) for look in looks])
     still = [
         np.zeros((len(look.places), 2)) if look.drift is None else look.drift for look in looks
     ]
     return _stones(
-        rays, handle, places, scale, slant, np.concatenate(still), appearance, disc, effort
-    )
+        rays, handle, places, scale, by.slants(places), np.concatenate(still), appearance, disc,
+        effort,
+    )  # fmt: skip
 
 
 def well_within(radius: Array, disc: Stone) -> tuple[slice, slice]:

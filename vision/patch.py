@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import Stone
-from vision.camera import Camera
-from vision.rays import Look, Profile, Rays, chained, sample_rays, straight
+from vision.rays import Look, Profile, Rays, cameras_of, chained, sample_rays, straight
 
 Array = NDArray[np.float64]
 Bytes = NDArray[np.uint8]
@@ -110,16 +109,6 @@ def handle_radii(disc: Stone, effort: Effort = EFFORT) -> Array:
     return np.asarray(rings.reshape(-1, 2).mean(1))
 
 
-def slants(camera: Camera, places: Array) -> Array:
-    """Slant of the view of places, (n, 2): how far it goes aside per metre down; 0 where unknown.
-
-    Its length is the tangent of the angle to the vertical.
-    """
-    if camera.position is None:
-        return np.zeros((len(places), 2))
-    return np.asarray((places - camera.position[:2]) / camera.position[2])
-
-
 def unrolled(looks: Sequence[Look], disc: Stone, effort: Effort) -> tuple[Rays, Bytes]:
     """Sample what pictures show of discs at places.
 
@@ -156,7 +145,8 @@ def unrolled(looks: Sequence[Look], disc: Stone, effort: Effort) -> tuple[Rays, 
         return rays, handle
     # Behind the plane of the handle a slanting view shows the cap displaced. Rings that leave
     # it show its edge, which stays while the stone turns: they are blanked.
-    tilt = np.concatenate([np.hypot(*slants(look.camera, look.places).T) for look in looks])
+    slant = cameras_of(looks).slants(np.concatenate([look.places for look in looks]))
+    tilt = np.hypot(*slant.T)
     within = effort.handle_edge * disc.cap_radius - (HANDLE_HEIGHT - disc.cap_height) * tilt
     handle *= (sampled.radius[count + 1 :: 2] < within[:, None])[:, None, :, None]
     return rays, np.concatenate([handle, _rings(rays, handle_radii(disc, effort))], axis=2)

@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from data.sheet import Stone
 from vision.camera import Camera
+from vision.cameras import Cameras
 from vision.handle import cap_spectrum
 from vision.measure import Measures
-from vision.patch import handle_radii, slants
+from vision.patch import handle_radii
 from vision.rays import Look
 from vision.shelf import Kept
 from vision.sighting import Sighting
@@ -77,27 +78,44 @@ def sightings(
     ]  # fmt: skip
 
 
-def placed_by(camera: Camera, seen: Sequence[Sighting], disc: Stone) -> list[Sighting]:
-    """Give sightings the places that a camera of their picture gives them, with what they share."""
-    if not seen:
-        return []
-    places = camera.ice(np.array([sighting.pixel for sighting in seen]), disc.cap_height)
-    size = 1 / camera.scale_at(places)
-    shared = _shared_errors(camera, places, size, disc)
-    told = zip(seen, places.tolist(), shared.tolist(), size.tolist(), strict=True)
-    return [
+def placed_by(
+    cameras: Sequence[Camera], seen: Sequence[Sequence[Sighting]], disc: Stone
+) -> list[list[Sighting]]:
+    """Give sightings the places that cameras of their pictures give them, with what they share.
+
+    Parameters
+    ----------
+    cameras : sequence of Camera
+        Of pictures of one size.
+    seen : sequence of sequence of Sighting
+        What was seen in the picture of each.
+    disc : Stone
+        Size of the discs.
+    """
+    each = [[*one] for one in seen]
+    flat = [sighting for one in each for sighting in one]
+    if not flat:
+        return each
+    by = Cameras.of(cameras, [len(one) for one in each])
+    places = by.ice(np.array([sighting.pixel for sighting in flat]), disc.cap_height)
+    size = 1 / by.scale_at(places)
+    shared = _shared_errors(by, places, size, disc)
+    told = zip(flat, places.tolist(), shared.tolist(), size.tolist(), strict=True)
+    placed = iter(
         sighting._replace(x=x, y=y, sd_place=(sd_x, sd_y), pixel_size=pixel)
         for sighting, (x, y), (sd_x, sd_y), pixel in told
-    ]
+    )
+    return [[next(placed) for _ in one] for one in each]
 
 
-def _shared_errors(camera: Camera, places: Array, pixel: Array, disc: Stone) -> Array:
+def _shared_errors(by: Cameras, places: Array, pixel: Array, disc: Stone) -> Array:
     """Give the standard errors that no filter averages out, (n, 2), m: by camera and slant."""
-    rms = camera.rms_px if np.isfinite(camera.rms_px) else USUAL_RMS_PX
-    slant = slants(camera, places)
+    rms, given = np.array([(c.rms_px, c.error is None) for c in by.each])[by.row].T
+    rms = np.where(np.isfinite(rms), rms, USUAL_RMS_PX)
+    slant = by.slants(places)
     each = np.asarray(np.interp(np.hypot(*slant.T), *ASLANT))
     aslant = each[:, None] * slant if disc.cap_height else 0 * slant
-    astray = GIVEN_ASTRAY if camera.error is None else ASTRAY * np.hypot(*places.T)[:, None]
-    off = np.hypot(aslant, pixel[:, None] * astray * rms)
-    stated = np.diagonal(camera.shared_place_cov(places, disc.cap_height), axis1=1, axis2=2)
+    astray = np.where(given > 0, GIVEN_ASTRAY, ASTRAY * np.hypot(*places.T))
+    off = np.hypot(aslant, (pixel * astray * rms)[:, None])
+    stated = np.diagonal(by.shared_place_cov(places, disc.cap_height), axis1=1, axis2=2)
     return np.asarray(np.sqrt(off**2 + stated))

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vision.camera import Camera
+from vision.cameras import Cameras
 from vision.lab import lab_of
 from vision.picture import Picture, colours_at
 
@@ -43,6 +44,11 @@ class Look:
     camera: Camera
     places: Array
     drift: Array | None = None
+
+
+def cameras_of(looks: Sequence[Look]) -> Cameras:
+    """Give the cameras of all places of looks, in their order."""
+    return Cameras.of([look.camera for look in looks], [len(look.places) for look in looks])
 
 
 @dataclass(frozen=True)
@@ -137,13 +143,10 @@ def sample_rays(looks: Sequence[Look], profile: Profile, rays: int) -> Rays:
     """
     angle, around = directions(rays)
     spokes = around[:, None] * profile.node_radius[:, None]
-    projected = [
-        look.camera.project(
-            look.camera.behind(look.places[:, None, None] + spokes, profile.node_height)
-        )
-        for look in looks
-    ]
-    ends = np.concatenate(projected).astype(np.float32)
+    places = np.concatenate([look.places for look in looks])
+    nodes = (places[:, None, None] + spokes).reshape(len(places), -1, 2)
+    projected = cameras_of(looks).project(nodes, np.tile(profile.node_height, rays))
+    ends = projected.reshape(len(places), *spokes.shape).astype(np.float32)
     across, down = ends[..., 0] @ profile.mix, ends[..., 1] @ profile.mix
     width, high = looks[0].camera.size
     if (ends >= 0).all() and (ends <= np.array([width - 1, high - 1], np.float32)).all():

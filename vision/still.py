@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from data.sheet import Stone
 from vision.camera import Camera
+from vision.cameras import Cameras
 from vision.picture import Picture, lightness_at
 from vision.sighting import Sighting
 
@@ -82,14 +83,14 @@ def _samples(disc: Stone) -> Array:
     return np.asarray(disc.radius * np.stack([x[inside], y[inside]], -1))
 
 
-def _pixels(camera: Camera, places: Array, disc: Stone) -> tuple[Array, Array, Array]:
+def _pixels(by: Cameras, places: Array, disc: Stone) -> tuple[Array, Array, Array]:
     """Pixels of the samples about places, (n, m, 2), of their middles, and px per metre, (n, 2, 2).
 
     Over a stone the camera is taken for linear: the same in both pictures.
     """
     reach = 0.5 * disc.radius
     about = np.array([[0.0, 0.0], [reach, 0.0], [0.0, reach]])
-    seen = camera.project(places[:, None] + about, disc.cap_height)
+    seen = by.project(places[:, None] + about, disc.cap_height)
     scale = np.swapaxes(seen[:, 1:] - seen[:, :1], 1, 2) / reach
     return seen[:, :1] + _samples(disc) @ np.swapaxes(scale, 1, 2), seen[:, 0], scale
 
@@ -120,7 +121,8 @@ def portraits(
     """
     if not seen:
         return []
-    pixels, _, _ = _pixels(camera, np.array([(s.x, s.y) for s in seen]), disc)
+    by = Cameras.of([camera], [len(seen)])
+    pixels, _, _ = _pixels(by, np.array([(s.x, s.y) for s in seen]), disc)
     limit = np.array(camera.size) - 2.0
     whole = np.all((pixels > 1) & (pixels < limit), axis=(1, 2)).tolist()
     step = np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]])
@@ -152,12 +154,12 @@ def unchanged(
     if not known:
         return [[] for _ in views]
     places = np.array([(p.sighting.x, p.sighting.y) for p in known])
-    seen = [_pixels(camera, places, disc) for _, camera in views]
-    middle, scale = (np.array(each) for each in list(zip(*seen, strict=True))[1:])
-    lightness = [
-        _lightness(picture, pixels)
-        for (picture, _), (pixels, _, _) in zip(views, seen, strict=True)
-    ]
+    by = Cameras.of([camera for _, camera in views], [len(known)] * len(views))
+    pixels, middle, scale = (
+        each.reshape(len(views), len(known), *each.shape[1:])
+        for each in _pixels(by, np.tile(places, (len(views), 1)), disc)
+    )
+    lightness = [_lightness(picture, at) for (picture, _), at in zip(views, pixels, strict=True)]
     change = np.array(lightness) - np.array([p.lightness for p in known])
     found = (np.array([p.inverse for p in known]) @ change[..., None])[..., 0]
     rest = change - (np.array([p.design for p in known]) @ found[..., None])[..., 0]

@@ -151,7 +151,8 @@ def search_picture(
         with_samples(sighting, seen, i, disc)
         for i, sighting in zip(chosen.tolist(), found, strict=True)
     ]
-    return Findings(tuple(placed_by(camera, _apart(stones, disc), disc)), tuple(refused))
+    (placed,) = placed_by([camera], [_apart(stones, disc)], disc)
+    return Findings(tuple(placed), tuple(refused))
 
 
 def whole_ice(camera: Camera, disc: Stone, search: Search) -> Bounds:

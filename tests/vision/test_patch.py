@@ -1,11 +1,9 @@
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from data.sheet import STONE
-from vision.patch import EFFORT, handle_radii, is_plain, profile_of, slants, unrolled
+from vision.patch import EFFORT, handle_radii, is_plain, profile_of, unrolled
 from vision.pose import View, camera
 from vision.rays import Look
 from vision.rig import OVERHEAD, start_rig
@@ -20,11 +18,6 @@ PLACES = np.array([[0.0, 0.0], [1.5, 0.0], [3.0, -4.0]])
 
 def test_a_camera_straight_above_shows_all_places_at_one_scale() -> None:
     np.testing.assert_allclose(DOWN.scale_at(PLACES), FOCAL / HEIGHT, rtol=1e-6)
-
-
-def test_views_slant_by_the_place_off_the_camera_s_foot() -> None:
-    np.testing.assert_allclose(slants(DOWN, PLACES), PLACES / HEIGHT, atol=1e-12)
-    np.testing.assert_array_equal(slants(replace(DOWN, position=None), PLACES), 0)
 
 
 def test_rays_cover_the_cap_and_its_granite() -> None:

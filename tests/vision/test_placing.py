@@ -21,16 +21,17 @@ PLACES = [(0.0, 0.5), (1.5, -1.0), (-2.0, 2.0)]
 def test_places_are_those_under_the_pixels_with_the_caps_height_taken_out() -> None:
     pixels = DOWN.project(np.array(PLACES), STONE.cap_height).tolist()
     seen = [sighting((9.0, 9.0))._replace(pixel=(u, v)) for u, v in pixels]
-    found = placed_by(DOWN, seen, STONE)
+    found, none = placed_by([DOWN, DOWN], [seen, []], STONE)
     np.testing.assert_allclose([(s.x, s.y) for s in found], PLACES, atol=1e-6)
     np.testing.assert_allclose([s.pixel_size for s in found], HEIGHT / FOCAL, rtol=0.01)
-    assert placed_by(DOWN, [], STONE) == []
+    assert none == []
+    assert placed_by([DOWN], [[]], STONE) == [[]]
 
 
 def stated(camera: Camera, disc: Stone = STONE) -> np.ndarray:
     pixels = DOWN.project(np.array(PLACES), disc.cap_height).tolist()
     seen = [sighting((9.0, 9.0))._replace(pixel=(u, v)) for u, v in pixels]
-    return np.array([s.sd_place for s in placed_by(camera, seen, disc)])
+    return np.array([s.sd_place for s in placed_by([camera], [seen], disc)[0]])
 
 
 def test_what_sightings_share_is_the_camera_s_and_what_a_slant_hides() -> None:
@@ -49,7 +50,7 @@ def test_a_cap_is_told_best_where_its_wall_is_seen_and_its_shoulder_behind_it() 
         down = camera(View(np.array([0, 0, 0, np.log(FOCAL)])), away, (9000, 9000))
         pixel = down.project(np.zeros((1, 2)), STONE.cap_height)[0]
         seen = [sighting((0.0, 0.0))._replace(pixel=(float(pixel[0]), float(pixel[1])))]
-        x, y = placed_by(replace(down, rms_px=0.0), seen, STONE)[0].sd_place
+        x, y = placed_by([replace(down, rms_px=0.0)], [seen], STONE)[0][0].sd_place
         np.testing.assert_allclose(x / y, 0.75, rtol=1e-6)
         return float(np.hypot(x, y)) / slant
 
