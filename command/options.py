@@ -13,7 +13,7 @@ def radius_option(parser: argparse.ArgumentParser) -> None:
     """Add the radius of the discs."""
     parser.add_argument(
         "--radius",
-        type=values.positive,
+        type=values.radius,
         default=STONE.radius,
         metavar="METRES",
         help=f"radius of the discs ({STONE.radius}: a curling stone)",

@@ -45,6 +45,11 @@ def friction(text: str) -> float:
     return number(text, 1e-3, 0.1, "a friction of ice, 0.001 to 0.1")
 
 
+def radius(text: str) -> float:
+    """Read the radius of a disc, m; centimetres and millimetres are refused."""
+    return number(text, 1e-3, 1.0, "a radius in metres, 0.001 to 1")
+
+
 def offset(text: str) -> float:
     """Read a distance, m, of either sign."""
     return number(text, -5.0, 5.0, "a distance in metres, -5 to 5")

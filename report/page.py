@@ -23,6 +23,7 @@ from data.sheet import House
 from report.cells import data, data_parts, data_significant
 from report.gallery import pictures
 from report.listing import page_tables
+from report.numbers import count
 from report.playback import playback
 from report.provenance import UNKNOWN, Provenance, libraries
 from report.style import render, stone_colours
@@ -162,6 +163,7 @@ def _environment() -> Environment:
     environment.filters["number"] = data
     environment.filters["significant"] = data_significant
     environment.globals["pair"] = data_parts
+    environment.globals["count"] = count
     return environment
 
 
@@ -209,8 +211,7 @@ def _remove_stale(folder: Path, names: set[str]) -> None:
 def _lead(results: Results, tracks: pd.DataFrame) -> str:
     """Say in a sentence what was seen."""
     moved = moving_stones(tracks, results.collisions, results.radius)
-    count = tracks["stone"].nunique()
-    stones = f"{count} stone{'' if count == 1 else 's'}"
+    stones = count(tracks["stone"].nunique(), "stone")
     which = "none of which moved" if not moved else f"of which {_listed(moved)} moved"
     return f"{stones}, {which}, watched for {results.input.duration:.1f} s."
 

@@ -43,6 +43,8 @@ def test_what_is_meant_is_read(read, text: str, value) -> None:
         (values.positive, "inf", "not a positive number"),
         (values.fraction, "1.2", "a number from 0 to 1"),
         (values.friction, "0.5", "a friction of ice"),
+        (values.radius, "14.55", "a radius in metres"),
+        (values.radius, "-1", "a radius in metres"),
         (values.offset, "far", "a distance in metres"),
         (values.speed, "0", "nor a factor such as 1.1x"),
         (values.speed, "11x", "at most 10x"),

@@ -127,7 +127,7 @@ def test_what_is_read_is_what_is_meant(written):
         assert any(abs(value * factor - shown) <= half for factor in factors), (value, text)
 
 
-def test_the_answer_comes_first(written):
+def test_the_answer_comes_first(written, tmp_path, shot):
     said = Page(written).said
     assert "0.831 ± 0.012" in said
     assert "0.01093 ± 0.00041" in said
@@ -135,7 +135,14 @@ def test_the_answer_comes_first(written):
     for words in ("A on B at", "1.2 cm rms", "no spins after the hit", "4 of 5 frames", "0.25 px"):
         assert said.index(words) < first
     assert "1.2.3" in said
-    assert "frictional, the shot again as fitted to the whole of it" in " ".join(said.split())
+    said = " ".join(said.split())
+    assert "frictional, the shot again as fitted to the whole of it" in said
+    results = dataclasses.replace(
+        shot.results, collisions=shot.results.collisions[:1], glides=shot.results.glides[:1]
+    )
+    short = Page(write(tmp_path, shot, results=results)).said.split()
+    assert "over 1 of 1 hit Friction" in " ".join(short)
+    assert "over 1 glide Hits" in " ".join(short)
 
 
 def test_names_of_files_are_no_markup(written):
