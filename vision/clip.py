@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import pairwise
+from itertools import chain, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -66,6 +66,9 @@ class Clip:
     last: int | None = None
     warnings: list[str] = field(default_factory=list)
     read: int = 0
+    _begun: tuple[Any, Iterator[tuple[float, Planes]]] | None = field(
+        default=None, init=False, repr=False, compare=False
+    )
 
     @property
     def is_video(self) -> bool:
@@ -92,8 +95,11 @@ class Clip:
     def _read_video(self) -> Iterator[Frame]:
         index, before = -1, -np.inf
         start = end = longest = 0.0
-        with av.open(str(self.files[0])) as container:
-            for index, (t, picture) in enumerate(_decoded(container)):
+        # To open a video and to decode its first picture takes as long as ten others.
+        begun, self._begun = self._begun, None
+        container, pictures = begun or _opened(self.files[0])
+        with container:
+            for index, (t, picture) in enumerate(pictures):
                 if self.last is not None and index > self.last:
                     return
                 start = t if index == 0 else start
@@ -201,15 +207,23 @@ def _open_video(paths: Sequence[Path], first: int, last: int | None) -> Clip:
         raise InputError(f"{paths[1]}: one video at a time, please")
     broken = f"{paths[0]}: not a video that can be read (damaged, or not one at all)"
     try:
-        with av.open(str(paths[0])) as container:
-            first_one = next(_decoded(container), None)
-            if first_one is None:
-                raise InputError(broken)
-            fps, count = _promised(container)
+        container, pictures = _opened(paths[0])
+        first_one = next(pictures, None)
+        if first_one is None:
+            raise InputError(broken)
+        fps, count = _promised(container)
     except (av.error.FFmpegError, OSError):
         raise InputError(broken) from None
     height, width, _ = first_one[1].shape
-    return Clip((paths[0],), (width, height), fps, max(count, 1), first, last)
+    clip = Clip((paths[0],), (width, height), fps, max(count, 1), first, last)
+    clip._begun = container, chain([first_one], pictures)
+    return clip
+
+
+def _opened(path: Path) -> tuple[Any, Iterator[tuple[float, Planes]]]:
+    """Open a video: its container, and what is decoded from it, picture by picture."""
+    container = av.open(str(path))
+    return container, _decoded(container)
 
 
 def _promised(container: Any) -> tuple[float | None, int]:
