@@ -50,12 +50,12 @@ def test_of_a_few_pixels_the_middle_is_off_by_more_than_their_waves_say() -> Non
     round_ones = [[bent(0.0, pixel=pixel)] * 9 for pixel in (0.0, 0.004, 0.016)]
     by_waves, fine, coarse = edge_errors(round_ones, CAP) ** 2
     fine, coarse = fine - by_waves, coarse - by_waves
-    np.testing.assert_allclose(np.sqrt(coarse), SMALL * 0.016**2 / CAP, rtol=1e-6)
-    np.testing.assert_allclose(coarse / fine, 4.0**4, rtol=1e-6)
+    np.testing.assert_allclose(np.sqrt(coarse), SMALL * 0.016**3 / CAP**2, rtol=1e-6)
+    np.testing.assert_allclose(coarse / fine, 4.0**6, rtol=1e-6)
 
 
 def test_edges_by_hue_and_by_lightness_that_differ_say_so_on_their_axis() -> None:
-    apart = bent(0.001, light=(-0.002, 0.0))
+    apart = bent(0.001, light=(-0.001, 0.0))
     alike, differs, beyond, unseen = edge_errors(
         [
             [bent(0.001, light=(0.0, 0.0))] * 9,
@@ -67,7 +67,7 @@ def test_edges_by_hue_and_by_lightness_that_differ_say_so_on_their_axis() -> Non
     )
     np.testing.assert_array_equal(alike, unseen)
     added = np.sqrt(np.array([differs, beyond]) ** 2 - alike**2)
-    np.testing.assert_allclose(added, APART * np.array([[0.002, 0], [0, MOST_APART]]), atol=1e-9)
+    np.testing.assert_allclose(added, APART * np.array([[0.001, 0], [0, MOST_APART]]), atol=1e-9)
 
 
 def test_stones_count_alike_and_a_bad_moment_does_not() -> None:
