@@ -44,16 +44,13 @@ def camera_of_pose(frame: dict[str, Any], size: tuple[int, int]) -> Camera:
 
 
 def cameras_of_table(table: pd.DataFrame, size: tuple[int, int]) -> tuple[Camera, ...]:
-    """Cameras from a table with the columns of ``camera.csv``."""
+    """Give the true cameras of a table with the columns of ``camera.csv``: no edge is aside."""
     cameras = []
     for index, row in enumerate(table.to_dict("records")):
         matrix = np.array([[row[f"h{i}{j}"] for j in (1, 2, 3)] for i in (1, 2, 3)])
+        lens = row["k1"], row["k2"], row["f_px"]
         place = np.array([row["cam_x"], row["cam_y"], row["cam_z"]])
-        cameras.append(
-            Camera(
-                index, row.get("t", np.nan), matrix, size, row["k1"], row["k2"], row["f_px"], place
-            )
-        )
+        cameras.append(Camera(index, row.get("t", np.nan), matrix, size, *lens, place, 0.0))
     return tuple(cameras)
 
 
