@@ -21,6 +21,9 @@ BETTER = 0.5
 MEMORY = MOST_DEGREE + 1 + CHECKED
 """Number of views of which any more than these say nothing."""
 
+FAR = 4.0
+"""Beyond so many times the span of the last views nothing is foretold: the last one stays."""
+
 
 def predict(times: Sequence[float], vectors: Array, ahead: Sequence[float]) -> Array:
     """Extrapolate vectors.
@@ -51,7 +54,10 @@ def predict(times: Sequence[float], vectors: Array, ahead: Sequence[float]) -> A
         )
         if error < BETTER * least or (degree == 1 and not checked):
             best, least = degree, error
-    return np.array([_through(times, vectors, t, best) for t in ahead])
+    reach = FAR * abs(times[-1] - times[0])
+    return np.array(
+        [_through(times, vectors, t, best if abs(t - times[-1]) <= reach else 0) for t in ahead]
+    )
 
 
 def _through(times: Sequence[float], vectors: Array, t: float, degree: int) -> Array:

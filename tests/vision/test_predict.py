@@ -28,6 +28,12 @@ def test_even_and_evenly_growing_motion_is_foretold(
     np.testing.assert_allclose(predict(times.tolist(), seen, ahead.tolist()), due, atol=1e-6)
 
 
+def test_nothing_is_foretold_over_a_long_gap() -> None:
+    times = [0.0, 0.04, 0.08, 0.12, 0.16]
+    seen = np.square(times)[:, None]
+    np.testing.assert_allclose(predict(times, seen, [0.2, 4.0]), [[0.04], [0.0256]])
+
+
 @pytest.mark.parametrize("noise", [0.01, 1.0])
 def test_noise_is_not_blown_up(noise: float) -> None:
     rng = np.random.default_rng(4)
