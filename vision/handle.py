@@ -25,18 +25,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.align import (
-    ORDERS,
-    TOGETHER,
-    Array,
-    Complex,
-    align,
-    ring_weights,
-    rings_seen,
-    turned,
-)
+from vision.align import ORDERS, Array, Complex, align, ring_weights, rings_seen
 from vision.facing import angle_between, angles_between
 from vision.glints import course, unlit
+from vision.shade import parts, unturned, upright_mean
 
 LASTING = 3.5
 """How much larger errors are than one picture tells: what stands up looks otherwise from each
@@ -55,13 +47,6 @@ less than half of that for five. Less odd ones are but covered by something for 
 MANY = 0.1
 """Share of pictures unlike those before from which on another one to begin with is tried."""
 
-SPREAD = 1.0
-"""Standard deviation of a harmonic's phase, rad, that holds its light near 0 as much as pictures of
-full turns tell it: of these half is taken out, the most. A handle that is shaded on one side, or
-shifted by its height in a slanting view, has a part that hardly turns: where all of that is taken
-out, angles stay behind (spins of 73 clips of four renderers and of cut-out stones by a tenth more,
-in the median, than where half is)."""
-
 BEFORE, ALIKE = 2.0, 0.001
 """How much less like its mean than usual a picture is where something else lies before the cap (a
 hand or a broom turns what is seen by a few tenths of a radian), and what is unlike by rounding."""
@@ -71,11 +56,13 @@ FULLY, SHORT, GAPS = 0.95, 1.0, 0.1
 can hardly be told from what turns, s, and share of pictures without an angle that are many."""
 
 LEAST, TURNS, CLEARLY = 0.12, 0.2, 3.0
-"""Share of what no light explains that turns: where angles follow spins, before they are told for
-each picture, and after; and how much more that must be than where angles follow the light. Of 64
-caps drawn with lamps, blurred, covered or aslant all that stood still with the light had 0.1 at
-most, those that turned 0.2 and more, and noise taken for turning caps 0.17; where angles followed
-spins rightly that was 3.9 times as much and more, else 1.5, and 2.5 with a sweeper over the cap."""
+"""Share of what no light explains that turns: where angles that follow spins may be the better
+ones; where what turns is told by them, before they are told for each picture and after; and how
+much more that must be than where angles follow the light. Of 64 caps drawn with lamps, blurred,
+covered or aslant all that stood still with the light had 0.1 at most, those that turned 0.2 and
+more, and noise taken for turning caps 0.17; where angles followed spins rightly that was 3.9 times
+as much and more, else 1.5, and 2.5 with a sweeper over the cap. A broom that goes over a cap at
+rest has 0.19 at most before angles may give way to it, and up to 0.36 after."""
 
 REACHES = (0.5, 0.5, 0.2, 0.2)
 """How far from angles that follow spins they are sought, rad, one time after another: hits change
@@ -288,9 +275,10 @@ def _despite_light(
     other, share_of_course = course(times, pictures)
     if share_of_course < LEAST:
         return matched
-    dark = _onto_what_turns(times, pictures, other)
-    if dark.share > max(TURNS, CLEARLY * share) and _mostly_told(dark, turning):
-        return dark
+    if share_of_course > TURNS:  # what goes over a cap turns once angles may give way to it
+        dark = _onto_what_turns(times, pictures, other)
+        if dark.share > max(TURNS, CLEARLY * share) and _mostly_told(dark, turning):
+            return dark
     onto = replace(_onto_mean(pictures, other, turning), share=share_of_course)
     return max(matched, onto, key=_alike)
 
@@ -319,59 +307,13 @@ def _onto_mean(pictures: Complex, angles: Array, turning: Turning) -> _Matched:
     shown = rings_seen(pictures)[:, None, :, None]
     own = pictures
     for _ in range(turning.rounds):
-        reference = _upright_mean(own, angles, shown)
-        for part in _parts(np.flatnonzero(known)):
+        reference = upright_mean(own, angles, shown)
+        for part in parts(np.flatnonzero(known)):
             angles[part], likeness[part] = angles_between(reference, own[part], angles[part], 0.2)
         known = np.isfinite(angles)  # some show nothing but light
         own = pictures - unturned(pictures[known], angles[known], shown[known])
         own *= shown
     return _Matched(own, angles, likeness)
-
-
-def _mean(pictures: Complex, shown: NDArray[np.bool_]) -> Complex:
-    """Mean of pictures (n, orders, rings, channels), each ring over those that show it."""
-    return np.asarray(pictures.sum(0) / np.maximum(shown.sum(0), 1), np.complex64)
-
-
-def _parts(index: NDArray[np.intp]) -> list[NDArray[np.intp]]:
-    """Cut a list of pictures: what is worked out for all of them at once takes memory."""
-    return [index[begin : begin + TOGETHER] for begin in range(0, len(index), TOGETHER)]
-
-
-def _upright_mean(pictures: Complex, angles: Array, shown: NDArray[np.bool_]) -> Complex:
-    """Mean of the pictures whose angles are known, turned back by these: see `_mean`."""
-    known = np.flatnonzero(np.isfinite(angles))
-    total = np.zeros(pictures.shape[1:], np.complex64)
-    for part in _parts(known):
-        total += turned(pictures[part], -angles[part]).sum(0)
-    return np.asarray(total / np.maximum(shown[known].sum(0), 1), np.complex64)
-
-
-def unturned(pictures: Complex, angles: Array, shown: NDArray[np.bool_]) -> Complex:
-    """Part of the pictures of a turning cap that does not turn with it: light and shadow.
-
-    Least squares on each harmonic, F(t) = S + R exp(−i k θ(t)), S held near 0 as far as the
-    harmonic turns too little to tell the two apart.
-
-    Parameters
-    ----------
-    pictures : ndarray, shape (n, orders, rings, channels)
-    angles : ndarray, shape (n,)
-        How they are turned, rad.
-    shown : ndarray of bool, shape (n, 1, rings, 1)
-        Which rings are seen; the others are 0.
-
-    Returns
-    -------
-    ndarray, shape (orders, rings, channels)
-    """
-    phase = np.exp(-1j * ORDERS * angles[:, None])
-    often = np.maximum(shown.sum(0), 1)
-    along = np.einsum("nk,nr->kr", phase, shown[:, 0, :, 0])[..., None] / often
-    back = _upright_mean(pictures, angles, shown)
-    share = 1 - np.abs(along) ** 2
-    light = (_mean(pictures, shown) - along * back) / (share + SPREAD**2)
-    return np.asarray(light, np.complex64)
 
 
 def _followed(times: Array, pictures: Complex, turning: Turning) -> Array:

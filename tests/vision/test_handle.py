@@ -210,6 +210,22 @@ def test_what_goes_over_a_cap_step_by_step_does_not_lead_its_angle_away() -> Non
     assert np.abs(theta[[*range(20), *range(45, 60)]]).max() < 0.03
 
 
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_a_broom_that_goes_over_a_cap_at_rest_does_not_turn_it(seed: int) -> None:
+    """A dark bar across it swings by 75° in half a second; pictures before that are missing."""
+    rng = np.random.default_rng(seed)
+    times = np.concatenate([np.arange(16), np.arange(16, 45) + 7.5]) / 25
+    angle = np.arange(RAYS)[:, None] * (2 * np.pi / RAYS)
+    pictures = []
+    for index in range(len(times)):
+        seen, swing = patch(0.0, rng), 3.0 * (index - 16) / 25
+        over = np.abs(RADII * np.sin(angle - swing) - 0.03) < 0.02
+        seen[over & (16 <= index < 28)] = 60, 128, 128
+        pictures.append(cap_spectrum(seen, RADII))
+    theta, _ = handle_angles(times, pictures, RADII)
+    assert np.abs(theta[[*range(16), *range(28, 45)]]).max() < 0.03
+
+
 def test_a_faint_handle_alike_at_both_ends_does_not_jump_by_half_a_turn() -> None:
     rng = np.random.default_rng(10)
     times = np.arange(100) / 25
