@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from physics.law_choice import fit_with_chosen_laws
+from physics.law_choice import BEFORE, fit_with_chosen_laws
 from physics.shot_model import Watched
 from physics.whole_fit import GlobalFit
-
-BEFORE = 0.1
-"""How long before a hit that is not as simulated the shot is left, s: its time is not certain."""
 
 AWAY, QUIETER = 0.2, 2.0
 """Time, s, in which nothing is seen if a clip shows something else, and how many times less noise

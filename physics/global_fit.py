@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from data.errors import InputError
 from data.results import Estimate
-from physics.normal_equations import inverse
+from physics.normal_equations import bounded, inverse
 from physics.off_centre import centred
 from physics.residuals import HUBER, huber_weights, inflation
 from physics.shared_error import shared_error
@@ -41,6 +41,9 @@ STEPS = 80
 FINER, LESS = 3, 2.0
 """How often noise is told anew at most, where with what it was the fit has come to a better place:
 one with so many times less of it."""
+
+GOOD = 0.5
+"""Share of what a step was to gain that it gains where the next may be longer."""
 
 SETTLED = 0.02
 """Change in standard errors below which a fit has come to its end."""
@@ -151,23 +154,33 @@ class _Problem:
         return inflation(runs, 2 * self.sightings - len(at))
 
     def _descend(self, at: Floats) -> tuple[Floats, bool]:
-        """Levenberg and Marquardt's steps from a guess to the least cost."""
+        """Levenberg and Marquardt's steps from a guess to the least cost.
+
+        Unknowns are damped by the most that the sightings have told of each on the way (Moré, 1978,
+        Lecture Notes in Mathematics 630, 105): stones that stick tell nothing of the friction
+        between them, and what is known of it beforehand would draw it to where they slide.
+        """
         damping = 1e-3
+        told = np.zeros(len(at))
         residuals = [self._residuals(rank, at) for rank in range(len(self.shots))]
         cost = self._cost(at, residuals)
         slopes = self._slopes(at, residuals)
         for _ in range(STEPS):
             normal, right = self._normal(at, residuals, slopes)
-            step = inverse(normal + damping * np.diag(np.diag(normal))) @ right
-            new = np.clip(at + step, self.low, self.high)
+            told = np.maximum(told, np.diag(normal))
+            damped = normal + damping * np.diag(told)
+            new = at + bounded(damped, right, self.low - at, self.high - at)
+            step = new - at
             there = [self._residuals(rank, new) for rank in range(len(self.shots))]
             new_cost = self._cost(new, there)
             # Residuals larger than stated make errors that much larger.
             settled = SETTLED**2 * len(at) * max(1.0, cost / self.sightings)
-            small = float((new - at) @ normal @ (new - at)) < settled
+            small = float(step @ normal @ step) < settled
             if new_cost < cost:
+                small = small or cost - new_cost < settled
+                foreseen = float(step @ (2 * right - normal @ step))
+                damping = max(damping / 10, 1e-9) if cost - new_cost > GOOD * foreseen else damping
                 at, residuals, cost = new, there, new_cost
-                damping = max(damping / 10, 1e-9)
                 if small:
                     return at, True
                 slopes = self._slopes(at, residuals)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from data.results import Estimate, Law
-from physics.global_fit import LOST, fit_shots
+from physics.global_fit import fit_shots
 from physics.shot_model import V_C, Watched, penner
-from physics.watched import THROWN
 from physics.whole_fit import GlobalFit
 
 STRAIGHT = {"slope": 0.0, "v_c": V_C, "turn": 0.0}
@@ -20,51 +20,66 @@ STRAIGHT = {"slope": 0.0, "v_c": V_C, "turn": 0.0}
 STICKING = {"stone_friction": 2.0}
 """Stones that stop sliding on each other before they part: any greater friction does the same."""
 
+USUAL = {"slope": 0.002, "turn": 0.008}
+"""Ice as in FCV1 (Uehara and Ito, 2021), from where every fit sets out: stones that go straight may
+miss each other."""
+
+BEFORE = 0.1
+"""How long before a hit a part of the shot ends that is to be without it, s: its time is not
+certain."""
 
 ELSEWHERE = 1.5
-"""How many times the deviance of a fit one with more freedom must have to have come to rest
-elsewhere: it can be no larger where both follow the shot alike."""
+"""How many times the deviance of a fit one with fewer unknowns has at most if it has come to rest
+at the same place: otherwise what that one tells of the unknowns does not hold there."""
+
+SELDOM = 9.0
+"""Twice the log of odds beyond which other laws do not count."""
 
 
 def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None) -> GlobalFit:
     """Fit a shot with the laws that the sightings ask for, some unknowns held if `fixed`.
 
-    Friction that depends on the speed and curl are each taken up, and friction between stones
-    is kept as an unknown, where the sightings are the more probable for it. Otherwise the
-    friction is constant, the paths are straight, the stones stick.
+    First friction depends on the speed and the paths curl. Each of the two is left out, and
+    friction between stones is, where the sightings are the more probable without: then the
+    friction is constant, the paths are straight, the stones stick. A wrong law would lead the
+    others astray if they were taken up one after the other.
 
     What the other choices of laws would give is in the errors, each by its probability
     (Buckland et al., 1997, Biometrics 53, 603). So is what Penner's law gives where friction
     falls: the one that is reported follows any ice but not to the last per cent.
     """
-    held = STRAIGHT | dict(fixed or {})
-    best = _turning(fit_shots([shot], fixed=held), shot, held)
+    held = {"v_c": V_C, **(fixed or {})}
+    best = _hit_by_hit(shot, held)
     tried, criteria, least = [best], [0.0], 0.0
-    for name in ("slope", "turn"):
-        fewer = {key: value for key, value in held.items() if key != name}
-        more = _freer(shot, fewer, best)
-        if _elsewhere(more, best):
+    asked = [name for name in ("slope", "turn") if name in best.names]
+    while asked:
+        name = max(asked, key=lambda each: _against(best, each))
+        asked.remove(name)
+        against = _against(best, name)
+        if against < -SELDOM:
             continue
-        if best.astray and not more.astray:
-            best = fit_shots([shot], fixed=held, start=_start(more))
-            tried[criteria.index(least)] = best
-        criterion = least + _against(more, name)
-        if criterion < least:
-            if name == "slope":  # where friction falls there is a knee to be found
-                free = {key: value for key, value in fewer.items() if key != "v_c"}
-                bent = fit_shots([shot], fixed=free, start=_start(more))
-                more, fewer = (bent, free) if bent.settled else (more, fewer)
-            best, held, least = more, fewer, criterion
-        tried.append(more)
-        criteria.append(criterion)
-    if "slope" not in held:
+        fewer = STRAIGHT[name]
+        less = fit_shots([shot], fixed=held | {name: fewer}, start=_values(best))
+        if not less.settled or less.deviance > ELSEWHERE * best.deviance:
+            continue
+        tried.append(less)
+        criteria.append(least - against)
+        if against > 0:
+            best, held, least = less, held | {name: fewer}, least - against
+    if "slope" in best.names and "v_c" not in (fixed or {}):
+        # where friction falls there is a knee to be found
+        free = {name: value for name, value in held.items() if name != "v_c"}
+        bent = fit_shots([shot], fixed=free, start=_values(best))
+        if bent.settled:
+            tried[criteria.index(least)] = bent
+            best, held = bent, free
         even = {"slope": 0.0, "v_c": V_C, **held}
-        rooted = fit_shots([replace(shot, ice=penner)], fixed=even, start=_start(best))
+        rooted = fit_shots([replace(shot, ice=penner)], fixed=even, start=_values(best))
         if rooted.settled:
             tried.append(rooted)
             criteria.append(least + _beside(rooted, best))
     if shot.hits:
-        stuck = fit_shots([shot], fixed=held | STICKING, start=_start(best))
+        stuck = fit_shots([shot], fixed=held | STICKING, start=_values(best))
         if stuck.settled:
             tried.append(stuck)
             criteria.append(least + _beside(stuck, best))
@@ -73,45 +88,32 @@ def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None
     return _with_others(best, tried, np.array(criteria))
 
 
-def _elsewhere(fit: GlobalFit, best: GlobalFit) -> bool:
-    """Whether a fit with more freedom has not come to an end where the one with less is."""
-    return not fit.settled or fit.deviance > ELSEWHERE * best.deviance
+def _hit_by_hit(shot: Watched, held: Mapping[str, float]) -> GlobalFit:
+    """Fit a shot up to its second hit, then up to the next, each from where the one before ended.
 
-
-def _freer(shot: Watched, held: Mapping[str, float], best: GlobalFit) -> GlobalFit:
-    """Fit with more freedom from where the fit with less is, or from where that one set out.
-
-    Under the wrong laws stones may have come to miss or to slide off each other, from where no
-    slope leads back.
+    From first guesses stones would miss what they hit later, from where no slope leads back. Nor
+    does one from stones that stick to such as slide: every fit sets out from sliding too.
     """
-    more = fit_shots([shot], fixed=held, start=_start(best))
-    if not (_elsewhere(more, best) or more.astray):
-        return more
-    again = fit_shots([shot], fixed=held)
-    return min(
-        (more, again),
-        key=lambda fit: (not fit.settled, not fit.hits_as_seen, fit.astray, fit.deviance),
-    )
+    start = {name: value for name, value in USUAL.items() if name not in held}
+    apart = [two for one, two in pairwise(shot.times) if two - one > 2 * BEFORE]
+    for part in [*(shot.until(time - BEFORE) for time in apart), shot]:
+        own = {unknown.name for unknown in part.unknowns}
+        known = {name: value for name, value in start.items() if name in own}
+        sliding = {name: value for name, value in known.items() if name != "stone_friction"}
+        ways = [known, sliding] if len(sliding) < len(known) else [known]
+        fits = [fit_shots([part], fixed=held, start=way) for way in ways]
+        noise = min(fit.inflation for fit in fits)
+        best = min(
+            fits,
+            key=lambda fit: (not fit.settled, not fit.hits_as_seen, _cost(fit, noise)),
+        )
+        start |= _values(best)
+    return best
 
 
-def _turning(fit: GlobalFit, shot: Watched, held: Mapping[str, float]) -> GlobalFit:
-    """Fit again from spins of either sense where a fit has come to rest at a spin of nothing.
-
-    A spin that is lost before the hit changes nothing there, and with it the stones may have come
-    to stick, so that no slope leads back.
-    """
-    none = [
-        name
-        for name, value in zip(fit.names, fit.values.tolist(), strict=True)
-        if name.endswith("omega") and abs(value) < LOST
-    ]
-    if not none or not shot.hits:
-        return fit
-    spun = [
-        fit_shots([shot], fixed=held, start=dict.fromkeys(none, omega))
-        for omega in (-THROWN, THROWN)
-    ]
-    return min((fit, *spun), key=lambda each: (not each.settled, each.deviance))
+def _cost(fit: GlobalFit, noise: float) -> float:
+    """Least squares of a fit: its sightings' with that much noise, and what else it heeds."""
+    return fit.deviance / noise + fit.elsewhere
 
 
 def _against(fit: GlobalFit, name: str) -> float:
@@ -181,13 +183,9 @@ def _name(fit: GlobalFit) -> str:
     return f"ice {ice}, curl {curl}, {hits}"
 
 
-def _start(fit: GlobalFit) -> dict[str, float]:
-    """Where the next fit sets out from: all but the friction between stones.
-
-    Under the wrong laws they may have come to stick, from where no slope leads back.
-    """
-    values = dict(zip(fit.names, fit.values.tolist(), strict=True))
-    return {name: value for name, value in values.items() if "stone_friction" not in name}
+def _values(fit: GlobalFit) -> dict[str, float]:
+    """Where the next fit sets out from."""
+    return dict(zip(fit.names, fit.values.tolist(), strict=True))
 
 
 def _beside(fit: GlobalFit, best: GlobalFit) -> float:
@@ -205,4 +203,4 @@ def _criterion(fit: GlobalFit, noise: float) -> float:
     volume = float(np.linalg.slogdet(fit.cov / np.outer(sd, sd))[1]) + 2 * np.sum(np.log(sd))
     volume -= len(fit.names) * np.log(fit.inflation / noise)
     prior = 2 * np.sum(np.log(known))
-    return float(fit.deviance / noise + fit.elsewhere + prior - volume)
+    return float(_cost(fit, noise) + prior - volume)

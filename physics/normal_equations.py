@@ -24,6 +24,31 @@ def inverse(normal: Floats) -> Floats:
     return out
 
 
+def bounded(normal: Floats, right: Floats, low: Floats, high: Floats) -> Floats:
+    """Step that solves normal equations between bounds: unknowns at one let the others follow.
+
+    Where a step is merely cut off at a bound, the others go as if it had been taken in full, and a
+    descent comes to rest where it need not.
+
+    Parameters
+    ----------
+    normal, right : arrays, shapes (n, n) and (n,)
+        The equations.
+    low, high : (n,) arrays
+        Least and most of each unknown of the step.
+    """
+    step, free = np.zeros(len(right)), np.ones(len(right), bool)
+    while free.any():
+        rest = right - normal[:, ~free] @ step[~free]
+        step[free] = inverse(normal[np.ix_(free, free)]) @ rest[free]
+        out = (step < low) | (step > high)
+        if not out.any():
+            break
+        step = np.clip(step, low, high)
+        free &= ~out
+    return step
+
+
 def inverse_of_blocks(normal: Floats, blocks: Sequence[NDArray[np.int64]]) -> Floats:
     """Inverse of a matrix made of blocks, block by block; each is given by its rows."""
     out = np.zeros_like(normal)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from data.results import Estimate
 from data.sheet import STONE, curling_size
+from physics.curl import FCV1Curl
 from physics.noise import Noise, noises
 from physics.shot_fit import ShotFit
 from physics.shot_model import V_C, SpinSeen, Unknown, Watched
@@ -287,4 +288,9 @@ def _seen(
     spin = spin_on(fit, rank, known, noise, middle) if middle < end else Estimate()
     if spin.value is None or spin.stderr is None:
         return []
-    return [SpinSeen(piece.stone, middle, spin.value, float(np.hypot(spin.stderr, SPIN_DRIFT)))]
+    # Ice takes spin from a stone as FCV1 has it, but only about so much.
+    away = abs(middle - (hits or seen)[0])
+    speed = float(np.hypot(*fit.motion(rank, middle)[1]))
+    lost = float(FCV1Curl().spin_loss(speed)) * away
+    sd = float(np.sqrt(spin.stderr**2 + SPIN_DRIFT**2 + lost**2))
+    return [SpinSeen(piece.stone, middle, spin.value, sd)]

@@ -116,3 +116,49 @@ def test_a_fit_that_has_come_to_rest_in_a_wrong_place_begins_anew() -> None:
     assert found.friction.stderr < 1e-4
     assert found.restitution.value == pytest.approx(0.85, abs=0.001)
     assert found.curl.value == pytest.approx(0.0082, abs=0.001)
+
+
+@pytest.mark.parametrize(
+    ("share", "first", "third", "impact", "end", "fps"),
+    [
+        # Without curl friction would have to grow with the speed, which it does on no ice.
+        (1.0, (0.129, -6.399, 0, 3.416, 0, -1.0), (-2.305, 4.499), (0.848, 0.017), 5.5, 60),
+        # From first guesses the second stone would pass by the third.
+        (1.28, (0.017, -4.998, 0, 2.293, 0, 1.27), (-0.264, 4.221), (0.933, 0.09), 6.5, 25),
+    ],
+)
+def test_slowing_and_curl_are_told_apart_in_a_shot_of_two_hits(
+    share: float,
+    first: tuple[float, ...],
+    third: tuple[float, float],
+    impact: tuple[float, float],
+    end: float,
+    fps: float,
+) -> None:
+    ice = Ice(b=0.0079 * share, a=0.0025 * share, v_c=0.0639, curl=0.0082)
+    stones = [Start(*first), Start(0.0, 0.0), Start(*third)]
+    motion = simulate(stones, end, ice=ice, impact=Impact(*impact), step=5e-4, keep_every=4)
+    assert len(motion.hits) == 2
+    seen = watch(motion, np.random.default_rng(8), fps=fps, sd=0.01)
+    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    assert not found.warnings
+    for told, true, most in (
+        (found.friction, ice.friction(1.0), 0.0003),
+        (found.restitution, impact[0], 0.006),
+        (found.curl, ice.curl, 0.001),
+    ):
+        assert told.value is not None
+        assert told.stderr is not None
+        assert told.stderr < most
+        assert abs(told.value - true) < 3 * told.stderr
+
+
+def test_spins_of_slow_stones_are_less_sure_at_the_hit() -> None:
+    """A stone's loss of spin goes with the inverse of its speed, which holds only roughly."""
+    seen = watch(hit_motion(1.5, 0.02), np.random.default_rng(3), sd=0.003)
+    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    assert found.whole is not None
+    spins = found.whole.shots[0].spins
+    after = {spin.stone: spin.stderr for spin in spins if spin.t > found.collisions[0].t}
+    assert after["B"] < 0.05
+    assert after["A"] > 2 * after["B"]

@@ -2,8 +2,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.optimize import lsq_linear
 
-from physics.normal_equations import eliminated, inverse, inverse_of_blocks
+from physics.normal_equations import bounded, eliminated, inverse, inverse_of_blocks
 
 
 def test_unknowns_that_are_eliminated_are_as_if_they_had_been_solved_for() -> None:
@@ -38,3 +39,17 @@ def test_blocks_are_inverted_one_by_one() -> None:
         rows = rng.normal(size=(9, len(block)))
         normal[np.ix_(block, block)] = rows.T @ rows
     assert inverse_of_blocks(normal, blocks) == pytest.approx(np.linalg.inv(normal), abs=1e-10)
+
+
+def test_a_step_that_a_bound_cuts_off_is_the_best_that_is_left() -> None:
+    rng = np.random.default_rng(4)
+    rows = rng.normal(size=(30, 4)) + rng.normal(size=(30, 1))  # alike, so that they go together
+    seen = rows @ [1.0, -2.0, 3.0, 0.5] + rng.normal(size=30)
+    low, high = np.full(4, -np.inf), np.array([0.4, np.inf, np.inf, np.inf])
+    step = bounded(rows.T @ rows, rows.T @ seen, low, high)
+    assert step[0] == 0.4
+    assert step == pytest.approx(lsq_linear(rows, seen, (low, high)).x, abs=1e-6)
+    # Merely cut off, it would be a worse one.
+    full = bounded(rows.T @ rows, rows.T @ seen, low, -low)
+    assert full == pytest.approx(np.linalg.lstsq(rows, seen, rcond=None)[0])
+    assert np.abs(np.minimum(full, high) - step).max() > 0.05
