@@ -57,7 +57,7 @@ def refuse_no_discs(
         if len(inside) >= OFTEN:
             raise InputError(
                 f"{source}: {one} and {other} come within {_length(inside.min())} of each other at"
-                f" t = {inside.idxmin():.3g} s, but discs of radius {radius:g} m are"
+                f" t = {moment(inside.idxmin())}, but discs of radius {radius:g} m are"
                 f" {_length(2 * radius)} wide: {advice}, another radius (--radius), or not both are"
                 " stones (--names)"
             )
@@ -68,7 +68,7 @@ def _refuse_racing(sightings: pd.DataFrame, source: str, advice: str) -> None:
         speed, t = top_speed(rows["t"].to_numpy(), rows[["x", "y"]].to_numpy())
         if speed > FASTEST_STONE:
             raise InputError(
-                f"{source}: {stone} moves at {speed:.1f} m/s at t = {t:.3g} s, faster than any"
+                f"{source}: {stone} moves at {speed:.1f} m/s at t = {moment(t)}, faster than any"
                 f" curling stone: {advice}, a slipped mark, or other discs (--radius)"
             )
 
@@ -85,6 +85,11 @@ def top_speed(t: NDArray[np.float64], xy: NDArray[np.float64]) -> tuple[float, f
     speeds = np.hypot(*(xy[last] - xy[first]).T) / (t[last] - t[first])
     top = int(np.argmax(speeds))
     return float(speeds[top]), float(t[first[top]])
+
+
+def moment(t: float) -> str:
+    """Write a time, s, to the millisecond: times that were rounded begin a little off zero."""
+    return f"{round(t, 3) + 0.0:g} s"
 
 
 def _length(metres: float) -> str:

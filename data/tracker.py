@@ -19,7 +19,7 @@ from data.again import as_measured
 from data.angles import FASTEST_SPIN, attach, read_angles, spin_rate
 from data.clock import with_clock
 from data.columns import ANGLE_UNITS, LENGTH_UNITS, UNIT_NOT_SAID, UNIT_SAID
-from data.discs import top_speed
+from data.discs import moment, top_speed
 from data.errors import InputError
 from data.export import read_parquet
 from data.layouts import read_layout
@@ -256,7 +256,7 @@ def _check_scale(table: pd.DataFrame, source: str, advice: str) -> list[str]:
         speed, t = top_speed(rows["t"].to_numpy(float), rows[["x", "y"]].to_numpy(float))
         if speed > FASTEST:
             raise InputError(
-                f"{source}: {stone} moves at {speed:.0f} m/s at t = {t:.3g} s: probably"
+                f"{source}: {stone} moves at {speed:.0f} m/s at t = {moment(t)}: probably"
                 f" {advice}, or a slipped mark"
             )
     extent = float(np.ptp(xy, axis=0).max())
