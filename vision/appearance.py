@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -32,18 +32,9 @@ PURE = 55.0
 GREY = 10.0
 """Distance from grey within which a cap has no colour, L*a*b* units."""
 
-ALIKE_GRANITE = 18.0
-"""Lightness by which granite differs from stone to stone, and over one, L*a*b* units."""
-
-DULL = 16.0
-"""Difference of hue from the granite from which a colour may be that of a cap, L*a*b* units."""
-
 LIGHT, LIGHT_OF_GREY = 0.1, 0.35
 """What a difference of lightness counts beside one of hue, both squared; and where neither cap has
 a hue: 50 levels apart are two colours there."""
-
-LEAST_CONTRAST = 0.4
-"""Least share of its contrast that a picture is taken to have kept: with less, noise is colour."""
 
 
 @dataclass(frozen=True)
@@ -83,8 +74,9 @@ class Appearance:
 
     Attributes
     ----------
-    membership : ndarray, shape (64, 64, 64)
-        For a colour (blue, green, red in steps of 4): 1 cap, −1 granite, 0 neither.
+    membership : ndarray, shape (64, 64, 64), or None
+        For a colour (blue, green, red in steps of 4): 1 cap, −1 granite, 0 neither. None where no
+        colour is known: stones are two concentric circles, whatever is within them.
     caps : tuple of Colour
         The cap colours of the clip; empty where they are not known yet.
     granite : Colour or None
@@ -98,7 +90,7 @@ class Appearance:
         edges of caps are seen too far in.
     """
 
-    membership: Floats
+    membership: Floats | None
     caps: tuple[Colour, ...] = ()
     granite: Colour | None = None
     outline: tuple[float, float] = (1.0, 0.98)
@@ -113,9 +105,8 @@ class Appearance:
         return rank, float(differences[rank])
 
 
-Guess = Callable[[int, int], Appearance]
-"""What stones may look like before any is known, by the lightness of the white ice and of the
-darkest on it."""
+BY_SHAPE = Appearance(None)
+"""Stones of which no colour is known."""
 
 
 @lru_cache(maxsize=1)
@@ -133,31 +124,20 @@ def _without_red() -> Floats:
     return np.asarray(np.maximum(1 - red / np.maximum(blue, green), 0), np.float32)
 
 
-def any_stone(white: int = 210, black: int = 0) -> Appearance:
+@lru_cache(maxsize=32)
+def any_stone(white: int = 210) -> Appearance:
     """Appearance of stones before any is known: saturated caps, grey granite darker than ice.
 
     Parameters
     ----------
-    white, black : int
-        Lightness L* of the white ice in the picture and of the darkest on it, 0 to 255; the
-        latter tells nothing here, since on bare ice it is a stone's.
+    white : int
+        Lightness L* of the white ice in the picture, 0 to 255.
     """
-    return _coloured_stone(white, 0)
-
-
-def any_veiled_stone(white: int, black: int) -> Appearance:
-    """As `any_stone`, in a picture that haze, glare or a pale film has robbed of its contrast."""
-    return _coloured_stone(white, black)
-
-
-@lru_cache(maxsize=32)
-def _coloured_stone(white: int, black: int) -> Appearance:
     lab = _lab_of_table()
-    contrast = max(1 - black / white, LEAST_CONTRAST)
-    light = (lab[..., 0] / white - 1) / contrast + 1
+    light = lab[..., 0] / white
     # No teal and no dark green is far from grey, be it as pure as can be; black is not told.
-    pure = PURE * _without_red() * np.clip((light - 0.1) / 0.1, 0, 1) / contrast
-    away = np.maximum(chroma(lab) / contrast, pure)
+    pure = PURE * _without_red() * np.clip((light - 0.1) / 0.1, 0, 1)
+    away = np.maximum(chroma(lab), pure)
     # Blue caps are the darkest, and dark colours are never as far from grey as light ones.
     blue = np.clip((118 - lab[..., 2]) / 10, 0, 1)
     vivid = away / (1 - blue * (1 - np.clip(light / 0.4, 0.6, 1)))
@@ -169,47 +149,6 @@ def _coloured_stone(white: int, black: int) -> Appearance:
         * np.clip((0.78 - light) / 0.1, 0, 1)
     )
     return Appearance((cap - granite).astype(np.float32))
-
-
-@lru_cache(maxsize=32)
-def any_grey_stone(white: int = 210, black: int = 0) -> Appearance:
-    """As `any_stone`, by lightness alone: caps darker or lighter than granite of any tinge."""
-    light = _lab_of_table()[..., 0] / white
-    granite = np.clip((light - 0.3) / 0.1, 0, 1) * np.clip((0.78 - light) / 0.1, 0, 1)
-    return Appearance((1 - 2 * granite).astype(np.float32))
-
-
-def any_grey_stone_of(granite: Colour) -> Guess:
-    """As `any_grey_stone`, where the granite is known: caps lighter or darker than that."""
-
-    def guess(white: int, black: int) -> Appearance:
-        away = np.abs(_lab_of_table()[..., 0] - granite.mean[0])
-        stone = np.clip((ALIKE_GRANITE - away) / 8 + 0.5, 0, 1)
-        return Appearance((1 - 2 * stone).astype(np.float32))
-
-    return guess
-
-
-def any_dull_stone(white: int, black: int) -> Appearance:
-    """As `any_stone`, with caps as dull as those of `any_dull_stone_of`, on grey granite."""
-    return _of_other_hue(128.0, 128.0, white)
-
-
-def any_dull_stone_of(granite: Colour) -> Guess:
-    """As `any_stone`, where the granite is known: caps of another hue, be it as dull as it may."""
-    _, a, b = granite.mean.tolist()
-    return lambda white, black: _of_other_hue(a, b, white)
-
-
-def _of_other_hue(a: float, b: float, white: int) -> Appearance:
-    """Give the appearance of stones whose caps differ in hue from granite of this one."""
-    lab = _lab_of_table()
-    light = lab[..., 0] / white
-    away = np.hypot(lab[..., 1] - a, lab[..., 2] - b)
-    cap = np.clip((away - DULL) / 8, 0, 1)
-    stone = np.clip(1.5 - away / DULL, 0, 1)
-    stone *= np.clip((light - 0.08) / 0.1, 0, 1) * np.clip((0.78 - light) / 0.1, 0, 1)
-    return Appearance((cap - stone).astype(np.float32))
 
 
 def convincing(sightings: Iterable[Sighting]) -> list[Sighting]:
@@ -288,11 +227,11 @@ def _colour(samples: Array, floor: tuple[float, float, float]) -> Colour:
     return Colour(centre, spread + np.diag(np.square(floor)))
 
 
-def membership(image: Image, appearance: Appearance) -> Floats:
-    """Say what each pixel may be: 1 cap, −1 granite, 0 neither; shape (h, w)."""
+def membership(image: Image, table: Floats) -> Floats:
+    """Say what each pixel may be by a table of colours: 1 cap, −1 granite, 0 neither; (h, w)."""
     steps = image >> 2
     index = steps[..., 0].astype(np.int32)
     for channel in (1, 2):
         index <<= 6
         index |= steps[..., channel]
-    return np.asarray(appearance.membership.ravel().take(index), np.float32)
+    return np.asarray(table.ravel().take(index), np.float32)

@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
+Flags = NDArray[np.bool_]
+Bytes = NDArray[np.uint8]
 
 LIGHT = 0.1
 """What lightness has to say beside hue: bolts and highlights are light and dark alike; the hue is
@@ -19,6 +21,14 @@ that is much lighter than its granite aside, and that of a dark one to the other
 FAINT, VIVID = 40.0, 60.0
 """Difference of hue (L*a*b* units) up to which lightness is needed, and from which it is not: pale
 and dark caps have 30 to 45, red and yellow ones 70 to 90, and in a grey picture none has any."""
+
+
+OWN_SPREAD, OWN_APART = np.array([15.0, 7.0, 7.0], np.float32), 0.8
+"""Usual standard deviation of L*, a* and b* within a cap or its granite, and by how many of these
+the two differ at least."""
+
+ALIKE = 25.0, 14.0
+"""By how much the lightness and the hue of granite differ from stone to stone, L*a*b* units."""
 
 
 def mean_colours(values: Floats, use: Floats) -> Array:
@@ -53,3 +63,38 @@ def by_lightness(cap: Array, granite: Array) -> Array:
     """Weight of the lightness by which caps are 1 more than their granite, shape (n,)."""
     apart = (cap - granite)[:, 0]
     return np.asarray(1 / np.where(np.abs(apart) < 1, 1.0, apart))
+
+
+def own_worth(lab: Bytes, cap: slice, ring: slice) -> Floats:
+    """Say what samples may be by the colours of cap and granite in their own place.
+
+    Parameters
+    ----------
+    lab : ndarray, shape (n, rays, radii, 3)
+    cap, ring : slice
+        Radii at which the one and the other is seen.
+
+    Returns
+    -------
+    ndarray, shape (n, rays, radii)
+        1 cap, −1 granite, 0 neither; 0 where the two do not differ.
+    """
+    scaled = lab / OWN_SPREAD
+    middles = [np.median(scaled[:, :, part].reshape(len(lab), -1, 3), 1) for part in (cap, ring)]
+    to_cap, to_granite = (
+        np.sqrt(((scaled - middle[:, None, None].astype(np.float32)) ** 2) @ np.ones(3, np.float32))
+        for middle in middles
+    )
+    apart = np.sqrt(((middles[0] - middles[1]) ** 2).sum(1))
+    steep = np.minimum(1.5, 0.6 * np.maximum(apart, OWN_APART)).astype(np.float32)
+    nearer = np.clip((to_granite - to_cap) / steep[:, None, None], -1, 1)
+    likely = np.clip((4.5 - np.minimum(to_cap, to_granite)) / 1.5, 0, 1)
+    return np.asarray(nearer * likely * (apart > OWN_APART)[:, None, None], np.float32)
+
+
+def alike(granite: Array, known: Array) -> Flags:
+    """Whether colours, shape (..., 3), may be of granite of which other stones are."""
+    off = granite - known
+    return np.asarray(
+        (np.abs(off[..., 0]) < ALIKE[0]) & (np.hypot(off[..., 1], off[..., 2]) < ALIKE[1])
+    )

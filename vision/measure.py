@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from data.sheet import Stone
 from vision.appearance import Appearance, membership
 from vision.circles import WALL, fit_circles, medians
-from vision.contrast import by_hue, by_lightness, mean_colours
+from vision.contrast import by_hue, by_lightness, mean_colours, own_worth
 from vision.patch import (
     CAP_END,
     EFFORT,
@@ -199,7 +199,10 @@ def _stones(
     lab = rays.lab.astype(np.float32)
     falls = falls_along(lab)
     in_cap, in_ring = well_within(rays.radius, disc)
-    worth = membership(rays.bgr, appearance)
+    if appearance.membership is None:
+        worth = own_worth(rays.lab, in_cap, in_ring)
+    else:
+        worth = membership(rays.bgr, appearance.membership)
     if not rays.inside.all():
         worth *= rays.inside
     of_cap, of_ring = worth[..., in_cap] > CLEARLY, worth[..., in_ring] < -CLEARLY

@@ -4,12 +4,13 @@ A colour is worth +1 where it may be a cap, −1 where it may be granite and 0 e
 mean over the cap less the mean over the ring of granite around it is then 2 on a stone and 0
 on anything of one colour, be it of the colour of a cap.
 
-Discs of which only the radius is known are found by the share of the gradient that points
-along the radius (a structure tensor summed over the circle), of either sign.
+Discs of which only the radii of their circles are known are found by the share of the gradient
+that points along the radius (a structure tensor summed over the circles), of either sign.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -18,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import Stone
-from vision.appearance import Appearance, Guess, any_grey_stone, any_stone, membership
+from vision.appearance import Appearance, any_stone, membership
 from vision.camera import Camera
 from vision.ice_map import IceMap, rectify
 from vision.lab import lab_of
@@ -31,9 +32,6 @@ Bounds = tuple[float, float, float, float]
 
 MOST_PLACES = 60
 """Places that are given of one picture, the strongest."""
-
-VIVID = 36.0
-"""Distance from grey, L*a*b* units, from which a colour may be that of a cap."""
 
 BY_FOURIER = 121
 """Weights from which on OpenCV correlates by Fourier transforms, whatever they are."""
@@ -61,7 +59,7 @@ class Candidates:
 def seek(
     image: Picture,
     camera: Camera,
-    appearance: Appearance | Guess | None,
+    appearance: Appearance | None,
     disc: Stone,
     bounds: Bounds,
     *,
@@ -74,8 +72,8 @@ def seek(
     ----------
     image, camera : Picture, Camera
         The picture, and its camera.
-    appearance : Appearance or Guess, optional
-        What stones look like, or may look like; without it, what any stone looks like.
+    appearance : Appearance, optional
+        What stones look like; without it, what any stone looks like.
     disc : Stone
         Sizes; a disc without a cap is sought by its rim.
     bounds : (x0, x1, y0, y1)
@@ -85,29 +83,18 @@ def seek(
     least : float
         Response, 0 to 2, from which a place is given.
     """
-    known = appearance if isinstance(appearance, Appearance) else None
-    none = Candidates(np.empty((0, 2)), known)
     scale = radius_px / disc.radius
     ice = rectify(image, camera, bounds, scale=scale, height=disc.cap_height)
     if ice is None or not ice.valid.any():
-        return none
+        return Candidates(np.empty((0, 2)), appearance)
+    known = appearance
     if known is None and not is_plain(disc):
-        known = _guessed(ice, appearance if callable(appearance) else None, disc)
+        white = np.percentile(lab_of(ice.image)[ice.valid][:, 0], 75)
+        known = any_stone(max(round(float(white)), 60))
     response = _response(ice, known, disc)
     # Nearer than stones can be: paint of the cap's colour beside a stone may answer more strongly.
     peaks = _peaks(response, least, 1.1 * radius_px)
     return Candidates(ice.place(peaks[:, 1], peaks[:, 0]), known)
-
-
-def _guessed(ice: IceMap, guess: Guess | None, disc: Stone) -> Appearance:
-    """Say what stones may look like on a piece of ice, before any is known."""
-    lab = lab_of(ice.image)[ice.valid].astype(np.int32)
-    if guess is None:
-        vivid = int((((lab[:, 1:] - 128) ** 2).sum(1) > VIVID**2).sum())
-        coloured = vivid >= 0.5 * np.pi * (disc.cap_radius * ice.scale) ** 2  # half a cap of it
-        guess = any_stone if coloured else any_grey_stone
-    black, white = np.percentile(lab[:, 0], [1, 75]).round().astype(int).tolist()
-    return guess(max(white, 60), black)
 
 
 def seek_about(
@@ -173,13 +160,16 @@ def _annulus(inner: float, outer: float, size: int) -> Floats:
 
 def _response(ice: IceMap, appearance: Appearance | None, disc: Stone) -> Floats:
     if is_plain(disc):
-        return _disc_response(ice, disc)
+        return _round_response(ice, [disc.radius])
     assert appearance is not None
-    return _stone_response(ice, appearance, disc)
+    if appearance.membership is None:
+        radii = np.array([disc.cap_radius, disc.radius]) * appearance.outline
+        return _round_response(ice, radii.tolist())
+    return _stone_response(ice, appearance.membership, disc)
 
 
-def _stone_response(ice: IceMap, appearance: Appearance, disc: Stone) -> Floats:
-    worth = membership(ice.image, appearance) * ice.valid
+def _stone_response(ice: IceMap, table: Floats, disc: Stone) -> Floats:
+    worth = membership(ice.image, table) * ice.valid
     unit = ice.scale
     size = int(np.ceil(disc.radius * unit))
     cap = _annulus(0.0, CAP_END * disc.cap_radius * unit, size)
@@ -214,9 +204,8 @@ def _correlated(values: Floats, kernel: Floats, row: int) -> Floats:
     )
 
 
-def _disc_response(ice: IceMap, disc: Stone) -> Floats:
-    """Share of the gradient near a circle that points along its radius, 0 to 2."""
-    radius = disc.radius * ice.scale
+def _round_response(ice: IceMap, radii: Sequence[float]) -> Floats:
+    """Share of the gradient near concentric circles that points along their radii, 0 to 2."""
     grey = cv2.GaussianBlur(ice.image, (0, 0), 0.8).astype(np.float32)
     gx = cv2.Sobel(grey, cv2.CV_32F, 1, 0, scale=1 / 8)
     gy = cv2.Sobel(grey, cv2.CV_32F, 0, 1, scale=1 / 8)
@@ -225,17 +214,13 @@ def _disc_response(ice: IceMap, disc: Stone) -> Floats:
     energy = (gx**2 + gy**2).sum(2)
     weight = inner / (energy + 6.0**2)
     xx, xy, yy = ((u * v).sum(2) * weight for u, v in ((gx, gx), (gx, gy), (gy, gy)))
-    size = int(np.ceil(radius + 2))
-    ring = _annulus(radius - 1.3, radius + 1.3, size)
+    outer = [radius * ice.scale for radius in radii]
+    size = int(np.ceil(outer[-1] + 2))
+    ring = sum(_annulus(radius - 1.3, radius + 1.3, size) for radius in outer) / len(outer)
     offset = np.arange(-size, size + 1, dtype=np.float32)
-    angle = np.arctan2(offset[:, None], offset[None, :])
-    c, s = np.cos(angle), np.sin(angle)
-    total = np.zeros(xx.shape, np.float32)
+    twice = 2 * np.arctan2(offset[:, None], offset[None, :])
     # Radial energy counts for a circle, energy along the circle against it.
-    for tensor, kernel in (
-        (xx, ring * (c * c - s * s)), (xy, ring * 4 * c * s), (yy, ring * (s * s - c * c)),
-    ):  # fmt: skip
-        total += cv2.filter2D(tensor, cv2.CV_32F, kernel, borderType=cv2.BORDER_CONSTANT)
+    total = _filtered(xx - yy, ring * np.cos(twice)) + _filtered(2 * xy, ring * np.sin(twice))
     return np.asarray(2 * total, np.float32)
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import STONE, Stone
-from vision.appearance import Appearance, Guess
+from vision.appearance import Appearance
 from vision.camera import Camera
 from vision.measure import CLEARLY, Measures, measure_discs, well_within
 from vision.patch import EFFORT, is_plain
@@ -87,7 +87,7 @@ def plain_disc(radius: float) -> Stone:
 def search_picture(
     image: Picture,
     camera: Camera,
-    appearance: Appearance | Guess | None = None,
+    appearance: Appearance | None = None,
     disc: Stone = STONE,
     search: Search = SEARCH,
     bounds: Bounds | None = None,
@@ -101,8 +101,8 @@ def search_picture(
         BGR.
     camera : Camera
         The picture's camera; where its position is known, the height of the cap is taken out.
-    appearance : Appearance or Guess, optional
-        What stones look like here, from `learn`, or may look like; without it, what any stone
+    appearance : Appearance, optional
+        What stones look like here, from `learn`; without it, what any stone with a coloured cap
         looks like.
     disc : Stone
         Radius, cap radius and cap height; `plain_disc` for a disc without a cap.
@@ -151,7 +151,7 @@ def search_picture(
         with_samples(sighting, seen, i, disc)
         for i, sighting in zip(chosen.tolist(), found, strict=True)
     ]
-    (placed,) = placed_by([camera], [_apart(stones, disc)], disc)
+    (placed,) = placed_by([camera], [apart(stones, disc)], disc)
     return Findings(tuple(placed), tuple(refused))
 
 
@@ -195,7 +195,7 @@ def with_samples(found: Sighting, seen: Measures, index: int, disc: Stone) -> Si
     )
 
 
-def _apart(found: Sequence[Sighting], disc: Stone) -> list[Sighting]:
+def apart(found: Sequence[Sighting], disc: Stone) -> list[Sighting]:
     """Keep the better of any two that overlap more than two discs can."""
     kept: list[Sighting] = []
     for item in sorted(found, key=lambda s: -s.score):

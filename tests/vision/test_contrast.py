@@ -3,7 +3,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vision.contrast import LIGHT, MOST_LIGHT, by_hue, by_lightness, mean_colours
+from vision.contrast import (
+    LIGHT,
+    MOST_LIGHT,
+    alike,
+    by_hue,
+    by_lightness,
+    mean_colours,
+    own_worth,
+)
 
 GRANITE = np.array([[118.0, 127.0, 126.0]])
 RED, YELLOW, TEAL = [97.0, 183.0, 170.0], [208.0, 118.0, 209.0], [112.0, 92.0, 126.0]
@@ -48,3 +56,25 @@ def test_means_are_of_what_is_chosen() -> None:
     use[0, 0, 1] = use[0, 1, 2] = 1
     np.testing.assert_allclose(mean_colours(values, use)[0], [10.5, 11.5, 12.5])
     np.testing.assert_allclose(mean_colours(values, 0 * use)[0], 0)
+
+
+def test_by_their_own_colours_places_tell_cap_and_granite_and_what_is_neither() -> None:
+    """A dark cap in grey granite, as a picture without colours has it, with a mark on each."""
+    lab = np.full((1, 12, 10, 3), (62, 128, 128), np.uint8)
+    lab[:, :, 6:] = (92, 128, 128)
+    lab[0, 0, [2, 8]] = (240, 128, 128)
+    worth = own_worth(lab, slice(0, 5), slice(6, 10))[0]
+    assert (worth[1:, :6] > 0.9).all() and (worth[1:, 6:] < -0.9).all()
+    assert worth[0, [2, 8]] == pytest.approx(0.0)
+
+
+def test_what_is_one_colour_shows_no_cap() -> None:
+    lab = np.full((1, 12, 10, 3), (62, 128, 128), np.uint8)
+    lab[:, :, 6:, 0] += 6
+    assert not own_worth(lab, slice(0, 5), slice(6, 10)).any()
+
+
+def test_granite_is_as_light_and_as_grey_as_that_of_other_stones_about() -> None:
+    known = GRANITE[0]
+    others = known + np.array([[20.0, 0, 0], [0, 8, -8], [30, 0, 0], [0, 15, 0]])
+    assert alike(others, known).tolist() == [True, True, False, False]

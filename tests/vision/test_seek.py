@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from data.sheet import STONE, Stone
+from vision.appearance import BY_SHAPE
 from vision.camera import Camera
 from vision.seek import _filtered, seek, seek_about
 
@@ -40,6 +41,16 @@ def test_every_disc_is_among_the_strongest(disc: Stone, least: float) -> None:
     found = seek(picture(disc), ABOVE, None, disc, BOUNDS, radius_px=10.0, least=least)
     assert nearest(found.places[: len(PLACES)]).max() < 0.02
     assert (found.appearance is None) == (disc is PUCK)
+
+
+@pytest.mark.parametrize("paint", [(235, 232, 228), (150, 60, 70), (60, 60, 60)])
+def test_without_a_colour_discs_are_sought_by_their_circles(paint: tuple[int, int, int]) -> None:
+    """On ice, on paint and on paint as dark as the caps."""
+    image = picture(STONE)
+    image[(image == (235, 232, 228)).all(2)] = paint
+    image[(image[..., 2] > 150) & (image[..., 0] < 80)] = (60, 60, 60)
+    found = seek(image, ABOVE, BY_SHAPE, STONE, BOUNDS, radius_px=10.0, least=0.45)
+    assert nearest(found.places).max() < 0.02
 
 
 def test_bare_ice_holds_none() -> None:

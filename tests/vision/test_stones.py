@@ -14,7 +14,7 @@ from tests.synthetic.clip import describe, render_still
 from tests.synthetic.physics import Start
 from tests.synthetic.scene import Colour, Graphic, Person, Scene, Stone
 from tests.synthetic.scenes import PAINTS
-from vision.appearance import colour_difference, convincing, learn
+from vision.appearance import BY_SHAPE, colour_difference, convincing, learn
 from vision.camera import Camera, CameraError
 from vision.clip import open_clip
 from vision.sighting import Sighting
@@ -126,12 +126,12 @@ def without_colours(scene: Scene, path: CameraPath = CAMERA) -> NDArray[np.uint8
 
 def test_in_a_picture_without_colours_caps_lighter_or_darker_than_granite_are_found() -> None:
     scene = scene_of([(0.3, 0.2, RED), (-0.35, 0.3, YELLOW), (1.4, 0.6, RED), (0.1, 2.4, YELLOW)])
-    found = search_picture(without_colours(scene), camera_of(CAMERA, scene)).stones
+    found = search_picture(without_colours(scene), camera_of(CAMERA, scene), BY_SHAPE).stones
     assert len(found) == len(scene.stones)
     assert misses(found, scene).max() < 0.010
     person = Person(((0.0, 0.5, 0.2, 1.0),))
     empty = scene_of([], people=(person,), graphics=(Graphic(),))
-    assert search_picture(without_colours(empty), camera_of(CAMERA, empty)).stones == ()
+    assert search_picture(without_colours(empty), camera_of(CAMERA, empty), BY_SHAPE).stones == ()
 
 
 def test_stones_of_the_neighbouring_sheet_are_left_out() -> None:

@@ -19,10 +19,12 @@ from tests.vision.test_stones import (
     scene_of,
     without_colours,
 )  # fmt: skip
+from vision.appearance import CONVINCING
+from vision.appearance import Colour as Granite
 from vision.rays import Look
 from vision.sighting import Sighting
 from vision.stones import FOLLOWING, plain_disc
-from vision.strangers import strangers
+from vision.strangers import strangers, weighed
 
 BLACK, WHITE, DULL = (32, 30, 30), (232, 234, 234), (77, 77, 77)
 MAROON, SLATE = (84, 76, 124), (124, 92, 78)
@@ -63,6 +65,31 @@ def test_caps_little_darker_than_granite_are_found_beside_light_ones() -> None:
     found = seen(scene)
     assert len(found) == len(scene.stones)
     assert misses(found, scene).max() < 0.010
+
+
+def test_black_caps_in_light_granite_are_found_beside_vivid_ones_in_dark_granite() -> None:
+    scene = painted(BLUE, (84, 84, 84), BLUE, (84, 84, 84))
+    lit = [
+        replace(stone, granite=(150, 152, 153) if stone.cap != BLUE else stone.granite)
+        for stone in scene.stones
+    ]
+    scene = replace(scene, stones=tuple(lit))
+    found = seen(scene)
+    assert len(found) == len(scene.stones)
+    assert misses(found, scene).max() < 0.010
+
+
+def test_granite_that_others_have_makes_a_doubtful_stone_one() -> None:
+    """Evidence by shape that convinces beside stones of such granite, and not alone."""
+    scene = painted(BLUE, DULL, BLUE, DULL)
+    image, camera = render_still(scene, CAMERA), camera_of(CAMERA, scene)
+    (found,) = strangers([Look(image, camera, np.empty((0, 2)))], STONE, FOLLOWING)
+    granite = Granite(np.array([118.0, 128.0, 128.0]), np.eye(3))
+    doubtful = found.stones[0]._replace(score=1.5, granite_samples=np.tile(granite.mean, (9, 1)))
+    assert weighed(doubtful, granite).score > CONVINCING > weighed(doubtful, None).score
+    lighter = np.tile(granite.mean + np.array([40.0, 0, 0]), (9, 1))
+    other = doubtful._replace(granite_samples=lighter)
+    assert weighed(other, granite).score < CONVINCING
 
 
 def test_dull_caps_are_found_beside_vivid_ones_by_what_they_differ_from_the_granite() -> None:
