@@ -428,7 +428,9 @@ def test_files_of_an_earlier_run_do_not_stay_beside_the_new(tmp_path: Path) -> N
     (out / "figures").mkdir(parents=True)
     for name in ("camera.csv", "overlay.mp4", "figures/motion_Z.png", "notes.txt"):
         (out / name).write_text("earlier")
-    pipeline.run([tmp_path / "hit.csv"], out)
+    steps: list[str] = []
+    pipeline.run([tmp_path / "hit.csv"], out, progress=lambda what, *_: steps.append(what))
+    assert steps == ["physics", "physics", "report", "report"]
     left = {item.name for item in out.iterdir()}
     assert left == CONTRACT - {"camera.csv", "overlay.mp4"} | {"notes.txt"}
     assert not (out / "figures" / "motion_Z.png").exists()
