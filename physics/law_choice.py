@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.results import Estimate, Law
-from physics.global_fit import fit_shots
+from physics.global_fit import LOST, fit_shots
 from physics.shot_model import V_C, Watched, penner
+from physics.watched import THROWN
 from physics.whole_fit import GlobalFit
 
 STRAIGHT = {"slope": 0.0, "v_c": V_C, "turn": 0.0}
@@ -92,23 +93,38 @@ def _hit_by_hit(shot: Watched, held: Mapping[str, float]) -> GlobalFit:
     """Fit a shot up to its second hit, then up to the next, each from where the one before ended.
 
     From first guesses stones would miss what they hit later, from where no slope leads back. Nor
-    does one from stones that stick to such as slide: every fit sets out from sliding too.
+    does one from stones that stick to such as slide, or from a spin that is lost before a hit to
+    another: fits set out from sliding too, from spins of either sense, the first from even ice.
     """
     start = {name: value for name, value in USUAL.items() if name not in held}
     apart = [two for one, two in pairwise(shot.times) if two - one > 2 * BEFORE]
+    best: GlobalFit | None = None
     for part in [*(shot.until(time - BEFORE) for time in apart), shot]:
         own = {unknown.name for unknown in part.unknowns}
         known = {name: value for name, value in start.items() if name in own}
-        sliding = {name: value for name, value in known.items() if name != "stone_friction"}
-        ways = [known, sliding] if len(sliding) < len(known) else [known]
-        fits = [fit_shots([part], fixed=held, start=way) for way in ways]
-        noise = min(fit.inflation for fit in fits)
-        best = min(
-            fits,
-            key=lambda fit: (not fit.settled, not fit.hits_as_seen, _cost(fit, noise)),
-        )
+        further = {n: v for n, v in known.items() if n != "stone_friction"}
+        if best is None:
+            further = _values(fit_shots([part], fixed={**STRAIGHT, **held}))
+        best = _best(part, held, [known, further])
+        none = [n for n in best.names if n.endswith("omega") and abs(best[n].value or 0.0) < LOST]
+        if none and part.hits:
+            ways = [further | dict.fromkeys(none, omega) for omega in (-THROWN, THROWN)]
+            best = _best(part, held, ways, best)
         start |= _values(best)
+    assert best is not None
     return best
+
+
+def _best(
+    shot: Watched,
+    held: Mapping[str, float],
+    ways: Sequence[dict[str, float]],
+    *others: GlobalFit,
+) -> GlobalFit:
+    """Fit a shot from where each of the ways sets out, and return the best, or another's."""
+    fits = [*others, *(fit_shots([shot], fixed=held, start=way) for way in ways)]
+    noise = min(fit.inflation for fit in fits)
+    return min(fits, key=lambda fit: (not fit.settled, not fit.hits_as_seen, _cost(fit, noise)))
 
 
 def _cost(fit: GlobalFit, noise: float) -> float:
