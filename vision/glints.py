@@ -5,7 +5,8 @@ over it as the stone goes on. Where that is brighter than the handle, pictures b
 mean are brought onto the light, and the angle stands still. So a cap's picture is taken for a
 sum of two: one that turns, R exp(−i k θ(t)) in its harmonic k, and one that changes slowly, along
 straight lines between knots of time. For given angles both are told by least squares; and over
-a second or so, in which a spin is constant, the spin is that which leaves least.
+a second or so, in which a spin is constant, the spin is that which is the more probable than the
+spin the other way round: noise and light turn neither way.
 """
 
 from __future__ import annotations
@@ -26,8 +27,8 @@ KNOT = 0.4
 FAINT = 0.05
 """How little of a harmonic may be left beside the light for its turning part to be told by half."""
 
-SPANS, STEP, FEWEST = (0.9, 1.4), 0.25, 8
-"""Lengths of the stretches over which a spin is told and how far apart they are, s; pictures."""
+SPAN, STEP, FEWEST = 0.9, 0.25, 8
+"""Length of the stretches over which a spin is told and how far apart they are, s; pictures."""
 
 SPINS = np.linspace(-5.0, 5.0, 101)
 """Spins that are tried, rad/s."""
@@ -35,12 +36,13 @@ SPINS = np.linspace(-5.0, 5.0, 101)
 TICKS = 6
 """Digits of a second to which times within a stretch are told: a micro is 10⁻⁴ rad at most."""
 
-CHANGE, SUDDEN = 0.15, 2.0
-"""What a change of the spin from a stretch to the next costs, in shares of what is explained per
-rad/s, and from which on a larger one costs no more: hits change spins."""
+CHANGE, SUDDEN = 0.1, 2.0
+"""What a change of the spin from a stretch to the next costs per rad/s, in logarithms of what is
+left of a harmonic, and from which on a larger one costs no more: hits change spins."""
 
-NOTHING = 0.2
-"""Share from which on a turning cap is seen in a stretch."""
+NOTHING, MOST = 0.05, 0.9999
+"""By how much, in such logarithms, a spin must be the more probable for a cap to be seen to turn in
+a stretch; and the most that may be explained."""
 
 OFTEN = 0.9
 """Share of the pictures that must show a ring for it to be used."""
@@ -139,25 +141,23 @@ def course(times: Array, pictures: Complex) -> tuple[Array, float]:
     """
     often = rings_seen(pictures).mean(0) > OFTEN
     seen = pictures[:, 1:-1, often].reshape(len(times), len(HARMONICS), -1)
-    best, most = np.zeros(len(times)), 0.0
-    for span in SPANS:
-        each = list(_stretches(times, seen, span))
-        if not each:
-            continue
-        middles, shares = (np.array(column) for column in zip(*each, strict=True))
-        spin = np.interp(times, middles, _likely(shares))
-        steps = 0.5 * (spin[1:] + spin[:-1]) * np.diff(times)
-        angles = np.concatenate([[0.0], np.cumsum(steps)])
-        share = unlit(times, pictures, angles).share
-        if share > most:
-            best, most = angles, share
-    return best, most
+    each = list(_stretches(times, seen))
+    if not each:
+        return np.zeros(len(times)), 0.0
+    middles, odds = (np.array(column) for column in zip(*each, strict=True))
+    spin = np.interp(times, middles, _likely(odds))
+    steps = 0.5 * (spin[1:] + spin[:-1]) * np.diff(times)
+    angles = np.concatenate([[0.0], np.cumsum(steps)])
+    return angles, unlit(times, pictures, angles).share
 
 
-def _stretches(times: Array, seen: Complex, span: float) -> Iterator[tuple[float, Array]]:
-    """Middles of stretches, and what share of what changes in them each spin explains."""
-    for middle in np.arange(times[0] + span / 2, times[-1] - span / 2 + 1e-6, STEP):
-        inside = np.abs(times - middle) <= span / 2 + 1e-6
+def _stretches(times: Array, seen: Complex) -> Iterator[tuple[float, Array]]:
+    """Middles of stretches, and how much more probable each spin is there than its opposite.
+
+    By the logarithm of what either leaves of what changes in a harmonic, in the mean over these.
+    """
+    for middle in np.arange(times[0] + SPAN / 2, times[-1] - SPAN / 2 + 1e-6, STEP):
+        inside = np.abs(times - middle) <= SPAN / 2 + 1e-6
         if inside.sum() < FEWEST:
             yield float(middle), np.zeros(len(SPINS))
             continue
@@ -166,8 +166,10 @@ def _stretches(times: Array, seen: Complex, span: float) -> Iterator[tuple[float
         line, phase, left = _tried(np.round(tau, TICKS).tobytes())
         part = np.moveaxis(seen[inside], 1, 0)
         part = part - line @ (line.T @ part)
-        pull = np.sum(np.abs(phase @ part) ** 2, axis=2)
-        yield float(middle), np.sum(pull / left, axis=0) / max(np.sum(np.abs(part) ** 2), 1e-12)
+        pull = np.sum(np.abs(phase @ part) ** 2, axis=2) / left
+        most = np.maximum(np.sum(np.abs(part) ** 2, axis=(1, 2)), 1e-12)
+        rest = np.log(1 - np.minimum(pull / most[:, None], MOST)).mean(0)
+        yield float(middle), rest[::-1] - rest
 
 
 @lru_cache(maxsize=32)
@@ -193,17 +195,17 @@ def _tried(tau: bytes) -> tuple[NDArray[np.float32], Complex, Array]:
     return line, np.ascontiguousarray(phase.conj().transpose(0, 2, 1)), left
 
 
-def _likely(shares: Array) -> Array:
-    """Spins from stretch to stretch, (n,), that explain most and change little."""
+def _likely(odds: Array) -> Array:
+    """Spins from stretch to stretch, (n,), that are the most probable and change little."""
     apart = np.minimum(np.abs(SPINS[:, None] - SPINS), SUDDEN)
-    best, links = shares[0], []
-    for share in shares[1:]:
+    best, links = odds[0], []
+    for more in odds[1:]:
         ways = best[:, None] - CHANGE * apart
         links.append(ways.argmax(0))
-        best = ways.max(0) + share
+        best = ways.max(0) + more
     at = [int(best.argmax())]
     for link in reversed(links):
         at.append(int(link[at[-1]]))
     chosen = np.array(at[::-1])
-    told = shares[np.arange(len(shares)), chosen]
+    told = odds[np.arange(len(odds)), chosen]
     return np.where(told > NOTHING, SPINS[chosen], 0.0)

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import cv2
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -82,6 +83,24 @@ def test_a_spin_that_explains_little_more_in_one_stretch_is_none(
     spins = _likely(shares)
     np.testing.assert_allclose(spins[3 : 3 + stretches], expected)
     np.testing.assert_allclose(np.delete(spins, slice(3, 3 + stretches)), 1.0)
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2, 3])
+def test_a_faint_handle_that_noise_hides_in_each_picture_is_told_by_all_of_them(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    angle = np.arange(RAYS)[:, None] * (2 * np.pi / RAYS)
+    x, y = RADII * np.cos(angle), RADII * np.sin(angle)
+    seen = []
+    for turn in -1.6 * TIMES:
+        aside, along = y * np.cos(turn) - x * np.sin(turn), x * np.cos(turn) + y * np.sin(turn)
+        grain = cv2.GaussianBlur(rng.normal(0, 1, x.shape), (0, 0), 1.5)
+        value = 120 + 26 * ((np.abs(aside) < 0.012) & (along > -0.05)) + 12 * grain / grain.std()
+        seen.append(cap_spectrum(np.repeat(value[..., None], 3, -1).astype(np.uint8), RADII))
+    theta, sd = handle_angles(TIMES, seen, RADII, np.full(len(TIMES), 0.0005))
+    told = np.isfinite(theta)
+    assert told.mean() > 0.5
+    assert np.polyfit(TIMES[told], theta[told], 1)[0] == pytest.approx(-1.6, abs=0.06)
+    assert np.nanmedian(sd) > 0.2
 
 
 def test_pictures_too_few_for_a_spin_have_no_course() -> None:
