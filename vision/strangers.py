@@ -48,13 +48,11 @@ def strangers(looks: Sequence[Look], disc: Stone, search: Search) -> list[Findin
         search_picture(look.picture, look.camera, None, disc, search, None, look.places)
         for look in looks
     ]
-    if is_plain(disc) or len(by_colour(_convincing(found))) == MOST_COLOURS:
+    sure = convincing(stone for one in found for stone in one.stones)
+    if is_plain(disc) or len(by_colour(sure)) >= MOST_COLOURS:
         return found
     round_ones = [_round(look, one, disc, search) for look, one in zip(looks, found, strict=True)]
-    sure = [
-        *_convincing(found),
-        *convincing(weighed(stone, None) for s in round_ones for stone in s),
-    ]
+    sure += convincing(weighed(stone, None) for some in round_ones for stone in some)
     seen = learn(sure)
     granite = None if seen is None else seen.granite
     return [
@@ -64,10 +62,6 @@ def strangers(looks: Sequence[Look], disc: Stone, search: Search) -> list[Findin
         )
         for one, more in zip(found, round_ones, strict=True)
     ]
-
-
-def _convincing(found: Sequence[Findings]) -> list[Sighting]:
-    return convincing(stone for one in found for stone in one.stones)
 
 
 def _round(look: Look, found: Findings, disc: Stone, search: Search) -> tuple[Sighting, ...]:

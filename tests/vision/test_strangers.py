@@ -19,11 +19,11 @@ from tests.vision.test_stones import (
     scene_of,
     without_colours,
 )  # fmt: skip
-from vision.appearance import CONVINCING
+from vision.appearance import BY_SHAPE, CONVINCING
 from vision.appearance import Colour as Granite
 from vision.rays import Look
 from vision.sighting import Sighting
-from vision.stones import FOLLOWING, plain_disc
+from vision.stones import FOLLOWING, Findings, plain_disc
 from vision.strangers import strangers, weighed
 
 BLACK, WHITE, DULL = (32, 30, 30), (232, 234, 234), (77, 77, 77)
@@ -92,6 +92,21 @@ def test_granite_that_others_have_makes_a_doubtful_stone_one() -> None:
     assert weighed(other, granite).score < CONVINCING
 
 
+@pytest.mark.parametrize(("lighter", "count"), [(0.0, 2), (40.0, 1)])
+def test_stones_told_by_their_shape_tell_of_what_granite_others_are(
+    lighter: float, count: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sure, *_ = seen(painted(BLACK, WHITE, BLACK, WHITE))
+    off = np.array([lighter, 0.0, 0.0])
+    doubtful = sure._replace(x=sure.x + 1.0, score=1.5, granite_samples=sure.granite_samples + off)
+
+    def search(*inputs: object) -> Findings:
+        return Findings((sure, doubtful) if inputs[2] is BY_SHAPE else (), ())
+
+    monkeypatch.setattr("vision.strangers.search_picture", search)
+    assert len(seen(scene_of([]))) == count
+
+
 def test_dull_caps_are_found_beside_vivid_ones_by_what_they_differ_from_the_granite() -> None:
     scene = painted(BLUE, MAROON, BLUE, MAROON)
     assert len(look(scene)) == 2
@@ -134,8 +149,9 @@ def test_pale_ice_without_stones_stays_empty() -> None:
     assert not seen(scene_of([]), contrast=0.5)
 
 
-def test_two_colours_are_both_teams() -> None:
-    scene = painted(RED, YELLOW, BLACK, YELLOW)
+@pytest.mark.parametrize("third", [YELLOW, BLUE])
+def test_two_colours_are_both_teams(third: Colour) -> None:
+    scene = painted(RED, YELLOW, BLACK, third)
     assert len(seen(scene)) == 3
 
 
