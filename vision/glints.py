@@ -40,9 +40,9 @@ CHANGE, SUDDEN = 0.1, 2.0
 """What a change of the spin from a stretch to the next costs per rad/s, in logarithms of what is
 left of a harmonic, and from which on a larger one costs no more: hits change spins."""
 
-NOTHING, MOST = 0.05, 0.9999
+NOTHING = 0.05
 """By how much, in such logarithms, a spin must be the more probable for a cap to be seen to turn in
-a stretch; and the most that may be explained."""
+a stretch."""
 
 OFTEN = 0.9
 """Share of the pictures that must show a ring for it to be used."""
@@ -168,7 +168,7 @@ def _stretches(times: Array, seen: Complex) -> Iterator[tuple[float, Array]]:
         part = part - line @ (line.T @ part)
         pull = np.sum(np.abs(phase @ part) ** 2, axis=2) / left
         most = np.maximum(np.sum(np.abs(part) ** 2, axis=(1, 2)), 1e-12)
-        rest = np.log(1 - np.minimum(pull / most[:, None], MOST)).mean(0)
+        rest = np.log(1 - pull / most[:, None]).mean(0)  # more than 0 is left: see `FAINT`
         yield float(middle), rest[::-1] - rest
 
 

@@ -85,6 +85,37 @@ def test_a_spin_that_explains_little_more_in_one_stretch_is_none(
     np.testing.assert_allclose(np.delete(spins, slice(3, 3 + stretches)), 1.0)
 
 
+@pytest.mark.parametrize(("odds", "expected"), [(0.04, 0.0), (0.06, 1.0)])
+def test_a_spin_that_is_hardly_more_probable_than_its_opposite_is_none(
+    odds: float, expected: float
+) -> None:
+    each = np.zeros((9, len(SPINS)))
+    each[:, np.abs(SPINS - 1.0) < 1e-6] = odds
+    np.testing.assert_allclose(_likely(each), expected)
+
+
+def patterns(*along: NDArray[np.float64]) -> NDArray[np.complex64]:
+    """A cap whose harmonics change in time as these say, each by its own pattern of rings."""
+    rng = np.random.default_rng(6)
+    shape = len(ORDERS), 2, 3
+    shown = [rng.normal(size=shape) + 1j * rng.normal(size=shape) for _ in along]
+    seen = [one[:, :, None, None] * cap for one, cap in zip(along, shown, strict=True)]
+    return np.asarray(sum(seen), np.complex64)
+
+
+def test_what_comes_and_goes_on_a_cap_without_turning_has_no_spin() -> None:
+    """Either way round a spin explains as much of it, and more than no spin does."""
+    flicker = np.cos(1.6 * np.outer(TIMES, ORDERS))
+    assert not course(TIMES, patterns(flicker))[0].any()
+
+
+def test_of_a_cap_that_turns_and_shows_nothing_else_the_spin_is_told() -> None:
+    turning = np.exp(-1.6j * np.outer(TIMES, ORDERS))
+    angles, share = course(TIMES, patterns(turning))
+    np.testing.assert_allclose(angles, 1.6 * TIMES, atol=1e-6)
+    assert share > 0.9
+
+
 @pytest.mark.parametrize("seed", [0, 1, 2, 3])
 def test_a_faint_handle_that_noise_hides_in_each_picture_is_told_by_all_of_them(seed: int) -> None:
     rng = np.random.default_rng(seed)
