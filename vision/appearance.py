@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from vision.circles import WALL
 from vision.clip import Image
+from vision.contrast import worth_of
 from vision.lab import bgr_of, chroma, lab_of
 from vision.sighting import Sighting
 
@@ -193,10 +194,7 @@ def learn(sightings: Sequence[Sighting]) -> Appearance | None:
     lab = _lab_of_table()
     to_cap = np.min([cap.distance(lab) for cap in caps], axis=0)
     to_granite = granite.distance(lab)
-    # What may be either is neither: the nearer counts, by how much nearer it is.
-    nearer = np.clip((to_granite - to_cap) / 1.5, -1, 1)
-    likely = np.clip((4.5 - np.minimum(to_cap, to_granite)) / 1.5, 0, 1)
-    worth = np.asarray(nearer * likely, np.float32)
+    worth = worth_of(to_cap, to_granite)
     chosen = [(*s.outline, s.wall) for group in groups for s in group if s.visible > 0.8]
     if len(chosen) < 3:
         return Appearance(worth, caps, granite)

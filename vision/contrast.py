@@ -22,10 +22,13 @@ FAINT, VIVID = 40.0, 60.0
 """Difference of hue (L*a*b* units) up to which lightness is needed, and from which it is not: pale
 and dark caps have 30 to 45, red and yellow ones 70 to 90, and in a grey picture none has any."""
 
-
 OWN_SPREAD, OWN_APART = np.array([15.0, 7.0, 7.0], np.float32), 0.8
 """Usual standard deviation of L*, a* and b* within a cap or its granite, and by how many of these
 the two differ at least."""
+
+CLEAR, FAR_OFF = 1.5, 4.5
+"""Standard deviations by which a colour is nearer to that of a cap than to that of granite if it is
+the one and not the other, and from which on it is neither."""
 
 ALIKE = 25.0, 14.0
 """By how much the lightness and the hue of granite differ from stone to stone, L*a*b* units."""
@@ -65,6 +68,25 @@ def by_lightness(cap: Array, granite: Array) -> Array:
     return np.asarray(1 / np.where(np.abs(apart) < 1, 1.0, apart))
 
 
+def worth_of(to_cap: Floats, to_granite: Floats, clear: Floats | float = CLEAR) -> Floats:
+    """Say what colours may be that are so many standard deviations off those of cap and granite.
+
+    Parameters
+    ----------
+    to_cap, to_granite : ndarray of one shape
+    clear : ndarray or float
+        By how much the nearer one must be nearer to be what it is without doubt.
+
+    Returns
+    -------
+    ndarray
+        1 cap, −1 granite, 0 neither; what may be either is neither.
+    """
+    nearer = np.clip((to_granite - to_cap) / clear, -1, 1)
+    likely = np.clip((FAR_OFF - np.minimum(to_cap, to_granite)) / CLEAR, 0, 1)
+    return np.asarray(nearer * likely, np.float32)
+
+
 def own_worth(lab: Bytes, cap: slice, ring: slice) -> Floats:
     """Say what samples may be by the colours of cap and granite in their own place.
 
@@ -86,10 +108,9 @@ def own_worth(lab: Bytes, cap: slice, ring: slice) -> Floats:
         for middle in middles
     )
     apart = np.sqrt(((middles[0] - middles[1]) ** 2).sum(1))
-    steep = np.minimum(1.5, 0.6 * np.maximum(apart, OWN_APART)).astype(np.float32)
-    nearer = np.clip((to_granite - to_cap) / steep[:, None, None], -1, 1)
-    likely = np.clip((4.5 - np.minimum(to_cap, to_granite)) / 1.5, 0, 1)
-    return np.asarray(nearer * likely * (apart > OWN_APART)[:, None, None], np.float32)
+    clear = np.minimum(CLEAR, 0.6 * np.maximum(apart, OWN_APART)).astype(np.float32)
+    worth = worth_of(to_cap, to_granite, clear[:, None, None])
+    return np.asarray(worth * (apart > OWN_APART)[:, None, None], np.float32)
 
 
 def alike(granite: Array, known: Array) -> Flags:

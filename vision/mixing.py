@@ -50,7 +50,7 @@ APART = 2.5
 """How far the channels may contradict each other, or what is possible, in standard deviations."""
 
 UNTOLD = 0.25
-"""What is not known of the share of light where an outline hides it."""
+"""What is not known of the share of light where an outline hides it, or nothing tells it."""
 
 VAGUE = 0.5
 """Standard error of a share that does not tell what is possible from what is not quite."""

@@ -17,7 +17,8 @@ Size = tuple[int, int]
 PARAMETERS = 9
 """Turn about the camera's own axes (3, rad), log focal length, place (3, m), k1, k2."""
 
-AROUND = 1e-3 * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
+STEP = 1e-3
+AROUND = STEP * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
 """Where points around one are seen to tell how long a pixel is there, m."""
 
 
@@ -102,19 +103,19 @@ def shared_place_cov(
 
 def scale_of(around: Array) -> Array:
     """Pixels per metre where points are seen so `AROUND` another one, shape (..., 4, 2)."""
-    along = (around[..., 0, :] - around[..., 1, :]) / 2e-3
-    up = (around[..., 2, :] - around[..., 3, :]) / 2e-3
+    along = (around[..., 0, :] - around[..., 1, :]) / (2 * STEP)
+    up = (around[..., 2, :] - around[..., 3, :]) / (2 * STEP)
     area = along[..., 0] * up[..., 1] - along[..., 1] * up[..., 0]
     return np.asarray(np.sqrt(np.abs(area)))
 
 
 @lru_cache(maxsize=8)
-def middle(size: tuple[int, int]) -> tuple[Array, float]:
+def middle(size: Size) -> tuple[Array, float]:
     """Middle and half diagonal of a picture, px."""
     w, h = size
-    middle = np.array([(w - 1) / 2, (h - 1) / 2])
-    middle.flags.writeable = False
-    return middle, float(np.hypot(w, h)) / 2
+    centre = np.array([(w - 1) / 2, (h - 1) / 2])
+    centre.flags.writeable = False
+    return centre, float(np.hypot(w, h)) / 2
 
 
 def _crossing(vectors: Array) -> Array:

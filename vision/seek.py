@@ -73,7 +73,8 @@ def seek(
     image, camera : Picture, Camera
         The picture, and its camera.
     appearance : Appearance, optional
-        What stones look like; without it, what any stone looks like.
+        What stones look like, or `BY_SHAPE`; without it, what any stone with a coloured cap looks
+        like.
     disc : Stone
         Sizes; a disc without a cap is sought by its rim.
     bounds : (x0, x1, y0, y1)

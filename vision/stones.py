@@ -102,8 +102,8 @@ def search_picture(
     camera : Camera
         The picture's camera; where its position is known, the height of the cap is taken out.
     appearance : Appearance, optional
-        What stones look like here, from `learn`; without it, what any stone with a coloured cap
-        looks like.
+        What stones look like here, from `learn`, or `BY_SHAPE`; without it, what any stone with a
+        coloured cap looks like.
     disc : Stone
         Radius, cap radius and cap height; `plain_disc` for a disc without a cap.
     search : Search

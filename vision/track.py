@@ -16,6 +16,7 @@ from data.tracks import SIGHTING_COLUMNS, Columns, no_rows, order_of_motion
 from vision.angles import angles_in_parts
 from vision.appearance import Appearance
 from vision.camera import Camera
+from vision.cameras import Cameras
 from vision.clip import Clip
 from vision.follow import Gate, Track, follow
 from vision.late import seen_late
@@ -145,16 +146,13 @@ def off_axis(
 
     By the errors of the centres and, in a slanting view, of the height at which the handle is.
     """
-    unknown = np.array([0.0, 0.0, np.inf])
-    positions = {
-        camera.frame: unknown if camera.position is None else camera.position for camera in cameras
-    }
+    by_frame = {camera.frame: camera for camera in cameras}
     height_sd = 0.0 if is_plain(disc) else HANDLE_HEIGHT_SD
     out = {}
     for name, track in tracks.items():
         seen = np.array([(s.x, s.y, s.sd_x, s.sd_y) for s in track.sightings])
-        at = np.array([positions[frame] for frame in track.frames])
-        slant = np.hypot(*(seen[:, :2] - at[:, :2]).T) / at[:, 2]
+        by = Cameras.of([by_frame[frame] for frame in track.frames], [1] * len(seen))
+        slant = np.hypot(*by.slants(seen[:, :2]).T)
         out[name] = np.hypot(seen[:, 2:].mean(1), height_sd * slant)
     return out
 

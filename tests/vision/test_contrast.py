@@ -11,6 +11,7 @@ from vision.contrast import (
     by_lightness,
     mean_colours,
     own_worth,
+    worth_of,
 )
 
 GRANITE = np.array([[118.0, 127.0, 126.0]])
@@ -66,6 +67,17 @@ def test_by_their_own_colours_places_tell_cap_and_granite_and_what_is_neither() 
     worth = own_worth(lab, slice(0, 5), slice(6, 10))[0]
     assert (worth[1:, :6] > 0.9).all() and (worth[1:, 6:] < -0.9).all()
     assert worth[0, [2, 8]] == pytest.approx(0.0)
+
+
+@pytest.mark.parametrize(
+    ("to_cap", "to_granite", "expected"),
+    [(0.0, 5.0, 1.0), (5.0, 1.0, -1.0), (1.0, 1.75, 0.5), (4.5, 9.0, 0.0), (3.75, 9.0, 0.5)],
+)
+def test_what_is_nearer_counts_by_how_much_and_what_is_far_from_both_nothing(
+    to_cap: float, to_granite: float, expected: float
+) -> None:
+    cap, granite = (np.array([value], np.float32) for value in (to_cap, to_granite))
+    assert worth_of(cap, granite)[0] == pytest.approx(expected)
 
 
 def test_what_is_one_colour_shows_no_cap() -> None:

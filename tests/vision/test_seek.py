@@ -64,6 +64,21 @@ def test_outside_the_picture_is_none() -> None:
     assert found.places.shape == (0, 2)
 
 
+def test_nothing_is_sought_by_colour_in_a_picture_without_light() -> None:
+    black = np.zeros_like(picture(STONE))
+    assert len(seek(black, ABOVE, None, STONE, BOUNDS, radius_px=10.0, least=0.1).places) == 0
+
+
+@pytest.mark.parametrize("disc", [STONE, PUCK])
+def test_by_its_circles_no_disc_answers_by_more_than_two(disc: Stone) -> None:
+    image = picture(disc)
+    places = [
+        seek(image, ABOVE, BY_SHAPE, disc, BOUNDS, radius_px=10.0, least=least).places
+        for least in (0.5, 2.0)
+    ]
+    assert len(places[0]) >= len(PLACES) and len(places[1]) == 0
+
+
 def test_a_disc_is_found_about_where_it_is_expected() -> None:
     image = picture(STONE)
     looks = seek(image, ABOVE, None, STONE, BOUNDS, radius_px=10.0, least=0.8).appearance
