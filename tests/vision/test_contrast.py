@@ -59,10 +59,11 @@ def test_means_are_of_what_is_chosen() -> None:
     np.testing.assert_allclose(mean_colours(values, 0 * use)[0], 0)
 
 
-def test_by_their_own_colours_places_tell_cap_and_granite_and_what_is_neither() -> None:
+@pytest.mark.parametrize("apart", [16, 30])
+def test_by_their_own_colours_places_tell_cap_and_granite_and_what_is_neither(apart: int) -> None:
     """A dark cap in grey granite, as a picture without colours has it, with a mark on each."""
     lab = np.full((1, 12, 10, 3), (62, 128, 128), np.uint8)
-    lab[:, :, 6:] = (92, 128, 128)
+    lab[:, :, 6:] = (62 + apart, 128, 128)
     lab[0, 0, [2, 8]] = (240, 128, 128)
     worth = own_worth(lab, slice(0, 5), slice(6, 10))[0]
     assert (worth[1:, :6] > 0.9).all() and (worth[1:, 6:] < -0.9).all()

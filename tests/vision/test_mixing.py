@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import inf
 
 import cv2
 import numpy as np
@@ -9,9 +10,10 @@ import pytest
 from tests.synthetic import PAINTS, CameraPath, Light, Scene, render_still, still_camera
 from vision.house import find_house
 from vision.house_fit import HouseFit
-from vision.mixing import half_light, likely, lit
+from vision.mixing import half_light, likely, lit, share_of_light
 from vision.outline import PaintEdge
 from vision.paint import EIGHT, FOUR, TWELVE
+from vision.rig import POSITION
 
 TIMES = 3
 SIZE = (640, 360)
@@ -89,6 +91,18 @@ def test_without_colour_the_edge_lies_between_the_two_and_as_unsure_as_that(gamm
     assert found is not None
     assert -0.12 < found.edge.light[TWELVE] < -0.05
     assert 0.6 < abs(larger(found)) < min(2.2, 2e3 * found.edge.sd / 84)
+
+
+def test_rings_too_pale_tell_what_is_usual_of_light_and_rings_out_of_view_nothing() -> None:
+    image = picture("navy-orange", 2.2)
+    found = find_house(image)
+    assert found is not None
+    view, rig = found.view, found.rig
+    slope = found.evidence.steepness
+    assert share_of_light(np.full_like(image, 230), view, rig, slope) == likely(0.0, inf)
+    away = rig.copy()
+    away[POSITION] += 9.0, 0.0, 0.0
+    assert share_of_light(image, view, away, slope) is None
 
 
 @pytest.mark.parametrize("measured", [-0.2, 0.05, 0.5, 0.9, 1.1])

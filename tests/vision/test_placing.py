@@ -7,7 +7,7 @@ import numpy as np
 from data.sheet import STONE, Stone
 from tests.vision.test_follow import sighting
 from vision.camera import PARAMETERS, Camera, CameraError
-from vision.placing import ASLANT, ASTRAY, GIVEN_ASTRAY, placed_by
+from vision.placing import ASLANT, ASTRAY, GIVEN_ASTRAY, USUAL_RMS_PX, placed_by
 from vision.pose import View, camera
 from vision.rig import OVERHEAD, start_rig
 
@@ -41,6 +41,8 @@ def test_what_sightings_share_is_the_camera_s_and_what_a_slant_hides() -> None:
     aslant = ASLANT[1][0] * np.abs(PLACES) / HEIGHT
     np.testing.assert_allclose(stated(DOWN), np.hypot(flat, aslant), rtol=0.01)
     assert (stated(replace(DOWN, rms_px=2.0)) > stated(DOWN)).all()
+    unknown, usual = (replace(DOWN, rms_px=rms) for rms in (np.nan, USUAL_RMS_PX))
+    np.testing.assert_array_equal(stated(unknown), stated(usual))
 
 
 def test_a_cap_is_told_best_where_its_wall_is_seen_and_its_shoulder_behind_it() -> None:

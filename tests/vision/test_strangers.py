@@ -99,12 +99,15 @@ def test_stones_told_by_their_shape_tell_of_what_granite_others_are(
     sure, *_ = seen(painted(BLACK, WHITE, BLACK, WHITE))
     off = np.array([lighter, 0.0, 0.0])
     doubtful = sure._replace(x=sure.x + 1.0, score=1.5, granite_samples=sure.granite_samples + off)
+    by_colour = sure._replace(score=1.2)  # does not convince
 
     def search(*inputs: object) -> Findings:
-        return Findings((sure, doubtful) if inputs[2] is BY_SHAPE else (), ())
+        return Findings((sure, doubtful) if inputs[2] is BY_SHAPE else (by_colour,), ())
 
     monkeypatch.setattr("vision.strangers.search_picture", search)
-    assert len(seen(scene_of([]))) == count
+    found = seen(scene_of([]))
+    assert len(found) == count
+    assert found[0].score > by_colour.score
 
 
 def test_dull_caps_are_found_beside_vivid_ones_by_what_they_differ_from_the_granite() -> None:
