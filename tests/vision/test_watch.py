@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
-from data.sheet import Stone
+from data.sheet import STONE, Stone
 from tests.synthetic.camera import still_camera
 from tests.synthetic.clip import render_still
 from tests.synthetic.scenes import PAINTS
@@ -15,6 +15,7 @@ from tests.vision.test_stones import BLUE, CAMERA, RED, YELLOW, camera_of, scene
 from vision.clip import Frame, Image
 from vision.follower import StoneView
 from vision.lead import Lead
+from vision.placing import placed_by
 from vision.rays import Look
 from vision.stones import FOLLOWING, Findings, Search
 from vision.strangers import strangers
@@ -41,6 +42,27 @@ def test_a_stone_found_late_is_followed_back_also_one_of_a_new_colour(
         watch.look(Frame(index, index / 25, after if index >= since else before), camera)
     counts = [len(sightings) for _, _, sightings in watch.finish()]
     assert counts == [3] * since + [4] * (50 - since)
+
+
+def test_in_the_end_stones_are_placed_by_the_cameras_that_are_known_by_then(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Some pictures at once; a picture without a camera, and a camera without one, are left out."""
+    monkeypatch.setattr("vision.watch.AT_ONCE", 5)
+    image, camera = picture(AT_REST), camera_of(CAMERA, scene_of(AT_REST))
+    watches = Watch(), Watch()
+    for index in range(12):
+        for watch in watches:
+            watch.look(Frame(index, index / 25, image), camera)
+    known = [replace(camera, frame=index, k1=0.01 * index) for index in [*range(1, 12), 99]]
+    seen = {frame: sightings for frame, _, sightings in watches[0].finish()}
+    found = list(watches[1].finish(known))
+    assert [(frame, t) for frame, t, _ in found] == [(k, k / 25) for k in range(1, 12)]
+    for (frame, _, sightings), by in zip(found, known, strict=False):
+        (expected,) = placed_by([by], [seen[frame]], STONE)
+        assert len(sightings) == len(AT_REST)
+        told, places = ([(s.x, s.y) for s in each] for each in (sightings, expected))
+        np.testing.assert_allclose(told, places)
 
 
 def test_a_third_colour_does_not_take_the_place_of_one_on_the_ice() -> None:
