@@ -227,6 +227,9 @@ def main() -> None:
     parser.add_argument("shared", type=Path, nargs="?", default=ROOT.parent / "shared")
     parser.add_argument("--sheet", type=Path, help="write doubtful stills to this picture")
     options = parser.parse_args()
+    frames = options.shared / "frames"
+    if not (frames / "stills.json").exists():
+        parser.error(f"no labelled stills in {frames}: say where they are")
     cv2.setNumThreads(1)
     score(options.shared, options.sheet)
 
