@@ -81,6 +81,17 @@ class Clip:
         last = self.frames - 1 if self.last is None else min(self.last, self.frames - 1)
         return max(last - self.first + 1, 0)
 
+    def peek(self) -> Picture | None:
+        """Give the first picture of the files; of a video only while nothing else was read."""
+        if not self.is_video:
+            return _read_image(self.files[0])
+        if self._begun is None:
+            return None
+        container, pictures = self._begun
+        first = next(pictures)
+        self._begun = container, chain([first], pictures)
+        return first[1]
+
     def __iter__(self) -> Iterator[Frame]:
         """Yield the frames in order, decoding as it goes."""
         self.read = 0

@@ -23,7 +23,7 @@ SPREADSHEETS = frozenset({".ods", ".xls", ".xlsx"})
 
 @dataclass(frozen=True)
 class Filmed:
-    """A clip with its cameras, and what is known of the scene."""
+    """A clip with its cameras, without black bars, and what is known of the scene."""
 
     clip: Clip
     cameras: tuple[Camera, ...]
@@ -46,6 +46,10 @@ def film(files: tuple[Path, ...], settings: Settings, progress: Progress, placed
         house = HOUSE if curling_size(settings.radius) else None
         filmed = Filmed(clip, cameras, disc, house, notes)
     else:
+        if settings.house is None:
+            from vision.letterbox import lit_clip
+
+            clip = lit_clip(clip, progress)
         followed = _follow(clip, settings, progress, placed)
         house = House(*(float(radius) for radius in followed.radii))
         filmed = Filmed(clip, followed.cameras, disc, house, followed.warnings)

@@ -113,6 +113,7 @@ def _imported(files: tuple[Path, ...], table: Imported, settings: Settings) -> M
 
 
 def _look_at_clip(files: tuple[Path, ...], settings: Settings, progress: Progress) -> Measured:
+    from vision.letterbox import in_whole
     from vision.stones import FOLLOWING, SEARCH
     from vision.track import tracks_of
     from vision.watch import Watch
@@ -128,13 +129,14 @@ def _look_at_clip(files: tuple[Path, ...], settings: Settings, progress: Progres
 
     seen = film(files, settings, progress, look)
     stones = tracks_of(watch, seen.cameras)
+    clip, cameras = in_whole(seen.clip, seen.cameras)
     return Measured(
         files,
         stones.table,
-        seen.clip.fps,
-        seen.clip.read,
-        (*seen.clip.warnings, *seen.warnings, *stones.warnings),
-        seen.clip,
-        seen.cameras,
+        clip.fps,
+        clip.read,
+        (*clip.warnings, *seen.warnings, *stones.warnings),
+        clip,
+        cameras,
         seen.house,
     )
