@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from vision.align import ORDERS
 from vision.glints import SPINS, _likely, course, unlit
-from vision.handle import cap_spectrum, handle_angles
+from vision.handle import LEAST, cap_spectrum, handle_angles
 
 RAYS = 64
 RADII = np.linspace(0.012, 0.09, 8)
@@ -116,8 +116,8 @@ def test_of_a_cap_that_turns_and_shows_nothing_else_the_spin_is_told() -> None:
     assert share > 0.9
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2, 3])
-def test_a_faint_handle_that_noise_hides_in_each_picture_is_told_by_all_of_them(seed: int) -> None:
+def faint(seed: int) -> list[NDArray[np.complex64]]:
+    """A cap whose handle is lost in the grain of each picture, turning by -1.6 rad/s."""
     rng = np.random.default_rng(seed)
     angle = np.arange(RAYS)[:, None] * (2 * np.pi / RAYS)
     x, y = RADII * np.cos(angle), RADII * np.sin(angle)
@@ -127,11 +127,26 @@ def test_a_faint_handle_that_noise_hides_in_each_picture_is_told_by_all_of_them(
         grain = cv2.GaussianBlur(rng.normal(0, 1, x.shape), (0, 0), 1.5)
         value = 120 + 26 * ((np.abs(aside) < 0.012) & (along > -0.05)) + 12 * grain / grain.std()
         seen.append(cap_spectrum(np.repeat(value[..., None], 3, -1).astype(np.uint8), RADII))
-    theta, sd = handle_angles(TIMES, seen, RADII, np.full(len(TIMES), 0.0005))
+    return seen
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2, 3])
+def test_a_faint_handle_that_noise_hides_in_each_picture_is_told_by_all_of_them(seed: int) -> None:
+    theta, sd = handle_angles(TIMES, faint(seed), RADII, np.full(len(TIMES), 0.0005))
     told = np.isfinite(theta)
     assert told.mean() > 0.5
     assert np.polyfit(TIMES[told], theta[told], 1)[0] == pytest.approx(-1.6, abs=0.06)
     assert np.nanmedian(sd) > 0.2
+
+
+def test_a_spin_by_which_less_turns_than_by_the_light_s_own_angles_is_not_heard(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def less(times: NDArray[np.float64], seen: NDArray[np.complex64]) -> tuple[object, float]:
+        return course(times, seen)[0], 1.5 * LEAST
+
+    monkeypatch.setattr("vision.handle.course", less)
+    assert np.isnan(handle_angles(TIMES, faint(0), RADII, np.full(len(TIMES), 0.0005))[0]).all()
 
 
 def test_pictures_too_few_for_a_spin_have_no_course() -> None:
