@@ -22,8 +22,8 @@ STICKING = {"stone_friction": 2.0}
 """Stones that stop sliding on each other before they part: any greater friction does the same."""
 
 USUAL = {"slope": 0.002, "turn": 0.008}
-"""Ice as in FCV1 (Uehara and Ito, 2021), from where every fit sets out: stones that go straight may
-miss each other."""
+"""Ice as in FCV1 (Uehara and Ito, 2021), from where the first fit sets out beside even ice: stones
+that go straight may miss each other."""
 
 BEFORE = 0.1
 """How long before a hit a part of the shot ends that is to be without it, s: its time is not
