@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vision.predict import MEMORY, predict
+from vision.predict import FAR, MEMORY, predict
 
 
 def test_what_is_known_once_stays() -> None:
@@ -31,7 +31,11 @@ def test_even_and_evenly_growing_motion_is_foretold(
 def test_nothing_is_foretold_over_a_long_gap() -> None:
     times = [0.0, 0.04, 0.08, 0.12, 0.16]
     seen = np.square(times)[:, None]
-    np.testing.assert_allclose(predict(times, seen, [0.2, 4.0]), [[0.04], [0.0256]])
+    reach = FAR * (times[-1] - times[0])
+    near, far = times[-1] + 0.9 * reach, times[-1] + 1.1 * reach
+    np.testing.assert_allclose(
+        predict(times, seen, [near, far, 9.0])[:, 0], [near**2, *2 * [0.16**2]]
+    )
 
 
 @pytest.mark.parametrize("noise", [0.01, 1.0])
