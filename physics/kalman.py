@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import erfc, sqrt
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -53,11 +54,14 @@ def smooth(
     radius: float,
     masses: Mapping[str, float] | None = None,
     run: Filter = filtered,
+    unseen: Mapping[int, float] = MappingProxyType({}),
 ) -> pd.DataFrame:
     """Turn sightings into tracks, as a DataFrame: see `smoothed`."""
     import pandas as pd
 
-    return pd.DataFrame(smoothed(sightings, contacts, radius=radius, masses=masses, run=run))
+    return pd.DataFrame(
+        smoothed(sightings, contacts, radius=radius, masses=masses, run=run, unseen=unseen)
+    )
 
 
 def smoothed(
@@ -67,6 +71,7 @@ def smoothed(
     radius: float,
     masses: Mapping[str, float] | None = None,
     run: Filter = filtered,
+    unseen: Mapping[int, float] = MappingProxyType({}),
 ) -> Columns:
     """Turn sightings into tracks: one row per stone and time from its first to its last.
 
@@ -83,21 +88,24 @@ def smoothed(
     run : Filter
         Filters one stone from hit to hit; `physics.reference_filter.filtered` does it with
         matrices.
+    unseen : mapping of int to float
+        Frames with their times, s, at which nothing was measured but states are wanted.
 
     Returns
     -------
     Columns
         `data.tracks.TRACK_COLUMNS`. ``seen`` is 0 in rows at which other stones were seen
-        but not this one, or at which its sighting was refused as an outlier. Angles and spins
-        are NaN where the stone's angle was not seen from one hit to the next, velocities where
-        it was seen once. The standard deviations of places include what the sightings share
-        (``sd_place_x``, ``sd_place_y``).
+        but not this one, at frames `unseen`, or at which its sighting was refused as an outlier.
+        Angles and spins are NaN where the stone's angle was not seen from one hit to the next,
+        velocities where it was seen once. The standard deviations of places include what the
+        sightings share (``sd_place_x``, ``sd_place_y``).
     """
     known = traces(sightings)
     if not known:
         return no_rows(TRACK_COLUMNS)
-    times, first = np.unique(np.asarray(sightings["t"], float), return_index=True)
-    frames = np.asarray(sightings["frame"], int)[first]
+    all_times = np.concatenate([np.asarray(sightings["t"], float), [*unseen.values()]])
+    times, first = np.unique(all_times, return_index=True)
+    frames = np.concatenate([np.asarray(sightings["frame"], int), np.array([*unseen], int)])[first]
     fit, model, noise = _survey(known, contacts, radius)
     each = {}
     for name, trace in known.items():

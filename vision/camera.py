@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -212,6 +212,27 @@ class Camera:
     def scale_at(self, ice: ArrayLike) -> Array:
         """Pixels per metre at ice points, shape (..., 2): root of the Jacobian's determinant."""
         return scale_of(self.project(np.asarray(ice, float)[..., None, :] + AROUND))
+
+
+def carried(
+    cameras: Sequence[Camera], repeated: Mapping[int, tuple[float, int]]
+) -> tuple[Camera, ...]:
+    """Give frames that repeat one before its camera, not as found in them; in order of frames.
+
+    Parameters
+    ----------
+    repeated : mapping of int to (float, int)
+        Of such a frame the time, s, and the frame that it repeats.
+    """
+    known = {camera.frame: camera for camera in cameras}
+    more = [
+        replace(known[of], frame=frame, t=t, found=False)
+        for frame, (t, of) in repeated.items()
+        if of in known
+    ]
+    return (
+        tuple(sorted([*cameras, *more], key=lambda camera: camera.frame)) if more else (*cameras,)
+    )
 
 
 def camera_columns(cameras: Sequence[Camera]) -> Columns:

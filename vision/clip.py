@@ -17,6 +17,7 @@ from data.errors import InputError
 from data.inputs import IMAGE_SUFFIXES, picture_times
 from vision.picture import Image as Image
 from vision.picture import Picture, Planes, image_of
+from vision.repeats import Repeats
 
 DEFAULT_IMAGE_FPS = 25.0
 """Rate of pictures where none is given, 1/s."""
@@ -40,6 +41,8 @@ class Frame:
 class Clip:
     """A clip that can be read through, again and again, always in order.
 
+    Pictures that repeat the one before are left out (`vision.repeats`).
+
     Attributes
     ----------
     files : tuple of Path
@@ -56,6 +59,8 @@ class Clip:
         Filled while reading: what could not be read.
     read : int
         How many frames the latest pass has given so far.
+    repeated : dict of int to (float, int)
+        Of each frame that it has left out as a repeat the time, s, and the frame that it repeats.
     """
 
     files: tuple[Path, ...]
@@ -66,6 +71,7 @@ class Clip:
     last: int | None = None
     warnings: list[str] = field(default_factory=list)
     read: int = 0
+    repeated: dict[int, tuple[float, int]] = field(default_factory=dict)
     _begun: tuple[Any, Iterator[tuple[float, Planes]]] | None = field(
         default=None, init=False, repr=False, compare=False
     )
@@ -94,10 +100,25 @@ class Clip:
 
     def __iter__(self) -> Iterator[Frame]:
         """Yield the frames in order, decoding as it goes."""
-        self.read = 0
-        for frame in self._read_video() if self.is_video else self._read_images():
+        repeats = Repeats()
+        self.read, self.repeated = 0, repeats.left_out
+        for frame in repeats.distinct(self.every()):
             self.read += 1
             yield frame
+        if self.repeated:
+            self._warn(
+                f"{self.files[0]}: {len(self.repeated)} of {self.passed} pictures repeat the one"
+                " before them; what is seen in them is left out"
+            )
+
+    @property
+    def passed(self) -> int:
+        """How many frames the latest pass has gone through so far, repeats among them."""
+        return self.read + len(self.repeated)
+
+    def every(self) -> Iterator[Frame]:
+        """Yield all frames, repeats among them."""
+        return self._read_video() if self.is_video else self._read_images()
 
     def _warn(self, text: str) -> None:
         if text not in self.warnings:

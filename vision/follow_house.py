@@ -236,8 +236,8 @@ def follow_house(
         No house can be made out in any frame.
     """
     follower = HouseFollower(clip.size, first)
-    for count, frame in enumerate(clip):
-        progress("house", count + 1, clip.expected)
+    for frame in clip:
+        progress("house", clip.passed, clip.expected)
         for seen, provisional in follower.look(frame):
             placed(seen, provisional)
     for seen, provisional in follower.catch_up():

@@ -164,9 +164,13 @@ def fit_given(
 
 
 def _frame(clip: Clip, house: GivenHouse) -> Frame:
+    shown = None
     for frame in clip:
         if house.frame is None or frame.index == house.frame:
             return frame
+        if shown is not None and house.frame in clip.repeated:
+            return shown
+        shown = frame
     if house.frame is None:
         raise InputError(f"{clip.files[0]}: none of the frames that are used can be read")
     raise InputError(

@@ -50,15 +50,14 @@ class ProjectClip(Clip):
         used = np.arange(self.first, self.first + super().expected)
         return int(timing.includes(used).sum())
 
-    def __iter__(self) -> Iterator[Frame]:
+    def every(self) -> Iterator[Frame]:
         """Yield the steps in order."""
-        self.read = 0
         timing = self.project.timing
         begin = None
-        for frame in self.whole:
+        # A step may be a picture that repeats one that is none.
+        for frame in self.whole.every():
             begin = frame.t if begin is None else begin
             if frame.index >= self.first and timing.includes(np.array([frame.index]))[0]:
-                self.read += 1
                 t = timing.origin + self.pace * (frame.t - begin)
                 yield Frame(frame.index, t, frame.picture)
         for text in self.whole.warnings:

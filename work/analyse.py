@@ -81,7 +81,7 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
     contacts = find_contacts(sightings, radius)
     estimates = estimate(sightings, contacts, radius=radius, masses=masses)
     timed = _timed(contacts, estimates.collisions)
-    tracks = smooth(sightings, timed, radius=radius, masses=masses)
+    tracks = smooth(sightings, timed, radius=radius, masses=masses, unseen=measured.repeats)
     sampled, scores, notes = simulate_measured(tracks, estimates, radius=radius, masses=masses)
     predictions = predict(
         sightings,

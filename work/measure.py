@@ -26,7 +26,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Measured:
-    """Sightings of the stones and where they come from."""
+    """Sightings of the stones and where they come from.
+
+    `repeats` has the times, s, of frames that were left out, for they repeat one before.
+    """
 
     files: tuple[Path, ...]
     table: Table
@@ -37,6 +40,7 @@ class Measured:
     cameras: tuple[Camera, ...] = ()
     house: House | None = None
     masses: Mapping[str, float] = field(default_factory=dict)
+    repeats: Mapping[int, float] = field(default_factory=dict)
 
     @cached_property
     def sightings(self) -> pd.DataFrame:
@@ -113,6 +117,7 @@ def _imported(files: tuple[Path, ...], table: Imported, settings: Settings) -> M
 
 
 def _look_at_clip(files: tuple[Path, ...], settings: Settings, progress: Progress) -> Measured:
+    from vision.camera import carried
     from vision.letterbox import in_whole
     from vision.stones import FOLLOWING, SEARCH
     from vision.track import tracks_of
@@ -130,13 +135,15 @@ def _look_at_clip(files: tuple[Path, ...], settings: Settings, progress: Progres
     seen = film(files, settings, progress, look)
     stones = tracks_of(watch, seen.cameras)
     clip, cameras = in_whole(seen.clip, seen.cameras)
+    repeated = clip.repeated
     return Measured(
         files,
         stones.table,
         clip.fps,
-        clip.read,
+        clip.passed,
         (*clip.warnings, *seen.warnings, *stones.warnings),
         clip,
-        cameras,
+        carried(cameras, repeated),
         seen.house,
+        repeats={frame: t for frame, (t, _) in repeated.items()},
     )

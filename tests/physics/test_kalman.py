@@ -182,6 +182,21 @@ def test_gaps_are_bridged_and_marked() -> None:
     assert sd[gap, 0].max() > 1.15 * np.median(sd[~gap & (tracks["stone"] == "A"), 0])
 
 
+def test_frames_in_which_nothing_was_measured_have_states_where_they_are_wanted() -> None:
+    motion = hit_motion(1.0, 0.05)
+    seen = watch(motion, np.random.default_rng(8), sd=0.002)
+    hits = find_contacts(seen, RADIUS)
+    without = smooth(seen, hits, radius=RADIUS)
+    t = float(seen["t"].iloc[10]) + 0.005
+    tracks = smooth(seen, hits, radius=RADIUS, unseen={9999: t})
+    added = tracks["frame"] == 9999
+    off, sd = errors(tracks[added], motion)
+    assert len(off) == 2 and (tracks["seen"][added] == 0).all() and (tracks["t"][added] == t).all()
+    assert np.all(np.abs(off[:, :2]) < 5 * sd[:, :2])
+    kept = tracks[~added].reset_index(drop=True)
+    assert np.allclose(kept[["x", "y"]], without[["x", "y"]], atol=1e-5)
+
+
 def test_a_way_too_short_to_be_seen_twice_is_told_by_its_ends() -> None:
     motion = hit_motion(1.8, 0.0, after=1.0, others=[Start(0.03, 2 * RADIUS + 0.07)])
     first, second = motion.hits
