@@ -59,7 +59,7 @@ def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
     and the one whose impulse is least significant is struck off until all that are left
     changed the motion of both their stones. Where several show no hit (of those between two
     sightings none is seen by itself), one that pushes nothing goes first, and of these the pair
-    that lies farthest from touching.
+    that lies farthest from touching. A pair hits again only after something else came between.
 
     Parameters
     ----------
@@ -84,12 +84,13 @@ def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
         if other is not None:
             meetings, cuts, ordered = other, {}, True
             continue
-        evidence = [_evidence(fit, k, radius) for k in range(len(meetings))]
+        evidence = _once([_evidence(fit, k, radius) for k in range(len(meetings))], fit)
         weakest = min(range(len(meetings)), key=evidence.__getitem__)
-        if evidence[weakest].hit >= SIGNIFICANT:
-            late = _at_bounds(fit) if beyond else set()
-            if not late:
-                return _contacts(fit)
+        told = evidence[weakest].hit >= SIGNIFICANT
+        late = (_at_bounds(fit) if told else _ended(fit, weakest)) if beyond else set()
+        if told and not late:
+            return _contacts(fit)
+        if late:
             meetings, beyond = _at_times(fit), beyond - 1
             cuts = {name: run for name, run in cuts.items() if name not in late}
             continue
@@ -116,6 +117,17 @@ def _at_bounds(fit: ShotFit) -> set[str]:
     """Stones of the meetings that lie as far from where they were sought as they may."""
     moved = [abs(fit.time(k) - m.t) / m.looseness for k, m in enumerate(fit.meetings)]
     return {s for m, far in zip(fit.meetings, moved, strict=True) if far > 2.99 for s in m.stones}
+
+
+def _ended(fit: ShotFit, k: int) -> set[str]:
+    """Stones of meeting k if the fit has one at rest by then on the path that opens with it.
+
+    Who was hit moves. Of a stone at rest neither sightings nor momentum tell how fast it was, so
+    that its error is without bounds: the fit set out too far from where the hit is.
+    """
+    stones = fit.meetings[k].stones
+    at_rest = any(fit.stop(fit.sides[k, stone][1]) <= fit.time(k) for stone in stones)
+    return {*stones} if at_rest else set()
 
 
 def _renumbered(cuts: Mapping[str, list[Piece]], gone: int) -> dict[str, list[Piece]]:
@@ -185,6 +197,22 @@ def _evidence(fit: ShotFit, k: int, radius: float) -> _Evidence:
     possible &= bool(push[3] + 2 * error[3] >= push[0] / MOST_PUSH)
     possible &= bool(np.min(push[1:3] + 2 * error[1:3]) >= SHARE * np.max(push[1:3]))
     return _Evidence(both if possible else 0.0, pushed, -away)
+
+
+def _once(evidence: Sequence[_Evidence], fit: ShotFit) -> list[_Evidence]:
+    """Let one hit be one meeting: of two without anything between them the weaker is none.
+
+    Stones that hit each other go apart, and ice does not bring them together again: before they
+    meet once more another hit, or a break, changes the way of either.
+    """
+    out = list(evidence)
+    for k, meeting in enumerate(fit.meetings):
+        since = {fit.pieces[fit.sides[k, stone][0]].opens for stone in meeting.stones}
+        before = since.pop()
+        if before is not None and not since:
+            weaker = min(before, k, key=evidence.__getitem__)
+            out[weaker] = evidence[weaker]._replace(hit=0.0)
+    return out
 
 
 def _contacts(fit: ShotFit) -> tuple[Contact, ...]:

@@ -8,7 +8,11 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
-from physics.contacts import find_contacts
+import physics.contacts
+from physics.contacts import _Evidence, _once, cut_all, find_contacts
+from physics.fit import fit_shot
+from physics.shot_fit import Meeting
+from physics.traces import traces
 from tests.physics.watch import RADIUS, airtable, discs, hit_motion, semireal, watch
 from tests.synthetic.physics import Ice, Impact, Start, simulate
 
@@ -56,6 +60,40 @@ def test_a_stone_that_hardly_goes_on_hides_no_hit(seed: int) -> None:
     seen = watch(motion, np.random.default_rng(seed), fps=60, sd=0.01)
     found = [hit.stones for hit in find_contacts(seen, RADIUS)]
     assert found == [("A", "B"), ("B", "C"), ("C", "D")]
+
+
+def test_a_stone_that_stops_at_once_hides_no_hit(monkeypatch: pytest.MonkeyPatch) -> None:
+    # The first stone goes on at 1 cm/s. Sought from three frames before on, a fit had it at rest
+    # before it hit, and no error bounded how fast it may have been.
+    motion = simulate(
+        [Start(-0.03, -1.296, 0, 0.638), Start(0, 0)],
+        3.84,
+        ice=Ice(b=0.01),
+        impact=Impact(0.93, 0.04),
+        step=5e-4,
+        keep_every=4,
+    )
+    early = Meeting(motion.hits[0].t - 2.6 / 25, ("A", "B"), 1 / 25)
+    monkeypatch.setattr(physics.contacts, "candidates", lambda known, radius: [early])
+    seen = watch(motion, np.random.default_rng(35), fps=25, sd=0.01)
+    (hit,) = find_contacts(seen, RADIUS)
+    assert abs(hit.t - motion.hits[0].t) < 3 * hit.stderr_t
+
+
+@pytest.mark.parametrize(("early", "other"), [(0.0, None), (0.2, None), (0.0, ("B", "C"))])
+def test_a_pair_hits_again_only_after_something_else(
+    early: float, other: tuple[str, str] | None
+) -> None:
+    # Between a hit and 0.2 s after it nothing is, unless another stone; 0.2 s before it, a break.
+    motion = hit_motion(others=(Start(0.02, 0.8),))
+    known, t = traces(watch(motion, np.random.default_rng(1))), motion.hits[0].t
+    meetings = [Meeting(t - early, ("A", "B"), 1 / 30), Meeting(t + 0.2, ("A", "B"), 1 / 30)]
+    if other:
+        meetings.insert(1, Meeting(t + 0.1, other, 1 / 30))
+    fit = fit_shot(known, cut_all(known, meetings, RADIUS)[0], meetings, RADIUS)
+    evidence = [_Evidence(9.0 - k, True, 0.0) for k in range(len(meetings))]
+    found = [told.hit for told in _once(evidence, fit)]
+    assert found == ([9.0, 0.0] if not early and not other else [e.hit for e in evidence])
 
 
 def test_a_near_miss_is_no_hit() -> None:
