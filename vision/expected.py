@@ -21,7 +21,12 @@ from vision.stones import FOLLOWING, Search, judge
 
 Array = NDArray[np.float64]
 
-ROUGH = replace(EFFORT, light=False)
+FOLLOWED = replace(EFFORT, coarse=1.0)
+"""For a stone of which it is known that it is about there. Hue is coded for every other pixel, and
+in blocks: with paint of another hue beyond the granite, caps in Motion JPEG whose radius is 17 px
+came out by 0 to 3 px too large, and a stone in plain view was taken for none."""
+
+ROUGH = replace(FOLLOWED, light=False)
 """For a place from which another one follows that is measured anew."""
 
 ON_COURSE = 0.15
@@ -62,14 +67,14 @@ def look_on_course(
     list of Sighting or None
         One per place, in their order; None where there is no stone.
     """
-    seen = measure_discs(looks, appearance, disc)
+    seen = measure_discs(looks, appearance, disc, FOLLOWED)
     settled = seen.shift < SETTLED * disc.radius
     out = _found(seen, looks, settled, disc, search)
     # The edges that were chosen from beside the centre draw the circle towards there.
     near = np.flatnonzero(~settled & (seen.shift < ON_COURSE * disc.radius) & seen.ok)
     if len(near):
         looks = _moved(looks, seen.centre, near)
-        seen = measure_discs(looks, appearance, disc)
+        seen = measure_discs(looks, appearance, disc, FOLLOWED)
         settled = seen.shift < SETTLED * disc.radius
         found = _found(seen, looks, settled, disc, search)
         for i, sighting in zip(near.tolist(), found, strict=True):
@@ -105,7 +110,7 @@ def look_beside(
     found = measure_discs([at], appearance, disc, ROUGH)
     within = found.ok & (found.shift < NEARBY * disc.radius)
     looks = [replace(at, places=np.where(within[:, None], found.centre, at.places))]
-    found = measure_discs(looks, appearance, disc)
+    found = measure_discs(looks, appearance, disc, FOLLOWED)
     beside = _found(found, looks, np.ones(len(others), bool), disc, search)
     for i, sighting in zip(others.tolist(), beside, strict=True):
         out[i] = sighting

@@ -255,7 +255,9 @@ def _stones(
     odd = light - level
     odd = np.where(behind > effort.most_tilt, np.minimum(odd, 0), odd)
     uneven = np.sqrt((odd**2 * stony).sum(1) / np.maximum(stony.sum(1), 1)) / 40
-    misfit = ((fit.radii[:, 0] / cap_radius - 1) / (0.06 + appearance.slack)) ** 2
+    of_hue = 1 - ((cap - granite) * apart)[:, 0]
+    usual = 0.06 + appearance.slack + effort.coarse * of_hue * pixel / cap_radius
+    misfit = ((fit.radii[:, 0] / cap_radius - 1) / usual) ** 2
     enough = (of_cap.mean((1, 2)) > 0.03) & (of_ring.mean((1, 2)) > 0.03)
     response = worth.mean(1) @ _template(disc, effort)
     evidence = fit.shares.sum(1) - uneven - 0.5 * misfit + 0.5 * response

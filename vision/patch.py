@@ -48,6 +48,9 @@ class Effort:
         How often the edges are chosen about the circle that they gave.
     light : bool
         Whether it is told where the edge of the cap by its lightness alone has its middle.
+    coarse : float
+        How far the edge of the cap may lie aside all around, px, beside what is usual, if its hue
+        alone tells it.
     """
 
     rays: int = 48
@@ -63,6 +66,7 @@ class Effort:
     most_tilt: float = 0.15
     rounds: int = 2
     light: bool = True
+    coarse: float = 0.0
 
 
 EFFORT = Effort()

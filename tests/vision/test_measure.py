@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -8,11 +10,13 @@ from data.sheet import STONE
 from tests.synthetic.camera import tilted_camera
 from tests.synthetic.clip import render_still
 from tests.vision.test_stones import CAMERA, RED, YELLOW, camera_of, scene_of
-from vision.appearance import Appearance, any_stone, learn
+from vision.appearance import BY_SHAPE, Appearance, any_stone, learn
 from vision.camera import Camera
+from vision.expected import FOLLOWED
 from vision.measure import Measures, measure_discs
+from vision.patch import EFFORT
 from vision.rays import Look
-from vision.stones import plain_disc, search_picture
+from vision.stones import FOLLOWING, plain_disc, search_picture
 
 PLACES = np.array([[0.3, 1.9], [-0.45, 0.3], [0.95, 0.1]])
 SCENE = scene_of([(x, y, cap) for (x, y), cap in zip(PLACES, (RED, YELLOW, RED), strict=True)])
@@ -145,6 +149,61 @@ def test_seen_aslant_a_light_mark_beside_the_rim_hardly_draws_a_cap_aside(
     whole = aside()
     assert middle[1] < 0.6 * whole[1]
     np.testing.assert_allclose(middle[[0, 2]], 0, atol=2e-5)
+
+
+MAGENTA = (240, 30, 180)
+
+
+def teal_on_magenta(cap_radius: float = STONE.cap_radius) -> np.ndarray:
+    scene = scene_of([(x, y, (133, 127, 34)) for x, y in PLACES])
+    stones = tuple(replace(stone, cap_radius=cap_radius) for stone in scene.stones)
+    rings = replace(scene.paint, twelve=MAGENTA, eight=MAGENTA, four=MAGENTA, outline=None, logo="")
+    return np.asarray(render_still(replace(scene, stones=stones, paint=rings), CAMERA), np.uint8)
+
+
+def coarsely_coloured(picture: np.ndarray, block: int, aside: int) -> np.ndarray:
+    """Give each block of so many pixels one hue, and let it fade from one to the next."""
+    coded = cv2.cvtColor(np.roll(picture, (aside, aside), (0, 1)), cv2.COLOR_BGR2YCrCb)
+    height, width = (block * (size // block) for size in coded.shape[:2])
+    few = cv2.resize(
+        coded[:height, :width, 1:], (width // block, height // block), interpolation=cv2.INTER_AREA
+    )
+    coded[:height, :width, 1:] = cv2.resize(few, (width, height))
+    return np.roll(cv2.cvtColor(coded, cv2.COLOR_YCrCb2BGR), (-aside, -aside), (0, 1))
+
+
+@pytest.mark.parametrize("block", [6, 8])
+def test_hues_coded_in_blocks_hide_no_stone(block: int) -> None:
+    picture = teal_on_magenta()
+    learned = learn(search_picture(picture, VIEW).stones)
+    coded = [coarsely_coloured(picture, block, aside) for aside in range(0, block, 2)]
+    seen = measure_discs([Look(each, VIEW, PLACES) for each in coded], learned, STONE, FOLLOWED)
+    assert seen.outline[:, 0].max() > 1.06
+    assert seen.evidence.min() > FOLLOWING.least_again
+
+
+def test_a_cap_of_another_size_speaks_against_a_stone_also_by_colours_that_are_known() -> None:
+    right, large = (teal_on_magenta(size * STONE.cap_radius) for size in (1.0, 1.2))
+    learned = learn(search_picture(right, VIEW).stones)
+    seen = [
+        measure_discs([Look(each, VIEW, PLACES)], learned, STONE, FOLLOWED)
+        for each in (right, large)
+    ]
+    assert (seen[1].evidence < seen[0].evidence - 0.8).all()
+
+
+def test_coarse_hues_excuse_no_size_that_lightness_tells() -> None:
+    small = replace(STONE, cap_radius=0.9 * STONE.cap_radius)
+    grey = cv2.cvtColor(cv2.cvtColor(PICTURE, cv2.COLOR_BGR2GRAY), cv2.COLOR_GRAY2BGR)
+    more = []
+    for picture in (PICTURE, grey):
+        look = Look(picture, VIEW, PLACES[:2])
+        alone, followed = (
+            measure_discs([look], BY_SHAPE, small, effort).evidence for effort in (EFFORT, FOLLOWED)
+        )
+        more.append(followed - alone)
+    assert more[0].min() > 0.3
+    np.testing.assert_allclose(more[1], 0, atol=0.02)
 
 
 def test_of_a_plain_disc_the_rim_tells() -> None:
