@@ -37,6 +37,13 @@ LIGHT, LIGHT_OF_GREY = 0.1, 0.35
 """What a difference of lightness counts beside one of hue, both squared; and where neither cap has
 a hue: 50 levels apart are two colours there."""
 
+TOLD = 2.0
+"""Standard deviations by which caps without colours differ at least from granite if a table of
+colours is to tell them."""
+
+COLOURLESS = 3.0
+"""Distance from grey within which nearly all samples of a recording without colours lie."""
+
 
 @dataclass(frozen=True)
 class Colour:
@@ -89,6 +96,9 @@ class Appearance:
     wall : tuple of float
         Height of the caps' walls and the standard deviation of that, m; below 0 where the near
         edges of caps are seen too far in.
+    own : bool
+        Whether these colours hardly tell caps from granite: then stones are sought by their two
+        circles as well, and what is within them counts by the colours of each place.
     """
 
     membership: Floats | None
@@ -97,6 +107,7 @@ class Appearance:
     outline: tuple[float, float] = (1.0, 0.98)
     slack: float = 0.03
     wall: tuple[float, float] = WALL
+    own: bool = False
 
     def nearest(self, colour: Array) -> tuple[int, float]:
         """Rank of the cap whose colour is nearest to one, shape (3,), and their difference."""
@@ -106,7 +117,7 @@ class Appearance:
         return rank, float(differences[rank])
 
 
-BY_SHAPE = Appearance(None)
+BY_SHAPE = Appearance(None, own=True)
 """Stones of which no colour is known."""
 
 
@@ -188,18 +199,30 @@ def learn(sightings: Sequence[Sighting]) -> Appearance | None:
         _colour(np.concatenate([s.cap_samples for s in group]), (18.0, 6.0, 6.0))
         for group in groups
     )
-    granite = _colour(
-        np.concatenate([s.granite_samples for group in groups for s in group]), (15.0, 9.0, 9.0)
-    )
+    shown = np.concatenate([s.granite_samples for group in groups for s in group])
+    granite = _colour(shown, (15.0, 9.0, 9.0))
     lab = _lab_of_table()
     to_cap = np.min([cap.distance(lab) for cap in caps], axis=0)
     to_granite = granite.distance(lab)
     worth = worth_of(to_cap, to_granite)
     chosen = [(*s.outline, s.wall) for group in groups for s in group if s.visible > 0.8]
+    own = _colourless([shown, *(s.cap_samples for group in groups for s in group)])
+    own &= min(_told(cap, granite) for cap in caps) < TOLD
     if len(chosen) < 3:
-        return Appearance(worth, caps, granite)
+        return Appearance(worth, caps, granite, own=own)
     cap_share, rim_share, wall = np.median(np.array(chosen), axis=0).tolist()
-    return Appearance(worth, caps, granite, (cap_share, rim_share), 0.01, (wall, 0.001))
+    return Appearance(worth, caps, granite, (cap_share, rim_share), 0.01, (wall, 0.001), own)
+
+
+def _colourless(samples: Sequence[Array]) -> bool:
+    """Whether samples of colours, shapes (n, 3), are of a recording without any."""
+    return bool(np.percentile(chroma(np.concatenate(samples)), 98) < COLOURLESS)
+
+
+def _told(cap: Colour, granite: Colour) -> float:
+    """By how many standard deviations, of both together, a cap differs from the granite."""
+    both = Colour(granite.mean, cap.covariance + granite.covariance)
+    return float(both.distance(cap.mean.astype(np.float32)))
 
 
 def colour_difference(first: Array, second: Array) -> float:

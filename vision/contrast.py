@@ -87,7 +87,7 @@ def worth_of(to_cap: Floats, to_granite: Floats, clear: Floats | float = CLEAR) 
     return np.asarray(nearer * likely, np.float32)
 
 
-def own_worth(lab: Bytes, cap: slice, ring: slice) -> Floats:
+def own_worth(lab: Bytes, cap: slice, ring: slice, granite: Array | None = None) -> Floats:
     """Say what samples may be by the colours of cap and granite in their own place.
 
     Parameters
@@ -95,11 +95,14 @@ def own_worth(lab: Bytes, cap: slice, ring: slice) -> Floats:
     lab : ndarray, shape (n, rays, radii, 3)
     cap, ring : slice
         Radii at which the one and the other is seen.
+    granite : ndarray, shape (3,), optional
+        The colour of granite, where it is known.
 
     Returns
     -------
     ndarray, shape (n, rays, radii)
-        1 cap, −1 granite, 0 neither; 0 where the two do not differ.
+        1 cap, −1 granite, 0 neither; 0 where the two do not differ, or what is around the cap
+        is no such granite.
     """
     scaled = lab / OWN_SPREAD
     middles = [np.median(scaled[:, :, part].reshape(len(lab), -1, 3), 1) for part in (cap, ring)]
@@ -108,9 +111,12 @@ def own_worth(lab: Bytes, cap: slice, ring: slice) -> Floats:
         for middle in middles
     )
     apart = np.sqrt(((middles[0] - middles[1]) ** 2).sum(1))
+    told = apart > OWN_APART
+    if granite is not None:
+        told &= alike(middles[1] * OWN_SPREAD, granite)
     clear = np.minimum(CLEAR, 0.6 * np.maximum(apart, OWN_APART)).astype(np.float32)
     worth = worth_of(to_cap, to_granite, clear[:, None, None])
-    return np.asarray(worth * (apart > OWN_APART)[:, None, None], np.float32)
+    return np.asarray(worth * told[:, None, None], np.float32)
 
 
 def alike(granite: Array, known: Array) -> Flags:

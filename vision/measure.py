@@ -185,6 +185,20 @@ def _template(disc: Stone, effort: Effort) -> Array:
     return np.asarray(cap / cap.sum() - ring / ring.sum())
 
 
+def _worth(rays: Rays, appearance: Appearance, cap: slice, ring: slice, template: Array) -> Floats:
+    """Say what samples may be by the colours that are known, their own, or what tells more."""
+    table = appearance.membership
+    if table is not None and not appearance.own:
+        return membership(rays.bgr, table)
+    granite = None if appearance.granite is None else appearance.granite.mean
+    own = own_worth(rays.lab, cap, ring, granite)
+    if table is None:
+        return own
+    known = membership(rays.bgr, table)
+    more = (own - known).mean(1) @ template > 0
+    return np.where(more[:, None, None], own, known)
+
+
 def _stones(
     rays: Rays,
     handle: Bytes,
@@ -199,10 +213,7 @@ def _stones(
     lab = rays.lab.astype(np.float32)
     falls = falls_along(lab)
     in_cap, in_ring = well_within(rays.radius, disc)
-    if appearance.membership is None:
-        worth = own_worth(rays.lab, in_cap, in_ring)
-    else:
-        worth = membership(rays.bgr, appearance.membership)
+    worth = _worth(rays, appearance, in_cap, in_ring, _template(disc, effort))
     if not rays.inside.all():
         worth *= rays.inside
     of_cap, of_ring = worth[..., in_cap] > CLEARLY, worth[..., in_ring] < -CLEARLY

@@ -92,9 +92,9 @@ def seek(
     if known is None and not is_plain(disc):
         white = np.percentile(lab_of(ice.image)[ice.valid][:, 0], 75)
         known = any_stone(max(round(float(white)), 60))
-    response = _response(ice, known, disc)
+    responses = _responses(ice, known, disc)
     # Nearer than stones can be: paint of the cap's colour beside a stone may answer more strongly.
-    peaks = _peaks(response, least, 1.1 * radius_px)
+    peaks = np.concatenate([_peaks(one, least, 1.1 * radius_px) for one in responses])
     return Candidates(ice.place(peaks[:, 1], peaks[:, 0]), known)
 
 
@@ -138,7 +138,8 @@ def seek_about(
     patches = colours_at(image, pixels[..., 0], pixels[..., 1])
     ice = IceMap(patches, valid, 0.0, 0.0, scale)
     # One above the other: at the places that may be chosen a patch's response is its own.
-    response = cv2.GaussianBlur(_response(ice, appearance, disc), (0, 0), 0.7)
+    sharp = np.array(_responses(ice, appearance, disc)).sum(0)
+    response = cv2.GaussianBlur(sharp, (0, 0), 0.7)
     response = np.asarray(response, np.float32).reshape(-1, size, size)
     inner = response[:, half - span : half + span + 1, half - span : half + span + 1]
     best = inner.reshape(len(places), -1).argmax(1)
@@ -159,14 +160,18 @@ def _annulus(inner: float, outer: float, size: int) -> Floats:
     return np.asarray(ring / ring.sum(), np.float32)
 
 
-def _response(ice: IceMap, appearance: Appearance | None, disc: Stone) -> Floats:
+def _responses(ice: IceMap, appearance: Appearance | None, disc: Stone) -> list[Floats]:
+    """How much each place looks like a disc, 0 to 2, in one way or two."""
     if is_plain(disc):
-        return _round_response(ice, [disc.radius])
+        return [_round_response(ice, [disc.radius])]
     assert appearance is not None
-    if appearance.membership is None:
+    out = []
+    if appearance.membership is not None:
+        out.append(_stone_response(ice, appearance.membership, disc))
+    if appearance.own:
         radii = np.array([disc.cap_radius, disc.radius]) * appearance.outline
-        return _round_response(ice, radii.tolist())
-    return _stone_response(ice, appearance.membership, disc)
+        out.append(_round_response(ice, radii.tolist()))
+    return out
 
 
 def _stone_response(ice: IceMap, table: Floats, disc: Stone) -> Floats:

@@ -106,6 +106,23 @@ def test_the_wall_of_caps_is_learned_once_for_the_clip() -> None:
     assert look.wall[1] < any_stone().wall[1]
 
 
+def test_greys_near_granite_are_told_place_by_place_in_recordings_without_colours() -> None:
+    def own(cap: int, tinge: float = 0.0) -> bool:
+        """Whether caps of a grey, with granite of a tinge, are to be told by their own colours."""
+        one = seen((cap,) * 3)
+        caps, granite = (
+            values * [1, 0, 0] + [0, 128, 128] for values in (one.cap_samples, one.granite_samples)
+        )
+        tinged = granite + np.array([0, tinge, 0])
+        look = learn([one._replace(cap_samples=caps, granite_samples=tinged)] * 5)
+        assert look is not None
+        return look.own
+
+    assert own(90) and own(140)
+    assert not own(25) and not own(240)
+    assert not own(90, tinge=5.0), "this recording has colours"
+
+
 def test_colours_differ_by_hue_more_than_by_light() -> None:
     bright, dim = np.array([140.0, 190.0, 160.0]), np.array([90.0, 190.0, 160.0])
     other = np.array([140.0, 150.0, 190.0])

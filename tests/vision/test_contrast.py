@@ -87,6 +87,16 @@ def test_what_is_one_colour_shows_no_cap() -> None:
     assert not own_worth(lab, slice(0, 5), slice(6, 10)).any()
 
 
+def test_a_ring_of_other_granite_than_is_known_is_none() -> None:
+    lab = np.full((1, 12, 10, 3), (62, 128, 128), np.uint8)
+    lab[:, :, 6:] = (92, 128, 128)
+    told = [
+        own_worth(lab, slice(0, 5), slice(6, 10), np.array([light, 128.0, 128.0])).any()
+        for light in (100.0, 160.0)
+    ]
+    assert told == [True, False]
+
+
 def test_granite_is_as_light_and_as_grey_as_that_of_other_stones_about() -> None:
     known = GRANITE[0]
     others = known + np.array([[20.0, 0, 0], [0, 8, -8], [30, 0, 0], [0, 15, 0]])

@@ -53,6 +53,19 @@ def test_without_a_colour_discs_are_sought_by_their_circles(paint: tuple[int, in
     assert nearest(found.places).max() < 0.02
 
 
+def test_by_their_own_colours_discs_are_sought_that_no_table_of_colours_tells() -> None:
+    """A table that says of every colour that it is neither cap nor granite."""
+    blank = replace(BY_SHAPE, membership=np.zeros((64, 64, 64), np.float32))
+    for look, furthest in ((blank, 0.02), (replace(blank, own=False), np.inf)):
+        found = seek(picture(STONE), ABOVE, look, STONE, BOUNDS, radius_px=10.0, least=0.45)
+        assert (len(found.places) > 0) == look.own
+        if look.own:
+            assert nearest(found.places).max() < furthest
+    aside = PLACES + np.array([0.05, -0.03])
+    about = seek_about(picture(STONE), ABOVE, aside, blank, STONE, radius_px=10.0, reach=0.8)
+    assert np.hypot(*(about - PLACES).T).max() < 0.03
+
+
 def test_bare_ice_holds_none() -> None:
     bare = picture(STONE, PLACES[:0])
     assert len(seek(bare, ABOVE, None, STONE, BOUNDS, radius_px=10.0, least=0.8).places) == 0

@@ -99,6 +99,22 @@ def test_where_caps_of_one_lightness_are_all_that_is_told_the_others_are_warned_
     assert ["without colour" in text for text in stones.warnings] == [True] * warned
 
 
+def test_caps_that_are_hardly_told_from_granite_lie_less_surely(tmp_path: Path) -> None:
+    import cv2
+
+    shared = []
+    for light in (80, 140, 190):
+        scene, path = (
+            scene_of([(0.3, 0.2, (light,) * 3), (1.4, 0.6, (light,) * 3)]),
+            tmp_path / "i.png",
+        )
+        cv2.imwrite(str(path), without_colours(scene))
+        stones = track_stones(open_clip([path]), (camera_of(CAMERA, scene),)).sightings
+        assert len(stones) == 2
+        shared.append(stones[["sd_place_x", "sd_place_y"]].to_numpy().max())
+    assert min(shared[:2]) > 0.004 > 2 * shared[2]
+
+
 @pytest.mark.parametrize("name", ["pyeongchang_two_hits", "lgt_glancing"])
 def test_real_stones(shared: Path, name: str) -> None:
     truth = json.loads((shared / "clips" / f"semireal_{name}.truth.json").read_text())
