@@ -55,6 +55,7 @@ def fit_shots(
     fixed: Mapping[str, float] | None = None,
     shared: Sequence[str] = (),
     start: Mapping[str, float] | None = None,
+    noise: float = 1.0,
 ) -> GlobalFit:
     """Fit all unknowns of one or several shots to all their sightings at once.
 
@@ -68,13 +69,15 @@ def fit_shots(
         Unknowns of which all shots have the same, such as ``restitution``.
     start : mapping, optional
         Where to set out from, where not from the shots' own guesses.
+    noise : float
+        Factor on the variances of the sightings to set out with.
 
     Raises
     ------
     InputError
         Where there is no shot or a name is unknown.
     """
-    return _Problem(shots, fixed or {}, shared, start or {}).solve()
+    return _Problem(shots, fixed or {}, shared, start or {}, noise).solve()
 
 
 @dataclass

@@ -60,7 +60,9 @@ def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None
         if against < -SELDOM:
             continue
         fewer = STRAIGHT[name]
-        less = fit_shots([shot], fixed=held | {name: fewer}, start=_values(best))
+        less = fit_shots(
+            [shot], fixed=held | {name: fewer}, start=_values(best), noise=best.inflation
+        )
         if not less.settled or less.deviance > ELSEWHERE * best.deviance:
             continue
         tried.append(less)
@@ -70,17 +72,19 @@ def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None
     if "slope" in best.names and "v_c" not in (fixed or {}):
         # where friction falls there is a knee to be found
         free = {name: value for name, value in held.items() if name != "v_c"}
-        bent = fit_shots([shot], fixed=free, start=_values(best))
+        bent = fit_shots([shot], fixed=free, start=_values(best), noise=best.inflation)
         if bent.settled:
             tried[criteria.index(least)] = bent
             best, held = bent, free
         even = {"slope": 0.0, "v_c": V_C, **held}
-        rooted = fit_shots([replace(shot, ice=penner)], fixed=even, start=_values(best))
+        rooted = fit_shots(
+            [replace(shot, ice=penner)], fixed=even, start=_values(best), noise=best.inflation
+        )
         if rooted.settled:
             tried.append(rooted)
             criteria.append(least + _beside(rooted, best))
     if shot.hits:
-        stuck = fit_shots([shot], fixed=held | STICKING, start=_values(best))
+        stuck = fit_shots([shot], fixed=held | STICKING, start=_values(best), noise=best.inflation)
         if stuck.settled:
             tried.append(stuck)
             criteria.append(least + _beside(stuck, best))

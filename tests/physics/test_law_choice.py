@@ -1,12 +1,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pytest
 
 from physics.contacts import find_contacts
 from physics.estimate import Estimates, estimate
+from physics.global_fit import fit_shots
+from physics.whole_fit import GlobalFit
 from tests.physics.watch import RADIUS, hit_motion, watch
 from tests.synthetic.physics import Ice, Impact, Start, simulate
 
@@ -45,6 +48,26 @@ def test_friction_that_falls_with_the_speed_and_curl() -> None:
     assert abs(float(found.friction.value or 0) - 0.00815) < 3 * found.friction.stderr
     assert found.curl.stderr is not None
     assert abs(float(found.curl.value or 0) - 0.0082) < 3 * found.curl.stderr
+
+
+def test_other_laws_are_fitted_with_the_noise_that_is_known(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """With less they would set out to follow what is not there."""
+    noises = []
+
+    def fit(*args: Any, **known: Any) -> GlobalFit:
+        noises.append(known.get("noise", 1.0))
+        return fit_shots(*args, **known)
+
+    monkeypatch.setattr("physics.law_choice.fit_shots", fit)
+    seen = watch(hit_motion(1.2, 0.1, before=2.0, after=5.0), np.random.default_rng(5), sd=0.004)
+    seen[["sd_x", "sd_y"]] /= 2
+    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    assert found.whole is not None
+    first = noises.index(next(noise for noise in noises if noise != 1))
+    assert len(noises) - first >= 3
+    assert noises[first:] == pytest.approx(len(noises[first:]) * [found.whole.inflation], rel=0.02)
 
 
 def test_other_laws_add_to_the_errors() -> None:
