@@ -97,6 +97,9 @@ class Measures:
         Share of the rays on which the cap was seen, whatever is around it.
     evidence : ndarray, shape (n,)
         For a stone 0 to about 3, for a plain disc 0 to 1.
+    excused : ndarray, shape (n,)
+        How much more of it there would be but for a hue that is coded coarsely
+        (`vision.patch.Effort`): enough to follow what is known to be a stone, not to tell it is.
     light : ndarray, shape (n, 2)
         Where the edge of the cap by its lightness alone has its middle, off the centre, m; NaN
         where it was not found, or not sought.
@@ -123,6 +126,7 @@ class Measures:
     visible: Array
     uncovered: Array
     evidence: Array
+    excused: Array
     light: Array
     swept: Flags
     bends: Array
@@ -267,14 +271,20 @@ def _stones(
     odd = np.where(behind > effort.most_tilt, np.minimum(odd, 0), odd)
     uneven = np.sqrt((odd**2 * stony).sum(1) / np.maximum(stony.sum(1), 1)) / 40
     of_hue = 1 - ((cap - granite) * apart)[:, 0]
-    usual = 0.06 + appearance.slack + effort.coarse * of_hue * pixel / cap_radius
-    misfit = ((fit.radii[:, 0] / cap_radius - 1) / usual) ** 2
+    usual = 0.06 + appearance.slack
+    coarser = usual + effort.coarse * of_hue * pixel / cap_radius
     enough = (of_cap.mean((1, 2)) > 0.03) & (of_ring.mean((1, 2)) > 0.03)
     response = worth.mean(1) @ _template(disc, effort)
-    evidence = fit.shares.sum(1) - uneven - 0.5 * misfit + 0.5 * response
-    if appearance.caps:
-        more = 2 * (np.clip(fit.unbroken, *ON_ONE_SIDE) - ON_ONE_SIDE[0]) - 0.25 * misfit
-        evidence = np.where(evidence < ENOUGH, np.minimum(evidence + more, ENOUGH), evidence)
+    shown = fit.shares.sum(1) - uneven + 0.5 * response
+    whole = 2 * (np.clip(fit.unbroken, *ON_ONE_SIDE) - ON_ONE_SIDE[0])
+
+    def told(spread: Array | float) -> Array:
+        misfit = ((fit.radii[:, 0] / cap_radius - 1) / spread) ** 2
+        evidence, more = shown - 0.5 * misfit, whole - 0.25 * misfit
+        enlarged = np.where(evidence < ENOUGH, np.minimum(evidence + more, ENOUGH), evidence)
+        return np.asarray(enlarged if appearance.caps else evidence)
+
+    evidence = told(usual)
     near = exact.ok & (np.hypot(fit.shift[clear, 0], fit.shift[clear, 1]) < NEAR)
     rows, share = clear[near], leaning[clear[near], None]
     shift, covariance, bends = fit.shift.copy(), fit.covariance.copy(), fit.bends.copy()
@@ -308,6 +318,7 @@ def _stones(
         visible=visible,
         uncovered=(capped & at_cap).mean(1),
         evidence=evidence,
+        excused=told(coarser) - evidence,
         light=lightness,
         swept=swept,
         bends=bends,
@@ -341,6 +352,7 @@ def _plain(
         visible=visible,
         uncovered=visible,
         evidence=fit.shares[:, 0],
+        excused=np.zeros(n),
         light=np.full((n, 2), np.nan),
         swept=np.zeros(n, bool),
         bends=fit.bends,

@@ -176,7 +176,7 @@ def judge(seen: Measures, disc: Stone, search: Search) -> list[str]:
         beside = np.abs(seen.centre[:, 0]) > search.x_max - 0.4 * disc.radius
     for wrong, why in (
         (beside, "beside the sheet"),
-        (seen.evidence < least, "too little of a stone about it"),
+        (seen.evidence + seen.excused < least, "too little of a stone about it"),
         (seen.shift > search.most_shift * size, "its edges are those of something else"),
         (seen.visible < search.least_visible, "hardly any of it is seen"),
         (~seen.ok, "no cap with granite around it" if not plain else "no circle of that size"),
