@@ -120,12 +120,14 @@ class _Problem:
         at = np.clip(np.array(guesses, float), self.low, self.high)
         at, settled = self._descend(at)
         residuals = [self._residuals(rank, at) for rank in range(len(self.shots))]
+        noise = self._noise(at, residuals)
         for _ in range(FINER):
-            self.noise = self._noise(at, residuals)
-            if self.noise > 1.0:  # what is known beforehand has the more of a say
+            self.noise = noise
+            if noise > 1.0:  # what is known beforehand has the more of a say
                 at, settled = self._descend(at)
                 residuals = [self._residuals(rank, at) for rank in range(len(self.shots))]
-            if self._noise(at, residuals) > self.noise / LESS:
+                noise = self._noise(at, residuals)
+            if noise > self.noise / LESS:
                 break
         slopes = self._slopes(at, residuals)
         normal, _ = self._normal(at, residuals, slopes)

@@ -60,9 +60,7 @@ def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None
         if against < -SELDOM:
             continue
         fewer = STRAIGHT[name]
-        less = fit_shots(
-            [shot], fixed=held | {name: fewer}, start=_values(best), noise=best.inflation
-        )
+        less = _refitted(best, shot, held | {name: fewer})
         if not less.settled or less.deviance > ELSEWHERE * best.deviance:
             continue
         tried.append(less)
@@ -72,25 +70,28 @@ def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None
     if "slope" in best.names and "v_c" not in (fixed or {}):
         # where friction falls there is a knee to be found
         free = {name: value for name, value in held.items() if name != "v_c"}
-        bent = fit_shots([shot], fixed=free, start=_values(best), noise=best.inflation)
+        bent = _refitted(best, shot, free)
         if bent.settled:
             tried[criteria.index(least)] = bent
             best, held = bent, free
         even = {"slope": 0.0, "v_c": V_C, **held}
-        rooted = fit_shots(
-            [replace(shot, ice=penner)], fixed=even, start=_values(best), noise=best.inflation
-        )
+        rooted = _refitted(best, replace(shot, ice=penner), even)
         if rooted.settled:
             tried.append(rooted)
             criteria.append(least + _beside(rooted, best))
     if shot.hits:
-        stuck = fit_shots([shot], fixed=held | STICKING, start=_values(best), noise=best.inflation)
+        stuck = _refitted(best, shot, held | STICKING)
         if stuck.settled:
             tried.append(stuck)
             criteria.append(least + _beside(stuck, best))
             if criteria[-1] < least:
                 best = stuck
     return _with_others(best, tried, np.array(criteria))
+
+
+def _refitted(best: GlobalFit, shot: Watched, held: Mapping[str, float]) -> GlobalFit:
+    """Fit with other laws from where the best fit is, with the noise that it has told."""
+    return fit_shots([shot], fixed=held, start=_values(best), noise=best.inflation)
 
 
 def _hit_by_hit(shot: Watched, held: Mapping[str, float]) -> GlobalFit:

@@ -10,19 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from data.tracks import Columns
-from vision.projection import (
-    AROUND,
-    behind,
-    distort,
-    middle,
-    place_jacobian,
-    rotation,
-    scale_of,
-    shared_place_cov,
-    undistort,
-)
-from vision.projection import PARAMETERS as PARAMETERS
-from vision.projection import apply_homography as apply_homography
+from vision import projection
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -99,23 +87,19 @@ class Camera:
     error: CameraError | None = None
     quality: float = float("nan")
 
-    @property
-    def _centre_and_radius(self) -> tuple[Array, float]:
-        return middle(self.size)
-
     def distort(self, undistorted: ArrayLike) -> Array:
         """Undistorted pixels to pixels of the picture, shape (..., 2)."""
         u = np.asarray(undistorted, float)
         if self.k1 == 0 and self.k2 == 0:
             return u.copy()
-        return distort(u, self.k1, self.k2, self.size)
+        return projection.distort(u, self.k1, self.k2, self.size)
 
     def undistort(self, pixels: ArrayLike) -> Array:
         """Pixels of the picture to undistorted pixels, shape (..., 2); by Newton's method."""
         p = np.asarray(pixels, float)
         if self.k1 == 0 and self.k2 == 0:
             return p.copy()
-        return undistort(p, self.k1, self.k2, self.size)
+        return projection.undistort(p, self.k1, self.k2, self.size)
 
     def project(self, ice: ArrayLike, height: float = 0.0) -> Array:
         """Points (x, y) in metres, `height` above the ice, to pixels, shape (..., 2).
@@ -126,7 +110,7 @@ class Camera:
         """
         xy = np.asarray(ice, float)
         on_ice = self.behind(xy, height) if height else xy
-        return self.distort(apply_homography(self.homography, on_ice))
+        return self.distort(projection.apply_homography(self.homography, on_ice))
 
     def behind(self, ice: Array, height: Array | float) -> Array:
         """Ice points hidden behind points (x, y), shape (..., 2), that are `height` above the ice.
@@ -135,11 +119,11 @@ class Camera:
         """
         if self.position is None:
             return ice
-        return behind(ice, height, self.position)
+        return projection.behind(ice, height, self.position)
 
     def ice(self, pixels: ArrayLike, height: float = 0.0) -> Array:
         """Pixels to the place (x, y), m, of what is seen there `height` above the ice."""
-        xy = apply_homography(
+        xy = projection.apply_homography(
             np.asarray(np.linalg.inv(self.homography), np.float64), self.undistort(pixels)
         )
         if height and self.position is not None:
@@ -152,7 +136,7 @@ class Camera:
 
         The homography is K [r1 r2 −R C] up to a factor.
         """
-        return rotation(self.homography, self.f_px, self.size)
+        return projection.rotation(self.homography, self.f_px, self.size)
 
     def place_cov(self, ice: ArrayLike, height: float = 0.0) -> Array:
         """Covariance of mapped points, shape (..., 2, 2), m²; zero where nothing is known of it.
@@ -182,7 +166,7 @@ class Camera:
             return np.zeros((*xy.shape, 2))
         by_camera = self.place_jacobian(xy, height)
         error = self.error
-        return shared_place_cov(xy, by_camera, error.shared, error.scale, error.drift)
+        return projection.shared_place_cov(xy, by_camera, error.shared, error.scale, error.drift)
 
     def place_sd(self, ice: ArrayLike, height: float = 0.0) -> Array:
         """Give the standard deviation per axis, m, of mapped points: the part frames share.
@@ -206,12 +190,14 @@ class Camera:
             raise ValueError("the camera's place is not known")
         xy = np.asarray(ice, float)
         away = np.concatenate([xy, np.full((*xy.shape[:-1], 1), height)], axis=-1) - self.position
-        _, radius = self._centre_and_radius
-        return place_jacobian(away, self.rotation, self.f_px / radius, self.k1, self.k2)
+        _, radius = projection.middle(self.size)
+        return projection.place_jacobian(away, self.rotation, self.f_px / radius, self.k1, self.k2)
 
     def scale_at(self, ice: ArrayLike) -> Array:
         """Pixels per metre at ice points, shape (..., 2): root of the Jacobian's determinant."""
-        return scale_of(self.project(np.asarray(ice, float)[..., None, :] + AROUND))
+        return projection.scale_of(
+            self.project(np.asarray(ice, float)[..., None, :] + projection.AROUND)
+        )
 
 
 def carried(

@@ -11,19 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from vision import projection
 from vision.camera import Camera
-from vision.projection import (
-    AROUND,
-    Size,
-    behind,
-    distort,
-    middle,
-    place_jacobian,
-    rotation,
-    scale_of,
-    shared_place_cov,
-    undistort,
-)
 
 Array = NDArray[np.float64]
 
@@ -62,22 +51,22 @@ class Cameras:
         return cls(cameras, row, homography, k1, k2, f_px, np.array(places)[row])
 
     @property
-    def size(self) -> Size:
+    def size(self) -> projection.Size:
         """Width and height of the pictures, px."""
         return self.each[0].size
 
     def project(self, ice: Array, height: Array | float = 0.0) -> Array:
         """As `Camera.project`, of points of shape (n, m, 2)."""
-        on_ice = behind(ice, height, self.position[:, None]) if np.any(height) else ice
+        on_ice = projection.behind(ice, height, self.position[:, None]) if np.any(height) else ice
         q = on_ice @ np.swapaxes(self.homography[..., :2], 1, 2) + self.homography[:, None, :, 2]
         seen = np.asarray(q[..., :2] / q[..., 2:])
         if not (self.k1.any() or self.k2.any()):
             return seen
-        return distort(seen, self.k1[:, None], self.k2[:, None], self.size)
+        return projection.distort(seen, self.k1[:, None], self.k2[:, None], self.size)
 
     def ice(self, pixels: Array, height: float = 0.0) -> Array:
         """As `Camera.ice`, of pixels of shape (n, 2)."""
-        straight = undistort(pixels, self.k1, self.k2, self.size)
+        straight = projection.undistort(pixels, self.k1, self.k2, self.size)
         back = np.linalg.inv(self.homography)
         q = (back[..., :2] @ straight[..., None])[..., 0] + back[..., 2]
         xy = q[:, :2] / q[:, 2:]
@@ -85,7 +74,7 @@ class Cameras:
 
     def scale_at(self, ice: Array) -> Array:
         """As `Camera.scale_at`, of points of shape (n, 2)."""
-        return scale_of(self.project(ice[:, None] + AROUND))
+        return projection.scale_of(self.project(ice[:, None] + projection.AROUND))
 
     def slants(self, ice: Array) -> Array:
         """Slant of the view of points, (n, 2): how far it goes aside per metre down.
@@ -106,7 +95,9 @@ class Cameras:
         scale, drift = np.array([(error.scale, error.drift) for error in errors])[which].T
         away = np.column_stack([ice[told], np.full(len(told), height)]) - self.position[told]
         k1, k2, f_px = self.k1[told], self.k2[told], self.f_px[told]
-        turned = rotation(self.homography[told], f_px, self.size)
-        by_camera = place_jacobian(away, turned, f_px / middle(self.size)[1], k1, k2)
-        found[told] = shared_place_cov(ice[told], by_camera, shared, scale, drift)
+        turned = projection.rotation(self.homography[told], f_px, self.size)
+        by_camera = projection.place_jacobian(
+            away, turned, f_px / projection.middle(self.size)[1], k1, k2
+        )
+        found[told] = projection.shared_place_cov(ice[told], by_camera, shared, scale, drift)
         return found

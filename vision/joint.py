@@ -19,12 +19,13 @@ from numpy.typing import NDArray
 from data.sheet import HOUSE
 from vision.astray import astray, motion
 from vision.bundle import LOST, NOISE_TRUST, bundle
-from vision.camera import PARAMETERS, Camera, CameraError
+from vision.camera import Camera, CameraError
 from vision.keyframe import Keyframe, replaced
 from vision.linear import Observations, by_measure, by_rig, linearised, view_equations
 from vision.outline import HALF_WAY, PaintEdge
 from vision.paint import CIRCLES, FIXED, Marks, joined
 from vision.pose import VIEW_SIZE, View, camera, turning
+from vision.projection import PARAMETERS
 from vision.quality import ARC, quality, warnings
 from vision.resection import solve_views
 from vision.rig import K1, K1_BEND, K1_ZOOM, K2, POSITION, R4, R8, RIG_SIZE, Prior, zoom

@@ -8,14 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from vision.camera import (
-    CAMERA_COLUMNS,
-    PARAMETERS,
-    Camera,
-    CameraError,
-    apply_homography,
-    camera_table,
-)
+from vision.camera import CAMERA_COLUMNS, Camera, CameraError, camera_table
+from vision.projection import PARAMETERS, apply_homography
 
 Array = NDArray[np.float64]
 SIZE = (1280, 720)

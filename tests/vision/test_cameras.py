@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from vision.camera import PARAMETERS, Camera, CameraError
+from vision.camera import Camera, CameraError
 from vision.cameras import Cameras
 from vision.pose import View, camera
+from vision.projection import PARAMETERS
 from vision.rig import K1, K2, OVERHEAD, start_rig
 
 HEIGHT = 8.0

@@ -24,9 +24,10 @@ from tests.synthetic import (
 )
 from tests.synthetic.travelling import Travelling
 from tests.vision.places import RINGS
-from vision.camera import Camera, apply_homography
+from vision.camera import Camera
 from vision.clip import Frame, open_clip
 from vision.follow_house import HouseFollower, HouseTrack, follow_house
+from vision.projection import apply_homography
 
 SCENE = replace(sample_scene(), paint=PAINTS["navy-orange"])
 

@@ -6,9 +6,10 @@ import numpy as np
 
 from data.sheet import STONE, Stone
 from tests.vision.test_follow import sighting
-from vision.camera import PARAMETERS, Camera, CameraError
+from vision.camera import Camera, CameraError
 from vision.placing import ASLANT, ASTRAY, GIVEN_ASTRAY, USUAL_RMS_PX, placed_by
 from vision.pose import View, camera
+from vision.projection import PARAMETERS
 from vision.rig import OVERHEAD, start_rig
 
 HEIGHT, FOCAL = 8.0, 1200.0
