@@ -11,7 +11,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from math import hypot, inf, sqrt
+from itertools import combinations
+from math import dist, hypot, inf, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -286,13 +287,21 @@ def _struck(tracks: Sequence[Track], t: float, radius: float, gate: Gate) -> dic
     Their paths are taken as straight; each stone's first meeting counts, and of the two only
     the push along the line of their centres.
     """
+    speeds = [track.speed for track in tracks]
+    longest = t - min(track.times[-1] for track in tracks)
+    near = [
+        (i, j)
+        for i, j in combinations(range(len(tracks)), 2)
+        if (speed := speeds[i] + speeds[j]) > 0
+        and dist(tracks[i]._place, tracks[j]._place) < 2 * radius + speed * longest
+    ]
+    if not near:
+        return {}
     places = np.array([track._place for track in tracks])
     ways = np.array([track._velocity if track.speed > 0 else (0.0, 0.0) for track in tracks])
     since = np.array([track.times[-1] for track in tracks])
-    if not ways.any():
-        return {}
     known = np.array([len(track.times) >= gate.told for track in tracks])
-    first, second = np.triu_indices(len(tracks), 1)
+    first, second = np.array(near).T
     start = np.maximum(since[first], since[second])
     apart = places[second] + ways[second] * (start - since[second])[:, None]
     apart = apart - places[first] - ways[first] * (start - since[first])[:, None]

@@ -105,12 +105,14 @@ def profile_of(disc: Stone, effort: Effort) -> Profile:
     return chained(straight(top, np.linspace(inner, outer, effort.radii)), rings)
 
 
+@lru_cache(maxsize=8)
 def handle_radii(disc: Stone, effort: Effort = EFFORT) -> Array:
     """Radii of the rings of the handle's picture, m, shape (rings,)."""
     size = disc.radius if is_plain(disc) else disc.cap_radius
     low, high = effort.handle_inner * size, effort.handle_outer * size
-    rings = np.linspace(low, high, 2 * effort.handle_rings)
-    return np.asarray(rings.reshape(-1, 2).mean(1))
+    rings = np.linspace(low, high, 2 * effort.handle_rings).reshape(-1, 2).mean(1)
+    rings.flags.writeable = False
+    return np.asarray(rings)
 
 
 def unrolled(looks: Sequence[Look], disc: Stone, effort: Effort) -> tuple[Rays, Bytes]:

@@ -10,18 +10,16 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from math import inf
+from math import inf, sqrt
 from typing import TYPE_CHECKING
 
+import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-from vision.picture import Picture, Planes
+from vision.picture import Image, Picture, Planes
 
 if TYPE_CHECKING:
     from vision.clip import Frame
-
-Values = NDArray[np.float32]
 
 PLACES = 16000
 """Pixels, about, by which two pictures are compared."""
@@ -76,7 +74,7 @@ class Repeats:
         """Give the frames in order, without those that `tell_nothing`."""
         held: list[tuple[Frame, Change]] = []
         last, kept, so_was_last = -1, None, True
-        seen: Values = np.zeros(0, np.float32)
+        seen: Image = np.zeros(0, np.uint8)
         for frame in frames:
             before, seen = seen, _sample(frame.picture)
             if kept is not None:
@@ -128,15 +126,15 @@ def tell_nothing(count: int, so_was_last: bool) -> bool:
     return so_was_last or count >= HALT
 
 
-def changed(one: Values, other: Values) -> Change:
-    """Compare two pictures by the same places of each, shape (n,)."""
-    away = np.abs(other - one)
-    rank = max(len(away) - FEW, 0)
-    return Change(float(np.sqrt(away @ away / len(away))), float(np.partition(away, rank)[rank]))
+def changed(one: Image, other: Image) -> Change:
+    """Compare two pictures by the same places of each, whatever the shape."""
+    away = cv2.absdiff(one, other).ravel()
+    rank = max(away.size - FEW, 0)
+    return Change(cv2.norm(one, other) / sqrt(away.size), float(np.partition(away, rank)[rank]))
 
 
-def _sample(picture: Picture) -> Values:
-    """Lightness at places evenly over a picture, levels of 255."""
+def _sample(picture: Picture) -> Image:
+    """Lightness at places evenly over a picture."""
     light = picture.luma if isinstance(picture, Planes) else picture[:, :, 1]
     step = max(round((light.size / PLACES) ** 0.5), 1)
-    return light[step // 2 :: step, step // 2 :: step].astype(np.float32).ravel()
+    return light[step // 2 :: step, step // 2 :: step].copy()

@@ -74,7 +74,8 @@ class Rows(Sequence[Sighting]):
         return _unpacked(self._numbers[begin : begin + WIDTH].tolist(), spectrum)
 
     def __iter__(self) -> Iterator[Sighting]:
-        return (self[k] for k in range(len(self)))
+        rows = np.array(self._numbers).reshape(-1, WIDTH).tolist()
+        return map(_unpacked, rows, self._spectra)
 
     def columns(self, *names: str) -> Array:
         """Numbers of all of them by some of the names in `SINGLE`, shape (names, n)."""

@@ -156,10 +156,10 @@ def off_axis(
     height_sd = 0.0 if is_plain(disc) else HANDLE_HEIGHT_SD
     out = {}
     for name, track in tracks.items():
-        seen = np.array([(s.x, s.y, s.sd_x, s.sd_y) for s in track.sightings])
-        by = Cameras.of([by_frame[frame] for frame in track.frames], [1] * len(seen))
-        slant = np.hypot(*by.slants(seen[:, :2]).T)
-        out[name] = np.hypot(seen[:, 2:].mean(1), height_sd * slant)
+        x, y, *sd = track.sightings.columns("x", "y", "sd_x", "sd_y")
+        by = Cameras.of([by_frame[frame] for frame in track.frames], [1] * len(x))
+        slant = np.hypot(*by.slants(np.stack([x, y], -1)).T)
+        out[name] = np.hypot(np.mean(sd, axis=0), height_sd * slant)
     return out
 
 
