@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 from vision.align import ORDERS, Array, Complex, align, ring_weights, rings_seen
 from vision.facing import angle_between, angles_between
 from vision.glints import course, unlit
+from vision.half_turns import unfolded
 from vision.shade import parts, unturned, upright_mean
 
 LASTING = 3.5
@@ -258,7 +259,7 @@ def _turning_more(
 
 def _matched(times: Array, pictures: Complex, turning: Turning) -> _Matched:
     """Turn pictures of one height onto their mean, from one to the next."""
-    return _onto_mean(pictures, _followed(times, pictures, turning), turning)
+    return _onto_mean(times, pictures, _followed(times, pictures, turning), turning)
 
 
 def _despite_light(
@@ -280,7 +281,7 @@ def _despite_light(
         dark = _onto_what_turns(times, pictures, other)
         if dark.share > max(TURNS, CLEARLY * share) and _mostly_told(dark, turning):
             return dark
-    onto = replace(_onto_mean(pictures, other, turning), share=share_of_course)
+    onto = replace(_onto_mean(times, pictures, other, turning), share=share_of_course)
     return max(matched, onto, key=_alike)
 
 
@@ -301,9 +302,9 @@ def _mostly_told(matched: _Matched, turning: Turning) -> bool:
     return bool(np.mean(matched.likeness > turning.least_likeness) >= 0.5)
 
 
-def _onto_mean(pictures: Complex, angles: Array, turning: Turning) -> _Matched:
-    """Turn pictures onto their mean, angles being about known."""
-    angles, likeness = angles.copy(), np.zeros(len(angles))
+def _onto_mean(times: Array, pictures: Complex, angles: Array, turning: Turning) -> _Matched:
+    """Turn pictures onto their mean, angles being about known but for half turns."""
+    angles, likeness = unfolded(times, angles), np.zeros(len(angles))
     known = np.isfinite(angles)
     shown = rings_seen(pictures)[:, None, :, None]
     own = pictures
