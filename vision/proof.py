@@ -38,8 +38,10 @@ AROUND, LEAST_AROUND = 1.05 * HOUSE.twelve_foot * HOUSE.eight_foot / HOUSE.four_
 """Just beyond where the 8-ft circle is if the 4-ft one was taken for the 12-ft, m; and the share of
 a circle there that must be in view to tell that it was not, where no 8-ft circle is seen."""
 
-LEAST_STEP, WHOLE_AROUND = 20.0, 0.7
-"""Grey levels by which an edge stands out, and its share of a circle, for one that is there."""
+LEAST_STEP, LEAST_CONTRAST, WHOLE_AROUND = 20.0, 0.15, 0.7
+"""By how much an edge stands out, in grey levels and as a share of what the 12-ft circle does, and
+in what share of its directions, for a circle that is there: a lens that leaves corners dark makes
+steps all around, of 10 to 20 levels where paint makes 200."""
 
 ENOUGH_SEEN = 0.5
 """Share of such a circle that must be in view. Without an 8-ft circle `LEAST_COVERED` is enough:
@@ -100,10 +102,14 @@ def is_house(image: Image, evidence: Evidence, view: View, rig: Array) -> bool:
 def stands_alone(image: Image, evidence: Evidence, view: View, rig: Array) -> bool:
     """Whether there are no other circles about those of a house, and that can be told."""
     if evidence.support[1] > LEAST_SUPPORT:
-        return not _is_target(image, view, rig, ENOUGH_SEEN)
-    return _shown(image, view, rig, AROUND) > LEAST_AROUND and not _is_target(
-        image, view, rig, LEAST_COVERED
-    )
+        least = ENOUGH_SEEN
+    elif _shown(image, view, rig, AROUND) > LEAST_AROUND:
+        least = LEAST_COVERED
+    else:
+        return False
+    ice, paint = evidence.palette[TWELVE]
+    step = max(LEAST_STEP, LEAST_CONTRAST * float(np.linalg.norm(paint - ice)))
+    return not _is_target(image, view, rig, least, step)
 
 
 def _shown(image: Image, view: View, rig: Array, radius: float) -> float:
@@ -113,10 +119,10 @@ def _shown(image: Image, view: View, rig: Array, radius: float) -> float:
     return float(pictured(place, view.vector, rig, (image.shape[1], image.shape[0]))[1].mean())
 
 
-def _is_target(image: Image, view: View, rig: Array, least: float) -> bool:
+def _is_target(image: Image, view: View, rig: Array, least: float, least_step: float) -> bool:
     """Whether there are whole circles where a house has none: between its own or around them.
 
-    Of each, `least` of it must be in view.
+    Of each, `least` of it must be in view, and its edge a step by that many grey levels.
     """
     angle = np.linspace(0, 2 * np.pi, 72, endpoint=False)
     way = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
@@ -131,8 +137,9 @@ def _is_target(image: Image, view: View, rig: Array, least: float) -> bool:
         count = np.maximum(within.sum(1), 1)
         usual = step.sum(1) / count[:, None]
         square = (usual**2).sum(-1)
-        alike = (step * usual[:, None]).sum(-1) > 0.5 * square[:, None]
-        whole = (alike & within).sum(1) > WHOLE_AROUND * count
-        if (whole & (square > LEAST_STEP**2) & (count > least * len(angle))).any():
+        alike = np.maximum(0.5 * square, least_step * np.sqrt(square))
+        there = within & ((step * usual[:, None]).sum(-1) > alike[:, None])
+        whole = there.sum(1) > WHOLE_AROUND * count
+        if (whole & (count > least * len(angle))).any():
             return True
     return False

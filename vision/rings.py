@@ -37,7 +37,8 @@ RADII = np.array([HOUSE.twelve_foot, *OVERHEAD.mean[[R8, R4]]])
 """Usual radii of the 12-, 8- and 4-ft edges, m."""
 
 SMALLEST, LARGEST = 0.09, 0.85
-"""Radii between which the 12-ft circle is looked for, as fractions of the picture's width."""
+"""Radii between which the 12-ft circle is looked for, as fractions of a picture's width, and of its
+longer side."""
 
 EDGE_LOW, EDGE_HIGH = 150, 300
 """Hysteresis of the edges, as gradients of the Scharr operator: steps of some 14 and 28 levels."""
@@ -126,7 +127,7 @@ def guesses(image: Image, least: float = 1.0) -> list[Guess]:
         # Rings that are round are told by other sizes than those that are not yet.
         rounder = rounded(*some, seen, size * RADII)
         sizes = _radii(*edges, rounder)
-        if size * RADII[0] ** 2 / RADII[2] < LARGEST * w:
+        if size * RADII[0] ** 2 / RADII[2] < LARGEST * max(w, h):
             sizes.append((size * RADII[0] / RADII[2], 0.0))  # The rings may be those within 4 ft.
         for other, score in sizes:
             new = abs(np.log(other / size)) > SAME_SIZE
@@ -195,7 +196,7 @@ def _votes(points: Array, gradients: Array, tilt: Tilt) -> list[tuple[float, Arr
     corners = tilt.level(np.array([[0.0, 0.0], [w, 0.0], [0.0, h], [w, h]]))
     low = corners.min(0) - MARGIN * w
     across, down = ((np.ptp(corners, axis=0) + 2 * MARGIN * w) / CELL).astype(int) + 1
-    reach = np.arange(2, 0.62 * w / CELL, dtype=np.float32)
+    reach = np.arange(2, 0.62 * max(w, h) / CELL, dtype=np.float32)
     rim = len(reach) + 2  # so wide that no line leaves the cells: that need not be looked after
     reach = np.concatenate([-reach, reach])[:, None]
     x, y = ((points - low) / CELL + rim).astype(np.float32).T.copy()
@@ -234,12 +235,12 @@ def _sharpened(points: Array, gradients: Array, centre: Array) -> Array:
 
 def _radii(points: Array, gradients: Array, seen: Rounding) -> list[tuple[float, float]]:
     """Pixels per metre that put edges facing the centre at 12 : 8 : 4 ft, and their scores."""
-    w = seen.tilt.size[0]
+    w, side = seen.tilt.size[0], max(seen.tilt.size)
     d, gradients = seen.of_edges(points, gradients)
     r = np.hypot(d[:, 0], d[:, 1])
     facing = (d * gradients).sum(1) / np.maximum(r, 1e-9)
     tolerance = np.maximum(0.97 - 2.0 / np.maximum(r, 4.0), 0.8)
-    largest = max(int((LARGEST + 0.02) * w), int(LARGEST * w) + 2)
+    largest = max(int((LARGEST + 0.02) * side), int(LARGEST * side) + 2)
     near = (np.abs(facing) > tolerance) & (r < largest - 1)
     sector = (np.arctan2(d[near, 1], d[near, 0]) * (ANGLES / (2 * np.pi))).astype(int) % ANGLES
     # Which sectors hold an edge, per polarity and radius: many edges in one count once.
@@ -249,7 +250,7 @@ def _radii(points: Array, gradients: Array, seen: Rounding) -> list[tuple[float,
     arc = np.maximum(*(np.asarray(cv2.dilate(side, kernel)).mean(1) for side in held))
     clutter = cv2.blur(arc.reshape(-1, 1), (1, 21)).ravel()
     visible = _visible(seen, largest)
-    radius = np.arange(SMALLEST * w, LARGEST * w, 0.5)
+    radius = np.arange(SMALLEST * w, LARGEST * side, 0.5)
     at = np.round(radius[:, None] * RADII / RADII[0]).astype(int)
     got = np.clip(arc[at] - 0.7 * clutter[at], 0, None)
     share = np.where(visible[at] > 0.05, got / np.maximum(visible[at], 0.05), 0)

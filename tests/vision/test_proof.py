@@ -86,6 +86,20 @@ def test_a_circle_more_than_a_house_has_makes_a_target(low: tuple[Image, HouseFi
     assert stands_alone(picture, found.evidence, found.view, found.rig)
 
 
+def test_corners_that_a_lens_leaves_dark_are_no_circle() -> None:
+    scale, border = 170.0, 2.2
+    picture = np.full((SIZE[1], SIZE[0], 3), ICE, np.uint8)
+    for radius, colour in HOUSE:
+        cv2.circle(picture, (480, 270), round(scale * radius), colour, -1, cv2.LINE_AA)
+    x, y = np.meshgrid(np.arange(SIZE[0]) - 480, np.arange(SIZE[1]) - 270)
+    picture[np.abs(x) > scale * border] = (90, 50, 30)
+    light = 1 - 0.8 * (x**2 + y**2) / (480**2 + 270**2)
+    dark = np.asarray(picture * light[..., None], np.uint8)
+    view, rig = View(np.array([0.0, 0.0, 0.0, np.log(scale * 9)])), level()[1]
+    evidence = measure_marks(dark, view.vector, rig, reach=6.0)
+    assert stands_alone(dark, evidence, view, rig)
+
+
 def test_a_house_is_worth_most() -> None:
     whole, few, none = (worth(seen(drawn(rings))) for rings in (HOUSE, HOUSE[::2], ()))
     assert 3.0 < whole <= 3.5

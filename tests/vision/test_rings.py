@@ -63,6 +63,13 @@ def test_rings_are_found_in_upright_pictures(squash: float) -> None:
     assert best.foreshortening == pytest.approx(squash, abs=0.11)
 
 
+def test_rings_wider_than_an_upright_picture_are_found() -> None:
+    upright = cv2.resize(drawn((160, 70), 99), None, fx=3, fy=3)[:569, 320:640]
+    best = guesses(upright)[0]
+    np.testing.assert_allclose(best.centre, (160, 211), atol=4)
+    assert best.scale * 1.829 == pytest.approx(297, rel=0.06)
+
+
 def test_a_blank_picture_has_no_rings() -> None:
     assert guesses(np.full((H, W, 3), 128, np.uint8)) == []
 
