@@ -23,16 +23,16 @@ Array = NDArray[np.float64]
 UNCOVERED = 0.75
 """Share of a cap that must be seen for its angle to be measured."""
 
-ASLANT = ((0.35, 0.6, 0.9, 1.1), (0.003, 0.0018, 0.0018, 0.0035))
+ASLANT = ((0.06, 0.15, 0.35, 0.6, 0.9, 1.1), (0.008, 0.0045, 0.003, 0.0018, 0.0018, 0.0035))
 """Slants of the view, and the standard error along it, m per slant. From above the wall of a cap is
-not told from its top, and draws the near edge out; farther aslant it is measured. From where the
-far shoulder hides behind the cap, other things end at the far edge. Across the view there is no
-such error."""
+not told from its top, and draws the near edge out by up to half of what shows of it; the farther
+aslant, the better it is measured. From where the far shoulder hides behind the cap, other things
+end at the far edge. Across the view there is no such error."""
 
-ASTRAY = 0.3
+ASTRAY = 0.15
 """How far the map of a house is wrong, in residuals of its camera's edges per metre from the tee:
-beyond what the camera states. Between nothing, as round stones on plain rings say, and half of
-them, as films and outlined rings do (49 clips of two renderers and of films)."""
+beyond what the camera states, and beside what a slant hides, which from above looks much like it.
+Between nothing, as round stones on plain rings say, and half of them, as outlined rings do."""
 
 GIVEN_ASTRAY = 0.35
 """How far a map may be wrong of which no error is stated, in residuals of the camera's edges."""

@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 WHOLE = 0.8
 """Share of the circle that must be seen."""
 
-PIXELS = 0.08
+PIXELS = 0.09
 """What pixels do to each wave around a circle, once around or several times, px, at most: rendered
 stones, which are round, show .04 to .10, sprites of filmed ones .08 to .20. What pixels are held
 for is not held for the stone's own: with .10 films lay outside of what is stated."""
@@ -34,10 +34,10 @@ SMALL = 3.2
 """How far pixels move the middle of a small circle, px, times the square of its radius, px: of caps
 4.2 to 6.2 px large, 36 rendered ones lay 1.7 to 4.4 mm off."""
 
-APART, MOST_APART = 0.35, 0.0012
+APART, MOST_APART = 0.3, 0.0012
 """What the edges by hue and by lightness lie apart counts so much, up to this, m: beyond, the one
-by lightness is none of the cap's. These numbers are the likeliest by 230 stones of 47 clips of two
-renderers and of films."""
+by lightness is none of the cap's. These numbers are likely by 500 drawn stones of 66 clips of four
+renderers; filmed ones, whose truth is good to some mm, would have more."""
 
 USUAL, USUAL_STONES = 0.0005, 1 / 3
 """What bends a stone's circle as a rule, m, and as how many stones that counts: some are round to
