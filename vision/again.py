@@ -43,7 +43,8 @@ def measure_again(
             places[j] if 0 <= j < len(views) else places[k][:0] for j in (k - 1, k + 1)
         )
         drift = drifts(places[k], before, after, REACH * disc.radius)
-        fast = [i for i in np.flatnonzero(swept_share(drift) > 0) if not view.sightings[i].swept]
+        smeared = swept_share(view.drift_seen(places[k], drift)) > 0
+        fast = [i for i in np.flatnonzero(smeared) if not view.sightings[i].swept]
         if not fast:
             continue
         look = view.look(places[k][fast].tolist(), drift[fast].tolist())

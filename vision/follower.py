@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import Stone
+from vision import projection
 from vision.appearance import Appearance
 from vision.camera import Camera
 from vision.clip import Frame
@@ -75,11 +76,12 @@ PATIENCE = Patience()
 
 @dataclass(frozen=True)
 class StoneView:
-    """A picture with its camera and the stones seen in it so far."""
+    """A picture with its camera, the stones seen in it so far and the camera of that before it."""
 
     frame: Frame
     camera: Camera
     sightings: list[Sighting] = field(default_factory=list)
+    before: Camera | None = None
 
     @property
     def places(self) -> Array:
@@ -93,9 +95,21 @@ class StoneView:
                 sighting.spectrum.put_aside(shelf)
 
     def look(self, places: Sequence[Place], drift: Sequence[Place] | None = None) -> Look:
-        """Look at places on the ice in it, which drift so far from picture to picture."""
-        moving = None if drift is None else _array(drift)
-        return Look(self.frame.picture, self.camera, _array(places), moving)
+        """Look at places on the ice in it; what is there drifts so far from picture to picture."""
+        at = _array(places)
+        moving = None if drift is None else self.drift_seen(at, _array(drift))
+        return Look(self.frame.picture, self.camera, at, moving)
+
+    def drift_seen(self, places: Array, drift: Array) -> Array:
+        """Tell how far across the picture stones move that drift on the ice, (n, 2), m at places.
+
+        That is by what they are smeared: a pan smears those at rest, and not one that it follows.
+        """
+        if self.before is None or not len(places):
+            return drift
+        # Both pictures are distorted alike.
+        onto = np.linalg.solve(self.camera.homography, self.before.homography)
+        return drift + places - projection.apply_homography(np.asarray(onto), places)
 
 
 @dataclass(frozen=True)

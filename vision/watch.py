@@ -92,6 +92,7 @@ class Watch:
         self._shelf = Shelf(ROOM)
         self._balance: Balance | None = None
         self._gain = np.ones(3)
+        self._before: Camera | None = None
         self._leads: list[Lead] = []
         self._since = pace.memory
         self._seen: dict[int, tuple[float, Sequence[Sighting]]] = {}
@@ -105,7 +106,8 @@ class Watch:
             if not self._waiting:
                 self._balance.look(frame.picture, camera)
             frame = replace(frame, picture=self._balance.evened(frame.picture))
-        view = StoneView(frame, camera)
+        view = StoneView(frame, camera, before=self._before)
+        self._before = camera
         self._waiting.append(view)
         self._seen[frame.index] = frame.t, view.sightings
         if len(self._waiting) >= (self._patience.block if self._knows else self._pace.memory):
