@@ -59,7 +59,9 @@ class Cameras:
         """As `Camera.project`, of points of shape (n, m, 2)."""
         on_ice = projection.behind(ice, height, self.position[:, None]) if np.any(height) else ice
         q = on_ice @ np.swapaxes(self.homography[..., :2], 1, 2) + self.homography[:, None, :, 2]
-        seen = np.asarray(q[..., :2] / q[..., 2:])
+        for axis in (0, 1):  # several times as fast as both at once
+            q[..., axis] /= q[..., 2]
+        seen = q[..., :2]
         if not (self.k1.any() or self.k2.any()):
             return seen
         return projection.distort(seen, self.k1[:, None], self.k2[:, None], self.size)

@@ -24,6 +24,9 @@ FADED = 0.8, 1.25
 """How much darker or brighter than before a whole picture may be and be taken as it is: one that
 fades in or out goes beyond that."""
 
+TELL_LIGHT = 60
+"""Profiles, about, that tell how bright a whole picture is: the median of more says no more."""
+
 MIN_CONTRAST = 10.0
 """Least difference of the two sides of an edge, grey levels."""
 
@@ -102,9 +105,10 @@ def steps(profile: Profiles, normals: Normals, known: Array) -> tuple[Profiles, 
 
 def _faded(ends: Profiles, sides: Profiles, line: NDArray[np.int64]) -> Profiles:
     """Tell how much brighter each picture is than its circles' sides were, where it has faded."""
-    known = np.isfinite(sides[0, 0]) & (line < CIRCLES)
-    if not known.any():
+    known = np.flatnonzero(np.isfinite(sides[0, 0]) & (line < CIRCLES))
+    if not len(known):
         return np.ones(ends.shape[:-3], np.float32)
+    known = known[:: max(len(known) // TELL_LIGHT, 1)]
     before, now = sides[..., known], ends[..., known]
     light = (now * before).sum((-3, -2)) / np.maximum((before * before).sum((-3, -2)), 1.0)
     usual = np.median(light, axis=-1)

@@ -156,9 +156,9 @@ def measure_discs(
     effort : Effort
         How each place is measured.
     """
-    rays, handle = unrolled(looks, disc, effort)
-    places = np.concatenate([look.places for look in looks])
     by = cameras_of(looks)
+    rays, handle = unrolled(looks, by, disc, effort)
+    places = np.concatenate([look.places for look in looks])
     scale = by.scale_at(places)
     if is_plain(disc):
         return _plain(rays, handle, places, scale, disc, effort)

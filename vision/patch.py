@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import Stone
-from vision.rays import Look, Profile, Rays, cameras_of, chained, sample_rays, straight
+from vision.cameras import Cameras
+from vision.rays import Look, Profile, Rays, chained, sample_rays, straight
 
 Array = NDArray[np.float64]
 Bytes = NDArray[np.uint8]
@@ -115,13 +116,15 @@ def handle_radii(disc: Stone, effort: Effort = EFFORT) -> Array:
     return np.asarray(rings)
 
 
-def unrolled(looks: Sequence[Look], disc: Stone, effort: Effort) -> tuple[Rays, Bytes]:
+def unrolled(looks: Sequence[Look], by: Cameras, disc: Stone, effort: Effort) -> tuple[Rays, Bytes]:
     """Sample what pictures show of discs at places.
 
     Parameters
     ----------
     looks : sequence of Look
         Pictures of one size and n places in all.
+    by : Cameras
+        Theirs (`vision.rays.cameras_of`).
     disc : Stone
         Size of the discs.
     effort : Effort
@@ -134,7 +137,7 @@ def unrolled(looks: Sequence[Look], disc: Stone, effort: Effort) -> tuple[Rays, 
         What is around the centre, L*a*b*: at the height of the handle, 0 where it shows more
         than the cap, and beside it, for a stone, at the height of the cap.
     """
-    sampled = sample_rays(looks, profile_of(disc, effort), effort.rays)
+    sampled = sample_rays(looks, by, profile_of(disc, effort), effort.rays)
     count = effort.radii
     rays = Rays(
         sampled.bgr[:, :, :count],
@@ -151,8 +154,7 @@ def unrolled(looks: Sequence[Look], disc: Stone, effort: Effort) -> tuple[Rays, 
         return rays, handle
     # Behind the plane of the handle a slanting view shows the cap displaced. Rings that leave
     # it show its edge, which stays while the stone turns: they are blanked.
-    slant = cameras_of(looks).slants(np.concatenate([look.places for look in looks]))
-    tilt = np.hypot(*slant.T)
+    tilt = np.hypot(*by.slants(np.concatenate([look.places for look in looks])).T)
     within = effort.handle_edge * disc.cap_radius - (HANDLE_HEIGHT - disc.cap_height) * tilt
     handle *= (sampled.radius[count + 1 :: 2] < within[:, None])[:, None, :, None]
     return rays, np.concatenate([handle, _rings(rays, handle_radii(disc, effort))], axis=2)

@@ -24,12 +24,14 @@ AROUND = STEP * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
 
 def distort(undistorted: Array, k1: Array | float, k2: Array | float, size: Size) -> Array:
     """As `Camera.distort`."""
-    c, radius = middle(size)
-    away = undistorted - c
-    x, y = away[..., 0], away[..., 1]
-    r2 = (x * x + y * y) / radius**2  # several times as fast as a sum over the last axis
-    away *= (1 + r2 * (k1 + k2 * r2))[..., None]
-    return np.asarray(c + away)
+    # Axis by axis: several times as fast as along a last axis of two.
+    (c_x, c_y), radius = middle(size)
+    x, y = undistorted[..., 0] - c_x, undistorted[..., 1] - c_y
+    r2 = (x * x + y * y) / radius**2
+    stretch = 1 + r2 * (k1 + k2 * r2)
+    seen = np.empty(undistorted.shape)
+    seen[..., 0], seen[..., 1] = c_x + x * stretch, c_y + y * stretch
+    return seen
 
 
 def undistort(pixels: Array, k1: Array | float, k2: Array | float, size: Size) -> Array:

@@ -129,13 +129,15 @@ def chained(first: Profile, second: Profile) -> Profile:
     )
 
 
-def sample_rays(looks: Sequence[Look], profile: Profile, rays: int) -> Rays:
+def sample_rays(looks: Sequence[Look], by: Cameras, profile: Profile, rays: int) -> Rays:
     """Sample pictures on rays around places on the ice.
 
     Parameters
     ----------
     looks : sequence of Look
         Pictures of one size, each with the centres.
+    by : Cameras
+        Theirs (`cameras_of`).
     profile : Profile
         Of every ray.
     rays : int
@@ -145,11 +147,12 @@ def sample_rays(looks: Sequence[Look], profile: Profile, rays: int) -> Rays:
     spokes = around[:, None] * profile.node_radius[:, None]
     places = np.concatenate([look.places for look in looks])
     nodes = (places[:, None, None] + spokes).reshape(len(places), -1, 2)
-    projected = cameras_of(looks).project(nodes, np.tile(profile.node_height, rays))
+    projected = by.project(nodes, np.tile(profile.node_height, rays))
     ends = projected.reshape(len(places), *spokes.shape).astype(np.float32)
     across, down = ends[..., 0] @ profile.mix, ends[..., 1] @ profile.mix
     width, high = looks[0].camera.size
-    if (ends >= 0).all() and (ends <= np.array([width - 1, high - 1], np.float32)).all():
+    right, low = ends[..., 0].max(initial=0), ends[..., 1].max(initial=0)
+    if ends.min(initial=0) >= 0 and right <= width - 1 and low <= high - 1:
         inside = np.ones(across.shape, bool)
     else:
         inside = (across >= 0) & (down >= 0) & (across <= width - 1) & (down <= high - 1)

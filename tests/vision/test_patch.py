@@ -5,7 +5,7 @@ import numpy as np
 from data.sheet import STONE
 from vision.patch import EFFORT, handle_radii, is_plain, profile_of, unrolled
 from vision.pose import View, camera
-from vision.rays import Look
+from vision.rays import Look, cameras_of
 from vision.rig import OVERHEAD, start_rig
 from vision.stones import plain_disc
 
@@ -34,7 +34,8 @@ def test_rings_are_shown_that_lie_in_the_picture_and_on_the_cap_alone() -> None:
     picture = np.full((720, 1280, 3), (60, 90, 200), np.uint8)
     out = DOWN.ice(np.array([[1280.0 - 6, 400.0]]))[0]  # seen to a few pixels from its middle
     look = Look(picture, DOWN, np.array([[0.3, 0.0], [4.0, 0.0], out]))
-    rays, handle = unrolled([look], STONE, EFFORT)
+    by = cameras_of([look])
+    rays, handle = unrolled([look], by, STONE, EFFORT)
     assert rays.lab.shape == (3, EFFORT.rays, EFFORT.radii, 3)
     count = len(handle_radii(STONE))
     assert handle.shape == (3, EFFORT.rays, 2 * count, 3)
@@ -47,4 +48,4 @@ def test_rings_are_shown_that_lie_in_the_picture_and_on_the_cap_alone() -> None:
     assert not at_grip[2, -1] and not at_cap[2, -1]
     np.testing.assert_array_equal(handle[0, 0, -1], rays.lab[0, 0, 20] & 254)
     disc = plain_disc(0.03)
-    assert unrolled([look], disc, EFFORT)[1].shape == (3, EFFORT.rays, count, 3)
+    assert unrolled([look], by, disc, EFFORT)[1].shape == (3, EFFORT.rays, count, 3)

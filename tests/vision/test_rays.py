@@ -4,7 +4,7 @@ import numpy as np
 
 from vision.camera import Camera
 from vision.pose import aim, camera
-from vision.rays import Look, chained, sample_rays, straight
+from vision.rays import Look, cameras_of, chained, sample_rays, straight
 from vision.rig import OVERHEAD, start_rig
 
 SIZE = (480, 360)
@@ -25,7 +25,8 @@ def test_rays_are_read_where_the_camera_shows_them() -> None:
     seen = overhead_camera()
     places = np.array([[0.2, -0.4], [-0.7, 0.5]])
     profile = straight([(0.05, 0.12), (0.2, 0.0)], np.linspace(0.05, 0.2, 16))
-    rays = sample_rays([Look(gradient(), seen, places)], profile, 24)
+    looks = [Look(gradient(), seen, places)]
+    rays = sample_rays(looks, cameras_of(looks), profile, 24)
     assert rays.inside.all()
     around = np.stack([np.cos(rays.angle), np.sin(rays.angle)], axis=-1)
     for index, height in ((0, 0.12), (15, 0.0)):
@@ -38,9 +39,8 @@ def test_rays_are_read_where_the_camera_shows_them() -> None:
 def test_what_is_beside_the_picture_is_not_inside() -> None:
     seen = overhead_camera()
     edge = seen.ice([[SIZE[0] - 4.0, 180.0]])
-    rays = sample_rays(
-        [Look(gradient(), seen, edge)], straight([(0.1, 0), (0.2, 0)], [0.1, 0.2]), 4
-    )
+    looks, profile = [Look(gradient(), seen, edge)], straight([(0.1, 0), (0.2, 0)], [0.1, 0.2])
+    rays = sample_rays(looks, cameras_of(looks), profile, 4)
     assert rays.at(0.1)[0].tolist() == [False, True, True, True]
 
 
