@@ -29,9 +29,10 @@ BEFORE = 0.1
 """How long before a hit a part of the shot ends that is to be without it, s: its time is not
 certain."""
 
-ELSEWHERE = 1.5
-"""How many times the deviance of a fit one with fewer unknowns has at most if it has come to rest
-at the same place: otherwise what that one tells of the unknowns does not hold there."""
+ELSEWHERE = 0.5
+"""By how much of the deviance of a fit that of one with fewer unknowns is larger, beyond what noise
+does, if it has come to rest at another place: what the first tells of the unknowns does not hold
+there."""
 
 SELDOM = 9.0
 """Twice the log of odds beyond which other laws do not count."""
@@ -61,7 +62,8 @@ def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None
             continue
         fewer = STRAIGHT[name]
         less = _refitted(best, shot, held | {name: fewer})
-        if not less.settled or less.deviance > ELSEWHERE * best.deviance:
+        more = less.deviance - best.deviance
+        if not less.settled or more > max(ELSEWHERE * best.deviance, SELDOM * best.inflation):
             continue
         tried.append(less)
         criteria.append(least - against)

@@ -37,9 +37,10 @@ THROWN = 1.5
 """Spin that a fit sets out from where none is seen before a hit, rad/s: from a spin of nothing,
 which may be lost before the hit, no slope leads to another."""
 
-SLOPE, KNEE, TURN = Estimate(0.001, 0.0015), Estimate(V_C, 0.04), Estimate(0.0, 0.01)
-"""What is known of a and v_c in μ(v) = a / (v + v_c) + b, m/s (a is 0 in the constant law, 0.002
-in FCV1, some 0.0035 in Penner's), and of the turn of a path at 1 m/s, rad/s (0.0082 in FCV1)."""
+SLOPE, KNEE, TURN = Estimate(0.002, 0.001), Estimate(V_C, 0.04), Estimate(0.0, 0.01)
+"""What is known of a and v_c in μ(v) = a / (v + v_c) + b, m/s, where friction falls (a is 0.002 in
+FCV1, some 0.0035 in Penner's law; no ice is known whose friction hardly falls), and of the turn of
+a path at 1 m/s, rad/s (0.0082 in FCV1)."""
 
 BESIDE = 1.0
 """Time beside a hit in whose middle a spin is told, s: far enough from where it changes."""

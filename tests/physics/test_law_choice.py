@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -9,6 +9,9 @@ import pytest
 from physics.contacts import find_contacts
 from physics.estimate import Estimates, estimate
 from physics.global_fit import fit_shots
+from physics.law_choice import STRAIGHT, USUAL, _against, _hit_by_hit
+from physics.shot_model import V_C
+from physics.watched import SLOPE, THROWN
 from physics.whole_fit import GlobalFit
 from tests.physics.watch import RADIUS, hit_motion, watch
 from tests.synthetic.physics import Ice, Impact, Start, simulate
@@ -68,6 +71,66 @@ def test_other_laws_are_fitted_with_the_noise_that_is_known(
     first = noises.index(next(noise for noise in noises if noise != 1))
     assert len(noises) - first >= 3
     assert noises[first:] == pytest.approx(len(noises[first:]) * [found.whole.inflation], rel=0.02)
+
+
+def test_the_first_fit_sets_out_from_even_ice_and_lost_spins_from_either_sense(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """As if every fit but those that set out from a spin had come to rest at none, far off."""
+    seen = watch(hit_motion(before=0.6, after=0.6), np.random.default_rng(5), fps=25)
+    watched = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).whole
+    assert watched is not None
+    calls: list[tuple[dict[str, float], dict[str, float]]] = []
+
+    def fit(shots: Any, *, fixed: Any, start: Any = None) -> GlobalFit:
+        calls.append((dict(fixed), dict(start or {})))
+        found = fit_shots(shots, fixed=fixed, start=start)
+        if abs(calls[-1][1].get("A.omega", 0.0)) == THROWN:
+            return found
+        spins = np.array([name == "A.omega" for name in found.names])
+        return replace(
+            found, values=np.where(spins, 0.0, found.values), deviance=found.deviance + 1e6
+        )
+
+    monkeypatch.setattr("physics.law_choice.fit_shots", fit)
+    best = _hit_by_hit(watched.shots[0], {"v_c": V_C})
+    even, usual, further, *turning = calls
+    assert even == (STRAIGHT, {})
+    assert usual[1] == USUAL
+    assert further[0] == {"v_c": V_C}
+    assert further[1]["A.omega"] == 0.0
+    assert [start["A.omega"] for _, start in turning] == [-THROWN, THROWN]
+    assert best["A.omega"].value == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "least", "most"),
+    [
+        (0.00026, 0.00009, -2.0, 2.0),  # less than on any ice that is known: either may be
+        (0.0020, 0.0003, -50.0, -30.0),  # as in FCV1
+        (0.0, 0.0003, 1.0, 9.0),
+    ],
+)
+def test_friction_that_hardly_falls_is_no_better_than_constant_one(
+    value: float, error: float, least: float, most: float
+) -> None:
+    """What places share, as far as no error states it, looks like friction that falls a little."""
+    prior = np.array([SLOPE.value, SLOPE.stderr])[:, None]
+    one = np.array([value])
+    fit = GlobalFit(("slope",), one, np.array([[error**2]]), *prior, {}, (), 1.0, 0.0, 1, 1.0, True)
+    assert least < _against(fit, "slope") < most
+
+
+def test_a_fit_of_fewer_unknowns_is_heard_if_stated_errors_are_large() -> None:
+    """It leaves many times as much as the best, and still less than noise may."""
+    stones = [Start(0.1, -2.8, 0.0, 1.4, 0.0, 1.0), Start(0.0, 0.0)]
+    ice = Ice(b=0.0102, a=0.0001, v_c=V_C)
+    motion = simulate(stones, 6.0, ice=ice, impact=Impact(0.83), step=5e-4, keep_every=4)
+    seen = watch(motion, np.random.default_rng(5), sd=0.0002, fps=15)
+    seen[["sd_x", "sd_y"]] = 0.01
+    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    assert found.whole is not None
+    assert found.whole.laws[0].name.startswith("ice constant")
 
 
 def test_other_laws_add_to_the_errors() -> None:

@@ -112,9 +112,9 @@ def test_what_places_share_moves_all_stones_together() -> None:
     tracks, results = measured()
     start = measured_start(tracks, replace(results, shared_error=0.003))
     a, b, c = (tracks[tracks["stone"] == name].iloc[0] for name in "ABC")
-    # Known to 4 mm, 3 of them alike: exp(-d² / 2) for distances d in metres.
+    # Known to 4 mm, 3 of them alike: exp(-2 d²) for distances d in metres.
     apart = math.dist((b["x"], b["y"]), (c["x"], c["y"]))
-    assert start.together[1, 2] == pytest.approx(0.003**2 * math.exp(-(apart**2) / 2))
+    assert start.together[1, 2] == pytest.approx(0.003**2 * math.exp(-2 * apart**2))
     assert start.together[0, 0] == pytest.approx(0.003**2)
     assert start.sd[:, :2] == pytest.approx(math.sqrt(0.004**2 - 0.003**2))
     assert a["y"] != start.shot.stones[0].y  # taken back, and its error with it
