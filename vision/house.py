@@ -60,6 +60,10 @@ from the side, and hardly any of them would be told."""
 LEVEL, NEARLY_LEVEL = 0.96, 0.9
 """Foreshortening of circles from which on a camera is likely to hang over the tee, and may."""
 
+FAR = 15.0
+"""Height of a camera, m, from which on it may rather lean the other way: ellipses do not tell on
+which side the ice is nearer, and what a fit cannot undo it takes for a camera far away."""
+
 
 def find_house(image: Image, *, frame: int = 0, t: float = 0.0) -> HouseFit | None:
     """Find the house in a picture.
@@ -182,6 +186,12 @@ def _ways(guess: Guess) -> tuple[Guess, ...]:
     return (guess, level) if guess.foreshortening > NEARLY_LEVEL else (guess,)
 
 
+def _from(small: Image, seen: Guess) -> RoughFit | None:
+    """Fit one way in which a hypothesis may be seen."""
+    there = start(seen, (small.shape[1], small.shape[0]))
+    return fit_roughly(small, *there, seen.scale, float(seen.centre[0]))
+
+
 def _rough_fits(small: Image, factor: float, hypotheses: Sequence[Guess]) -> list[RoughFit]:
     """Fit hypotheses in a small picture: what they become, that which explains most first."""
     fits: list[RoughFit] = []
@@ -191,10 +201,12 @@ def _rough_fits(small: Image, factor: float, hypotheses: Sequence[Guess]) -> lis
         if here.score < there[0].score - LESS and any(fit.score > TWO for fit in fits):
             continue
         for seen in _ways(here):
-            camera_there = start(seen, (small.shape[1], small.shape[0]))
-            fitted = fit_roughly(small, *camera_there, here.scale, float(here.centre[0]))
+            fitted = _from(small, seen)
             if fitted is not None:
                 break
+        if fitted is not None and fitted.rig[POSITION][2] > FAR:
+            other = _from(small, replace(seen, lean=seen.lean + np.pi))
+            fitted = max(fitted, other or fitted, key=lambda fit: fit.score)
         if fitted is not None:
             fits.append(fitted)
             if fitted.score > ENOUGH and aside[k] <= min(aside[k:]):

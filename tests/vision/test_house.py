@@ -88,6 +88,17 @@ def test_found_from_a_tilted_camera(tilt: float, bar: float) -> None:
         np.testing.assert_allclose(fit.camera.position, path.position, atol=0.5)
 
 
+@pytest.mark.parametrize("tilt", [20, 40])
+def test_what_is_nearest_may_be_at_the_top(tilt: float) -> None:
+    path = tilted_camera(np.radians(tilt), roll=np.pi, px_per_m=130.0, k1=-0.05)
+    fit = find_house(render_still(sample_scene(), path, 1.0))
+    assert fit is not None
+    seen = fit.camera.ice(path.at(1.0).project(np.c_[RINGS, np.zeros(len(RINGS))]))
+    np.testing.assert_allclose(np.hypot(*seen.T), np.hypot(*RINGS.T), atol=0.02)
+    other_end = np.multiply(path.position, [-1, -1, 1])
+    np.testing.assert_allclose(fit.camera.position, other_end, atol=0.5)
+
+
 @pytest.mark.parametrize(("tilt", "height"), [(63.0, 5.0), (70.0, 5.0), (71.0, 1.6)])
 def test_a_camera_beside_the_players_is_refused(tilt: float, height: float) -> None:
     scene = replace(sample_scene(), paint=PAINTS["navy-orange"])
