@@ -120,6 +120,7 @@ def test_greys_near_granite_are_told_place_by_place_in_recordings_without_colour
 
     assert own(90) and own(140)
     assert not own(25) and not own(240)
+    assert own(90, tinge=2.0), "as coding may make it"
     assert not own(90, tinge=5.0), "this recording has colours"
 
 

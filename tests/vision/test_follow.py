@@ -66,6 +66,29 @@ def test_a_full_hit_of_equal_stones_switches_nobody(speed: float, fps: float) ->
     assert [len(track.frames) for track in tracks] == [int(2 * fps)] * 2
 
 
+@pytest.mark.parametrize(
+    ("speed", "hidden"), [(1.0, (0.9, 1.5)), (2.0, (0.94, 1.3)), (3.0, (0.97, 1.06))]
+)
+def test_a_hit_that_nobody_saw_switches_nobody(speed: float, hidden: tuple[float, float]) -> None:
+    hit, e = 1.0, 0.83
+
+    def seen(t: float, y: float) -> Place | None:
+        return None if hidden[0] < t < hidden[1] else (0.0, y)
+
+    def thrown(t: float) -> Place | None:
+        since = t - hit
+        return seen(t, 2 * R - speed * (since if since < 0 else 0.5 * (1 - e) * since))
+
+    def struck(t: float) -> Place | None:
+        return seen(t, -0.5 * (1 + e) * speed * max(t - hit, 0.0))
+
+    tracks = follow(clip([thrown, struck], 2.0), R)
+    assert len(tracks) == 2
+    first, other = sorted(tracks, key=lambda track: -track.sightings[0].y)
+    assert first.sightings[-1].y == pytest.approx(2 * R - 0.5 * (1 - e) * speed, abs=0.02)
+    assert other.sightings[-1].y < -0.8 * speed
+
+
 def test_three_stones_within_a_fifth_of_a_second() -> None:
     speed, first, second = 1.5, 1.0, 1.15
     gap = speed * (second - first)

@@ -33,9 +33,31 @@ def test_the_spin_beside_a_gap_may_be_unsteady_or_unlike_on_either_side() -> Non
     assert np.nanmax(np.abs(out - true)) < 0.11
 
 
+def beside_a_gap(count: int, wait: float) -> tuple[np.ndarray, np.ndarray]:
+    """Times of pictures, the last before a gap at 0, and whether they are after it."""
+    each = np.arange(count) / 25
+    return np.concatenate([each - each[-1], wait + each]), np.repeat([False, True], count)
+
+
+def test_spins_beside_a_gap_are_told_by_enough_pictures_and_by_no_more() -> None:
+    times, late = beside_a_gap(4, 0.3)  # few
+    fast = 3 * times
+    times_two, late_two = beside_a_gap(2, 0.45)  # too few: one of them is off
+    off = np.array([0.0, 0.2, 0, 0])
+    many, late_many = beside_a_gap(20, 0.48)
+    hit = 4 * np.sign(many - 0.24) * np.maximum(np.abs(many - 0.24) - 0.64, 0)  # .4 s away
+    astray = np.zeros(40)
+    astray[[18, 21]] = -0.9, 0.9  # one picture on either side shows something else
+    for t, after, true in (
+        (times, late, fast), (times_two, late_two, off), (many, late_many, hit),
+        (many, late_many, astray),
+    ):  # fmt: skip
+        np.testing.assert_allclose(unfolded(t, true + np.pi * after), true, atol=1e-9)
+
+
 def test_what_stones_may_turn_is_left() -> None:
-    times = np.concatenate([np.arange(20) / 25, 2 + np.arange(20) / 25])
-    after_long = np.where(times < 1, 0.0, 3.0)  # 1.2 s out of sight: a stone may turn so far
+    times, late = beside_a_gap(20, 0.7)
+    after_long = 3.0 * late  # so long out of sight a stone may turn so far
     assert np.array_equal(unfolded(times, after_long), after_long)
     fast = 9.0 * np.arange(40) / 5  # steps of more than a quarter turn, all alike
     assert np.array_equal(unfolded(np.arange(40) / 5, fast), fast)

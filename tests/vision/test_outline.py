@@ -35,10 +35,11 @@ def test_an_outline_belongs_to_the_paint(width: float, depth: float) -> None:
     assert abs(found - edge) < 0.5 * abs(half_way - edge)
 
 
-def test_no_line_is_told_from_a_profile_that_ends_at_the_edge() -> None:
+@pytest.mark.parametrize(("left", "told"), [(3, False), (5, True)])
+def test_no_line_is_told_from_a_profile_that_ends_at_the_edge(left: int, told: bool) -> None:
     cut = profile(0.0, 1.2, 0.6, 0.9)
-    cut[19:] = np.nan
-    assert find_edge(cut, STEP) == HALF_WAY
+    cut[17 + left :] = np.nan
+    assert (find_edge(cut, STEP) != HALF_WAY) == told
 
 
 @pytest.mark.parametrize("depth", [0.6, -0.3])

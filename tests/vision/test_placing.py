@@ -7,7 +7,7 @@ import numpy as np
 from data.sheet import STONE, Stone
 from tests.vision.test_follow import sighting
 from vision.camera import Camera, CameraError
-from vision.placing import ASLANT, ASTRAY, GIVEN_ASTRAY, USUAL_RMS_PX, placed_by
+from vision.placing import ASLANT, GIVEN_ASTRAY, USUAL_RMS_PX, placed_by
 from vision.pose import View, camera
 from vision.projection import PARAMETERS
 from vision.rig import OVERHEAD, start_rig
@@ -67,6 +67,7 @@ def test_a_cap_is_told_best_where_its_wall_is_seen_and_its_shoulder_behind_it() 
     # Yet whoever looks more aslant never knows better where a stone is along the view.
     told = [slant * along(slant) for slant in np.linspace(0.02, 1.3, 40)]
     assert (np.diff(told) > -1e-4).all()
+    assert 0.1 * along(0.1) > 0.0006
     assert aslant < along(1.0) < steep
 
 
@@ -74,7 +75,7 @@ def test_the_map_of_a_house_is_the_worse_the_farther_from_the_tee() -> None:
     known = CameraError(np.zeros((PARAMETERS, PARAMETERS)), np.zeros((PARAMETERS, PARAMETERS)))
     errors = stated(replace(DOWN, error=known), replace(STONE, cap_height=0.0))
     away = np.hypot(*np.array(PLACES).T)
-    expected = ASTRAY * 0.2 * HEIGHT / FOCAL * np.column_stack([away, away])
+    expected = 0.15 * 0.2 * HEIGHT / FOCAL * np.column_stack([away, away])
     np.testing.assert_allclose(errors, expected, rtol=0.01)
 
 

@@ -112,6 +112,7 @@ def test_caps_that_are_hardly_told_from_granite_lie_less_surely(tmp_path: Path) 
         stones = track_stones(open_clip([path]), (camera_of(CAMERA, scene),)).sightings
         assert len(stones) == 2
         shared.append(stones[["sd_place_x", "sd_place_y"]].to_numpy().max())
+    assert max(shared[:2]) < 0.007
     assert min(shared[:2]) > 0.004 > 2 * shared[2]
 
 
