@@ -9,9 +9,9 @@ where it is or moves slowly, and the 12-ft circle has its nominal radius.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +26,7 @@ from vision.outline import HALF_WAY, PaintEdge
 from vision.paint import CIRCLES, FIXED, Marks, joined
 from vision.pose import VIEW_SIZE, View, camera, turning
 from vision.projection import PARAMETERS
-from vision.quality import ARC, quality, warnings
+from vision.quality import ARC, edges_off, quality, warnings
 from vision.resection import solve_views
 from vision.rig import K1, K1_BEND, K1_ZOOM, K2, POSITION, R4, R8, RIG_SIZE, Prior, zoom
 from vision.robust import WIDTH, inverse
@@ -145,7 +145,7 @@ def _fit_frames(
     while ready:
         cameras: list[Camera] = []
         moved: list[float] = []
-        for part in np.array_split(np.arange(len(ready)), ceil(len(ready) / TOGETHER)):
+        for part in np.array_split(np.arange(len(ready)), math.ceil(len(ready) / TOGETHER)):
             fresh = [ready[k] for k in part]
             known = [_carried(s, s.key, done[s.key.frame]) if s.key else s for s in fresh]
             fitted, motions = fit_frames(known, shared, size, edge_sd)
@@ -241,12 +241,15 @@ def fit_frames(
             _scale_sd(fit.view, rig, edge_sd),
             0.0 if s.key is None else s.key.drift,
         )
-        rms = fit.rms if s.found else float("nan")
         good = fit.inliers & on_circle[part]
+        pixel, on = _pixel(fit.view, rig), np.arange(part.start, part.stop)[good]
+        sd = pixel * marks.sd[on]
+        off = edges_off(sd * at.residual[on], offset[on], sd) if s.found else math.nan
         found.append(
             camera(
-                fit.view, rig, size, frame=s.index, t=s.t, rms_px=rms, found=s.found,
-                error=error, quality=quality(identity[part][good], rms, fit.view, rig, size),
+                fit.view, rig, size, frame=s.index, t=s.t, found=s.found, error=error,
+                rms_px=fit.rms if s.found else math.nan,
+                quality=quality(identity[part][good], off, fit.view, rig, size),
             )
         )  # fmt: skip
     return found, moved
@@ -254,7 +257,12 @@ def fit_frames(
 
 def _scale_sd(view: View, rig: Array, edge_sd: float) -> float:
     """Tell how well all lengths are known, as shares: as well as the 12-ft circle's radius."""
-    return edge_sd * float(np.linalg.norm(rig[POSITION])) / view.focal / HOUSE.twelve_foot
+    return edge_sd * _pixel(view, rig) / HOUSE.twelve_foot
+
+
+def _pixel(view: View, rig: Array) -> float:
+    """Length of a pixel at the tee, across the view, m."""
+    return float(np.linalg.norm(rig[POSITION])) / view.focal
 
 
 def _parameters(view: Array, rig: Array, size: tuple[int, int]) -> Array:

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -126,6 +127,41 @@ def test_quality_falls_when_the_fit_is_bad() -> None:
     assert 1 >= good.quality > bad.quality + 0.2
     assert bad.rms_px > 1.0 > good.rms_px
     assert np.trace(bad.place_cov((1.0, 1.0))) > 4 * np.trace(good.place_cov((1.0, 1.0)))
+
+
+def larger(seen: Seen, times: float) -> Seen:
+    """The same of a picture so many times as large."""
+    marks = seen.marks.get()
+    view = View(seen.view.vector + np.log(times) * np.eye(4)[3])
+    middle = (np.array(SIZE) - 1) / 2
+    pixel = times * (marks.pixel - middle) + (times * np.array(SIZE) - 1) / 2
+    grown = replace(marks, pixel=pixel, sd=times * marks.sd)
+    return replace(seen, view=view, marks=Kept(grown))
+
+
+def test_quality_is_the_same_in_a_larger_picture() -> None:
+    seen = clip(np.random.default_rng(7), noise=0.45)
+    small = fit_clip(seen, start_rig(OVERHEAD), OVERHEAD, SIZE)
+    size = (3 * SIZE[0], 3 * SIZE[1])
+    large = fit_clip([larger(s, 3.0) for s in seen], start_rig(OVERHEAD), OVERHEAD, size)
+    assert large.cameras[0].rms_px > 1.0 > small.cameras[0].rms_px
+    for one, other in zip(small.cameras, large.cameras, strict=True):
+        assert other.quality == pytest.approx(one.quality, abs=0.05)
+    assert not large.warnings
+
+
+@pytest.mark.parametrize(("bent", "told"), [(0.0, False), (1.2, True)])
+def test_a_lens_that_bends_all_pictures_alike_is_told_though_it_passes_for_paint(
+    bent: float, told: bool
+) -> None:
+    seen = []
+    for one in clip(np.random.default_rng(8), noise=0.1, zoom=1.0):
+        marks = one.marks.get()
+        waves = bent * np.sqrt(2) * np.sin(marks.pixel[:, ::-1] / [40.0, 55.0])
+        seen.append(replace(one, marks=Kept(replace(marks, pixel=marks.pixel + waves))))
+    track = fit_clip(seen, start_rig(OVERHEAD), OVERHEAD, SIZE)
+    assert track.cameras[0].rms_px < 0.4
+    assert ("explains little" in " ".join(track.warnings)) == told
 
 
 def test_places_scatter_as_their_covariance_by_a_views_own_marks() -> None:

@@ -7,7 +7,7 @@ from tests.vision.cameras import SIZE, true_rig
 from vision.camera import Camera
 from vision.paint import CIRCLES
 from vision.pose import View
-from vision.quality import ARC, POOR, POOR_PX, quality, warnings
+from vision.quality import ARC, POOR, POOR_OFF, edges_off, quality, warnings
 from vision.shared import BINS
 
 RIG = true_rig()
@@ -21,9 +21,9 @@ def test_a_house_explained_to_the_last_piece_is_perfect() -> None:
     assert quality(np.repeat(EVERY, 3), 0.0, VIEW, RIG, SIZE) == 1.0
 
 
-def test_quality_is_the_share_that_is_explained_halved_by_a_poor_residual() -> None:
+def test_quality_is_the_share_that_is_explained_halved_where_edges_are_far_off() -> None:
     assert quality(EVERY[::2], 0.0, VIEW, RIG, SIZE) == pytest.approx(0.5)
-    assert quality(EVERY, POOR_PX, VIEW, RIG, SIZE) == pytest.approx(0.5)
+    assert quality(EVERY, POOR_OFF, VIEW, RIG, SIZE) == pytest.approx(0.5)
     assert quality(EVERY[:0], 0.0, VIEW, RIG, SIZE) == 0.0
 
 
@@ -36,6 +36,14 @@ def test_what_is_out_of_the_picture_need_not_be_explained() -> None:
 
 def test_a_carried_camera_has_none() -> None:
     assert quality(EVERY, float("nan"), VIEW, RIG, SIZE) == 0.0
+
+
+def test_edges_are_off_by_what_camera_and_paint_leave_each_as_it_counts() -> None:
+    sd = np.full(4, 0.001)
+    assert edges_off(np.full(4, 0.003), np.array([0.004, -0.004] * 2), sd) == pytest.approx(0.005)
+    ragged, left = np.repeat([0.001, 0.030], 50), np.repeat([0.001, 0.030], 50)
+    assert edges_off(left, 0 * left, ragged) == pytest.approx(0.0014, abs=0.0001)
+    assert np.isnan(edges_off(sd[:0], sd[:0], sd[:0]))
 
 
 def cameras(qualities: list[float]) -> list[Camera]:
