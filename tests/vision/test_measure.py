@@ -151,6 +151,22 @@ def test_seen_aslant_a_light_mark_beside_the_rim_hardly_draws_a_cap_aside(
     np.testing.assert_allclose(middle[[0, 2]], 0, atol=2e-5)
 
 
+def test_where_colours_hardly_tell_caps_what_tells_more_counts_place_by_place() -> None:
+    learned = learn(search_picture(PICTURE, VIEW).stones)
+    assert learned is not None and learned.membership is not None
+    look = Look(PICTURE, VIEW, PLACES)
+    for table in (0 * learned.membership, -learned.membership):
+        for own in (False, True):
+            known = replace(learned, membership=table, own=own)
+            seen = measure_discs([look], known, STONE)
+            assert seen.ok.all() == (seen.evidence.min() > 2) == own
+    covered = PICTURE.copy()
+    for x, y in VIEW.project(PLACES, STONE.cap_height).round().astype(int):
+        covered[y - 30 : y + 30, x : x + 30] = (120, 40, 30)
+    seen = measure_discs([Look(covered, VIEW, PLACES)], replace(learned, own=True), STONE)
+    assert seen.ok.all() and seen.evidence.min() > 1
+
+
 MAGENTA = (240, 30, 180)
 
 
@@ -190,6 +206,9 @@ def test_a_cap_of_another_size_speaks_against_a_stone_also_by_colours_that_are_k
         for each in (right, large)
     ]
     assert (seen[1].evidence + seen[1].excused < seen[0].evidence - 0.8).all()
+    slightly = Look(teal_on_magenta(1.12 * STONE.cap_radius), VIEW, PLACES)
+    excused = measure_discs([slightly], learned, STONE, FOLLOWED).excused
+    assert excused.min() > 0.8 and excused.max() < 1.0
 
 
 def test_coarse_hues_excuse_no_size_that_lightness_tells() -> None:

@@ -100,6 +100,20 @@ def test_corners_that_a_lens_leaves_dark_are_no_circle() -> None:
     assert stands_alone(dark, evidence, view, rig)
 
 
+@pytest.mark.parametrize(
+    ("paint", "darker", "alone"),
+    [(None, 16, True), (None, 30, False), (32, 8, True), (32, 17, False)],
+)
+def test_a_circle_about_a_house_stands_out_by_what_its_rings_do(
+    paint: int | None, darker: int, alone: bool
+) -> None:
+    """Of rings in strong colours, and of some that are hardly darker than the ice."""
+    bleak, faint = ((b - by, g - by, r - by) for by in (paint or 0, darker) for b, g, r in [ICE])
+    house = HOUSE if paint is None else ((1.829, bleak), HOUSE[1], (0.619, bleak))
+    picture = drawn(((2.5, faint), *house))
+    assert stands_alone(picture, seen(picture), *level()) is alone
+
+
 def test_a_house_is_worth_most() -> None:
     whole, few, none = (worth(seen(drawn(rings))) for rings in (HOUSE, HOUSE[::2], ()))
     assert 3.0 < whole <= 3.5
