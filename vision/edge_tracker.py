@@ -27,6 +27,7 @@ from vision.pose import View
 from vision.resection import ViewSolution, solve_views
 from vision.rig import R4, R8
 from vision.shelf import Kept
+from vision.shutter import ShutterLight, Smeared
 from vision.smear import Shutter, reach_beyond, smear, weighed
 from vision.stations import THIN
 
@@ -62,6 +63,10 @@ second, edges of others may have been taken for theirs, and are measured anew.""
 
 LEARNING = 0.1
 """How fast the colours of the edges are learned anew."""
+
+MOST_MOVED = 0.3
+"""Where the light that a shutter blurs moves edges by more than was known, px, they are measured
+anew."""
 
 LONGEST_STRIDE = 4
 """Most frames that are followed together."""
@@ -101,7 +106,11 @@ class EdgeTracker:
     sweep: Array = field(default_factory=lambda: np.zeros(2))
     smeared: float = 0.0
     _shutter: Shutter = field(default_factory=Shutter)
+    _light: ShutterLight = field(init=False)
     _last: tuple[View, Array, Normals, Array] | None = None
+
+    def __post_init__(self) -> None:
+        self._light = ShutterLight.of(self.edge, self.palette)
 
     def settle(
         self, frames: Sequence[Frame], views: Sequence[View], rig: Array, last: View
@@ -122,7 +131,7 @@ class EdgeTracker:
             The first of the frames, as many as went well; none where the first does not show
             enough of the circles.
         """
-        again, smeared = False, 0.0
+        again, smeared, known = False, 0.0, self._light
         for _ in range(ROUNDS):
             steps = [now.sweep(old) for now, old in zip(views, [last, *views], strict=False)]
             self.sweep = self._shutter.exposure * max(steps, key=np.linalg.norm)
@@ -138,7 +147,8 @@ class EdgeTracker:
             each = zip(views, evidence, fits, strict=False)
             count = _leading([self._is_settled(*one, rig) for one in each])
             stays = again and fits[0].view.aside(views[0]) < LEAST_SETTLED * self._reach
-            if count or stays:
+            moved = self._learn_light(evidence[0].marks, fits[0].view, rig, known)
+            if (count or stays) and moved < MOST_MOVED:
                 break
             smeared = smear(evidence[0].slope)
             frames, views, again = frames[:1], [fits[0].view], True
@@ -244,6 +254,7 @@ class EdgeTracker:
         found = measure_along(
             pictures[: len(standing)], normals, standing,
             least_sd=MARK_SD, palette=self.palette, edge=self.edge,
+            levels=self._pan.levels(normals.line, normals.normal.T, self._light.share),
         )  # fmt: skip
         return [replace(e, marks=weighed(e.marks, self.sweep, self.size[0])) for e in found]
 
@@ -268,6 +279,23 @@ class EdgeTracker:
         near = fit.view.aside(expected) < most
         near &= reach_beyond(smear(evidence.slope), self.size[0]) < TOO_SHORT * self._reach
         return near and _enough(rig, evidence.visible, _explained(evidence, fit), GOOD_SUPPORT)
+
+    @property
+    def _pan(self) -> Smeared:
+        return Smeared(self.sweep, self.palette, self.edge)
+
+    def _learn_light(self, marks: Marks, view: View, rig: Array, known: ShutterLight) -> float:
+        """Tell by a frame what the shutter blurs, and how far that moves its edges anew, px.
+
+        `known` is what the frames before told; what was told by this one before is forgotten.
+        """
+        used = self._light.share
+        told = self._pan.told(marks, view, rig, self.size, used)
+        if told is None:
+            return 0.0
+        share, sd, most = told
+        self._light = known.taking(share, sd)
+        return abs(self._light.share - used) * most
 
     def _learn(self, palette: Array, frames: int) -> None:
         """Take in the colours of the edges in the last of so many frames."""

@@ -141,6 +141,7 @@ def measure_along(
     least_sd: float = EDGE_SD,
     palette: Array | None = None,
     edge: PaintEdge = HALF_WAY,
+    levels: Array | None = None,
 ) -> list[Evidence]:
     """Measure circles and lines in pictures along the same normals; see `measure_marks`.
 
@@ -150,6 +151,8 @@ def measure_along(
     normals : Normals
     standing : ndarray, shape (pictures, 2, 2, n)
         As `Normals.standing`, in each picture.
+    levels : ndarray, shape (n,), optional
+        At which levels the wide edges are crossed beside that, for a pan smears them.
     """
     points = standing[:, 0]
     places, wide = _places(normals), normals.wide
@@ -161,6 +164,8 @@ def measure_along(
     value[..., rim] -= np.float32(edge.level)
     for kind in range(CIRCLES):
         value[..., places.kinds.get(kind, slice(0))] -= np.float32(edge.light[kind])
+    if levels is not None:
+        value -= levels[:wide].astype(np.float32)
     rising, inset = value.copy(), np.zeros((len(good), 1))
     for k, one in enumerate(colours[..., :wide]):
         for part in outlines(one, places.kinds, value[k], good[k], found[k]):

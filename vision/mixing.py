@@ -94,14 +94,14 @@ def lit(edge: PaintEdge, picture: Picture, view: View, rig: Array, evidence: Evi
         return edge
     told = None if abs(edge.line) > MOST_LINE else share_of_light(picture, view, rig, slope)
     share, sd = told or (0.0, UNTOLD)
-    levels = half_light(evidence.palette)
+    levels = half_light(evidence.palette)[:CIRCLES]
     unsure = sd * levels[TWELVE] / slope
     light = tuple((share * levels).tolist())
     return replace(edge, sd=float(np.hypot(edge.sd, unsure)), light=light)
 
 
 def half_light(palette: Array) -> Array:
-    """Tell at which levels of their profiles the circles lie if all blur is of light.
+    """Tell at which levels of their profiles edges lie if all blur is of light.
 
     Parameters
     ----------
@@ -110,10 +110,10 @@ def half_light(palette: Array) -> Array:
 
     Returns
     -------
-    ndarray, shape (3,)
+    ndarray, shape (9,)
         On the scale of `vision.edges.steps`: 0 half way between the codes, and where not known.
     """
-    low, high = np.clip(palette[:CIRCLES], 0.0, None).swapaxes(0, 1)
+    low, high = np.clip(palette, 0.0, None).swapaxes(0, 1)
     half = (0.5 * (low**GAMMA + high**GAMMA)) ** (1 / GAMMA)
     axis = (high - low) @ SHARPNESS
     beyond = (axis * (half - 0.5 * (low + high))).sum(1)
