@@ -37,7 +37,8 @@ class Look:
     places : ndarray, shape (n, 2)
         m.
     drift : ndarray, shape (n, 2), optional
-        How far what is there moves from one picture to the next, m; None where that is not known.
+        How far what is there moves across the picture, from that before, in m of the ice there;
+        None where that is not known.
     """
 
     picture: Picture

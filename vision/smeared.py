@@ -23,8 +23,9 @@ Floats = NDArray[np.float32]
 Flags = NDArray[np.bool_]
 
 SWEPT = 0.06, 0.08
-"""How far a stone moves from picture to picture, m, from where on and up to where the middle of
-what it covered takes the place of that of its edges: they are smeared by about half of it."""
+"""How far a stone moves across the picture, from one to the next, m of the ice, from where on and
+up to where the middle of what it covered takes the place of that of its edges: they are smeared by
+about half of it."""
 
 SHORT = 0.022, 0.035
 """Ways of a cap as they are made out, m, up to which it may be as sharp as one at rest, and from
@@ -74,7 +75,7 @@ def swept_share(drift: Array) -> Array:
     Parameters
     ----------
     drift : ndarray, shape (n, 2)
-        How far the stones move from one picture to the next, m.
+        How far the stones move across the picture, from one to the next, m of the ice.
     """
     low, high = SWEPT
     return np.asarray(np.clip((np.hypot(*drift.T) - low) / (high - low), 0.0, 1.0))
@@ -126,7 +127,7 @@ def middles(
     by_edges : ndarray, shape (n, 2)
         Where the middles are by the caps' edges, off the places, m.
     drift : ndarray, shape (n, 2)
-        How far the stones move from one picture to the next, m; more than 0.
+        How far the stones move across the picture, from one to the next, m of the ice; more than 0.
 
     Returns
     -------
