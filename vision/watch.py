@@ -35,6 +35,9 @@ from vision.strangers import strangers
 AT_ONCE = 64
 """Pictures whose stones are placed together in the end: more take memory, and no less time each."""
 
+MOST_KEPT = 24 * 1920 * 1080
+"""Pixels that the pictures kept may have together: beyond that there are fewer of them."""
+
 
 @dataclass(frozen=True)
 class Pace:
@@ -43,8 +46,8 @@ class Pace:
     Attributes
     ----------
     memory : int
-        Pictures that are kept to learn from and to follow stones back through; when so many are
-        new, the last of them is searched.
+        Pictures that are kept to learn from and to follow stones back through, fewer if they are
+        very large; when so many are new, the last of them is searched.
     hurry : int
         The same while a stone that rested is hidden: hit unseen, it may show for a moment only.
     lesson : int
@@ -60,6 +63,11 @@ class Pace:
     lesson: int = 8
     doubt: int = 2
     lessons: int = 200
+
+    def kept(self, size: tuple[int, int]) -> int:
+        """How many pictures of a size, px, are kept; never fewer than in a hurry."""
+        width, height = size
+        return min(self.memory, max(MOST_KEPT // (width * height), self.hurry))
 
 
 class Watch:
@@ -94,11 +102,12 @@ class Watch:
         self._gain = np.ones(3)
         self._before: Camera | None = None
         self._leads: list[Lead] = []
-        self._since = pace.memory
+        self._since = self._most = pace.memory
         self._seen: dict[int, tuple[float, Sequence[Sighting]]] = {}
 
     def look(self, frame: Frame, camera: Camera) -> None:
         """Take in a frame; it waits for some more, the first ones until the stones are learned."""
+        self._most = self._pace.kept(camera.size)
         if not self._knows:
             self._gain = np.full(3, brightening(frame.picture, camera))
         frame = replace(frame, picture=brightened(frame.picture, self._gain))
@@ -110,7 +119,7 @@ class Watch:
         self._before = camera
         self._waiting.append(view)
         self._seen[frame.index] = frame.t, view.sightings
-        if len(self._waiting) >= (self._patience.block if self._knows else self._pace.memory):
+        if len(self._waiting) >= (self._patience.block if self._knows else self._most):
             self._catch_up()
 
     @property
@@ -192,10 +201,10 @@ class Watch:
         if self._knows:
             self._leads = self._follower.follow(views, self._leads)
         self._recent.extend(views)
-        while len(self._recent) > self._pace.memory:
+        while len(self._recent) > self._most:
             self._put_aside(self._recent.popleft())
         self._since += len(views)
-        if self._since >= (self._pace.hurry if self._hidden(views[-1]) else self._pace.memory):
+        if self._since >= (self._pace.hurry if self._hidden(views[-1]) else self._most):
             self._search_for_new(views[-1])
 
     def _put_aside(self, view: StoneView) -> None:

@@ -19,7 +19,7 @@ from vision.placing import placed_by
 from vision.rays import Look
 from vision.stones import FOLLOWING, Findings, Search
 from vision.strangers import strangers
-from vision.watch import Watch
+from vision.watch import Pace, Watch
 
 AT_REST = [(0.3, 0.2, RED), (-0.8, 1.0, YELLOW), (0.9, -0.6, RED)]
 LATE = (-0.2, -0.5)
@@ -42,6 +42,34 @@ def test_a_stone_found_late_is_followed_back_also_one_of_a_new_colour(
         watch.look(Frame(index, index / 25, after if index >= since else before), camera)
     counts = [len(sightings) for _, _, sightings in watch.finish()]
     assert counts == [3] * since + [4] * (50 - since)
+
+
+@pytest.mark.parametrize(
+    ("size", "kept"),
+    [((640, 360), 24), ((1920, 1080), 24), ((1080, 1920), 24), ((2560, 1440), 13),
+     ((3840, 2160), 8), ((7680, 4320), 8)],
+)  # fmt: skip
+def test_of_large_pictures_fewer_are_kept(size: tuple[int, int], kept: int) -> None:
+    assert Pace().kept(size) == kept
+
+
+def test_with_fewer_pictures_kept_a_late_stone_is_followed_back_as_well(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    reds = [(x, y, RED) for x, y, _ in AT_REST]
+    before, after = picture(reds), picture([*reds, (*LATE, YELLOW)])
+    camera, since, held = camera_of(CAMERA, scene_of(reds)), 27, []
+    pixels = camera.size[0] * camera.size[1]
+    monkeypatch.setattr("vision.watch.MOST_KEPT", 10 * pixels)
+    monkeypatch.setattr(
+        StoneView, "put_aside", lambda view, shelf: held.append((frame, view.frame.index))
+    )
+    watch = Watch()
+    for frame in range(50):
+        watch.look(Frame(frame, frame / 25, after if frame >= since else before), camera)
+    counts = [len(sightings) for _, _, sightings in watch.finish()]
+    assert counts == [3] * since + [4] * (50 - since)
+    assert 10 <= max(now - then for now, then in held) < 20
 
 
 def test_in_the_end_stones_are_placed_by_the_cameras_that_are_known_by_then(
