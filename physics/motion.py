@@ -117,7 +117,7 @@ class Path:
         cell, s = self._curve.cell(tau)
         self.length = cubic(cell.straight, s)
         self._loss, self._unwound = cubic(cell.loss, s), cubic(cell.unwound, s)
-        self._sense = sense = (motion.omega > 0) - (motion.omega < 0)
+        self._sense = sense = int(motion.omega > 0) - int(motion.omega < 0)
         heading = math.atan2(motion.vy, motion.vx)
         self._arc = _arc(motion.x, motion.y, heading, sense, cell, s)
         left = abs(motion.omega) - self._loss

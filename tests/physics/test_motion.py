@@ -173,3 +173,11 @@ def test_mirror_and_rotation(
     assert (two.x, two.y, two.theta) == pytest.approx((-one.x, one.y, -one.theta), abs=1e-9)
     turned = (c * one.x - s * one.y, s * one.x + c * one.y, one.theta)
     assert (three.x, three.y, three.theta) == pytest.approx(turned, abs=1e-9)
+
+
+def test_numbers_of_numpy_are_numbers() -> None:
+    """As of a stone whose spin comes from a radius that was measured, an array's mean."""
+    start = Motion(0.0, 0.0, 0.3, 0.2, 1.5, -0.8)
+    same = Motion(*map(np.float64, start))
+    paths = [Path(0.0, motion, FCV1(), FCV1Curl()) for motion in (start, same)]
+    assert paths[0].at(2.0) == paths[1].at(2.0)
