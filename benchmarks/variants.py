@@ -20,12 +20,11 @@ import numpy as np
 import pandas as pd
 
 import pipeline
-from data.results import Estimate, Prediction
+from data.results import Prediction
 from physics.contacts import find_contacts
 from physics.estimate import estimate
 from physics.forecast import predict
-from physics.laws import measured_laws
-from physics.watched import Priors
+from physics.laws import measured_priors
 from tests.synthetic.clip import Truth, cached_clip
 from tests.synthetic.scenes import sample_variant
 from work.analyse import Run
@@ -69,11 +68,9 @@ def row(seed: int) -> tuple[str, bool]:
 def foretold(done: Run, sightings: pd.DataFrame) -> Prediction:
     """Predict the shot from what was seen before its first hit, with the laws as measured."""
     results = done.results
-    laws = measured_laws(results, results.radius)
-    friction = Estimate(results.friction.value, results.friction.stderr)
     found = estimate(sightings, find_contacts(sightings, results.radius), radius=results.radius)
-    assumed = Priors(laws.restitution, laws.stone_friction, friction, laws.size)
-    return predict(sightings, done.tracks, found, radius=results.radius, laws=assumed)["frictional"]
+    laws = measured_priors(found, results.radius)
+    return predict(sightings, done.tracks, found, radius=results.radius, laws=laws)["frictional"]
 
 
 def _places(errors: Mapping[str, float | None], stated: Mapping[str, float | None]) -> str:

@@ -208,7 +208,8 @@ class Prediction:
 
     ``rmse`` and ``rest_error`` as in `SimulationScore`; ``rest_sd`` per stone the standard
     deviation (m, both axes together) of its predicted last place, from the errors of the states
-    before the hit and of the ``restitution`` and ``friction`` assumed, each with its own.
+    before the hit, of the ice as seen until then, whose ``friction`` is what was assumed of it
+    beforehand, and of the ``restitution`` assumed, each with its own.
     ``error_after`` per stone the distance between its predicted and measured place (m) 1.16 s
     after the first hit, where the study of the 2018 Olympic final states its own, 5.6 cm, and
     ``sd_after`` as `rest_sd`, of the place then.

@@ -1,4 +1,4 @@
-"""The shot predicted: from sightings before its first hit alone, with laws fixed in advance."""
+"""The shot predicted: from sightings before its first hit alone, and what was known beforehand."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from physics.fit import fit_shot
 from physics.glides import free
 from physics.hindcast import explained_until, score
 from physics.impact import Frictional, Impact, PointMass
-from physics.law_choice import STRAIGHT, fit_with_chosen_laws
-from physics.shot_model import ice
+from physics.law_choice import fit_with_chosen_laws
+from physics.shot_model import penner
 from physics.simulate import simulate
 from physics.traces import traces
 from physics.watched import LITERATURE, Priors, watch
@@ -33,8 +33,11 @@ AFTER = 1.16
 DRAWS = 48
 """Simulated shots from which the spread of the last places is taken."""
 
-MOST = {"restitution": 1.0, "stone_friction": 1.0, "friction": 1.0, "size": 1.3}
-"""Bounds of what is drawn of the laws."""
+MOST = {"restitution": 1.0, "stone_friction": 1.0, "size": 1.3}
+"""Bounds of what is drawn of the laws of hits, of which nothing is seen before one."""
+
+UNSURE = 3.0
+"""Odds up to which other laws of the ice are no reason to give up plainer ones."""
 
 ASSUMED = replace(LITERATURE, size=Estimate(1.0, 0.0))
 """Laws of a shot of which nothing is known: those of the literature, and stones that meet at two
@@ -52,9 +55,9 @@ def predict(
 ) -> dict[str, Prediction]:
     """Predict a shot from what was seen before its first hit and score it against the tracks.
 
-    The states come from a fit through the simulator to all sightings before the hit, with the
-    friction and the curl that these ask for; of what follows nothing is used but to score the
-    outcome.
+    The states and the laws of the ice come from a fit through the simulator to all sightings before
+    the hit, the laws of hits from what is assumed; of what follows nothing is used but to score
+    the outcome.
 
     Parameters
     ----------
@@ -69,7 +72,7 @@ def predict(
     masses : mapping, optional
         Stone to mass in any unit; equal where absent.
     laws : Priors
-        What is assumed of hits and ice, with standard errors.
+        What is assumed of hits and ice, with standard errors; what has none is held.
 
     Returns
     -------
@@ -121,9 +124,9 @@ def _before(
     if moved:
         since = sightings["stone"].map(moved).fillna(-np.inf).astype(float)
         return _before(sightings[sightings["t"] > since], radius, masses, laws)
-    held = {name: law.value or 0.0 for name, law in vars(laws).items()}
-    if laws.friction.stderr:
-        del held["friction"]
+    held = {
+        name: law.value or 0.0 for name, law in vars(laws).items() if name in MOST or not law.stderr
+    }
     return fit_with_chosen_laws(watched, held)
 
 
@@ -139,8 +142,7 @@ def _scored(
     clock = clock[clock >= first]
     if clock.empty:
         return Prediction(None, note="nothing is seen after the first hit")
-    likely = {name: law.value or 0.0 for name, law in vars(laws).items()}
-    table = _sampled(fit, fit.state(), likely, model, first, clock.to_numpy(float))
+    table = _likely(fit, laws, model, first, clock.to_numpy(float))
     table["frame"] = clock.index.to_numpy()[table["frame"].to_numpy()]
     found = score(tracks, table, first, explained_until(tracks, estimates, first), None)
     soon, last = _spreads(fit, laws, model, first, (first + AFTER, float(clock.iloc[-1])))
@@ -176,6 +178,19 @@ def _errors_at(
     return out
 
 
+def _likely(fit: GlobalFit, laws: Priors, model: str, first: float, times: Floats) -> pd.DataFrame:
+    """Simulate the shot with what is assumed of hits, and the plainest laws of the ice that may be.
+
+    Those are the ones of fewest unknowns that `UNSURE` allows; Penner's, which has as few as
+    constant friction, comes after it.
+    """
+    most = max((weight for weight, _ in fit.choices), default=0.0)
+    may_be = [own for weight, own in fit.choices if UNSURE * weight >= most] or [fit]
+    plain = min(may_be, key=lambda own: (len(own.names), own.shots[0].ice is penner))
+    hits = {name: getattr(laws, name).value or 0.0 for name in MOST}
+    return _sampled(plain, plain.state(), hits, model, first, times)
+
+
 def _sampled(
     fit: GlobalFit,
     values: Mapping[str, float],
@@ -184,7 +199,7 @@ def _sampled(
     first: float,
     times: Floats,
 ) -> pd.DataFrame:
-    """Simulate a shot as fitted up to its first hit, from there with given laws, at some times."""
+    """Simulate a shot as fitted, its hits by given laws, at some times after the first."""
     seen = fit.shots[0]
     approach = seen.shot(values)
     run = simulate(approach, until=first - seen.start)
@@ -196,7 +211,7 @@ def _sampled(
         stones.append(
             replace(stone, x=now.x, y=now.y, vx=now.vx, vy=now.vy, omega=now.omega, theta=now.theta)
         )
-    onward = replace(seen, ice=ice).shot({**values, **STRAIGHT, **laws})
+    onward = seen.shot({**values, **laws})
     impact: Impact = PointMass(laws["restitution"])
     if model == "frictional":
         impact = Frictional(laws["restitution"], laws["stone_friction"], seen.inertia)
@@ -210,21 +225,31 @@ def _sampled(
 def _spreads(
     fit: GlobalFit, laws: Priors, model: str, first: float, times: Sequence[float]
 ) -> list[dict[str, float]]:
-    """Spread of each stone's place at some times over what is not known of states and laws, m."""
+    """Tell how far each stone's place may be off at some times, both axes together, m.
+
+    It is the root mean square distance from the likeliest place over draws of what is not known of
+    states and laws.
+    """
     rng = np.random.default_rng(0)
     places: list[dict[str, list[Floats]]] = [{} for _ in times]
     until = np.unique(times)
+    runs = [_likely(fit, laws, model, first, until)]
     for own, row in draw_choices(fit, DRAWS, rng):
-        drawn = {
-            name: float(np.clip(rng.normal(law.value or 0.0, law.stderr or 0.0), 1e-5, MOST[name]))
-            for name, law in vars(laws).items()
-        }
-        table = _sampled(own, own.state(values=row), drawn, model, first, until)
+        drawn = {}
+        for name, most in MOST.items():
+            law: Estimate = getattr(laws, name)
+            value = rng.normal(law.value or 0.0, law.stderr or 0.0)
+            drawn[name] = float(np.clip(value, 1e-5, most))
+        runs.append(_sampled(own, own.state(values=row), drawn, model, first, until))
+    for table in runs:
         for found, rank in zip(places, np.searchsorted(until, times).tolist(), strict=True):
             now = table[table["frame"] == rank]
             for stone, xy in zip(now["stone"], now[["x", "y"]].to_numpy(float), strict=True):
                 found.setdefault(str(stone), []).append(xy)
     return [
-        {name: float(np.hypot(*np.std(np.array(xy), axis=0))) for name, xy in found.items()}
+        {
+            name: float(np.sqrt(np.mean(np.sum((np.array(xy[1:]) - xy[0]) ** 2, axis=1))))
+            for name, xy in found.items()
+        }
         for found in places
     ]

@@ -1,6 +1,6 @@
 """The measured shot simulated again, with its own laws: as the fit of the whole of it has it.
 
-What is foretold with laws fixed in advance is in `physics.forecast`.
+What is foretold without what follows the first hit is in `physics.forecast`.
 """
 
 from __future__ import annotations

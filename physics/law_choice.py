@@ -16,7 +16,8 @@ from physics.watched import THROWN
 from physics.whole_fit import GlobalFit
 
 STRAIGHT = {"slope": 0.0, "v_c": V_C, "turn": 0.0}
-"""Constant friction and no curl: what a shot is fitted with first."""
+"""Constant friction and no curl: one of two ways that a first fit sets out from, and what unknowns
+of the ice are without."""
 
 STICKING = {"stone_friction": 2.0}
 """Stones that stop sliding on each other before they part: any greater friction does the same."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,7 +13,7 @@ from data.sheet import curling_size
 from physics.curl import Curl, FCV1Curl, NoCurl
 from physics.estimate import Estimates
 from physics.ice import Constant, Fit, IceLaw
-from physics.watched import FRICTION, LITERATURE, RESTITUTION, STONE_FRICTION
+from physics.watched import FRICTION, LITERATURE, RESTITUTION, STONE_FRICTION, Priors
 
 UNSCALED = Estimate(1.0, 0.0)
 """Stones that meet at two radii."""
@@ -101,6 +101,23 @@ def measured_laws(shot: Estimates | Results, radius: float) -> Laws:
         _of(shot.laws, "size") or UNSCALED,
         assumed,
     )
+
+
+def measured_priors(shot: Estimates, radius: float) -> Priors:
+    """Return the laws of a measured shot as what is known of them before it is seen again.
+
+    How friction falls and paths curl is as the fit of the whole shot has it, else as on any ice.
+    """
+    laws = measured_laws(shot, radius)
+    friction = Estimate(shot.friction.value, shot.friction.stderr)
+    if friction.value is None:
+        friction = LITERATURE.friction
+    known = Priors(laws.restitution, laws.stone_friction, friction, laws.size)
+    whole = shot.whole
+    if whole is None:
+        return known
+    shape = {name: Estimate(whole[name].value, 0.0) for name in ("slope", "v_c", "turn")}
+    return replace(known, **shape)
 
 
 def between_stones(laws: Joint | None, collisions: Sequence[Collision]) -> Estimate:

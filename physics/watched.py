@@ -61,12 +61,17 @@ class Priors:
         Of the ice; 0.006 to 0.016 was measured by Li et al., 2022, Lubricants 10, 265.
     size : Estimate
         Distance at contact over two radii.
+    slope, v_c, turn : Estimate
+        How friction falls and paths curl, as at `SLOPE`, `KNEE` and `TURN`.
     """
 
     restitution: Estimate
     stone_friction: Estimate
     friction: Estimate
     size: Estimate
+    slope: Estimate = SLOPE
+    v_c: Estimate = KNEE
+    turn: Estimate = TURN
 
 
 RESTITUTION, STONE_FRICTION, FRICTION = 0.83, 0.05, 0.0109
@@ -160,9 +165,9 @@ def watch(
         Unknown("restitution", _mean(priors.restitution), 0.0, 1.5, priors.restitution),
         Unknown("stone_friction", SLIDING, 0.0, 2.0, priors.stone_friction),
         Unknown("friction", _mean(priors.friction), 1e-5, 1.0, priors.friction),
-        Unknown("slope", 0.0, 0.0, 0.02, SLOPE),
-        Unknown("v_c", V_C, 0.005, 0.5, KNEE),
-        Unknown("turn", 0.0, -0.1, 0.1, TURN),
+        Unknown("slope", 0.0, 0.0, 0.02, priors.slope),
+        Unknown("v_c", V_C, 0.005, 0.5, priors.v_c),
+        Unknown("turn", 0.0, -0.1, 0.1, priors.turn),
         Unknown("size", 1.0, 0.7, 1.3, priors.size),
     )
     noise = noises(fit, known)

@@ -11,6 +11,7 @@ from physics.contacts import find_contacts
 from physics.estimate import estimate
 from physics.forecast import ASSUMED, predict
 from physics.kalman import smooth
+from physics.laws import measured_priors
 from physics.watched import Priors
 from tests.physics.watch import RADIUS, hit_motion, watch
 from tests.synthetic.physics import Ice, Impact, Start
@@ -62,8 +63,13 @@ def test_what_comes_after_the_hit_is_not_used() -> None:
 
 
 def known(e: float = 0.83, stone_friction: float = 0.05, friction: float = 0.0109) -> Priors:
-    """Laws that are known exactly."""
+    """Laws that are known exactly but for how friction falls and paths curl."""
     return Priors(*(Estimate(value, 0.0) for value in (e, stone_friction, friction, 1.0)))
+
+
+def even(laws: Priors) -> Priors:
+    """Return them for ice that is known to be even: constant friction, no curl."""
+    return replace(laws, slope=Estimate(0.0, 0.0), turn=Estimate(0.0, 0.0))
 
 
 @pytest.mark.parametrize("spin", [-1.2, 1.2])
@@ -108,7 +114,7 @@ def test_the_spread_of_last_places_is_as_stated() -> None:
     off = []
     for seed in range(10):
         seen = watch(hit_motion(1.3, 0.08, before=1.5), np.random.default_rng(seed), sd=0.003)
-        made = forecast(seen, known())["frictional"]
+        made = forecast(seen, even(known()))["frictional"]
         off += [made.rest_error[s] / (made.rest_sd[s] or np.nan) for s in "AB"]  # type: ignore[operator]
     assert 0.6 < np.sqrt(np.mean(np.square(off))) < 1.4
 
@@ -131,3 +137,56 @@ def test_too_little_before_the_hit_is_said(frames: int) -> None:
     frictional = made["frictional"]
     far = max((sd or 0.0 for sd in frictional.rest_sd.values()), default=np.inf)
     assert frictional.note is not None or far > 0.1
+
+
+FALLING = Ice(b=0.0075, a=0.0024, v_c=0.0639, curl=0.0082)
+
+
+def far_shot(ice: Ice, seed: int, before: float = 2.5) -> pd.DataFrame:
+    """A shot that is seen till its stones have come to rest, far from where they hit."""
+    thrown = Start(0.0, 0.0, 0.0, 2.0, 0.3, 1.5)
+    (state,) = move([thrown], before, ice=ice, step=5e-4, keep_every=4).at([before])[0][:1]
+    ahead = state[3:5] / np.hypot(*state[3:5])
+    place = state[:2] + 0.275 * ahead + 0.095 * np.array([-ahead[1], ahead[0]])
+    motion = move(
+        [thrown, Start(*place.tolist())], before + 8.0, ice=ice, impact=Impact(0.83, 0.05),
+        step=5e-4, keep_every=4,
+    )  # fmt: skip
+    return watch(motion, np.random.default_rng(seed), fps=25, sd=0.002)
+
+
+@pytest.mark.parametrize("ice", [FALLING, Ice()])
+def test_a_shot_is_foretold_with_the_ice_that_the_whole_of_it_has_shown(ice: Ice) -> None:
+    # With constant friction and no curl the stones would end decimetres off.
+    seen = far_shot(ice, 3)
+    contacts = find_contacts(seen, RADIUS)
+    found = estimate(seen, contacts, radius=RADIUS)
+    laws = measured_priors(found, RADIUS)
+    tracks = smooth(seen, contacts, radius=RADIUS)
+    made = predict(seen, tracks, found, radius=RADIUS, laws=laws)["frictional"]
+    assert set(made.rest_error) == {"A", "B"}
+    for stone, error in made.rest_error.items():
+        assert (error or 1.0) < 0.03
+        assert (error or 1.0) < 2 * (made.rest_sd[stone] or 0.0) < 0.2
+
+
+def test_what_is_not_known_of_the_ice_is_in_the_errors() -> None:
+    """The shot is seen for too short a time to tell how friction falls, or whether paths curl."""
+    seen = far_shot(FALLING, 4, before=1.0)
+    friction = Estimate(FALLING.friction(1.0), 0.0)
+    hits = replace(known(), friction=friction)
+    any_ice, straight = (forecast(seen, laws)["frictional"] for laws in (hits, even(hits)))
+    off = {stone: error or 0.0 for stone, error in straight.rest_error.items()}
+    assert max(off.values()) > 0.1
+    assert max(off[stone] / (straight.rest_sd[stone] or 0.0) for stone in off) > 2
+    for stone, error in any_ice.rest_error.items():
+        assert (error or 1.0) < 2 * (any_ice.rest_sd[stone] or 0.0)
+
+
+def test_where_nothing_tells_laws_apart_the_plainest_are_predicted_with() -> None:
+    motion = hit_motion(1.3, 0.08, before=0.7, after=6.0)
+    seen = watch(motion, np.random.default_rng(9), fps=25, sd=0.001)
+    unsure, sure = (forecast(seen, laws)["frictional"] for laws in (known(), even(known())))
+    for stone, error in sure.rest_error.items():
+        assert unsure.rest_error[stone] == pytest.approx(error, abs=1e-3)
+        assert (unsure.rest_sd[stone] or 0.0) > 2 * (sure.rest_sd[stone] or 0.0)
