@@ -29,6 +29,7 @@ from vision.patch import (
 )
 from vision.rays import Look, Rays, cameras_of, directions
 from vision.rims import Rim, falls_along, summed
+from vision.shoulder import against_beyond
 from vision.smeared import middles, swept_share
 
 Array = NDArray[np.float64]
@@ -255,7 +256,8 @@ def _stones(
     leaning = np.clip((np.hypot(*slant.T) - ASLANT[0]) / (ASLANT[1] - ASLANT[0]), 0.0, 1.0)
     clear = np.flatnonzero((visible > OPEN) & (leaning > 0) & bool(appearance.caps))
     twice = np.concatenate([np.arange(len(places)), clear])
-    middle = falls_along(np.clip(signal[clear], -FLANK, FLANK)[..., None])[..., 0] / (2 * FLANK)
+    steps = against_beyond(signal[clear], rays.at_places(clear), behind[clear], of_cap[clear], disc)
+    middle = falls_along(np.clip(steps, -FLANK, FLANK)[..., None])[..., 0] / (2 * FLANK)
     falling = np.concatenate([cap_rim.fall, middle])
     walls = np.where(np.arange(len(twice)) < len(places), appearance.wall[1], WALL[1])
     both = fit_circles(
