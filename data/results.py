@@ -206,10 +206,10 @@ class SimulationScore:
 class Prediction:
     """How far a shot predicted from before its first hit was from the measured one.
 
-    ``rmse`` and ``rest_error`` as in `SimulationScore`; ``rest_sd`` per stone the standard
-    deviation (m, both axes together) of its predicted last place, from the errors of the states
-    before the hit, of the ice as seen until then, whose ``friction`` is what was assumed of it
-    beforehand, and of the ``restitution`` assumed, each with its own.
+    ``rmse`` and ``rest_error`` as in `SimulationScore`; ``rest_sd`` per stone how far from its
+    predicted last place it may end (r.m.s., m, both axes together), by what is not known of the
+    states before the hit, of the ice and of hits. ``restitution`` and ``friction`` are what was
+    assumed beforehand: of e nothing else is known, of μ also what was seen until the hit.
     ``error_after`` per stone the distance between its predicted and measured place (m) 1.16 s
     after the first hit, where the study of the 2018 Olympic final states its own, 5.6 cm, and
     ``sd_after`` as `rest_sd`, of the place then.

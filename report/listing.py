@@ -226,7 +226,7 @@ def _foretold(results: Results) -> Table:
     return _off(
         "predictions",
         "Predicted against measured",
-        "From what was seen before the first hit, with e and μ assumed.",
+        "From what was seen before the first hit and is known of μ beforehand, with e assumed.",
         tables.score_table(known),
     )
 

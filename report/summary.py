@@ -146,7 +146,7 @@ def summary(
     for model, guess in results.predictions.items():
         if guess.rmse is not None:
             lines.append(
-                f"predicted   {model}, from before the first hit, e and μ assumed:"
+                f"predicted   {model}, from before the first hit, e assumed:"
                 f" {unit.little(guess.rmse)} RMS off{_soon(guess, unit)}{_last(guess, unit)}"
             )
     if house is not None:

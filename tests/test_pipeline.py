@@ -122,6 +122,7 @@ def test_summary_says_what_a_person_asks(sample: pipeline.Run) -> None:
     assert len(said) == 2
     for line in said:  # three stones, soon after the hit and at the end
         assert line.count("(±") == 6
+        assert "from before the first hit, e assumed:" in line  # μ is told by the ice seen
 
 
 def test_single_picture_gives_positions_only(

@@ -70,8 +70,8 @@ class Camera:
     error : CameraError, optional
         How well it is known.
     quality : float
-        From 0 to 1: the share of the circles in the picture that is explained, less where the
-        residual is large; 0 where carried, NaN where unknown.
+        From 0 to 1: the share of the circles in the picture that is explained, less where their
+        edges are far off; 0 where carried, NaN where unknown.
     """
 
     frame: int

@@ -30,6 +30,7 @@ def test_predictions_stand_beside_what_was_fitted(shot):
     made = {t.name: t for t in page_tables(results, shot.tracks)}
     assert list(made["predictions"].frame["model"]) == ["frictional"]
     assert list(made["predictions"].frame["A"]) == [0.031]
+    assert "is known of μ beforehand, with e assumed." in made["predictions"].note
     assert "as fitted" in made["models"].note
     assert "fits the shot" in made["table_4_point-mass"].note
     other = page_tables(replace(results, laws=None, predictions={}), shot.tracks)
