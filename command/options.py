@@ -118,7 +118,7 @@ def assumption_options(parser: argparse.ArgumentParser) -> None:
         "--friction",
         type=values.friction,
         metavar="MU",
-        help="μ that predictions assume (0.0109 ± 0.003)",
+        help="μ that predictions assume (0.0109 ± 0.003, of discs that are no stones 0.01 ± 0.1)",
     )
     parser.add_argument(
         "--samples",

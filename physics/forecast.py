@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from data.errors import InputError
 from data.results import Estimate, Prediction
+from data.sheet import curling_size
 from physics.contacts import cut_all
 from physics.estimate import Estimates
 from physics.fit import fit_shot
@@ -22,7 +23,7 @@ from physics.law_choice import fit_with_chosen_laws
 from physics.shot_model import penner
 from physics.simulate import simulate
 from physics.traces import traces
-from physics.watched import LITERATURE, Priors, watch
+from physics.watched import LITERATURE, Priors, loose_priors, watch
 from physics.whole_fit import GlobalFit, draw_choices
 
 Floats = NDArray[np.float64]
@@ -42,6 +43,15 @@ UNSURE = 3.0
 ASSUMED = replace(LITERATURE, size=Estimate(1.0, 0.0))
 """Laws of a shot of which nothing is known: those of the literature, and stones that meet at two
 radii."""
+
+
+def assumed(radius: float) -> Priors:
+    """Return laws of a shot of which nothing is known, for discs of a radius, m.
+
+    Curling ice has the friction of the literature; what else discs glide on may have any.
+    """
+    friction = ASSUMED.friction if curling_size(radius) else loose_priors(radius).friction
+    return replace(ASSUMED, friction=friction)
 
 
 def predict(

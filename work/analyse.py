@@ -63,7 +63,7 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
     from data.tracks import teams
     from physics.contacts import find_contacts
     from physics.estimate import estimate
-    from physics.forecast import ASSUMED, predict
+    from physics.forecast import assumed, predict
     from physics.hindcast import simulate_measured
     from physics.kalman import smooth
     from physics.posterior import sample_posterior, summarise
@@ -83,6 +83,7 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
     timed = _timed(contacts, estimates.collisions)
     tracks = smooth(sightings, timed, radius=radius, masses=masses, unseen=measured.repeats)
     sampled, scores, notes = simulate_measured(tracks, estimates, radius=radius, masses=masses)
+    usual = assumed(radius)
     predictions = predict(
         sightings,
         tracks,
@@ -90,9 +91,9 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
         radius=radius,
         masses=masses,
         laws=replace(
-            ASSUMED,
-            restitution=_assumed(settings.restitution, ASSUMED.restitution),
-            friction=_assumed(settings.friction, ASSUMED.friction),
+            usual,
+            restitution=_assumed(settings.restitution, usual.restitution),
+            friction=_assumed(settings.friction, usual.friction),
         ),
     )
     of_team = teams(tracks)
