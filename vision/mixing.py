@@ -23,7 +23,7 @@ from vision.outline import PaintEdge
 from vision.paint import CIRCLES, EIGHT, TWELVE
 from vision.picture import Picture
 from vision.pose import View
-from vision.robust import inverse
+from vision.robust import regress
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -228,13 +228,7 @@ def _drift(low: float, high: float) -> float:
 def _slope_of(table: Array) -> tuple[float, float]:
     """Fit the last row by the others (Cauchy's loss): what the first counts, and its variance."""
     known, value = table[:-1].T, table[-1]
-    weight = np.ones(len(value))
-    for _ in range(ROUNDS):
-        cov = inverse(known.T @ (weight[:, None] * known) + 1e-9 * np.eye(known.shape[1]))
-        found = cov @ (known.T @ (weight * value))
-        off = value - known @ found
-        scatter = 1.5 * float(np.median(np.abs(off))) + 1e-3
-        weight = 1 / (1 + (off / (2 * scatter)) ** 2)
+    found, cov, scatter = regress(known, value, width=2.0, least=1e-3, rounds=ROUNDS)
     # Neighbours see the same pixels; and what moves channels apart moves all of them.
     drift = np.abs(known[:, 0]).mean() + 1e-3
     return float(found[0]), float(4 * scatter**2 * cov[0, 0] + (ASTRAY / drift) ** 2)

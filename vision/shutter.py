@@ -17,8 +17,8 @@ from vision.linear import Observations, linearised
 from vision.mixing import half_light
 from vision.outline import PaintEdge
 from vision.paint import CIRCLES, FIXED, TWELVE, Marks
-from vision.pose import VIEW_SIZE, View
-from vision.robust import WIDTH, inverse
+from vision.pose import View
+from vision.robust import WIDTH, regress
 from vision.smear import SHARP
 
 Array = NDArray[np.float64]
@@ -136,13 +136,8 @@ class Smeared:
         observed = Observations(marks, size)
         at = linearised(observed, observed.points(rig), view.vector, rig)
         known = np.append(at.by_view * marks.sd, moved[None], axis=0).T
-        value, weight = at.residual * marks.sd, np.ones(len(marks))
-        for _ in range(ROUNDS):
-            cov = inverse(known.T @ (weight[:, None] * known) + 1e-9 * np.eye(VIEW_SIZE + 1))
-            found = cov @ (known.T @ (weight * value))
-            off = value - known @ found
-            scatter = 1.5 * float(np.median(np.abs(off))) + LEAST_SCATTER
-            weight = 1 / (1 + (off / (WIDTH * scatter)) ** 2)
+        value = at.residual * marks.sd
+        found, cov, scatter = regress(known, value, width=WIDTH, least=LEAST_SCATTER, rounds=ROUNDS)
         sd = scatter * float(np.sqrt(ALIKE * cov[-1, -1]))
         if sd > VAGUE:
             return None

@@ -14,7 +14,7 @@ from physics.kalman import smooth
 from physics.laws import measured_priors
 from physics.watched import Priors
 from tests.physics.watch import RADIUS, hit_motion, watch
-from tests.synthetic.physics import Ice, Impact, Start
+from tests.synthetic.physics import Ice, Impact, Motion, Start
 from tests.synthetic.physics import simulate as move
 
 
@@ -72,19 +72,24 @@ def even(laws: Priors) -> Priors:
     return replace(laws, slope=Estimate(0.0, 0.0), turn=Estimate(0.0, 0.0))
 
 
+def move_onto_another(thrown: Start, ice: Ice, before: float, after: float) -> Motion:
+    """Throw a stone that hits one at rest, 95 mm beside its middle, after some time, s."""
+    (state,) = move([thrown], before, ice=ice, step=5e-4, keep_every=4).at(before)
+    ahead = state[3:5] / np.hypot(*state[3:5])
+    place = state[:2] + 0.275 * ahead + 0.095 * np.array([-ahead[1], ahead[0]])
+    return move(
+        [thrown, Start(*place.tolist())], before + after, ice=ice, impact=Impact(0.83, 0.05),
+        step=5e-4, keep_every=4,
+    )  # fmt: skip
+
+
 @pytest.mark.parametrize("spin", [-1.2, 1.2])
 def test_ice_that_bends_the_way_to_the_first_hit_is_followed(spin: float) -> None:
     # Taken for straight, 4 s of it end a centimetre beside, and the stone that is hit leaves
     # at an angle that is some hundredths of a radian off.
     ice, seen_for = Ice(b=0.00626, a=0.00201, v_c=0.0639, curl=0.0082), 4.0
     thrown = Start(0.0, 0.0, 0.0, 1.8, 0.3, spin)
-    (state,) = move([thrown], seen_for, ice=ice, step=5e-4, keep_every=4).at(seen_for)
-    ahead = state[3:5] / np.hypot(*state[3:5])
-    place = state[:2] + 0.275 * ahead + 0.095 * np.array([-ahead[1], ahead[0]])
-    motion = move(
-        [thrown, Start(*place.tolist())], seen_for + 0.5, ice=ice, impact=Impact(0.83, 0.05),
-        step=5e-4, keep_every=4,
-    )  # fmt: skip
+    motion = move_onto_another(thrown, ice, seen_for, 0.5)
     seen = watch(motion, np.random.default_rng(6), sd=0.001)
     errors = forecast(seen, known(friction=ice.friction(1.0)))["frictional"].rest_error
     assert max(errors[stone] or 1.0 for stone in "AB") < 0.004
@@ -145,13 +150,7 @@ FALLING = Ice(b=0.0075, a=0.0024, v_c=0.0639, curl=0.0082)
 def far_shot(ice: Ice, seed: int, before: float = 2.5) -> pd.DataFrame:
     """A shot that is seen till its stones have come to rest, far from where they hit."""
     thrown = Start(0.0, 0.0, 0.0, 2.0, 0.3, 1.5)
-    (state,) = move([thrown], before, ice=ice, step=5e-4, keep_every=4).at([before])[0][:1]
-    ahead = state[3:5] / np.hypot(*state[3:5])
-    place = state[:2] + 0.275 * ahead + 0.095 * np.array([-ahead[1], ahead[0]])
-    motion = move(
-        [thrown, Start(*place.tolist())], before + 8.0, ice=ice, impact=Impact(0.83, 0.05),
-        step=5e-4, keep_every=4,
-    )  # fmt: skip
+    motion = move_onto_another(thrown, ice, before, 8.0)
     return watch(motion, np.random.default_rng(seed), fps=25, sd=0.002)
 
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from vision.robust import inverse, loss, spread
+from vision.robust import inverse, loss, regress, spread
 
 
 def test_the_loss_is_square_near_and_flat_far() -> None:
@@ -26,3 +26,14 @@ def test_what_is_out_of_reach_does_not_spread() -> None:
 def test_inverse() -> None:
     matrix = np.array([[4.0, 1.0], [1.0, 3.0]])
     np.testing.assert_allclose(inverse(matrix) @ matrix, np.eye(2), atol=1e-12)
+
+
+def test_a_line_is_fitted_beside_outliers() -> None:
+    x = np.linspace(-1, 1, 60)
+    value = 2.0 + 3.0 * x + 0.01 * np.random.default_rng(1).normal(size=60)
+    value[::10] += 5.0
+    known = np.stack([np.ones(60), x], axis=1)
+    found, cov, scatter = regress(known, value, width=3.0, least=1e-3, rounds=6)
+    assert found == pytest.approx([2.0, 3.0], abs=0.01)
+    assert scatter == pytest.approx(0.011, rel=0.4)
+    assert np.diag(cov) == pytest.approx([1 / 54, 3 / 54], rel=0.3)
