@@ -51,6 +51,10 @@ pieces and marks tell: so much larger than these say are the standard errors, as
 show."""
 
 
+CROPPED = 5.0
+"""And by so much more those of pictures whose middle is not on the lens's axis."""
+
+
 @dataclass(frozen=True)
 class HouseTrack:
     """The cameras of a clip.
@@ -124,7 +128,7 @@ def fit_clip(
     marks, views = [s.marks.get() for s in chosen], [s.view for s in chosen]
     shared, _ = bundle(marks, times, views, rig, size, prior)
     cameras = _fit_frames(seen, shared, size, edge.sd)
-    sd = LONG_RANGE * np.sqrt(np.diag(shared.cov)[:RIG_SIZE])
+    sd = _spread_of(shared) * np.sqrt(np.diag(shared.cov)[:RIG_SIZE])
     place, scale = shared.rig[POSITION], _scale_sd(chosen[-1].view, shared.rig, edge.sd)
     sd[POSITION] = np.hypot(sd[POSITION], scale * place)
     lined = any(_shows_a_line(s.marks.get()) for s in seen)
@@ -132,7 +136,7 @@ def fit_clip(
         tuple(cameras),
         np.array([HOUSE.twelve_foot, *shared.rig[[R8, R4]]]),
         sd[POSITION],
-        warnings(cameras, float(place[2]), float(sd[2]), float(prior.sd[2]), lined),
+        warnings(cameras, float(place[2]), float(sd[2]), float(prior.sd[2]), lined, shared.cropped),
     )
 
 
@@ -230,9 +234,9 @@ def fit_frames(
         follows[:VIEW_SIZE] = sensitivity(
             by_view[:, part], by_shared[:, part], by_offset[part], cov, piece[part], count
         )
-    common = LONG_RANGE**2 * shared.covariances(by_both @ both, times)
+    common = _spread_of(shared) ** 2 * shared.covariances(by_both @ both, times)
     own = by_both[..., :VIEW_SIZE]
-    own = LONG_RANGE**2 * noisier[:, None, None] * own @ covs @ np.swapaxes(own, 1, 2)
+    own = _spread_of(shared) ** 2 * noisier[:, None, None] * own @ covs @ np.swapaxes(own, 1, 2)
     found = []
     for k, (s, fit, part, rig) in enumerate(zip(seen, fits, observed.parts, rigs, strict=True)):
         error = CameraError(
@@ -253,6 +257,11 @@ def fit_frames(
             )
         )  # fmt: skip
     return found, moved
+
+
+def _spread_of(shared: Bundle) -> float:
+    """By how much errors are larger than marks tell."""
+    return LONG_RANGE * CROPPED if shared.cropped else LONG_RANGE
 
 
 def _scale_sd(view: View, rig: Array, edge_sd: float) -> float:

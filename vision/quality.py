@@ -86,7 +86,7 @@ def quality(pieces: Index, off: float, view: View, rig: Array, size: tuple[int, 
 
 
 def warnings(
-    cameras: Sequence[Camera], height: float, sd: float, prior_sd: float, lined: bool
+    cameras: Sequence[Camera], height: float, sd: float, prior_sd: float, lined: bool, cropped: bool
 ) -> tuple[str, ...]:
     """Tell what a person should know before trusting the cameras of a clip.
 
@@ -97,6 +97,8 @@ def warnings(
         Of the camera above the ice: as found, and its standard deviations after and before, m.
     lined : bool
         Whether a line was seen beside the circles.
+    cropped : bool
+        Whether the lens's axis seems to be far from the pictures' middle.
     """
     found = []
     poor = [c.frame for c in cameras if c.found and c.quality < POOR]
@@ -110,6 +112,11 @@ def warnings(
         found.append(
             f"{carried} of {len(cameras)} frames do not show the rings; there the camera is"
             " carried by what is fixed to the ice"
+        )
+    if cropped:
+        found.append(
+            "the lens's axis seems to be far from the picture's middle, as if it was cropped or"
+            " stretched: places may be centimetres off"
         )
     if sd > UNTOLD * prior_sd:
         found.append(

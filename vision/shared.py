@@ -47,6 +47,8 @@ class Bundle:
     noise : ndarray, shape (3,)
         Standard deviation of a single mark on a circle, on a line, of a fixed point, in stated
         ones.
+    cropped : bool
+        Whether the lens's axis seems to be far from the middle of the pictures.
     """
 
     rig: Array
@@ -56,6 +58,7 @@ class Bundle:
     offset: Array
     cov: Array
     noise: Array
+    cropped: bool = False
 
     def moved(self, t: Array) -> Array:
         """How far the camera is from the rig's place at these times, shape (n, 3), m."""

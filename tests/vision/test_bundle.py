@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -42,6 +44,23 @@ def test_a_camera_moves_only_if_the_marks_say_so(speed: float) -> None:
     assert bool(len(found.travel)) == bool(speed)
     moved = found.moved(times)
     np.testing.assert_allclose(moved[:, 0], speed * (times - 0.5), atol=0.02)
+
+
+@pytest.mark.parametrize("axis", [(0.0, 0.0), (0.15, 0.0), (-0.1, 0.2)])
+def test_an_axis_off_the_middle_of_the_picture_is_found(axis: tuple[float, float]) -> None:
+    rng = np.random.default_rng(8)
+    aside = np.hypot(*SIZE) / 2 * np.array(axis)
+    frames = [marks(rng, view.vector, true_rig(), 0.1) for view in views(8)]
+    frames = [replace(m, pixel=m.pixel + aside) for m in frames]
+    times, start = np.arange(8) / 25, start_rig(OVERHEAD)
+    begin = [solve_view(m, v, start, SIZE).view for m, v in zip(frames, views(8), strict=True)]
+    found, fitted = bundle(frames, times, begin, start, SIZE, OVERHEAD)
+    assert found.cropped == any(axis)
+    problem = _Problem(frames, np.zeros((8, 0)), fitted, SIZE, OVERHEAD)
+    at = np.array([view.vector for view in fitted])
+    state = _State(found.rig, np.zeros((0, 3)), found.offset, at)
+    _, told = problem.aside(state, PAINT_SD, found.noise)
+    np.testing.assert_allclose(told, axis, atol=0.08)
 
 
 def test_a_step_that_ends_below_the_ice_is_no_end() -> None:

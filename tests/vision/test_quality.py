@@ -52,21 +52,28 @@ def cameras(qualities: list[float]) -> list[Camera]:
 
 
 def test_a_good_clip_has_no_warnings() -> None:
-    assert warnings(cameras([0.9] * 20), 8.0, 0.1, 1.5, lined=True) == ()
-    assert warnings(cameras([0.9] * 19 + [POOR / 2]), 8.0, 0.1, 1.5, lined=True) == ()
+    for clip in (cameras([0.9] * 20), cameras([0.9] * 19 + [POOR / 2])):
+        assert warnings(clip, 8.0, 0.1, 1.5, lined=True, cropped=False) == ()
 
 
 @pytest.mark.parametrize(
-    ("qualities", "sd", "lined", "told"),
+    ("qualities", "sd", "lined", "cropped", "told"),
     [
-        ([0.9, POOR / 2, 0.9], 0.1, True, "in 1 of 3 frames (1 to 1) the model explains little"),
-        ([0.9, 0.0, 0.0], 0.1, True, "2 of 3 frames do not show the rings"),
-        ([0.9] * 3, 1.4, True, "height cannot be told from this view (8.0 ± 1.4 m assumed)"),
-        ([0.9] * 3, 0.1, False, "neither centre line nor tee line is seen"),
+        (
+            [0.9, POOR / 2, 0.9],
+            0.1,
+            True,
+            False,
+            "in 1 of 3 frames (1 to 1) the model explains little",
+        ),
+        ([0.9, 0.0, 0.0], 0.1, True, False, "2 of 3 frames do not show the rings"),
+        ([0.9] * 3, 1.4, True, False, "height cannot be told from this view (8.0 ± 1.4 m assumed)"),
+        ([0.9] * 3, 0.1, False, False, "neither centre line nor tee line is seen"),
+        ([0.9] * 3, 0.1, True, True, "far from the picture's middle"),
     ],
 )
 def test_what_is_doubtful_is_told(
-    qualities: list[float], sd: float, lined: bool, told: str
+    qualities: list[float], sd: float, lined: bool, cropped: bool, told: str
 ) -> None:
-    (text,) = warnings(cameras(qualities), 8.0, sd, 1.5, lined)
+    (text,) = warnings(cameras(qualities), 8.0, sd, 1.5, lined, cropped)
     assert told in text
