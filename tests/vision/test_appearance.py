@@ -91,6 +91,27 @@ def test_of_more_than_two_colours_the_rarest_is_left_out_and_so_is_one_seen_by_c
     assert learn([]) is None
 
 
+@pytest.mark.parametrize("amiss", ["rim", "granite", "both"])
+def test_hair_on_jerseys_is_no_team_however_often_it_is_seen(amiss: str) -> None:
+    hair = seen((10, 8, 8), 1.9)
+    if amiss != "granite":
+        hair = hair._replace(outline=(1.08, 0.84))
+    if amiss != "rim":
+        hair = hair._replace(granite_samples=hair.granite_samples + np.array([-72, 18, -18]))
+    look = learn([seen(BLUE)] * 9 + [hair] * 8 + [seen(RED)] * 5)
+    assert look is not None and len(look.caps) == 2
+    assert worth_of([RED, BLUE], look) == pytest.approx([1, 1], abs=0.1)
+    assert look.outline == pytest.approx((1.0, 0.98))
+
+
+def test_a_team_whose_granite_differs_as_real_stones_do_is_kept() -> None:
+    other = seen(RED)
+    granite = other.granite_samples + np.array([17, 6, -12])
+    other = other._replace(granite_samples=granite, outline=(1.0, 1.01))
+    look = learn([seen(BLUE)] * 9 + [other] * 5)
+    assert look is not None and len(look.caps) == 2
+
+
 def test_the_size_of_caps_is_learned_from_three_sightings_on() -> None:
     few, many = learn([seen(RED, size=1.04)] * 2), learn([seen(RED, size=1.04)] * 5)
     assert few is not None and many is not None
