@@ -12,12 +12,17 @@ from vision.appearance import MOST_COLOURS, UNLIKE, Appearance, convincing, lear
 from vision.balance import brightening
 from vision.camera import Camera
 from vision.clip import Image
+from vision.measure import measure_discs
 from vision.patch import is_plain
 from vision.picture import brightened, image_of
 from vision.rays import Look
 from vision.sighting import Refusal, Sighting
 from vision.stones import NEAREST, SEARCH, Findings, search_picture
 from vision.strangers import strangers
+
+TWICE = 1.2
+"""Mean evidence of a stone measured before any was known and after. Of 35 real frames, changed in
+13 ways, 14 stones that one of the two missed have 1.2 to 1.8, and of 16 other things one more."""
 
 
 def glance(pictures: Sequence[tuple[Image, Camera]], disc: Stone = STONE) -> list[Findings]:
@@ -42,11 +47,9 @@ def glance(pictures: Sequence[tuple[Image, Camera]], disc: Stone = STONE) -> lis
     if appearance is None:
         return first
     again = [search_picture(image, camera, appearance, disc) for image, camera in pictures]
-    if len(appearance.caps) == MOST_COLOURS:
-        return again
     return [
-        _with_strangers(known, other, appearance, disc)
-        for known, other in zip(again, first, strict=True)
+        _with_strangers(image, camera, known, other, appearance, disc)
+        for (image, camera), known, other in zip(pictures, again, first, strict=True)
     ]
 
 
@@ -55,17 +58,35 @@ def _lit(image: Image, camera: Camera) -> Image:
     return image_of(brightened(image, np.full(3, brightening(image, camera))))
 
 
-def _with_strangers(known: Findings, other: Findings, look: Appearance, disc: Stone) -> Findings:
-    """Add stones of a colour of which none convinces to those of the colour that is known."""
+def _with_strangers(
+    image: Image,
+    camera: Camera,
+    known: Findings,
+    other: Findings,
+    look: Appearance,
+    disc: Stone,
+) -> Findings:
+    """Add stones that were found before any was known, and then passed over.
+
+    One of a colour of which none convinces stays as it is. One of a known colour stays if it shows
+    enough by both measures together: beside paint of its own colour each misses much of it.
+    """
 
     def apart(place: Sighting | Refusal, stones: Sequence[Sighting]) -> bool:
         least = NEAREST * disc.radius
         return all(hypot(place.x - s.x, place.y - s.y) > least for s in stones)
 
+    left = [stone for stone in other.stones if apart(stone, known.stones)]
+    if not left:
+        return known
+    places = np.array([(stone.x, stone.y) for stone in left])
+    seen = measure_discs([Look(image, camera, places)], look, disc)
+    some_are_strange = len(look.caps) < MOST_COLOURS
     more = [
         stone
-        for stone in other.stones
-        if look.nearest(stone.colour)[1] > UNLIKE and apart(stone, known.stones)
+        for stone, ok, evidence in zip(left, seen.ok, seen.evidence, strict=True)
+        if (some_are_strange and look.nearest(stone.colour)[1] > UNLIKE)
+        or (ok and 0.5 * (stone.score + evidence) > TWICE)
     ]
     refused = tuple(place for place in known.refused if apart(place, more))
     return Findings((*known.stones, *more), refused)

@@ -1,5 +1,8 @@
 from __future__ import annotations
 
+from collections.abc import Sequence
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -10,6 +13,7 @@ from tests.vision.test_stones import RED as SCARLET
 from vision import glance as module
 from vision.camera import Camera
 from vision.glance import glance
+from vision.rays import Look
 from vision.sighting import Refusal, Sighting
 from vision.stones import Findings
 
@@ -23,25 +27,47 @@ def stone(x: float, colour: np.ndarray, score: float) -> Sighting:
     )
 
 
+def seen_twice(
+    monkeypatch: pytest.MonkeyPatch,
+    first: tuple[Sighting, ...],
+    known: Findings,
+    again: dict[float, float],
+) -> Findings:
+    """What a glance makes of stones found at first, those found then, and evidence by their x."""
+
+    def measure(looks: Sequence[Look], appearance: object, disc: object) -> SimpleNamespace:
+        evidence = np.array([again.get(x, np.nan) for x in looks[0].places[:, 0].tolist()])
+        return SimpleNamespace(ok=np.isfinite(evidence), evidence=evidence)
+
+    monkeypatch.setattr(module, "strangers", lambda views, disc, search: [Findings(first)])
+    monkeypatch.setattr(module, "search_picture", lambda image, camera, appearance, disc: known)
+    monkeypatch.setattr(module, "measure_discs", measure)
+    (found,) = glance([(np.zeros((4, 4, 3), np.uint8), Camera(0, 0.0, np.eye(3), (4, 4)))])
+    return found
+
+
 def test_a_stone_of_another_colour_stays_though_it_convinces_less(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     first = (
         stone(0.0, RED, 2.0), stone(0.6, BLUE, 1.2), stone(1.2, RED, 1.1), stone(0.1, BLUE, 1.1),
     )  # fmt: skip
-
-    def search(image: object, camera: object, appearance: object, disc: object) -> Findings:
-        assert appearance is not None
-        refused = tuple(
-            Refusal(s.x, s.y, 0.4, "too little of a stone about it") for s in first[1:3]
-        )
-        return Findings(first[:1], refused)
-
-    monkeypatch.setattr(module, "strangers", lambda views, disc, search: [Findings(first)])
-    monkeypatch.setattr(module, "search_picture", search)
-    (found,) = glance([(np.zeros((4, 4, 3), np.uint8), Camera(0, 0.0, np.eye(3), (4, 4)))])
+    refused = tuple(Refusal(s.x, s.y, 0.4, "too little of a stone about it") for s in first[1:3])
+    found = seen_twice(monkeypatch, first, Findings(first[:1], refused), {1.2: 1.2})
     assert [s.x for s in found.stones] == [0.0, 0.6]
     assert [place.x for place in found.refused] == [1.2]  # what is taken is not refused too
+
+
+def test_what_is_passed_over_stays_if_both_measures_together_show_enough(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    places = (0.0, 0.5, 1.0, 1.5, -0.5)
+    scores, again = (2.0, 2.0, 1.45, 1.1, 1.9), (2.0, 2.0, 1.0, 1.2, 0.4)
+    colours = (RED, BLUE, RED, BLUE, RED)
+    first = tuple(map(stone, places, colours, scores))
+    evidence = dict(zip(places, again, strict=True))
+    found = seen_twice(monkeypatch, first, Findings(first[:2]), evidence)
+    assert [s.x for s in found.stones] == [0.0, 0.5, 1.0]
 
 
 @pytest.mark.parametrize("share", [1.0, 0.4, 0.2])
