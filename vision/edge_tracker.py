@@ -68,7 +68,7 @@ MOST_MOVED = 0.3
 """Where the light that a shutter blurs moves edges by more than was known, px, they are measured
 anew."""
 
-LONGEST_STRIDE = 4
+LONGEST_STRIDE = 8
 """Most frames that are followed together."""
 
 FREE, HELD = (np.inf, np.inf, 0.02, np.inf), (np.inf, np.inf, 0.002, np.inf)

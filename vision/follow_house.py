@@ -78,26 +78,35 @@ class HouseFollower:
         -------
         sequence of (Frame, Camera)
             Frames placed thereby, in order, with provisional cameras: as a rule this one, or
-            some and this one; after a find also those before it; none where no house is seen.
+            some and this one; after a find also those before it; none where no house is seen, or
+            while too little is known of what its frames share.
         """
         self._looked.append(frame.index)
         self._ahead.append(frame)
         placed: list[tuple[Frame, Camera]] = []
         while len(self._ahead) >= self._stride:
-            placed += self._go_on()
+            placed += self._placed_next()
         return placed
 
     def catch_up(self) -> Sequence[tuple[Frame, Camera]]:
         """Place the frames that still wait to be placed together with the next; as `look`."""
         placed: list[tuple[Frame, Camera]] = []
         while self._ahead:
-            placed += self._go_on()
-        return placed
+            placed += self._placed_next()
+        return placed if self._piece is None else [*placed, *self._piece.let_go()]
 
     @property
     def _stride(self) -> int:
         """How many frames are followed together."""
         return 1 if self._piece is None or self._piece.lost else self._piece.edges.stride
+
+    def _placed_next(self) -> Sequence[tuple[Frame, Camera]]:
+        """As `_go_on`; before them those that a piece which ends there has held back."""
+        piece = self._piece
+        placed = self._go_on()
+        if piece is None or piece is self._piece:
+            return placed
+        return [*piece.let_go(), *placed]
 
     def _go_on(self) -> Sequence[tuple[Frame, Camera]]:
         """Place the next frame, or the next few."""
@@ -193,7 +202,7 @@ class HouseFollower:
         self._piece = piece
         placed = piece.enter(frame, view, house.evidence.marks, self._waiting)
         self._waiting.clear()
-        return [(f, piece.camera(s)) for f, s in placed]
+        return placed
 
     def _same(self, house: HouseFit, frame: Frame) -> tuple[Piece | None, View]:
         """Find the piece whose camera explains a house as well, and its view in this frame.

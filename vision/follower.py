@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from math import dist, hypot, inf
 
 import numpy as np
@@ -105,11 +106,17 @@ class StoneView:
 
         That is by what they are smeared: a pan smears those at rest, and not one that it follows.
         """
-        if self.before is None or not len(places):
+        if self._onto is None or not len(places):
             return drift
+        return drift + places - projection.apply_homography(self._onto, places)
+
+    @cached_property
+    def _onto(self) -> Array | None:
+        """Where the picture before shows places, on the ice of this one: a homography."""
+        if self.before is None:
+            return None
         # Both pictures are distorted alike.
-        onto = np.linalg.solve(self.camera.homography, self.before.homography)
-        return drift + places - projection.apply_homography(np.asarray(onto), places)
+        return np.asarray(np.linalg.solve(self.camera.homography, self.before.homography))
 
 
 @dataclass(frozen=True)
@@ -225,11 +232,13 @@ class Follower:
     ) -> list[Sighting | None]:
         """Look at each stone where it is expected, unless it was measured ahead."""
         nearest = [_nearest(ahead, place) for place in expected]
-        found = [seen if away < ON_COURSE * self.disc.radius else None for away, seen in nearest]
+        course, settled = ON_COURSE * self.disc.radius, SETTLED * self.disc.radius
+        found = [seen if away < course else None for away, seen in nearest]
         others = [
             index
-            for index, (away, _) in enumerate(nearest)
-            if found[index] is None and away > SETTLED * self.disc.radius
+            for index, (lead, (away, _)) in enumerate(zip(leads, nearest, strict=True))
+            # What was missed before is not expected so precisely.
+            if found[index] is None and away > (course if lead.missed else settled)
         ]
         if others:
             look = _look_at(view, leads, expected, others, step)

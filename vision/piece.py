@@ -22,12 +22,13 @@ from vision.house_fit import SHARING, HouseFit
 from vision.ice_tracker import IceTracker
 from vision.joint import Seen
 from vision.leap import leapt
-from vision.paint import CENTRE_LINE, CIRCLES, EIGHT, FOUR, TEE_LINE, TWELVE, Marks
+from vision.linear import Observations
+from vision.paint import CENTRE_LINE, CIRCLES, EIGHT, FOUR, TEE_LINE, TWELVE, Marks, joined
 from vision.picture import Picture
 from vision.pose import ROLL, View, camera
 from vision.predict import MEMORY, predict
 from vision.replay import EVERY, Glimpse, cut_among, glimpse, shows_again
-from vision.resection import solve_view
+from vision.resection import solve_view, solve_views
 from vision.rig import Prior
 from vision.shelf import Kept, Shelf
 
@@ -35,6 +36,10 @@ Array = NDArray[np.float64]
 
 REFINE_AT = (8, 40, 160)
 """Numbers of frames at which what they share is fitted anew on the way."""
+
+MOST_HELD = 16
+"""Frames that wait for the first such fit, at most: by a camera that changes with it, all that is
+on the ice would seem to move."""
 
 REFINE_ZOOM = 0.2
 """Change of log focal length beyond what was seen by then after which it is due as well: the lens
@@ -104,6 +109,7 @@ class Piece:
     _picture: Picture | None = None
     _ice: IceTracker = field(default_factory=IceTracker)
     _fresh: list[Picture] = field(default_factory=list)
+    _held: list[Frame] = field(default_factory=list)
     _shaken: bool = False
 
     @property
@@ -181,14 +187,26 @@ class Piece:
         return seen
 
     def take(self, frames: Sequence[Frame], seen: Sequence[Seen]) -> list[tuple[Frame, Camera]]:
-        """Take in frames that were followed; give them back with provisional cameras."""
+        """Take in frames that were followed; give them back with provisional cameras.
+
+        The first ones are held back till what they share has been fitted.
+        """
         for frame, new in zip(frames, seen, strict=True):
             self._add(new, frame.picture)
+        return self._held_back(frames)
+
+    def _held_back(self, frames: Sequence[Frame]) -> list[tuple[Frame, Camera]]:
+        """Give frames with cameras, and those that waited: once what they share has been fitted."""
+        self._held += frames
         self._refine()
-        return [
-            (frame, self.camera(new))
-            for frame, new in zip(frames, self.seen[-len(frames) :], strict=True)
-        ]
+        fitted = len(self._due) <= len(REFINE_AT)
+        return self.let_go() if fitted or len(self._held) > MOST_HELD else []
+
+    def let_go(self) -> list[tuple[Frame, Camera]]:
+        """Give the frames that still wait, but for those that were left out since."""
+        known = {seen.index: seen for seen in self.seen[-len(self._held) :]}
+        held, self._held = self._held, []
+        return [(f, self.camera(known[f.index])) for f in held if f.index in known]
 
     def _add(self, seen: Seen, picture: Picture) -> None:
         seen.marks.put_aside(self.shelf)
@@ -244,9 +262,17 @@ class Piece:
         self._zooms = min(log_f, shortest), max(log_f, longest)
         self._due = self._due[enough:]
         self.rig = self._joint(self._spread()).rig
-        for i, seen in list(enumerate(self.seen))[-MEMORY:]:  # by them the next are predicted
-            view = solve_view(seen.marks.get(), seen.view, self.rig, self.size, view_sd=HELD).view
-            self.seen[i] = replace(seen, view=view)
+        self._view_again(max(MEMORY, len(self._held)))  # by them the next are predicted
+
+    def _view_again(self, count: int) -> None:
+        """Fit the views of the last frames anew, with what is known by now of what they share."""
+        last = self.seen[-count:]
+        marks = [seen.marks.get() for seen in last]
+        observed = Observations(joined(marks), self.size, counts=[len(m) for m in marks])
+        fits = solve_views(observed, [seen.view for seen in last], self.rig, view_sd=HELD)
+        self.seen[-count:] = [
+            replace(seen, view=fit.view) for seen, fit in zip(last, fits, strict=True)
+        ]
 
     def _spread(self) -> list[Seen]:
         """Give a few of the frames that fixed their camera, spread over all of them."""
@@ -280,7 +306,7 @@ class Piece:
 
     def enter(
         self, frame: Frame, view: View, marks: Marks, waiting: Sequence[Frame]
-    ) -> list[tuple[Frame, Seen]]:
+    ) -> list[tuple[Frame, Camera]]:
         """Begin, or go on after a gap, at a frame of known view and marks.
 
         Parameters
@@ -293,9 +319,9 @@ class Piece:
 
         Returns
         -------
-        list of (Frame, Seen)
+        list of (Frame, Camera)
             This frame and, before it, those to which it could be followed back through frames
-            that wait, in order.
+            that wait, in order; as `take`.
         """
         before, self.seen, self.edges.stride = self.seen, [], 1
         self._zooms = (float(view.vector[3]),) * 2
@@ -314,7 +340,7 @@ class Piece:
         self.seen = [*before, *(seen for _, seen in placed)]
         self._picture, self._fresh = frame.picture, []
         self._ice.forget()
-        return placed
+        return self._held_back([earlier for earlier, _ in placed])
 
     def camera(self, seen: Seen) -> Camera:
         """Give the provisional camera of a frame."""
