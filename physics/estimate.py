@@ -37,9 +37,11 @@ OTHER_ICE = 4.0
 """Times the larger error from which the friction of the whole shot is not that of the glides: in
 good fits, on swept and uneven ice too, they differ by up to 2.7."""
 
+INSTEAD = "values of each hit and glide used"
+"""What is done where the whole shot is not used."""
+
 LED_ASTRAY = (
-    "whole shot: something else than ice and hits moves a stone by its first hit;"
-    " values beside the hits used"
+    f"whole shot: something else than ice and hits moves a stone by its first hit; {INSTEAD}"
 )
 """Why a shot with hits is not fitted as a whole."""
 
@@ -179,7 +181,7 @@ def _rests(local: Local) -> dict[str, float]:
 def _global(fit: GlobalFit | None, doubt: str | None) -> Method:
     """Return what the whole shot says, used or not."""
     if fit is None:
-        return Method(note=doubt or "the whole shot is not fitted: no hit, or no stone that moves")
+        return Method(note=doubt or "the whole shot is not fitted: no stone glides")
     rub = Told(note="any friction above what stops the stones sliding on each other does the same")
     if fit.told("stone_friction"):
         rub = Told(*_pair(fit["stone_friction"]))
@@ -226,41 +228,41 @@ def _whole(
     with the restitution beside the hits as sighted, or as `centred` has it, with what the fit has
     caps beside the centres by taken out of the sightings.
     """
-    if local.fit is None:
+    hits = local.fit is not None and bool(local.fit.meetings)
+    if local.fit is None or not (hits or local.friction.value):
         return None, None, None
     watched = watch(
         local.known, local.fit, radius,
         priors=loose_priors(radius), masses=masses, inertia=inertia,
     )  # fmt: skip
-    if watched is None or not watched.hits:
-        return None, LED_ASTRAY, None
+    if watched is None or (hits and not watched.hits):
+        return None, LED_ASTRAY if hits else None, None
     try:
         fit, end = fit_followed(watched)
     except InputError as error:
-        return None, f"whole shot: cannot be simulated ({error}); values beside the hits used", None
+        return None, f"whole shot: cannot be simulated ({error}); {INSTEAD}", None
     doubt = _doubt(fit, local.restitution)
     if doubt is not None and _fits(fit):
         # Caps beside the centres turn with the stones; paths beside a hit take that for velocity.
         doubt = doubt if _doubt(fit, centred(fit)) else None
     doubt = doubt or _other_ice(local.friction, fit["friction"])
-    if doubt is None and end is not None and _blunt(fit["friction"], local.friction):
-        doubt = (
-            f"whole shot: the simulator follows it {end}, too short; values beside the hits used"
-        )
+    part = end if hits else "until something else moves a stone"
+    if doubt is None and part is not None and _blunt(fit["friction"], local.friction):
+        doubt = f"whole shot: the simulator follows it {part}, too short; {INSTEAD}"
     return fit, doubt, None if end is None else f"whole shot: the simulator follows it {end}"
 
 
 def _doubt(fit: GlobalFit, local: Estimate) -> str | None:
     """Say why what a fit of the whole shot gives is not to be used, None where it is."""
     if not followed(fit):
-        return "whole shot: the simulator does not follow it; values beside the hits used"
+        return f"whole shot: the simulator does not follow it; {INSTEAD}"
     if fit.misfit > POOR_FIT:
         return (
             "whole shot: the simulated paths differ from the tracks by more than their errors"
-            f" (variance × {fit.misfit:.0f}); values beside the hits used"
+            f" (variance × {fit.misfit:.0f}); {INSTEAD}"
         )
     if fit.astray:
-        return "whole shot: stones are far from their simulated paths; values beside the hits used"
+        return f"whole shot: stones are far from their simulated paths; {INSTEAD}"
     return _disagreement(local, fit["restitution"])
 
 
@@ -312,7 +314,7 @@ def _disagreement(local: Estimate, whole: Estimate) -> str | None:
     if _blunt(whole, local):
         return (
             f"whole shot: tells the restitution to ± {whole.stderr:.2g} only;"
-            f" values beside the hits used (± {local.stderr:.2g})"
+            f" {INSTEAD} (± {local.stderr:.2g})"
         )
     if abs(whole.value - local.value) <= 3 * max(local.stderr, whole.stderr):
         return None

@@ -19,19 +19,19 @@ def fit_followed(shot: Watched) -> tuple[GlobalFit, str | None]:
     Parameters
     ----------
     shot : Watched
-        With a hit at least.
+        As `physics.watched.watch` makes it.
 
     Returns
     -------
     fit : GlobalFit
         Of the whole shot, or of its beginning, where that is followed and has a hit; else of
-        the whole shot, not followed.
+        the whole shot, not followed, as always without a hit.
     end : str or None
         When and why it ends sooner than the shot.
     """
     whole = fit = fit_with_chosen_laws(shot)
     end = None
-    while not followed(fit):
+    while shot.hits and not followed(fit):
         time, why = _obstacle(fit)
         shorter = fit.shots[0].until(time - BEFORE)
         if not shorter.hits:

@@ -48,7 +48,7 @@ class Local:
     warnings : tuple of str
         What else could not be told and why; what does not agree.
     fit : ShotFit or None
-        Of the paths; None without a hit.
+        Of the paths; None where no stone moves.
     known : mapping
         Stone to its sightings.
     """
@@ -95,7 +95,8 @@ def estimate_locally(
     glides, friction, prior = measure_glides(fit(pieces, free(radius)), known, radius)
     friction, doubt = _checked(friction, glides, prior)
     if not meetings:
-        return Local(Estimate(), friction, (), glides, doubt, ("restitution: no hit seen",))
+        unseen = ("restitution: no hit seen",)
+        return Local(Estimate(), friction, (), glides, doubt, unseen, fit(pieces, prior), known)
     joint = fit(pieces, prior)
     discs = Discs(radius, masses or {}, inertia)
     collisions, restitution = measure_hits(joint, fit(pieces, prior, momentum=False), known, discs)

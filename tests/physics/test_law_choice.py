@@ -231,12 +231,12 @@ def test_slowing_and_curl_are_told_apart_in_a_shot_of_two_hits(
     for told, true, most in (
         (found.friction, ice.friction(1.0), 0.0003),
         (found.restitution, impact[0], 0.006),
-        (found.curl, ice.curl, 0.001),
+        (found.curl, ice.curl, 0.002),  # with it held elsewhere the fits say as much
     ):
         assert told.value is not None
         assert told.stderr is not None
         assert told.stderr < most
-        assert abs(told.value - true) < 3 * told.stderr
+        assert abs(told.value - true) < 2 * told.stderr
 
 
 def test_spins_of_slow_stones_are_less_sure_at_the_hit() -> None:
