@@ -24,6 +24,9 @@ TOUCHING = 1.02
 LITTLE = 0.25
 """Time within which a hit shows in where a stone is, s, unless six sightings take longer."""
 
+LONG = 1.0
+"""Time within which it shows that a stone was hardly moved, s."""
+
 OUT_OF_SIGHT = 0.5
 """Time out of sight, s, after which the sightings at its ends do not tell the way between them."""
 
@@ -62,7 +65,7 @@ def _passed_on(
                 apart = float(np.hypot(*(_at(b, before) - _at(a, before))[0]))
                 noise = 3 * np.sqrt(np.mean(a.sd**2) + np.mean(b.sd**2))
                 if apart < TOUCHING * 2 * radius + noise and (
-                    _moves(a, t, radius) and _moves(b, t, radius)
+                    moves(a, t, radius, LONG) and moves(b, t, radius, LONG)
                 ):
                     every.append(Meeting(t + 0.01 * gap, (first, second), gap))
                     out.append(every[-1])
@@ -164,7 +167,7 @@ def _approaches(
         times = _meeting_times(t, distance, run, noise, (one, other))
         times = _where_seen(_where_seen(times, one, b), other, a)
         for time in times:
-            if _moves(a, time, radius) or _moves(b, time, radius):
+            if moves(a, time, radius) or moves(b, time, radius):
                 gap = max(a.gap(time), b.gap(time))
                 out.append(Meeting(time, (a.stone, b.stone), gap))
     return out
@@ -213,10 +216,10 @@ def _meeting_times(
     return times
 
 
-def _moves(path: Trace, time: float, radius: float) -> bool:
-    """Whether a stone is somewhere else a little after `time` than before it."""
+def moves(path: Trace, time: float, radius: float, within: float = LITTLE) -> bool:
+    """Whether a stone is somewhere else soon after `time`, s, than before it."""
     k = int(np.searchsorted(path.t, time))
-    few = max(6, round(LITTLE / path.step))
+    few = max(6, round(within / path.step))
     before, after = path.xy[max(k - few, 0) : max(k - 1, 1)], path.xy[k + 1 : k + few]
     if not len(before) or not len(after):
         return True

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.tracks import Table
-from physics.candidates import REACH, candidates, causal
+from physics.candidates import LONG, REACH, candidates, causal, moves
 from physics.fit import fit_shot
 from physics.segments import Piece, cut
 from physics.shot_fit import Deceleration, Encounter, Meeting, ShotFit
@@ -21,6 +21,9 @@ Floats = NDArray[np.float64]
 
 SIGNIFICANT = 5.0
 """Normalised impulse below which two stones have passed each other."""
+
+DISPLACED = 5 / 3
+"""How much more counts the only hit of a stone at rest that lies elsewhere afterwards."""
 
 MOST_PUSH = 3.0
 """Most that a hit can change the relative speed of two stones, in closing speeds (1 + e)."""
@@ -84,7 +87,7 @@ def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
         if other is not None:
             meetings, cuts, ordered = other, {}, True
             continue
-        evidence = _once([_evidence(fit, k, radius) for k in range(len(meetings))], fit)
+        evidence = _once([_evidence(fit, k, known, radius) for k in range(len(meetings))], fit)
         weakest = min(range(len(meetings)), key=evidence.__getitem__)
         told = evidence[weakest].hit >= SIGNIFICANT
         late = (_at_bounds(fit) if told else _ended(fit, weakest)) if beyond else set()
@@ -99,6 +102,16 @@ def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
         cuts = {name: run for name, run in cuts.items() if name not in struck.stones}
         cuts, ordered = _renumbered(cuts, weakest), False
     return ()
+
+
+def _displaced(fit: ShotFit, k: int, known: Mapping[str, Trace], radius: float) -> bool:
+    """Whether a stone of meeting k that rested, and has no other, lies elsewhere afterwards."""
+    return any(
+        fit.pieces[fit.sides[k, stone][0]].rest
+        and sum(stone in meeting.stones for meeting in fit.meetings) == 1
+        and moves(known[stone], fit.time(k), radius, LONG)
+        for stone in fit.meetings[k].stones
+    )
 
 
 def _other_order(fit: ShotFit, known: Mapping[str, Trace]) -> list[Meeting] | None:
@@ -175,7 +188,7 @@ class _Evidence(NamedTuple):
     near: float
 
 
-def _evidence(fit: ShotFit, k: int, radius: float) -> _Evidence:
+def _evidence(fit: ShotFit, k: int, known: Mapping[str, Trace], radius: float) -> _Evidence:
     """Tell what speaks for meeting k."""
 
     def told(states: Sequence[Encounter]) -> Floats:
@@ -196,6 +209,8 @@ def _evidence(fit: ShotFit, k: int, radius: float) -> _Evidence:
     possible = pushed and away <= REACH - 1 and push[0] >= 0.2 * radius
     possible &= bool(push[3] + 2 * error[3] >= push[0] / MOST_PUSH)
     possible &= bool(np.min(push[1:3] + 2 * error[1:3]) >= SHARE * np.max(push[1:3]))
+    if _displaced(fit, k, known, radius):
+        both *= DISPLACED
     return _Evidence(both if possible else 0.0, pushed, -away)
 
 

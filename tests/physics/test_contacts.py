@@ -145,6 +145,16 @@ def test_stones_that_touch_at_rest_hit_only_when_one_is_hit() -> None:
     assert find_contacts(still, RADIUS) == ()
 
 
+@pytest.mark.parametrize(("aside", "seed"), [(30, 4), (60, 1), (60, 2)])
+def test_a_slow_stone_that_moves_a_touching_pair_by_millimetres_hits_both(
+    aside: float, seed: int
+) -> None:
+    apart = (2 * RADIUS + 1e-5) * np.array([np.sin(np.radians(aside)), np.cos(np.radians(aside))])
+    motion = hit_motion(0.1, 0.01, after=1.5, others=(Start(*apart),))
+    hits = find_contacts(watch(motion, np.random.default_rng(seed), fps=25.0, sd=0.001), RADIUS)
+    assert [hit.stones for hit in hits] == [("A", "B"), ("B", "C")]
+
+
 def test_a_push_and_a_wall_are_no_hits() -> None:
     rng = np.random.default_rng(5)
     t = np.arange(0, 3, 1 / 30)
