@@ -35,6 +35,11 @@ ALIKE = 2.5
 """How much larger errors are than if every ring, harmonic and colour erred for itself."""
 
 
+LASTING = 3.5
+"""How much larger errors are than one picture tells: what stands up looks otherwise from each
+side, and light and blur change slowly. Handles of two renderers and of cut-out stones err so."""
+
+
 @dataclass(frozen=True)
 class Alignment:
     """Angles (n,), rad, their standard errors, and shifts (n, 2) in the frame of the cap, m."""
@@ -83,11 +88,11 @@ def align(spectra: Complex, angles: Array, radii: Array, sd_shift: Array) -> Ali
     parts = [slice(begin, begin + TOGETHER) for begin in range(0, len(angles), TOGETHER)]
     for _ in range(_ROUNDS):
         mean = np.sum([turned(spectra[k], -angle[k]).sum(0) for k in parts], axis=0) / often
-        slopes = _slopes(mean, radii, weight)
+        ways = slopes(mean, radii, weight)
         most = 0.0
         for k in parts:
             upright = turned(spectra[k], -angle[k])[:, 1:-1]
-            step, sd[k] = _step(upright, seen[k], shift[k], sd_shift[k], mean[1:-1], slopes)
+            step, sd[k] = _step(upright, seen[k], shift[k], sd_shift[k], mean[1:-1], ways)
             angle[k] += np.clip(step[:, 0], -0.1, 0.1)
             shift[k] += step[:, 1:]
             most = max(most, float(np.abs(step[:, 0]).max()))
@@ -102,18 +107,18 @@ def _step(
     shift: Array,
     sd_shift: Array,
     mean: Complex,
-    slopes: Complex,
+    ways: Complex,
 ) -> tuple[Array, Array]:
     """Tell by how much farther upright pictures are turned and shifted, (n, 3), and the sd."""
-    flat = slopes.reshape(3, -1)
+    flat = ways.reshape(3, -1)
     moved = np.concatenate([np.zeros((len(shift), 1)), shift], axis=1)
-    model = mean + (moved.astype(np.float32) @ flat).reshape(-1, *slopes.shape[1:])
+    model = mean + (moved.astype(np.float32) @ flat).reshape(-1, *ways.shape[1:])
     model *= seen[:, None, :, None]
     gain = _product(here, model) / np.maximum(_product(model, model), 1e-12)
     rest = here * (1 / np.maximum(gain, 0.1)).astype(np.float32)[:, None, None, None] - model
     count = 2 * rest[0, :, 0].size * np.maximum(seen.sum(1), 1)
     noise = ALIKE**2 * _product(rest, rest) / count
-    by_ring = np.einsum("pkrc,qkrc->rpq", slopes.conj(), slopes).real
+    by_ring = np.einsum("pkrc,qkrc->rpq", ways.conj(), ways).real
     normal = np.einsum("nr,rpq->npq", seen.astype(float), by_ring)
     prior = np.diag([0.0, 1.0, 1.0]) * (noise / sd_shift**2)[:, None, None]
     normal += prior + 1e-12 * np.eye(3)
@@ -129,15 +134,15 @@ def _product(first: Complex, second: Complex) -> Array:
     return np.asarray((flat @ other).real[:, 0, 0])
 
 
-def _slopes(mean: Complex, radii: Array, weight: Array) -> Complex:
+def slopes(mean: Complex, radii: Array, weight: Array) -> Complex:
     """Change of a picture's compared harmonics with angle and shift: (3, harmonics, rings, …)."""
     plain = mean / weight[:, None]
     outwards = np.gradient(plain, radii, axis=1)
     around = ORDERS[:, None, None] / radii[:, None] * plain
     raised, lowered = (outwards - around)[:-2], (outwards + around)[2:]
-    slopes = [
+    ways = [
         -1j * HARMONICS[:, None, None] * plain[1:-1],
         -0.5 * (raised + lowered),
         0.5j * (raised - lowered),
     ]
-    return np.asarray(np.array(slopes) * weight[:, None], np.complex64)
+    return np.asarray(np.array(ways) * weight[:, None], np.complex64)

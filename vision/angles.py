@@ -28,6 +28,7 @@ def angles_in_parts(
     radii: Array,
     sd_centre: Array,
     most: int = MOST,
+    slants: Array | None = None,
 ) -> tuple[Array, Array]:
     """Angle of one stone in every frame; see `vision.handle.handle_angles`.
 
@@ -41,6 +42,8 @@ def angles_in_parts(
         As for `vision.handle.handle_angles`.
     most : int
         Pictures that are looked at together at most.
+    slants : ndarray, shape (n, 2), optional
+        As for `vision.handle.handle_angles`.
 
     Returns
     -------
@@ -52,13 +55,15 @@ def angles_in_parts(
     if len(kept) <= most:
         rows = [*kept]
         pictures = [item.get() for item in kept.values()]
-        theta[rows], sd[rows] = handle_angles(times[rows], pictures, radii, sd_centre[rows])
+        of = None if slants is None else slants[rows]
+        theta[rows], sd[rows] = handle_angles(times[rows], pictures, radii, sd_centre[rows], of)
         return theta, sd
     first: Complex | None = None
     last = -1
     for part in np.array_split(np.array([*kept], np.intp), ceil(len(kept) / most)):
         each = [kept[index] for index in part.tolist()]
-        angle, sd[part], mean = _part(times[part], each, radii, sd_centre[part])
+        of = None if slants is None else slants[part]
+        angle, sd[part], mean = _part(times[part], each, radii, sd_centre[part], of)
         if mean is None:
             continue
         told = np.flatnonzero(np.isfinite(angle))
@@ -73,11 +78,15 @@ def angles_in_parts(
 
 
 def _part(
-    times: Array, kept: Sequence[Kept[Complex]], radii: Array, sd_centre: Array
+    times: Array,
+    kept: Sequence[Kept[Complex]],
+    radii: Array,
+    sd_centre: Array,
+    slants: Array | None,
 ) -> tuple[Array, Array, Complex | None]:
     """Angles of pictures, their errors, and the mean picture turned back; None if none is told."""
     pictures = [item.get() for item in kept]
-    theta, sd = handle_angles(times, pictures, radii, sd_centre)
+    theta, sd = handle_angles(times, pictures, radii, sd_centre, slants)
     told = np.flatnonzero(np.isfinite(theta)).tolist()
     if not told:
         return theta, sd, None

@@ -11,7 +11,8 @@ The handle stands above the cap, and seen aslant its picture is shifted: what tu
 stone's axis in a picture unrolled at one height does not at another. What is seen best may be
 the grip, or its foot and the shade about it on the cap. So the cap is unrolled at both heights,
 and that is believed at which a stone's pictures are most alike or, where that hardly tells, at
-which more of them turns. `vision.align` finds what shift is left with the last bit of the angle.
+which more of them turns. `vision.align` finds what shift is left with the last bit of the angle,
+and `vision.pitch` what a handle looks turned by that is higher at one end.
 
 Light that stays as the cap turns is taken out; where lamps mirrored on the cap are brighter than
 the handle, what turns is told by its spin first (`vision.glints`).
@@ -25,15 +26,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.align import ORDERS, Array, Complex, align, ring_weights, rings_seen
+from vision.align import LASTING, ORDERS, Array, Complex, align, ring_weights, rings_seen
 from vision.facing import angle_between, angles_between
 from vision.glints import course, unlit
 from vision.half_turns import unfolded
+from vision.pitch import levelled
 from vision.shade import parts, unturned, upright_mean
-
-LASTING = 3.5
-"""How much larger errors are than one picture tells: what stands up looks otherwise from each
-side, and light and blur change slowly. Handles of two renderers and of cut-out stones err so."""
 
 ODD, ODDEST = 0.2, 3.0
 """Share of a stone's pictures that their mean does not explain from which on its angles err more,
@@ -148,6 +146,7 @@ def handle_angles(
     spectra: Sequence[Complex | None],
     radii: Array,
     sd_centre: Array,
+    slants: Array | None = None,
     turning: Turning = TURNING,
 ) -> tuple[Array, Array]:
     """Angle of one stone in every frame, continuous, its zero in the first frame seen.
@@ -163,6 +162,8 @@ def handle_angles(
         Of the rings at one height, m.
     sd_centre : ndarray, shape (n,)
         Standard error per axis of the centres about which the cap was unrolled, m.
+    slants : ndarray, shape (n, 2), optional
+        Of the view of each place; from above if not given.
     turning : Turning
         How angles are followed.
 
@@ -196,11 +197,13 @@ def handle_angles(
     fit = align(best.pictures[good], best.angles[good], radii, aside)
     unlike = np.maximum(1 - best.likeness[good] ** 2, ALIKE)
     covered = np.clip((unlike / (BEFORE * np.median(unlike))) ** 2, 1.0, WORST)
-    theta[rows] = fit.angle
+    theta[rows], steep = fit.angle, 0 * aside
+    if slants is not None:
+        theta[rows], steep = levelled(best.pictures[good], fit.angle, radii, aside, slants[rows])
     odd = np.clip((1 - _alike(best) / len(seen)) / ODD, 1.0, ODDEST)
     dim = np.clip(TURNS / max(best.share, 1e-6) - 1, 0.0, DIM)
     odd += dim * max(odd - ODDER, 0.0)
-    sd[rows] = np.hypot(LASTING * odd * covered * fit.sd, apart[good])
+    sd[rows] = np.hypot(np.hypot(LASTING * odd * covered * fit.sd, apart[good]), steep)
     return theta - theta[rows[0]], sd
 
 

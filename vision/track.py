@@ -134,9 +134,10 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
         errors = np.hypot(errors, HARDLY_TOLD)
     edge = dict(zip(named, errors, strict=True))
     team = _teams(named, watch.appearance)
-    off = off_axis(named, cameras, disc)
+    slants = slants_of(named, cameras)
     rows = [
-        _rows(name, named[name], team[name], disc, edge[name], off[name]) for name in sorted(named)
+        _rows(name, named[name], team[name], disc, edge[name], slants[name])
+        for name in sorted(named)
     ]
     late = seen_late({names[number]: tracks[int(number)] for number in rest}, cameras, disc)
     return StoneTracks(
@@ -145,28 +146,34 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
     )
 
 
-def off_axis(
-    tracks: Mapping[str, Track], cameras: Sequence[Camera], disc: Stone
-) -> dict[str, Array]:
-    """How far aside the pictures of caps may have been unrolled, m: a standard error per axis.
-
-    By the errors of the centres and, in a slanting view, of the height at which the handle is.
-    """
+def slants_of(tracks: Mapping[str, Track], cameras: Sequence[Camera]) -> dict[str, Array]:
+    """By stone, slants of the view of its places (n, 2): see `vision.cameras.Cameras.slants`."""
     by_frame = {camera.frame: camera for camera in cameras}
-    height_sd = 0.0 if is_plain(disc) else HANDLE_HEIGHT_SD
     out = {}
     for name, track in tracks.items():
-        x, y, *sd = track.sightings.columns("x", "y", "sd_x", "sd_y")
-        by = Cameras.of([by_frame[frame] for frame in track.frames], [1] * len(x))
-        slant = np.hypot(*by.slants(np.stack([x, y], -1)).T)
-        out[name] = np.hypot(np.mean(sd, axis=0), height_sd * slant)
+        places = track.sightings.columns("x", "y").T
+        by = Cameras.of([by_frame[frame] for frame in track.frames], [1] * len(places))
+        out[name] = by.slants(places)
     return out
 
 
-def _rows(name: str, track: Track, team: str, disc: Stone, edge: Array, off: Array) -> Columns:
+def off_axis(track: Track, slants: Array) -> Array:
+    """How far aside the pictures of a cap may have been unrolled, m: a standard error per axis.
+
+    By the errors of the centres and, in a slanting view, of the height at which the handle is.
+    """
+    sd = np.mean(track.sightings.columns("sd_x", "sd_y"), axis=0)
+    return np.asarray(np.hypot(sd, HANDLE_HEIGHT_SD * np.hypot(*slants.T)))
+
+
+def _rows(name: str, track: Track, team: str, disc: Stone, edge: Array, slants: Array) -> Columns:
     seen = [*track.sightings]
     spectra = [sighting.spectrum for sighting in seen]
-    theta, sd_theta = angles_in_parts(np.array(track.times), spectra, handle_radii(disc), off)
+    raised = 0 * slants if is_plain(disc) else slants  # on a plain disc nothing stands up
+    off = off_axis(track, raised)
+    theta, sd_theta = angles_in_parts(
+        np.array(track.times), spectra, handle_radii(disc), off, slants=raised
+    )
     seen = steadied(track.times, widened(track.times, seen))
     x, y, sd_x, sd_y, sd_place_x, sd_place_y = np.array(
         [(item.x, item.y, item.sd_x, item.sd_y, *item.sd_place) for item in seen]
