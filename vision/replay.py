@@ -15,7 +15,7 @@ from vision.picture import Picture, lightness_at
 from vision.pose import View, project
 
 Array = NDArray[np.float64]
-Floats = NDArray[np.float32]
+Halves = NDArray[np.float16]
 
 CELLS, FINER = 48, 2
 """Cells of a glimpse along each side, and samples of which each is the mean."""
@@ -50,11 +50,11 @@ class Glimpse:
     t : float
         When, s.
     grey : ndarray, shape (48, 48)
-        Lightness; NaN where the picture ends. All of a clip are kept: in single precision.
+        Lightness, to .06; NaN where the picture ends. All of a clip are kept: in half precision.
     """
 
     t: float
-    grey: Floats
+    grey: Halves
 
 
 def glimpse(picture: Picture, view: View, rig: Array, t: float) -> Glimpse:
@@ -68,7 +68,7 @@ def glimpse(picture: Picture, view: View, rig: Array, t: float) -> Glimpse:
     grey = lightness_at(picture, across, down).astype(np.float64)
     grey[~seen.reshape(side)] = np.nan
     small = cv2.resize(grey, (CELLS, CELLS), interpolation=cv2.INTER_AREA)
-    return Glimpse(t, np.asarray(small, np.float32))
+    return Glimpse(t, np.asarray(small, np.float16))
 
 
 def is_replay(now: Glimpse, before: Sequence[Glimpse]) -> bool:
@@ -101,8 +101,12 @@ def shows_again(now: Glimpse, before: Sequence[Glimpse], like: Sequence[Glimpse]
     return _places(new) >= NEW_PLACES and bool(again.sum() > 0.5 * new.sum())
 
 
-def _differ(one: Floats, other: Floats) -> NDArray[np.bool_]:
-    return np.asarray(np.abs(one - other) > CHANGED)
+def _away(one: Halves, other: Halves) -> NDArray[np.float32]:
+    return np.abs(np.subtract(one, other, dtype=np.float32))
+
+
+def _differ(one: Halves, other: Halves) -> NDArray[np.bool_]:
+    return np.asarray(_away(one, other) > CHANGED)
 
 
 def _places(cells: NDArray[np.bool_]) -> int:
@@ -136,6 +140,6 @@ def is_nearer(now: Glimpse, these: Sequence[Glimpse], that: Glimpse, share: floa
 
 def _difference(one: Glimpse, other: Glimpse) -> float:
     """Mean difference of what both show; infinite if that is less than a third of the house."""
-    away = np.abs(one.grey - other.grey)
+    away = _away(one.grey, other.grey)
     known = np.isfinite(away)
     return float(away[known].mean()) if known.mean() > 1 / 3 else float("inf")
