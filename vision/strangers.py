@@ -51,7 +51,9 @@ def strangers(looks: Sequence[Look], disc: Stone, search: Search) -> list[Findin
     sure = convincing(stone for one in found for stone in one.stones)
     if is_plain(disc) or len(by_colour(sure)) >= MOST_COLOURS:
         return found
-    round_ones = [_round(look, one, disc, search) for look, one in zip(looks, found, strict=True)]
+    round_ones = [
+        by_shape(look, one.stones, disc, search) for look, one in zip(looks, found, strict=True)
+    ]
     sure += convincing(weighed(stone, None) for some in round_ones for stone in some)
     seen = learn(sure)
     granite = None if seen is None else seen.granite
@@ -64,9 +66,11 @@ def strangers(looks: Sequence[Look], disc: Stone, search: Search) -> list[Findin
     ]
 
 
-def _round(look: Look, found: Findings, disc: Stone, search: Search) -> tuple[Sighting, ...]:
-    """Seek what has a stone's shape beside those that convince."""
-    sure = np.array([(s.x, s.y) for s in convincing(found.stones)]).reshape(-1, 2)
+def by_shape(
+    look: Look, found: Sequence[Sighting], disc: Stone, search: Search
+) -> tuple[Sighting, ...]:
+    """Seek what has a stone's shape beside those found that convince; see `weighed`."""
+    sure = np.array([(s.x, s.y) for s in convincing(found)]).reshape(-1, 2)
     known = np.concatenate([look.places, sure])
     return search_picture(look.picture, look.camera, BY_SHAPE, disc, search, None, known).stones
 

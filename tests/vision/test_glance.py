@@ -32,8 +32,9 @@ def seen_twice(
     first: tuple[Sighting, ...],
     known: Findings,
     again: dict[float, float],
+    shapes: tuple[Sighting, ...] = (),
 ) -> Findings:
-    """What a glance makes of stones found at first, those found then, and evidence by their x."""
+    """What a glance makes of stones found at first, then and by shape, and evidence by their x."""
 
     def measure(looks: Sequence[Look], appearance: object, disc: object) -> SimpleNamespace:
         evidence = np.array([again.get(x, np.nan) for x in looks[0].places[:, 0].tolist()])
@@ -41,6 +42,7 @@ def seen_twice(
 
     monkeypatch.setattr(module, "strangers", lambda views, disc, search: [Findings(first)])
     monkeypatch.setattr(module, "search_picture", lambda image, camera, appearance, disc: known)
+    monkeypatch.setattr(module, "by_shape", lambda look, taken, disc, search: shapes)
     monkeypatch.setattr(module, "measure_discs", measure)
     (found,) = glance([(np.zeros((4, 4, 3), np.uint8), Camera(0, 0.0, np.eye(3), (4, 4)))])
     return found
@@ -67,6 +69,16 @@ def test_what_is_passed_over_stays_if_both_measures_together_show_enough(
     first = tuple(map(stone, places, colours, scores))
     evidence = dict(zip(places, again, strict=True))
     found = seen_twice(monkeypatch, first, Findings(first[:2]), evidence)
+    assert [s.x for s in found.stones] == [0.0, 0.5, 1.0]
+
+
+def test_shapes_that_colours_miss_stay_if_they_convince_and_colours_do_not_speak_against_them(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    first = (stone(0.0, RED, 2.0), stone(0.5, BLUE, 2.0))
+    shapes = tuple(stone(x, RED, score) for x, score in ((1.0, 2.0), (1.5, 1.5), (-0.5, 1.2)))
+    evidence = {1.0: 0.8, 1.5: 0.8, -0.5: 2.0}
+    found = seen_twice(monkeypatch, first, Findings(first), evidence, shapes)
     assert [s.x for s in found.stones] == [0.0, 0.5, 1.0]
 
 
