@@ -37,6 +37,9 @@ OTHER_ICE = 4.0
 """Times the larger error from which the friction of the whole shot is not that of the glides: in
 good fits, on swept and uneven ice too, they differ by up to 2.7."""
 
+NEAR = 2.2
+"""Distance of two stones' centres, in radii, from which they may have hit each other unseen."""
+
 INSTEAD = "values of each hit and glide used"
 """What is done where the whole shot is not used."""
 
@@ -234,6 +237,7 @@ def _whole(
     watched = watch(
         local.known, local.fit, radius,
         priors=loose_priors(radius), masses=masses, inertia=inertia,
+        bystanders=() if hits else _beside(local, radius),
     )  # fmt: skip
     if watched is None or (hits and not watched.hits):
         return None, LED_ASTRAY if hits else None, None
@@ -250,6 +254,17 @@ def _whole(
     if doubt is None and part is not None and _blunt(fit["friction"], local.friction):
         doubt = f"whole shot: the simulator follows it {part}, too short; {INSTEAD}"
     return fit, doubt, None if end is None else f"whole shot: the simulator follows it {end}"
+
+
+def _beside(local: Local, radius: float) -> list[str]:
+    """Stones at rest that others come near: a hit that nobody saw would be with one of them."""
+    moving = {piece.stone for piece in local.fit.pieces if not piece.rest} if local.fit else set()
+    ways = np.concatenate([local.known[name].xy for name in moving])
+    return sorted(
+        name
+        for name in {*local.known} - moving
+        if np.hypot(*(ways - np.median(local.known[name].xy, axis=0)).T).min() < NEAR * radius
+    )
 
 
 def _doubt(fit: GlobalFit, local: Estimate) -> str | None:

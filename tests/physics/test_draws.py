@@ -71,3 +71,18 @@ def test_a_stone_that_is_stopped_by_hand_tells_what_it_did_before() -> None:
     assert found.stderr is not None
     assert abs(found.value - EVEN.b) < 3 * found.stderr
     assert found.stderr < 0.0005
+
+
+def test_a_stone_that_may_have_hit_another_unseen_is_no_free_draw() -> None:
+    """Against one at rest it stops, while nobody looks, sooner than on the ice."""
+    impact = Impact(0.84, stone_friction=0.06)
+    starts = [Start(0.01, -1.15, 0, 0.425, 0, 1.0), Start(0, 0)]
+    motion = simulate(starts, 5.0, ice=Ice(b=0.0105), impact=impact, step=1e-3, keep_every=2)
+    hit = motion.hits[0].t
+    for seed in range(3):
+        seen = watch(motion, np.random.default_rng(seed), sd=0.003)
+        seen = seen[(seen["t"] - hit).abs() > 0.25].reset_index(drop=True)
+        found = measure(seen).friction
+        assert found.value is not None
+        assert found.stderr is not None
+        assert abs(found.value - 0.0105) < 2 * found.stderr
