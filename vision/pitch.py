@@ -22,6 +22,10 @@ STEEP = 0.2
 BENT = 0.1
 """How far from a plane what is seen on caps is, in the same measure."""
 
+NEAR = 0.5
+"""Slant up to which what is shifted by its height is shifted by little: beyond it grips come to lie
+where others were, and how steep they are is told the worse by the square of the slant."""
+
 
 def levelled(
     pictures: Complex, angles: Array, radii: Array, sd_shift: Array, slants: Array
@@ -61,7 +65,9 @@ def levelled(
         upright = turned(pictures[part], -angles[part])[:, 2:-2]
         own_known, own_pull, turns[part] = _told(upright, seen[part], free, steep, sd_shift[part])
         known, pull = known + own_known, pull + own_pull
-    apart = np.linalg.inv(known) + BENT**2 * np.eye(2)
+    slant = float(np.median(np.hypot(*slants.T)))
+    bent = BENT * max((slant / NEAR) ** 2, 1.0)
+    apart = np.linalg.inv(known) + bent**2 * np.eye(2)
     share = np.linalg.solve(STEEP**2 * np.eye(2) + apart, STEEP**2 * np.eye(2))
     turns -= np.median(turns, axis=0)
     sd = np.sqrt(np.einsum("np,pq,nq->n", turns, share @ apart, turns))

@@ -65,6 +65,15 @@ def test_a_flat_handle_is_left_as_it_is_seen() -> None:
     assert 0 < unsure.max() < 0.06
 
 
+def test_far_aslant_it_is_believed_less() -> None:
+    shown, sd = pictures(0.35), np.full(len(TIMES), 0.002)
+    whole, less = (
+        levelled(shown, TRUE, RADII, sd, scale * SLANTS)[0] - TRUE for scale in (1.0, 10.0)
+    )
+    # Pictures that change as little in a view ten times as slanting: steep by a tenth.
+    assert np.ptp(less) < 0.3 * np.ptp(whole)
+
+
 def test_from_above_nothing_is_steep() -> None:
     shown = pictures(0.35, 0 * SLANTS)
     angles, unsure = levelled(shown, TRUE, RADII, np.full(len(TIMES), 0.002), 0 * SLANTS)
