@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from vision.linear import Linear, Observations, by_rig, linearised
 from vision.paint import Marks, joined
@@ -58,6 +58,7 @@ def solve(
     *,
     prior: Prior,
     sharing: float = 1.0,
+    view_sd: ArrayLike = VIEW_SD,
     iterations: int = 12,
 ) -> Solution:
     """Fit cameras to the marks of one or more frames.
@@ -66,7 +67,7 @@ def solve(
     ----------
     frames : sequence of Marks
     views : sequence of View
-        Start values, one per frame, and the centres of a weak prior (`VIEW_SD`).
+        Start values, one per frame, and the centres of the weak prior `view_sd`.
     rig : ndarray, shape (15,)
         Start values of the shared part.
     size : tuple of int
@@ -76,12 +77,14 @@ def solve(
     sharing : float
         How many marks share one error (of paint, of the lens): so much less do they weigh
         against the rig's prior.
+    view_sd : array_like, shape (4,)
+        Of that prior.
     iterations : int
         Steps at most.
     """
     observed = Observations(joined(frames), size, counts=[len(m) for m in frames])
     held = sharing / prior.sd**2
-    hold = 1 / np.square(VIEW_SD)
+    hold = 1 / np.square(view_sd)
     start = np.array([v.vector for v in views])
 
     def look(vs: Array, s: Array) -> tuple[Linear, float]:

@@ -36,6 +36,10 @@ ASIDE = 2.0
 ROUGH = 0.5
 """What a house loses per pixel of residual in the small picture."""
 
+ROUND = (np.inf, np.inf, 0.01, np.inf)
+"""How far a view may lie from its start where circles alone are fitted, rad: they do not tell how
+it is rolled, and marks that slide along them leave the line in which they were measured."""
+
 LEAST_MARKS = 30
 """Edge points without which there is no camera; three whole circles give hundreds."""
 
@@ -109,7 +113,9 @@ def fit_roughly(
         # Rings without any of a 12-ft circle once they were fitted are no house, and most are such.
         if len(evidence.marks) < LEAST_MARKS or (k > 0 and evidence.covered[TWELVE] == 0):
             return None
-        solution = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
+        solution = solve(
+            [evidence.marks], [view], rig, size, prior=prior, sharing=SHARING, view_sd=ROUND
+        )
         view, rig, rms = solution.views[0], solution.rig, float(solution.rms[0])
     evidence = measure_marks(image, view.vector, rig, reach=5.0, spacing=4, lines=False)
     explained = worth(evidence)
@@ -161,7 +167,7 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
     if len(circles.marks) < LEAST_MARKS:
         return None
     fits = {
-        kind: solve([circles.marks], [view], rig, size, prior=prior, sharing=SHARING)
+        kind: solve([circles.marks], [view], rig, size, prior=prior, sharing=SHARING, view_sd=ROUND)
         for kind, prior in ((True, OVERHEAD), (False, ANYWHERE))
     }
     overhead = (fits[True].cost - fits[False].cost) / SHARING < TILT_GAIN

@@ -4,9 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from data.sheet import HOUSE
 from tests.vision.cameras import SD, SIZE, marks, true_rig, views
 from vision.adjust import Solution, solve
-from vision.rig import OVERHEAD, POSITION, R4, R8, start_rig
+from vision.house_fit import ROUND
+from vision.paint import CIRCLES
+from vision.pose import View, project
+from vision.rig import K1, OVERHEAD, POSITION, R4, R8, start_rig
 
 
 def test_what_frames_share_is_found_with_their_views() -> None:
@@ -20,6 +24,26 @@ def test_what_frames_share_is_found_with_their_views() -> None:
         np.testing.assert_allclose(found.rms, SD, rtol=0.15)
         for one, true in zip(found.views, truth, strict=True):
             np.testing.assert_allclose(one.vector, true.vector, atol=0.01)
+
+
+def test_circles_alone_are_fitted_without_a_slide_along_them() -> None:
+    rig, true = true_rig(), views(1)[0]
+    rig[K1] = -0.1
+    angle = np.linspace(-np.pi, np.pi, 3601)
+    begin = View(true.vector + np.array([0.01, -0.02, 0.0, 0.02]))
+    for seed in range(6):
+        seen = marks(np.random.default_rng(seed), true.vector, rig, 0.1)
+        seen = seen.pick(seen.line < CIRCLES)
+        found = solve(
+            [seen], [begin], start_rig(OVERHEAD), SIZE, prior=OVERHEAD, sharing=20.0, view_sd=ROUND
+        )
+        # By their own linear residuals circles fitted with a free roll looked as good, 4 px off.
+        radii = (HOUSE.twelve_foot, *found.rig[[R8, R4]])
+        for line, radius in enumerate(radii):
+            place = radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+            curve = project(place, found.views[0].vector, found.rig, SIZE)
+            away = np.linalg.norm(seen.pixel[seen.line == line][:, None] - curve, axis=2).min(1)
+            assert np.median(away) < 0.4
 
 
 def test_wrong_marks_are_told_and_do_not_pull() -> None:
