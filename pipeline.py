@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from data.results import Results
-    from physics.pool import Pooled
+    from physics.statistics.pool import Pooled
 
 __all__ = [
     "Measured", "Run", "Settings", "analyse", "check", "convert", "convert_each", "find_runs",
@@ -221,11 +221,11 @@ def season(
     Returns
     -------
     shots : DataFrame
-        See `physics.season.shots_table`.
+        See `physics.statistics.season.shots_table`.
     pooled : dict
-        ``restitution`` and ``friction``; see `physics.pool.Pooled`.
+        ``restitution`` and ``friction``; see `physics.statistics.pool.Pooled`.
     """
-    from physics.season import hits_table, pooled, shots_table
+    from physics.statistics.season import hits_table, pooled, shots_table
 
     folder = check_folder(out)
     shots, hits = shots_table(runs), hits_table(runs)
@@ -260,8 +260,8 @@ def check(
     """
     from report.check import check_figure
     from report.looks import Look, check_lines, check_table, frames_to_show
-    from vision.glance import glance
-    from vision.placed import nobody
+    from vision.detection.glance import glance
+    from vision.optics.placed import nobody
 
     files = find_inputs(inputs)
     seen = film(files, settings, progress, nobody)
@@ -350,10 +350,10 @@ def _do_season(arguments: argparse.Namespace, _: Bars) -> str:
 
 def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:
     from data.tracks import write_table, write_tracks
-    from physics.contacts import find_contacts
     from physics.kalman import smoothed
+    from physics.local_fit.contacts import find_contacts
     from report.numbers import count
-    from vision.camera import camera_columns
+    from vision.optics.camera import camera_columns
 
     settings, folder = settings_of(arguments), out_folder(arguments, arguments.inputs[0])
     check_folder(folder)
@@ -431,8 +431,8 @@ def _convert_each(arguments: argparse.Namespace) -> str:
 
 def _do_simulate(arguments: argparse.Namespace, bars: Bars) -> str:
     from data.tracks import write_table
-    from physics.simulate import simulate
-    from physics.what_if import Changes, changed
+    from physics.prediction.what_if import Changes, changed
+    from physics.simulator.simulate import simulate
     from report.summary import odds_text, simulation_json, simulation_text
     from report.whatif import write_odds
 

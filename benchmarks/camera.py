@@ -35,11 +35,11 @@ from benchmarks.views import HEIGHT, Clip, enlarged
 from data.sheet import HOUSE, STONE
 from tests.synthetic import View
 from tests.synthetic.people import hidden
-from vision.camera import Camera
-from vision.clip import open_clip
-from vision.follow_house import HouseFollower
-from vision.house import find_house
-from vision.house_fit import HouseFit
+from vision.camera_path.follow_house import HouseFollower
+from vision.film.clip import open_clip
+from vision.optics.camera import Camera
+from vision.sheet.house import find_house
+from vision.sheet.house_fit import HouseFit
 
 Array = NDArray[np.float64]
 

@@ -36,18 +36,18 @@ from report.encode import Encoder
 from tests.synthetic.camera import broadcast_camera
 from tests.synthetic.clip import cached_clip
 from tests.synthetic.scenes import random_scene, sweepers
-from vision.clip import Image, open_clip
+from vision.film.clip import Image, open_clip
 
 FPS = 30.0
 
 PARTS = {
-    "camera, frame by frame": "vision.follow_house.HouseFollower.look",
-    "camera, in the end": "vision.follow_house.HouseFollower.finish",
-    "stones, frame by frame": "vision.watch.Watch.look",
-    "stones, placed in the end": "vision.watch.Watch.finish",
+    "camera, frame by frame": "vision.camera_path.follow_house.HouseFollower.look",
+    "camera, in the end": "vision.camera_path.follow_house.HouseFollower.finish",
+    "stones, frame by frame": "vision.association.watch.Watch.look",
+    "stones, placed in the end": "vision.association.watch.Watch.finish",
     "association": "vision.track.follow",
     "angles": "vision.track.angles_in_parts",
-    "hits": "physics.contacts.find_contacts",
+    "hits": "physics.local_fit.contacts.find_contacts",
     "filter": "physics.kalman.smoothed",
 }
 """Parts of the work and the functions that do it; none calls another."""

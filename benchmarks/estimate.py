@@ -21,11 +21,11 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from benchmarks.simulate import house, peer_rates, seconds, single, thrown_often
-from physics.contacts import find_contacts
 from physics.estimate import Estimates, estimate
-from physics.local import Local, estimate_locally
-from physics.many import simulate_many
-from physics.simulate import simulate
+from physics.local_fit.contacts import find_contacts
+from physics.local_fit.local import Local, estimate_locally
+from physics.simulator.many import simulate_many
+from physics.simulator.simulate import simulate
 from tests.physics.watch import hit_motion, watch
 from tests.synthetic.physics import Ice, Impact, Motion, Start
 from tests.synthetic.physics import simulate as move

@@ -22,11 +22,11 @@ from numpy.typing import NDArray
 from data.errors import CurlshotError
 from data.progress import no_progress
 from data.sheet import STONE
-from vision.camera import Camera
-from vision.clip import Image
-from vision.glance import glance
-from vision.placed import nobody
-from vision.stones import SEARCH
+from vision.detection.glance import glance
+from vision.detection.stones import SEARCH
+from vision.film.clip import Image
+from vision.optics.camera import Camera
+from vision.optics.placed import nobody
 from work.film import film
 from work.settings import Settings
 

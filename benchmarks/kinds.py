@@ -26,7 +26,7 @@ from tests.synthetic import (
     sweepers,
     tilted_camera,
 )
-from vision.clip import Clip, open_clip
+from vision.film.clip import Clip, open_clip
 
 SECONDS = 2.6
 RED, YELLOW, BLUE = (44, 26, 178), (38, 208, 226), (150, 70, 20)

@@ -17,7 +17,7 @@ import cv2
 import pipeline
 from report.overlay import write_overlay
 from report.page import write_report
-from vision.camera import camera_table
+from vision.optics.camera import camera_table
 
 
 def timed(work: Callable[[], Any]) -> tuple[Any, float]:

@@ -21,11 +21,11 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from physics.contacts import find_contacts
 from physics.kalman import smooth
-from vision.clip import open_clip
-from vision.stick import stick_cameras
-from vision.stones import plain_disc
+from physics.local_fit.contacts import find_contacts
+from vision.detection.stones import plain_disc
+from vision.film.clip import open_clip
+from vision.optics.stick import stick_cameras
 from vision.track import track_stones
 
 Floats = NDArray[np.float64]

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pipeline
 from tests.scoring import read_truth, score_tracks
-from vision.clip import open_clip
+from vision.film.clip import open_clip
 
 ROOT = Path(__file__).resolve().parents[1]
 

@@ -20,13 +20,13 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from physics.curl import FCV1Curl
-from physics.curve import CELLS, curve
 from physics.ice import FCV1
 from physics.impact import Frictional
-from physics.many import simulate_many
-from physics.motion import Motion, Path
-from physics.simulate import simulate
-from physics.simulation import Shot, States, StoneStart
+from physics.simulator.curve import CELLS, curve
+from physics.simulator.many import simulate_many
+from physics.simulator.motion import Motion, Path
+from physics.simulator.simulate import simulate
+from physics.simulator.simulation import Shot, States, StoneStart
 
 
 def single() -> Shot:

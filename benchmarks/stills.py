@@ -22,12 +22,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import HOUSE
-from vision.camera import Camera
-from vision.clip import open_clip
-from vision.follow_house import follow_house
-from vision.house import find_house
-from vision.house_fit import HouseFit
-from vision.projection import apply_homography
+from vision.camera_path.follow_house import follow_house
+from vision.film.clip import open_clip
+from vision.optics.camera import Camera
+from vision.optics.projection import apply_homography
+from vision.sheet.house import find_house
+from vision.sheet.house_fit import HouseFit
 
 ROOT = Path(__file__).resolve().parents[1]
 

@@ -23,10 +23,10 @@ from tests.scoring import score_tracks
 from tests.synthetic.camera import broadcast_camera, tilted_camera
 from tests.synthetic.clip import cached_clip
 from tests.synthetic.scenes import random_scene, sweepers
-from vision.camera import Camera
-from vision.clip import open_clip
-from vision.glance import glance
-from vision.stones import SEARCH
+from vision.detection.glance import glance
+from vision.detection.stones import SEARCH
+from vision.film.clip import open_clip
+from vision.optics.camera import Camera
 from vision.track import track_stones
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -18,13 +18,13 @@ import pandas as pd
 from benchmarks.kinds import KINDS, Kind, clip_of
 from benchmarks.stones import cameras_of_table
 from data.sheet import STONE
-from physics.contacts import find_contacts
 from physics.kalman import smooth
+from physics.local_fit.contacts import find_contacts
 from tests.scoring import score_tracks
 from tests.synthetic import Truth
-from vision.camera import Camera
-from vision.clip import Clip
-from vision.follow_house import follow_house
+from vision.camera_path.follow_house import follow_house
+from vision.film.clip import Clip
+from vision.optics.camera import Camera
 from vision.track import track_stones
 
 SLOW, IDLE = 0.05, 0.05

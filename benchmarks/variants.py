@@ -21,10 +21,10 @@ import pandas as pd
 
 import pipeline
 from data.results import Prediction
-from physics.contacts import find_contacts
 from physics.estimate import estimate
-from physics.forecast import predict
-from physics.laws import measured_priors
+from physics.local_fit.contacts import find_contacts
+from physics.prediction.forecast import predict
+from physics.prediction.laws import measured_priors
 from tests.synthetic.clip import Truth, cached_clip
 from tests.synthetic.scenes import sample_variant
 from work.analyse import Run

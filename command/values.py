@@ -7,7 +7,7 @@ import re
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from physics.what_if import Amount
+    from physics.prediction.what_if import Amount
 
 MOST_THROWS = 100_000
 """Samples of a shot at most."""
@@ -57,14 +57,14 @@ def offset(text: str) -> float:
 
 def amount(text: str) -> Amount:
     """Read a number, or a factor such as ``1.1x``."""
-    from physics.what_if import Amount
+    from physics.prediction.what_if import Amount
 
     return Amount(*_or_factor(text, -20.0, 20.0, "a number, -20 to 20"))
 
 
 def speed(text: str) -> Amount:
     """Read a speed, m/s, or a factor such as ``1.1x``."""
-    from physics.what_if import Amount
+    from physics.prediction.what_if import Amount
 
     return Amount(*_or_factor(text, 1e-6, 10.0, "a speed above 0, at most 10 m/s"))
 

@@ -15,10 +15,10 @@ import pandas as pd
 
 from data.sheet import STONE
 from data.tracks import check_sightings
-from physics.contacts import find_contacts
 from physics.estimate import estimate
-from physics.simulate import simulate
-from physics.simulation import Shot, StoneStart
+from physics.local_fit.contacts import find_contacts
+from physics.simulator.simulate import simulate
+from physics.simulator.simulation import Shot, StoneStart
 
 
 def made_up() -> pd.DataFrame:

@@ -10,8 +10,8 @@ from pathlib import Path
 
 from data.results_file import read_results
 from data.tracks import read_tracks
-from physics.start import measured_start
-from physics.what_if import Amount, Changes, changed, odds, sample
+from physics.prediction.start import measured_start
+from physics.prediction.what_if import Amount, Changes, changed, odds, sample
 
 run = Path(sys.argv[1])
 start = measured_start(read_tracks(run / "tracks.csv"), read_results(run / "results.json"))

@@ -1,8 +1,8 @@
 """Restitution and friction from tracks, each with a standard error.
 
-Twice: from the paths beside the hits (`physics.local`), and from one fit of the whole shot
-through the simulator (`physics.global_fit`), which is the sharper where the simulator can
-follow the shot. The first is what the second is checked against.
+Twice: from the paths beside the hits (`physics.local_fit.local`), and from one fit of the whole
+shot through the simulator (`physics.whole_shot.global_fit`), which is the sharper where the
+simulator can follow the shot. The first is what the second is checked against.
 """
 
 from __future__ import annotations
@@ -16,16 +16,16 @@ import pandas as pd
 from data.errors import InputError
 from data.results import Collision, Estimate, Friction, Glide, Joint, Method, StoneResult, Told
 from data.sheet import STONE
-from physics.by_stone import results_by_stone
-from physics.contacts import Contact
-from physics.finite_differences import by_finite_differences
-from physics.followed import fit_followed, followed
-from physics.local import Local, estimate_locally
-from physics.off_centre import centred_sightings
-from physics.random_effects import random_effects
-from physics.shot_model import ice
-from physics.watched import loose_priors, watch
-from physics.whole_fit import GlobalFit
+from physics.local_fit.contacts import Contact
+from physics.local_fit.finite_differences import by_finite_differences
+from physics.local_fit.local import Local, estimate_locally
+from physics.statistics.by_stone import results_by_stone
+from physics.statistics.random_effects import random_effects
+from physics.whole_shot.followed import fit_followed, followed
+from physics.whole_shot.off_centre import centred_sightings
+from physics.whole_shot.shot_model import ice
+from physics.whole_shot.watched import loose_priors, watch
+from physics.whole_shot.whole_fit import GlobalFit
 
 POOR_FIT = 30.0
 """Mean square of residuals against errors from which a simulated shot is not the one seen."""
@@ -130,7 +130,7 @@ def estimate(
     sightings : DataFrame
         `data.tracks.SIGHTING_COLUMNS`.
     contacts : sequence of Contact
-        The hits, as `physics.contacts.find_contacts` gives them.
+        The hits, as `physics.local_fit.contacts.find_contacts` gives them.
     radius : float
         Of the discs, m.
     masses : mapping, optional

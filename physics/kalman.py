@@ -6,9 +6,9 @@ deceleration is taken out of the measurements before the filter and put back aft
 that the filter itself stays linear and the backward pass (Rauch, Tung and Striebel, 1965,
 AIAA J. 3, 1445) exact. A filter never runs across a hit.
 
-How sightings err is told by the shot itself (`physics.noise`): what is anew in each of them is the
-filter's measurement noise, what lasts for a while a state beside each pair, and what all share is
-added to the places and, as an error of the scale, to the velocities in the end.
+How sightings err is told by the shot itself (`physics.local_fit.noise`): what is anew in each of
+them is the filter's measurement noise, what lasts for a while a state beside each pair, and what
+all share is added to the places and, as an error of the scale, to the velocities in the end.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.tracks import TRACK_COLUMNS, Columns, Table, no_rows, teams
-from physics.contacts import Contact, cut_all
-from physics.fit import fit_shot
-from physics.glides import free, measure_glides
-from physics.noise import Noise, noises
-from physics.rate_filter import filtered
-from physics.shared_spin import share_spins
-from physics.shot_fit import ShotFit
-from physics.stretch import START_SD, Filter, Model, Stretch
-from physics.traces import Trace, traces
+from physics.filter.rate_filter import filtered
+from physics.filter.stretch import START_SD, Filter, Model, Stretch
+from physics.local_fit.contacts import Contact, cut_all
+from physics.local_fit.fit import fit_shot
+from physics.local_fit.glides import free, measure_glides
+from physics.local_fit.noise import Noise, noises
+from physics.local_fit.shared_spin import share_spins
+from physics.local_fit.shot_fit import ShotFit
+from physics.local_fit.traces import Trace, traces
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -86,7 +86,7 @@ def smoothed(
     masses : mapping, optional
         Stone to mass in any unit; all are equal if not given.
     run : Filter
-        Filters one stone from hit to hit; `physics.reference_filter.filtered` does it with
+        Filters one stone from hit to hit; `physics.filter.reference_filter.filtered` does it with
         matrices.
     unseen : mapping of int to float
         Frames with their times, s, at which nothing was measured but states are wanted.

@@ -16,8 +16,8 @@ from data.sheet import STONE
 from report.drawing import circle, draw_lines, ice_lines
 from report.looks import COLUMNS, Look, numbered
 from report.style import BLUE, GREY, ORANGE, SKY, VERMILLION, new_figure, styled
-from vision.clip import Image
-from vision.ice_map import rectify
+from vision.detection.ice_map import rectify
+from vision.film.clip import Image
 
 Array = NDArray[np.float64]
 

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import SHEET
-from vision.camera import Camera
-from vision.clip import Image
-from vision.projection import apply_homography
+from vision.film.clip import Image
+from vision.optics.camera import Camera
+from vision.optics.projection import apply_homography
 
 Array = NDArray[np.float64]
 Colour = tuple[int, int, int]

@@ -9,9 +9,9 @@ import numpy as np
 import pandas as pd
 
 from report.numbers import count
-from vision.camera import Camera, camera_table
-from vision.clip import Frame
-from vision.sighting import Refusal, Sighting
+from vision.detection.sighting import Refusal, Sighting
+from vision.film.clip import Frame
+from vision.optics.camera import Camera, camera_table
 
 COLUMNS = 4
 """Frames beside one another on the sheet."""
@@ -41,7 +41,7 @@ class Look:
 
 
 def check_table(cameras: Sequence[Camera], rim: float) -> pd.DataFrame:
-    """As `vision.camera.camera_table`, with the stated error of a place at the rim.
+    """As `vision.optics.camera.camera_table`, with the stated error of a place at the rim.
 
     Parameters
     ----------

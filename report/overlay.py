@@ -29,8 +29,8 @@ from report.drawing import (
 )  # fmt: skip
 from report.encode import Encoder
 from report.style import stone_colours, team_colour
-from vision.camera import Camera
-from vision.clip import Clip, Frame, Image
+from vision.film.clip import Clip, Frame, Image
+from vision.optics.camera import Camera
 
 Array = NDArray[np.float64]
 

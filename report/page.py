@@ -72,7 +72,7 @@ def write_report(
     simulations : mapping of str to DataFrame
         Sampled simulation of each model: ``stone, frame, t, x, y, theta, vx, vy, omega``.
     cameras : DataFrame, optional
-        With `vision.camera.CAMERA_COLUMNS`, for how good the calibration is; None for tracks
+        With `vision.optics.camera.CAMERA_COLUMNS`, for how good the calibration is; None for tracks
         that came in metres.
     clip_name : str, optional
         What the page is called; the first input file's name if not given.

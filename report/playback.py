@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from data.results import Results
 from data.sheet import SHEET, House
-from physics.simulation import Shot
+from physics.simulator.simulation import Shot
 from report.style import stone_colours, team_colour
 
 STEPS: Mapping[str, float] = {

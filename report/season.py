@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from data.files import write_text
 from data.tracks import write_table
-from physics.pool import Pooled
+from physics.statistics.pool import Pooled
 from report.numbers import plus_minus
 from report.style import BLACK, BLUE, GREY, PNG_DPI, SKY, new_figure, plain_text, styled
 
@@ -46,9 +46,9 @@ def season_figure(shots: pd.DataFrame, hits: pd.DataFrame, pooled: Mapping[str, 
     Parameters
     ----------
     shots, hits : DataFrame
-        From `physics.season.shots_table` and `hits_table`.
+        From `physics.statistics.season.shots_table` and `hits_table`.
     pooled : mapping
-        From `physics.season.pooled`.
+        From `physics.statistics.season.pooled`.
 
     Returns
     -------

@@ -10,10 +10,10 @@ import pandas as pd
 
 from data.results import Prediction, Results, SimulationScore
 from data.sheet import House
-from physics.forecast import AFTER
-from physics.pool import Pooled
-from physics.season import POSSIBLE
-from physics.simulation import Simulation
+from physics.prediction.forecast import AFTER
+from physics.simulator.simulation import Simulation
+from physics.statistics.pool import Pooled
+from physics.statistics.season import POSSIBLE
 from report.numbers import count, plus_minus
 from report.tables import moving_stones, rest_table, shot_stone
 from report.units import METRES, Unit

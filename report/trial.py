@@ -11,9 +11,9 @@ import pandas as pd
 
 from data.results import Results
 from data.sheet import GRAVITY
+from physics.prediction.start import measured_start
 from physics.registry import models
-from physics.simulation import StoneStart
-from physics.start import measured_start
+from physics.simulator.simulation import StoneStart
 from report.playback import shot_values
 
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from data.files import write_text
 from data.sheet import HOUSE, STONE
 from data.tracks import write_table
-from physics.start import Start
+from physics.prediction.start import Start
 from report.figures import draw_house
 from report.style import BLACK, GREY, PNG_DPI, new_figure, plain_text, stone_colours, styled
 
@@ -44,7 +44,7 @@ def write_odds(folder: Path, start: Start, outcomes: pd.DataFrame, odds: Mapping
     start : Start
         The shot.
     outcomes : DataFrame
-        ``sample, stone, x, y, hits``, as `physics.what_if.sample` gives them.
+        ``sample, stone, x, y, hits``, as `physics.prediction.what_if.sample` gives them.
     odds : mapping
         The same in sum.
     """
@@ -72,7 +72,7 @@ def spread_figure(
     Parameters
     ----------
     outcomes : DataFrame
-        ``sample, stone, x, y, hits`` as `physics.what_if.sample` gives them.
+        ``sample, stone, x, y, hits`` as `physics.prediction.what_if.sample` gives them.
     before : mapping of str to (float, float)
         Places of the stones before, m.
     thrown : str

@@ -13,21 +13,21 @@ from numpy.typing import NDArray
 from data.progress import Progress, no_progress
 from data.sheet import STONE, Stone
 from data.tracks import SIGHTING_COLUMNS, Columns, no_rows, order_of_motion
-from vision.angles import angles_in_parts
-from vision.appearance import Appearance
-from vision.camera import Camera
-from vision.cameras import Cameras
-from vision.clip import Clip
-from vision.follow import Gate, Track, follow
-from vision.late import seen_late
-from vision.naming import names_by_motion
-from vision.patch import HANDLE_HEIGHT_SD, handle_radii, is_plain
-from vision.rejoin import rejoined
-from vision.roundness import edge_errors
-from vision.smeared import widened
-from vision.steady import steadied
-from vision.stones import FOLLOWING, Search
-from vision.watch import Watch
+from vision.association.follow import Gate, Track, follow
+from vision.association.late import seen_late
+from vision.association.naming import names_by_motion
+from vision.association.rejoin import rejoined
+from vision.association.watch import Watch
+from vision.detection.appearance import Appearance
+from vision.detection.patch import HANDLE_HEIGHT_SD, handle_radii, is_plain
+from vision.detection.roundness import edge_errors
+from vision.detection.smeared import widened
+from vision.detection.steady import steadied
+from vision.detection.stones import FOLLOWING, Search
+from vision.film.clip import Clip
+from vision.optics.camera import Camera
+from vision.optics.cameras import Cameras
+from vision.spin.angles import angles_in_parts
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -147,7 +147,7 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
 
 
 def slants_of(tracks: Mapping[str, Track], cameras: Sequence[Camera]) -> dict[str, Array]:
-    """By stone, slants of the view of its places (n, 2): see `vision.cameras.Cameras.slants`."""
+    """By stone, slants of the view of its places (n, 2): see `Cameras.slants`."""
     by_frame = {camera.frame: camera for camera in cameras}
     out = {}
     for name, track in tracks.items():

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from data.results import Collision, Estimate, Results
-    from physics.contacts import Contact
+    from physics.local_fit.contacts import Contact
 
 
 ICE = (0.004, 0.03)
@@ -61,13 +61,13 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
 
     from data.results import Input, Results
     from data.tracks import teams
-    from physics.contacts import find_contacts
     from physics.estimate import estimate
-    from physics.forecast import assumed, predict
-    from physics.hindcast import simulate_measured
     from physics.kalman import smooth
+    from physics.local_fit.contacts import find_contacts
     from physics.posterior import sample_posterior, summarise
-    from vision.camera import camera_table
+    from physics.prediction.forecast import assumed, predict
+    from physics.prediction.hindcast import simulate_measured
+    from vision.optics.camera import camera_table
 
     sightings, radius = measured.sightings, settings.radius
     if sightings.empty:
@@ -142,7 +142,7 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
 
 def _shared_error(sightings: pd.DataFrame) -> float | None:
     """Tell what places share of their errors, m per axis; None where it is not known."""
-    from physics.traces import SHARED
+    from physics.local_fit.traces import SHARED
 
     variance = (sightings.reindex(columns=list(SHARED)) ** 2).mean(axis=1)
     return None if variance.isna().all() else float(variance.median() ** 0.5)
@@ -153,7 +153,7 @@ def _pace(friction: Estimate) -> tuple[str, ...]:
 
     A clip that runs k times too slowly shows μ / k², tracks k times too long k μ.
     """
-    from physics.watched import FRICTION
+    from physics.whole_shot.watched import FRICTION
 
     value, stderr = friction.value, friction.stderr
     if value is None or stderr is None or value <= 0:

@@ -133,8 +133,8 @@ def _write_project(measured: Measured, path: Path, over: str | Path | None) -> M
         view = plain_view(sightings)
         marks = view.coordinates.pixels(sightings["frame"], sightings[["x", "y"]].to_numpy(float))
     else:
-        from vision.clip import open_clip
-        from vision.tracker_view import view_over
+        from vision.film.clip import open_clip
+        from vision.optics.tracker_view import view_over
 
         clip = open_clip(find_inputs([over]))
         if packed:

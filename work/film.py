@@ -13,10 +13,10 @@ from data.sheet import HOUSE, STONE, House, Stone, curling_size
 from work.settings import Settings, refuse_table_options
 
 if TYPE_CHECKING:
-    from vision.camera import Camera
-    from vision.clip import Clip
-    from vision.joint import HouseTrack
-    from vision.placed import Placed
+    from vision.camera_path.joint import HouseTrack
+    from vision.film.clip import Clip
+    from vision.optics.camera import Camera
+    from vision.optics.placed import Placed
 
 SPREADSHEETS = frozenset({".ods", ".xls", ".xlsx"})
 
@@ -37,7 +37,7 @@ def film(files: tuple[Path, ...], settings: Settings, progress: Progress, placed
     clip, disc = _open_clip(files, settings), disc_of(settings)
     refuse_table_options(files[0], settings)
     if settings.stick is not None:
-        from vision.stick import stick_cameras
+        from vision.optics.stick import stick_cameras
 
         cameras = stick_cameras(clip, settings.stick, progress, placed)
         filmed = Filmed(clip, cameras, disc)
@@ -47,7 +47,7 @@ def film(files: tuple[Path, ...], settings: Settings, progress: Progress, placed
         filmed = Filmed(clip, cameras, disc, house, notes)
     else:
         if settings.house is None:
-            from vision.letterbox import lit_clip
+            from vision.optics.letterbox import lit_clip
 
             clip = lit_clip(clip, progress)
         followed = _follow(clip, settings, progress, placed)
@@ -61,7 +61,7 @@ def film(files: tuple[Path, ...], settings: Settings, progress: Progress, placed
 
 def _open_clip(files: tuple[Path, ...], settings: Settings) -> Clip:
     """Open a video, pictures, or the clip of a Tracker project."""
-    from vision.clip import open_clip
+    from vision.film.clip import open_clip
 
     kinds = [path.suffix.lower() for path in files]
     if SPREADSHEETS.intersection(kinds):
@@ -71,7 +71,7 @@ def _open_clip(files: tuple[Path, ...], settings: Settings) -> Clip:
     if len(files) > 1 or kinds[0] not in PROJECT_SUFFIXES:
         odd = files[0] if kinds[0] not in PROJECT_SUFFIXES else files[1]
         raise InputError(f"{odd}: not a clip; name a video, pictures, or one Tracker project")
-    from vision.project_clip import open_project_clip
+    from vision.optics.project_clip import open_project_clip
 
     clip = open_project_clip(files[0], settings.tab, settings.frames)
     if settings.fps is not None:
@@ -84,11 +84,11 @@ def _given_cameras(
 ) -> tuple[tuple[Camera, ...], tuple[str, ...]]:
     """Read the cameras of a table, or of a Tracker project."""
     if path.suffix.lower() not in PROJECT_SUFFIXES:
-        from vision.camera_file import given_cameras
+        from vision.optics.camera_file import given_cameras
 
         return given_cameras(clip, path, progress, placed)
     from data.project import read_project
-    from vision.project_clip import project_cameras
+    from vision.optics.project_clip import project_cameras
 
     project = read_project(path, settings.tab)
     return project_cameras(clip, project, settings.length_unit, progress, placed)
@@ -97,10 +97,10 @@ def _given_cameras(
 def _follow(clip: Clip, settings: Settings, progress: Progress, placed: Placed) -> HouseTrack:
     """Follow the house, from where a person says that it is or from where it is found."""
     if settings.house is None:
-        from vision.follow_house import follow_house
+        from vision.camera_path.follow_house import follow_house
 
         return follow_house(clip, progress, placed=placed)
-    from vision.given import GivenHouse, follow_given
+    from vision.camera_path.given import GivenHouse, follow_given
 
     frame, *points = settings.house
     return follow_given(clip, GivenHouse.of(points, frame), progress, placed)
@@ -118,7 +118,7 @@ def check_size(radius: float, camera: Camera) -> None:
 
 def disc_of(settings: Settings) -> Stone:
     """Say what is looked for: stones in a house or of their size, else plain discs."""
-    from vision.stones import plain_disc
+    from vision.detection.stones import plain_disc
 
     sized_as_stones = settings.camera is None or curling_size(settings.radius)
     if settings.stick is None and sized_as_stones:

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
     from data.tracker import Imported
     from data.tracks import Table
-    from vision.camera import Camera
-    from vision.clip import Clip, Frame
+    from vision.film.clip import Clip, Frame
+    from vision.optics.camera import Camera
 
 
 @dataclass(frozen=True)
@@ -117,11 +117,11 @@ def _imported(files: tuple[Path, ...], table: Imported, settings: Settings) -> M
 
 
 def _look_at_clip(files: tuple[Path, ...], settings: Settings, progress: Progress) -> Measured:
-    from vision.camera import carried
-    from vision.letterbox import in_whole
-    from vision.stones import FOLLOWING, SEARCH
+    from vision.association.watch import Watch
+    from vision.detection.stones import FOLLOWING, SEARCH
+    from vision.optics.camera import carried
+    from vision.optics.letterbox import in_whole
     from vision.track import tracks_of
-    from vision.watch import Watch
 
     alone = len(files) == 1 and files[0].suffix.lower() in IMAGE_SUFFIXES
     # A picture by itself has one chance.

@@ -12,9 +12,9 @@ from work.analyse import as_tracks
 if TYPE_CHECKING:
     import pandas as pd
 
-    from physics.simulation import Simulation
-    from physics.start import Start
-    from physics.what_if import Changes
+    from physics.prediction.start import Start
+    from physics.prediction.what_if import Changes
+    from physics.simulator.simulation import Simulation
 
 MOST_SAMPLES = 1_000_000
 """Of one simulated stone; more is a mistake in the rate."""
@@ -56,8 +56,8 @@ def read_start(path: Path, folder: Path) -> Start:
     """
     from data.results_file import read_results
     from data.tracks import read_tracks
-    from physics.shot import read_shot
-    from physics.start import measured_start, written_start
+    from physics.prediction.start import measured_start, written_start
+    from physics.simulator.shot import read_shot
 
     if not measured_shot(path):
         return written_start(read_shot(path))
@@ -98,18 +98,18 @@ def throw_often(
     count : int
         How often it is thrown.
     throw_sd : (float, float), optional
-        Scatter of speed, m/s, and direction, rad; `physics.what_if.THROW_SD` by default.
+        Scatter of speed, m/s, and direction, rad; `physics.prediction.what_if.THROW_SD` by default.
     source : str
         Name of the file that the shot is from.
 
     Returns
     -------
     outcomes : DataFrame
-        See `physics.what_if.sample`.
+        See `physics.prediction.what_if.sample`.
     content : dict
         Of ``whatif.json``.
     """
-    from physics.what_if import THROW_SD, Changes, odds, sample
+    from physics.prediction.what_if import THROW_SD, Changes, odds, sample
 
     speed, direction = throw_sd or THROW_SD
     outcomes = sample(start, count, (speed, direction))

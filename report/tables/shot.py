@@ -9,7 +9,7 @@ import pandas as pd
 
 from data.results import Collision, Glide, Prediction, SimulationScore
 from data.sheet import STONE
-from physics.traces import traces
+from physics.local_fit.traces import traces
 
 
 def moving_stones(

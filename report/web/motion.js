@@ -1,6 +1,6 @@
 "use strict";
 /* How a stone glides, by the equations of physics/: laws of the ice and of curl, the one curve of
-   all glides (physics/curve.py) and the way of a stone along it (physics/motion.py). SI units,
+   all glides (physics/simulator/curve.py) and the way of a stone along it (physics/simulator/motion.py). SI units,
    radians, counter-clockwise positive. Parameters of the laws have the names that they have
    there; `factor` multiplies all friction of an ice. */
 const motion = (() => {

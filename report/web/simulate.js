@@ -109,7 +109,7 @@ const simulator = (() => {
     return t;
   }
 
-  // ---- where stones are in play (physics/bounds.py)
+  // ---- where stones are in play (physics/simulator/bounds.py)
 
   const SHORTEST = 1e-9;
 
@@ -313,7 +313,7 @@ const simulator = (() => {
   const endOf = ({ paths, gone }) =>
     Math.max(0, ...paths.map((own, k) => Math.min(own[own.length - 1].rest, gone[k])));
 
-  /** The shot with something changed (see physics/what_if.py); what is null stays. */
+  /** The shot with something changed (see physics/prediction/what_if.py); what is null stays. */
   function changed(shot, thrown, changes) {
     const { restitution, friction, stoneFriction, speed, spin, aimOffset = 0 } = changes;
     const impact = { ...shot.impact };

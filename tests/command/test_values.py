@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from command import values
-from physics.what_if import Amount
+from physics.prediction.what_if import Amount
 
 
 @pytest.mark.parametrize(

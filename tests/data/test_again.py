@@ -13,9 +13,9 @@ from data.export import write_csv, write_text
 from data.tracker import read_table
 from data.tracks import SEEN_AS, write_tracks
 from data.trk_write import plain_view, project_xml, write_trk
-from physics.contacts import find_contacts
 from physics.estimate import estimate
 from physics.kalman import smooth
+from physics.local_fit.contacts import find_contacts
 from tests.physics.watch import RADIUS, hit_motion, watch
 
 RESTITUTION, FRICTION = 0.83, 0.0109

@@ -6,12 +6,12 @@ import numpy as np
 import pandas as pd
 
 from data.results import Collision, Estimate, Friction, Input, MeasuredState, Results
-from physics.bounds import Bounds
 from physics.curl import NoCurl
 from physics.ice import Constant
 from physics.impact import Frictional
-from physics.simulate import simulate
-from physics.simulation import Shot, StoneStart
+from physics.simulator.bounds import Bounds
+from physics.simulator.simulate import simulate
+from physics.simulator.simulation import Shot, StoneStart
 
 R = 0.1455
 MU = 0.0105

@@ -11,10 +11,8 @@ import pytest
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
-from physics.contacts import find_contacts
-from physics.kalman import smooth
-from physics.rate_filter import filtered, forward
-from physics.stretch import (
+from physics.filter.rate_filter import filtered, forward
+from physics.filter.stretch import (
     ANGLE_MEMORY,
     PLACE_MEMORY,
     Model,
@@ -23,6 +21,8 @@ from physics.stretch import (
     Stretch,
     steps,
 )  # fmt: skip
+from physics.kalman import smooth
+from physics.local_fit.contacts import find_contacts
 from tests.physics.watch import RADIUS, airtable, hit_motion, lasting, semireal, watch
 
 Floats = NDArray[np.float64]

@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from physics.contacts import find_contacts
 from physics.estimate import Estimates, estimate
+from physics.local_fit.contacts import find_contacts
 from tests.physics.watch import RADIUS, watch
 from tests.synthetic.physics import Ice, Impact, Start, simulate
 

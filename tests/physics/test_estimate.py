@@ -9,9 +9,9 @@ import pytest
 
 from data.results import Estimate, Friction
 from data.tracks import check_sightings
-from physics.contacts import find_contacts
 from physics.estimate import Estimates, _of_two, estimate
-from physics.local import estimate_locally
+from physics.local_fit.contacts import find_contacts
+from physics.local_fit.local import estimate_locally
 from tests.physics.watch import RADIUS, airtable, discs, hit_motion, semireal, watch
 from tests.synthetic.physics import Ice, Impact, Start, simulate
 

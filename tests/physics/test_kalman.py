@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 
 from data.tracks import TRACK_COLUMNS, check_sightings
-from physics.contacts import Contact, find_contacts
 from physics.kalman import smooth
+from physics.local_fit.contacts import Contact, find_contacts
 from tests.physics.watch import RADIUS, airtable, hit_motion, watch
 from tests.synthetic.physics import Motion, Start
 

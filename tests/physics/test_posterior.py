@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from data.results import Estimate, Friction
-from physics.contacts import find_contacts
 from physics.estimate import Estimates, estimate
+from physics.local_fit.contacts import find_contacts
 from physics.posterior import sample_posterior, summarise
 from tests.physics.watch import RADIUS, hit_motion, watch
 

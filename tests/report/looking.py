@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from vision.camera import Camera
+from vision.optics.camera import Camera
 
 SIZE = (320, 240)
 

@@ -7,9 +7,9 @@ from pipeline import main, sample_clip
 from report.check import check_figure
 from report.looks import Look
 from tests.report.looking import SIZE, camera, table
-from vision.camera import Camera
-from vision.clip import Frame
-from vision.sighting import Refusal
+from vision.detection.sighting import Refusal
+from vision.film.clip import Frame
+from vision.optics.camera import Camera
 
 
 def house_picture() -> np.ndarray:

@@ -5,7 +5,7 @@ import pytest
 
 from data.sheet import SHEET
 from report.drawing import circle, draw_lines, ice_lines, inside, overlap, text_box, write
-from vision.camera import Camera
+from vision.optics.camera import Camera
 
 SCALE = 50.0  # px a metre
 

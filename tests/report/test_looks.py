@@ -5,9 +5,9 @@ import pytest
 
 from report.looks import Look, check_lines, check_table, frames_to_show, numbered
 from tests.report.looking import camera, table
-from vision.camera import CameraError
-from vision.clip import Frame
-from vision.sighting import Refusal, Sighting
+from vision.detection.sighting import Refusal, Sighting
+from vision.film.clip import Frame
+from vision.optics.camera import CameraError
 
 
 def _stone(x: float, y: float) -> Sighting:

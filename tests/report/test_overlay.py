@@ -10,8 +10,8 @@ import pytest
 
 from report.overlay import write_overlay
 from tests.report.browser import needs_chromium
-from vision.camera import Camera
-from vision.clip import open_clip
+from vision.film.clip import open_clip
+from vision.optics.camera import Camera
 
 SIZE = (321, 241)  # odd both ways
 TIMES = [0.0, 0.04, 0.08, 0.2, 0.24, 0.25, 0.3, 0.5]

@@ -15,7 +15,7 @@ from data.sheet import HOUSE
 from report.numbers import MINUS
 from report.page import write_report
 from report.provenance import Provenance, Source
-from vision.camera import Camera, camera_table
+from vision.optics.camera import Camera, camera_table
 
 VOID = {"meta", "img", "br", "hr", "link", "input", "source"}
 

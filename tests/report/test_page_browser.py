@@ -16,16 +16,16 @@ from data.sheet import HOUSE
 from physics.curl import FCV1Curl
 from physics.ice import FCV1
 from physics.impact import Frictional, PointMass, RigidBody
-from physics.shot import read_shot
-from physics.simulate import simulate
-from physics.simulation import Shot as Throw
-from physics.start import Start, measured_start
-from physics.what_if import Amount, Changes, changed
+from physics.prediction.start import Start, measured_start
+from physics.prediction.what_if import Amount, Changes, changed
+from physics.simulator.shot import read_shot
+from physics.simulator.simulate import simulate
+from physics.simulator.simulation import Shot as Throw
 from report.overlay import write_overlay
 from report.page import write_report
 from tests.report.browser import Browser, Tab, needs_chromium
 from tests.report.test_overlay import camera, pictures
-from vision.clip import open_clip
+from vision.film.clip import open_clip
 
 pytestmark = needs_chromium
 

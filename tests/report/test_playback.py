@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from data.sheet import HOUSE
-from physics.bounds import Bounds
 from physics.curl import FCV1Curl
 from physics.ice import FCV1
 from physics.impact import PointMass
-from physics.simulation import Shot, StoneStart
+from physics.simulator.bounds import Bounds
+from physics.simulator.simulation import Shot, StoneStart
 from report.playback import STEPS, differences, playback, shot_values
 
 

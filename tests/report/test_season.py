@@ -12,7 +12,7 @@ import pipeline
 from data.errors import InputError
 from data.results import Collision, Estimate, Friction, Input, MeasuredState, Results
 from data.results_file import write_results
-from physics.season import hits_table, pooled, shots_table
+from physics.statistics.season import hits_table, pooled, shots_table
 from pipeline import find_runs, main, season
 from report.season import season_figure
 

@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 
 from data.errors import InputError
-from physics.bounds import Bounds
 from physics.curl import Curl, FCV1Curl, NoCurl
 from physics.ice import FCV1, Constant, Fit, IceLaw, Penner
 from physics.impact import Frictional, Impact, PointMass, RigidBody
-from physics.simulate import simulate
-from physics.simulation import Shot, Simulation, StoneStart
-from physics.start import written_start
-from physics.what_if import Amount, Changes, changed
+from physics.prediction.start import written_start
+from physics.prediction.what_if import Amount, Changes, changed
+from physics.simulator.bounds import Bounds
+from physics.simulator.simulate import simulate
+from physics.simulator.simulation import Shot, Simulation, StoneStart
 from report import page
 from report.playback import shot_values
 from tests.report.browser import Browser, Tab, needs_chromium

@@ -8,7 +8,7 @@ import pytest
 from data.errors import InputError
 from data.results import MeasuredState
 from physics.ice import Fit
-from physics.start import measured_start
+from physics.prediction.start import measured_start
 from report.trial import sliders, trial
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from vision.paint import FIXED, Marks, ice_frame, measures
-from vision.pose import View, project
-from vision.rig import OVERHEAD, R4, R8, start_rig
+from vision.optics.paint import FIXED, Marks, ice_frame, measures
+from vision.optics.pose import View, project
+from vision.optics.rig import OVERHEAD, R4, R8, start_rig
 
 SIZE = (1280, 720)
 SD = 0.3

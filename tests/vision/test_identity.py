@@ -9,8 +9,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from tests.synthetic.physics import Impact, Motion, Start, simulate
-from tests.vision.test_follow import R, sighting
-from vision.follow import Track, follow
+from tests.vision.association.test_follow import R, sighting
+from vision.association.follow import Track, follow
 
 Hidden = Callable[[int, float, np.ndarray], bool]
 

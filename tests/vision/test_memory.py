@@ -10,10 +10,10 @@ import numpy as np
 
 from tests.synthetic.camera import still_camera
 from tests.synthetic.clip import render_still
-from tests.vision.test_stones import RED, YELLOW, scene_of
-from vision.clip import Clip, Frame, Image
-from vision.follow_house import follow_house
-from vision.watch import Watch
+from tests.vision.detection.test_stones import RED, YELLOW, scene_of
+from vision.association.watch import Watch
+from vision.camera_path.follow_house import follow_house
+from vision.film.clip import Clip, Frame, Image
 
 PLACES = [(0.3, 0.2, RED), (-0.8, 1.0, YELLOW), (0.9, -0.6, RED)]
 

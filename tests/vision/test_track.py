@@ -10,19 +10,19 @@ from scipy.stats import chi2
 
 from data.sheet import STONE
 from data.tracks import SIGHTING_COLUMNS, teams
-from physics.contacts import find_contacts
+from physics.filter.rate_filter import filtered, forward
+from physics.filter.stretch import Smoothed, Stretch
 from physics.kalman import smooth
-from physics.rate_filter import filtered, forward
-from physics.stretch import Smoothed, Stretch
+from physics.local_fit.contacts import find_contacts
 from tests.scoring import score_tracks
 from tests.synthetic.clip import render_still
-from tests.vision.test_follow import sighting
-from tests.vision.test_stones import CAMERA, RED, camera_of, scene_of, without_colours
-from vision.camera import Camera
-from vision.clip import open_clip
-from vision.follow import Track
-from vision.stick import stick_cameras
-from vision.stones import plain_disc
+from tests.vision.association.test_follow import sighting
+from tests.vision.detection.test_stones import CAMERA, RED, camera_of, scene_of, without_colours
+from vision.association.follow import Track
+from vision.detection.stones import plain_disc
+from vision.film.clip import open_clip
+from vision.optics.camera import Camera
+from vision.optics.stick import stick_cameras
 from vision.track import off_axis, slants_of, track_stones
 
 DATA = Path(__file__).resolve().parents[2] / "data"

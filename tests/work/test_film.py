@@ -9,8 +9,8 @@ import pytest
 from data.errors import InputError
 from data.progress import no_progress
 from data.sheet import STONE
-from vision.camera import Camera
-from vision.placed import nobody
+from vision.optics.camera import Camera
+from vision.optics.placed import nobody
 from work.film import check_size, disc_of, film
 from work.settings import Settings
 

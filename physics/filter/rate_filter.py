@@ -1,0 +1,243 @@
+"""The filter of `physics.kalman` in closed form: three pairs of a place and its rate.
+
+What a sighting shows is the place, an error that lasts for a while and one that is anew. As the
+pairs are independent, the equations of Kalman come down to a few products per step, and so do
+those of the backward pass in the form of Bryson and Frazier (Bierman, 1973, Automatica 9, 503),
+which inverts nothing. `physics.filter.reference_filter` does the same with matrices.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physics.filter.stretch import (
+    ANYWHERE_SD,
+    GATE,
+    PATIENCE,
+    Smoothed,
+    Steps,
+    Stretch,
+    drift,
+    steps,
+)
+
+Floats = NDArray[np.float64]
+
+Triple = tuple[float, float, float]
+"""Of place, rate and lasting error."""
+
+Cov = tuple[float, float, float, float, float, float]
+"""Upper triangle of a symmetric matrix, row by row."""
+
+State = tuple[Triple, Cov]
+
+Step = tuple[float, float, float, float, float, float]
+"""As in `physics.filter.stretch.Steps`: reach, keep, q00, q01, q11, fade."""
+
+Look = tuple[float, Triple, float, float]
+"""What a sighting did: the error of what was expected, the state's covariance with what is seen,
+the variance of the latter, and its part that is not the place's."""
+
+
+@dataclass(frozen=True)
+class Forward:
+    """What the way forward through a stretch gave, for each pair: x, y and θ.
+
+    Attributes
+    ----------
+    drift : (n, 6) array
+        What the ice was known to do, taken out of the sightings: `physics.filter.stretch.drift`.
+    steps : sequence of Step, three times
+        How place and rate go on from each time to the next.
+    states : list of State, three times
+        After the sighting at each time.
+    looks : list of Look or None, three times
+        What that sighting did; None where there was none or it was refused.
+    """
+
+    drift: Floats
+    steps: tuple[Sequence[Step], Sequence[Step], Sequence[Step]]
+    states: tuple[list[State], list[State], list[State]]
+    looks: tuple[list[Look | None], list[Look | None], list[Look | None]]
+
+    @property
+    def innovations(self) -> Floats:
+        """Normalised innovations of x, y and θ, shape (n, 3); NaN where nothing was used."""
+        each = [
+            [np.nan if look is None else look[0] / sqrt(look[2]) for look in looked]
+            for looked in self.looks
+        ]
+        return np.array(each).T
+
+
+def filtered(stretch: Stretch) -> Smoothed:
+    """Filter and smooth one stretch between two hits.
+
+    Returns
+    -------
+    mean, spread : (n, 6) array
+        x, y, vx, vy, θ, ω and their standard deviations.
+    seen : (n,) int array
+        Whether the sighting of the place at each time was used.
+    """
+    way = forward(stretch)
+    n = len(stretch.t)
+    mean, spread = np.empty((n, 6)), np.empty((n, 6))
+    for states, looks, on, at in zip(
+        way.states, way.looks, way.steps, ([0, 2], [1, 3], [4, 5]), strict=True
+    ):
+        mean[:, at], spread[:, at] = _smoothed(states, looks, on)
+    mean += way.drift
+    mean[stretch.rest, 2:4], mean[stretch.idle, 5] = 0.0, 0.0
+    return mean, spread, np.array([look is not None for look in way.looks[0]], int)
+
+
+def forward(stretch: Stretch) -> Forward:
+    """Go forward through one stretch: what each sighting told that was not expected."""
+    along, turning = steps(stretch)
+    known = drift(stretch, along)
+    moves, turns = _listed(along), _listed(turning)
+    places, rates = stretch.start
+    anywhere = (ANYWHERE_SD[0], ANYWHERE_SD[0], ANYWHERE_SD[1])
+    lasting = (stretch.slow**2).tolist()
+    x, y, theta = (
+        ((float(place), 0.0, 0.0), (sd**2, 0.0, 0.0, float(rate) ** 2, 0.0, error))
+        for place, rate, sd, error in zip(places, rates, anywhere, lasting[0], strict=True)
+    )
+    values = (stretch.z - known[:, [0, 1, 4]]).tolist()
+    out = Forward(known, (moves, moves, turns), ([], [], []), ([], [], []))
+    refused = wrong = 0
+    for k, ((zx, zy, angle), (rx, ry, error), slow) in enumerate(
+        zip(values, (stretch.sd**2).tolist(), lasting, strict=True)
+    ):
+        if k:
+            x, y = _predicted(x, moves[k - 1], slow[0]), _predicted(y, moves[k - 1], slow[1])
+            theta = _predicted(theta, turns[k - 1], slow[2])
+        of_x = of_y = of_theta = None
+        if zx == zx:  # not NaN
+            of_x, of_y = _look(x, zx, rx), _look(y, zy, ry)
+            if _distance(of_x) + _distance(of_y) < GATE or refused >= PATIENCE:
+                refused = 0
+                x, y = _updated(x, of_x), _updated(y, of_y)
+            else:
+                refused += 1
+                of_x = of_y = None
+        if angle == angle:
+            of_theta = _look(theta, angle, error)
+            if _distance(of_theta) < GATE or wrong >= PATIENCE:
+                wrong = 0
+                theta = _updated(theta, of_theta)
+            else:
+                wrong += 1
+                of_theta = None
+        for state, so_far in zip((x, y, theta), out.states, strict=True):
+            so_far.append(state)
+        for look, looked in zip((of_x, of_y, of_theta), out.looks, strict=True):
+            looked.append(look)
+    return out
+
+
+def _listed(way: Steps) -> list[Step]:
+    columns = (way.reach, way.keep, way.q00, way.q01, way.q11, way.fade)
+    return list(zip(*(column.tolist() for column in columns), strict=True))
+
+
+def _predicted(state: State, step: Step, slow: float) -> State:
+    """Go on by a step, to where lasting errors have the variance `slow`."""
+    (place, rate, lasting), (p00, p01, p02, p11, p12, p22) = state
+    reach, keep, q00, q01, q11, fade = step
+    cross = p01 + reach * p11
+    return (
+        (place + reach * rate, keep * rate, fade * lasting),
+        (
+            p00 + reach * (p01 + cross) + q00,
+            keep * cross + q01,
+            fade * (p02 + reach * p12),
+            keep * keep * p11 + q11,
+            fade * keep * p12,
+            slow + fade * fade * (p22 - slow),
+        ),
+    )
+
+
+def _look(state: State, value: float, variance: float) -> Look:
+    """Compare a sighting of the place with the state."""
+    (place, _, lasting), (p00, p01, p02, _, p12, p22) = state
+    c = (p00 + p02, p01 + p12, p02 + p22)
+    rest = c[2] + variance
+    return value - place - lasting, c, c[0] + rest, rest
+
+
+def _distance(look: Look) -> float:
+    """Squared normalised innovation."""
+    return look[0] ** 2 / look[2]
+
+
+def _updated(state: State, look: Look) -> State:
+    (place, rate, lasting), (p00, p01, p02, p11, p12, p22) = state
+    error, (c0, c1, c2), total, _ = look
+    g0, g1, g2 = c0 / total, c1 / total, c2 / total
+    return (
+        (place + g0 * error, rate + g1 * error, lasting + g2 * error),
+        (p00 - g0 * c0, p01 - g0 * c1, p02 - g0 * c2, p11 - g1 * c1, p12 - g1 * c2, p22 - g2 * c2),
+    )
+
+
+def _smoothed(
+    states: Sequence[State], looks: Sequence[Look | None], way: Sequence[Step]
+) -> tuple[Floats, Floats]:
+    """Take what came later into account, from the last to the first.
+
+    Returns place and rate, and their standard deviations, each (n, 2).
+    """
+    l0 = l1 = l2 = 0.0
+    m00 = m01 = m02 = m11 = m12 = m22 = 0.0
+    slopes: list[Triple] = []
+    bends: list[Cov] = []
+    for k in range(len(states) - 1, -1, -1):
+        slopes.append((l0, l1, l2))
+        bends.append((m00, m01, m02, m11, m12, m22))
+        look = looks[k]
+        if look is not None:
+            error, (c0, c1, c2), total, rest = look
+            # Columns of 1 − gain · shown: (a, −b, −c), (0, 1, 0) and (−d, −b, 1 − c).
+            a, b, c, d = rest / total, c1 / total, c2 / total, c0 / total
+            n0, n1, n2 = (
+                a * m00 - b * m01 - c * m02,
+                a * m01 - b * m11 - c * m12,
+                a * m02 - b * m12 - c * m22,
+            )
+            o1, o2 = n1 + m12 - m01, n2 + m22 - m02
+            pull = a * l0 - b * l1 - c * l2 - error / total
+            l0, l2 = pull, pull + l2 - l0
+            bend = a * n0 - b * n1 - c * n2 + 1.0 / total
+            cross = (1.0 - c) * n2 - d * n0 - b * n1 + 1.0 / total
+            m22 = (1.0 - c) * o2 - d * (n0 + m02 - m00) - b * o1 + 1.0 / total
+            m00, m01, m02, m12 = bend, n1, cross, o1
+        if k:
+            reach, keep, _, _, _, fade = way[k - 1]
+            l0, l1, l2 = l0, reach * l0 + keep * l1, fade * l2
+            half = reach * m00 + keep * m01
+            m00, m01, m02, m11, m12, m22 = (
+                m00,
+                half,
+                fade * m02,
+                reach * half + keep * (reach * m01 + keep * m11),
+                fade * (reach * m02 + keep * m12),
+                fade * fade * m22,
+            )
+    means = np.array([mean for mean, _ in states])
+    covs = _matrices([cov for _, cov in states])
+    change = covs[:, :2] @ np.array(slopes[::-1])[:, :, None]
+    less = np.einsum("nij,njk,nik->ni", covs[:, :2], _matrices(bends[::-1]), covs[:, :2])
+    variance = covs[:, [0, 1], [0, 1]] - less
+    return means[:, :2] - change[..., 0], np.sqrt(np.maximum(variance, 0.0))
+
+
+def _matrices(triangles: Sequence[Cov]) -> Floats:
+    return np.asarray(np.array(triangles)[:, [[0, 1, 2], [1, 3, 4], [2, 4, 5]]])

@@ -1,0 +1,257 @@
+"""Where two paths come near enough for a hit: all that may have been one, in order of time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physics.local_fit.breaks import breaks
+from physics.local_fit.shot_fit import Meeting
+from physics.local_fit.traces import Trace
+
+Floats = NDArray[np.float64]
+
+REACH = 1.15
+"""Distance in units of 2R up to which two discs may touch (scale errors, covers, shape)."""
+
+TOUCHING = 1.02
+"""Distance in units of 2R up to which two discs touch, but for noise."""
+
+LITTLE = 0.25
+"""Time within which a hit shows in where a stone is, s, unless six sightings take longer."""
+
+LONG = 1.0
+"""Time within which it shows that a stone was hardly moved, s."""
+
+OUT_OF_SIGHT = 0.5
+"""Time out of sight, s, after which the sightings at its ends do not tell the way between them."""
+
+
+def candidates(known: Mapping[str, Trace], radius: float) -> list[Meeting]:
+    """Find where two paths come within reach of a contact, in order of time."""
+    moving = {name for name, path in known.items() if _extent(path) > 0.25 * radius}
+    paths = {name: known[name] for name in moving}
+    turns = {name: breaks(p.t, p.xy, p.sd, p.lasting) for name, p in paths.items()}
+    found: list[Meeting] = []
+    for first, second in combinations(sorted(known), 2):
+        if first in moving or second in moving:
+            found += _approaches(known[first], known[second], turns, radius)
+    found += _passed_on(found, known, radius)
+    return causal(sorted(found, key=lambda meeting: meeting.t), known)
+
+
+def _passed_on(
+    meetings: Sequence[Meeting], known: Mapping[str, Trace], radius: float
+) -> list[Meeting]:
+    """Give the meetings of stones that touch one that is hit, where there are none yet.
+
+    A hit goes on through a row of stones that touch, each of which may hardly move.
+    """
+    out: list[Meeting] = []
+    for meeting in (every := list(meetings)):
+        for stone in meeting.stones:
+            for other in sorted({*known} - {*meeting.stones}):
+                first, second = sorted((stone, other))
+                a, b = known[first], known[second]
+                t, gap = meeting.t, max(a.gap(meeting.t), b.gap(meeting.t))
+                told = any(m.stones == (first, second) and abs(m.t - t) < 3 * gap for m in every)
+                if told or not max(a.t[0], b.t[0]) < t < min(a.t[-1], b.t[-1]):
+                    continue
+                before = np.array([t - gap])
+                apart = float(np.hypot(*(_at(b, before) - _at(a, before))[0]))
+                noise = 3 * np.sqrt(np.mean(a.sd**2) + np.mean(b.sd**2))
+                if apart < TOUCHING * 2 * radius + noise and (
+                    moves(a, t, radius, LONG) and moves(b, t, radius, LONG)
+                ):
+                    every.append(Meeting(t + 0.01 * gap, (first, second), gap))
+                    out.append(every[-1])
+    return out
+
+
+def causal(meetings: Sequence[Meeting], known: Mapping[str, Trace]) -> list[Meeting]:
+    """Put the hits that set touching stones in motion, one after the other, before theirs.
+
+    Parameters
+    ----------
+    meetings : sequence of Meeting
+        In order of time.
+    known : mapping of str to Trace
+    """
+    times: dict[int, float] = {}
+    for k in range(len(meetings)):
+        if k in times:
+            continue
+        before = -np.inf
+        for j in _chain(meetings, k, known):
+            own = meetings[j]
+            times.setdefault(j, own.t if own.t > before else before + 0.01 * own.looseness)
+            before = times[j]
+    timed = [replace(meeting, t=times[k]) for k, meeting in enumerate(meetings)]
+    return sorted(timed, key=lambda meeting: meeting.t)
+
+
+def _chain(meetings: Sequence[Meeting], k: int, known: Mapping[str, Trace]) -> list[int]:
+    """Ranks of the meetings, of about the time of meeting k, that brought it about, and its own.
+
+    Those of its stones with others that came nearer; else from one whose stones did, hit by hit,
+    each of which sets a stone of the next in motion.
+    """
+    last = meetings[k]
+    if _closing(last, known, last.t) > 0:
+        return [k]
+    near: dict[tuple[str, str], int] = {}
+    for j, other in enumerate(meetings):
+        if abs(other.t - last.t) <= 2.5 * max(other.looseness, last.looseness):
+            near.setdefault(other.stones, j)
+    near.pop(last.stones, None)
+    led = [j for j in near.values() if _closing(meetings[j], known, last.t) > 0]
+    beside = [j for j in led if not {*meetings[j].stones}.isdisjoint(last.stones)]
+    if beside:
+        return [*beside, k]
+    chains, reached = [[j] for j in led], {*led}
+    for chain in chains:
+        stones = {*meetings[chain[-1]].stones}
+        if not stones.isdisjoint(last.stones):
+            return [*chain, k]
+        further = [j for pair, j in near.items() if j not in reached and stones & {*pair}]
+        chains += [[*chain, j] for j in further]
+        reached.update(further)
+    return [k]
+
+
+def _closing(meeting: Meeting, known: Mapping[str, Trace], time: float) -> float:
+    """How much nearer, m, a pair came over a few sightings before `time`; 0 if none for sure."""
+    first, second = (known[stone] for stone in meeting.stones)
+    step = max(first.step, second.step)
+    t = time - step * np.array([8.0, 7.0, 6.0, 3.0, 2.0, 1.0])
+    distance = np.hypot(*(_at(second, t) - _at(first, t)).T)
+    change = float(distance[:3].mean() - distance[3:].mean())
+    noise = np.sqrt(np.mean(first.sd**2) + np.mean(second.sd**2))
+    return change if change > 3 * noise else min(change, 0.0)
+
+
+def _extent(path: Trace) -> float:
+    """Size of the region that the middle 96 % of a path's places lie in, m."""
+    low, high = np.quantile(path.xy, [0.02, 0.98], axis=0)
+    return float(np.hypot(*(high - low)))
+
+
+def _approaches(
+    a: Trace, b: Trace, turns: Mapping[str, Sequence[float]], radius: float
+) -> list[Meeting]:
+    start, end = max(a.t[0], b.t[0]), min(a.t[-1], b.t[-1])
+    t = np.union1d(a.t, b.t)
+    t = t[(t >= start) & (t <= end)]
+    if len(t) < 3:
+        return []
+    apart = _at(b, t) - _at(a, t)
+    distance = np.hypot(apart[:, 0], apart[:, 1])
+    # Between two sightings they may have come closer by what they move in that time.
+    noise = 3 * np.sqrt(np.mean(a.sd**2) + np.mean(b.sd**2))
+    step = np.maximum(np.hypot(*np.diff(apart, axis=0).T) - noise, 0.0)
+    step = _over_gaps(a, b, t, step)
+    reach = REACH * 2 * radius + 0.6 * np.maximum(np.append(step, 0.0), np.append(0.0, step))
+    near = np.flatnonzero(distance < reach + noise / 3)
+    # One approach lasts until they are clearly out of reach of each other.
+    far = np.cumsum(distance > 1.1 * reach + noise)
+    out: list[Meeting] = []
+    for run in np.split(near, np.flatnonzero(np.diff(far[near])) + 1):
+        if not len(run):
+            continue
+        low, high = t[run[0]], t[run[-1]]
+        one, other = ([x for x in turns.get(p.stone, ()) if low <= x <= high] for p in (a, b))
+        times = _meeting_times(t, distance, run, noise, (one, other))
+        times = _where_seen(_where_seen(times, one, b), other, a)
+        for time in times:
+            if moves(a, time, radius) or moves(b, time, radius):
+                gap = max(a.gap(time), b.gap(time))
+                out.append(Meeting(time, (a.stone, b.stone), gap))
+    return out
+
+
+def _where_seen(times: list[float], turns: Sequence[float], hidden: Trace) -> list[float]:
+    """Give, for times while one stone is out of sight for long, those at which the other turned.
+
+    Of a stone out of sight no way is known: where two seem closest then is chance.
+    """
+    for turn in turns:
+        k = int(np.searchsorted(hidden.t, turn))
+        if 0 < k < len(hidden.t) and hidden.t[k] - hidden.t[k - 1] > OUT_OF_SIGHT:
+            low, high = hidden.t[k - 1], hidden.t[k] + 3 * hidden.step
+            times = [t for t in times if t in turns or not low < t < high] + [turn]
+    return sorted({*times})
+
+
+def _meeting_times(
+    t: Floats,
+    distance: Floats,
+    run: NDArray[np.int64],
+    noise: float,
+    turns: tuple[Sequence[float], Sequence[float]],
+) -> list[float]:
+    """List the times within one stretch of nearness at which the two may have met.
+
+    The closest approach; the first and the last moment that are as close as noise can tell, since
+    one may follow the other from there, or have touched it till then; and the times at which the
+    motion of both changed, since two may lie side by side for long. What is closest of a long
+    touch is chance.
+    """
+    k = int(run[np.argmin(distance[run])])
+    close = run[distance[run] < distance[k] + noise]
+    step = float(np.median(np.diff(t)))
+    closest = _vertex(t, distance, k)
+    further = [_vertex(t, distance, int(end)) for end in (close[0], close[-1]) if end]
+    times = [closest]
+    if t[close[-1]] - t[close[0]] > 3 * step:
+        times, further = [further[-1]], [*further[:-1], closest]
+    one, other = turns
+    further += [turn for turn in one if any(abs(turn - x) < 3 * step for x in other)]
+    for time in further:
+        if min(abs(time - x) for x in times) > 3 * step:
+            times.append(time)
+    return times
+
+
+def moves(path: Trace, time: float, radius: float, within: float = LITTLE) -> bool:
+    """Whether a stone is somewhere else soon after `time`, s, than before it."""
+    k = int(np.searchsorted(path.t, time))
+    few = max(6, round(within / path.step))
+    before, after = path.xy[max(k - few, 0) : max(k - 1, 1)], path.xy[k + 1 : k + few]
+    if not len(before) or not len(after):
+        return True
+    shift = float(np.hypot(*(after.mean(axis=0) - before.mean(axis=0))))
+    sd = float(np.mean(path.sd)) * np.sqrt(1 / len(before) + 1 / len(after))
+    return bool(shift > max(4 * sd, 0.02 * radius))
+
+
+def _at(path: Trace, t: Floats) -> Floats:
+    return np.column_stack([np.interp(t, path.t, path.xy[:, axis]) for axis in range(2)])
+
+
+def _over_gaps(a: Trace, b: Trace, t: Floats, step: Floats) -> Floats:
+    """Relative movement over the whole of the gap that each interval lies in."""
+    out = step.copy()
+    middle = 0.5 * (t[1:] + t[:-1])
+    for path in (a, b):
+        k = np.clip(np.searchsorted(path.t, middle), 1, len(path.t) - 1)
+        ratio = (path.t[k] - path.t[k - 1]) / (t[1:] - t[:-1])
+        out = np.maximum(out, step * ratio)
+    return out
+
+
+def _vertex(t: Floats, distance: Floats, k: int) -> float:
+    """Time of closest approach from lines through the two samples on either side of it."""
+    if 2 <= k < len(t) - 2:
+        for low in (k, k + 1):  # the last sample before the meeting is k - 1 or k
+            down = (distance[low - 1] - distance[low - 2]) / (t[low - 1] - t[low - 2])
+            up = (distance[low + 1] - distance[low]) / (t[low + 1] - t[low])
+            if down < 0 < up:
+                rise = distance[low] - up * t[low] - distance[low - 1] + down * t[low - 1]
+                cross = rise / (down - up)
+                if t[low - 1] <= cross <= t[low]:
+                    return float(cross)
+    return float(t[k])

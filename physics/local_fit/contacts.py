@@ -1,0 +1,244 @@
+"""Where two stones meet: hits told from near misses, timed to a fraction of a frame."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.tracks import Table
+from physics.local_fit.candidates import LONG, REACH, candidates, causal, moves
+from physics.local_fit.fit import fit_shot
+from physics.local_fit.segments import Piece, cut
+from physics.local_fit.shot_fit import Deceleration, Encounter, Meeting, ShotFit
+from physics.local_fit.side_by_side import worth_fitting
+from physics.local_fit.traces import Trace, traces
+
+Floats = NDArray[np.float64]
+
+SIGNIFICANT = 5.0
+"""Normalised impulse below which two stones have passed each other."""
+
+DISPLACED = 5 / 3
+"""How much more counts the only hit of a stone at rest that lies elsewhere afterwards."""
+
+MOST_PUSH = 3.0
+"""Most that a hit can change the relative speed of two stones, in closing speeds (1 + e)."""
+
+SHARE = 0.15
+"""Smallest part of the other's change of velocity that a stone must show in a hit."""
+
+FURTHER = 4
+"""How often hits that lie at the bounds of where they may are sought from there on."""
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A hit of two stones.
+
+    Attributes
+    ----------
+    t, stderr_t : float
+        Time of the contact and its standard error, s.
+    stones : tuple of two str
+        The one that was faster before the hit comes first.
+    normal : tuple of two float
+        Unit vector from the first stone's centre to the second's.
+    """
+
+    t: float
+    stderr_t: float
+    stones: tuple[str, str]
+    normal: tuple[float, float]
+
+
+def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
+    """Find the hits between the stones of a table of sightings.
+
+    Every approach of two stones to about 2R is a candidate. All are fitted at once as hits,
+    and the one whose impulse is least significant is struck off until all that are left
+    changed the motion of both their stones. Where several show no hit (of those between two
+    sightings none is seen by itself), one that pushes nothing goes first, and of these the pair
+    that lies farthest from touching. A pair hits again only after something else came between.
+
+    Parameters
+    ----------
+    sightings : Table
+        `data.tracks.SIGHTING_COLUMNS`.
+    radius : float
+        Of the discs, m.
+
+    Returns
+    -------
+    tuple of Contact
+        In order of time.
+    """
+    known = traces(sightings)
+    meetings = worth_fitting(candidates(known, radius), known)
+    cuts: dict[str, list[Piece]] = {}
+    ordered, beyond = False, FURTHER
+    while meetings:
+        pieces, cuts = cut_all(known, meetings, radius, cuts)
+        fit = fit_shot(known, pieces, meetings, radius, deceleration=Deceleration(0.0, 0.5, 0.5))
+        other = None if ordered else _other_order(fit, known)
+        if other is not None:
+            meetings, cuts, ordered = other, {}, True
+            continue
+        evidence = _once([_evidence(fit, k, known, radius) for k in range(len(meetings))], fit)
+        weakest = min(range(len(meetings)), key=evidence.__getitem__)
+        told = evidence[weakest].hit >= SIGNIFICANT
+        late = (_at_bounds(fit) if told else _ended(fit, weakest)) if beyond else set()
+        if told and not late:
+            return _contacts(fit)
+        if late:
+            meetings, beyond = _at_times(fit), beyond - 1
+            cuts = {name: run for name, run in cuts.items() if name not in late}
+            continue
+        struck = meetings[weakest]
+        meetings = [meeting for meeting in meetings if meeting is not struck]
+        cuts = {name: run for name, run in cuts.items() if name not in struck.stones}
+        cuts, ordered = _renumbered(cuts, weakest), False
+    return ()
+
+
+def _displaced(fit: ShotFit, k: int, known: Mapping[str, Trace], radius: float) -> bool:
+    """Whether a stone of meeting k that rested, and has no other, lies elsewhere afterwards."""
+    return any(
+        fit.pieces[fit.sides[k, stone][0]].rest
+        and sum(stone in meeting.stones for meeting in fit.meetings) == 1
+        and moves(known[stone], fit.time(k), radius, LONG)
+        for stone in fit.meetings[k].stones
+    )
+
+
+def _other_order(fit: ShotFit, known: Mapping[str, Trace]) -> list[Meeting] | None:
+    """Give the meetings of a fit at their times there in another order if cause asks for it."""
+    met = sorted(_at_times(fit), key=lambda meeting: meeting.t)
+    other = causal(met, known)
+    return other if [m.stones for m in other] != [m.stones for m in met] else None
+
+
+def _at_times(fit: ShotFit) -> list[Meeting]:
+    """Give the meetings of a fit at the times that it found."""
+    return [replace(m, t=fit.time(k)) for k, m in enumerate(fit.meetings)]
+
+
+def _at_bounds(fit: ShotFit) -> set[str]:
+    """Stones of the meetings that lie as far from where they were sought as they may."""
+    moved = [abs(fit.time(k) - m.t) / m.looseness for k, m in enumerate(fit.meetings)]
+    return {s for m, far in zip(fit.meetings, moved, strict=True) if far > 2.99 for s in m.stones}
+
+
+def _ended(fit: ShotFit, k: int) -> set[str]:
+    """Stones of meeting k if the fit has one at rest by then on the path that opens with it.
+
+    Who was hit moves. Of a stone at rest neither sightings nor momentum tell how fast it was, so
+    that its error is without bounds: the fit set out too far from where the hit is.
+    """
+    stones = fit.meetings[k].stones
+    at_rest = any(fit.stop(fit.sides[k, stone][1]) <= fit.time(k) for stone in stones)
+    return {*stones} if at_rest else set()
+
+
+def _renumbered(cuts: Mapping[str, list[Piece]], gone: int) -> dict[str, list[Piece]]:
+    """Close the gap that a struck-off meeting leaves in the ranks."""
+
+    def rank(k: int | None) -> int | None:
+        return k - 1 if k is not None and k > gone else k
+
+    return {
+        name: [replace(p, opens=rank(p.opens), closes=rank(p.closes)) for p in run]
+        for name, run in cuts.items()
+    }
+
+
+def cut_all(
+    known: Mapping[str, Trace],
+    meetings: Sequence[Meeting | Contact],
+    radius: float,
+    done: Mapping[str, list[Piece]] | None = None,
+) -> tuple[list[Piece], dict[str, list[Piece]]]:
+    """Cut the paths of all stones at their meetings; `done` holds those cut before."""
+    cuts = dict(done or {})
+    for name, path in known.items():
+        if name not in cuts:
+            hits = [(k, m.t) for k, m in enumerate(meetings) if name in m.stones]
+            cuts[name] = cut(path, sorted(hits, key=lambda hit: hit[1]), radius)
+    return [piece for name in known for piece in cuts[name]], cuts
+
+
+class _Evidence(NamedTuple):
+    """What speaks for a meeting, in the order in which it counts.
+
+    Attributes
+    ----------
+    hit : float
+        How many standard errors its impulse is away from none; 0 if it can be no hit as it is.
+    pushed : bool
+        Whether anything drove its stones apart.
+    near : float
+        Minus how far they are from touching, in units of 2R.
+    """
+
+    hit: float
+    pushed: bool
+    near: float
+
+
+def _evidence(fit: ShotFit, k: int, known: Mapping[str, Trace], radius: float) -> _Evidence:
+    """Tell what speaks for meeting k."""
+
+    def told(states: Sequence[Encounter]) -> Floats:
+        state = states[0]
+        change = state.after - state.before
+        first, second = change @ state.normal
+        closing = float((state.before[0] - state.before[1]) @ state.normal)
+        impulse = 0.5 * (change[1] - change[0])
+        return np.array([*impulse, second - first, -first, second, closing])
+
+    value, cov = fit.propagate([k], told)
+    impulse, push = value[:2], value[2:]
+    both = float(np.sqrt(impulse @ np.linalg.solve(cov[:2, :2] + 1e-12 * np.eye(2), impulse)))
+    error = np.sqrt(np.diag(cov)[2:])
+    state = fit.encounter(k)
+    away = abs(float(np.hypot(*(state.places[1] - state.places[0]))) / (2 * radius) - 1)
+    pushed = bool(push[0] >= 3 * error[0])
+    possible = pushed and away <= REACH - 1 and push[0] >= 0.2 * radius
+    possible &= bool(push[3] + 2 * error[3] >= push[0] / MOST_PUSH)
+    possible &= bool(np.min(push[1:3] + 2 * error[1:3]) >= SHARE * np.max(push[1:3]))
+    if _displaced(fit, k, known, radius):
+        both *= DISPLACED
+    return _Evidence(both if possible else 0.0, pushed, -away)
+
+
+def _once(evidence: Sequence[_Evidence], fit: ShotFit) -> list[_Evidence]:
+    """Let one hit be one meeting: of two without anything between them the weaker is none.
+
+    Stones that hit each other go apart, and ice does not bring them together again: before they
+    meet once more another hit, or a break, changes the way of either.
+    """
+    out = list(evidence)
+    for k, meeting in enumerate(fit.meetings):
+        since = {fit.pieces[fit.sides[k, stone][0]].opens for stone in meeting.stones}
+        before = since.pop()
+        if before is not None and not since:
+            weaker = min(before, k, key=evidence.__getitem__)
+            out[weaker] = evidence[weaker]._replace(hit=0.0)
+    return out
+
+
+def _contacts(fit: ShotFit) -> tuple[Contact, ...]:
+    out = []
+    for k, meeting in enumerate(fit.meetings):
+        state = fit.encounter(k)
+        first, second = meeting.stones
+        nx, ny = (float(value) for value in state.normal)
+        if np.hypot(*state.before[1]) > np.hypot(*state.before[0]):
+            first, second, nx, ny = second, first, -nx, -ny
+        at = 6 * len(fit.pieces) + k
+        stderr = float(np.sqrt(fit.cov[at, at]))
+        out.append(Contact(state.t, stderr, (first, second), (nx, ny)))
+    return tuple(sorted(out, key=lambda contact: contact.t))

@@ -1,0 +1,296 @@
+"""One least-squares fit of a whole shot, hit by hit joined.
+
+Between hits each stone moves with an acceleration that is mostly against its motion, and grows
+as a power of the speed that is lost, until it stops. At a hit the paths on either side meet, the
+centres are two radii apart, and the momentum of the two stones is the same before and after. All
+of this is nearly linear in the unknowns, so a few Gauss-Newton steps find it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physics.filter.slowing import LEAST, MOST, course, stop_after
+from physics.local_fit.fit_rules import meeting_rules, slowing
+from physics.local_fit.segments import Piece
+from physics.local_fit.set_out import line, origin
+from physics.local_fit.shot_fit import Deceleration, Meeting, ShotFit, unknowns_of
+from physics.local_fit.traces import Trace
+from physics.statistics.normal_equations import eliminated, inverse_of_blocks
+from physics.statistics.residuals import huber_weights, inflation
+
+Floats = NDArray[np.float64]
+
+STEPS, USUAL = 15, 8
+"""Most Gauss-Newton steps, and how many are whole: most fits settle in seven. Where a stone hardly
+moves its end goes to and fro from one whole step to the next, and half of them settle."""
+
+FARTHEST = 100.0
+"""Longest step of any state (SI units), so that a fit of nonsense ends."""
+
+FIXED = 1e-4
+"""How well a power that is not to be found is known."""
+
+STILL_SD = 1e-5
+"""How still a stone at rest lies, m/s and m/s²."""
+
+
+def fit_shot(
+    traces: Mapping[str, Trace],
+    pieces: Sequence[Piece],
+    meetings: Sequence[Meeting],
+    radius: float,
+    *,
+    masses: Mapping[str, float] | None = None,
+    deceleration: Deceleration | None = None,
+    momentum: bool = True,
+    still: Sequence[Floats] = (),
+    start: ShotFit | None = None,
+) -> ShotFit:
+    """Fit all pieces and the times of all meetings at once.
+
+    Parameters
+    ----------
+    traces : mapping
+        Stone to its sightings.
+    pieces : sequence of Piece
+        All pieces to fit; each meeting must open and close one of either stone.
+    meetings : sequence of Meeting
+        The hits, with starting values of their times.
+    radius : float
+        Of the discs, m.
+    masses : mapping, optional
+        Stone to mass in any unit; equal where absent.
+    deceleration : Deceleration, optional
+        Prior of the acceleration on each piece that moves.
+    momentum : bool
+        Whether each pair's momentum is held (otherwise only their paths are joined).
+    still : sequence of (n, 2) array
+        Normalised residuals of stones that never move, for how alike errors are in time.
+    start : ShotFit, optional
+        A fit of the same pieces and meetings to set out from.
+    """
+    solver = _Solver(
+        traces, pieces, meetings, radius, masses or {}, deceleration or Deceleration(), momentum
+    )
+    solver.still = [(residuals, 1) for residuals in still]
+    if start is not None:
+        solver.theta = start.theta.copy()
+    return solver.solve()
+
+
+class _Solver:
+    """Working state of one fit."""
+
+    def __init__(
+        self,
+        traces: Mapping[str, Trace],
+        pieces: Sequence[Piece],
+        meetings: Sequence[Meeting],
+        radius: float,
+        masses: Mapping[str, float],
+        deceleration: Deceleration,
+        momentum: bool,
+    ) -> None:
+        self.traces, self.pieces, self.meetings = traces, list(pieces), tuple(meetings)
+        self.radius, self.masses = radius, masses
+        self.prior, self.momentum = deceleration, momentum
+        self.still: list[tuple[Floats, int]] = []
+        self.inflation = 1.0
+        self.size = 7 * len(self.pieces) + len(self.meetings)
+        opened = {(p.opens, p.stone): i for i, p in enumerate(pieces) if p.opens is not None}
+        self.sides = {
+            (p.closes, p.stone): (i, opened[p.closes, p.stone])
+            for i, p in enumerate(pieces)
+            if p.closes is not None
+        }
+        self.further = np.zeros((len(self.pieces), 2, 8))
+        self.courses: dict[int, tuple[Floats, Floats, Floats]] = {}
+        self.blocks = self._blocks()
+        self.origins = np.array([origin(p, traces[p.stone], meetings) for p in pieces])
+        self.theta = np.zeros(self.size)
+        self.theta[len(self.theta) - len(self.pieces) :] = self.prior.fall
+        for k, meeting in enumerate(self.meetings):
+            self.theta[6 * len(self.pieces) + k] = meeting.t
+        for i, piece in enumerate(self.pieces):
+            states = self.theta[6 * i : 6 * i + 6].reshape(2, 3)
+            states[:, 0], states[:, 1] = line(piece, traces[piece.stone], self.origins[i])
+
+    def _blocks(self) -> list[NDArray[np.int64]]:
+        """Unknowns that depend on each other: pieces are tied to others by meetings alone."""
+        count = len(self.pieces)
+        group = np.arange(count + len(self.meetings))
+        for (k, _), pair in self.sides.items():
+            for rank in pair:
+                group[group == group[rank]] = group[count + k]
+        unknowns = np.concatenate([np.repeat(group[:count], 6), group[count:], group[:count]])
+        order = np.argsort(unknowns, kind="stable")
+        return np.split(order, np.flatnonzero(np.diff(unknowns[order])) + 1)
+
+    def solve(self) -> ShotFit:
+        first, last = 6 * len(self.pieces), self.size - len(self.pieces)
+        settled = False
+        for done in range(STEPS):
+            self._assign()
+            data, right = self._data()
+            rules, rules_right = self._rules()
+            cov = inverse_of_blocks(data + rules, self.blocks)
+            new = cov @ (right + rules_right)
+            step = new - self.theta
+            for k in range(len(self.meetings)):
+                step[first + k] = np.clip(step[first + k], *self._room(k))
+            step[:first] = np.clip(step[:first], -FARTHEST, FARTHEST)
+            step[last:] = np.clip(self.theta[last:] + step[last:], LEAST, MOST) - self.theta[last:]
+            scale = np.sqrt(np.maximum(np.diag(cov), 1e-24))
+            settled = bool(np.all(np.abs(step) < 0.02 * scale))
+            self.theta = self.theta + (0.5 if done >= USUAL else 1.0) * step
+            self.courses.clear()
+            self.inflation = self._excess(float(np.sum(cov * data)))
+            if settled:
+                break
+        return ShotFit(
+            tuple(self.pieces),
+            self.meetings,
+            self.theta,
+            cov * self.inflation,
+            self.origins,
+            self.inflation,
+            self.sides,
+        )
+
+    def _room(self, k: int) -> tuple[float, float]:
+        """Least and most that the time of meeting k may move in one step."""
+        meeting = self.meetings[k]
+        times = self.theta[6 * len(self.pieces) : self.size - len(self.pieces)]
+        loose = meeting.looseness
+        low = max(meeting.t - 3 * loose - times[k], -loose)
+        high = min(meeting.t + 3 * loose - times[k], loose)
+        for other, t in enumerate(times):
+            # Hits of one stone stay in their order.
+            if other != k and not set(self.meetings[other].stones).isdisjoint(meeting.stones):
+                if self.meetings[other].t <= meeting.t:
+                    low = max(low, 0.49 * (t - times[k]))
+                else:
+                    high = min(high, 0.49 * (t - times[k]))
+        return min(low, 0.0), max(high, 0.0)
+
+    def _assign(self) -> None:
+        """Give each sighting beside a hit to the side of it that it lies on."""
+        for (k, stone), (i, j) in self.sides.items():
+            t = self.theta[6 * len(self.pieces) + k]
+            both = np.concatenate([self.pieces[i].samples, self.pieces[j].samples])
+            early = self.traces[stone].t[both] < t
+            for rank, samples in ((i, both[early]), (j, both[~early])):
+                if len(samples) != len(self.pieces[rank].samples):
+                    self.pieces[rank] = replace(self.pieces[rank], samples=samples)
+                    self.courses.pop(rank, None)
+
+    def _motion(self, i: int) -> tuple[Floats, float]:
+        """State of a piece at its origin, shape (2, 3), and the power that slows it."""
+        own = self.theta[unknowns_of(i, len(self.pieces))]
+        return own[:6].reshape(2, 3), float(own[6])
+
+    def _course(self, i: int) -> tuple[Floats, Floats, Floats]:
+        """Give times of a piece's sightings from its origin, s, its places, their derivatives.
+
+        Times go on no more once it rests.
+        """
+        if i not in self.courses:
+            piece, (x, power) = self.pieces[i], self._motion(i)
+            tau = self.traces[piece.stone].t[piece.samples] - self.origins[i]
+            tau = np.minimum(tau, 0.0 if piece.rest else stop_after(x, power))
+            if piece.rest:
+                slopes = np.zeros((len(tau), 2, 7))
+                slopes[:, [0, 1], [0, 3]] = 1.0
+                self.courses[i] = tau, np.tile(x[:, 0], (len(tau), 1)), slopes
+            else:
+                self.courses[i] = tau, *course(x, tau, power)
+        return self.courses[i]
+
+    def _residuals(self, i: int) -> Floats:
+        piece = self.pieces[i]
+        trace, (tau, fitted, _) = self.traces[piece.stone], self._course(i)
+        drift = self.further[i] @ np.append(-self.theta[unknowns_of(i, len(self.pieces))], 1.0)
+        off = trace.xy[piece.samples] - fitted - tau[:, None] * drift
+        return np.asarray(off / trace.sd[piece.samples])
+
+    def _data(self) -> tuple[Floats, Floats]:
+        """Set up the normal equations of the sightings, outliers weighted down."""
+        normal, right = np.zeros((self.size, self.size)), np.zeros(self.size)
+        for i, piece in enumerate(self.pieces):
+            if not len(piece.samples):
+                continue
+            trace = self.traces[piece.stone]
+            own = unknowns_of(i, len(self.pieces))
+            weights = huber_weights(self._residuals(i)) / trace.sd[piece.samples] ** 2
+            normal[np.ix_(own, own)], right[own] = self._seen(i, weights)
+        return normal, right
+
+    def _seen(self, i: int, weights: Floats) -> tuple[Floats, Floats]:
+        """Set up the normal equations of one piece's sightings, of its own unknowns.
+
+        Two further unknowns are eliminated at once: what the sightings say of the velocity is
+        wrong by what they share, on either axis.
+        """
+        piece, own = self.pieces[i], self.theta[unknowns_of(i, len(self.pieces))]
+        places = self.traces[piece.stone].xy[piece.samples]
+        if piece.rest:
+            of_place, normal, right = [0, 3], np.zeros((7, 7)), np.zeros(7)
+            normal[of_place, of_place], right[of_place] = weights.sum(0), (weights * places).sum(0)
+            return normal, right
+        tau, fitted, slopes = self._course(i)
+        seen = places - fitted + slopes @ own
+        speed = float(np.hypot(own[1], own[4]))
+        shared = tau[:, None, None] * np.eye(2)
+        rows = np.concatenate([slopes, shared], axis=2).reshape(-1, 9)
+        full = rows.T @ (weights.reshape(-1, 1) * rows)
+        value = rows.T @ (weights * seen).ravel()
+        drift = speed * np.median(self.traces[piece.stone].sd_scale[piece.samples], axis=0)
+        known = drift**2 / self.inflation
+        normal, right, self.further[i] = eliminated(full, value, known)
+        return normal, right
+
+    def _rules(self) -> tuple[Floats, Floats]:
+        """Set up the normal equations of what is known besides the sightings."""
+        normal, right = np.zeros((self.size, self.size)), np.zeros(self.size)
+        first = 6 * len(self.pieces)
+        for i, piece in enumerate(self.pieces):
+            place, speed, change = ([6 * i + k, 6 * i + 3 + k] for k in range(3))
+            power = unknowns_of(i, len(self.pieces))[6]
+            known = max(self.prior.sd_fall, FIXED) ** -2
+            normal[power, power] += known
+            right[power] += known * self.prior.fall
+            normal[place, place] += 1e-8
+            if piece.rest:
+                normal[speed, speed] += STILL_SD**-2
+                normal[change, change] += STILL_SD**-2
+                continue
+            normal[speed, speed] += 1e-3
+            turn, mean = slowing(self.theta[speed], self.prior)
+            normal[np.ix_(change, change)] += turn
+            right[change] += turn @ mean
+        for k in range(len(self.meetings)):
+            meeting = self.meetings[k]
+            ranks = [self.sides[k, stone] for stone in meeting.stones]
+            masses = np.array([self.masses.get(stone, 1.0) for stone in meeting.stones])
+            rows, values, sd = meeting_rules(
+                self.theta, first + k, self.origins, meeting, ranks, self.radius,
+                masses if self.momentum else None,
+            )  # fmt: skip
+            weighted = rows / sd[:, None] ** 2
+            normal += weighted.T @ rows
+            right += weighted.T @ (rows @ self.theta - values)
+        return normal, right
+
+    def _excess(self, parameters: float) -> float:
+        """Factor for residuals larger than stated, and alike from frame to frame."""
+        runs = [
+            (self._residuals(i), 1 if piece.rest else 3)
+            for i, piece in enumerate(self.pieces)
+            if len(piece.samples)
+        ]
+        return inflation(runs, sum(run.size for run, _ in runs) - parameters, self.still)

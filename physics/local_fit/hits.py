@@ -1,0 +1,205 @@
+"""What a fit of the paths beside the hits says of each hit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.results import Collision, Estimate, MeasuredState
+from physics.local_fit.noise import Noise, noises
+from physics.local_fit.shot_fit import Encounter, ShotFit
+from physics.local_fit.spins import spins_at, stone_friction
+from physics.local_fit.traces import Trace
+
+Floats = NDArray[np.float64]
+
+WORST = 0.2
+"""Standard error of a restitution beyond which a hit is said to tell nothing."""
+
+LOST = 0.2
+"""Share of the momentum that no scale, mass or map of the ice is off by: if more of it is lost or
+won, beyond three standard errors, something else touched the stones."""
+
+
+@dataclass(frozen=True)
+class Discs:
+    """What the stones are: ``radius`` (m), ``masses`` (any unit), k in I = k m R²."""
+
+    radius: float
+    masses: Mapping[str, float]
+    inertia: float
+
+    def of(self, stones: tuple[str, str]) -> Floats:
+        """Masses of two stones; 1 where absent."""
+        return np.array([self.masses.get(stone, 1.0) for stone in stones])
+
+
+def measure_hits(
+    joint: ShotFit, apart: ShotFit, known: Mapping[str, Trace], discs: Discs
+) -> tuple[tuple[Collision, ...], Estimate]:
+    """Measure each hit of a fit, and the restitution of all together.
+
+    Parameters
+    ----------
+    joint, apart : ShotFit
+        The fit, with and without the momentum of each pair held.
+    known : mapping
+        Stone to its sightings.
+    discs : Discs
+        What the stones are.
+
+    Returns
+    -------
+    collisions : tuple of Collision
+        In the order of the fit's meetings.
+    restitution : Estimate
+        Pooled over the hits that tell it.
+    """
+    count = len(joint.meetings)
+    values, cov = joint.propagate(range(count), _restitutions)
+    each = [Estimate(values[k], float(np.sqrt(cov[k, k]))) for k in range(count)]
+    changes = [_momentum(apart, k, discs.of(apart.meetings[k].stones)) for k in range(count)]
+    notes = [_why_not(joint, k, known, each[k], changes[k]) for k in range(count)]
+    noise = noises(joint, known)
+    collisions = tuple(
+        _collision(joint, k, known, noise, discs, each[k], changes[k], notes[k])
+        for k in range(count)
+    )
+    usable = [k for k, note in enumerate(notes) if note is None]
+    return collisions, pooled(values[usable], cov[np.ix_(usable, usable)])
+
+
+def _collision(
+    joint: ShotFit,
+    k: int,
+    known: Mapping[str, Trace],
+    noise: Mapping[str, Noise],
+    discs: Discs,
+    restitution: Estimate,
+    momentum: Estimate,
+    note: str | None,
+) -> Collision:
+    first, second = joint.meetings[k].stones
+    state = joint.encounter(k)
+    mass = discs.of((first, second))
+    spins = spins_at(joint, k, known, noise, mass)
+    before, after = _states(joint, k, known, spins)
+    energy = [float(mass @ np.sum(speeds**2, axis=1)) for speeds in (state.before, state.after)]
+    rubbing, why = Estimate(), note
+    if note is None:
+        rubbing, why = stone_friction(joint, k, spins, discs.radius, discs.inertia)
+    at = 6 * len(joint.pieces) + k
+    nx, ny = (float(value) for value in state.normal)
+    return Collision(
+        t=state.t,
+        stderr_t=float(np.sqrt(joint.cov[at, at])),
+        stones=(first, second),
+        normal=(nx, ny),
+        restitution=restitution.value if note is None else None,
+        stderr=restitution.stderr if note is None else None,
+        before=before,
+        after=after,
+        momentum_residual=momentum.value,
+        stderr_momentum=momentum.stderr,
+        energy_lost=1 - energy[1] / energy[0] if energy[0] > 0 else None,
+        stone_friction=rubbing.value,
+        stderr_stone_friction=rubbing.stderr,
+        note=note,
+        note_stone_friction=why,
+    )
+
+
+def _states(
+    fit: ShotFit, k: int, known: Mapping[str, Trace], spins: Sequence[tuple[Estimate, Estimate]]
+) -> tuple[dict[str, MeasuredState], dict[str, MeasuredState]]:
+    """States of the two stones before and after hit k, by stone, with their errors."""
+
+    def flat(states: Sequence[Encounter]) -> Floats:
+        state = states[0]
+        return np.array([state.places, state.before, state.after]).ravel()
+
+    values, cov = fit.propagate([k], flat)
+    xy, *speeds = values.reshape(3, 2, 2)
+    spread, *errors = np.sqrt(np.diag(cov)).reshape(3, 2, 2)
+    out: tuple[dict[str, MeasuredState], dict[str, MeasuredState]] = ({}, {})
+    for i, stone in enumerate(fit.meetings[k].stones):
+        trace = known[stone]
+        # What all places near each other share is no scatter that the fit could see.
+        shared = trace.sd_place[np.argmin(np.abs(trace.t - fit.time(k)))]
+        place = (*xy[i].tolist(), *np.hypot(spread[i], shared).tolist())
+        for when, side in enumerate(out):
+            side[stone] = _state(place, speeds[when][i], errors[when][i], spins[i][when])
+    return out
+
+
+def _state(
+    place: tuple[float, float, float, float], speed: Floats, sd: Floats, spin: Estimate
+) -> MeasuredState:
+    (x, y, sd_x, sd_y), (vx, vy), (sd_vx, sd_vy) = place, speed.tolist(), sd.tolist()
+    return MeasuredState(x, y, vx, vy, spin.value, sd_x, sd_y, sd_vx, sd_vy, spin.stderr)
+
+
+def _restitutions(states: Sequence[Encounter]) -> Floats:
+    out = []
+    for state in states:
+        closing = (state.before[0] - state.before[1]) @ state.normal
+        leaving = (state.after[1] - state.after[0]) @ state.normal
+        out.append(leaving / closing)
+    return np.array(out)
+
+
+def _why_not(
+    fit: ShotFit, k: int, known: Mapping[str, Trace], restitution: Estimate, momentum: Estimate
+) -> str | None:
+    """Why a hit cannot tell its restitution; None where it can."""
+    stderr = np.nan if restitution.stderr is None else restitution.stderr
+    if stderr < WORST:
+        return _lost(momentum)
+    for stone in fit.meetings[k].stones:
+        for rank, when in zip(fit.sides[k, stone], ("before", "after"), strict=True):
+            seen = len(fit.pieces[rank].samples)
+            if seen < 4:
+                return f"restitution unknown: {stone} is seen {seen} times {when} it"
+    return f"restitution unknown: its standard error would be {stderr:.2g}"
+
+
+def _lost(momentum: Estimate) -> str | None:
+    """Say so where so much momentum is lost or won that not only the two stones touched."""
+    change, stderr = momentum.value, momentum.stderr
+    if change is None or stderr is None or change < max(LOST, 3 * stderr):
+        return None
+    off = f"{100 * change:.0f} % ± {100 * stderr:.0f} %"
+    return f"restitution unknown: momentum changes by {off}, something else touched the stones"
+
+
+def _momentum(fit: ShotFit, k: int, mass: Floats) -> Estimate:
+    """Relative change of momentum at hit k where it is not held, and its standard error."""
+
+    def change(states: Sequence[Encounter]) -> Floats:
+        out: Floats = mass @ (states[0].after - states[0].before)
+        return out
+
+    value, cov = fit.propagate([k], change)
+    total = float(np.hypot(*(mass @ fit.encounter(k).before)))
+    if total < 1e-6:
+        return Estimate()
+    return Estimate(float(np.hypot(*value)) / total, float(np.sqrt(np.trace(cov))) / total)
+
+
+def pooled(values: Floats, cov: Floats) -> Estimate:
+    """Weighted mean of correlated values; its error grows with their scatter (Birge ratio)."""
+    if not len(values):
+        return Estimate()
+    weights = np.linalg.solve(cov, np.ones(len(values)))
+    mean = float(weights @ values / weights.sum())
+    variance = 1 / float(weights.sum())
+    if len(values) > 1:
+        off = values - mean
+        free = len(values) - 1
+        ratio = float(off @ np.linalg.solve(cov, off)) / free
+        if ratio > 1 + np.sqrt(2 / free):  # some scatter is chance
+            variance *= ratio
+    return Estimate(mean, float(np.sqrt(variance)))

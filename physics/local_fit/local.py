@@ -1,0 +1,177 @@
+"""Restitution and friction from the paths on either side of the hits, never across them.
+
+Nothing is differentiated twice. See `physics.local_fit.fit` for the model.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from data.results import Collision, Estimate, Friction, Glide
+from data.sheet import GRAVITY, STONE
+from physics.local_fit.contacts import Contact, cut_all
+from physics.local_fit.fit import fit_shot
+from physics.local_fit.glides import free, measure_glides
+from physics.local_fit.hits import Discs, measure_hits, pooled
+from physics.local_fit.segments import Piece
+from physics.local_fit.shot_fit import Deceleration, Encounter, Meeting, ShotFit
+from physics.local_fit.traces import Trace, traces
+from physics.statistics.residuals import huber_weights
+
+Floats = NDArray[np.float64]
+
+UNEVEN = 0.025
+"""Difference of decelerations from glide to glide that is worth a word, m/s²: a quarter of them."""
+
+
+@dataclass(frozen=True)
+class Local:
+    """What the paths beside the hits say.
+
+    Attributes
+    ----------
+    restitution : Estimate
+        Pooled over all hits that tell it.
+    friction : Friction
+        Pooled over all glides.
+    collisions : tuple of Collision
+        In order of time.
+    glides : tuple of Glide
+        In order of stone and time.
+    friction_doubt : str or None
+        Why the friction could not be told, or what is odd about it.
+    warnings : tuple of str
+        What else could not be told and why; what does not agree.
+    fit : ShotFit or None
+        Of the paths; None where no stone moves.
+    known : mapping
+        Stone to its sightings.
+    """
+
+    restitution: Estimate = field(default_factory=Estimate)
+    friction: Friction = field(default_factory=Friction)
+    collisions: tuple[Collision, ...] = ()
+    glides: tuple[Glide, ...] = ()
+    friction_doubt: str | None = None
+    warnings: tuple[str, ...] = ()
+    fit: ShotFit | None = None
+    known: Mapping[str, Trace] = field(default_factory=dict)
+
+
+def estimate_locally(
+    sightings: pd.DataFrame,
+    contacts: Sequence[Contact],
+    *,
+    radius: float,
+    masses: Mapping[str, float] | None = None,
+    inertia: float = STONE.inertia,
+) -> Local:
+    """Estimate restitution and friction from the paths beside the hits.
+
+    Parameters are those of `physics.estimate.estimate`.
+    """
+    known = traces(sightings)
+    meetings = [
+        Meeting(c.t, c.stones, max(known[stone].gap(c.t) for stone in c.stones)) for c in contacts
+    ]
+    pieces, _ = cut_all(known, meetings, radius)
+    idle = [piece for piece in pieces if piece.rest and _alone(piece)]
+    still = [_scatter(known[piece.stone], piece) for piece in idle]
+    pieces = [piece for piece in pieces if not (piece.rest and _alone(piece))]
+    if not pieces:
+        return Local(warnings=("no stone moves: neither restitution nor friction",))
+
+    def fit(pieces: list[Piece], slowing: Deceleration, momentum: bool = True) -> ShotFit:
+        return fit_shot(
+            known, pieces, meetings, radius,
+            masses=masses, still=still, deceleration=slowing, momentum=momentum,
+        )  # fmt: skip
+
+    glides, friction, prior = measure_glides(fit(pieces, free(radius)), known, radius)
+    friction, doubt = _checked(friction, glides, prior)
+    if not meetings:
+        unseen = ("restitution: no hit seen",)
+        return Local(Estimate(), friction, (), glides, doubt, unseen, fit(pieces, prior), known)
+    joint = fit(pieces, prior)
+    discs = Discs(radius, masses or {}, inertia)
+    collisions, restitution = measure_hits(joint, fit(pieces, prior, momentum=False), known, discs)
+    warnings = [text for hit in collisions for text in _doubts(hit)] + _distances(joint, radius)
+    return Local(restitution, friction, collisions, glides, doubt, tuple(warnings), joint, known)
+
+
+def _checked(
+    friction: Friction, glides: Sequence[Glide], prior: Deceleration
+) -> tuple[Friction, str | None]:
+    """Return the friction of the glides if it can be one, and what is odd about it."""
+    value, stderr = friction.value, friction.stderr
+    if value is None or stderr is None:
+        return friction, "friction: no stone glides freely for long enough to tell it"
+    if value + 2 * stderr < 0:
+        return Friction(), (
+            f"friction: the stones gain speed (μ = {value:.3f} ± {stderr:.3f}), so these are no"
+            " free glides on level ice; not reported"
+        )
+    if value < 0:
+        return friction, (
+            f"friction: {value:.4f} ± {stderr:.4f}: too little is seen to tell it from none"
+        )
+    each = [glide.friction for glide in glides if glide.friction is not None]
+    uneven = max(UNEVEN, 0.3 * prior.mean)
+    if prior.along > uneven and GRAVITY * (max(each) - min(each)) > uneven:
+        return friction, (
+            f"friction differs from glide to glide ({min(each):.4f} to {max(each):.4f}):"
+            " it depends on speed or place, the value is a mean"
+        )
+    return friction, None
+
+
+def _doubts(hit: Collision) -> list[str]:
+    """Say what is missing or odd about a hit."""
+    name = f"hit of {hit.stones[0]} and {hit.stones[1]} at {hit.t:.2f} s"
+    out = [f"{name}: {hit.note}"] if hit.note else []
+    if hit.restitution and hit.stderr and hit.restitution > 1 + 2 * hit.stderr:
+        out.append(
+            f"{name}: restitution {hit.restitution:.3f} ± {hit.stderr:.3f} is more than 1, which"
+            " no hit gives: times or tracks are off, or something pushed a stone"
+        )
+    residual, stderr = hit.momentum_residual, hit.stderr_momentum
+    if hit.note is None and residual and stderr and residual > max(0.05, 3 * stderr):
+        out.append(
+            f"{name}: momentum changes by {100 * residual:.0f} % ± {100 * stderr:.0f} %:"
+            " scale, masses or tracks are off"
+        )
+    return out
+
+
+def _alone(piece: Piece) -> bool:
+    return piece.opens is None and piece.closes is None
+
+
+def _scatter(trace: Trace, piece: Piece) -> Floats:
+    """Normalised residuals of a stone at rest."""
+    xy = trace.xy[piece.samples]
+    out: Floats = (xy - np.median(xy, axis=0)) / trace.sd[piece.samples]
+    return out * huber_weights(out)
+
+
+def _distances(fit: ShotFit, radius: float) -> list[str]:
+    """Say so where hits happen at another distance than two radii."""
+
+    def ratios(states: Sequence[Encounter]) -> Floats:
+        return np.array([np.hypot(*(s.places[1] - s.places[0])) / (2 * radius) for s in states])
+
+    values, cov = fit.propagate(range(len(fit.meetings)), ratios)
+    mean = pooled(values, cov)
+    if mean.value is None or mean.stderr is None:
+        return []
+    if abs(mean.value - 1) < max(0.02, 2 * mean.stderr):
+        return []
+    return [
+        f"discs meet at {mean.value * 2 * radius:.4g} m where two radii are {2 * radius:.4g} m:"
+        " the scale or the radius is off"
+    ]

@@ -1,0 +1,236 @@
+"""How the sightings of a shot err: anew in each picture, and alike for a while.
+
+Light, shadow and where edges fall between pixels change slowly as a stone moves on. What the
+sightings differ by from a smooth motion tells both parts: neighbours scatter by the one, whole
+stretches by both. What lies farther out than either explains is taken for a worse sighting, if
+it is not so far that the filter refuses it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physics.filter.stretch import ANGLE_MEMORY, GATE, LOSS_SD, MOST_LOSS_SD, PLACE_MEMORY
+from physics.local_fit.shot_fit import ShotFit
+from physics.local_fit.traces import Trace, level, local_residuals
+
+Floats = NDArray[np.float64]
+
+FEWEST = 8
+"""Sightings in a row from which they say how they err."""
+
+FEW = 30
+"""Sightings of a stone whose scatter says as much of its errors as that of the others does."""
+
+STATED, OTHERS = 1.0, 4.0
+"""How many memories of sightings say as much of a stone's lasting errors as what is stated of them
+does, and as those of the others of its shot do."""
+
+WILD = 3.0
+"""Standard deviations beyond which a sighting is worse than it says."""
+
+WORSE = 2.0
+"""How many times as large as usual an error that lasts may be: what a sighting is worse than that,
+as one cut by the picture's edge, goes with it, and is no error of the next ones."""
+
+MOST = 60
+"""So many sightings of a stretch are enough to tell how much of a lasting error a fit takes."""
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Standard deviations of the sightings of one stone: x, y and θ, (n, 3) each.
+
+    ``white`` is of what is anew in each of them, ``slow`` of what lasts for a while.
+    """
+
+    white: Floats
+    slow: Floats
+
+
+@dataclass(frozen=True)
+class Run:
+    """Sightings of one stone in one stretch of smooth motion.
+
+    Attributes
+    ----------
+    stone : str
+        Whose.
+    samples : (n,) array of int
+        Which of its sightings.
+    t : (n,) array
+        Times, s.
+    off : (n,) array
+        What x, y or θ differ by from the motion, in their stated standard deviations.
+    free : float
+        How many numbers of the motion they tell.
+    """
+
+    stone: str
+    samples: NDArray[np.int64]
+    t: Floats
+    off: Floats
+    free: float
+
+
+def noises(fit: ShotFit, known: Mapping[str, Trace]) -> dict[str, Noise]:
+    """Tell how the sightings of each stone err.
+
+    What they state is taken for all of it; the scatter says how much of that is anew.
+
+    Parameters
+    ----------
+    fit : ShotFit
+        Of all pieces.
+    known : mapping
+        Stone to its sightings.
+
+    Returns
+    -------
+    dict of str to Noise
+        By stone.
+    """
+    each = [
+        _errors(list(_places(fit, known, 0)), known, PLACE_MEMORY),
+        _errors(list(_places(fit, known, 1)), known, PLACE_MEMORY),
+        _errors(list(_angles(fit, known)), known, ANGLE_MEMORY),
+    ]
+    out = {}
+    for name, trace in known.items():
+        stated = np.column_stack([trace.sd, trace.sd_theta])
+        white = np.column_stack([errors[name][0] for errors in each])
+        slow = np.array([errors[name][1] for errors in each])
+        out[name] = _noise(white * stated, slow * _filled(stated))
+    return out
+
+
+def _noise(white: Floats, slow: Floats) -> Noise:
+    """Let what few sightings are much worse by than the others be anew in them."""
+    lasting = np.minimum(slow, WORSE * np.median(slow, axis=0))
+    return Noise(np.sqrt(white**2 + slow**2 - lasting**2), lasting)
+
+
+def _filled(stated: Floats) -> Floats:
+    """Fill in what is usual where nothing is seen; 0 where nothing ever is."""
+    usual = np.zeros(stated.shape[1])
+    seen = np.isfinite(stated).any(0)
+    usual[seen] = np.nanmedian(stated[:, seen], axis=0)
+    return np.where(np.isfinite(stated), stated, usual)
+
+
+def _places(fit: ShotFit, known: Mapping[str, Trace], axis: int) -> Iterator[Run]:
+    """Places on one axis of each piece that moves against its fit."""
+    for i, piece in enumerate(fit.pieces):
+        trace, samples = known[piece.stone], piece.samples
+        if piece.rest or len(samples) < FEWEST:
+            continue
+        path = fit.places(i, trace.t[samples])[:, axis]
+        off = (trace.xy[samples, axis] - path) / trace.sd[samples, axis]
+        yield Run(piece.stone, samples, trace.t[samples], off, 3.0)
+
+
+def _angles(fit: ShotFit, known: Mapping[str, Trace]) -> Iterator[Run]:
+    """Angles of each piece that moves against a steady loss of spin, as large as ice takes it."""
+    for i, piece in enumerate(fit.pieces):
+        trace = known[piece.stone]
+        told = np.isfinite(trace.theta[piece.samples]) & (trace.t[piece.samples] < fit.stop(i))
+        samples = piece.samples[told]
+        if piece.rest or len(samples) < FEWEST:
+            continue
+        t, theta, sd = trace.t[samples], trace.theta[samples], trace.sd_theta[samples]
+        tau = t - t[0]
+        basis = np.stack([np.ones_like(tau), tau, 0.5 * tau * tau], axis=1)
+        # What bends more than a stone of that speed loses spin is an error, and one that lasts.
+        way = float(np.hypot(*(trace.xy[samples[-1]] - trace.xy[samples[0]])))
+        loss = min(LOSS_SD[1] * tau[-1] / max(way, 1e-6), MOST_LOSS_SD[1])
+        alike = max(1.0, 2 * ANGLE_MEMORY / float(np.median(np.diff(t))))
+        held = np.array([[0.0, 0.0, np.sqrt(alike) / loss]])
+        weight, off = 1 / sd, np.zeros_like(t)
+        for _ in range(4):  # what lies far off has less and less of a say
+            rows = np.concatenate([weight[:, None] * basis, held])
+            curve = np.linalg.lstsq(rows, np.append(weight * theta, 0.0), rcond=None)[0]
+            off = (theta - basis @ curve) / sd
+            weight = 1 / sd / np.maximum(np.abs(off) / (WILD * level(off[:, None]) + 1e-9), 1.0)
+        known_before = held @ np.linalg.inv(rows.T @ rows) @ held.T
+        yield Run(piece.stone, samples, t, off, 3.0 - float(known_before[0, 0]))
+
+
+def _errors(
+    runs: Sequence[Run], known: Mapping[str, Trace], memory: float
+) -> dict[str, tuple[Floats, float]]:
+    """By stone how large its sightings' errors are, anew and lasting, to what is stated."""
+    white = _whites(runs)
+    slow = _slows(runs, white, memory)
+    out = {}
+    for name, trace in known.items():
+        anew, lasting = white.get(name, white[""]), slow.get(name, slow[""])
+        each = np.full(len(trace.t), anew)
+        for run in (run for run in runs if run.stone == name):
+            far = np.abs(run.off) / np.hypot(anew, lasting)
+            each[run.samples] *= np.where(far**2 < GATE, np.maximum(far / WILD, 1.0) ** 2, 1.0)
+        out[name] = each, lasting
+    return out
+
+
+def _whites(runs: Sequence[Run]) -> dict[str, float]:
+    """Size of what is anew in each sighting, by stone, and of all under the name ""."""
+    scatter: dict[str, list[Floats]] = {}
+    for run in runs:
+        own = local_residuals(run.t, run.off[:, None])
+        for name in (run.stone, ""):
+            scatter.setdefault(name, []).append(own)
+    joined = {name: np.concatenate(each) for name, each in scatter.items()}
+    told = {name: each for name, each in joined.items() if len(each) >= FEWEST}
+    if not told:
+        return {"": 1.0}
+    square = {name: _square(each) for name, each in told.items()}
+    return {
+        name: float(np.sqrt((len(own) * square[name] + FEW * square[""]) / (len(own) + FEW)))
+        for name, own in told.items()
+    }
+
+
+def _square(scatter: Floats) -> float:
+    """Mean square of residuals, outliers held to `WILD` standard deviations."""
+    most = WILD * level(scatter)
+    return float(np.mean(np.clip(scatter, -most, most) ** 2))
+
+
+def _slows(runs: Sequence[Run], white: Mapping[str, float], memory: float) -> dict[str, float]:
+    """Size of lasting errors, by stone, and of all under the name "".
+
+    By what residuals are larger than their scatter, over how large those of a unit error would
+    be. A stone of which little is seen errs as the others of its shot, and a shot as is stated.
+    """
+    sums: dict[str, Floats] = {}
+    for run in runs:
+        size = white.get(run.stone, white[""])
+        usual = WILD * max(1.0, size, level(run.off[:, None]))
+        n = len(run.off)
+        excess = float(np.sum(np.clip(run.off, -usual, usual) ** 2)) - size**2 * (n - run.free)
+        unit = n * _left(run.t, memory)
+        weight = float(np.median(np.diff(run.t))) / memory
+        for name in (run.stone, ""):
+            stated = max(1.0 - white.get(name, white[""]) ** 2, 0.0)
+            prior = STATED * np.array([stated, 1.0])
+            sums[name] = sums.get(name, prior) + weight * np.array([excess, unit])
+    excess, unit = sums.pop("", np.array([0.0, 1.0]))
+    usual = max(excess / unit, 0.0)
+    held = {
+        name: max(excess + OTHERS * usual, 0.0) / (unit + OTHERS)
+        for name, (excess, unit) in sums.items()
+    }
+    return {name: float(np.sqrt(square)) for name, square in ({"": usual} | held).items()}
+
+
+def _left(t: Floats, memory: float) -> float:
+    """Share of the variance of a lasting error that a parabola fitted to it leaves."""
+    t = t[:: -(-len(t) // MOST)]
+    tau = (t - t[0]) / (t[-1] - t[0])
+    basis = np.linalg.qr(np.stack([np.ones_like(tau), tau, tau**2], axis=1))[0]
+    alike = np.exp(-np.abs(t[:, None] - t) / memory)
+    return 1.0 - float(np.einsum("ip,ij,jp", basis, alike, basis)) / len(t)

@@ -1,0 +1,249 @@
+"""Spins beside hits, from how hits change them: what one stone shows tells of the other's.
+
+In a hit both stones are rubbed by the same impulse at the same lever, so that the spins of equal
+stones change by the same amount (of others, as their masses have it), and that is as their
+velocities change along the line of the contact: an impulse that gives a disc Δv across the normal
+turns it by Δv / (k R) (Wang and Mason, 1992, J. Appl. Mech. 59, 635). Light on a turning cap and
+few pictures make spins err alike all the way from one hit to the next; what a hit tells of one end
+of that way thus mends all of it, as far as the ice leaves a spin as it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.sheet import STONE, curling_size
+from data.tracks import Columns
+from physics.filter.stretch import LOSS_SD, MEMORY, MOST_LOSS_SD
+from physics.local_fit.contacts import Contact
+
+Floats = NDArray[np.float64]
+
+NEAR = 0.1
+"""How far from a hit, s, states are those which the hit began or ended with: beside it rows may lie
+on its other side."""
+
+SLACK, UNLIKE, UNLIKE_STONES = 0.02, 0.2, 0.05
+"""How far from the same changes of spin are, rad/s, and as a share of them: of discs on tables
+nobody says here which is heavier, of stones how their mass is spread."""
+
+ASIDE = 0.007
+"""How far from its middle a disc is taken to be across the normal, besides what its places err by,
+a share of its radius: caps lie beside their stones' centres."""
+
+WILD = 3.0
+"""Standard errors beyond which a hit tells otherwise than what is seen, and is not heard."""
+
+
+End = tuple[str, int, bool]
+"""A stone, the rank of a hit of its own, and whether it is meant after that hit."""
+
+
+@dataclass(frozen=True)
+class _Way:
+    """A stone from one hit to the next: its table, its rows there, and those that tell its spin."""
+
+    table: Columns
+    rows: NDArray[np.intp]
+    told: NDArray[np.intp]
+
+    def spin_row(self, time: float) -> int:
+        """Row that tells the spin at a hit at either end of the way."""
+        return _best(self.table["t"], self.table["sd_omega"], self.told, time)
+
+    def state(self, time: float) -> tuple[Floats, Floats]:
+        """Velocity at a hit at either end of the way, m/s, and errors of it and of the place."""
+        t, x, y = (self.table[name] for name in ("t", "vx", "vy"))
+        v = np.stack([x, y], axis=1)
+        sd = np.stack([self.table[name] for name in ("sd_vx", "sd_vy", "sd_x", "sd_y")], axis=1)
+        row = _best(t, np.hypot(sd[:, 0], sd[:, 1]), self.rows, time)
+        inner = self.rows[np.abs(t[self.rows] - time) > abs(t[row] - time)]
+        if not len(inner):
+            return v[row], sd[row]
+        beyond = inner[np.abs(t[inner] - t[row]).argmin()]
+        slowing = (v[beyond] - v[row]) / (t[beyond] - t[row])
+        return v[row] + slowing * (time - t[row]), sd[row]
+
+    def alike(self, row: int) -> Floats:
+        """Covariance of the spins of the rows that tell one with that of one of them.
+
+        Spins of two rows differ by what the ice may do between them at most.
+        """
+        t, variance = self.table["t"][self.told], self.table["sd_omega"][self.told] ** 2
+        speed = np.hypot(self.table["vx"], self.table["vy"])[self.told]
+        loss = np.minimum(LOSS_SD[1] / np.maximum(speed, 1e-6), MOST_LOSS_SD[1]) ** 2 * MEMORY
+        so_far = np.concatenate([[0.0], np.cumsum(loss[:-1] * np.diff(t))])
+        at = int(np.searchsorted(self.told, row))
+        apart = np.abs(so_far - so_far[at])
+        most = np.sqrt(variance * variance[at])
+        return np.asarray(np.clip(0.5 * (variance + variance[at] - apart), 0.0, most))
+
+
+@dataclass(frozen=True)
+class _Side:
+    """A stone in a hit: its ways there and on, the numbers of its spins if told, and its mass."""
+
+    before: _Way
+    after: _Way
+    spin_before: int | None
+    spin_after: int | None
+    mass: float
+
+
+def _best(t: Floats, sd: Floats, rows: NDArray[np.intp], time: float) -> int:
+    """Give the row of least error near a time."""
+    away = np.abs(t[rows] - time)
+    near = rows[away <= max(NEAR, float(away.min()))]
+    return int(near[sd[near].argmin()])
+
+
+def share_spins(
+    tables: Mapping[str, Columns],
+    contacts: Sequence[Contact],
+    radius: float,
+    masses: Mapping[str, float] | None = None,
+) -> None:
+    """Improve spins by how hits change them, and their standard errors.
+
+    Parameters
+    ----------
+    tables : mapping
+        Stone to its rows of `data.tracks.TRACK_COLUMNS`; ``omega`` and ``sd_omega`` are changed.
+    contacts : sequence of Contact
+        The hits.
+    radius : float
+        Of the discs, m.
+    masses : mapping, optional
+        Stone to mass in any unit; 1 where absent.
+    """
+    masses = masses or {}
+    hits = {
+        stone: sorted((hit for hit in contacts if stone in hit.stones), key=lambda hit: hit.t)
+        for stone in tables
+    }
+    ways = {
+        (stone, k): way
+        for stone, own in hits.items()
+        for k, way in enumerate(_ways(tables[stone], [hit.t for hit in own]))
+    }
+    # The unknowns: the spin of each way at either hit, told by a row of it.
+    ends: list[tuple[_Way, int]] = []
+    number: dict[End, int] = {}
+    for (stone, k), way in ways.items():
+        for hit, late in ((k - 1, True), (k, False)):
+            if 0 <= hit < len(hits[stone]) and len(way.told):
+                number[stone, hit, late] = len(ends)
+                ends.append((way, way.spin_row(hits[stone][hit].t)))
+    if not ends:
+        return
+    before = np.array([way.table["omega"][row] for way, row in ends])
+    cov = np.zeros((len(ends), len(ends)))
+    for i, (way, row) in enumerate(ends):
+        like = way.alike(row)
+        for j, (other, there) in enumerate(ends):
+            if other is way:
+                cov[i, j] = like[np.searchsorted(way.told, there)]
+    mean, prior = before, np.diag(cov)
+    for met in sorted(contacts, key=lambda met: met.t):
+        sides = []
+        for stone in (stone for stone in met.stones if stone in hits):
+            k = hits[stone].index(met)
+            rows = [number.get((stone, k, late)) for late in (False, True)]
+            mass = masses.get(stone, 1.0)
+            sides.append(_Side(ways[stone, k], ways[stone, k + 1], rows[0], rows[1], mass))
+        for seen, value, sd in _tells(met, sides, mean, cov, radius):
+            off, spread = value - seen @ mean, float(seen @ cov @ seen) + sd**2
+            if off**2 < WILD**2 * spread:
+                gain = cov @ seen / spread
+                mean, cov = mean + gain * off, cov - np.outer(gain, seen @ cov)
+    _spread_out(ends, mean - before, prior, prior - np.diag(cov))
+
+
+def _ways(table: Columns, times: Sequence[float]) -> list[_Way]:
+    """Cut a stone's rows at its hits."""
+    part = np.searchsorted(np.array(times), table["t"], side="right")
+    moving = np.isfinite(table["sd_vx"])
+    told = np.isfinite(table["sd_omega"])
+    return [
+        _Way(table, np.flatnonzero((part == k) & moving), np.flatnonzero((part == k) & told))
+        for k in range(len(times) + 1)
+    ]
+
+
+def _tells(
+    hit: Contact, sides: Sequence[_Side], mean: Floats, cov: Floats, radius: float
+) -> Iterator[tuple[Floats, float, float]]:
+    """Give what a hit tells: a sum of spins by their weights, its value and standard error.
+
+    Changes of spin and of velocity are those of a stone of the mean mass of the two: such a one
+    turns by as much as the other.
+    """
+    if len(sides) < 2:
+        return
+    mean_mass = float(np.mean([side.mass for side in sides]))
+    unlike = UNLIKE_STONES if curling_size(radius) else UNLIKE
+    changes = []
+    for side in sides:
+        if side.spin_before is not None and side.spin_after is not None:
+            weights = np.zeros(len(mean))
+            share = side.mass / mean_mass
+            weights[side.spin_after], weights[side.spin_before] = share, -share
+            changes.append(weights)
+    if len(changes) == 2:
+        told = min(changes, key=lambda seen: float(seen @ cov @ seen))
+        yield changes[0] - changes[1], 0.0, float(np.hypot(SLACK, unlike * (told @ mean)))
+    rub = _rub(hit, sides, radius)
+    if changes and rub is not None:
+        yield changes[0], rub[0], float(np.hypot(rub[1], unlike * rub[0]))
+
+
+def _rub(hit: Contact, sides: Sequence[_Side], radius: float) -> tuple[float, float] | None:
+    """Change of spin that the velocities tell of, rad/s, and its standard error."""
+    ways = [way for side in sides for way in (side.before, side.after)]
+    if not all(len(way.rows) for way in ways):
+        return None
+    states = [way.state(hit.t) for way in ways]
+    v1, w1, v2, w2 = (velocity for velocity, _ in states)
+    normal = np.array(hit.normal)
+    tangent = np.array([-normal[1], normal[0]])
+    lever = STONE.inertia * radius
+    mass = np.array([side.mass for side in sides])
+    share = mass / mass.mean()
+    changes = share * np.array([(w1 - v1) @ tangent, (v2 - w2) @ tangent]) / lever
+    each = np.array([tangent**2 @ sd[:2] ** 2 for _, sd in states]) / lever**2
+    weight = 1 / np.maximum(share**2 * (each[::2] + each[1::2]), 1e-12)
+    # Where the normal is aslant, a part of the push is taken for a rub.
+    push = abs(float(share[1] * (w2 - v2) @ normal))
+    along = abs(float((v1 - v2) @ tangent))
+    aside = [hit.stderr_t * along, ASIDE * radius, ASIDE * radius]
+    aside += [float(np.sqrt(tangent**2 @ sd[2:] ** 2)) for _, sd in states[::2]]
+    slant = float(np.linalg.norm(aside)) / (2 * radius) * push / lever
+    error = float(np.hypot(np.sqrt(1 / weight.sum()), slant))
+    return float(weight @ changes / weight.sum()), error
+
+
+def _spread_out(
+    ends: Sequence[tuple[_Way, int]], change: Floats, prior: Floats, less: Floats
+) -> None:
+    """Change the spins of all rows by what was learned of that end of their way that is most like.
+
+    Parameters
+    ----------
+    ends : sequence of (_Way, int)
+    change, prior, less : ndarray, shape (n,)
+        By how much their spins changed, their variances before, and by how much these fell.
+    """
+    for way in {id(way): way for way, _ in ends}.values():
+        at = [i for i, (other, _) in enumerate(ends) if other is way]
+        like = np.array([way.alike(ends[i][1]) for i in at])
+        best = (like / np.sqrt(prior[at])[:, None]).argmax(0)
+        rows = np.arange(len(way.told))
+        omega, sd = way.table["omega"][way.told], way.table["sd_omega"][way.told]
+        gain = np.where(omega == 0, 0.0, like[best, rows] / prior[at][best])  # at rest it has none
+        way.table["omega"][way.told] = omega + gain * change[at][best]
+        variance = sd**2 - gain**2 * less[at][best]
+        way.table["sd_omega"][way.told] = np.sqrt(np.maximum(variance, 0.0))

@@ -1,0 +1,171 @@
+"""A fit of a whole shot as a value: the pieces' motions, the hits' times, their covariance."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physics.filter.slowing import course, motion, stop_after, velocities
+from physics.local_fit.segments import Piece
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Deceleration:
+    """Prior of the acceleration on one piece, m/s².
+
+    ``mean`` against the motion at 1 m/s with standard deviation ``along``; ``across`` it zero
+    mean. At other speeds it goes as their power -p, p being ``fall`` ± ``sd_fall``.
+    """
+
+    mean: float = 0.0
+    along: float = 1.0
+    across: float = 1.0
+    fall: float = 0.0
+    sd_fall: float = 0.0
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """A hit, or what may be one, as the fit needs it: time and its looseness, s; stones."""
+
+    t: float
+    stones: tuple[str, str]
+    looseness: float
+
+
+@dataclass(frozen=True)
+class Encounter:
+    """Places, and velocities before and after, of the two stones of a hit at its time."""
+
+    t: float
+    places: Floats
+    before: Floats
+    after: Floats
+
+    @property
+    def normal(self) -> Floats:
+        """Unit vector from the first stone to the second."""
+        apart = self.places[1] - self.places[0]
+        out: Floats = apart / np.hypot(*apart)
+        return out
+
+
+def unknowns_of(rank: int, pieces: int) -> NDArray[np.int64]:
+    """Where among the unknowns of a fit those of one of its pieces are: its state, its power."""
+    return np.append(np.arange(6 * rank, 6 * rank + 6), rank - pieces)
+
+
+@dataclass(frozen=True)
+class ShotFit:
+    """Result of `physics.local_fit.fit.fit_shot`.
+
+    Attributes
+    ----------
+    pieces : tuple of Piece
+        With the samples as assigned at the end.
+    meetings : tuple of Meeting
+        As given.
+    theta : (7 P + M,) array
+        Per piece x, vx, ax, y, vy, ay at `origins`; then the times of the meetings; then per
+        piece the power of its speed that slows it (`physics.filter.slowing`).
+    cov : (7 P + M, 7 P + M) array
+        Covariance, enlarged for residuals that are too big or alike from frame to frame.
+    origins : (P,) array
+        Time at which a piece's state is given, s.
+    inflation : float
+        Factor that `cov` was enlarged by.
+    sides : mapping
+        Rank of meeting and stone to the ranks of the pieces before and after.
+    """
+
+    pieces: tuple[Piece, ...]
+    meetings: tuple[Meeting, ...]
+    theta: Floats
+    cov: Floats
+    origins: Floats
+    inflation: float
+    sides: Mapping[tuple[int, str], tuple[int, int]]
+
+    def motion(self, rank: int, t: float, theta: Floats | None = None) -> tuple[Floats, Floats]:
+        """Place and velocity on piece `rank` at time t."""
+        values = self.theta if theta is None else theta
+        x = values[6 * rank : 6 * rank + 6].reshape(2, 3)
+        return motion(x, t - self.origins[rank], float(values[rank - len(self.pieces)]))
+
+    def places(self, rank: int, t: Floats) -> Floats:
+        """Places on piece `rank` at times t, shape (n, 2)."""
+        x = self.theta[6 * rank : 6 * rank + 6].reshape(2, 3)
+        return course(x, t - self.origins[rank], self.power(rank))[0]
+
+    def speeds(self, rank: int, t: Floats) -> Floats:
+        """Velocities on piece `rank` at times t, shape (n, 2)."""
+        x = self.theta[6 * rank : 6 * rank + 6].reshape(2, 3)
+        return velocities(x, t - self.origins[rank], self.power(rank))
+
+    def stop(self, rank: int) -> float:
+        """Time at which the stone of piece `rank` stops, s."""
+        x = self.theta[6 * rank : 6 * rank + 6].reshape(2, 3)
+        return float(self.origins[rank]) + stop_after(x, self.power(rank))
+
+    def power(self, rank: int) -> float:
+        """Power of its speed with which the stone of piece `rank` is slowed less."""
+        return float(self.theta[rank - len(self.pieces)])
+
+    def unknowns(self, rank: int) -> NDArray[np.int64]:
+        """Where in `theta` those of piece `rank` are: its state, then its power."""
+        return unknowns_of(rank, len(self.pieces))
+
+    def time(self, k: int, theta: Floats | None = None) -> float:
+        """Time of meeting k, s."""
+        values = self.theta if theta is None else theta
+        return float(values[6 * len(self.pieces) + k])
+
+    def encounter(self, k: int, theta: Floats | None = None) -> Encounter:
+        """State of the two stones at meeting k."""
+        t = self.time(k, theta)
+        places, before, after = [], [], []
+        for stone in self.meetings[k].stones:
+            first, second = self.sides[k, stone]
+            place, speed = self.motion(first, t, theta)
+            places.append(place)
+            before.append(speed)
+            after.append(self.motion(second, t, theta)[1])
+        return Encounter(t, np.array(places), np.array(before), np.array(after))
+
+    def propagate(
+        self, hits: Sequence[int], function: Callable[[Sequence[Encounter]], Floats]
+    ) -> tuple[Floats, Floats]:
+        """Value and covariance of a function of the states at some hits, to first order.
+
+        Parameters
+        ----------
+        hits : sequence of int
+            Ranks of the meetings whose encounters `function` takes.
+        function : callable
+            From the encounters to m numbers.
+
+        Returns
+        -------
+        value : (m,) array
+        cov : (m, m) array
+        """
+        ranks = sorted({r for k in hits for s in self.meetings[k].stones for r in self.sides[k, s]})
+        index = [6 * r + i for r in ranks for i in range(6)]
+        index += [6 * len(self.pieces) + k for k in hits]
+        index += [len(self.theta) - len(self.pieces) + r for r in ranks]
+        value = np.atleast_1d(function([self.encounter(k) for k in hits]))
+        slopes = np.zeros((len(value), len(index)))
+        for column, i in enumerate(index):
+            step = 0.01 * float(np.sqrt(max(self.cov[i, i], 1e-24)))
+            ends = []
+            for sign in (1.0, -1.0):
+                moved = self.theta.copy()
+                moved[i] += sign * step
+                ends.append(np.atleast_1d(function([self.encounter(k, moved) for k in hits])))
+            slopes[:, column] = (ends[0] - ends[1]) / (2 * step)
+        return value, slopes @ self.cov[np.ix_(index, index)] @ slopes.T

@@ -1,0 +1,60 @@
+"""Stones that go on side by side: which of many meetings left the ways of two as they were.
+
+Of stones that lie or go together every pair is near all the time, and may have met at any of many
+moments. To fit hundreds of such meetings takes minutes; to see that the one stone went on, as seen
+from the other, as it did before takes none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from physics.local_fit.shot_fit import Meeting
+from physics.local_fit.traces import Trace
+
+MANY = 24
+"""Meetings up to which all are fitted: of shots with three hits there are ten."""
+
+SPAN, FEWEST = 0.4, 8
+"""Time either side of a meeting within which a hit shows, s, unless as many sightings take more."""
+
+CHANGED = 14.0
+"""Squared normalised change of a relative velocity, two axes, below which it is none: chance, which
+brings stones near each other where noise does, leaves one in twenty as large."""
+
+
+def worth_fitting(meetings: Sequence[Meeting], known: Mapping[str, Trace]) -> list[Meeting]:
+    """Return all meetings if they are few, else those that changed how their stones move apart.
+
+    Parameters
+    ----------
+    meetings : sequence of Meeting
+        What may have been hits.
+    known : mapping of str to Trace
+    """
+    if len(meetings) <= MANY:
+        return list(meetings)
+    return [m for m in meetings if _change(m, known) > CHANGED]
+
+
+def _change(meeting: Meeting, known: Mapping[str, Trace]) -> float:
+    """Squared normalised change of a pair's relative velocity; 0 where too little is seen."""
+    one, other = (known[stone] for stone in meeting.stones)
+    span = max(SPAN, FEWEST * one.step, FEWEST * other.step)
+    near = one.between(meeting.t - span, meeting.t + span)
+    near &= (one.t >= other.t[0]) & (one.t <= other.t[-1])
+    t = one.t[near]
+    tau = t - meeting.t
+    if min((tau < 0).sum(), (tau > 0).sum()) < 3:
+        return 0.0
+    total = 0.0
+    for axis in range(2):
+        apart = np.interp(t, other.t, other.xy[:, axis]) - one.xy[near, axis]
+        sd = np.hypot(np.interp(t, other.t, other.sd[:, axis]), one.sd[near, axis])
+        basis = np.stack([np.ones_like(tau), tau, np.maximum(tau, 0.0)], axis=1) / sd[:, None]
+        cov = np.linalg.inv(basis.T @ basis)
+        change = float((cov @ (basis.T @ (apart / sd)))[2])
+        total += change**2 / float(cov[2, 2])
+    return total

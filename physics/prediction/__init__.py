@@ -1,0 +1,1 @@
+"""The shot again: as fitted, as predicted, and what if."""

@@ -1,0 +1,146 @@
+"""A shot as the fit of the whole of it has it, and what else it may have been."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields, replace
+from itertools import islice
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.errors import InputError
+from physics.impact import Impact
+from physics.prediction.spread import DRAWS, Doubt, drawn
+from physics.simulator.simulate import simulate
+from physics.simulator.simulation import Shot, StoneStart
+from physics.whole_shot.whole_fit import GlobalFit, draw_choices
+
+Floats = NDArray[np.float64]
+
+RULED_OUT = 20.0
+"""Sum of squares of a stone's way off the best fit, in errors of its places, beyond one for each
+of their numbers, that cannot be."""
+
+TRIES = 4
+"""Draws at most for each that is asked for."""
+
+
+@dataclass(frozen=True)
+class AsFitted:
+    """Shots that may have been one that was seen.
+
+    Attributes
+    ----------
+    start : float
+        Time in the clip at which they begin, s.
+    likely : Shot
+        The one that fits best.
+    others : sequence of Shot
+        Drawn from what its errors leave open.
+    """
+
+    start: float
+    likely: Shot
+    others: Sequence[Shot]
+
+    def by(self, impact: Impact) -> AsFitted:
+        """Return them with the hits of another model, with their own restitution and friction."""
+        others = [_hit_by(other, impact) for other in self.others]
+        return AsFitted(self.start, _hit_by(self.likely, impact), others)
+
+
+def by_itself(shot: Shot, doubt: Doubt, at: float, count: int = DRAWS) -> AsFitted:
+    """Return a shot that begins at a time, s, with laws and states drawn each by itself."""
+    rng = np.random.default_rng(0)
+    return AsFitted(at, shot, [drawn(shot, doubt, rng) for _ in range(count)])
+
+
+def as_fitted(fit: GlobalFit, shot: Shot, doubt: Doubt, at: float, count: int = DRAWS) -> AsFitted:
+    """Return a shot as the fit of the whole of it has it.
+
+    Other shots are drawn from the fits with all choices of laws, by their probabilities, the
+    unknowns of each together. Draws whose stones go elsewhere than they were seen are left out:
+    the errors are those of a linear fit, which knows nothing of hits that are missed, nor of the
+    friction at which stones begin to slide on each other.
+
+    Parameters
+    ----------
+    fit : GlobalFit
+        Of one shot.
+    shot : Shot
+        As it is otherwise known: stones of which the fit knows nothing, angles, spins after hits.
+    doubt : Doubt
+        The errors of that.
+    at : float
+        Time of `shot`, s.
+    count : int
+        Number of draws.
+
+    Raises
+    ------
+    InputError
+        Where it cannot be simulated.
+    """
+    rng = np.random.default_rng(0)
+    seen = fit.shots[0]
+    since = at - seen.start
+
+    def joined(other: Shot, own: GlobalFit, values: Floats) -> Shot:
+        whole = own.shots[0].shot(own.state(values=values))
+        known = {stone.name: stone for stone in whole.stones}
+        stones = tuple(_joined(stone, known.get(stone.name), since) for stone in other.stones)
+        return replace(whole, stones=stones)
+
+    likely = joined(shot, fit, fit.values)
+    run = simulate(likely, until=since)
+    turned = {stone.name: run.state(stone.name, since).theta for stone in shot.stones}
+    shot = replace(
+        shot, stones=tuple(replace(s, theta=2 * s.theta - turned[s.name]) for s in shot.stones)
+    )
+    possible = islice(_possible(fit, rng, TRIES * count), count)
+    others = [joined(drawn(shot, doubt, rng), own, values) for own, values in possible]
+    return AsFitted(seen.start, joined(shot, fit, fit.values), others)
+
+
+def _possible(
+    fit: GlobalFit, rng: np.random.Generator, tries: int
+) -> Iterator[tuple[GlobalFit, Floats]]:
+    """Draw laws and values of their unknowns, and give those that the sightings allow."""
+    best: dict[int, list[Floats]] = {}
+    for own, values in draw_choices(fit, tries, rng):
+        if id(own) not in best:
+            best[id(own)] = own.shots[0].residuals(own.simulation())
+        if _off(own, values, best[id(own)]) < RULED_OUT:
+            yield own, values
+
+
+def _off(fit: GlobalFit, values: Floats, best: Sequence[Floats]) -> float:
+    """Sum of squares, beyond one for each number, by which they move the stone they move most."""
+    seen = fit.shots[0]
+    try:
+        there = seen.residuals(seen.replay(fit.state(values=values)))
+    except InputError:
+        return np.inf
+    return max(
+        float(np.sum((now - then) ** 2 / (fit.inflation + (trace.sd_place / trace.sd) ** 2) - 1))
+        for now, then, trace in zip(there, best, seen.traces.values(), strict=True)
+    )
+
+
+def _joined(stone: StoneStart, own: StoneStart | None, since: float) -> StoneStart:
+    """Return a stone as it was a time before, s: as the fit has it, else on a straight way."""
+    if own is None:
+        return replace(stone, x=stone.x - since * stone.vx, y=stone.y - since * stone.vy)
+    return replace(own, theta=stone.theta, omega_after=stone.omega_after)
+
+
+def _hit_by(shot: Shot, impact: Impact) -> Shot:
+    """Return a shot with the hits of another model, its restitution and friction kept."""
+    own: dict[str, Any] = {}
+    for item in fields(impact):  # type: ignore[arg-type]
+        if hasattr(shot.impact, item.name):
+            own[item.name] = getattr(shot.impact, item.name)
+    own["restitution"] = min(own["restitution"], 1.0)
+    return replace(shot, impact=replace(impact, **own))  # type: ignore[type-var]

@@ -1,0 +1,265 @@
+"""The shot predicted: from sightings before its first hit alone, and what was known beforehand."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from data.errors import InputError
+from data.results import Estimate, Prediction
+from data.sheet import curling_size
+from physics.estimate import Estimates
+from physics.impact import Frictional, Impact, PointMass
+from physics.local_fit.contacts import cut_all
+from physics.local_fit.fit import fit_shot
+from physics.local_fit.glides import free
+from physics.local_fit.traces import traces
+from physics.prediction.hindcast import explained_until, score
+from physics.simulator.simulate import simulate
+from physics.whole_shot.law_choice import fit_with_chosen_laws
+from physics.whole_shot.shot_model import penner
+from physics.whole_shot.watched import LITERATURE, Priors, loose_priors, watch
+from physics.whole_shot.whole_fit import GlobalFit, draw_choices
+
+Floats = NDArray[np.float64]
+
+AFTER = 1.16
+"""Time after the first hit, s, at which the study of the 2018 Olympic final states its error."""
+
+DRAWS = 48
+"""Simulated shots from which the spread of the last places is taken."""
+
+MOST = {"restitution": 1.0, "stone_friction": 1.0, "size": 1.3}
+"""Bounds of what is drawn of the laws of hits, of which nothing is seen before one."""
+
+UNSURE = 3.0
+"""Odds up to which other laws of the ice are no reason to give up plainer ones."""
+
+ASSUMED = replace(LITERATURE, size=Estimate(1.0, 0.0))
+"""Laws of a shot of which nothing is known: those of the literature, and stones that meet at two
+radii."""
+
+
+def assumed(radius: float) -> Priors:
+    """Return laws of a shot of which nothing is known, for discs of a radius, m.
+
+    Curling ice has the friction of the literature; what else discs glide on may have any.
+    """
+    friction = ASSUMED.friction if curling_size(radius) else loose_priors(radius).friction
+    return replace(ASSUMED, friction=friction)
+
+
+def predict(
+    sightings: pd.DataFrame,
+    tracks: pd.DataFrame,
+    estimates: Estimates,
+    *,
+    radius: float,
+    masses: Mapping[str, float] | None = None,
+    laws: Priors = ASSUMED,
+) -> dict[str, Prediction]:
+    """Predict a shot from what was seen before its first hit and score it against the tracks.
+
+    The states and the laws of the ice come from a fit through the simulator to all sightings before
+    the hit, the laws of hits from what is assumed; of what follows nothing is used but to score
+    the outcome.
+
+    Parameters
+    ----------
+    sightings : DataFrame
+        `data.tracks.SIGHTING_COLUMNS`.
+    tracks : DataFrame
+        `data.tracks.TRACK_COLUMNS`, to score against.
+    estimates : Estimates
+        Of the same shot, for the time of its first hit.
+    radius : float
+        Of the discs, m.
+    masses : mapping, optional
+        Stone to mass in any unit; equal where absent.
+    laws : Priors
+        What is assumed of hits and ice, with standard errors; what has none is held.
+
+    Returns
+    -------
+    dict of str to Prediction
+        By impact model; empty where there is no hit to predict.
+    """
+    if not estimates.collisions:
+        return {}
+    first = min(hit.earliest for hit in estimates.collisions)
+    rigid = Prediction(None, note="needs spins after the hit, which only the shot itself tells")
+    fit = _before(sightings[sightings["t"] < first], radius, masses or {}, laws)
+    if fit is None:
+        note = "too little is seen before the first hit"
+        return {name: Prediction(None, note=note) for name in ("point-mass", "frictional")}
+    out = {}
+    for name in ("point-mass", "frictional"):
+        try:
+            out[name] = _scored(fit, name, tracks, estimates, first, laws)
+        except InputError as error:
+            out[name] = Prediction(None, note=f"cannot be simulated: {error}")
+    return {"point-mass": out["point-mass"], "rigid-body": rigid, "frictional": out["frictional"]}
+
+
+def _before(
+    sightings: pd.DataFrame, radius: float, masses: Mapping[str, float], laws: Priors
+) -> GlobalFit | None:
+    """Fit the states of all stones to what was seen before the hit; None where none moves.
+
+    Of a stone that something else than ice has moved, as a hand does, to what was seen since.
+    What is assumed of the ice is known beforehand but not held: where it is wrong, it would draw
+    places and velocities aside.
+    """
+    known = traces(sightings)
+    pieces, _ = cut_all(known, (), radius)
+    if not pieces:
+        return None
+    loose = fit_shot(known, pieces, (), radius, deceleration=free(radius), masses=masses)
+    moving = {piece.stone for piece in pieces if not piece.rest}
+    watched = watch(
+        known, loose, radius, priors=laws, masses=masses, bystanders=sorted({*known} - moving)
+    )
+    if watched is None:
+        return None
+    moved = {
+        name: float(trace.t[-1])
+        for name, trace in watched.traces.items()
+        if len(trace.t) < len(known[name].t)
+    }
+    if moved:
+        since = sightings["stone"].map(moved).fillna(-np.inf).astype(float)
+        return _before(sightings[sightings["t"] > since], radius, masses, laws)
+    held = {
+        name: law.value or 0.0 for name, law in vars(laws).items() if name in MOST or not law.stderr
+    }
+    return fit_with_chosen_laws(watched, held)
+
+
+def _scored(
+    fit: GlobalFit,
+    model: str,
+    tracks: pd.DataFrame,
+    estimates: Estimates,
+    first: float,
+    laws: Priors,
+) -> Prediction:
+    clock = tracks.groupby("frame", sort=True)["t"].first()
+    clock = clock[clock >= first]
+    if clock.empty:
+        return Prediction(None, note="nothing is seen after the first hit")
+    table = _likely(fit, laws, model, first, clock.to_numpy(float))
+    table["frame"] = clock.index.to_numpy()[table["frame"].to_numpy()]
+    found = score(tracks, table, first, explained_until(tracks, estimates, first), None)
+    soon, last = _spreads(fit, laws, model, first, (first + AFTER, float(clock.iloc[-1])))
+    after = _errors_at(tracks, table, first + AFTER, found.rest_error)
+    return Prediction(
+        found.rmse,
+        found.rest_error,
+        {name: last[name] for name in found.rest_error if name in last},
+        laws.restitution,
+        laws.friction,
+        found.note,
+        after,
+        {name: soon[name] for name, off in after.items() if off is not None and name in soon},
+    )
+
+
+def _errors_at(
+    tracks: pd.DataFrame, predicted: pd.DataFrame, time: float, stones: Iterable[str]
+) -> dict[str, float | None]:
+    """Distance between predicted and measured places of stones at a time, m; None if unseen."""
+    out: dict[str, float | None] = {}
+    for stone in stones:
+        places = []
+        for table in (tracks, predicted):
+            own = table[table["stone"] == stone]
+            t = own["t"].to_numpy(float)
+            if not len(t) or not t[0] <= time <= t[-1]:
+                break
+            places.append([np.interp(time, t, own[axis].to_numpy(float)) for axis in "xy"])
+        out[stone] = None
+        if len(places) == 2:
+            out[stone] = math.dist(*places)
+    return out
+
+
+def _likely(fit: GlobalFit, laws: Priors, model: str, first: float, times: Floats) -> pd.DataFrame:
+    """Simulate the shot with what is assumed of hits, and the plainest laws of the ice that may be.
+
+    Those are the ones of fewest unknowns that `UNSURE` allows; Penner's, which has as few as
+    constant friction, comes after it.
+    """
+    most = max((weight for weight, _ in fit.choices), default=0.0)
+    may_be = [own for weight, own in fit.choices if UNSURE * weight >= most] or [fit]
+    plain = min(may_be, key=lambda own: (len(own.names), own.shots[0].ice is penner))
+    hits = {name: getattr(laws, name).value or 0.0 for name in MOST}
+    return _sampled(plain, plain.state(), hits, model, first, times)
+
+
+def _sampled(
+    fit: GlobalFit,
+    values: Mapping[str, float],
+    laws: Mapping[str, float],
+    model: str,
+    first: float,
+    times: Floats,
+) -> pd.DataFrame:
+    """Simulate a shot as fitted, its hits by given laws, at some times after the first."""
+    seen = fit.shots[0]
+    approach = seen.shot(values)
+    run = simulate(approach, until=first - seen.start)
+    # The stones may meet a little sooner than they were seen to.
+    lasts = min([first - seen.start, *(hit.t for hit in run.hits[:1])])
+    stones = []
+    for stone in approach.stones:
+        now = run.paths[stone.name][0].at(lasts)
+        stones.append(
+            replace(stone, x=now.x, y=now.y, vx=now.vx, vy=now.vy, omega=now.omega, theta=now.theta)
+        )
+    onward = seen.shot({**values, **laws})
+    impact: Impact = PointMass(laws["restitution"])
+    if model == "frictional":
+        impact = Frictional(laws["restitution"], laws["stone_friction"], seen.inertia)
+    since = times - seen.start - lasts
+    rest = simulate(replace(onward, stones=tuple(stones), impact=impact), until=float(since[-1]))
+    table = rest.sample(since)
+    table["t"] += seen.start + lasts
+    return table
+
+
+def _spreads(
+    fit: GlobalFit, laws: Priors, model: str, first: float, times: Sequence[float]
+) -> list[dict[str, float]]:
+    """Tell how far each stone's place may be off at some times, both axes together, m.
+
+    It is the root mean square distance from the likeliest place over draws of what is not known of
+    states and laws.
+    """
+    rng = np.random.default_rng(0)
+    places: list[dict[str, list[Floats]]] = [{} for _ in times]
+    until = np.unique(times)
+    runs = [_likely(fit, laws, model, first, until)]
+    for own, row in draw_choices(fit, DRAWS, rng):
+        drawn = {}
+        for name, most in MOST.items():
+            law: Estimate = getattr(laws, name)
+            value = rng.normal(law.value or 0.0, law.stderr or 0.0)
+            drawn[name] = float(np.clip(value, 1e-5, most))
+        runs.append(_sampled(own, own.state(values=row), drawn, model, first, until))
+    for table in runs:
+        for found, rank in zip(places, np.searchsorted(until, times).tolist(), strict=True):
+            now = table[table["frame"] == rank]
+            for stone, xy in zip(now["stone"], now[["x", "y"]].to_numpy(float), strict=True):
+                found.setdefault(str(stone), []).append(xy)
+    return [
+        {
+            name: float(np.sqrt(np.mean(np.sum((np.array(xy[1:]) - xy[0]) ** 2, axis=1))))
+            for name, xy in found.items()
+        }
+        for found in places
+    ]

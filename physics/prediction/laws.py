@@ -1,0 +1,173 @@
+"""The laws that a measured shot is simulated with: what it tells of them, else what is assumed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from data.results import Collision, Estimate, Friction, Joint, Results
+from data.sheet import curling_size
+from physics.curl import Curl, FCV1Curl, NoCurl
+from physics.estimate import Estimates
+from physics.ice import Constant, Fit, IceLaw
+from physics.whole_shot.watched import FRICTION, LITERATURE, RESTITUTION, STONE_FRICTION, Priors
+
+UNSCALED = Estimate(1.0, 0.0)
+"""Stones that meet at two radii."""
+
+LEAST_FRICTION = 1e-6
+"""Friction of ice that slows no stone: a law needs some."""
+
+
+@dataclass(frozen=True)
+class Scaled:
+    """A law of the ice with all its friction multiplied by a factor."""
+
+    law: IceLaw
+    factor: float
+
+    @property
+    def name(self) -> str:
+        """Name of the law."""
+        return self.law.name
+
+    def deceleration(self, speed: ArrayLike) -> NDArray[np.float64]:
+        """Deceleration, m/s²."""
+        return np.asarray(self.factor * self.law.deceleration(speed))
+
+
+@dataclass(frozen=True)
+class Laws:
+    """Laws of a shot, each with its standard error.
+
+    Attributes
+    ----------
+    restitution, stone_friction : Estimate
+        Of the hits; always with a value.
+    ice : IceLaw
+        The ice.
+    sd_friction : float
+        Standard error of its friction, as a part of it.
+    curl : FCV1Curl or NoCurl
+        Turn of the paths; none for discs that are no curling stones.
+    sd_turn : float
+        Standard error of the turn at 1 m/s, rad/s; 0 where no curl shows.
+    size : Estimate
+        Distance of two stones' centres as they hit each other over two radii: what the scale of
+        the tracks and their radius make of it.
+    assumed : mapping of str to str
+        ``restitution``, ``stone_friction`` or ``friction`` to what was assumed of it, where the
+        shot does not tell.
+    """
+
+    restitution: Estimate
+    stone_friction: Estimate
+    ice: IceLaw
+    sd_friction: float
+    curl: Curl
+    sd_turn: float = 0.0
+    size: Estimate = UNSCALED
+    assumed: Mapping[str, str] = field(default_factory=dict)
+
+
+def measured_laws(shot: Estimates | Results, radius: float) -> Laws:
+    """Return the laws of a measured shot of discs with that radius, m."""
+    assumed: dict[str, str] = {}
+    restitution = shot.restitution
+    if restitution.value is None:
+        restitution = LITERATURE.restitution
+        assumed["restitution"] = f"restitution not measured, {RESTITUTION} assumed"
+    e = min(max(restitution.value or 0.0, 0.0), 1.0)
+    rubbing = between_stones(shot.laws, shot.collisions)
+    if rubbing.value is None:
+        least = max([STONE_FRICTION, *map(_rub, shot.collisions)])
+        how = "at least about" if least > STONE_FRICTION else "assumed to be"
+        assumed["stone_friction"] = f"friction between the stones {how} {least:.2g}"
+        # Hits that do not tell it hardly depend on it.
+        doubt = 0.0 if shot.collisions else LITERATURE.stone_friction.stderr
+        rubbing = Estimate(least, doubt)
+    ice, sd_friction = _ice(shot.friction, assumed)
+    curling = curling_size(radius)
+    return Laws(
+        Estimate(e, restitution.stderr),
+        Estimate(max(rubbing.value or 0.0, 0.0), rubbing.stderr),
+        ice,
+        sd_friction,
+        FCV1Curl(turn=shot.curl.value or 0.0) if curling else NoCurl(),
+        (shot.curl.stderr or 0.0) if curling else 0.0,
+        _of(shot.laws, "size") or UNSCALED,
+        assumed,
+    )
+
+
+def measured_priors(shot: Estimates, radius: float) -> Priors:
+    """Return the laws of a measured shot as what is known of them before it is seen again.
+
+    How friction falls and paths curl is as the fit of the whole shot has it, else as on any ice.
+    """
+    laws = measured_laws(shot, radius)
+    friction = Estimate(shot.friction.value, shot.friction.stderr)
+    if friction.value is None:
+        friction = LITERATURE.friction
+    known = Priors(laws.restitution, laws.stone_friction, friction, laws.size)
+    whole = shot.whole
+    if whole is None:
+        return known
+    shape = {name: Estimate(whole[name].value, 0.0) for name in ("slope", "v_c", "turn")}
+    return replace(known, **shape)
+
+
+def between_stones(laws: Joint | None, collisions: Sequence[Collision]) -> Estimate:
+    """Friction between the stones: of the whole shot if it tells it, else of its hits."""
+    whole = _of(laws, "stone_friction")
+    if whole is not None:
+        return whole
+    told = [
+        (hit.stone_friction, hit.stderr_stone_friction)
+        for hit in collisions
+        if hit.stone_friction is not None and hit.stderr_stone_friction
+    ]
+    if not told:
+        return Estimate()
+    values, errors = np.array(told, float).T
+    weights = errors**-2
+    return Estimate(float(weights @ values / weights.sum()), float(weights.sum() ** -0.5))
+
+
+def _of(laws: Joint | None, name: str) -> Estimate | None:
+    """One of the laws of a whole shot, None where it does not tell it."""
+    if laws is None or name not in laws.names:
+        return None
+    k = laws.names.index(name)
+    return Estimate(laws.values[k], float(np.sqrt(laws.cov[k][k])))
+
+
+def _ice(friction: Friction, assumed: dict[str, str]) -> tuple[IceLaw, float]:
+    """Return the law of the ice and the relative error of its friction."""
+    if friction.value is None:
+        assumed["friction"] = f"friction not measured, {FRICTION} assumed"
+        return Constant(FRICTION), (LITERATURE.friction.stderr or 0.0) / FRICTION
+    if friction.value <= 0:
+        assumed["friction"] = f"friction came out as {friction.value:.4f}, 0 used"
+        return Constant(LEAST_FRICTION), 0.0
+    sd = (friction.stderr or 0.0) / friction.value
+    a, v_c, b = friction.a, friction.v_c, friction.b
+    if friction.law == "fit" and a is not None and v_c is not None and b is not None:
+        return Fit(a, v_c, b), sd
+    return Constant(friction.value), sd
+
+
+def _rub(hit: Collision) -> float:
+    """Tangential over normal impulse of a hit: the friction between the stones is no less.
+
+    Where they stop sliding on each other before they part, any greater friction does the same.
+    """
+    first, second = hit.stones
+    (a, b), (c, d) = ((s[first], s[second]) for s in (hit.before, hit.after))
+    jump = (d.vx - b.vx - c.vx + a.vx, d.vy - b.vy - c.vy + a.vy)
+    push = jump[0] * hit.normal[0] + jump[1] * hit.normal[1]
+    rub = jump[1] * hit.normal[0] - jump[0] * hit.normal[1]
+    return abs(rub / push) if hit.note is None and push > 0 else 0.0

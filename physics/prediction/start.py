@@ -1,0 +1,230 @@
+"""The measured shot as it stood just before its first hit, with what is not known of it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from data.errors import InputError
+from data.results import Results
+from data.sheet import SHEET, STONE, curling_size
+from physics.curl import NoCurl
+from physics.ice import IceLaw
+from physics.impact import Frictional
+from physics.local_fit.traces import alike
+from physics.prediction.laws import measured_laws
+from physics.simulator.bounds import Bounds
+from physics.simulator.curve import Curve, curve_for
+from physics.simulator.motion import Motion, Path
+from physics.simulator.simulation import Shot, StoneStart
+from physics.whole_shot.shot_model import STATE
+
+Array = NDArray[np.float64]
+
+BACK = 1.0
+"""How far the thrown stone is taken back from its first hit, m, to have room for changes."""
+HOG_TO_TEE = SHEET.far_tee - SHEET.hog_line
+"""From the hog line where the stone is let go to the tee, m."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """A shot before its first hit.
+
+    Attributes
+    ----------
+    shot : Shot
+        The stones and the laws.
+    thrown : int
+        Rank of the thrown stone.
+    sd : ndarray, shape (stones, 5)
+        Standard errors of x, y, vx, vy, omega of each stone, without what places share.
+    together : ndarray, shape (stones, stones)
+        Covariance of what the places of the stones share, m², on either axis.
+    sd_restitution, sd_stone_friction, sd_friction, sd_turn, sd_size : float
+        Standard errors of restitution, of the friction between stones, of the ice's friction
+        relative to it, of the turn of the paths at 1 m/s, rad/s, and of the distance at which
+        stones meet, relative to it.
+    release : float
+        Distance that the thrown stone has come since it was let go, m.
+    assumed : tuple of str
+        What had to be assumed.
+    """
+
+    shot: Shot
+    thrown: int
+    sd: Array
+    together: Array
+    sd_restitution: float = 0.0
+    sd_stone_friction: float = 0.0
+    sd_friction: float = 0.0
+    sd_turn: float = 0.0
+    sd_size: float = 0.0
+    release: float = 0.0
+    assumed: tuple[str, ...] = ()
+
+
+def written_start(shot: Shot) -> Start:
+    """Return a shot written by hand: known exactly, let go where it begins."""
+    count = len(shot.stones)
+    return Start(
+        shot, _fastest(shot.stones), np.zeros((count, len(STATE))), np.zeros((count, count))
+    )
+
+
+def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
+    """Return a measured shot as it stood just before its first hit.
+
+    Parameters
+    ----------
+    tracks : DataFrame
+        `data.tracks.TRACK_COLUMNS`, as written beside the results.
+    results : Results
+        Of the same shot.
+
+    Returns
+    -------
+    Start
+        The thrown stone, the fastest, is taken back by `BACK` on its way, or less where
+        another stone lies in it or moves too. If it is a curling stone, it is let go at the
+        hog line, and stones that leave the sheet are taken away.
+
+    Raises
+    ------
+    InputError
+        Where no stone moves.
+    """
+    laws = measured_laws(results, results.radius)
+    time = _time(tracks, results)
+    rows = [_row(group, time, laws.ice) for _, group in tracks.groupby("stone", sort=True)]
+    table = pd.DataFrame(rows).reset_index(drop=True)
+    stones = tuple(
+        StoneStart(
+            str(row["stone"]),
+            **{key: float(row[key]) for key in STATE},
+            mass=results.masses.get(str(row["stone"]), STONE.mass),
+        )
+        for row in table.to_dict("records")
+    )
+    if not stones or max(math.hypot(stone.vx, stone.vy) for stone in stones) == 0:
+        raise InputError("tracks: no stone moves before the first hit; nothing to throw again")
+    sd = np.nan_to_num(table[[f"sd_{key}" for key in STATE]].to_numpy(float))
+    # A stone at rest is known to rest.
+    sd[[stone.vx == stone.vy == 0 for stone in stones], 2:] = 0.0
+    # What the places share is alike near each other, of which none can be more than all.
+    shared = np.minimum(results.shared_error or 0.0, sd[:, :2].min(axis=1))
+    together = np.outer(shared, shared) * alike(np.array([(stone.x, stone.y) for stone in stones]))
+    sd[:, :2] = np.sqrt(sd[:, :2] ** 2 - shared[:, None] ** 2)
+    thrown = _fastest(stones)
+    radius = results.radius * (laws.size.value or 1.0)
+    impact = Frictional(laws.restitution.value or 0.0, laws.stone_friction.value or 0.0)
+    stone = stones[thrown]
+    speed = math.hypot(stone.vx, stone.vy)
+    ahead = (stone.x * stone.vx + stone.y * stone.vy) / speed
+    # With another one under way too, the measured moment is where both are known.
+    alone = sum(math.hypot(other.vx, other.vy) > 0 for other in stones) == 1
+    way = _room(stones, thrown, results.radius) if results.collisions and alone else 0.0
+    moved = list(stones)
+    moved[thrown] = _taken_back(stone, way, laws.ice)
+    curling = curling_size(results.radius)
+    release = max(HOG_TO_TEE + ahead - way, 0.0) if curling else 0.0
+    bounds = Bounds(1 if stone.vy > 0 else -1) if curling else None
+    return Start(
+        Shot(tuple(moved), impact, laws.ice, laws.curl, radius, bounds),
+        thrown,
+        sd,
+        together,
+        laws.restitution.stderr or 0.0,
+        laws.stone_friction.stderr or 0.0,
+        laws.sd_friction,
+        laws.sd_turn,
+        laws.size.stderr or 0.0,
+        release,
+        tuple(laws.assumed.values()),
+    )
+
+
+def speed_before(speed: Array, way: float, ice: IceLaw) -> Array:
+    """Speeds that stones had a distance `way` (m) before, or have after where it is negative.
+
+    Parameters
+    ----------
+    speed : ndarray
+        In m/s; the outcome is 0 where a stone does not come that far.
+    way : float
+        Distance along the path, m.
+    ice : IceLaw
+        The ice.
+    """
+    curve = curve_for(ice, NoCurl(), float(np.max(speed)))
+    while _reach(curve)[-1] < np.interp(np.max(speed), curve.speed, _reach(curve)) + way:
+        curve = curve_for(ice, NoCurl(), 2 * float(curve.speed[-1]))
+    # The square of the speed is nearly linear in the distance.
+    square = curve.speed**2
+    left = np.interp(speed**2, square, _reach(curve)) + way
+    return np.asarray(np.sqrt(np.interp(left, _reach(curve), square)))
+
+
+def _reach(curve: Curve) -> Array:
+    """Distance to rest at the nodes of a curve, m."""
+    last = curve.coefficients[-1, 4] @ (curve.tau[-1] - curve.tau[-2]) ** np.arange(4)
+    return np.append(curve.coefficients[:, 4, 0], last)
+
+
+def _time(tracks: pd.DataFrame, results: Results) -> float:
+    """Time at which the shot begins: the last before its first hit.
+
+    Without a hit, the first at which the fastest stone is seen.
+    """
+    first = min((hit.earliest for hit in results.collisions), default=math.inf)
+    early = tracks["t"] < first
+    if math.isfinite(first) and early.any():
+        return float(tracks.loc[early, "t"].max())
+    speed = np.nan_to_num(np.hypot(tracks["vx"].to_numpy(float), tracks["vy"].to_numpy(float)))
+    fastest = tracks["stone"].iloc[int(speed.argmax())]
+    return float(tracks.loc[tracks["stone"] == fastest, "t"].min())
+
+
+def _row(group: pd.DataFrame, time: float, ice: IceLaw) -> pd.Series:
+    """State of a stone at a time: its last one, from where it glides on, or its first one."""
+    early = group[group["t"] <= time]
+    row = group.iloc[0 if early.empty else len(early) - 1].copy()
+    row[list(STATE)] = row[list(STATE)].astype(float).fillna(0.0)
+    if early.empty:
+        # It comes into view later: its way there is not known.
+        row[["vx", "vy", "omega"]] = 0.0
+    elif row["t"] < time:
+        x, y, vx, vy, omega = (float(row[key]) for key in STATE)
+        then = Path(0.0, Motion(x, y, 0.0, vx, vy, omega), ice, NoCurl()).at(time - row["t"])
+        row[list(STATE)] = [then.x, then.y, then.vx, then.vy, then.omega]
+    return row
+
+
+def _fastest(stones: tuple[StoneStart, ...]) -> int:
+    return max(range(len(stones)), key=lambda k: math.hypot(stones[k].vx, stones[k].vy))
+
+
+def _taken_back(stone: StoneStart, way: float, ice: IceLaw) -> StoneStart:
+    """Return the stone a distance before, on its straight way."""
+    speed = math.hypot(stone.vx, stone.vy)
+    ux, uy = stone.vx / speed, stone.vy / speed
+    then = float(speed_before(np.array([speed]), way, ice)[0])
+    return replace(stone, x=stone.x - way * ux, y=stone.y - way * uy, vx=then * ux, vy=then * uy)
+
+
+def _room(stones: tuple[StoneStart, ...], thrown: int, radius: float) -> float:
+    """Return how far the thrown stone can be taken back without meeting another, m."""
+    stone = stones[thrown]
+    speed = math.hypot(stone.vx, stone.vy)
+    ways = np.linspace(0, BACK, 21)
+    way = np.array([[stone.x, stone.y]]) - ways[:, None] * [stone.vx / speed, stone.vy / speed]
+    clear = np.ones(len(ways), bool)
+    for k, other in enumerate(stones):
+        if k != thrown:
+            apart = np.hypot(*(way - [other.x, other.y]).T)
+            clear &= (apart > 2.2 * radius) | (np.diff(apart, prepend=apart[0]) >= 0)
+    return float(ways[-1] if clear.all() else ways[max(int(np.argmin(clear)) - 1, 0)])

@@ -1,0 +1,1 @@
+"""What fits share, and what many values say together."""

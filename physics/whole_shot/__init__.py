@@ -1,0 +1,1 @@
+"""One fit of the whole shot through the simulator."""

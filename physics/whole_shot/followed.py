@@ -1,0 +1,74 @@
+"""As much of a shot as the simulator can follow, fitted."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from physics.whole_shot.law_choice import BEFORE, fit_with_chosen_laws
+from physics.whole_shot.shot_model import Watched
+from physics.whole_shot.whole_fit import GlobalFit
+
+AWAY, QUIETER = 0.2, 2.0
+"""Time, s, in which nothing is seen if a clip shows something else, and how many times less noise
+the shot has before that if what comes after is not its continuation."""
+
+
+def fit_followed(shot: Watched) -> tuple[GlobalFit, str | None]:
+    """Fit a shot up to the first hit that the simulator has and the tracks do not, or the reverse.
+
+    Parameters
+    ----------
+    shot : Watched
+        As `physics.whole_shot.watched.watch` makes it.
+
+    Returns
+    -------
+    fit : GlobalFit
+        Of the whole shot, or of its beginning, where that is followed and has a hit; else of
+        the whole shot, not followed, as always without a hit.
+    end : str or None
+        When and why it ends sooner than the shot.
+    """
+    whole = fit = fit_with_chosen_laws(shot)
+    end = None
+    while shot.hits and not followed(fit):
+        time, why = _obstacle(fit)
+        shorter = fit.shots[0].until(time - BEFORE)
+        if not shorter.hits:
+            return whole, None
+        end = f"until {time - BEFORE:.2f} s: {why}"
+        fit = fit_with_chosen_laws(shorter)
+    return _until_resumed(fit, end)
+
+
+def _until_resumed(fit: GlobalFit, end: str | None) -> tuple[GlobalFit, str | None]:
+    """Leave a shot where it is not shown for a while, if it does not go on from there as it was.
+
+    Such a clip may have lost time, or its map of the ice may be another one since.
+    """
+    shot = fit.shots[0]
+    seen = np.unique(np.concatenate([trace.t for trace in shot.traces.values()]))
+    steps = np.diff(seen)
+    away = steps > max(AWAY, 4 * float(np.median(steps)) if len(steps) else 0.0)
+    for time in seen[1:][away].tolist():
+        shorter = shot.until(time)
+        if shorter.hits:
+            part = fit_with_chosen_laws(shorter)
+            if followed(part) and QUIETER * part.inflation < fit.inflation:
+                why = "what is shown from then on does not continue it"
+                return part, f"until {time:.2f} s: {why}"
+    return fit, end
+
+
+def _obstacle(fit: GlobalFit) -> tuple[float, str]:
+    """Time, s, of the hit at which a shot is not followed, and why it is not."""
+    shot = fit.shots[0]
+    other = shot.first_other_hit(fit.simulation())
+    if other is not None:
+        return other[0], f"the hit of {other[1]} is not as simulated"
+    return shot.times[-1], f"with the hit of {' and '.join(shot.hits[-1])} the fit does not settle"
+
+
+def followed(fit: GlobalFit) -> bool:
+    """Whether a fit came to its end and its hits are those that were seen."""
+    return fit.settled and fit.hits_as_seen

@@ -1,0 +1,230 @@
+"""The whole shot fitted once: which law of the ice and whether curl shows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.results import Estimate, Law
+from physics.whole_shot.global_fit import LOST, fit_shots
+from physics.whole_shot.shot_model import V_C, Watched, penner
+from physics.whole_shot.watched import THROWN
+from physics.whole_shot.whole_fit import GlobalFit
+
+STRAIGHT = {"slope": 0.0, "v_c": V_C, "turn": 0.0}
+"""Constant friction and no curl: one of two ways that a first fit sets out from, and what unknowns
+of the ice are without."""
+
+STICKING = {"stone_friction": 2.0}
+"""Stones that stop sliding on each other before they part: any greater friction does the same."""
+
+USUAL = {"slope": 0.002, "turn": 0.008}
+"""Ice as in FCV1 (Uehara and Ito, 2021), from where the first fit sets out beside even ice: stones
+that go straight may miss each other."""
+
+BEFORE = 0.1
+"""How long before a hit a part of the shot ends that is to be without it, s: its time is not
+certain."""
+
+ELSEWHERE = 0.5
+"""By how much of the deviance of a fit that of one with fewer unknowns is larger, beyond what noise
+does, if it has come to rest at another place: what the first tells of the unknowns does not hold
+there."""
+
+SELDOM = 9.0
+"""Twice the log of odds beyond which other laws do not count."""
+
+
+def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None) -> GlobalFit:
+    """Fit a shot with the laws that the sightings ask for, some unknowns held if `fixed`.
+
+    First friction depends on the speed and the paths curl. Each of the two is left out, and
+    friction between stones is, where the sightings are the more probable without: then the
+    friction is constant, the paths are straight, the stones stick. A wrong law would lead the
+    others astray if they were taken up one after the other.
+
+    What the other choices of laws would give is in the errors, each by its probability
+    (Buckland et al., 1997, Biometrics 53, 603). So is what Penner's law gives where friction
+    falls: the one that is reported follows any ice but not to the last per cent.
+    """
+    held = {"v_c": V_C, **(fixed or {})}
+    best = _hit_by_hit(shot, held)
+    tried, criteria, least = [best], [0.0], 0.0
+    asked = [name for name in ("slope", "turn") if name in best.names]
+    while asked:
+        name = max(asked, key=lambda each: _against(best, each))
+        asked.remove(name)
+        against = _against(best, name)
+        if against < -SELDOM:
+            continue
+        fewer = STRAIGHT[name]
+        less = _refitted(best, shot, held | {name: fewer})
+        more = less.deviance - best.deviance
+        if not less.settled or more > max(ELSEWHERE * best.deviance, SELDOM * best.inflation):
+            continue
+        tried.append(less)
+        criteria.append(least - against)
+        if against > 0:
+            best, held, least = less, held | {name: fewer}, least - against
+    if "slope" in best.names and "v_c" not in (fixed or {}):
+        # where friction falls there is a knee to be found
+        free = {name: value for name, value in held.items() if name != "v_c"}
+        bent = _refitted(best, shot, free)
+        if bent.settled:
+            tried[criteria.index(least)] = bent
+            best, held = bent, free
+        even = {"slope": 0.0, "v_c": V_C, **held}
+        rooted = _refitted(best, replace(shot, ice=penner), even)
+        if rooted.settled:
+            tried.append(rooted)
+            criteria.append(least + _beside(rooted, best))
+    if shot.hits:
+        stuck = _refitted(best, shot, held | STICKING)
+        if stuck.settled:
+            tried.append(stuck)
+            criteria.append(least + _beside(stuck, best))
+            if criteria[-1] < least:
+                best = stuck
+    return _with_others(best, tried, np.array(criteria))
+
+
+def _refitted(best: GlobalFit, shot: Watched, held: Mapping[str, float]) -> GlobalFit:
+    """Fit with other laws from where the best fit is, with the noise that it has told."""
+    return fit_shots([shot], fixed=held, start=_values(best), noise=best.inflation)
+
+
+def _hit_by_hit(shot: Watched, held: Mapping[str, float]) -> GlobalFit:
+    """Fit a shot up to its second hit, then up to the next, each from where the one before ended.
+
+    From first guesses stones would miss what they hit later, from where no slope leads back. Nor
+    does one from stones that stick to such as slide, or from a spin that is lost before a hit to
+    another: fits set out from sliding too, from spins of either sense, the first from even ice.
+    """
+    start = {name: value for name, value in USUAL.items() if name not in held}
+    apart = [two for one, two in pairwise(shot.times) if two - one > 2 * BEFORE]
+    best: GlobalFit | None = None
+    for part in [*(shot.until(time - BEFORE) for time in apart), shot]:
+        own = {unknown.name for unknown in part.unknowns}
+        known = {name: value for name, value in start.items() if name in own}
+        further = {n: v for n, v in known.items() if n != "stone_friction"}
+        if best is None:
+            further = _values(fit_shots([part], fixed={**STRAIGHT, **held}))
+        best = _best(part, held, [known, further])
+        none = [n for n in best.names if n.endswith("omega") and abs(best[n].value or 0.0) < LOST]
+        if none and part.hits:
+            ways = [further | dict.fromkeys(none, omega) for omega in (-THROWN, THROWN)]
+            best = _best(part, held, ways, best)
+        start |= _values(best)
+    assert best is not None
+    return best
+
+
+def _best(
+    shot: Watched,
+    held: Mapping[str, float],
+    ways: Sequence[dict[str, float]],
+    *others: GlobalFit,
+) -> GlobalFit:
+    """Fit a shot from where each of the ways sets out, and return the best, or another's."""
+    fits = [*others, *(fit_shots([shot], fixed=held, start=way) for way in ways)]
+    noise = min(fit.inflation for fit in fits)
+    return min(fits, key=lambda fit: (not fit.settled, not fit.hits_as_seen, _cost(fit, noise)))
+
+
+def _cost(fit: GlobalFit, noise: float) -> float:
+    """Least squares of a fit: its sightings' with that much noise, and what else it heeds."""
+    return fit.deviance / noise + fit.elsewhere
+
+
+def _against(fit: GlobalFit, name: str) -> float:
+    """Twice the log of how much more probable the sightings are if an unknown is 0.
+
+    It is the density of what the fit tells of the unknown over that of what was known of it
+    beforehand, both at 0 (Dickey, 1971, Annals of Mathematical Statistics 42, 204). So an error
+    that places share counts as it does in the unknown's own error, and what a bent map of the
+    ice makes of a straight path is not taken for curl.
+    """
+    k = fit.names.index(name)
+    told = -(fit.values[k] ** 2 / fit.cov[k, k] + np.log(fit.cov[k, k]))
+    known = -((fit.prior_mean[k] / fit.prior_sd[k]) ** 2 + 2 * np.log(fit.prior_sd[k]))
+    return float(told - known)
+
+
+def _with_others(
+    best: GlobalFit, tried: Sequence[GlobalFit], criteria: NDArray[np.float64]
+) -> GlobalFit:
+    """Put what the fits with other laws say into the errors of the best one.
+
+    Every variance becomes the mean over the fits of their own and of the square of their
+    difference from the best. What goes together in the best goes together no longer quite so:
+    where whole shots are drawn each is drawn from one of the `choices`.
+    """
+    weights = np.exp(-0.5 * (criteria - criteria.min()))
+    weights /= weights.sum()
+    between, variance = np.zeros_like(best.cov), np.zeros(len(best.cov))
+    for fit, weight in zip(tried, weights.tolist(), strict=True):
+        values, own = _told_by(fit, best)
+        off = values - best.values
+        between += weight * np.outer(off, off)
+        variance += weight * (own + off * off)
+    cov = best.cov + between
+    scale = np.sqrt(variance / np.diag(cov))
+    order = np.argsort(criteria, kind="stable").tolist()
+    laws = tuple(
+        Law(
+            _name(tried[k]),
+            float(criteria[k] - criteria.min()),
+            float(weights[k]),
+            tried[k]["friction"] if tried[k].told("friction") else Estimate(),
+        )
+        for k in order
+    )
+    choices = tuple((float(weights[k]), tried[k]) for k in order)
+    return replace(best, cov=cov * np.outer(scale, scale), laws=laws, choices=choices)
+
+
+def _told_by(fit: GlobalFit, best: GlobalFit) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Values and variances of the best fit's unknowns in another; its own where that holds them."""
+    values, variance = best.values.copy(), np.diag(best.cov).copy()
+    for k, name in enumerate(best.names):
+        if name in fit.names:
+            rank = fit.names.index(name)
+            values[k], variance[k] = fit.values[rank], fit.cov[rank, rank]
+    return values, variance
+
+
+def _name(fit: GlobalFit) -> str:
+    """Return the laws of a fit in words."""
+    ice = "constant" if "slope" in fit.fixed else "fit"
+    if fit.shots[0].ice is penner:
+        ice = "penner"
+    curl = "none" if "turn" in fit.fixed else "fcv1"
+    hits = "stones stick" if "stone_friction" in fit.fixed else "stones slide"
+    return f"ice {ice}, curl {curl}, {hits}"
+
+
+def _values(fit: GlobalFit) -> dict[str, float]:
+    """Where the next fit sets out from."""
+    return dict(zip(fit.names, fit.values.tolist(), strict=True))
+
+
+def _beside(fit: GlobalFit, best: GlobalFit) -> float:
+    """Twice the log of how much more probable the best fit makes the sightings than another."""
+    return _criterion(fit, best.inflation) - _criterion(best, best.inflation)
+
+
+def _criterion(fit: GlobalFit, noise: float) -> float:
+    """Minus twice the log probability of the sightings, but for what all fits share.
+
+    By Laplace's method (Kass and Raftery, 1995, J. Am. Stat. Assoc. 90, 773).
+    """
+    known = fit.prior_sd[np.isfinite(fit.prior_sd)]
+    sd = np.sqrt(np.diag(fit.cov))  # apart, for determinants leave what numbers can hold
+    volume = float(np.linalg.slogdet(fit.cov / np.outer(sd, sd))[1]) + 2 * np.sum(np.log(sd))
+    volume -= len(fit.names) * np.log(fit.inflation / noise)
+    prior = 2 * np.sum(np.log(known))
+    return float(_cost(fit, noise) + prior - volume)

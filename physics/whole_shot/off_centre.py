@@ -1,0 +1,67 @@
+"""Caps that sit beside the centres of their stones: an error of places that turns with them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from physics.local_fit.traces import Trace
+from physics.statistics.residuals import huber_weights
+from physics.whole_shot.whole_fit import GlobalFit
+
+Floats = NDArray[np.float64]
+
+
+def centred(trace: Trace, residuals: Floats, noise: float) -> tuple[Floats, Floats]:
+    """Take out of residuals what the stone's cap is beside its centre by, as far as it shows.
+
+    The cap stays where it is in the stone's frame. It is known to be in the middle to what
+    places are stated to share, `sd_place`, on either axis.
+
+    Parameters
+    ----------
+    trace : Trace
+        Sightings of the stone; without angles, or without `sd_place`, nothing is taken out.
+    residuals : (n, 2) array
+        Sighted less fitted places over their standard deviations.
+    noise : float
+        Factor on the stated variances of the places.
+
+    Returns
+    -------
+    residuals : (n, 2) array
+        Those that are left.
+    beside : (2,) array
+        By how much the cap is beside the centre, in its own standard deviations: a residual too.
+    """
+    size = float(np.median(trace.sd_place))
+    if not size or not np.isfinite(trace.theta).any():
+        return residuals, np.zeros(2)
+    rows = size * _turns(trace, trace.t) / trace.sd[:, :, None]
+    weighted = rows * huber_weights(residuals)[:, :, None] / noise
+    normal = np.eye(2) + np.einsum("nai,naj->ij", weighted, rows)
+    beside = np.linalg.solve(normal, np.einsum("nai,na->i", weighted, residuals))
+    return residuals - rows @ beside, beside
+
+
+def centred_sightings(sightings: pd.DataFrame, fit: GlobalFit) -> pd.DataFrame:
+    """Take out of sightings by what a fit of the whole shot has the caps beside the centres."""
+    out = sightings.copy()
+    shot = fit.shots[0]
+    runs = shot.residuals(fit.simulation())
+    for (stone, trace), run in zip(shot.traces.items(), runs, strict=True):
+        if not np.isfinite(trace.theta).any():
+            continue
+        own = out["stone"] == stone
+        beside = np.median(trace.sd_place) * centred(trace, run, fit.inflation)[1]
+        out.loc[own, ["x", "y"]] -= _turns(trace, out.loc[own, "t"].to_numpy(float)) @ beside
+    return out
+
+
+def _turns(trace: Trace, t: Floats) -> Floats:
+    """Rotations from a stone's frame to the ice at times, (n, 2, 2), by its angles where told."""
+    told = np.isfinite(trace.theta)
+    theta = np.interp(t, trace.t[told], trace.theta[told])
+    cos, sin = np.cos(theta), np.sin(theta)
+    return np.stack([np.stack([cos, -sin], axis=1), np.stack([sin, cos], axis=1)], axis=1)

@@ -1,0 +1,302 @@
+"""From sightings and the fit of their pieces to a shot that a whole fit can begin with."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.results import Estimate
+from data.sheet import STONE, curling_size
+from physics.curl import FCV1Curl
+from physics.local_fit.noise import Noise, noises
+from physics.local_fit.shot_fit import ShotFit
+from physics.local_fit.spins import spin_on
+from physics.local_fit.traces import Trace
+from physics.whole_shot.shot_model import V_C, SpinSeen, Unknown, Watched
+
+Floats = NDArray[np.float64]
+
+SUDDEN = 0.1
+"""Change of velocity (m/s) beyond its error that neither ice nor air can give a stone."""
+
+STOPPING = 1.0
+"""Deceleration that no ice gives a stone, m/s²."""
+
+SPIN_DRIFT = 0.03
+"""How much a spin may change by itself from where it is seen to a hit, rad/s."""
+
+SLIDING = 0.02
+"""Friction between two stones that a fit sets out from: low, so that they slide. Once they
+stick, more of it changes nothing and no slope leads back."""
+
+THROWN = 1.5
+"""Spin that a fit sets out from where none is seen before a hit, rad/s: from a spin of nothing,
+which may be lost before the hit, no slope leads to another."""
+
+SLOPE, KNEE, TURN = Estimate(0.002, 0.001), Estimate(V_C, 0.04), Estimate(0.0, 0.01)
+"""What is known of a and v_c in μ(v) = a / (v + v_c) + b, m/s, where friction falls (a is 0.002 in
+FCV1, some 0.0035 in Penner's law; no ice is known whose friction hardly falls), and of the turn of
+a path at 1 m/s, rad/s (0.0082 in FCV1)."""
+
+BESIDE = 1.0
+"""Time beside a hit in whose middle a spin is told, s: far enough from where it changes."""
+
+
+@dataclass(frozen=True)
+class Priors:
+    """What is known of the laws before any sighting.
+
+    Attributes
+    ----------
+    restitution : Estimate
+        0.83 ± 0.06 is what the study of the 2018 Olympic final quotes; simulators take 0.5
+        to 1.
+    stone_friction : Estimate
+        Between two stones; nobody seems to have measured it, simulators take 0 to 0.2.
+    friction : Estimate
+        Of the ice; 0.006 to 0.016 was measured by Li et al., 2022, Lubricants 10, 265.
+    size : Estimate
+        Distance at contact over two radii.
+    slope, v_c, turn : Estimate
+        How friction falls and paths curl, as at `SLOPE`, `KNEE` and `TURN`.
+    """
+
+    restitution: Estimate
+    stone_friction: Estimate
+    friction: Estimate
+    size: Estimate
+    slope: Estimate = SLOPE
+    v_c: Estimate = KNEE
+    turn: Estimate = TURN
+
+
+RESTITUTION, STONE_FRICTION, FRICTION = 0.83, 0.05, 0.0109
+"""What is assumed where a shot tells nothing."""
+
+LITERATURE = Priors(
+    Estimate(RESTITUTION, 0.06),
+    Estimate(STONE_FRICTION, 0.05),
+    Estimate(FRICTION, 0.003),
+    Estimate(1.0, 0.01),
+)
+"""Priors of a shot of which nothing is known yet; sources at `Priors`."""
+
+
+def loose_priors(radius: float) -> Priors:
+    """Return priors that leave the say to the sightings.
+
+    Only the friction is that of curling ice where the discs have the size of curling stones:
+    half a second of a glide does not tell it, and velocities at a hit depend on it.
+    """
+    curling = curling_size(radius)
+    return Priors(
+        restitution=Estimate(0.8, 1.0),
+        stone_friction=Estimate(0.1, 0.3),
+        friction=Estimate(0.0105, 0.004) if curling else Estimate(0.01, 0.1),
+        size=Estimate(1.0, 0.015 if curling else 0.05),
+    )
+
+
+def watch(
+    known: Mapping[str, Trace],
+    fit: ShotFit,
+    radius: float,
+    *,
+    priors: Priors,
+    masses: Mapping[str, float] | None = None,
+    inertia: float = STONE.inertia,
+    bystanders: Sequence[str] = (),
+) -> Watched | None:
+    """Gather what a whole fit needs: sightings, first guesses, spins and the order of hits.
+
+    A stone counts until something else than ice and hits moves it, and so do those that it
+    hits after that.
+
+    Parameters
+    ----------
+    known : mapping
+        Stone to its sightings.
+    fit : ShotFit
+        Of the pieces of all stones that move.
+    radius : float
+        Of the discs, m.
+    priors : Priors
+        What is known beforehand.
+    masses : mapping, optional
+        Stone to mass in any unit; equal where absent.
+    inertia : float
+        k in I = k m R².
+    bystanders : sequence of str
+        Stones that rest throughout and may be in the way.
+
+    Returns
+    -------
+    Watched or None
+        None where no stone moves.
+    """
+    runs = {name: _without_slip(fit, run, known[name]) for name, run in _runs(fit).items()}
+    runs = {name: run for name, run in runs.items() if run}
+    ends = _ends(fit, runs)
+    times = [fit.time(k) for k in range(len(fit.meetings))]
+    order = sorted(
+        (
+            k
+            for k, meeting in enumerate(fit.meetings)
+            if all(times[k] < ends[stone] for stone in meeting.stones)
+        ),
+        key=lambda k: times[k],
+    )
+    hit = {stone for k in order for stone in fit.meetings[k].stones}
+    traces = {}
+    for name, run in runs.items():
+        if name in hit or not fit.pieces[run[0]].rest:
+            shown = known[name].until(ends[name])
+            if len(shown.t):
+                traces[name] = shown
+    if not traces:
+        return None
+    traces |= {name: known[name] for name in bystanders if len(known[name].t)}
+    start = min(float(trace.t[0]) for trace in traces.values())
+    laws = (
+        Unknown("restitution", _mean(priors.restitution), 0.0, 1.5, priors.restitution),
+        Unknown("stone_friction", SLIDING, 0.0, 2.0, priors.stone_friction),
+        Unknown("friction", _mean(priors.friction), 1e-5, 1.0, priors.friction),
+        Unknown("slope", 0.0, 0.0, 0.02, priors.slope),
+        Unknown("v_c", V_C, 0.005, 0.5, priors.v_c),
+        Unknown("turn", 0.0, -0.1, 0.1, priors.turn),
+        Unknown("size", 1.0, 0.7, 1.3, priors.size),
+    )
+    noise = noises(fit, known)
+    states: list[Unknown] = []
+    spins: list[SpinSeen] = []
+    for name in traces:
+        run = runs.get(name, [])
+        states += _state(name, known[name], fit, run, start)
+        seen = [_seen(fit, rank, known, noise, ends[name]) for rank in run]
+        spins += [spin for of_piece in seen for spin in of_piece]
+        if run and not fit.pieces[run[0]].rest:
+            first = seen[0][0].omega if seen[0] else THROWN
+            states.append(Unknown(f"{name}.omega", first, prior=Estimate(0.0, 3.0)))
+    pairs = tuple(_pair(fit.meetings[k].stones) for k in order)
+    return Watched(
+        traces,
+        start,
+        (*laws, *states),
+        tuple(spins),
+        pairs,
+        tuple(times[k] for k in order),
+        radius,
+        masses or {},
+        inertia,
+    )
+
+
+def _mean(estimate: Estimate) -> float:
+    return float(estimate.value or 0.0)
+
+
+def _pair(stones: tuple[str, str]) -> tuple[str, str]:
+    first, second = sorted(stones)
+    return first, second
+
+
+def _runs(fit: ShotFit) -> dict[str, list[int]]:
+    """Ranks of each stone's pieces in order of time."""
+    out: dict[str, list[int]] = {}
+    for rank, piece in enumerate(fit.pieces):
+        out.setdefault(piece.stone, []).append(rank)
+    return {name: sorted(run, key=lambda r: fit.pieces[r].start) for name, run in out.items()}
+
+
+def _without_slip(fit: ShotFit, run: list[int], trace: Trace) -> list[int]:
+    """Leave out a first piece after which a stone rests sooner than ice can stop it.
+
+    Its places went astray there, as in the blend of two views.
+    """
+    first = fit.pieces[run[0]]
+    moves_on = any(
+        fit.pieces[rank].start <= first.end and not fit.pieces[rank].rest for rank in run[1:]
+    )
+    if first.rest or first.closes is not None or not np.isfinite(first.end) or moves_on:
+        return run
+    start = float(trace.t[first.samples[0]]) if len(first.samples) else first.start
+    _, speed = fit.motion(run[0], start)
+    return run[1:] if float(np.hypot(*speed)) > STOPPING * (first.end - start) else run
+
+
+def _ends(fit: ShotFit, runs: Mapping[str, Sequence[int]]) -> dict[str, float]:
+    """Find when something else than ice and hits moves each stone; infinity if never."""
+    ends = dict.fromkeys(runs, np.inf)
+    for name, run in runs.items():
+        for one, two in pairwise(run):
+            if fit.pieces[two].opens is None and _jumps(fit, one, two):
+                ends[name] = fit.pieces[two].start
+                break
+    order = sorted(range(len(fit.meetings)), key=fit.time)
+    for k in order:  # who is hit by such a stone is no longer told either
+        stones = fit.meetings[k].stones
+        if any(ends[stone] < fit.time(k) for stone in stones):
+            for stone in stones:
+                ends[stone] = min(ends[stone], fit.time(k))
+    return ends
+
+
+def _jumps(fit: ShotFit, one: int, two: int) -> bool:
+    """Whether the velocity changes from a piece to the next by more than it is uncertain."""
+    t = fit.pieces[two].start
+    speeds, variance = [], 0.0
+    for rank in (one, two):
+        piece = fit.pieces[rank]
+        tau = t - fit.origins[rank]
+        speeds.append(np.zeros(2) if piece.rest else fit.motion(rank, t)[1])
+        row = np.array([0.0, 1.0, tau])
+        for axis in range(2):
+            at = slice(6 * rank + 3 * axis, 6 * rank + 3 * axis + 3)
+            variance += float(row @ fit.cov[at, at] @ row)
+    change = float(np.hypot(*(speeds[1] - speeds[0])))
+    return bool(change > SUDDEN + 4 * np.sqrt(variance))
+
+
+def _state(
+    name: str, trace: Trace, fit: ShotFit, run: Sequence[int], start: float
+) -> list[Unknown]:
+    """Unknowns of one stone's state at the start of the shot, guessed from its first piece."""
+    if not run or fit.pieces[run[0]].rest:
+        early = trace.xy if not run else trace.xy[trace.t < fit.pieces[run[0]].end]
+        place = np.median(early, axis=0) if len(early) else fit.theta[[6 * run[0], 6 * run[0] + 3]]
+        return [Unknown(f"{name}.{key}", float(v)) for key, v in zip("xy", place, strict=True)]
+    place, speed = fit.motion(run[0], start)
+    values = (*place.tolist(), *speed.tolist())
+    return [
+        Unknown(f"{name}.{key}", value)
+        for key, value in zip(("x", "y", "vx", "vy"), values, strict=True)
+    ]
+
+
+def _seen(
+    fit: ShotFit, rank: int, known: Mapping[str, Trace], noise: Mapping[str, Noise], end: float
+) -> list[SpinSeen]:
+    """Spin on one piece beside the first of the hits that bound it, or beside its start.
+
+    All its angles have a say in it, so that there is no second one to be had.
+    """
+    piece = fit.pieces[rank]
+    seen = known[piece.stone].t[piece.samples]
+    if piece.rest or piece.start >= end or not len(seen):
+        return []
+    hits = [fit.time(k) for k in (piece.opens, piece.closes) if k is not None]
+    near = seen[np.abs(seen - (hits or seen)[0]) < BESIDE]
+    middle = float(np.mean(near)) if len(near) else np.inf
+    spin = spin_on(fit, rank, known, noise, middle) if middle < end else Estimate()
+    if spin.value is None or spin.stderr is None:
+        return []
+    # Ice takes spin from a stone as FCV1 has it, but only about so much.
+    away = abs(middle - (hits or seen)[0])
+    speed = float(np.hypot(*fit.motion(rank, middle)[1]))
+    lost = float(FCV1Curl().spin_loss(speed)) * away
+    sd = float(np.sqrt(spin.stderr**2 + SPIN_DRIFT**2 + lost**2))
+    return [SpinSeen(piece.stone, middle, spin.value, sd)]

@@ -1,0 +1,74 @@
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from physics.local_fit.candidates import candidates
+from physics.local_fit.traces import Trace, traces
+from tests.physics.watch import RADIUS, hit_motion, watch
+from tests.synthetic.physics import Start
+
+
+def straight(name: str, place: tuple[float, float], velocity: tuple[float, float]) -> Trace:
+    """A stone that keeps its velocity, seen 30 times a second for two seconds."""
+    t = np.arange(60) / 30
+    xy = np.array(place) + t[:, None] * np.array(velocity)
+    none = np.full(60, np.nan)
+    return Trace(name, t, xy, np.full((60, 2), 1e-3), none, none, np.zeros((60, 2)))
+
+
+@pytest.mark.parametrize(("beside", "count"), [(0.0, 1), (0.28, 1), (0.4, 0), (0.6, 0)])
+def test_paths_within_reach_are_candidates_at_their_nearest(beside: float, count: int) -> None:
+    # They pass each other at t = 0.5 s, whatever else they do.
+    paths = {
+        "A": straight("A", (0.0, -0.5), (0.0, 1.0)),
+        "B": straight("B", (beside, 0.5), (0.0, -1.0)),
+    }
+    found = candidates(paths, RADIUS)
+    assert len(found) == count
+    for meeting in found:
+        assert meeting.stones == ("A", "B")
+        assert meeting.t == pytest.approx(0.5, abs=0.04)
+
+
+def test_stones_that_rest_side_by_side_never_meet() -> None:
+    paths = {
+        "A": straight("A", (0.0, 0.0), (0.0, 0.0)),
+        "B": straight("B", (2 * RADIUS, 0.0), (0.0, 0.0)),
+    }
+    assert candidates(paths, RADIUS) == []
+
+
+def test_candidates_of_a_row_come_in_the_order_of_cause() -> None:
+    # A strikes B, which touches C: the hit of B and C cannot come before.
+    motion = hit_motion(1.5, 0.02, others=(Start(0.0, 2 * RADIUS + 0.002),))
+    found = candidates(traces(watch(motion, np.random.default_rng(3), sd=0.003)), RADIUS)
+    pairs = [meeting.stones for meeting in found]
+    assert pairs.index(("A", "B")) < pairs.index(("B", "C"))
+    assert all(one.t <= two.t for one, two in pairwise(found))
+
+
+def test_a_hit_is_passed_on_among_stones_that_touch() -> None:
+    """B and C move on together for long after the hit: nearest they are at any time of that."""
+    t = np.arange(0, 2, 0.04)
+    late = np.maximum(t - 1.0, 0.0)
+    up = {
+        "A": np.where(t < 1.0, 1.5 * (t - 1.0), 0.1 * late) - 2 * RADIUS,
+        "B": 0.2 * late,
+        "C": 2 * RADIUS + 0.2 * late,
+        "D": 4 * RADIUS + 1.0 * late,
+    }
+    noise = np.random.default_rng(1)
+    none = np.full(len(t), np.nan)
+    paths = {
+        name: Trace(
+            name, t, np.column_stack([0 * t, y]) + noise.normal(0, 1e-3, (len(t), 2)),
+            np.full((len(t), 2), 1e-3), none, none, np.zeros((len(t), 2)),
+        )
+        for name, y in up.items()
+    }  # fmt: skip
+    found = [m for m in candidates(paths, RADIUS) if abs(m.t - 1.0) < 0.06]
+    first = [m.stones for m in found]
+    assert first.index(("A", "B")) < first.index(("B", "C")) < first.index(("C", "D"))

@@ -1,0 +1,74 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from physics.local_fit import fit
+from physics.local_fit.contacts import cut_all
+from physics.local_fit.fit import fit_shot
+from physics.local_fit.shot_fit import Deceleration, Meeting
+from physics.local_fit.traces import traces
+from tests.physics.watch import RADIUS, hit_motion, watch
+
+
+def test_exact_sightings_give_the_exact_hit() -> None:
+    motion = hit_motion(1.5, 0.1)
+    known = traces(watch(motion, np.random.default_rng(61), sd=1e-6))
+    meetings = [Meeting(1.01, ("A", "B"), 1 / 30)]
+    pieces, _ = cut_all(known, meetings, RADIUS)
+    fit = fit_shot(known, pieces, meetings, RADIUS)
+    state, hit = fit.encounter(0), motion.hits[0]
+    assert state.t == pytest.approx(hit.t, abs=1e-4)
+    assert np.allclose(state.normal, hit.normal, atol=1e-3)
+    assert np.allclose(state.before, [v[:2] for v in hit.before], atol=2e-3)
+    assert np.allclose(state.after, [v[:2] for v in hit.after], atol=2e-3)
+
+
+def test_momentum_is_held_only_when_asked_for() -> None:
+    known = traces(watch(hit_motion(), np.random.default_rng(62), sd=0.01))
+    meetings = [Meeting(1.0, ("A", "B"), 1 / 30)]
+    pieces, _ = cut_all(known, meetings, RADIUS)
+    changes = []
+    for momentum in (True, False):
+        fit = fit_shot(
+            known, pieces, meetings, RADIUS,
+            deceleration=Deceleration(0.1, 0.05, 0.05), momentum=momentum,
+        )  # fmt: skip
+        state = fit.encounter(0)
+        changes.append(float(np.hypot(*np.sum(state.after - state.before, axis=0))))
+    assert changes[0] < 0.1 * changes[1]
+
+
+def test_covariance_follows_from_the_scatter() -> None:
+    motion = hit_motion()
+    rng = np.random.default_rng(63)
+    places, sd = [], []
+    for _ in range(40):
+        known = traces(watch(motion, rng, sd=0.005))
+        meetings = [Meeting(1.0, ("A", "B"), 1 / 30)]
+        pieces, _ = cut_all(known, meetings, RADIUS)
+        fit = fit_shot(known, pieces, meetings, RADIUS)
+        value, cov = fit.propagate([0], lambda states: states[0].before[0])
+        places.append(value)
+        sd.append(np.sqrt(np.diag(cov)))
+    assert np.allclose(np.std(places, axis=0), np.median(sd, axis=0), rtol=0.4)
+
+
+def test_from_another_fit_the_way_is_short_and_leads_to_the_same(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    known = traces(watch(hit_motion(), np.random.default_rng(64), sd=0.003))
+    meetings = [Meeting(1.0, ("A", "B"), 1 / 30)]
+    pieces, _ = cut_all(known, meetings, RADIUS)
+    prior = Deceleration(0.1, 0.05, 0.05)
+    loose = fit_shot(known, pieces, meetings, RADIUS)
+    alone = fit_shot(known, pieces, meetings, RADIUS, deceleration=prior)
+    on = fit_shot(known, pieces, meetings, RADIUS, deceleration=prior, start=loose)
+    sd = np.sqrt(np.diag(alone.cov))
+    assert np.all(np.abs(on.theta - alone.theta) < 0.05 * np.maximum(sd, 1e-9))
+    assert on.inflation == pytest.approx(alone.inflation, rel=1e-3)
+    monkeypatch.setattr(fit, "STEPS", 1)
+    one = fit_shot(known, pieces, meetings, RADIUS, deceleration=prior, start=alone)
+    assert np.all(np.abs(one.theta - alone.theta) < 0.05 * np.maximum(sd, 1e-9))
+    other = fit_shot(known, pieces, meetings, RADIUS, deceleration=prior)
+    assert not np.all(np.abs(other.theta - alone.theta) < 0.05 * np.maximum(sd, 1e-9))

@@ -1,0 +1,45 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from data.results import Estimate
+from physics.estimate import _disagreement
+from physics.local_fit.contacts import find_contacts
+from physics.local_fit.hits import pooled
+from physics.local_fit.local import estimate_locally
+from tests.physics.watch import RADIUS, hit_motion, watch
+
+
+def test_why_the_friction_between_stones_is_not_told() -> None:
+    motion = hit_motion(1.5, 0.0, stone_friction=0.5)
+    seen = watch(motion, np.random.default_rng(1), sd=0.003)
+    contacts = find_contacts(seen, RADIUS)
+    (stuck,) = estimate_locally(seen, contacts, radius=RADIUS).collisions
+    assert stuck.stone_friction is None
+    assert "stopped sliding" in str(stuck.note_stone_friction)
+    (blind,) = estimate_locally(seen.assign(theta=np.nan), contacts, radius=RADIUS).collisions
+    assert "spin of A before the hit is not seen" in str(blind.note_stone_friction)
+    slid = watch(hit_motion(1.5, 0.2, stone_friction=0.05), np.random.default_rng(1), sd=0.001)
+    (told,) = estimate_locally(slid, find_contacts(slid, RADIUS), radius=RADIUS).collisions
+    assert told.stone_friction == pytest.approx(0.05, abs=0.02)
+    assert told.note_stone_friction is None
+
+
+def test_a_pool_takes_chance_for_chance() -> None:
+    cov = np.diag([0.01**2, 0.01**2])
+    near = pooled(np.array([0.80, 0.815]), cov)
+    assert (near.value, near.stderr) == pytest.approx((0.8075, 0.01 / np.sqrt(2)))
+    far = pooled(np.array([0.78, 0.84]), cov)
+    assert far.stderr == pytest.approx(0.03)
+    assert pooled(np.empty(0), np.empty((0, 0))) == Estimate()
+
+
+@pytest.mark.parametrize(
+    ("whole", "agrees"),
+    [(Estimate(0.84, 0.003), True), (Estimate(0.86, 0.003), False), (Estimate(), True)],
+)
+def test_two_ways_that_disagree_are_told(whole: Estimate, agrees: bool) -> None:
+    said = _disagreement(Estimate(0.82, 0.01), whole)
+    assert (said is None) == agrees
+    assert agrees or "disagree" in str(said)

@@ -1,0 +1,38 @@
+from __future__ import annotations
+
+import numpy as np
+
+from physics.local_fit.segments import cut
+from physics.local_fit.traces import Trace
+
+
+def trace(t: np.ndarray, y: np.ndarray, sd: float, seed: int = 0) -> Trace:
+    rng = np.random.default_rng(seed)
+    xy = np.column_stack([np.zeros_like(y), y]) + rng.normal(0, sd, (len(t), 2))
+    nothing = np.full(len(t), np.nan)
+    return Trace("A", t, xy, np.full((len(t), 2), sd), nothing, nothing, 0 * xy)
+
+
+T = np.arange(0, 4, 1 / 30)
+
+
+def test_pieces_cover_every_sighting_once() -> None:
+    y = np.where(T < 1, 0, np.where(T < 2, T - 1, 1 - 0.5 * (T - 2)))
+    one = trace(T, y, 0.003)
+    pieces = cut(one, [(4, 3.0)], 0.1455)
+    assert np.array_equal(np.concatenate([p.samples for p in pieces]), np.arange(len(T)))
+    assert [p.rest for p in pieces] == [True, False, False, False]
+    assert [(p.opens, p.closes) for p in pieces] == [
+        (None, None), (None, None), (None, 4), (4, None),
+    ]  # fmt: skip
+
+
+def test_a_glide_and_the_rest_that_it_ends_in_are_one_piece() -> None:
+    slow, speed = 0.3, 0.6
+    stop = speed / slow
+    tau = np.minimum(T, stop)
+    one = trace(T, speed * tau - 0.5 * slow * tau**2, 0.002)
+    pieces = cut(one, [], 0.1455)
+    assert len(pieces) == 1
+    assert pieces[0].stops or len(pieces[0].samples) == len(T)
+    assert not pieces[0].rest

@@ -1,0 +1,250 @@
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from physics.estimate import Estimates, estimate
+from physics.local_fit.contacts import find_contacts
+from physics.whole_shot.global_fit import fit_shots
+from physics.whole_shot.law_choice import STRAIGHT, USUAL, _against, _hit_by_hit
+from physics.whole_shot.shot_model import V_C
+from physics.whole_shot.watched import SLOPE, THROWN
+from physics.whole_shot.whole_fit import GlobalFit
+from tests.physics.watch import RADIUS, hit_motion, watch
+from tests.synthetic.physics import Ice, Impact, Start, simulate
+
+
+def measure(ice: Ice | None, sd: float = 0.002) -> Estimates:
+    """A long, well seen shot on constant ice, or on another."""
+    if ice is None:
+        motion = hit_motion(1.2, 0.1, before=2.0, after=5.0)
+    else:
+        stones = [Start(0.1, -2.8, 0.0, 1.4, 0.0, 1.0), Start(0.0, 0.0)]
+        motion = simulate(stones, 7.0, ice=ice, impact=Impact(0.83), step=5e-4, keep_every=4)
+    seen = watch(motion, np.random.default_rng(5), sd=sd)
+    return estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+
+
+def test_constant_ice_and_no_curl() -> None:
+    found = measure(None)
+    assert found.whole is not None
+    laws = found.whole.laws
+    assert laws[0].name.startswith("ice constant, curl none")
+    assert laws[0].criterion == 0
+    assert sum(law.weight for law in laws) == pytest.approx(1)
+    assert [law.criterion for law in laws] == sorted(law.criterion for law in laws)
+    assert (found.friction.law, found.friction.a) == ("constant", None)
+    assert found.curl.value is None
+    assert found.curl.note is not None
+    assert "no curl" in found.curl.note
+
+
+def test_friction_that_falls_with_the_speed_and_curl() -> None:
+    found = measure(Ice(b=0.00626, a=0.00201, v_c=0.0639, curl=0.0082))
+    assert found.whole is not None
+    assert found.whole.laws[0].name.startswith("ice fit, curl fcv1")
+    assert found.friction.law == "fit"
+    assert found.friction.stderr is not None
+    assert abs(float(found.friction.value or 0) - 0.00815) < 3 * found.friction.stderr
+    assert found.curl.stderr is not None
+    assert abs(float(found.curl.value or 0) - 0.0082) < 3 * found.curl.stderr
+
+
+def test_other_laws_are_fitted_with_the_noise_that_is_known(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """With less they would set out to follow what is not there."""
+    noises = []
+
+    def fit(*args: Any, **known: Any) -> GlobalFit:
+        noises.append(known.get("noise", 1.0))
+        return fit_shots(*args, **known)
+
+    monkeypatch.setattr("physics.whole_shot.law_choice.fit_shots", fit)
+    seen = watch(hit_motion(1.2, 0.1, before=2.0, after=5.0), np.random.default_rng(5), sd=0.004)
+    seen[["sd_x", "sd_y"]] /= 2
+    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    assert found.whole is not None
+    first = noises.index(next(noise for noise in noises if noise != 1))
+    assert len(noises) - first >= 3
+    assert noises[first:] == pytest.approx(len(noises[first:]) * [found.whole.inflation], rel=0.02)
+
+
+def test_the_first_fit_sets_out_from_even_ice_and_lost_spins_from_either_sense(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """As if every fit but those that set out from a spin had come to rest at none, far off."""
+    seen = watch(hit_motion(before=0.6, after=0.6), np.random.default_rng(5), fps=25)
+    watched = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).whole
+    assert watched is not None
+    calls: list[tuple[dict[str, float], dict[str, float]]] = []
+
+    def fit(shots: Any, *, fixed: Any, start: Any = None) -> GlobalFit:
+        calls.append((dict(fixed), dict(start or {})))
+        found = fit_shots(shots, fixed=fixed, start=start)
+        if abs(calls[-1][1].get("A.omega", 0.0)) == THROWN:
+            return found
+        spins = np.array([name == "A.omega" for name in found.names])
+        return replace(
+            found, values=np.where(spins, 0.0, found.values), deviance=found.deviance + 1e6
+        )
+
+    monkeypatch.setattr("physics.whole_shot.law_choice.fit_shots", fit)
+    best = _hit_by_hit(watched.shots[0], {"v_c": V_C})
+    even, usual, further, *turning = calls
+    assert even == (STRAIGHT, {})
+    assert usual[1] == USUAL
+    assert further[0] == {"v_c": V_C}
+    assert further[1]["A.omega"] == 0.0
+    assert [start["A.omega"] for _, start in turning] == [-THROWN, THROWN]
+    assert best["A.omega"].value == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "least", "most"),
+    [
+        (0.00026, 0.00009, -2.0, 2.0),  # less than on any ice that is known: either may be
+        (0.0020, 0.0003, -50.0, -30.0),  # as in FCV1
+        (0.0, 0.0003, 1.0, 9.0),
+    ],
+)
+def test_friction_that_hardly_falls_is_no_better_than_constant_one(
+    value: float, error: float, least: float, most: float
+) -> None:
+    """What places share, as far as no error states it, looks like friction that falls a little."""
+    prior = np.array([SLOPE.value, SLOPE.stderr])[:, None]
+    one = np.array([value])
+    fit = GlobalFit(("slope",), one, np.array([[error**2]]), *prior, {}, (), 1.0, 0.0, 1, 1.0, True)
+    assert least < _against(fit, "slope") < most
+
+
+def test_a_fit_of_fewer_unknowns_is_heard_if_stated_errors_are_large() -> None:
+    """It leaves many times as much as the best, and still less than noise may."""
+    stones = [Start(0.1, -2.8, 0.0, 1.4, 0.0, 1.0), Start(0.0, 0.0)]
+    ice = Ice(b=0.0102, a=0.0001, v_c=V_C)
+    motion = simulate(stones, 6.0, ice=ice, impact=Impact(0.83), step=5e-4, keep_every=4)
+    seen = watch(motion, np.random.default_rng(5), sd=0.0002, fps=15)
+    seen[["sd_x", "sd_y"]] = 0.01
+    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    assert found.whole is not None
+    assert found.whole.laws[0].name.startswith("ice constant")
+
+
+def test_other_laws_add_to_the_errors() -> None:
+    """Where the tracks can hardly tell the laws apart the friction's error says so."""
+    found = measure(None, sd=0.02)
+    assert found.whole is not None
+    best = found.whole.laws[0]
+    error = found.whole["friction"].stderr
+    assert error is not None
+    value = float(best.friction.value or 0)
+    squares = [
+        law.weight * (float(law.friction.stderr or 0) ** 2 + (law.friction.value - value) ** 2)
+        for law in found.whole.laws
+        if law.friction.value is not None
+    ]
+    assert error**2 == pytest.approx(sum(squares), rel=1e-6)
+    assert sum(squares[1:]) > 0
+
+
+def test_the_friction_of_slow_stones_on_falling_ice_is_as_uncertain_as_it_says() -> None:
+    """Friction at 1 m/s is told by stones of half that speed only as far as the law is."""
+    pulls = []
+    for v_c in (0.03, 0.064, 0.13):
+        stones = [Start(0.1, -1.2, 0.0, 0.7, 0.0, 1.0), Start(0.0, 0.0)]
+        ice = Ice(b=0.0075, a=0.0015, v_c=v_c)
+        motion = simulate(stones, 5.0, ice=ice, impact=Impact(0.83), step=5e-4, keep_every=4)
+        seen = watch(motion, np.random.default_rng(6), sd=0.003)
+        found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).friction
+        assert found.law == "fit"
+        pulls.append((float(found.value or 0) - ice.friction(1.0)) / float(found.stderr or 0))
+    assert max(map(abs, pulls)) < 3
+
+
+@dataclass(frozen=True)
+class Rooted(Ice):
+    """Penner's ice: friction falls with the root of the speed."""
+
+    def friction(self, speed: float) -> float:
+        return self.b * max(speed, 1e-3) ** -0.5
+
+
+def test_ice_of_another_law_is_recognised_and_counts_in_the_errors() -> None:
+    """What a / (v + v_c) + b makes of such ice is off at 1 m/s by more than noise explains."""
+    found = measure(Rooted(b=0.008))
+    assert found.whole is not None
+    assert found.whole.laws[0].name.startswith("ice penner")
+    assert found.whole.laws[0].weight > 0.9
+    assert found.friction.stderr is not None
+    assert abs(float(found.friction.value or 0) - 0.008) < 2.5 * found.friction.stderr
+    assert found.friction.stderr < 0.05 * 0.008
+
+
+def test_a_fit_that_has_come_to_rest_in_a_wrong_place_begins_anew() -> None:
+    """Constant friction lets stones of three hits in a row miss each other by centimetres."""
+    ice = Ice(b=0.00676, a=0.00217, v_c=0.0639, curl=0.0082)
+    stones = [
+        Start(-0.4346, 3.91, 0.3264, -1.9421, 0.0, 1.7),
+        *(Start(-0.15, 1.9), Start(-0.05, 0.75), Start(0.6, -1.1)),
+    ]
+    impact = Impact(0.85, stone_friction=0.12)
+    motion = simulate(stones, 4.96, ice=ice, impact=impact, step=5e-4, keep_every=4)
+    seen = watch(motion, np.random.default_rng(1), fps=25, sd=0.0005)
+    seen = seen[(seen["stone"] != "C") | (seen["t"] < 3.0)].reset_index(drop=True)
+    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    assert found.whole is not None
+    assert not found.whole.astray
+    assert found.friction.value == pytest.approx(ice.friction(1.0), abs=1e-4)
+    assert found.friction.stderr is not None
+    assert found.friction.stderr < 1e-4
+    assert found.restitution.value == pytest.approx(0.85, abs=0.001)
+    assert found.curl.value == pytest.approx(0.0082, abs=0.001)
+
+
+@pytest.mark.parametrize(
+    ("share", "first", "third", "impact", "end", "fps"),
+    [
+        # Without curl friction would have to grow with the speed, which it does on no ice.
+        (1.0, (0.129, -6.399, 0, 3.416, 0, -1.0), (-2.305, 4.499), (0.848, 0.017), 5.5, 60),
+        # From first guesses the second stone would pass by the third.
+        (1.28, (0.017, -4.998, 0, 2.293, 0, 1.27), (-0.264, 4.221), (0.933, 0.09), 6.5, 25),
+    ],
+)
+def test_slowing_and_curl_are_told_apart_in_a_shot_of_two_hits(
+    share: float,
+    first: tuple[float, ...],
+    third: tuple[float, float],
+    impact: tuple[float, float],
+    end: float,
+    fps: float,
+) -> None:
+    ice = Ice(b=0.0079 * share, a=0.0025 * share, v_c=0.0639, curl=0.0082)
+    stones = [Start(*first), Start(0.0, 0.0), Start(*third)]
+    motion = simulate(stones, end, ice=ice, impact=Impact(*impact), step=5e-4, keep_every=4)
+    assert len(motion.hits) == 2
+    seen = watch(motion, np.random.default_rng(8), fps=fps, sd=0.01)
+    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    assert not found.warnings
+    for told, true, most in (
+        (found.friction, ice.friction(1.0), 0.0003),
+        (found.restitution, impact[0], 0.006),
+        (found.curl, ice.curl, 0.002),  # with it held elsewhere the fits say as much
+    ):
+        assert told.value is not None
+        assert told.stderr is not None
+        assert told.stderr < most
+        assert abs(told.value - true) < 2 * told.stderr
+
+
+def test_spins_of_slow_stones_are_less_sure_at_the_hit() -> None:
+    """A stone's loss of spin goes with the inverse of its speed, which holds only roughly."""
+    seen = watch(hit_motion(1.5, 0.02), np.random.default_rng(3), sd=0.003)
+    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    assert found.whole is not None
+    spins = found.whole.shots[0].spins
+    after = {spin.stone: spin.stderr for spin in spins if spin.t > found.collisions[0].t}
+    assert after["B"] < 0.05
+    assert after["A"] > 2 * after["B"]

@@ -1,0 +1,58 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from physics.local_fit.traces import Trace
+from physics.whole_shot.off_centre import centred
+
+SD, PLACE = 0.0005, 0.002
+COUNT = 200
+
+
+def trace(turned: float, place: float = PLACE, known: bool = True) -> Trace:
+    """Sightings of a stone that turns by so many radians."""
+    t = np.linspace(0.0, 4.0, COUNT)
+    theta = 0.3 + turned * t / 4.0 if known else np.full(COUNT, np.nan)
+    xy = np.zeros((COUNT, 2))
+    return Trace(
+        "A", t, xy, np.full_like(xy, SD), theta, np.full(COUNT, 0.01), np.full_like(xy, place)
+    )
+
+
+def wobble(seen: Trace, ahead: float, left: float) -> np.ndarray:
+    """Residuals of a cap that is so far beside the centre in its stone's frame."""
+    cos, sin = np.cos(seen.theta), np.sin(seen.theta)
+    off = np.column_stack([cos * ahead - sin * left, sin * ahead + cos * left])
+    return np.asarray(off / SD)
+
+
+def test_a_cap_off_centre_is_found_by_its_turning() -> None:
+    seen = trace(5.0)
+    left, beside = centred(seen, wobble(seen, 0.003, -0.001), 1.0)
+    assert beside * PLACE == pytest.approx([0.003, -0.001], rel=0.01)
+    assert np.abs(left).max() < 0.1
+
+
+def test_outliers_do_not_move_it() -> None:
+    seen = trace(5.0)
+    residuals = wobble(seen, 0.003, -0.001)
+    residuals[::20] += 500.0
+    _, beside = centred(seen, residuals, 1.0)
+    assert beside * PLACE == pytest.approx([0.003, -0.001], abs=0.0005)
+
+
+def test_it_is_known_beforehand_to_what_places_share() -> None:
+    seen = trace(5.0)
+    residuals = wobble(seen, 0.003, 0.0)
+    # As many sightings' noise as this leaves half of what is known beforehand.
+    noise = COUNT * (PLACE / SD) ** 2
+    assert centred(seen, residuals / 10, noise)[1] == pytest.approx([0.15 / 2, 0.0], abs=1e-9)
+
+
+@pytest.mark.parametrize("seen", [trace(5.0, place=0.0), trace(5.0, known=False)])
+def test_nothing_is_taken_out_without_angles_or_a_stated_error(seen: Trace) -> None:
+    residuals = np.random.default_rng(1).normal(size=(COUNT, 2))
+    left, beside = centred(seen, residuals, 1.0)
+    assert left is residuals
+    assert not beside.any()

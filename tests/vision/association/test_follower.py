@@ -1,0 +1,135 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from data.sheet import STONE
+from tests.synthetic.clip import render_still
+from tests.vision.detection.test_stones import CAMERA, RED, YELLOW, camera_of, scene_of
+from vision.association.follower import PATIENCE, Follower, StoneView
+from vision.association.lead import Lead
+from vision.detection.appearance import learn
+from vision.detection.rays import Look
+from vision.detection.sighting import Sighting
+from vision.detection.stones import FOLLOWING, search_picture
+from vision.film.clip import Frame
+
+Places = list[tuple[float, float]]
+CAPS = (RED, YELLOW, RED)
+START: Places = [(0.3, 0.2), (-0.8, 1.0), (0.9, -0.6)]
+
+
+def view(places: Places, index: int) -> StoneView:
+    scene = scene_of([(x, y, cap) for (x, y), cap in zip(places, CAPS, strict=False)])
+    image = np.asarray(render_still(scene, CAMERA), np.uint8)
+    return StoneView(Frame(index, index / 10, image), camera_of(CAMERA, scene))
+
+
+@pytest.fixture(scope="module")
+def first() -> StoneView:
+    return view(START, 0)
+
+
+@pytest.fixture(scope="module")
+def follower(first: StoneView) -> Follower:
+    found = search_picture(first.frame.picture, first.camera).stones
+    return Follower(learn(found), STONE, FOLLOWING, PATIENCE)
+
+
+def seen(views: list[StoneView], true: list[Places]) -> np.ndarray:
+    """Distance of the nearest sighting to each true place, m, shape (views, stones)."""
+    return np.array(
+        [
+            [np.hypot(*(shown.places - place).T).min() for place in places]
+            for shown, places in zip(views, true, strict=True)
+        ]
+    )
+
+
+def test_stones_are_sought_where_none_was_seen_yet(follower: Follower) -> None:
+    shown = view(START, 0)
+    found = follower.sought(shown)
+    assert len(found) == 3
+    shown.sightings.extend(found[:2])
+    again = follower.sought(shown)
+    assert [round(s.x, 2) for s in again] == [round(found[2].x, 2)]
+
+
+@pytest.mark.parametrize("step", [1, -1])
+def test_a_stone_on_its_course_and_those_at_rest_are_seen_all_the_way(
+    follower: Follower, step: int
+) -> None:
+    true = [[(0.3, 0.2 - 0.03 * k), *START[1:]] for k in range(6)][::step]
+    views = [view(places, k) for k, places in enumerate(true)]
+    leads = [Lead.to(s, views[0].frame.t) for s in follower.sought(views[0])]
+    views[0].sightings.extend(follower.sought(views[0]))
+    left = follower.follow(views[1:], leads)
+    assert len(left) == 3
+    assert all(len(shown.sightings) == 3 for shown in views)
+    assert seen(views, true).max() < 0.006
+
+
+def test_a_stone_that_is_gone_is_waited_for_and_then_given_up(follower: Follower) -> None:
+    start = view(START, 0)
+    leads = [Lead.to(s, 0.0) for s in follower.sought(start)]
+    bare = view(START[:2], 1)
+    views = [StoneView(Frame(k, k / 10, bare.frame.picture), bare.camera) for k in (1, 2, 3, 4, 5)]
+    waiting = follower.follow(views[:2], leads)
+    assert sum(lead.missed for lead in waiting) == 1
+    left = follower.follow(views[2:], waiting)
+    assert len(left) == 2 and not any(lead.missed for lead in left)
+    assert all(len(shown.sightings) == 2 for shown in views)
+
+
+def test_what_shows_clearly_less_than_a_moment_ago_is_looked_for_beside_too(
+    follower: Follower, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def doubted(looks: list[Look], *_: object) -> list[Sighting]:
+        places = np.concatenate([look.places for look in looks])
+        near = [min(known, key=lambda s: np.hypot(s.x - x, s.y - y)) for x, y in places]
+        return [s._replace(score=0.7 * s.score) for s in near]
+
+    known = follower.sought(view(START, 0))
+    moved = [(x + 0.02, y) for x, y in START]
+    after = view(moved, 1)
+    monkeypatch.setattr("vision.association.follower.look_on_course", doubted)
+    follower.follow([after], [Lead.to(s, 0.0) for s in known])
+    assert seen([after], [moved]).max() < 0.003
+
+
+def test_a_stone_that_is_drawn_aside_bit_by_bit_is_found_again(
+    follower: Follower, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fading(looks: list[Look], *_: object) -> list[Sighting]:
+        nonlocal share
+        share *= 0.93
+        places = np.concatenate([look.places for look in looks])
+        near = [min(known, key=lambda s: np.hypot(s.x - x, s.y - y)) for x, y in places]
+        return [s._replace(score=share * s.score) for s in near]
+
+    share = 1.0
+    known = follower.sought(view(START, 0))
+    moved = [(x + 0.02, y) for x, y in START]
+    views = [view(moved, k) for k in range(1, 6)]
+    monkeypatch.setattr("vision.association.follower.look_on_course", fading)
+    leads = [Lead.to(s, 0.0) for s in known]
+    for each in views:
+        leads = follower.follow([each], leads)
+    assert seen(views[:1], [moved]).min() > 0.015
+    assert seen(views[-1:], [moved]).max() < 0.003
+
+
+def test_what_is_beside_a_stone_must_show_clearly_more(
+    follower: Follower, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def little_more(look: Look, *_: object) -> list[Sighting]:
+        near = [min(known, key=lambda s: np.hypot(s.x - x, s.y - y)) for x, y in look.places]
+        return [s._replace(x=s.x + 0.02, score=1.1 * s.score) for s in near]
+
+    known = follower.sought(view(START, 0))
+    after = view(START, 1)
+    monkeypatch.setattr("vision.association.follower.look_beside", little_more)
+    follower.follow([after], [replace(Lead.to(s, 0.0), score=2 * s.score) for s in known])
+    assert seen([after], [START]).max() < 0.003

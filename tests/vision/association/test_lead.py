@@ -1,0 +1,67 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.vision.association.test_follow import sighting
+from vision.association.lead import DECELERATION, STEADY, Lead
+from vision.film.shelf import Kept
+
+NEAR, STILL = 0.02, 0.004
+
+
+def followed(places: list[tuple[float, float]], step: float = 0.04) -> Lead:
+    lead = Lead.to(sighting(places[0]), 0.0)
+    for count, place in enumerate(places[1:], 1):
+        lead = lead.on(sighting(place), count * step, NEAR, STILL)
+    return lead
+
+
+@pytest.mark.parametrize("step", [0.04, -0.04])
+def test_a_lead_points_to_where_a_stone_glides_to_or_came_from(step: float) -> None:
+    lead = followed([(0.1 + 0.5 * step * k, -1.2 * step * k) for k in range(12)], step)
+    np.testing.assert_allclose(lead.velocity, (0.5, -1.2), rtol=0.02)
+    np.testing.assert_allclose(lead.at(12 * step), (0.1 + 6 * step, -14.4 * step), atol=1e-3)
+    assert not lead.rests
+
+
+def test_a_new_course_is_taken_at_once() -> None:
+    lead = followed([*((0.0, -0.05 * k) for k in range(8)), (0.1, -0.35)])
+    assert lead.place == (0.1, -0.35)
+    np.testing.assert_allclose(lead.velocity, (2.5, 0.0), atol=0.05)
+
+
+def test_a_stone_that_stays_rests_until_it_leaves() -> None:
+    places = [(0.3, 0.2)] * STEADY
+    assert not followed(places).rests
+    resting = followed([*places, (0.301, 0.2)])
+    assert resting.rests and resting.anchor == (0.3, 0.2)
+    gone = followed([*places, (0.3, 0.2), (0.3, 0.21)])
+    assert not gone.rests and gone.anchor == (0.3, 0.21)
+
+
+def test_a_cap_that_turns_on_the_spot_does_not_rest() -> None:
+    rng = np.random.default_rng(3)
+    cap = rng.normal(0, 1, (17, 4, 3)) + 1j * rng.normal(0, 1, (17, 4, 3))
+
+    def facing(angle: float) -> np.ndarray:
+        return (cap * np.exp(-1j * np.arange(1, 18) * angle)[:, None, None]).astype(np.complex64)
+
+    for spin, rests in ((0.0, True), (0.5, False)):
+        lead = Lead.to(sighting((0.3, 0.2))._replace(spectrum=Kept(facing(0.0))), 0.0)
+        for count in range(1, STEADY + 2):
+            t = count / 25
+            seen = sighting((0.3, 0.2))._replace(spectrum=Kept(facing(spin * t)))
+            lead = lead.on(seen, t, NEAR, STILL)
+        assert lead.rests is rests
+
+
+@pytest.mark.parametrize("t", [0.3, -0.3])
+def test_a_lead_expects_the_ice_to_slow_a_stone(t: float) -> None:
+    place = Lead((0.0, 0.0), (0.0, -2.0), 0.0, (0.0, 0.0), 2.0).at(t)
+    np.testing.assert_allclose(place, (0.0, -2.0 * t + 0.5 * DECELERATION * t**2))
+
+
+def test_a_lead_expects_no_stone_to_turn_back() -> None:
+    crawling = Lead((0.0, 0.0), (0.01, 0.0), 0.0, (0.0, 0.0), 2.0)
+    assert crawling.at(5.0) == crawling.at(0.1) == pytest.approx((0.5 * 0.01**2 / DECELERATION, 0))

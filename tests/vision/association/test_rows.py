@@ -1,0 +1,49 @@
+from __future__ import annotations
+
+import gc
+import tracemalloc
+
+import numpy as np
+
+from tests.vision.association.test_follow import sighting
+from vision.association.rows import Rows
+from vision.detection.sighting import Sighting
+from vision.film.shelf import Kept
+
+
+def shown(rank: int) -> Sighting:
+    """One in which no two numbers are alike."""
+    x, y, *rest = (rank + np.arange(1, 23) / 100).tolist()
+    return sighting((x, y), np.array(rest[:3]), rest[3])._replace(
+        sd_x=rest[4], sd_y=rest[5], sd_place=(rest[6], rest[7]), visible=rest[8],
+        bends=tuple(rest[9:15]), pixel=(rest[15], rest[16]), pixel_size=rest[17],
+        light=(rest[18], rest[19]), measured=rank % 2 == 0, swept=rank % 3 == 0,
+        spectrum=Kept(np.ones(3, np.complex64)) if rank == 1 else None,
+    )  # fmt: skip
+
+
+def test_what_was_packed_is_as_it_was() -> None:
+    seen = [shown(rank) for rank in range(4)]
+    rows, more = Rows(seen[:1]), Rows(seen[2:])
+    rows.append(seen[1])
+    rows.extend(more)
+    assert len(rows) == 4
+    left_out = {"outline", "wall", "cap_samples", "granite_samples"}
+    for one, other in zip([*rows, rows[-1]], [*seen, seen[-1]], strict=True):
+        for name in set(Sighting._fields) - left_out:
+            np.testing.assert_array_equal(getattr(one, name), getattr(other, name), name)
+    assert [s.x for s in rows[1:3]] == [seen[1].x, seen[2].x]
+    np.testing.assert_array_equal(
+        rows.columns("y", "measured"), [[s.y for s in seen], [s.measured for s in seen]]
+    )
+
+
+def test_rows_take_a_few_hundred_bytes_each() -> None:
+    gc.collect()
+    tracemalloc.start()
+    begin = tracemalloc.get_traced_memory()[0]
+    rows = Rows(shown(2) for _ in range(3000))
+    gc.collect()
+    held = tracemalloc.get_traced_memory()[0] - begin
+    tracemalloc.stop()
+    assert held < 250 * len(rows)

@@ -1,0 +1,124 @@
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import av
+import cv2
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from tests.synthetic import still_camera
+from vision.film.clip import Clip, open_clip
+from vision.film.picture import Planes
+from vision.optics.camera import Camera, CameraError
+from vision.optics.letterbox import LitClip, in_whole, lit_clip
+
+Image = NDArray[np.uint8]
+
+W, H = 320, 180
+SHOWN = 100
+
+
+def scene(seed: int, light: float = 1.0, width: int = W) -> Image:
+    """Something of every lightness, smooth enough to be coded well."""
+    random = np.random.default_rng(seed).integers(60, 255, (9, 16, 3), np.uint8)
+    return np.asarray(light * cv2.resize(random, (width, H)), np.uint8)
+
+
+def barred(picture: Image, left: int, right: int, above: int = 0) -> Image:
+    out = picture.copy()
+    out[:, :left] = out[:, W - right :] = out[:above] = out[H - above :] = 0
+    return out
+
+
+def video(path: Path, pictures: Sequence[Image], crf: int = 28) -> Clip:
+    with av.open(str(path), "w") as container:
+        stream = container.add_stream("libx264", rate=25)
+        stream.width, stream.height, stream.pix_fmt = W, H, "yuv420p"
+        stream.options = {"crf": str(crf)}
+        for k, picture in enumerate(pictures):
+            frame = av.VideoFrame.from_ndarray(picture, format="bgr24")
+            frame.pts, frame.time_base = k, Fraction(1, 25)
+            container.mux(stream.encode(frame))
+        container.mux(stream.encode())
+    return open_clip([path])
+
+
+@pytest.mark.parametrize(("crf", "traces"), [(10, 0), (36, 8)])
+def test_bars_are_cut_off(tmp_path: Path, crf: int, traces: int) -> None:
+    pictures = [barred(scene(k), 110, 110) for k in range(5)]
+    pictures[2] = barred(scene(2), 110, 110, above=H // 2)  # all black for a moment
+    clip = video(tmp_path / "pillars.mp4", pictures, crf)
+    lit = lit_clip(clip)
+    assert isinstance(lit, LitClip)
+    width, height = lit.size
+    assert SHOWN <= width <= SHOWN + traces and height == H
+    aside = (W - width) // 2
+    for whole, part in zip(list(clip), lit, strict=True):
+        assert (part.index, part.t) == (whole.index, whole.t)
+        assert part.picture.shape == (H, width, 3)
+        # Colours stay with what they are colours of.
+        assert isinstance(whole.picture, Planes)
+        same = replace(whole.picture, frame=None).image[:, aside : W - aside].astype(int)
+        np.testing.assert_allclose(part.image[:, 2:-2], same[:, 2:-2], atol=1)
+    assert lit.read == 5
+
+
+def test_above_and_below_and_of_pictures(tmp_path: Path) -> None:
+    paths = [tmp_path / f"{k}.png" for k in range(2)]
+    for k, path in enumerate(paths):
+        cv2.imwrite(str(path), barred(scene(k), 0, 0, 23))
+    lit = lit_clip(open_clip(paths, 25.0))
+    assert lit.size == (W, H - 48)  # to an even number
+    assert [frame.image.shape for frame in lit] == [(H - 48, W, 3)] * 2
+
+
+@pytest.mark.parametrize(
+    "pictures",
+    [
+        [scene(k) for k in range(4)],
+        [scene(0, light) for light in (0.0, 0.03, 0.3, 1.0)],  # fades in
+        [scene(0, 0.05)] * 4,  # hardly to be seen
+        [barred(scene(0), 110, 110), scene(1)],  # a title, say
+        [barred(scene(k), 60, 160) for k in range(4)],  # the axis is who knows where
+        [barred(scene(k), 110, 0) for k in range(4)],
+        [barred(scene(k), 4, 4) for k in range(4)],
+    ],
+    ids=["none", "fade", "night", "title", "uneven", "one side", "narrow"],
+)
+def test_what_is_not_taken_for_bars(tmp_path: Path, pictures: list[Image]) -> None:
+    clip = video(tmp_path / "clip.mp4", pictures)
+    assert lit_clip(clip) is clip
+    frames = list(clip)
+    assert frames[0].index == 0 and frames[-1].index == len(pictures) - 1
+    one, same = in_whole(clip, [])
+    assert one is clip and same == ()
+
+
+def test_a_night_whose_picture_fades_in_between_bars(tmp_path: Path) -> None:
+    pictures = [barred(scene(0, light), 110, 110) for light in (0.0, 0.05, 0.4)]
+    assert lit_clip(video(tmp_path / "clip.mp4", pictures)).size == (SHOWN, H)
+
+
+def test_cameras_in_pixels_of_the_whole() -> None:
+    path = still_camera(size=(SHOWN, H), target=(0.1, 0.4), px_per_m=30, k1=-0.05)
+    view = path.at(0.0)
+    root = np.random.default_rng(3).normal(size=(9, 9)) * 1e-3
+    error = CameraError(root @ root.T, 0.1 * root @ root.T, 1e-3)
+    seen = Camera(
+        3, 0.12, view.homography / view.homography[2, 2], (SHOWN, H), k1=view.lens.k1, k2=0.03,
+        f_px=view.focal, position=view.position, error=error,
+    )  # fmt: skip
+    whole = Clip((Path("clip.mp4"),), (W, H), 25.0, 4)
+    clip, (shown,) = in_whole(LitClip(whole, (110, 0)), [seen])
+    assert clip is whole and shown.size == (W, H)
+    ice = np.array([[0.0, 0.0], [1.2, -0.7], [-1.5, 1.9]])
+    for height in (0.0, 0.12):
+        moved = shown.project(ice, height) - seen.project(ice, height)
+        np.testing.assert_allclose(moved, np.tile([110.0, 0.0], (3, 1)), atol=1e-9)
+    np.testing.assert_allclose(shown.place_cov(ice, 0.12), seen.place_cov(ice, 0.12), rtol=1e-9)
+    np.testing.assert_allclose(shown.rotation, seen.rotation, atol=1e-12)

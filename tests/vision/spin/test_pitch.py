@@ -1,0 +1,100 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from tests.vision.spin.test_handle import RADII, RAYS
+from vision.spin.align import Complex, align
+from vision.spin.handle import cap_spectrum, handle_angles
+from vision.spin.pitch import levelled
+
+Array = NDArray[np.float64]
+TIMES = np.arange(70) / 25
+TRUE = 0.4 + 1.3 * TIMES
+SLANTS = np.column_stack([0.05 + 0 * TIMES, 0.38 - 0.14 * TIMES])
+"""Of a stone that comes from afar to below the camera."""
+
+
+def seen(turn: float, slant: Array, steep: float, rng: np.random.Generator) -> NDArray[np.uint8]:
+    """A cap with a bar, longer on one side, whose height goes up by `steep` along it.
+
+    What lies at x is seen at x + h slant; here each ray asks what is seen there.
+    """
+    angle = np.arange(RAYS)[:, None] * (2 * np.pi / RAYS)
+    x, y = RADII * np.cos(angle), RADII * np.sin(angle)
+    way = np.array([np.cos(turn), np.sin(turn)])
+    # Where the bar is seen: from -6 to 8 cm along it, each point shifted by its height.
+    along = np.linspace(-0.06, 0.08, 141)
+    points = along[:, None] * (way + steep * slant)
+    away = np.hypot(x[..., None] - points[:, 0], y[..., None] - points[:, 1]).min(-1)
+    bar = 1 / (1 + np.exp((away - 0.011) / 0.003))
+    value = np.stack([80 + 90 * bar, 170 - 30 * bar, 150 - 10 * bar], -1)
+    return np.asarray(np.clip(value + rng.normal(0, 2, value.shape), 0, 255), np.uint8)
+
+
+def pictures(steep: float, slants: Array = SLANTS) -> Complex:
+    rng = np.random.default_rng(7)
+    pairs = zip(TRUE.tolist(), slants, strict=True)
+    return np.array([cap_spectrum(seen(turn, each, steep, rng), RADII) for turn, each in pairs])
+
+
+def spin_off(angles: Array) -> float:
+    return float(np.polyfit(TIMES, angles - TRUE, 1)[0])
+
+
+@pytest.mark.parametrize("steep", [0.35, -0.35])
+def test_a_handle_that_rises_is_not_taken_for_a_turn(steep: float) -> None:
+    shown = pictures(steep)
+    sd = np.full(len(TIMES), 0.002)
+    fit = align(shown, TRUE, RADII, sd)
+    angles, unsure = levelled(shown, fit.angle, RADII, sd, SLANTS)
+    before, after = spin_off(fit.angle), spin_off(angles)
+    assert abs(before) > 0.03
+    assert abs(after) < 0.4 * abs(before)
+    error = angles - TRUE - np.median(angles - TRUE)
+    assert np.mean(np.abs(error) < 2 * np.hypot(unsure, 0.01)) > 0.9
+
+
+def test_a_flat_handle_is_left_as_it_is_seen() -> None:
+    shown = pictures(0.0)
+    sd = np.full(len(TIMES), 0.002)
+    fit = align(shown, TRUE, RADII, sd)
+    angles, unsure = levelled(shown, fit.angle, RADII, sd, SLANTS)
+    assert np.abs(angles - fit.angle - np.median(angles - fit.angle)).max() < 0.02
+    assert 0 < unsure.max() < 0.06
+
+
+def test_far_aslant_it_is_believed_less() -> None:
+    shown, sd = pictures(0.35), np.full(len(TIMES), 0.002)
+    whole, less = (
+        levelled(shown, TRUE, RADII, sd, scale * SLANTS)[0] - TRUE for scale in (1.0, 10.0)
+    )
+    # Pictures that change as little in a view ten times as slanting: steep by a tenth.
+    assert np.ptp(less) < 0.3 * np.ptp(whole)
+
+
+def test_from_above_nothing_is_steep() -> None:
+    shown = pictures(0.35, 0 * SLANTS)
+    angles, unsure = levelled(shown, TRUE, RADII, np.full(len(TIMES), 0.002), 0 * SLANTS)
+    assert angles == pytest.approx(TRUE, abs=1e-9)
+    assert unsure == pytest.approx(0.0, abs=1e-9)
+
+
+def test_many_pictures_are_levelled_alike_part_by_part(monkeypatch: pytest.MonkeyPatch) -> None:
+    shown, sd = pictures(0.35), np.full(len(TIMES), 0.002)
+    whole, _ = levelled(shown, TRUE, RADII, sd, SLANTS)
+    monkeypatch.setattr("vision.spin.shade.TOGETHER", 30)
+    parts, _ = levelled(shown, TRUE, RADII, sd, SLANTS)
+    assert parts == pytest.approx(whole, abs=2e-3)
+
+
+def test_angles_of_a_stone_are_levelled() -> None:
+    shown = [*pictures(0.35)]
+    sd = np.full(len(TIMES), 0.0005)
+    plain, _ = handle_angles(TIMES, shown, RADII, sd)
+    aslant, unsure = handle_angles(TIMES, shown, RADII, sd, SLANTS)
+    flat, sure = handle_angles(TIMES, shown, RADII, sd, 0 * SLANTS)
+    assert flat == pytest.approx(plain, abs=1e-9)
+    assert abs(spin_off(aslant)) < 0.5 * abs(spin_off(plain))
+    assert unsure.max() > 1.2 * sure.max()

@@ -1,0 +1,1 @@
+"""Which sighting is which stone, from the first picture to the last."""

@@ -1,0 +1,326 @@
+"""Which sighting is which stone: association over time by gating and global assignment.
+
+Two discs are never nearer than two radii, so between frames a stone is told from its
+neighbours by place alone as long as it moves by less than about a radius more or less than
+expected; a hit changes its course by no more than that from one frame to the next. Out of
+sight a moving stone is expected to glide on and come to rest; one at rest stays; where two
+would meet, a hit is expected.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import combinations
+from math import dist, hypot, inf, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vision.association.assign import assign
+from vision.association.lead import DECELERATION
+from vision.association.rows import Rows
+from vision.detection.appearance import colour_differences
+from vision.detection.sighting import Sighting
+
+Array = NDArray[np.float64]
+
+Pair = tuple[float, float]
+
+OPEN = 0.7
+"""Share of a stone that must be seen for nothing to cover it: what bends over it covers more."""
+
+_FORBIDDEN = 1e6
+"""Cost of a pair that may not be: more than all others together."""
+
+
+@dataclass(frozen=True)
+class Gate:
+    """When a sighting may belong to a track. Lengths are shares of the disc's radius.
+
+    Attributes
+    ----------
+    reach : float
+        Largest distance from where a stone seen in the frame before is expected.
+    growth : float
+        How much that grows per second out of sight.
+    most : float
+        Beyond this it grows no more.
+    colours : float
+        Difference of cap colours (L*a*b* units) that says: another stone.
+    patience : float
+        Seconds for which a moving stone is waited for.
+    births : int
+        Sightings that make a track.
+    told : int
+        Sightings that tell how a stone moves, so that a hit nobody sees is expected.
+    least_score : float
+        Evidence that the better part of a track's sightings must show.
+    least_open, brief : float
+        The same for a track no longer than `brief`, s, of what nothing covers: shoulders look like
+        a stone for a few frames where a person turns.
+    deceleration : float
+        Of a stone that glides unseen, m/s².
+    restitution : float
+        Of a hit that nobody saw.
+    """
+
+    reach: float = 1.25
+    growth: float = 2.0
+    most: float = 3.5
+    colours: float = 45.0
+    patience: float = 3.0
+    births: int = 5
+    told: int = 3
+    least_score: float = 0.0
+    least_open: float = 0.0
+    brief: float = 0.5
+    deceleration: float = DECELERATION
+    restitution: float = 0.85
+
+
+GATE = Gate()
+
+
+@dataclass
+class Track:
+    """One stone's sightings, each with the index of its frame in the clip.
+
+    Attributes
+    ----------
+    frames, times : list
+        Frame numbers and times, s, of the sightings.
+    sightings : Rows
+    colour : ndarray, shape (3,)
+        Running mean of the cap's colour, L*a*b*.
+    """
+
+    frames: list[int] = field(default_factory=list)
+    times: list[float] = field(default_factory=list)
+    sightings: Rows = field(default_factory=Rows)
+    colour: Array = field(default_factory=lambda: np.zeros(3))
+    _place: Pair = (0.0, 0.0)
+    _velocity: Pair = (0.0, 0.0)
+    _covariance: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    @property
+    def speed(self) -> float:
+        """Speed at the last sighting, m/s; 0 where it cannot be told from 0."""
+        speed = hypot(*self._velocity)
+        return speed if speed > 3 * sqrt(self._covariance[2]) else 0.0
+
+    def expected(self, t: float, deceleration: float) -> Pair:
+        """Place at time t if nothing hits it: it glides on, slows down and stops."""
+        speed = self.speed
+        if speed == 0:
+            return self._place
+        wait = min(t - self.times[-1], speed / deceleration if deceleration > 0 else inf)
+        path = wait - 0.5 * deceleration * wait**2 / speed
+        (x, y), (vx, vy) = self._place, self._velocity
+        return x + vx * path, y + vy * path
+
+    def add(self, frame: int, t: float, sighting: Sighting, radius: float) -> None:
+        """Take in a sighting: a filter of constant velocity that starts anew at a hit."""
+        x, y = sighting.x, sighting.y
+        noise = sighting.sd_x * sighting.sd_y + (0.004 * radius) ** 2
+        any_speed = (10 * radius) ** 2
+        if not self.times:
+            self._place, self._covariance = (x, y), (noise, 0.0, any_speed)
+            self.colour = np.asarray(sighting.colour, float)
+        else:
+            step = t - self.times[-1]
+            (ahead_x, ahead_y), (vx, vy), (p00, p01, p11) = (
+                self._place, self._velocity, self._covariance,
+            )  # fmt: skip
+            ahead_x, ahead_y = ahead_x + vx * step, ahead_y + vy * step
+            jolt = (2.0 * radius) ** 2 * step
+            p00 += step * (2 * p01 + step * p11) + jolt * step**2 / 3
+            p01 += step * p11 + jolt * step / 2
+            p11 += jolt
+            away_x, away_y = x - ahead_x, y - ahead_y
+            if away_x**2 + away_y**2 > 25 * (p00 + noise):
+                p00 += any_speed * step**2
+                p01 += any_speed * step
+                p11 += any_speed
+            gain, rate = p00 / (p00 + noise), p01 / (p00 + noise)
+            self._place = ahead_x + gain * away_x, ahead_y + gain * away_y
+            self._velocity = vx + rate * away_x, vy + rate * away_y
+            self._covariance = p00 - gain * p00, p01 - gain * p01, p11 - rate * p01
+            self.colour = self.colour + 0.1 * (sighting.colour - self.colour)
+        self.frames.append(frame)
+        self.times.append(t)
+        self.sightings.append(sighting)
+
+    def go_on(self, later: Track) -> None:
+        """Take in all of a track that begins after this one ends, and how it moves then."""
+        self.frames += later.frames
+        self.times += later.times
+        self.sightings.extend(later.sightings)
+        self.colour = later.colour
+        self._place, self._velocity = later._place, later._velocity
+        self._covariance = later._covariance
+
+
+def follow(
+    frames: Iterable[tuple[int, float, Sequence[Sighting]]], radius: float, gate: Gate = GATE
+) -> list[Track]:
+    """Join the sightings of a clip to tracks.
+
+    Parameters
+    ----------
+    frames : iterable of (frame, t, sightings)
+        In order of time; read once.
+    radius : float
+        Of the discs, m.
+    gate : Gate
+        When a sighting may belong to a track.
+
+    Returns
+    -------
+    list of Track
+        Those with enough sightings to be a stone, in order of birth.
+    """
+    tracks: list[Track] = []
+    closed: list[Track] = []
+    count, begin, t = 0, inf, -inf
+    for frame, t, sightings in frames:
+        count, begin = count + 1, min(begin, t)
+        for index in [i for i, track in enumerate(tracks) if _given_up(track, t, gate)][::-1]:
+            closed.append(tracks.pop(index))
+        taken = _assign(tracks, t, sightings, radius, gate)
+        for column, sighting in enumerate(sightings):
+            if column in taken:
+                taken[column].add(frame, t, sighting, radius)
+            else:
+                track = Track()
+                track.add(frame, t, sighting, radius)
+                tracks.append(track)
+    births = min(gate.births, (count + 1) // 2)
+    if t - begin < 2 * gate.brief:  # all tracks are brief
+        gate = replace(gate, least_open=gate.least_score)
+    stones = [
+        track
+        for track in closed + tracks
+        if len(track.frames) >= births and _convincing(track, gate)
+    ]
+    return sorted(
+        (track for track in stones if not any(_beneath(track, o, radius) for o in stones)),
+        key=lambda track: (track.frames[0], track.sightings[0].x),
+    )
+
+
+def _beneath(track: Track, other: Track, radius: float) -> bool:
+    """Whether a track lies where another is before and after: centres are never so near.
+
+    It is that stone, half covered by something of another colour.
+    """
+    if not other.times[0] < track.times[0] <= track.times[-1] < other.times[-1]:
+        return False
+    here, there = (one.sightings.columns("x", "y") for one in (track, other))
+    away = [np.interp(track.times, other.times, there[i]) - here[i] for i in (0, 1)]
+    return bool((np.hypot(*away) < radius).all())
+
+
+def _convincing(track: Track, gate: Gate) -> bool:
+    """Say whether the better quarter of what was measured shows enough.
+
+    What looks unchanged shows nothing more.
+    """
+    score, visible, measured = track.sightings.columns("score", "visible", "measured")
+    if not measured.any():
+        return False
+    shown = float(np.percentile(score[measured > 0], 75))
+    brief = track.times[-1] - track.times[0] < gate.brief
+    return shown >= (gate.least_open if brief and np.median(visible) > OPEN else gate.least_score)
+
+
+def _given_up(track: Track, t: float, gate: Gate) -> bool:
+    wait = t - track.times[-1]
+    if len(track.frames) < gate.births:
+        return wait > 0.25 * gate.patience
+    return track.speed > 0 and wait > gate.patience
+
+
+def _assign(
+    tracks: Sequence[Track], t: float, sightings: Sequence[Sighting], radius: float, gate: Gate
+) -> dict[int, Track]:
+    """Sighting index to the track that it continues."""
+    if not tracks or not sightings:
+        return {}
+    seen = np.array([(s.x, s.y) for s in sightings])
+    struck = _struck(tracks, t, radius, gate)
+    waits = t - np.array([track.times[-1] for track in tracks])
+    reach = np.minimum(gate.reach + gate.growth * waits, gate.most)[:, None] * radius
+    expected = np.array(
+        [
+            struck[row] if row in struck else track.expected(t, gate.deceleration)
+            for row, track in enumerate(tracks)
+        ]
+    )
+    last = np.array([track._place for track in tracks])
+    away, near = (
+        np.hypot(*(seen - places[:, None]).transpose(2, 0, 1)) for places in (expected, last)
+    )
+    # A stone that has been hit a moment ago is still near where it was.
+    distance = np.minimum(away / reach, near / reach + 0.1)
+    unlike = colour_differences(
+        np.array([track.colour for track in tracks]), np.array([s.colour for s in sightings])
+    )
+    # Young tracks yield to old ones.
+    youth = np.array([0.5 if len(track.frames) < gate.births else 0.0 for track in tracks])
+    value = distance**2 + (0.5 * unlike / gate.colours) ** 2 + youth[:, None]
+    cost = np.where((distance < 1) & (unlike < gate.colours), value, _FORBIDDEN)
+    return {column: tracks[row] for row, column in _paired(cost)}
+
+
+def _paired(cost: Array) -> list[tuple[int, int]]:
+    """Rows and columns that together cost least, without the forbidden pairs."""
+    allowed = cost < _FORBIDDEN
+    if allowed.sum(0).max() < 2 and allowed.sum(1).max() < 2:  # no two claim the same
+        return [(int(row), int(column)) for row, column in np.argwhere(allowed)]
+    return [pair for pair in assign(cost) if allowed[pair]]
+
+
+def _struck(tracks: Sequence[Track], t: float, radius: float, gate: Gate) -> dict[int, Array]:
+    """Where stones are expected that have met since they were seen, by their ranks.
+
+    Their paths are taken as straight; each stone's first meeting counts, and of the two only
+    the push along the line of their centres.
+    """
+    speeds = [track.speed for track in tracks]
+    longest = t - min(track.times[-1] for track in tracks)
+    near = [
+        (i, j)
+        for i, j in combinations(range(len(tracks)), 2)
+        if (speed := speeds[i] + speeds[j]) > 0
+        and dist(tracks[i]._place, tracks[j]._place) < 2 * radius + speed * longest
+    ]
+    if not near:
+        return {}
+    places = np.array([track._place for track in tracks])
+    ways = np.array([track._velocity if track.speed > 0 else (0.0, 0.0) for track in tracks])
+    since = np.array([track.times[-1] for track in tracks])
+    known = np.array([len(track.times) >= gate.told for track in tracks])
+    first, second = np.array(near).T
+    start = np.maximum(since[first], since[second])
+    apart = places[second] + ways[second] * (start - since[second])[:, None]
+    apart = apart - places[first] - ways[first] * (start - since[first])[:, None]
+    closing = ways[second] - ways[first]
+    # They are two radii apart where |apart + closing s| = 2 R.
+    a, b = (closing**2).sum(1), (apart * closing).sum(1)
+    c = (apart**2).sum(1) - 4 * radius**2
+    root = np.sqrt(np.maximum(b * b - a * c, 0.0))
+    at = start + np.where(a > 0, (-b - root) / np.where(a > 0, a, 1.0), np.inf)
+    lasted = np.minimum(since[first], since[second])
+    meets = (b < 0) & (b * b > a * c) & (at >= lasted) & (at < t) & known[first] & known[second]
+    out: dict[int, Array] = {}
+    for k in np.flatnonzero(meets)[np.argsort(at[meets])].tolist():
+        pair = int(first[k]), int(second[k])
+        if out.keys() & set(pair):
+            continue
+        there = [places[i] + ways[i] * (at[k] - since[i]) for i in pair]
+        normal = (there[1] - there[0]) / (2 * radius)
+        push = -0.5 * (1 + gate.restitution) * float(closing[k] @ normal) * normal
+        for i, place, change in zip(pair, there, (-push, push), strict=True):
+            out[i] = place + (ways[i] + change) * (t - at[k])
+    return out

@@ -1,0 +1,345 @@
+"""Known stones through the pictures of a clip: each measured where it is expected to be.
+
+A stone that is not where it is expected, as after a hit, is sought nearby. What the next few
+pictures show of stones that keep their course, or their rest, is measured for all of these
+pictures at once, which costs a third of doing it picture by picture.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from math import dist, hypot, inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.sheet import Stone
+from vision.association.expected import ON_COURSE, SETTLED, look_beside, look_on_course
+from vision.association.lead import Lead
+from vision.association.still import portraits, unchanged
+from vision.detection.appearance import Appearance
+from vision.detection.rays import Look
+from vision.detection.seek import Bounds
+from vision.detection.sighting import Sighting
+from vision.detection.stones import NEAREST, Search, search_picture
+from vision.film.clip import Frame
+from vision.film.shelf import Shelf
+from vision.optics import projection
+from vision.optics.camera import Camera
+
+Array = NDArray[np.float64]
+
+Place = tuple[float, float]
+
+Foreseen = tuple[Place, Sighting | None]
+"""Where a stone was expected some pictures before, and what was seen there, if one was."""
+
+STILL = 0.03
+"""How far from where it rests a stone may be seen, in radii."""
+
+DOUBTFUL = 0.85
+"""Share of a stone's usual evidence below which it may rather be beside where it is expected, as
+after a hit, and of what shows there, below which it is: on paint of its cap's colour, one that has
+been pushed 25 mm aside still shows 0.6 to 0.75 of it where it was; drawn aside by as much along
+paint as light as granite, 0.6 to 0.8."""
+
+
+@dataclass(frozen=True)
+class Patience:
+    """How stones are followed.
+
+    Attributes
+    ----------
+    block : int
+        Pictures that are looked at together.
+    wait : float
+        Time for which a stone is still looked for where it is expected, s.
+    rest : float
+        The same for one that rested: who covers it may do so for long, and show it now and then.
+    trust : float
+        Time from one measurement of a stone that looks unchanged to the next, s; it is due when
+        a block begins.
+    reach : float
+        How far, in radii, a stone may be from where it is expected or from where it was.
+    """
+
+    block: int = 8
+    wait: float = 0.3
+    rest: float = 2.0
+    trust: float = 0.5
+    reach: float = 1.5
+
+
+PATIENCE = Patience()
+
+
+@dataclass(frozen=True)
+class StoneView:
+    """A picture with its camera, the stones seen in it so far and the camera of that before it."""
+
+    frame: Frame
+    camera: Camera
+    sightings: list[Sighting] = field(default_factory=list)
+    before: Camera | None = None
+
+    @property
+    def places(self) -> Array:
+        """Of the stones, m, shape (n, 2)."""
+        return _places(self.sightings)
+
+    def put_aside(self, shelf: Shelf) -> None:
+        """Put aside how the caps of its stones look."""
+        for sighting in self.sightings:
+            if sighting.spectrum is not None:
+                sighting.spectrum.put_aside(shelf)
+
+    def look(self, places: Sequence[Place], drift: Sequence[Place] | None = None) -> Look:
+        """Look at places on the ice in it; what is there drifts so far from picture to picture."""
+        at = _array(places)
+        moving = None if drift is None else self.drift_seen(at, _array(drift))
+        return Look(self.frame.picture, self.camera, at, moving)
+
+    def drift_seen(self, places: Array, drift: Array) -> Array:
+        """Tell how far across the picture stones move that drift on the ice, (n, 2), m at places.
+
+        That is by what they are smeared: a pan smears those at rest, and not one that it follows.
+        """
+        if self._onto is None or not len(places):
+            return drift
+        return drift + places - projection.apply_homography(self._onto, places)
+
+    @cached_property
+    def _onto(self) -> Array | None:
+        """Where the picture before shows places, on the ice of this one: a homography."""
+        if self.before is None:
+            return None
+        # Both pictures are distorted alike.
+        return np.asarray(np.linalg.solve(self.camera.homography, self.before.homography))
+
+
+@dataclass(frozen=True)
+class Follower:
+    """Follows stones of which it is known what they look like.
+
+    Attributes
+    ----------
+    appearance : Appearance or None
+        None for plain discs.
+    disc : Stone
+    search : Search
+    patience : Patience
+    """
+
+    appearance: Appearance | None
+    disc: Stone
+    search: Search
+    patience: Patience
+
+    def follow(self, views: Sequence[StoneView], leads: Sequence[Lead]) -> list[Lead]:
+        """Add to views, one after the other, the stones to which leads point.
+
+        Parameters
+        ----------
+        views : sequence of StoneView
+            In the order of the clip, or against it.
+        leads : sequence of Lead
+            To stones of the picture before.
+
+        Returns
+        -------
+        list of Lead
+            Where those in the last view lead on to.
+        """
+        for begin in range(0, len(views), self.patience.block):
+            block = views[begin : begin + self.patience.block]
+            step = _time_between(block, leads)
+            for view, seen in zip(block, self._ahead(block, leads, step), strict=True):
+                leads = self._step(view, leads, seen, step)
+        return list(leads)
+
+    def _step(
+        self, view: StoneView, leads: Sequence[Lead], ahead: Sequence[Foreseen], step: float
+    ) -> list[Lead]:
+        """Add to a view the stones to which leads point; some were measured ahead."""
+        if not leads:
+            return []
+        t = view.frame.t
+        apart = NEAREST * self.disc.radius
+        near, still = ON_COURSE * self.disc.radius, STILL * self.disc.radius
+        expected = [lead.at(t) for lead in leads]
+        found = self._measured(view, leads, expected, ahead, step)
+        going: list[tuple[Lead, Sighting | None]] = []
+        lost: list[Lead] = []
+        # The best first: of two leads to one stone, the other is lost.
+        for index in sorted(range(len(leads)), key=lambda i: -_score(found[i])):
+            lead, sighting = leads[index], found[index]
+            if _away(view.sightings, *expected[index]) < 0.5 * self.disc.radius:
+                continue  # it leads to a stone that is followed already
+            if sighting is None or _away(view.sightings, sighting.x, sighting.y) < apart:
+                lost.append(lead)
+                continue
+            view.sightings.append(sighting)
+            going.append((lead.on(sighting, t, near, still), sighting))
+        for lead in lost:
+            nearby = None if lead.missed else self._near(view, lead)
+            if nearby is not None:
+                view.sightings.append(nearby)
+                going.append((lead.on(nearby, t, near, still), nearby))
+            elif abs(t - lead.t) < (self.patience.rest if lead.rests else self.patience.wait):
+                going.append((replace(lead, missed=True), None))
+        return self._portrayed(view, going)
+
+    def _ahead(
+        self, views: Sequence[StoneView], leads: Sequence[Lead], step: float
+    ) -> list[list[Foreseen]]:
+        """Measure at once what views show of stones that rest or keep their course."""
+        if not leads:
+            return [[] for _ in views]
+        known = {
+            i: lead.portrait for i, lead in enumerate(leads) if lead.portrait and not lead.missed
+        }
+        pictures = [(view.frame.picture, view.camera) for view in views]
+        alike = [
+            {i: sighting for i, sighting in zip(known, seen, strict=True) if sighting}
+            for seen in unchanged(pictures, list(known.values()), self.disc)
+        ]
+        # Now and then even what looks unchanged is measured.
+        for i, portrait in known.items():
+            if abs(views[0].frame.t - portrait.t) >= self.patience.trust:
+                alike[0].pop(i, None)
+        out: list[list[Foreseen]] = []
+        looks = []
+        for view, seen in zip(views, alike, strict=True):
+            expected = [lead.at(view.frame.t) for lead in leads]
+            others = [i for i in range(len(leads)) if i not in seen]
+            out.append([(expected[i], sighting) for i, sighting in seen.items()])
+            looks.append(_look_at(view, leads, expected, others, step))
+        if any(len(look.places) for look in looks):
+            measured = iter(look_on_course(looks, self.appearance, self.disc, self.search))
+            for so_far, look in zip(out, looks, strict=True):
+                so_far += [((x, y), next(measured)) for x, y in look.places.tolist()]
+        return out
+
+    def _measured(
+        self,
+        view: StoneView,
+        leads: Sequence[Lead],
+        expected: Sequence[Place],
+        ahead: Sequence[Foreseen],
+        step: float,
+    ) -> list[Sighting | None]:
+        """Look at each stone where it is expected, unless it was measured ahead."""
+        nearest = [_nearest(ahead, place) for place in expected]
+        course, settled = ON_COURSE * self.disc.radius, SETTLED * self.disc.radius
+        found = [seen if away < course else None for away, seen in nearest]
+        others = [
+            index
+            for index, (lead, (away, _)) in enumerate(zip(leads, nearest, strict=True))
+            # What was missed before is not expected so precisely.
+            if found[index] is None and away > (course if lead.missed else settled)
+        ]
+        if others:
+            look = _look_at(view, leads, expected, others, step)
+            seen = look_on_course([look], self.appearance, self.disc, self.search)
+            for index, sighting in zip(others, seen, strict=True):
+                found[index] = sighting
+        astray = [
+            index
+            for index, (lead, sighting) in enumerate(zip(leads, found, strict=True))
+            if not lead.missed and _score(sighting) < DOUBTFUL * lead.score
+        ]
+        if astray:
+            look = _look_at(view, leads, expected, astray, step)
+            seen = look_beside(
+                look, [found[i] for i in astray], self.appearance, self.disc, self.search
+            )
+            for index, sighting in zip(astray, seen, strict=True):
+                if _score(found[index]) < DOUBTFUL * _score(sighting):
+                    found[index] = sighting
+        return found
+
+    def _portrayed(
+        self, view: StoneView, going: Sequence[tuple[Lead, Sighting | None]]
+    ) -> list[Lead]:
+        """Take the portraits of the stones at rest that have just been measured."""
+        leads = [lead for lead, _ in going]
+        due = [
+            (index, sighting)
+            for index, (lead, sighting) in enumerate(going)
+            if lead.rests and sighting is not None and sighting.measured
+        ]
+        taken = portraits(
+            view.frame.picture, view.camera, view.frame.t, [s for _, s in due], self.disc
+        )
+        for (index, _), portrait in zip(due, taken, strict=True):
+            leads[index] = replace(leads[index], portrait=portrait)
+        return leads
+
+    def _near(self, view: StoneView, lead: Lead) -> Sighting | None:
+        """Seek a stone that is not where it is expected about there and about its last place."""
+        either = np.array([lead.at(view.frame.t), lead.place])
+        reach = self.patience.reach * self.disc.radius
+        low = either.min(0) - reach - self.disc.radius
+        high = either.max(0) + reach + self.disc.radius
+        bounds = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
+        found = self.sought(view, bounds)
+        away = [min(float(np.hypot(*(place - e))) for e in either) for place in _places(found)]
+        if not away or min(away) > reach:
+            return None
+        return found[int(np.argmin(away))]
+
+    def sought(self, view: StoneView, bounds: Bounds | None = None) -> list[Sighting]:
+        """Stones on a part of the ice, or on all of it, that were not seen in the view so far."""
+        found = search_picture(
+            view.frame.picture,
+            view.camera,
+            self.appearance,
+            self.disc,
+            self.search,
+            bounds,
+            view.places,
+        )
+        return [sighting.without_samples() for sighting in found.stones]
+
+
+def _look_at(
+    view: StoneView,
+    leads: Sequence[Lead],
+    expected: Sequence[Place],
+    which: Sequence[int],
+    step: float,
+) -> Look:
+    """Look where some of the stones are expected that drift as their leads do."""
+    return view.look([expected[i] for i in which], [leads[i].drift(step) for i in which])
+
+
+def _time_between(views: Sequence[StoneView], leads: Sequence[Lead]) -> float:
+    """Time from one picture to the next, s; 0 where nothing tells it."""
+    times = [view.frame.t for view in views]
+    gaps = np.abs(np.diff(times)) if len(times) > 1 else [abs(times[0] - lead.t) for lead in leads]
+    return float(np.min(gaps)) if len(gaps) else 0.0
+
+
+def _away(sightings: Sequence[Sighting], x: float, y: float) -> float:
+    """Distance from a place to the nearest of the stones seen, m."""
+    return min((hypot(s.x - x, s.y - y) for s in sightings), default=inf)
+
+
+def _nearest(ahead: Sequence[Foreseen], place: Place) -> tuple[float, Sighting | None]:
+    """Give what was measured ahead nearest to a place, and how far from it, m."""
+    away = [(dist(place, start), seen) for start, seen in ahead]
+    return min(away, key=lambda found: found[0], default=(inf, None))
+
+
+def _score(sighting: Sighting | None) -> float:
+    return -1.0 if sighting is None else sighting.score
+
+
+def _places(sightings: Sequence[Sighting]) -> Array:
+    return _array([(s.x, s.y) for s in sightings])
+
+
+def _array(places: Sequence[Place]) -> Array:
+    return np.array(places, float).reshape(-1, 2)

@@ -1,0 +1,133 @@
+"""What leads on to a stone in the next picture: where it was, how it moved, how it looked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import hypot
+
+from vision.association.still import Portrait
+from vision.detection.sighting import Sighting
+from vision.film.shelf import Kept
+from vision.spin.align import Complex
+from vision.spin.facing import angle_between
+from vision.spin.handle import TURNING
+
+STEADY = 5
+"""Sightings at one place that make a stone one at rest."""
+
+DECELERATION = 0.1
+"""Of a stone on ice, about, m/s²."""
+
+NEWEST = 0.2
+"""Share of the last sighting in the evidence that is usual for a stone: one that goes astray bit by
+bit, along the edge of paint as light as its granite, still falls below that."""
+
+TURNED = 0.06
+"""A cap that has turned by more spins on the spot, rad."""
+
+
+@dataclass(frozen=True)
+class Lead:
+    """Where a stone was at the time t, and how it moved.
+
+    Attributes
+    ----------
+    place, velocity : tuple of float
+        m and m/s.
+    t : float
+        s.
+    score : float
+        Evidence that it is a stone, as was usual for it of late.
+    missed : bool
+        Whether it was missed since.
+    anchor : tuple of float
+        The place that it has not left lately, m.
+    facing : Kept of ndarray, optional
+        How its cap looked when it came there (`vision.spin.handle.cap_spectrum`).
+    steady : int
+        For how many sightings it has neither left nor turned.
+    portrait : Portrait, optional
+        Its picture when it was last measured, if it rests.
+    """
+
+    place: tuple[float, float]
+    velocity: tuple[float, float]
+    t: float
+    anchor: tuple[float, float]
+    score: float
+    missed: bool = False
+    facing: Kept[Complex] | None = None
+    steady: int = 0
+    portrait: Portrait | None = None
+
+    @classmethod
+    def to(cls, sighting: Sighting, t: float) -> Lead:
+        """Lead to a stone of which nothing is known but one sighting."""
+        place = sighting.x, sighting.y
+        return cls(place, (0.0, 0.0), t, place, sighting.score, facing=sighting.spectrum)
+
+    @property
+    def rests(self) -> bool:
+        """Whether the stone has been at one place for a while."""
+        return self.steady >= STEADY
+
+    def at(self, t: float) -> tuple[float, float]:
+        """Where the stone is expected, m."""
+        slower, step = self._slowed(t)
+        (x, y), (vx, vy), mean = self.place, self.velocity, 0.5 * (1 + slower)
+        return x + mean * vx * step, y + mean * vy * step
+
+    def drift(self, step: float) -> tuple[float, float]:
+        """How far the stone moves in so long, s, m."""
+        return self.velocity[0] * step, self.velocity[1] * step
+
+    def _slowed(self, t: float) -> tuple[float, float]:
+        """Tell what share of its velocity is left by then, and how long it moves till then, s."""
+        lasts = hypot(*self.velocity) / DECELERATION
+        if not lasts:
+            return 1.0, 0.0
+        step = min(max(t - self.t, -lasts), lasts)
+        return 1 - step / lasts, step
+
+    def on(self, sighting: Sighting, t: float, near: float, still: float) -> Lead:
+        """Go on from a sighting; it corrects what was expected, unless the course has changed.
+
+        Parameters
+        ----------
+        near : float
+            How far from where it was expected a stone may be on the same course, m.
+        still : float
+            How far from its anchor it may be and rest, m.
+        """
+        x, y = sighting.x, sighting.y
+        (ahead_x, ahead_y), step, (slower, _) = self.at(t), t - self.t, self._slowed(t)
+        vx, vy = slower * self.velocity[0], slower * self.velocity[1]
+        away_x, away_y = x - ahead_x, y - ahead_y
+        if hypot(away_x, away_y) > near:
+            place, velocity = (x, y), ((x - self.place[0]) / step, (y - self.place[1]) / step)
+        else:
+            place = ahead_x + 0.6 * away_x, ahead_y + 0.6 * away_y
+            velocity = vx + 0.3 * away_x / step, vy + 0.3 * away_y / step
+        left = hypot(x - self.anchor[0], y - self.anchor[1])
+        score = self.score + NEWEST * (sighting.score - self.score)
+        if left >= still or self._turned(sighting):
+            return Lead(place, velocity, t, (x, y), score, facing=sighting.spectrum)
+        return Lead(
+            place,
+            velocity,
+            t,
+            self.anchor,
+            score,
+            facing=sighting.spectrum if self.facing is None else self.facing,
+            steady=self.steady + 1,
+            portrait=None if sighting.measured else self.portrait,
+        )
+
+    def _turned(self, sighting: Sighting) -> bool:
+        """Whether the cap faces elsewhere than when it came to its place, as far as is seen."""
+        if self.facing is None or sighting.spectrum is None:
+            return False
+        angle, likeness = angle_between(
+            self.facing.get(), sighting.spectrum.get(), 0.0, TURNING.reach
+        )
+        return likeness > TURNING.least_likeness and abs(angle) > TURNED

@@ -1,0 +1,95 @@
+"""Sightings kept for as long as a clip lasts: rows of numbers, which take a seventh of the memory.
+
+What only learning needs (samples, outline and wall) is left out.
+"""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Iterable, Iterator, Sequence
+from math import nan
+from typing import overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vision.detection.sighting import Sighting
+from vision.film.shelf import Kept
+
+Array = NDArray[np.float64]
+
+SINGLE = ("x", "y", "sd_x", "sd_y", "visible", "score", "pixel_size", "measured", "swept")
+"""Numbers of a sighting that begin its row; what has several follows."""
+
+WIDTH = len(SINGLE) + 2 + 3 + 6 + 2 + 2
+
+
+class Rows(Sequence[Sighting]):
+    """Sightings that were packed; they are made anew when they are asked for.
+
+    Parameters
+    ----------
+    sightings : iterable of Sighting
+        To begin with.
+    """
+
+    __slots__ = ("_numbers", "_spectra")
+
+    def __init__(self, sightings: Iterable[Sighting] = ()) -> None:
+        self._numbers = array("d")
+        self._spectra: list[Kept[NDArray[np.complex64]] | None] = []
+        for sighting in sightings:
+            self.append(sighting)
+
+    def append(self, seen: Sighting) -> None:
+        """Add a sighting."""
+        self._numbers.extend(
+            (
+                seen.x, seen.y, seen.sd_x, seen.sd_y, seen.visible, seen.score, seen.pixel_size,
+                seen.measured, seen.swept, *seen.sd_place, *seen.colour, *seen.bends, *seen.pixel,
+                *seen.light,
+            )
+        )  # fmt: skip
+        self._spectra.append(seen.spectrum)
+
+    def extend(self, other: Rows) -> None:
+        """Add all of others."""
+        self._numbers.extend(other._numbers)
+        self._spectra.extend(other._spectra)
+
+    def __len__(self) -> int:
+        return len(self._spectra)
+
+    @overload
+    def __getitem__(self, index: int) -> Sighting: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> Rows: ...
+
+    def __getitem__(self, index: int | slice) -> Sighting | Rows:
+        if isinstance(index, slice):
+            return Rows(self[k] for k in range(*index.indices(len(self))))
+        spectrum = self._spectra[index]
+        begin = range(len(self))[index] * WIDTH
+        return _unpacked(self._numbers[begin : begin + WIDTH].tolist(), spectrum)
+
+    def __iter__(self) -> Iterator[Sighting]:
+        rows = np.array(self._numbers).reshape(-1, WIDTH).tolist()
+        return map(_unpacked, rows, self._spectra)
+
+    def columns(self, *names: str) -> Array:
+        """Numbers of all of them by some of the names in `SINGLE`, shape (names, n)."""
+        rows = np.array(self._numbers).reshape(-1, WIDTH)
+        return rows[:, [SINGLE.index(name) for name in names]].T
+
+
+def _unpacked(row: list[float], spectrum: Kept[NDArray[np.complex64]] | None) -> Sighting:
+    (
+        x, y, sd_x, sd_y, visible, score, pixel_size, measured, swept, shared_x, shared_y,
+        lightness, a, b, *bends, u, v, light_x, light_y,
+    ) = row  # fmt: skip
+    return Sighting(
+        x, y, sd_x, sd_y, (shared_x, shared_y), np.array((lightness, a, b)), visible, score, (),
+        nan, tuple(bends), (u, v), pixel_size, (light_x, light_y), spectrum,
+        measured=bool(measured), swept=bool(swept),
+    )  # fmt: skip

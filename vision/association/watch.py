@@ -1,0 +1,266 @@
+"""The stones of a clip, frame by frame: known ones followed, new ones sought now and then.
+
+Searching a picture for stones costs ten times what measuring them does. So known stones are
+followed (`vision.association.follower`), and now and then all of the ice is searched. What such a
+search finds anew is followed back through the last pictures, so that nothing is lost by searching
+rarely.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from data.sheet import STONE, Stone
+from vision.association.again import measure_again
+from vision.association.follower import PATIENCE, Follower, Patience, StoneView
+from vision.association.lead import Lead
+from vision.association.rows import Rows
+from vision.detection.appearance import (
+    MOST_COLOURS,
+    UNLIKE,
+    Appearance,
+    by_colour,
+    convincing,
+    learn,
+)
+from vision.detection.balance import Balance, brightening
+from vision.detection.patch import is_plain
+from vision.detection.placing import placed_by
+from vision.detection.rays import Look
+from vision.detection.sighting import Sighting
+from vision.detection.stones import FOLLOWING, SEARCH, Search
+from vision.detection.strangers import strangers
+from vision.film.clip import Frame
+from vision.film.picture import brightened
+from vision.film.shelf import ROOM, Shelf
+from vision.optics.camera import Camera
+
+AT_ONCE = 64
+"""Pictures whose stones are placed together in the end: more take memory, and no less time each."""
+
+MOST_KEPT = 24 * 1920 * 1080
+"""Pixels that the pictures kept may have together: beyond that there are fewer of them."""
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How often the ice is searched.
+
+    Attributes
+    ----------
+    memory : int
+        Pictures that are kept to learn from and to follow stones back through, fewer if they are
+        very large; when so many are new, the last of them is searched.
+    hurry : int
+        The same while a stone that rested is hidden: hit unseen, it may show for a moment only.
+    lesson : int
+        Each how manieth of them is looked at to learn what the stones look like.
+    doubt : int
+        The same where these show a stone, but none that convinces.
+    lessons : int
+        After so many sightings that taught, none of another colour is learned from.
+    """
+
+    memory: int = 24
+    hurry: int = 8
+    lesson: int = 8
+    doubt: int = 2
+    lessons: int = 200
+
+    def kept(self, size: tuple[int, int]) -> int:
+        """How many pictures of a size, px, are kept; never fewer than in a hurry."""
+        width, height = size
+        return min(self.memory, max(MOST_KEPT // (width * height), self.hurry))
+
+
+class Watch:
+    """Looks at the frames of a clip in their order.
+
+    Parameters
+    ----------
+    disc : Stone
+        Size of the stones, or `vision.detection.stones.plain_disc`.
+    search : Search
+        Where stones are sought and what they must show.
+    pace : Pace
+        How often all of the ice is searched.
+    patience : Patience
+        How known stones are followed.
+    """
+
+    def __init__(
+        self,
+        disc: Stone = STONE,
+        search: Search = FOLLOWING,
+        pace: Pace = Pace(),
+        patience: Patience = PATIENCE,
+    ):
+        self.appearance: Appearance | None = None
+        self.disc, self._search, self._pace, self._patience = disc, search, pace, patience
+        self._lessons: list[Sighting] = []
+        self._waiting: list[StoneView] = []
+        self._recent: deque[StoneView] = deque()
+        self._shelf = Shelf(ROOM)
+        self._balance: Balance | None = None
+        self._gain = np.ones(3)
+        self._before: Camera | None = None
+        self._leads: list[Lead] = []
+        self._since = self._most = pace.memory
+        self._seen: dict[int, tuple[float, Sequence[Sighting]]] = {}
+
+    def look(self, frame: Frame, camera: Camera) -> None:
+        """Take in a frame; it waits for some more, the first ones until the stones are learned."""
+        self._most = self._pace.kept(camera.size)
+        if not self._knows:
+            self._gain = np.full(3, brightening(frame.picture, camera))
+        frame = replace(frame, picture=brightened(frame.picture, self._gain))
+        if self._balance is not None:
+            if not self._waiting:
+                self._balance.look(frame.picture, camera)
+            frame = replace(frame, picture=self._balance.evened(frame.picture))
+        view = StoneView(frame, camera, before=self._before)
+        self._before = camera
+        self._waiting.append(view)
+        self._seen[frame.index] = frame.t, view.sightings
+        if len(self._waiting) >= (self._patience.block if self._knows else self._most):
+            self._catch_up()
+
+    @property
+    def begun(self) -> bool:
+        """Whether a frame has been looked at."""
+        return bool(self._seen)
+
+    def finish(
+        self, cameras: Sequence[Camera] | None = None
+    ) -> Iterator[tuple[int, float, Sequence[Sighting]]]:
+        """Give the number, the time and the sightings of each frame, once.
+
+        Parameters
+        ----------
+        cameras : sequence of Camera, optional
+            What is known of the cameras by now: it places the stones, and tells the errors that
+            their sightings share; frames without one are left out. Else the places stand at which
+            they were seen.
+        """
+        self._catch_up()
+        if self._since and self._recent:
+            self._search_for_new(self._recent[-1])
+        if cameras is None:
+            for frame in [*self._seen]:
+                yield frame, *self._seen.pop(frame)
+            return
+        known = [camera for camera in cameras if camera.frame in self._seen]
+        for begin in range(0, len(known), AT_ONCE):
+            some = known[begin : begin + AT_ONCE]
+            times, seen = zip(*(self._seen.pop(camera.frame) for camera in some), strict=True)
+            placed = placed_by(some, seen, self.disc)
+            yield from zip([camera.frame for camera in some], times, placed, strict=True)
+        self._seen.clear()
+
+    @property
+    def _knows(self) -> bool:
+        return self.appearance is not None or is_plain(self.disc)
+
+    @property
+    def _follower(self) -> Follower:
+        return Follower(self.appearance, self.disc, self._search, self._patience)
+
+    def _catch_up(self) -> None:
+        if self._waiting and not self._knows:
+            self._recent.clear()
+            self._learn(self._waiting)
+            if self._knows:
+                self._balance = Balance(self._waiting[-1].frame.picture, self._waiting[-1].camera)
+        size = self._patience.block
+        for begin in range(0, len(self._waiting), size):
+            self._see(self._waiting[begin : begin + size])
+        self._waiting = []
+
+    def _learn(self, views: Iterable[StoneView]) -> None:
+        views = list(views)[::-1]
+        found = self._of_any_colour(views[:: self._pace.lesson], self._search.radius_px)
+        if len(by_colour([*self._lessons, *convincing(found)])) < MOST_COLOURS:
+            found = self._of_any_colour(views[:: self._pace.lesson])
+        if found and not convincing(found):
+            # A stone far away convinces in some pictures only.
+            found = self._of_any_colour(views[1 :: self._pace.doubt])
+        self._lessons += convincing(found)
+        self.appearance = learn(self._lessons)
+
+    def _of_any_colour(
+        self, views: Iterable[StoneView], radius_px: float = SEARCH.radius_px
+    ) -> list[Sighting]:
+        """Stones of any colour that were not seen in the views so far.
+
+        A dull cap on vivid paint answers too faintly on a map much coarser than that of `SEARCH`.
+        """
+        # Too much on the ice answers faintly to any colour.
+        search = replace(self._search, least_score=SEARCH.least_score, radius_px=radius_px)
+        looks = [Look(view.frame.picture, view.camera, view.places) for view in views]
+        return [stone for found in strangers(looks, self.disc, search) for stone in found.stones]
+
+    def _see(self, views: Sequence[StoneView]) -> None:
+        """Follow what is known through views, and search the last of them if it is time."""
+        if self._knows:
+            self._leads = self._follower.follow(views, self._leads)
+        self._recent.extend(views)
+        while len(self._recent) > self._most:
+            self._put_aside(self._recent.popleft())
+        self._since += len(views)
+        if self._since >= (self._pace.hurry if self._hidden(views[-1]) else self._most):
+            self._search_for_new(views[-1])
+
+    def _put_aside(self, view: StoneView) -> None:
+        """Keep of a view that is done what takes little memory."""
+        view.put_aside(self._shelf)
+        self._seen[view.frame.index] = view.frame.t, Rows(view.sightings)
+
+    def _hidden(self, view: StoneView) -> bool:
+        """Whether a view shows the place of a stone that is missed there."""
+        missed = np.array([lead.place for lead in self._leads if lead.missed]).reshape(-1, 2)
+        seen = view.camera.project(missed, self.disc.cap_height)
+        return bool(np.any(np.all((seen > 0) & (seen < view.camera.size), axis=1)))
+
+    def _search_for_new(self, view: StoneView) -> None:
+        """Search all the ice; follow what is found back through the last pictures."""
+        not_searched, self._since = [*self._recent][-self._since - 1 :], 0
+        fresh = self._find(view)
+        if self._look_for_colours(view):
+            fresh += self._find(view)
+        leads = [Lead.to(sighting, view.frame.t) for sighting in fresh]
+        self._leads += leads
+        if self._knows:
+            self._follower.follow([*self._recent][-2::-1], leads)
+        if self.appearance is not None:
+            measure_again(not_searched, self.appearance, self.disc, self._search)
+
+    def _find(self, view: StoneView) -> list[Sighting]:
+        """Add to a view the stones of known colours that were not seen in it so far.
+
+        What lies there before any is known is sought on a finer map: it answers more clearly there.
+        """
+        first = not self._leads and not is_plain(self.disc)
+        radius_px = SEARCH.radius_px if first else self._search.radius_px
+        search = replace(self._search, radius_px=radius_px)
+        fresh = replace(self._follower, search=search).sought(view)
+        view.sightings.extend(fresh)
+        return fresh
+
+    def _look_for_colours(self, view: StoneView) -> bool:
+        """See whether there are stones of a colour that is not known yet, and learn it."""
+        if self.appearance is None or len(self._lessons) >= self._pace.lessons:
+            return False
+        shown = {self.appearance.nearest(stone.colour)[0] for stone in view.sightings}
+        if len(shown) == MOST_COLOURS:
+            return False  # one more would take the place of one that is on the ice
+        new = any(
+            self.appearance.nearest(stone.colour)[1] > UNLIKE
+            for stone in convincing(self._of_any_colour([view]))
+        )
+        if new:
+            self._learn(self._recent)
+        return new

@@ -1,0 +1,1 @@
+"""The camera through a clip: the house followed from picture to picture."""

@@ -1,0 +1,1 @@
+"""Stones in pictures: sought, measured on rays, and placed on the ice."""

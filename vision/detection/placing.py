@@ -1,0 +1,121 @@
+"""From measures to sightings: where a camera places them, and what errors they share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import nan
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.sheet import Stone
+from vision.detection.measure import Measures
+from vision.detection.patch import handle_radii
+from vision.detection.rays import Look
+from vision.detection.sighting import Sighting
+from vision.film.shelf import Kept
+from vision.optics.camera import Camera
+from vision.optics.cameras import Cameras
+from vision.spin.handle import cap_spectrum
+
+Array = NDArray[np.float64]
+
+UNCOVERED = 0.75
+"""Share of a cap that must be seen for its angle to be measured."""
+
+ASLANT = ((0.06, 0.15, 0.35, 0.6, 0.9, 1.1), (0.008, 0.0045, 0.003, 0.0018, 0.0018, 0.0035))
+"""Slants of the view, and the standard error along it, m per slant. From above the wall of a cap is
+not told from its top, and draws the near edge out by up to half of what shows of it; the farther
+aslant, the better it is measured. From where the far shoulder hides behind the cap, other things
+end at the far edge. Across the view there is no such error."""
+
+ASTRAY = 0.15
+"""How far the map of a house is wrong, in residuals of its camera's edges per metre from the tee:
+beyond what the camera states, and beside what a slant hides, which from above looks much like it.
+Between nothing, as round stones on plain rings say, and half of them, as outlined rings do."""
+
+GIVEN_ASTRAY = 0.35
+"""How far a map may be wrong of which no error is stated, in residuals of the camera's edges."""
+
+USUAL_RMS_PX = 0.3
+"""What that residual is taken for where it is not known, px."""
+
+
+def sightings(
+    seen: Measures, looks: Sequence[Look], chosen: NDArray[np.intp], disc: Stone
+) -> list[Sighting]:
+    """Give sightings of places that were measured; what they share is not told yet.
+
+    Parameters
+    ----------
+    seen : Measures
+    looks : sequence of Look
+        What was measured, in the same order.
+    chosen : ndarray of int
+        Which of the places, ascending.
+    disc : Stone
+        Size of the discs.
+    """
+    ends = np.cumsum([0, *(len(look.places) for look in looks)])
+    parts = zip(looks, np.split(chosen, np.searchsorted(chosen, ends[1:-1])), strict=True)
+    pixels = [look.camera.project(seen.centre[i], disc.cap_height) for look, i in parts if len(i)]
+    spectra = cap_spectrum(seen.handle[chosen], handle_radii(disc))
+    columns = (
+        seen.centre[chosen], seen.sd[chosen], seen.visible[chosen], seen.evidence[chosen],
+        seen.outline[chosen], seen.wall[chosen], seen.bends[chosen],
+        np.concatenate([np.empty((0, 2)), *pixels]), seen.uncovered[chosen] >= UNCOVERED,
+        seen.light[chosen], seen.swept[chosen],
+    )  # fmt: skip
+    rows = zip(seen.colour[chosen], spectra, *(column.tolist() for column in columns), strict=True)
+    return [
+        Sighting(
+            x, y, sd_x, sd_y, (nan, nan), colour, visible, score, tuple(outline), wall,
+            tuple(bends), (u, v), nan, (light_x, light_y),
+            Kept(spectrum.copy()) if told else None, swept=swept,
+        )
+        for colour, spectrum, (x, y), (sd_x, sd_y), visible, score, outline, wall, bends, (u, v),
+        told, (light_x, light_y), swept in rows
+    ]  # fmt: skip
+
+
+def placed_by(
+    cameras: Sequence[Camera], seen: Sequence[Sequence[Sighting]], disc: Stone
+) -> list[list[Sighting]]:
+    """Give sightings the places that cameras of their pictures give them, with what they share.
+
+    Parameters
+    ----------
+    cameras : sequence of Camera
+        Of pictures of one size.
+    seen : sequence of sequence of Sighting
+        What was seen in the picture of each.
+    disc : Stone
+        Size of the discs.
+    """
+    each = [[*one] for one in seen]
+    flat = [sighting for one in each for sighting in one]
+    if not flat:
+        return each
+    by = Cameras.of(cameras, [len(one) for one in each])
+    places = by.ice(np.array([sighting.pixel for sighting in flat]), disc.cap_height)
+    size = 1 / by.scale_at(places)
+    shared = _shared_errors(by, places, size, disc)
+    told = zip(flat, places.tolist(), shared.tolist(), size.tolist(), strict=True)
+    placed = iter(
+        sighting._replace(x=x, y=y, sd_place=(sd_x, sd_y), pixel_size=pixel)
+        for sighting, (x, y), (sd_x, sd_y), pixel in told
+    )
+    return [[next(placed) for _ in one] for one in each]
+
+
+def _shared_errors(by: Cameras, places: Array, pixel: Array, disc: Stone) -> Array:
+    """Give the standard errors that no filter averages out, (n, 2), m: by camera and slant."""
+    rms, given = np.array([(c.rms_px, c.error is None) for c in by.each])[by.row].T
+    rms = np.where(np.isfinite(rms), rms, USUAL_RMS_PX)
+    slant = by.slants(places)
+    each = np.asarray(np.interp(np.hypot(*slant.T), *ASLANT))
+    aslant = each[:, None] * slant if disc.cap_height else 0 * slant
+    astray = np.where(given > 0, GIVEN_ASTRAY, ASTRAY * np.hypot(*places.T))
+    off = np.hypot(aslant, (pixel * astray * rms)[:, None])
+    stated = np.diagonal(by.shared_place_cov(places, disc.cap_height), axis1=1, axis2=2)
+    return np.asarray(np.sqrt(off**2 + stated))

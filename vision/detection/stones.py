@@ -1,0 +1,204 @@
+"""Stones in one picture: sought on the rectified ice, measured on rays, or refused for a reason.
+
+A stone is a disc of grey granite with a saturated cap of known size, a known height above
+the ice. Where one may be, the rectified ice tells (`vision.detection.seek`); whether it is one and
+where its centre lies, the picture itself (`vision.detection.measure`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.sheet import STONE, Stone
+from vision.detection.appearance import Appearance
+from vision.detection.measure import CLEARLY, Measures, measure_discs, well_within
+from vision.detection.patch import EFFORT, is_plain
+from vision.detection.placing import placed_by, sightings
+from vision.detection.rays import Look
+from vision.detection.seek import Bounds, seek
+from vision.detection.sighting import Refusal, Sighting
+from vision.film.picture import Picture
+from vision.optics.camera import Camera
+
+Array = NDArray[np.float64]
+
+NEAREST = 1.6
+"""Nearer to each other than so many radii no two discs are seen: two, if places did not err."""
+
+
+@dataclass(frozen=True)
+class Search:
+    """Where stones are sought and what they must show.
+
+    Attributes
+    ----------
+    x_max, y_min, y_max : float
+        Stones are sought on |x| ≤ x_max, y_min ≤ y ≤ y_max, m.
+    radius_px : float
+        Radius of a disc on the rectified map, px.
+    least_score : float
+        Template response (0 to 2) from which a place is looked at.
+    least_visible : float
+        Share of the rays that must look like a stone.
+    least_evidence, least_rim : float
+        Least evidence for a stone (0 to about 3) and for a plain disc (0 to 1).
+    least_again : float
+        Least evidence for a stone where one was seen a moment ago.
+    most_shift : float
+        Farther than this from where the response peaks, in radii of cap or disc, lies no centre.
+    """
+
+    x_max: float = 2.40
+    y_min: float = -4.5
+    y_max: float = 9.0
+    radius_px: float = 11.6
+    least_score: float = 0.45
+    least_visible: float = 0.30
+    least_evidence: float = 1.05
+    least_again: float = 0.7
+    least_rim: float = 0.6
+    most_shift: float = 0.35
+
+
+SEARCH = Search()
+"""For a single picture, which has one chance."""
+
+FOLLOWING = Search(radius_px=6.5, least_score=0.3)
+"""For a clip: a coarser map, for what one picture hides the next ones show."""
+
+
+@dataclass(frozen=True)
+class Findings:
+    """What a search of one picture gave: the stones, strongest first, and what was refused."""
+
+    stones: tuple[Sighting, ...] = ()
+    refused: tuple[Refusal, ...] = ()
+
+
+def plain_disc(radius: float) -> Stone:
+    """Return a flat disc of which nothing but the radius is known."""
+    return Stone(radius=radius, cap_radius=0.0, cap_height=0.0)
+
+
+def search_picture(
+    image: Picture,
+    camera: Camera,
+    appearance: Appearance | None = None,
+    disc: Stone = STONE,
+    search: Search = SEARCH,
+    bounds: Bounds | None = None,
+    known: Array | None = None,
+) -> Findings:
+    """Find and measure the stones in one picture, and say what was refused and why.
+
+    Parameters
+    ----------
+    image : Picture or ndarray of shape (h, w, 3)
+        BGR.
+    camera : Camera
+        The picture's camera; where its position is known, the height of the cap is taken out.
+    appearance : Appearance, optional
+        What stones look like here, from `learn`, or `BY_SHAPE`; without it, what any stone with a
+        coloured cap looks like.
+    disc : Stone
+        Radius, cap radius and cap height; `plain_disc` for a disc without a cap.
+    search : Search
+        Where stones are sought and what they must show.
+    bounds : (x0, x1, y0, y1), optional
+        The part of the ice, m; all of it where left out.
+    known : ndarray, shape (n, 2), optional
+        Places of stones that need not be found, m: nothing near them is looked at.
+
+    Returns
+    -------
+    Findings
+        The stones no nearer to each other than discs can be.
+    """
+    area = whole_ice(camera, disc, search) if bounds is None else bounds
+    sought = seek(
+        image, camera, appearance, disc, area,
+        radius_px=search.radius_px, least=search.least_score,
+    )  # fmt: skip
+    places = sought.places
+    if known is not None and len(known) and len(places):
+        new = np.hypot(*(places[:, None] - known).transpose(2, 0, 1)).min(1) > NEAREST * disc.radius
+        places = places[new]
+    refused: list[Refusal] = []
+    # The second time from the centre that the first has found, roughly.
+    rough = (
+        replace(search, least_evidence=search.least_again),
+        replace(EFFORT, rounds=1, light=False),
+    )
+    for least, effort in (rough, (search, EFFORT)):
+        if not len(places):
+            return Findings((), tuple(refused))
+        looks = [Look(image, camera, places)]
+        seen = measure_discs(looks, sought.appearance, disc, effort)
+        faults = judge(seen, disc, least)
+        refused += [
+            Refusal(float(places[i, 0]), float(places[i, 1]), float(seen.evidence[i]), fault)
+            for i, fault in enumerate(faults)
+            if fault
+        ]
+        chosen = np.array([i for i, fault in enumerate(faults) if not fault], np.intp)
+        places = seen.centre[chosen]
+    found = sightings(seen, looks, chosen, disc)
+    stones = [
+        with_samples(sighting, seen, i, disc)
+        for i, sighting in zip(chosen.tolist(), found, strict=True)
+    ]
+    (placed,) = placed_by([camera], [apart(stones, disc)], disc)
+    return Findings(tuple(placed), tuple(refused))
+
+
+def whole_ice(camera: Camera, disc: Stone, search: Search) -> Bounds:
+    """Part of the ice on which to look: x0, x1, y0, y1, m."""
+    if not is_plain(disc):
+        return -search.x_max, search.x_max, search.y_min, search.y_max
+    width, height = camera.size
+    corners = camera.ice(np.array([[0, 0], [width, 0], [0, height], [width, height]], float))
+    (x0, y0), (x1, y1) = corners.min(0).tolist(), corners.max(0).tolist()
+    return x0, x1, y0, y1
+
+
+def judge(seen: Measures, disc: Stone, search: Search) -> list[str]:
+    """Say of each place why it shows no stone; an empty text where it does."""
+    plain = is_plain(disc)
+    least = search.least_rim if plain else search.least_evidence
+    size = disc.radius if plain else disc.cap_radius
+    faults = np.full(len(seen.ok), "", dtype=object)
+    beside = np.zeros(len(seen.ok), bool)
+    if not plain:
+        beside = np.abs(seen.centre[:, 0]) > search.x_max - 0.4 * disc.radius
+    for wrong, why in (
+        (beside, "beside the sheet"),
+        (seen.evidence + seen.excused < least, "too little of a stone about it"),
+        (seen.shift > search.most_shift * size, "its edges are those of something else"),
+        (seen.visible < search.least_visible, "hardly any of it is seen"),
+        (~seen.ok, "no cap with granite around it" if not plain else "no circle of that size"),
+    ):
+        faults[wrong] = why
+    return [str(fault) for fault in faults]
+
+
+def with_samples(found: Sighting, seen: Measures, index: int, disc: Stone) -> Sighting:
+    """Add what the place's samples say of the colours of cap and granite, for learning."""
+    cap, ring = well_within(seen.rays.radius, disc)
+    lab, worth = seen.rays.lab[index], seen.worth[index]
+    return found._replace(
+        cap_samples=lab[:, cap][worth[:, cap] > CLEARLY][::7].astype(float),
+        granite_samples=lab[:, ring][worth[:, ring] < -CLEARLY][::5].astype(float),
+    )
+
+
+def apart(found: Sequence[Sighting], disc: Stone) -> list[Sighting]:
+    """Keep the better of any two that overlap more than two discs can."""
+    kept: list[Sighting] = []
+    for item in sorted(found, key=lambda s: -s.score):
+        if all(np.hypot(item.x - k.x, item.y - k.y) > NEAREST * disc.radius for k in kept):
+            kept.append(item)
+    return kept

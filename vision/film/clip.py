@@ -1,0 +1,307 @@
+"""Reading clips: frames in order with the time of each, from a video or from pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import chain, pairwise
+from pathlib import Path
+from typing import Any
+
+import av
+import cv2
+import numpy as np
+
+from data.errors import InputError
+from data.inputs import IMAGE_SUFFIXES, picture_times
+from vision.film.picture import Image as Image
+from vision.film.picture import Picture, Planes, image_of
+from vision.film.repeats import Repeats
+
+DEFAULT_IMAGE_FPS = 25.0
+"""Rate of pictures where none is given, 1/s."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """One picture, its index in the clip and its time, s."""
+
+    index: int
+    t: float
+    picture: Picture
+
+    @cached_property
+    def image(self) -> Image:
+        """The picture in colour (BGR), shape (h, w, 3)."""
+        return image_of(self.picture)
+
+
+@dataclass
+class Clip:
+    """A clip that can be read through, again and again, always in order.
+
+    Pictures that repeat the one before are left out (`vision.film.repeats`).
+
+    Attributes
+    ----------
+    files : tuple of Path
+        One video, or the pictures in their order.
+    size : tuple of int
+        Width and height, px.
+    fps : float or None
+        Nominal rate; None for a single picture. Times come from the container, not from it.
+    frames : int
+        What the container promises; a truncated clip gives fewer.
+    first, last : int
+        The range of frames that is used, both included.
+    warnings : list of str
+        Filled while reading: what could not be read.
+    read : int
+        How many frames the latest pass has given so far.
+    repeated : dict of int to (float, int)
+        Of each frame that it has left out as a repeat the time, s, and the frame that it repeats.
+    """
+
+    files: tuple[Path, ...]
+    size: tuple[int, int]
+    fps: float | None
+    frames: int
+    first: int = 0
+    last: int | None = None
+    warnings: list[str] = field(default_factory=list)
+    read: int = 0
+    repeated: dict[int, tuple[float, int]] = field(default_factory=dict)
+    _begun: tuple[Any, Iterator[tuple[float, Planes]]] | None = field(
+        default=None, init=False, repr=False, compare=False
+    )
+
+    @property
+    def is_video(self) -> bool:
+        """True for a video file, False for pictures."""
+        return self.files[0].suffix.lower() not in IMAGE_SUFFIXES
+
+    @property
+    def expected(self) -> int:
+        """How many frames a pass over the clip should give."""
+        last = self.frames - 1 if self.last is None else min(self.last, self.frames - 1)
+        return max(last - self.first + 1, 0)
+
+    def peek(self) -> Picture | None:
+        """Give the first picture of the files; of a video only while nothing else was read."""
+        if not self.is_video:
+            return _read_image(self.files[0])
+        if self._begun is None:
+            return None
+        container, pictures = self._begun
+        first = next(pictures)
+        self._begun = container, chain([first], pictures)
+        return first[1]
+
+    def __iter__(self) -> Iterator[Frame]:
+        """Yield the frames in order, decoding as it goes."""
+        repeats = Repeats()
+        self.read, self.repeated = 0, repeats.left_out
+        for frame in repeats.distinct(self.every()):
+            self.read += 1
+            yield frame
+        if self.repeated:
+            self._warn(
+                f"{self.files[0]}: {len(self.repeated)} of {self.passed} pictures repeat the one"
+                " before them; what is seen in them is left out"
+            )
+
+    @property
+    def passed(self) -> int:
+        """How many frames the latest pass has gone through so far, repeats among them."""
+        return self.read + len(self.repeated)
+
+    def every(self) -> Iterator[Frame]:
+        """Yield all frames, repeats among them."""
+        return self._read_video() if self.is_video else self._read_images()
+
+    def _warn(self, text: str) -> None:
+        if text not in self.warnings:
+            self.warnings.append(text)
+
+    def _read_video(self) -> Iterator[Frame]:
+        index, before = -1, -np.inf
+        start = end = longest = 0.0
+        # To open a video and to decode its first picture takes as long as ten others.
+        begun, self._begun = self._begun, None
+        container, pictures = begun or _opened(self.files[0])
+        with container:
+            for index, (t, picture) in enumerate(pictures):
+                if self.last is not None and index > self.last:
+                    return
+                start = t if index == 0 else start
+                longest, end = max(longest, t - end if index else 0.0), t
+                if index < self.first:
+                    continue
+                if t <= before:
+                    self._warn(f"{self.files[0]}: frame {index} has no time of its own; left out")
+                    continue
+                if picture.shape[1::-1] != self.size:
+                    self._warn(f"{self.files[0]}: frame {index} is of another size; left out")
+                    continue
+                before = t
+                yield Frame(index, t, picture)
+        # Where the container does not count its frames (Matroska), the promised number is
+        # duration times rate, too many if the rate varies: so the time is asked as well.
+        rate, count = self.fps or np.inf, index + 1
+        missing = self.frames / rate - (end - start) > 1.5 * max(1 / rate, longest)
+        if count < self.frames and missing:
+            self._warn(
+                f"{self.files[0]}: ends after {count} of {self.frames} frames; used as far as it"
+                " goes"
+            )
+
+    def _read_images(self) -> Iterator[Frame]:
+        rate = self.fps or DEFAULT_IMAGE_FPS
+        times = picture_times(self.files) or range(len(self.files))
+        for index, path in enumerate(self.files):
+            if index < self.first or (self.last is not None and index > self.last):
+                continue
+            image = _read_image(path)
+            if image is None:
+                self._warn(f"{path}: not a readable picture; left out")
+            elif image.shape[1::-1] != self.size:
+                self._warn(f"{path}: not of the size of the first picture; left out")
+            else:
+                yield Frame(index, times[index] / rate, image)
+
+
+def open_clip(
+    paths: Sequence[Path], fps: float | None = None, frames: tuple[int, int | None] | None = None
+) -> Clip:
+    """Open a video, or pictures in the order given.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+        One video file, or one or more pictures.
+    fps : float, optional
+        Rate of pictures (25 if not given); not for videos, which carry their times.
+    frames : (first, last), optional
+        Range of frame indices to use, both included; `last` None for the end.
+
+    Raises
+    ------
+    InputError
+        A file that is missing, empty or cannot be read as what it is.
+    """
+    if not paths:
+        raise InputError("no clip given")
+    for path in paths:
+        if not path.exists():
+            raise InputError(f"{path}: no such file")
+        if path.is_dir():
+            raise InputError(f"{path}: a folder, not a clip; give the pictures in it")
+        if path.stat().st_size == 0 and len(paths) == 1:
+            raise InputError(f"{path}: the file is empty")
+    first, last = frames if frames is not None else (0, None)
+    if first < 0 or (last is not None and last < first):
+        raise InputError(f"frames {first}:{last}: the range is empty")
+    if paths[0].suffix.lower() in IMAGE_SUFFIXES:
+        clip = _open_images(paths, fps, first, last)
+    else:
+        clip = _open_video(paths, first, last)
+        if fps is not None:
+            clip.warnings.append(f"{paths[0]}: a video carries its own times; the rate is ignored")
+    if clip.expected == 0:
+        raise InputError(f"{paths[0]}: has only {clip.frames} frames; none from {first} on")
+    return clip
+
+
+def _open_images(paths: Sequence[Path], fps: float | None, first: int, last: int | None) -> Clip:
+    image = next((i for i in map(_read_image, paths) if i is not None), None)
+    if image is None:
+        raise InputError(f"{paths[0]}: not a readable picture")
+    size = (image.shape[1], image.shape[0])
+    rate = (fps or DEFAULT_IMAGE_FPS) if len(paths) > 1 else fps
+    clip = Clip(tuple(paths), size, rate, len(paths), first, last)
+    if fps is None and len(paths) > 1:
+        clip.warnings.append(
+            f"pictures carry no times: {DEFAULT_IMAGE_FPS:g} a second assumed; say --fps"
+        )
+    times = picture_times(paths)
+    longest = max((b - a for a, b in pairwise(times)), default=1.0) if times else 1.0
+    if longest > 1.0:
+        clip.warnings.append(
+            f"{paths[0].parent}: pictures are missing, by the numbers in their names; up to"
+            f" {longest:g} steps of time are left between two that are there"
+        )
+    return clip
+
+
+def _open_video(paths: Sequence[Path], first: int, last: int | None) -> Clip:
+    if len(paths) > 1:
+        raise InputError(f"{paths[1]}: one video at a time, please")
+    broken = f"{paths[0]}: not a video that can be read (damaged, or not one at all)"
+    try:
+        container, pictures = _opened(paths[0])
+        first_one = next(pictures, None)
+        if first_one is None:
+            raise InputError(broken)
+        fps, count = _promised(container)
+    except (av.error.FFmpegError, OSError):
+        raise InputError(broken) from None
+    height, width, _ = first_one[1].shape
+    clip = Clip((paths[0],), (width, height), fps, max(count, 1), first, last)
+    clip._begun = container, chain([first_one], pictures)
+    return clip
+
+
+def _opened(path: Path) -> tuple[Any, Iterator[tuple[float, Planes]]]:
+    """Open a video: its container, and what is decoded from it, picture by picture."""
+    container = av.open(str(path))
+    return container, _decoded(container)
+
+
+def _promised(container: Any) -> tuple[float | None, int]:
+    """Nominal rate, 1/s, and number of frames as the container has them."""
+    stream = container.streams.video[0]
+    rate = stream.average_rate or stream.guessed_rate
+    fps = float(rate) if rate else None
+    if stream.frames:
+        return fps, int(stream.frames)
+    if stream.duration:
+        duration = float(stream.duration * stream.time_base)
+    else:
+        duration = (container.duration or 0) / av.time_base
+    # Some containers do not know their length; then the clip ends where reading ends.
+    return fps, round(duration * (fps or 0.0))
+
+
+def _decoded(container: Any) -> Iterator[tuple[float, Planes]]:
+    """Decode the pictures of a video in order, each with its time, s; damaged ones are left out."""
+    if not container.streams.video:
+        return
+    stream = container.streams.video[0]
+    # Threads that decode side by side cost a sixth more in all, and hold pictures each.
+    stream.codec_context.thread_count = 1
+    begin, pixel = stream.start_time or 0, float(stream.sample_aspect_ratio or 1)
+    ticks, seconds = stream.time_base.denominator, stream.time_base.numerator
+    packets = container.demux(stream)
+    while True:
+        try:
+            packet = next(packets)
+            frames = packet.decode()
+        except StopIteration:
+            return
+        except (av.error.InvalidDataError, av.error.EOFError):
+            continue
+        for frame in frames:
+            stamp = frame.dts if frame.pts is None else frame.pts
+            if stamp is not None:
+                yield (stamp - begin) * seconds / ticks, Planes.of(frame, pixel)
+
+
+def _read_image(path: Path) -> Image | None:
+    # imdecode of bytes: imread fails on non-ASCII names on some systems.
+    try:
+        raw = np.fromfile(path, np.uint8)
+        image = cv2.imdecode(raw, cv2.IMREAD_COLOR) if raw.size else None
+    except (OSError, cv2.error):
+        return None
+    return None if image is None else np.asarray(image, np.uint8)

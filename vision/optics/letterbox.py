@@ -1,0 +1,133 @@
+"""Black bars around a film: of an upright or squarer one shown in a wide picture, or a wide one.
+
+A house that they cut would be sought in them. So such a clip is looked at without them, as one
+that ends where they begin, and its cameras are told in pixels of the whole picture. Bars of the
+same width on both sides leave the lens's axis in the middle; others are taken for picture.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.progress import Progress, no_progress
+from vision.film.clip import Clip, Frame
+from vision.film.picture import Image, Picture, Planes
+from vision.optics.camera import Camera
+from vision.optics.projection import middle
+
+Flags = NDArray[np.bool_]
+
+BLACK_LUMA, BLACK = 24, 10
+"""Up to which luma, and up to which blue, green and red, it is black; as coded, black is 16."""
+
+SHARE = 0.05
+"""Share of a row or column that is not black where there is picture: coded coarsely, what is beside
+it has traces of it, and somebody's mark may be on a bar."""
+
+UNEVEN = 4
+"""By how many px bars on either side may differ."""
+
+LEAST, MOST = 0.02, 0.4
+"""What share of a picture's width or height a bar has."""
+
+
+class LitClip(Clip):
+    """A clip without its black bars.
+
+    Parameters
+    ----------
+    whole : Clip
+    bars : tuple of int
+        Even widths of the bars at either side, and at top and bottom, px.
+    """
+
+    def __init__(self, whole: Clip, bars: tuple[int, int]) -> None:
+        (w, h), (aside, above) = whole.size, bars
+        super().__init__(
+            whole.files, (w - 2 * aside, h - 2 * above), whole.fps, whole.frames, whole.first,
+            whole.last, whole.warnings,
+        )  # fmt: skip
+        self.whole, self.bars = whole, bars
+
+    def __iter__(self) -> Iterator[Frame]:
+        """Yield the frames in order, without the bars."""
+        for frame in self.whole:
+            self.read = self.whole.read
+            yield Frame(frame.index, frame.t, without_bars(frame.picture, self.bars))
+
+
+def lit_clip(clip: Clip, progress: Progress = no_progress) -> Clip:
+    """Give a clip without its black bars; itself where it has none that all its frames show."""
+    first = clip.peek()
+    if first is None:
+        return clip
+    columns, rows = _shown(first)
+    for done, frame in enumerate(clip, 1) if _may(columns) or _may(rows) else ():
+        columns, rows = (a | b for a, b in zip((columns, rows), _shown(frame.picture), strict=True))
+        if not (_may(columns) or _may(rows)):
+            break
+        progress("black bars", done, clip.expected)
+    bars = _bar(columns), _bar(rows)
+    return LitClip(clip, bars) if any(bars) else clip
+
+
+def in_whole(clip: Clip, cameras: Sequence[Camera]) -> tuple[Clip, tuple[Camera, ...]]:
+    """Give a clip with its bars, and its cameras in pixels of that."""
+    if not isinstance(clip, LitClip):
+        return clip, tuple(cameras)
+    return clip.whole, tuple(_with_bars(one, clip.bars, clip.whole.size) for one in cameras)
+
+
+def without_bars(picture: Picture, bars: tuple[int, int]) -> Picture:
+    """Cut bars of even widths, at either side and at top and bottom, off a picture."""
+    if isinstance(picture, Planes):
+        luma, blue, red = (
+            _inner(plane, bars[0] // share, bars[1] // share)
+            for plane, share in ((picture.luma, 1), (picture.blue, 2), (picture.red, 2))
+        )
+        return replace(picture, luma=luma, blue=blue, red=red, frame=None)
+    return _inner(picture, *bars)
+
+
+def _inner(values: Image, aside: int, above: int) -> Image:
+    height, width = values.shape[:2]
+    return values[above : height - above, aside : width - aside]
+
+
+def _shown(picture: Picture) -> tuple[Flags, Flags]:
+    """Which columns and which rows of a picture show something."""
+    seen = picture.luma > BLACK_LUMA if isinstance(picture, Planes) else picture.max(2) > BLACK
+    return seen.mean(0) > SHARE, seen.mean(1) > SHARE
+
+
+def _may(shown: Flags) -> bool:
+    """Whether there may be bars at both ends."""
+    return not (shown[0] or shown[-1])
+
+
+def _bar(shown: Flags) -> int:
+    """Width of the bars at either end, px, to an even number; 0 where there are none."""
+    first, last = int(shown.argmax()), int(shown[::-1].argmax())
+    width = max(first, last)
+    bars = abs(first - last) <= UNEVEN and LEAST < width / len(shown) < MOST
+    return width + width % 2 if bars else 0
+
+
+def _with_bars(seen: Camera, bars: tuple[int, int], size: tuple[int, int]) -> Camera:
+    """Give a camera in pixels of a picture of that size, of which it has seen all but the bars."""
+    moved = np.eye(3)
+    moved[:2, 2] = bars
+    # The lens's axis is in the middle of both, but distortion is told in half diagonals.
+    grown = (middle(size)[1] / middle(seen.size)[1]) ** 2
+    by = np.diag([*np.ones(7), grown, grown**2])
+    error = seen.error
+    if error is not None:
+        error = replace(error, shared=by @ error.shared @ by, own=by @ error.own @ by)
+    return replace(
+        seen, homography=moved @ seen.homography, size=size, k1=grown * seen.k1,
+        k2=grown**2 * seen.k2, error=error,
+    )  # fmt: skip

@@ -1,0 +1,196 @@
+"""A camera fitted to the circles and lines of a house in one picture.
+
+First to the circles alone, roughly, from a hypothesis of where the house is; then at full
+resolution, with the lines, whether or not the camera hangs over the tee.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.sheet import HOUSE
+from vision.film.picture import Image
+from vision.optics.adjust import solve
+from vision.optics.camera import Camera
+from vision.optics.paint import TWELVE
+from vision.optics.pose import DOWN, View, aim, camera, rescaled, rotation_vector
+from vision.optics.rig import ANYWHERE, OVERHEAD, Prior, start_rig
+from vision.sheet.lines import sides, upright
+from vision.sheet.marks import Evidence, measure_marks
+from vision.sheet.mixing import lit
+from vision.sheet.outline import HALF_WAY, PaintEdge, find_edge
+from vision.sheet.proof import worth
+from vision.sheet.rings import Guess
+
+Array = NDArray[np.float64]
+
+SHARING = 20.0
+"""Edge points of one frame that share an error of the paint, about 30° of a circle."""
+
+ASIDE = 2.0
+"""What a house loses when its centre is one picture's width aside: neighbours are at the sides."""
+
+ROUGH = 0.5
+"""What a house loses per pixel of residual in the small picture."""
+
+ROUND = (np.inf, np.inf, 0.01, np.inf)
+"""How far a view may lie from its start where circles alone are fitted, rad: they do not tell how
+it is rolled, and marks that slide along them leave the line in which they were measured."""
+
+LEAST_MARKS = 30
+"""Edge points without which there is no camera; three whole circles give hundreds."""
+
+TILT_GAIN = 8.0
+"""By how much the log likelihood must rise for a camera that does not hang over the tee."""
+
+
+@dataclass(frozen=True)
+class HouseFit:
+    """The house in one picture.
+
+    Attributes
+    ----------
+    camera : Camera
+    view, rig : View, ndarray
+        The camera's parts (see `vision.optics.rig` and `vision.optics.pose`).
+    evidence : Evidence
+        The marks it rests on.
+    rms_px : float
+    overhead : bool
+        Whether it looks like a camera that hangs over the tee.
+    edge : PaintEdge
+        Where the circles are in the profiles across them.
+    """
+
+    camera: Camera
+    view: View
+    rig: Array
+    evidence: Evidence
+    rms_px: float
+    overhead: bool
+    edge: PaintEdge
+
+
+@dataclass(frozen=True)
+class RoughFit:
+    """A hypothesis after the fit, in the small picture, and the circles there."""
+
+    view: View
+    rig: Array
+    score: float
+    evidence: Evidence
+
+
+def fit_roughly(
+    image: Image, view: View, rig: Array, prior: Prior, scale: float, centre: float
+) -> RoughFit | None:
+    """Fit a camera to the circles of a small picture.
+
+    Parameters
+    ----------
+    image : ndarray of uint8, shape (h, w, 3)
+    view, rig, prior : View, ndarray, Prior
+        Where to begin, and what is known of the rig.
+    scale : float
+        Size of the house, px per m.
+    centre : float
+        Where its middle is, px from the picture's left.
+
+    Returns
+    -------
+    RoughFit or None
+        None where the edges do not bear it out.
+    """
+    size = (image.shape[1], image.shape[0])
+    thickness = scale * (HOUSE.twelve_foot - HOUSE.eight_foot)
+    rms = np.nan
+    for k, share in enumerate((0.3, 0.2, 0.15)):
+        reach = max(share * thickness, 3.0)
+        evidence = measure_marks(image, view.vector, rig, reach=reach, spacing=4, lines=False)
+        # Rings without any of a 12-ft circle once they were fitted are no house, and most are such.
+        if len(evidence.marks) < LEAST_MARKS or (k > 0 and evidence.covered[TWELVE] == 0):
+            return None
+        solution = solve(
+            [evidence.marks], [view], rig, size, prior=prior, sharing=SHARING, view_sd=ROUND
+        )
+        view, rig, rms = solution.views[0], solution.rig, float(solution.rms[0])
+    evidence = measure_marks(image, view.vector, rig, reach=5.0, spacing=4, lines=False)
+    explained = worth(evidence)
+    aside = ASIDE * abs(centre / size[0] - 0.5)
+    score = explained - aside - ROUGH * float(np.nan_to_num(rms, nan=9.0))
+    return RoughFit(view, rig, score, evidence) if explained > 0 else None
+
+
+def start(guess: Guess, size: tuple[int, int]) -> tuple[View, Array, Prior]:
+    """Start over the tee or, if circles look foreshortened, anywhere: view, rig and its prior."""
+    down = guess.foreshortening
+    prior = OVERHEAD if down == 1 else ANYWHERE
+    position = prior.mean[2] * np.array([0.0, -np.sqrt(1 - down**2), down])
+    return _aimed(guess, position, size), start_rig(prior, position), prior
+
+
+def _aimed(guess: Guess, position: Array, size: tuple[int, int]) -> View:
+    """View of a camera that has the tee where the guess has it, and leans as it says."""
+    middle = np.array([(size[0] - 1) / 2, (size[1] - 1) / 2])
+    c, s = np.cos(guess.lean), np.sin(guess.lean)
+    lean = np.array([[c, s], [-s, c]])
+    level = aim(middle + lean.T @ (guess.centre - middle), guess.scale, position, size)
+    turn = np.eye(3)
+    turn[:2, :2] = lean
+    vector = rotation_vector(turn @ level.rotation @ DOWN.T)
+    return View(np.append(vector, level.vector[3]))
+
+
+def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) -> HouseFit | None:
+    """Fit at full resolution: the circles, then with the lines.
+
+    Parameters
+    ----------
+    image : ndarray of uint8, shape (h, w, 3)
+    best : RoughFit
+        In a picture `factor` times as large.
+    factor : float
+    frame, t : int, float
+        Index and time, s, of the picture.
+
+    Returns
+    -------
+    HouseFit or None
+        None where the edges do not bear it out.
+    """
+    size = (image.shape[1], image.shape[0])
+    view, rig = rescaled(best.view, 1 / factor), best.rig
+    circles = measure_marks(image, view.vector, rig, reach=max(4 / factor, 6.0), lines=False)
+    if len(circles.marks) < LEAST_MARKS:
+        return None
+    fits = {
+        kind: solve([circles.marks], [view], rig, size, prior=prior, sharing=SHARING, view_sd=ROUND)
+        for kind, prior in ((True, OVERHEAD), (False, ANYWHERE))
+    }
+    overhead = (fits[True].cost - fits[False].cost) / SHARING < TILT_GAIN
+    view, rig = fits[overhead].views[0], fits[overhead].rig
+    view, rig = upright(image, view, rig)
+    rig = sides(image, view, rig)
+    prior = OVERHEAD if overhead else ANYWHERE
+    edge = HALF_WAY
+    for reach in (8.0, 6.0, 6.0):
+        evidence = measure_marks(image, view.vector, rig, reach=reach, edge=edge)
+        if len(evidence.marks) < LEAST_MARKS:
+            return None
+        fit = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
+        view, rig = fit.views[0], fit.rig
+        if any(edge.light):
+            break
+        edge = find_edge(evidence.profile, evidence.step)
+        if reach < 8.0:
+            edge = lit(edge, image, view, rig, evidence)
+            if not any(edge.light):
+                break
+    rms = float(fit.rms[0])
+    found = camera(view, rig, size, frame=frame, t=t, rms_px=rms)
+    if worth(evidence) == 0:
+        return None
+    return HouseFit(found, view, rig, evidence, rms, overhead, edge)

@@ -1,0 +1,166 @@
+"""Where the paint ends if a thin dark line is drawn along its edge, or is all that is drawn.
+
+The rules measure the 12-ft circle to its outer edge, and an outline is part of it. Half way from
+paint to ice lies beyond that edge, for the line draws the profile down. So the mean profile is
+explained by paint, a line and ice under one blur: that tells at which level a profile crosses
+the edge.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import erfc, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+WIDTH, WIDTH_SPREAD = 1.4, 0.7
+"""Usual width of a line, px, and the standard deviation of its logarithm."""
+
+BLUR, BLUR_SPREAD = 0.85, 0.7
+"""Usual standard deviation of the blur, px, and that of its logarithm."""
+
+DEPTH_SD = 0.5
+"""How far a line may be from the paint's colour, in steps from paint to ice."""
+
+MISFIT = 0.01
+"""What is left of a mean profile by the model, in steps from paint to ice."""
+
+UNSEEN = 0.2
+"""How far outlines draw the edge out, px: what is not known of it where they are not looked for."""
+
+BARE = 0.04
+"""How well an edge without a line is made out, px, as clips with truth show."""
+
+DOUBT = 0.7
+"""Share of the way from half way to the edge that is in doubt, as clips with truth show: under one
+blur, a narrow dark line looks much like a wider one that is less dark."""
+
+HALF_IN_DOUBT = 0.3
+"""The same of half the width of an outline that is drawn alone."""
+
+LEAST_SIDE = 4
+"""Samples of a profile on either side without which no line is looked for: what paint and ice are
+like there is not known."""
+
+ROUNDS = 15
+"""Steps of the fit (Levenberg, 1944)."""
+
+
+@dataclass(frozen=True)
+class PaintEdge:
+    """The edge of the paint in the profiles across it.
+
+    Attributes
+    ----------
+    level : float
+        Level of a profile there: −0.5 in the ice, 0.5 in the paint.
+    sd : float
+        Standard deviation of the edge's place, px, alike all along it.
+    line : float
+        How far the line moves the place half way between ice and paint off the edge, px, if the
+        edge is blurred by much more than the line is wide: its depth times its width.
+    within : float
+        How far within the edge the middle of an outline lies that is drawn alone, px.
+    light : tuple of float
+        Levels at which the circles (12, 8 and 4 ft) are crossed beside that, as light was blurred
+        before it was coded (see `vision.sheet.mixing`).
+    """
+
+    level: float = 0.0
+    sd: float = UNSEEN
+    line: float = 0.0
+    within: float = 0.0
+    light: tuple[float, ...] = (0.0, 0.0, 0.0)
+
+    def beyond(self, slope: Array) -> Array:
+        """How far beyond the edge profiles cross the level, px, by their slopes there, per px.
+
+        The level is that of a picture in which things rest. Where a pan blurs the edge, the level
+        lies far from half way, but the edge lies no farther than the line would have it.
+        """
+        away = self.level / slope
+        return np.asarray(away - np.clip(away, -abs(self.line), abs(self.line)))
+
+
+HALF_WAY = PaintEdge()
+"""An edge without a line: half way from ice to paint."""
+
+
+def find_edge(profile: Array, step: float) -> PaintEdge:
+    """Find the edge of the paint in a mean profile.
+
+    Parameters
+    ----------
+    profile : ndarray, shape (n,)
+        From the ice (about −0.5) to the paint (about 0.5), 0 near the middle; NaN where unknown.
+    step : float
+        From one sample to the next, px.
+    """
+    known = np.isfinite(profile)
+    x = np.asarray(step * (np.arange(len(profile)) - len(profile) // 2)[known], np.float64)
+    y = profile[known]
+    if len(y) < 12 or min(-x[0], x[-1]) < LEAST_SIDE * abs(step):
+        return HALF_WAY
+    ice, paint = float(y[:3].mean()), float(y[-3:].mean())
+    alone = y.max() - paint > 2 * (paint - ice)  # an outline, and ice behind it as well
+    outlined = x[y > 0.5 * (y.max() + ice)] if alone else np.zeros(1)
+    depth = y.max() - paint if alone else 0.0
+    mean: Array = np.array([outlined[0], np.log(WIDTH), np.log(BLUR), paint, depth, ice])
+    weight = np.array([1.0, WIDTH_SPREAD, BLUR_SPREAD, 0.3, DEPTH_SD, 0.3]) ** -2.0
+    now: Array = mean.copy()
+    if alone:
+        now[1] = np.log(np.ptp(outlined) + abs(step))
+    damping = 1e-3
+    value, slope = _model(x, now)
+    cost = _cost(y - value, now - mean, weight)
+    normal = np.diag(weight)
+    for _ in range(ROUNDS):
+        normal = slope.T @ slope / MISFIT**2 + np.diag(weight)
+        right = slope.T @ (y - value) / MISFIT**2 - weight * (now - mean)
+        change = np.linalg.solve(normal + damping * np.diag(normal.diagonal()), right)
+        tried = np.asarray(now + change, np.float64)
+        ahead, ahead_slope = _model(x, tried)
+        new = _cost(y - ahead, tried - mean, weight)
+        if new < cost:
+            now, value, slope, cost, damping = tried, ahead, ahead_slope, new, damping / 5
+        else:
+            damping *= 10
+    covariance = np.linalg.inv(normal)
+    if alone:
+        half = 0.5 * float(np.exp(now[1]))
+        sd = half * np.hypot(np.sqrt(covariance[1, 1]), HALF_IN_DOUBT)
+        return PaintEdge(0.0, float(np.hypot(sd, BARE)), within=half)
+    moved = now[0] - np.interp(0.0, y, x)
+    sd = np.sqrt(covariance[0, 0] + (DOUBT * moved) ** 2 + BARE**2)
+    return PaintEdge(float(np.interp(now[0], x, y)), float(sd), float(now[4] * np.exp(now[1])))
+
+
+def _cost(residual: Array, off: Array, weight: Array) -> float:
+    return float((residual**2).sum()) / MISFIT**2 + float(weight @ off**2)
+
+
+def _model(x: Array, unknown: Array) -> tuple[Array, Array]:
+    """Profile of ice, line and paint, and its derivatives, shape (n, 6).
+
+    Unknowns: place of the edge, logarithms of the line's width and of the blur, levels of the
+    paint, of the line below the paint, and of the ice.
+    """
+    edge, log_width, log_blur, paint, depth, ice = unknown
+    width, blur = np.exp(log_width), np.exp(log_blur)
+    u, v = (x - edge) / blur, (x - edge - width) / blur
+    within, beyond = _normal(u), _normal(v)
+    bell = np.exp(-0.5 * np.stack([u, v]) ** 2) / (np.sqrt(2 * np.pi) * blur)
+    line = paint + depth
+    value = ice + (line - ice) * within - depth * beyond
+    by_edge = -(line - ice) * bell[0] + depth * bell[1]
+    by_blur = -(line - ice) * bell[0] * u * blur + depth * bell[1] * v * blur
+    columns = [by_edge, depth * bell[1] * width, by_blur, within, within - beyond, 1 - within]
+    return value, np.stack(columns, axis=-1)
+
+
+def _normal(deviates: Array) -> Array:
+    """Cumulative normal distribution; scipy's would take a tenth of a second to import."""
+    return np.array([0.5 * erfc(-deviate / sqrt(2)) for deviate in deviates.tolist()])

@@ -1,0 +1,1 @@
+"""How stones are turned: the pictures of their caps against each other."""

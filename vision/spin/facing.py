@@ -1,0 +1,87 @@
+"""By what angle one picture of a cap is turned against another.
+
+Both are angular harmonics on rings (`vision.spin.handle.cap_spectrum`): the angle that brings them
+together is the maximum of their circular cross-correlation.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from math import ceil, nan
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vision.spin.align import HARMONICS, Array, Complex, rings_seen
+
+_GRID = 1440
+"""Angles of a whole turn that are tried."""
+
+
+@lru_cache(maxsize=64)
+def _offsets(reach: float) -> tuple[Array, NDArray[np.complex128]]:
+    """Angles up to `reach` either way, rad, and how they turn the harmonics."""
+    offset = np.linspace(-reach, reach, max(int(_GRID * reach / np.pi), 9))
+    return offset, np.exp(1j * HARMONICS[:, None] * offset)
+
+
+def _crossed(reference: Complex, spectra: Complex) -> tuple[Complex, Array]:
+    """Products of a reference and pictures (n, harmonics), and the most that they come to (n,)."""
+    count, harmonics = len(spectra), len(HARMONICS)
+    model, seen = reference[1:-1], spectra[:, 1:-1]
+    shown = rings_seen(seen) @ (np.abs(model) ** 2).sum((0, 2))
+    rows, parts = seen.reshape(count, harmonics, 1, -1), seen.reshape(count, 1, -1)
+    size = (parts @ parts.conj().swapaxes(1, 2))[:, 0, 0].real
+    cross = rows @ model.conj().reshape(harmonics, -1, 1)
+    return cross[..., 0, 0], np.sqrt(shown * size)
+
+
+def _nearest(cross: Complex, expected: Array, reach: float) -> tuple[Array, Array]:
+    """Angles about those expected at which pictures are most alike, to 2 mrad, and how much."""
+    offset, phases = _offsets(ceil(100 * reach) / 100)
+    value = ((cross * np.exp(1j * HARMONICS * expected[:, None])) @ phases).real
+    best = value.argmax(1)
+    return expected + offset[best], value[np.arange(len(best)), best]
+
+
+def angle_between(
+    reference: Complex, spectrum: Complex, expected: float, reach: float
+) -> tuple[float, float]:
+    """Angle by which one cap is turned against a reference: `angles_between` of one, to 2 mrad."""
+    cross, energy = _crossed(reference, spectrum[None])
+    if not energy[0]:
+        return nan, 0.0
+    angle, value = _nearest(cross, np.array([expected]), reach)
+    return float(angle[0]), float(value[0] / energy[0])
+
+
+def angles_between(
+    reference: Complex, spectra: Complex, expected: Array, reach: float
+) -> tuple[Array, Array]:
+    """Angles by which caps are turned against a reference, if they are not shifted.
+
+    Parameters
+    ----------
+    reference : ndarray, shape (orders, rings, channels)
+    spectra : ndarray, shape (n, orders, rings, channels)
+    expected : ndarray, shape (n,)
+        About where the angles are sought, rad.
+    reach : float
+        How far from there, rad.
+
+    Returns
+    -------
+    angle, likeness : ndarray, shape (n,)
+        Angles nearest to what was expected, rad; correlations of the two pictures, 0 to 1.
+    """
+    cross, energy = _crossed(reference, spectra)
+    blank = energy <= 0
+    angle, _ = _nearest(cross, expected, reach)
+    for _ in range(4):  # Newton's method on a sum of cosines
+        phase = cross * np.exp(1j * HARMONICS * angle[:, None])
+        slope, bend = -phase.imag @ HARMONICS, -phase.real @ HARMONICS**2
+        step = -slope / np.where(bend < 0, bend, -np.inf)
+        angle = angle + np.clip(step, -0.05, 0.05)
+    likeness = (cross * np.exp(1j * HARMONICS * angle[:, None])).real.sum(1)
+    likeness = np.where(blank, 0.0, likeness / np.where(blank, 1.0, energy))
+    return np.where(blank, np.nan, angle), likeness

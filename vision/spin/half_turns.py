@@ -1,0 +1,50 @@
+"""Half turns that no stone makes: a handle looks nearly the same half a turn on."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vision.spin.align import Array
+
+FASTEST = 6.0
+"""How much faster than before and after, rad/s, no stone turns from one picture to the next: stones
+turn at 1 to 3, and hits change that by 3 or so."""
+
+BESIDE, FEWEST = 0.4, 3
+"""Time before and after over which spins are told, s, and pictures that tell one."""
+
+
+def unfolded(times: Array, angles: Array) -> Array:
+    """Take out half turns by which angles change faster than stones turn.
+
+    A handle that was hidden, or hardly seen, may be found again the wrong way round. After a
+    longer time, in which a stone may have turned so far, angles are left as they are.
+
+    Parameters
+    ----------
+    times : ndarray, shape (n,)
+        s, increasing.
+    angles : ndarray, shape (n,)
+        rad; NaN where they are not told.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        rad; the first that is told stays.
+    """
+    told = np.flatnonzero(np.isfinite(angles))
+    t, out = times[told], angles[told]
+    for k in np.flatnonzero(np.abs(np.diff(out)) > np.pi / 2) + 1:
+        wait = t[k] - t[k - 1]
+        before = (t < t[k]) & (t >= t[k - 1] - BESIDE)
+        after = (t >= t[k]) & (t <= t[k] + BESIDE)
+        spins = [
+            np.polyfit(t[side], out[side], 1)[0] for side in (before, after) if side.sum() >= FEWEST
+        ]
+        off = out[k] - out[k - 1] - wait * (np.mean(spins) if spins else 0.0)
+        halves = np.round(off / np.pi)
+        if abs(off) > FASTEST * wait and abs(off - np.pi * halves) < np.pi / 4:
+            out[k:] -= np.pi * halves
+    unfolded_angles = angles.copy()
+    unfolded_angles[told] = out
+    return unfolded_angles
