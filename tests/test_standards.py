@@ -19,27 +19,52 @@ MAY_IMPORT = {
     "report": {"data", "physics", "vision"},
     "pipeline": {"command", "data", "physics", "vision", "work", "report"},
 }
+ORDER = {
+    "vision": "film optics sheet camera_path spin detection association track",
+    "physics": "registry impact ice curl filter statistics local_fit kalman simulator whole_shot"
+    " estimate posterior prediction",
+}
+"""Folders and modules of a room: each may import itself and those before it."""
 
 
 def modules(room: str) -> list[Path]:
     return [ROOT / "pipeline.py"] if room == "pipeline" else sorted((ROOT / room).rglob("*.py"))
 
 
-def imported_rooms(path: Path) -> set[str]:
+def imported(path: Path) -> set[str]:
+    """Dotted names of all that a module imports, with what it takes out of modules."""
     found: set[str] = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            found |= {alias.name.split(".")[0] for alias in node.names}
+            found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path}: relative imports hide the direction"
-            found.add((node.module or "").split(".")[0])
-    return found & (MAY_IMPORT.keys() | {"tests", "benchmarks"})
+            found |= {f"{node.module}.{alias.name}" for alias in node.names}
+    return found
+
+
+def imported_rooms(path: Path) -> set[str]:
+    rooms = {name.split(".")[0] for name in imported(path)}
+    return rooms & (MAY_IMPORT.keys() | {"tests", "benchmarks"})
 
 
 @pytest.mark.parametrize("room", sorted(MAY_IMPORT))
 def test_imports_point_one_way(room: str) -> None:
     for path in modules(room):
         wrong = imported_rooms(path) - MAY_IMPORT[room] - {room}
+        assert not wrong, f"{path.relative_to(ROOT)} imports {', '.join(sorted(wrong))}"
+
+
+@pytest.mark.parametrize("room", sorted(ORDER))
+def test_imports_within_a_room_point_one_way(room: str) -> None:
+    order = ORDER[room].split()
+    for path in modules(room):
+        place = path.relative_to(ROOT / room).with_suffix("").parts[0]
+        if place == "__init__":
+            continue
+        assert place in order, f"{path.relative_to(ROOT)} has no place in the order of {room}"
+        within = {name.split(".")[1] for name in imported(path) if name.startswith(f"{room}.")}
+        wrong = within - set(order[: order.index(place) + 1])
         assert not wrong, f"{path.relative_to(ROOT)} imports {', '.join(sorted(wrong))}"
 
 
