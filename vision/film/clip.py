@@ -87,6 +87,12 @@ class Clip:
         last = self.frames - 1 if self.last is None else min(self.last, self.frames - 1)
         return max(last - self.first + 1, 0)
 
+    def close(self) -> None:
+        """Let go of a video of which no pass was begun; it can be read through all the same."""
+        if self._begun is not None:
+            self._begun[0].close()
+            self._begun = None
+
     def peek(self) -> Picture | None:
         """Give the first picture of the files; of a video only while nothing else was read."""
         if not self.is_video:
@@ -209,6 +215,7 @@ def open_clip(
         if fps is not None:
             clip.warnings.append(f"{paths[0]}: a video carries its own times; the rate is ignored")
     if clip.expected == 0:
+        clip.close()
         raise InputError(f"{paths[0]}: has only {clip.frames} frames; none from {first} on")
     return clip
 
@@ -237,15 +244,17 @@ def _open_images(paths: Sequence[Path], fps: float | None, first: int, last: int
 def _open_video(paths: Sequence[Path], first: int, last: int | None) -> Clip:
     if len(paths) > 1:
         raise InputError(f"{paths[1]}: one video at a time, please")
-    broken = f"{paths[0]}: not a video that can be read (damaged, or not one at all)"
+    broken = InputError(f"{paths[0]}: not a video that can be read (damaged, or not one at all)")
     try:
         container, pictures = _opened(paths[0])
-        first_one = next(pictures, None)
-        if first_one is None:
-            raise InputError(broken)
-        fps, count = _promised(container)
     except (av.error.FFmpegError, OSError):
-        raise InputError(broken) from None
+        raise broken from None
+    try:
+        first_one = next(pictures)
+        fps, count = _promised(container)
+    except (StopIteration, av.error.FFmpegError, OSError):
+        container.close()  # Who keeps the error would keep it open.
+        raise broken from None
     height, width, _ = first_one[1].shape
     clip = Clip((paths[0],), (width, height), fps, max(count, 1), first, last)
     clip._begun = container, chain([first_one], pictures)

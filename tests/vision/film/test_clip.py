@@ -166,6 +166,27 @@ def test_what_is_no_clip_is_refused_in_one_line(
     assert capfd.readouterr() == ("", "")
 
 
+def test_a_video_that_is_refused_is_closed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = write_clip(tmp_path / "clip.mp4", np.arange(3) / 25, movflags="faststart")
+    hollow = tmp_path / "hollow.mp4"  # with its index and no picture
+    raw = path.read_bytes()
+    hollow.write_bytes(raw[: raw.index(b"mdat") + 4])
+    opened = []
+    plain = av.open
+
+    def watched(name: str) -> object:
+        opened.append(plain(name))
+        return opened[-1]
+
+    monkeypatch.setattr(av, "open", watched)
+    for which, frames, reason in ((hollow, None, "not a video"), (path, (5, None), "only 3")):
+        with pytest.raises(InputError, match=reason):
+            open_clip([which], frames=frames)
+        with pytest.raises(AssertionError, match="not open"):
+            next(opened[-1].demux())
+    assert len(opened) == 2
+
+
 def test_two_videos_are_too_many(tmp_path: Path) -> None:
     paths = [write_clip(tmp_path / name, np.arange(3) / 25) for name in ("a.mp4", "b.mp4")]
     with pytest.raises(InputError, match="one video at a time"):
