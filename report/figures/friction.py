@@ -63,7 +63,8 @@ def friction_figure(
         ax = figure.subplots()
         if curling:
             ax.axhspan(*MEASURED, color=PALE, alpha=0.5, lw=0, zorder=0)
-            handles.append(line("Li et al., measured", color=PALE, lw=6))
+            # As pale as the range itself: the darker band is this shot's.
+            handles.append(line("Li et al., measured", color=PALE, alpha=0.5, lw=6))
             for label, law, dash in _LAWS:
                 ax.plot(v, _friction(law, v), color=GREY, lw=1.1, linestyle=dash, zorder=2)
                 handles.append(line(label, color=GREY, lw=1.1, linestyle=dash))

@@ -23,6 +23,9 @@ _FARTHEST = 5.0
 _MANY = 500
 """Sightings from which on their dots are small."""
 
+_BAND = 0.6
+"""Opacity of the band of the stated errors."""
+
 _MOST_NAMED = 12
 """Stones that the legend names at most."""
 
@@ -63,7 +66,11 @@ def residuals_figure(residuals: pd.DataFrame, collisions: Sequence[Collision] = 
             line(f"stone {short(name)}", color=colours[name], marker="o", ms=3, ls="none")
             for name in stones[:_MOST_NAMED]
         ]
-        handles.append(line("normal distribution", color=BLACK))
+        handles += [
+            line("± 2 sd as stated", color=PALE, alpha=_BAND, lw=6),
+            line("beyond the edge", color=BLACK, marker=6, ms=4, ls="none"),
+            line("normal distribution", color=BLACK),
+        ]
         legend_below(figure, handles)
     return figure
 
@@ -71,7 +78,7 @@ def residuals_figure(residuals: pd.DataFrame, collisions: Sequence[Collision] = 
 def _draw_times(
     ax: Axes, residuals: pd.DataFrame, off: Array, sd: float, colours: dict[str, str]
 ) -> None:
-    ax.axhspan(-2 * sd, 2 * sd, color=PALE, alpha=0.6, lw=0, zorder=1)
+    ax.axhspan(-2 * sd, 2 * sd, color=PALE, alpha=_BAND, lw=0, zorder=1)
     ax.axhline(0, color=GREY, lw=0.8, zorder=2)
     size = 2.5 if len(residuals) > _MANY else 4.5
     names, t = residuals["stone"].astype(str).to_numpy(), residuals["t"].to_numpy(float)

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgba
 
 from data.results import Friction
 from report import figures
@@ -27,3 +28,11 @@ def test_friction_shows_law_and_glides(shot, law, curling):
         assert np.interp(1.0, *black.get_data()) == pytest.approx(
             0.0109 if law.law == "constant" else 2e-3 / 1.06 + 0.009, rel=1e-4
         )
+
+
+def test_the_range_that_was_measured_is_as_pale_in_the_legend(shot):
+    figure = figures.friction_figure(shot.results.glides, Friction(0.0109, 4e-4), shot.tracks)
+    (ax,), (legend,) = figure.axes, figure.legends
+    (drawn,) = [entry for entry in legend.legend_handles if "measured" in entry.get_label()]
+    (range_of_others,) = [band for band in ax.patches if band.get_height() > 0.009]
+    assert to_rgba(drawn.get_color(), drawn.get_alpha()) == range_of_others.get_facecolor()

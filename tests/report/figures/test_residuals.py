@@ -29,3 +29,5 @@ def test_wild_sightings_are_marks_at_the_edge(shot):
         ]
         assert list(mark.get_xdata()) == [table.loc[row, "t"]]
         assert mark.get_ydata()[0] == (high if sign > 0 else low)
+    said = [entry.get_text() for entry in figure.legends[0].get_texts()]
+    assert {"± 2 sd as stated", "beyond the edge"} <= set(said)
