@@ -52,7 +52,8 @@ show."""
 
 
 CROPPED = 5.0
-"""And by so much more those of pictures whose middle is not on the lens's axis."""
+"""By how much more they are larger in pictures that seem to be cropped or stretched, whose places
+were 3 to 9 of their errors off."""
 
 
 @dataclass(frozen=True)

@@ -98,7 +98,7 @@ def warnings(
     lined : bool
         Whether a line was seen beside the circles.
     cropped : bool
-        Whether the lens's axis seems to be far from the pictures' middle.
+        Whether pictures seem to be cropped off their middle, or stretched.
     """
     found = []
     poor = [c.frame for c in cameras if c.found and c.quality < POOR]
@@ -115,8 +115,8 @@ def warnings(
         )
     if cropped:
         found.append(
-            "the lens's axis seems to be far from the picture's middle, as if it was cropped or"
-            " stretched: places may be centimetres off"
+            "the picture seems to be cropped off its middle or stretched (or taken from above 20 m):"
+            " places may be centimetres off; give the clip as it was recorded"
         )
     if sd > UNTOLD * prior_sd:
         found.append(

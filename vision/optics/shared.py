@@ -48,7 +48,7 @@ class Bundle:
         Standard deviation of a single mark on a circle, on a line, of a fixed point, in stated
         ones.
     cropped : bool
-        Whether the lens's axis seems to be far from the middle of the pictures.
+        Whether pictures seem to be cropped off their middle, or stretched.
     """
 
     rig: Array

@@ -7,9 +7,11 @@ import pytest
 
 from tests.vision.cameras import SIZE, marks, true_rig, views
 from vision.optics.bundle import FAMILIES, PAINT_SD, _Problem, _State, bundle
+from vision.optics.paint import CIRCLES, Marks
 from vision.optics.pose import View
 from vision.optics.resection import solve_view
 from vision.optics.rig import OVERHEAD, POSITION, R4, R8, start_rig
+from vision.optics.shared import Bundle
 
 VIEWS = [View(np.array([0.19, -0.02 * k, 0.03, 7.1 + 0.01 * k])) for k in range(5)]
 
@@ -61,6 +63,33 @@ def test_an_axis_off_the_middle_of_the_picture_is_found(axis: tuple[float, float
     state = _State(found.rig, np.zeros((0, 3)), found.offset, at)
     _, told = problem.aside(state, PAINT_SD, found.noise)
     np.testing.assert_allclose(told, axis, atol=0.08)
+
+
+def fitted(frames: list[Marks], views: list[View], start: np.ndarray) -> Bundle:
+    times = np.arange(len(frames)) / 25
+    begin = [solve_view(m, v, start, SIZE).view for m, v in zip(frames, views, strict=True)]
+    return bundle(frames, times, begin, start, SIZE, OVERHEAD)[0]
+
+
+@pytest.mark.parametrize(("ragged", "told"), [(0.002, False), (0.012, True)])
+def test_lines_more_crooked_than_painted_ones_are_told(ragged: float, told: bool) -> None:
+    rng, frames = np.random.default_rng(9), []
+    for view in views(8):
+        seen = marks(rng, view.vector, true_rig(), 0.1)
+        bent = np.where(seen.line < CIRCLES, 0, np.sin(seen.along * 9 + seen.line))
+        scale = view.focal / true_rig()[POSITION][2]
+        away = np.sqrt(2) * ragged * scale * bent[:, None] * seen.normal
+        frames.append(replace(seen, pixel=seen.pixel + away))
+    assert fitted(frames, views(8), start_rig(OVERHEAD)).cropped == told
+
+
+@pytest.mark.parametrize(("height", "told"), [(17.0, False), (24.0, True)])
+def test_a_camera_higher_than_any_hangs_is_told(height: float, told: bool) -> None:
+    rng, rig = np.random.default_rng(9), true_rig()
+    rig[POSITION] = 0.1, 0.2, height
+    high = [View(view.vector + np.log(height / 9.4) * np.eye(4)[3]) for view in views(8)]
+    frames = [marks(rng, view.vector, rig, 0.1) for view in high]
+    assert fitted(frames, high, start_rig(OVERHEAD)).cropped == told
 
 
 def test_a_step_that_ends_below_the_ice_is_no_end() -> None:
