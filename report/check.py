@@ -24,11 +24,14 @@ Array = NDArray[np.float64]
 PICTURE_WIDTH = 640
 """Width of a frame on the sheet, px."""
 
-AVERAGE_SCALE = 110.0
-"""Pixels per metre of the average ice."""
+AVERAGE_SIZE = 484
+"""Longer side of the average ice, px."""
 
 REACH = 2.2
 """Half width of the average ice, m."""
+
+HOUSE = (-REACH, REACH, -REACH, REACH)
+"""The part of the ice that the average shows: x from and to, y from and to, m."""
 
 _RINGS, _LINES = (255, 255, 0), (0, 255, 255)  # BGR: on no common paint
 _TAKEN, _REFUSED = (80, 255, 80), (60, 60, 255)
@@ -62,6 +65,8 @@ def check_figure(
     -------
     Figure
         The average is sharp, and the lines lie on the paint, where the camera was followed well.
+        Without a house it shows what of the ice is in the first picture, and what was not measured
+        has no panel.
     """
     reasons = sorted({place.reason for look in looks for place in look.refused})
     with styled():
@@ -78,9 +83,12 @@ def check_figure(
             parts = figure.subfigures(2, 1, height_ratios=(tall, 4.6))
             upper, foot = parts
             _frames(upper, looks, rings, radius, reasons, columns)
-            left, right = foot.subfigures(1, 2, width_ratios=(1, 2.2))
-            _average(left.subplots(), looks, rings)
-            _residuals(right.subplots(2, 1, sharex=True), cameras)
+            courses = _courses(cameras)
+            if courses:
+                foot, right = foot.subfigures(1, 2, width_ratios=(1, 2.2))
+                axes = right.subplots(len(courses), 1, sharex=True, squeeze=False)[:, 0]
+                _residuals(axes, cameras, courses)
+            _average(foot.subplots(), looks, rings)
         figure.suptitle(title, x=0.01, ha="left", weight="bold", fontsize=12)
     return figure
 
@@ -144,54 +152,73 @@ def _show(ax: Axes, image: Image) -> None:
 
 def _average(ax: Axes, looks: Sequence[Look], rings: Sequence[float]) -> None:
     """Show the median of the frames seen from above: sharp if the camera was followed well."""
-    shape = (round(2 * REACH * AVERAGE_SCALE),) * 2
+    bounds = HOUSE if rings else _in_view(looks[0])
+    left, right, low, top = bounds
+    scale = AVERAGE_SIZE / max(right - left, top - low)
+    shape = round((top - low) * scale), round((right - left) * scale)
     layers = []
     for look in looks:
-        ice = rectify(
-            look.frame.image, look.camera, (-REACH, REACH, -REACH, REACH), scale=AVERAGE_SCALE
-        )
+        ice = rectify(look.frame.image, look.camera, bounds, scale=scale)
         if ice is None:
             continue
         layer = np.full((*shape, 3), np.nan, np.float32)
-        top = round((REACH - ice.top) * AVERAGE_SCALE)
-        left = round((ice.left + REACH) * AVERAGE_SCALE)
+        down, across = round((top - ice.top) * scale), round((ice.left - left) * scale)
         part = np.where(ice.valid[..., None], ice.image, np.nan)
-        part = part[max(-top, 0) : shape[0] - top, max(-left, 0) : shape[1] - left]
-        top, left = max(top, 0), max(left, 0)
-        layer[top : top + part.shape[0], left : left + part.shape[1]] = part
+        part = part[max(-down, 0) : shape[0] - down, max(-across, 0) : shape[1] - across]
+        down, across = max(down, 0), max(across, 0)
+        layer[down : down + part.shape[0], across : across + part.shape[1]] = part
         layers.append(layer)
     ax.set_title("from above" if len(looks) == 1 else "median from above: sharp if followed well")
     if layers:
         stack = np.stack(layers)
         shown = np.isfinite(stack).any(0)
         middle = np.nanmedian(np.where(shown, stack, 0.0), axis=0)
-        span = (-REACH, REACH, -REACH, REACH)
-        ax.imshow(np.clip(middle[..., ::-1], 0, 255).astype(np.uint8), extent=span)
+        ax.imshow(np.clip(middle[..., ::-1], 0, 255).astype(np.uint8), extent=bounds)
     for rank, line in enumerate(ice_lines(rings)):
         ax.plot(*line.T, color=SKY if rank < len(rings) else ORANGE, lw=0.5)
-    ax.set(xlim=(-REACH, REACH), ylim=(-REACH, REACH), aspect="equal")
+    ax.set(xlim=bounds[:2], ylim=bounds[2:], aspect="equal")
     ax.set(xlabel="$x$ (m)", ylabel="$y$ (m)")
     ax.grid(False)
 
 
-def _residuals(axes: NDArray[np.object_], cameras: pd.DataFrame) -> None:
+def _in_view(look: Look) -> tuple[float, float, float, float]:
+    """Give the part of the ice about the origin that a picture shows: x from and to, y, m."""
+    ice = rectify(look.frame.image, look.camera, HOUSE, scale=AVERAGE_SIZE / (2 * REACH))
+    if ice is None or not ice.valid.any():
+        return HOUSE
+    rows, columns = np.flatnonzero(ice.valid.any(1)), np.flatnonzero(ice.valid.any(0))
+    ends = ice.place(columns[[0, -1]].astype(float), rows[[-1, 0]].astype(float))
+    (x0, y0), (x1, y1) = np.clip(ends, -REACH, REACH).tolist()
+    return x0, x1, y0, y1
+
+
+def _courses(cameras: pd.DataFrame) -> list[tuple[str, float, str, str]]:
+    """Tell what is known of the cameras over time: its column, factor, colour, what it is."""
+    courses = []
+    if cameras["rms_px"].notna().any():
+        courses.append(("rms_px", 1.0, BLUE, "residual of the edges (px)"))
+    if (cameras["sd"] > 0).any():
+        courses.append(("sd", 1000.0, VERMILLION, "stated error at the\n12-ft ring (mm, one sd)"))
+    return courses
+
+
+def _residuals(
+    axes: NDArray[np.object_],
+    cameras: pd.DataFrame,
+    courses: Sequence[tuple[str, float, str, str]],
+) -> None:
     """Plot the edges' residual and the stated error against time, carried frames shaded."""
     t = cameras["t"].to_numpy(float)
     step = float(np.median(np.diff(t))) if len(t) > 1 else 0.04
     carried = cameras["found"].to_numpy() == 0
-    series = (
-        ("rms_px", 1.0, BLUE, "residual of the edges (px)"),
-        ("sd", 1000.0, VERMILLION, "stated error at the\n12-ft ring (mm, one sd)"),
-    )
-    for ax, (column, factor, colour, label) in zip(axes, series, strict=True):
+    for ax, (column, factor, colour, label) in zip(axes, courses, strict=True):
         value = factor * cameras[column].to_numpy(float)
         ax.plot(t, value, ".-", color=colour, ms=3, lw=0.8)
         for start in t[carried]:
             ax.axvspan(start - step / 2, start + step / 2, color=GREY, alpha=0.25, lw=0)
         ax.set_ylabel(label)
-        top = float(np.nanmax(value)) if np.isfinite(value).any() else 1.0
-        ax.set_ylim(0, max(1.2 * top, 0.1))
+        ax.set_ylim(0, max(1.2 * float(np.nanmax(value)), 0.1))
     axes[0].set_title(
         "shaded: carried without rings in view" if carried.any() else "rings seen in every frame"
     )
-    axes[1].set_xlabel("time (s)")
+    axes[-1].set_xlabel("time (s)")

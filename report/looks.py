@@ -124,7 +124,7 @@ def check_lines(
         )
     most = max(len(look.stones) for look in looks)
     lines.append(f"stones      {most} at most in one of {count(len(looks), 'frame')} looked at")
-    return lines + [f"warning: {text}" for text in warnings]
+    return lines + [f"warning     {text}" for text in warnings]
 
 
 def numbered(refused: Sequence[Refusal], apart: float) -> list[Refusal]:

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import cv2
 import numpy as np
+import pytest
 
 from pipeline import main, sample_clip
 from report.check import check_figure
@@ -44,6 +45,28 @@ def test_a_single_picture_is_large_and_has_no_course_in_time() -> None:
     figure.draw_without_rendering()
     assert picture.get_window_extent().width > 1.5 * above.get_window_extent().width
     assert above.get_title("left") == "from above"
+
+
+def test_without_a_house_the_sheet_shows_the_table_and_no_empty_panel() -> None:
+    """A puck 0.1 m beside the mark of the scale, in a picture 0.8 by 0.6 m."""
+    image = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
+    cv2.circle(image, (140, 80), 10, (255, 255, 255), -1)
+    homography = np.array([[400.0, 0, 100], [0, -400.0, 80], [0, 0, 1]])
+    looks = [Look(Frame(k, k / 25, image), Camera(k, k / 25, homography, SIZE), ()) for k in (0, 1)]
+    unknown = table(2, 0).assign(rms_px=np.nan, sd=0.0)
+    figure = check_figure(looks, unknown, ())
+    _, foot = figure.subfigs
+    (above,) = foot.axes
+    assert above.get_xlim() == pytest.approx((-0.25, 0.55), abs=0.02)
+    assert above.get_ylim() == pytest.approx((-0.4, 0.2), abs=0.02)
+    (shown,) = above.images
+    picture = np.asarray(shown.get_array())
+    rows, columns = np.nonzero(picture[..., 0] > 128)
+    x0, x1, y0, y1 = shown.get_extent()
+    x = x0 + (columns.mean() + 0.5) * (x1 - x0) / picture.shape[1]
+    y = y1 - (rows.mean() + 0.5) * (y1 - y0) / picture.shape[0]
+    assert (x, y) == pytest.approx((0.1, 0.0), abs=0.004)
+    assert not foot.subfigs
 
 
 def test_the_average_is_sharp_only_if_the_camera_was_followed() -> None:

@@ -55,7 +55,7 @@ def test_the_lines_say_what_is_known_and_what_is_not() -> None:
     assert "carried in 9 of them" in said
     assert "2.0 mm at the 12-ft ring" in said
     assert "2 at most in one of 3 frames" in said
-    assert lines[-1] == "warning: the picture shakes"
+    assert lines[-1] == "warning     the picture shakes"
     blind = table(60, 17).assign(rms_px=np.nan, sd=0.0)
     assert "edges not measured" in check_lines("a.mp4", 70, blind, looks)[1]
     assert not any("12-ft" in line for line in check_lines("a.mp4", 70, blind, looks))
