@@ -107,9 +107,7 @@ def run(
         if lost:
             raise InputError(f"{lost[0]}: would be written over; name another folder with -o")
     measured = measure(files, settings, progress)
-    progress("physics", 0, 1)
-    done = analyse(measured, settings)
-    progress("physics", 1, 1)
+    done = analyse(measured, settings, progress)
     if folder is None:
         return done
     with staged(folder, replaces=WRITTEN) as stage:
@@ -390,9 +388,7 @@ def _do_estimate(arguments: argparse.Namespace, bars: Bars) -> str:
     check_folder(folder)
     refuse_clips(find_inputs(arguments.inputs), "run")
     measured = measure(arguments.inputs, settings, bars)
-    bars("physics", 0, 1)
-    done = analyse(measured, settings)
-    bars("physics", 1, 1)
+    done = analyse(measured, settings, bars)
     with staged(folder, replaces=_stale(folder, measured.files)) as stage:
         write_results(done.results, stage / "results.json")
         if done.posterior is not None:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from data.errors import InputError, SceneError
+from data.progress import Progress, no_progress
 from data.sheet import House
 from work.measure import Measured
 from work.settings import Settings
@@ -54,7 +55,9 @@ class Run:
     posterior: pd.DataFrame | None = None
 
 
-def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
+def analyse(
+    measured: Measured, settings: Settings = Settings(), progress: Progress = no_progress
+) -> Run:
     """Tracks, estimates and simulations from sightings; writes nothing."""
     import numpy as np
     import pandas as pd
@@ -75,6 +78,7 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
             f"{measured.files[0]}: no stone was found; curlshot check shows where the house was"
             " taken to be, and --house points at another"
         )
+    progress("physics", 0, 1)
     masses = (
         _check_masses(settings.masses, list(sightings["stone"].unique())) or measured.masses or None
     )
@@ -130,6 +134,7 @@ def analyse(measured: Measured, settings: Settings = Settings()) -> Run:
     )
     cameras = camera_table(measured.cameras) if measured.cameras else None
     simulations = [as_tracks(table, model, of_team) for model, table in sampled.items()]
+    progress("physics", 1, 1)
     return Run(
         tracks,
         cameras,

@@ -20,7 +20,9 @@ def test_samples_that_cannot_be_drawn_are_not_left_out_in_silence() -> None:
     )
     still = still.reindex(columns=list(SIGHTING_COLUMNS))
     seen = Measured((Path("still.csv"),), still, 25.0, 20, ())
-    done = analyse(seen, Settings(samples=10))
+    steps = []
+    done = analyse(seen, Settings(samples=10), lambda *step: steps.append(step))
+    assert steps == [("physics", 0, 1), ("physics", 1, 1)]
     assert done.posterior is None
     assert any("no samples" in text for text in done.results.warnings)
     assert not any("no samples" in text for text in analyse(seen).results.warnings)
