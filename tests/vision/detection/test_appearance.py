@@ -91,14 +91,23 @@ def test_of_more_than_two_colours_the_rarest_is_left_out_and_so_is_one_seen_by_c
     assert learn([]) is None
 
 
-@pytest.mark.parametrize("amiss", ["rim", "granite", "both"])
-def test_hair_on_jerseys_is_no_team_however_often_it_is_seen(amiss: str) -> None:
-    hair = seen((10, 8, 8), 1.9)
-    if amiss != "granite":
-        hair = hair._replace(outline=(1.08, 0.84))
-    if amiss != "rim":
-        hair = hair._replace(granite_samples=hair.granite_samples + np.array([-72, 18, -18]))
-    look = learn([seen(BLUE)] * 9 + [hair] * 8 + [seen(RED)] * 5)
+@pytest.mark.parametrize(
+    ("outline", "tint"),
+    [
+        ((1.08, 0.84), (-72, 18, -18)),
+        ((1.08, 0.84), (0, 0, 0)),
+        ((1.0, 0.98), (-72, 0, 0)),
+        ((1.0, 0.98), (0, 24, -24)),
+    ],
+    ids=["all", "rim", "dark", "red"],
+)
+@pytest.mark.parametrize(("often", "score"), [(8, 1.9), (12, 1.6)])
+def test_hair_on_jerseys_is_no_team_however_often_it_is_seen(
+    outline: tuple[float, float], tint: tuple[int, int, int], often: int, score: float
+) -> None:
+    hair = seen((10, 8, 8), score)
+    hair = hair._replace(granite_samples=hair.granite_samples + np.array(tint), outline=outline)
+    look = learn([seen(BLUE)] * 9 + [hair] * often + [seen(RED)] * 5)
     assert look is not None and len(look.caps) == 2
     assert worth_of([RED, BLUE], look) == pytest.approx([1, 1], abs=0.1)
     assert look.outline == pytest.approx((1.0, 0.98))
@@ -107,9 +116,11 @@ def test_hair_on_jerseys_is_no_team_however_often_it_is_seen(amiss: str) -> None
 def test_a_team_whose_granite_differs_as_real_stones_do_is_kept() -> None:
     other = seen(RED)
     granite = other.granite_samples + np.array([17, 6, -12])
+    hidden = other._replace(granite_samples=granite[:0])
     other = other._replace(granite_samples=granite, outline=(1.0, 1.01))
-    look = learn([seen(BLUE)] * 9 + [other] * 5)
-    assert look is not None and len(look.caps) == 2
+    for team in other, hidden:
+        look = learn([seen(BLUE)] * 9 + [team] * 5)
+        assert look is not None and len(look.caps) == 2
 
 
 def test_the_size_of_caps_is_learned_from_three_sightings_on() -> None:

@@ -76,9 +76,11 @@ def test_shapes_that_colours_miss_stay_if_they_convince_and_colours_do_not_speak
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     first = (stone(0.0, RED, 2.0), stone(0.5, BLUE, 2.0))
-    shapes = tuple(stone(x, RED, score) for x, score in ((1.0, 2.0), (1.5, 1.5), (-0.5, 1.2)))
-    evidence = {1.0: 0.8, 1.5: 0.8, -0.5: 2.0}
-    found = seen_twice(monkeypatch, first, Findings(first), evidence, shapes)
+    scores = {1.0: 2.0, 1.5: 1.5, -0.5: 1.2, 0.55: 2.0, -1.0: 1.5}
+    *shapes, ice = (stone(x, RED, score) for x, score in scores.items())
+    shapes.append(ice._replace(granite_samples=ice.granite_samples + 60.0))
+    evidence = {1.0: 0.8, 1.5: 0.8, -0.5: 2.0, 0.55: 2.0, -1.0: 2.0}
+    found = seen_twice(monkeypatch, first, Findings(first), evidence, tuple(shapes))
     assert [s.x for s in found.stones] == [0.0, 0.5, 1.0]
 
 
