@@ -21,9 +21,9 @@ from vision.film.picture import brightened, image_of
 from vision.optics.camera import Camera
 
 BOTH_MEASURES = 1.2
-"""Least mean of the two evidences of a stone: by its shape, or before any was known, and by what was
-learned. Of 35 real frames, changed in 13 ways, 14 stones that one of the two missed have 1.2 to 1.8;
-of 16 other things one has more than 1.2."""
+"""Least mean of the two evidences of a stone: by its shape, or before any was known, and by what
+was learned. Of 35 real frames, changed in 13 ways, 14 stones that one of the two missed have 1.2 to
+1.8; of 16 other things one has more than 1.2."""
 
 
 def glance(pictures: Sequence[tuple[Image, Camera]], disc: Stone = STONE) -> list[Findings]:
