@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from itertools import islice
 from pathlib import Path
 
 import cv2
@@ -24,8 +25,9 @@ from tests.synthetic import (
 )
 from tests.synthetic.travelling import Travelling
 from tests.vision.places import RINGS
-from vision.camera_path.follow_house import HouseFollower, HouseTrack, follow_house
+from vision.camera_path.follow_house import PATIENCE, HouseFollower, HouseTrack, follow_house
 from vision.film.clip import Frame, open_clip
+from vision.film.picture import image_of
 from vision.optics.camera import Camera
 from vision.optics.projection import apply_homography
 
@@ -219,6 +221,22 @@ def test_one_pass_gives_each_frame_once_and_in_order() -> None:
     assert track is not None
     assert [c.frame for c in track.cameras] == [c.frame for _, c in placed]
     assert HouseFollower(clip.size).finish() is None
+
+
+@pytest.mark.parametrize("after", [0, PATIENCE + 2])
+def test_frames_too_few_to_fit_what_they_share_are_given_as_well(after: int) -> None:
+    file, _ = cached_clip(SCENE, broadcast_camera(start=0.0, end=1.0), duration=1.2)
+    clip = open_clip([file])
+    frames = list(islice(clip, 4))
+    bare = np.full_like(image_of(frames[0].picture), 230)
+    follower = HouseFollower(clip.size)
+    placed = [*map(follower.look, frames)]
+    assert not any(placed)
+    placed += [follower.look(Frame(4 + k, (4 + k) / 25, bare)) for k in range(after)]
+    if not after:
+        placed.append(follower.catch_up())
+    given = [(frame.index, camera.frame) for some in placed for frame, camera in some]
+    assert given == [(k, k) for k in range(4)]
 
 
 def test_a_single_picture_is_a_clip(tmp_path: Path) -> None:

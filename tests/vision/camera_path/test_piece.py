@@ -79,6 +79,15 @@ def test_frames_wait_till_what_they_share_has_been_fitted() -> None:
     assert not start.let_go()
 
 
+def test_frames_that_wait_and_are_left_out_are_not_given() -> None:
+    frames, house = filmed()
+    piece = Piece(house.camera.size, house.rig, OVERHEAD, tracker(house))
+    piece.enter(frames[0], house.view, house.evidence.marks, [])
+    piece.take(frames[1:2], piece.follow(frames[1:2]))
+    del piece.seen[-1:]
+    assert [frame.index for frame, _ in piece.let_go()] == [frames[0].index]
+
+
 def test_frames_are_followed_one_from_the_other() -> None:
     frames, house = filmed()
     piece = followed(house, frames)
