@@ -5,7 +5,7 @@ Run with ``python -m benchmarks.report [CLIP]``; the sample clip if none is name
 
 from __future__ import annotations
 
-import sys
+import argparse
 import tempfile
 import time
 from collections.abc import Callable
@@ -63,6 +63,8 @@ def main(clip: Path, folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    named = Path(sys.argv[1]) if len(sys.argv) > 1 else pipeline.sample_clip()
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
+    parser.add_argument("clip", nargs="?", type=Path, default=pipeline.sample_clip())
+    named = parser.parse_args().clip
     with tempfile.TemporaryDirectory() as out:
         main(named, Path(out))
