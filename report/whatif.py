@@ -104,10 +104,13 @@ def spread_figure(
         )  # fmt: skip
         bar = figure.colorbar(heat, ax=ax, shrink=0.6, pad=0.01)
         bar.set_label(f"where {plain_text(thrown)} ends, % of throws on 10 cm × 10 cm")
-        for name in struck:
-            moved = outcomes[(outcomes["stone"] == name) & (outcomes["hits"] > 0)]
-            x, y = moved[["x", "y"]].to_numpy(float)[:MOST_DOTS].T
-            ax.plot(x, y, ".", color=colours[name], ms=2.5, alpha=0.6, mew=0, zorder=3)
+        rolled = {
+            name: outcomes[(outcomes["stone"] == name) & (outcomes["hits"] > 0)][["x", "y"]]
+            .to_numpy(float)[:MOST_DOTS]
+            for name in struck
+        }  # fmt: skip
+        for name, places in rolled.items():
+            ax.plot(*places.T, ".", color=colours[name], ms=2.5, alpha=0.6, mew=0, zorder=3)
         for name, place in before.items():
             if name != thrown:
                 ax.add_patch(Circle(place, radius, fc="white", ec=colours[name], lw=1.4, zorder=4))
@@ -123,15 +126,18 @@ def spread_figure(
         figure.suptitle(plain_text(title), x=0.01, ha="left", fontsize=10, fontweight="bold")
         ring = {"marker": "o", "ls": "none", "mfc": "none"}
         handles: list[Artist] = [
-            Line2D([], [], mec=BLACK, label=f"median of {plain_text(thrown)}", **ring),  # type: ignore[arg-type]
-            Line2D([], [], mec=GREY, label="as it lay before", **ring),  # type: ignore[arg-type]
+            Line2D([], [], mec=BLACK, label=f"median of {plain_text(thrown)}", **ring)  # type: ignore[arg-type]
         ]
+        lying = [place for name, place in before.items() if name != thrown]
+        if _shows(low, high, np.array(lying).reshape(-1, 2)):
+            handles.append(Line2D([], [], mec=GREY, label="as it lay before", **ring))  # type: ignore[arg-type]
         handles += [
             Line2D(
                 [], [], color=colours[name], marker=".", ls="none",
                 label=f"{plain_text(name)} where hit",
             )
-            for name in struck
+            for name, places in rolled.items()
+            if _shows(low, high, places)
         ]  # fmt: skip
         figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 4))
     return figure
@@ -153,6 +159,11 @@ def _corners(
     parts += [np.quantile(places, [1 - SHARE, SHARE], axis=0) for places in ends]
     shown = np.clip(np.concatenate(parts), centre - FARTHEST, centre + FARTHEST)
     return shown.min(axis=0) - 2 * radius, shown.max(axis=0) + 2 * radius
+
+
+def _shows(low: Array, high: Array, places: Array) -> bool:
+    """Whether any of some places, shape (n, 2), lies between two corners."""
+    return bool(((places > low) & (places < high)).all(axis=1).any())
 
 
 def _density(ends: Array, low: Array, high: Array) -> tuple[Array, Array, Array]:
