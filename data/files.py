@@ -25,9 +25,19 @@ def whole_file(path: Path) -> Iterator[Path]:
     ------
     Path
         A name in the same folder, with the same ending, to write to.
+
+    Raises
+    ------
+    InputError
+        Where nothing can be written.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=path.suffix)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(
+            dir=path.parent, prefix=f".{path.stem}-", suffix=path.suffix
+        )
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror})") from None
     os.close(handle)
     part = Path(name)
     try:

@@ -89,3 +89,10 @@ def test_a_place_that_takes_no_files_is_named_and_not_the_hidden_folder(tmp_path
     message = rf"^{folder}: cannot be written \(.+\); name another folder"
     with pytest.raises(InputError, match=message), staged(folder):
         pass
+
+
+def test_a_file_that_cannot_be_written_is_named_itself(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    path = tmp_path / "file" / "a.csv"
+    with pytest.raises(InputError, match=rf"^{path}: cannot be written \(.+\)$"):
+        write_text(path, "a")
