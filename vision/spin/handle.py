@@ -199,7 +199,7 @@ def handle_angles(
     covered = np.clip((unlike / (BEFORE * np.median(unlike))) ** 2, 1.0, WORST)
     theta[rows], steep = fit.angle, 0 * aside
     if slants is not None:
-        theta[rows], steep = levelled(best.pictures[good], fit.angle, radii, aside, slants[rows])
+        theta[rows], steep = levelled(best.pictures[good], fit.angle, radii, slants[rows])
     odd = np.clip((1 - _alike(best) / len(seen)) / ODD, 1.0, ODDEST)
     dim = np.clip(TURNS / max(best.share, 1e-6) - 1, 0.0, DIM)
     odd += dim * max(odd - ODDER, 0.0)

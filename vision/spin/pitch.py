@@ -29,16 +29,15 @@ STEEP = 0.2
 """How steep what is seen on caps is, a standard deviation: goose-necks 0.35, paint 0."""
 
 BENT = 0.1
-"""How far from a plane what is seen on caps is, in the same measure."""
+"""How far heights on a cap depart from a plane, in the same measure: by so much the steepness that
+makes pictures longer may differ from that which turns them."""
 
 NEAR = 0.5
 """Slant up to which what is shifted by its height is shifted by little: beyond it grips come to lie
 where others were, and how steep they are is told the worse by the square of the slant."""
 
 
-def levelled(
-    pictures: Complex, angles: Array, radii: Array, sd_shift: Array, slants: Array
-) -> tuple[Array, Array]:
+def levelled(pictures: Complex, angles: Array, radii: Array, slants: Array) -> tuple[Array, Array]:
     """Take out of the angles of a cap what the steepness of its handle turns pictures by.
 
     Parameters
@@ -49,8 +48,6 @@ def levelled(
         That bring them onto their mean, rad.
     radii : ndarray, shape (rings,)
         m.
-    sd_shift : ndarray, shape (n,)
-        Standard deviations of what they may be shifted by besides, m, per axis.
     slants : ndarray, shape (n, 2)
         Of the view (`vision.optics.cameras.Cameras.slants`), with the axes that angles count from.
 
@@ -72,7 +69,7 @@ def levelled(
     for part in parts(np.arange(len(angles))):
         steep = (about[part] @ tilts.reshape(2, -1)).reshape(-1, *tilts.shape[1:])
         upright = turned(pictures[part], -angles[part])[:, 2:-2]
-        own_known, own_pull, turns[part] = _told(upright, seen[part], free, steep, sd_shift[part])
+        own_known, own_pull, turns[part] = _normal_equations(upright, seen[part], free, steep)
         known, pull = known + own_known, pull + own_pull
     slant = float(np.median(np.hypot(*slants.T)))
     bent = BENT * max((slant / NEAR) ** 2, 1.0)
@@ -83,10 +80,10 @@ def levelled(
     return angles - turns @ share @ np.linalg.solve(known, pull), sd
 
 
-def _told(
-    here: Complex, seen: NDArray[np.bool_], free: Complex, steep: Complex, sd_shift: Array
+def _normal_equations(
+    here: Complex, seen: NDArray[np.bool_], free: Complex, steep: Complex
 ) -> tuple[Array, Array, Array]:
-    """Tell what pictures say of how steep what they show is.
+    """Tell what pictures say of how steep what they show is, whatever their turn and shift.
 
     Parameters
     ----------
@@ -97,13 +94,11 @@ def _told(
         Their mean, and how it changes as it turns and as it is shifted along x and y.
     steep : ndarray, shape (n, 2, harmonics, rings, channels)
         How each changes with the steepness along x and y.
-    sd_shift : ndarray, shape (n,)
-        m.
 
     Returns
     -------
     known, pull : ndarray, shape (2, 2) and (2,)
-        Normal equations of the steepness.
+        Matrix and right-hand side of the equations of the steepness.
     turns : ndarray, shape (n, 2)
         By what angle a steepness of 1 turns each picture, rad.
     """
@@ -112,25 +107,15 @@ def _told(
     rows = _real(np.concatenate([here[:, None], steep], axis=1), shown)
     normal = columns @ columns.transpose(0, 2, 1)
     normal += (1e-9 * np.trace(normal, axis1=1, axis2=2)[:, None, None] + 1e-12) * np.eye(4)
-    size = np.maximum(seen.mean(1) * rows.shape[2], 1)
-    rest, _ = _left(rows[:, :1], columns, normal)
-    noise = ALIKE**2 * (rest[:, 0] ** 2).sum(1) / size
-    normal += np.diag([0.0, 0.0, 1.0, 1.0]) * (noise / sd_shift**2)[:, None, None]
-    rest, share = _left(rows, columns, normal)
+    share = np.linalg.solve(normal, columns @ rows.transpose(0, 2, 1)).transpose(0, 2, 1)
+    rest = rows - share.astype(rows.dtype) @ columns
+    noise = ALIKE**2 * (rest[:, 0] ** 2).sum(1) / np.maximum(seen.mean(1) * rows.shape[2], 1)
+    # No picture counts for more than the median one; a dim one changes by as much less.
     worth = 1 / (LASTING**2 * np.maximum(noise, np.median(noise)) + 1e-12)
     bright = np.maximum(share[:, 0, 0], 0.2)[:, None, None]
     tilted = (bright * worth[:, None, None] * rest[:, 1:]).swapaxes(0, 1).reshape(2, -1)
     plain = (bright * rest[:, 1:]).swapaxes(0, 1).reshape(2, -1)
-    return tilted @ plain.T, tilted @ rest[:, 0].ravel(), share[:, 1:, 1]
-
-
-def _left(rows: Array, columns: Array, normal: Array) -> tuple[Array, Array]:
-    """Tell what columns (n, p, a) leave of rows (n, q, a), and their shares in these (n, q, p).
-
-    `normal` (n, p, p) are the products of the columns, and what is known of them beforehand.
-    """
-    share = np.linalg.solve(normal, columns @ rows.transpose(0, 2, 1)).transpose(0, 2, 1)
-    return np.asarray(rows - share.astype(rows.dtype) @ columns), np.asarray(share)
+    return tilted @ plain.T, tilted @ rest[:, 0].ravel(), np.asarray(share[:, 1:, 1])
 
 
 def _times_place(picture: Complex, radii: Array) -> Complex:

@@ -48,7 +48,7 @@ def test_a_handle_that_rises_is_not_taken_for_a_turn(steep: float) -> None:
     shown = pictures(steep)
     sd = np.full(len(TIMES), 0.002)
     fit = align(shown, TRUE, RADII, sd)
-    angles, unsure = levelled(shown, fit.angle, RADII, sd, SLANTS)
+    angles, unsure = levelled(shown, fit.angle, RADII, SLANTS)
     before, after = spin_off(fit.angle), spin_off(angles)
     assert abs(before) > 0.03
     assert abs(after) < 0.4 * abs(before)
@@ -60,32 +60,30 @@ def test_a_flat_handle_is_left_as_it_is_seen() -> None:
     shown = pictures(0.0)
     sd = np.full(len(TIMES), 0.002)
     fit = align(shown, TRUE, RADII, sd)
-    angles, unsure = levelled(shown, fit.angle, RADII, sd, SLANTS)
+    angles, unsure = levelled(shown, fit.angle, RADII, SLANTS)
     assert np.abs(angles - fit.angle - np.median(angles - fit.angle)).max() < 0.02
     assert 0 < unsure.max() < 0.06
 
 
 def test_far_aslant_it_is_believed_less() -> None:
-    shown, sd = pictures(0.35), np.full(len(TIMES), 0.002)
-    whole, less = (
-        levelled(shown, TRUE, RADII, sd, scale * SLANTS)[0] - TRUE for scale in (1.0, 10.0)
-    )
+    shown = pictures(0.35)
+    whole, less = (levelled(shown, TRUE, RADII, scale * SLANTS)[0] - TRUE for scale in (1.0, 10.0))
     # Pictures that change as little in a view ten times as slanting: steep by a tenth.
     assert np.ptp(less) < 0.3 * np.ptp(whole)
 
 
 def test_from_above_nothing_is_steep() -> None:
     shown = pictures(0.35, 0 * SLANTS)
-    angles, unsure = levelled(shown, TRUE, RADII, np.full(len(TIMES), 0.002), 0 * SLANTS)
+    angles, unsure = levelled(shown, TRUE, RADII, 0 * SLANTS)
     assert angles == pytest.approx(TRUE, abs=1e-9)
     assert unsure == pytest.approx(0.0, abs=1e-9)
 
 
 def test_many_pictures_are_levelled_alike_part_by_part(monkeypatch: pytest.MonkeyPatch) -> None:
-    shown, sd = pictures(0.35), np.full(len(TIMES), 0.002)
-    whole, _ = levelled(shown, TRUE, RADII, sd, SLANTS)
+    shown = pictures(0.35)
+    whole, _ = levelled(shown, TRUE, RADII, SLANTS)
     monkeypatch.setattr("vision.spin.shade.TOGETHER", 30)
-    parts, _ = levelled(shown, TRUE, RADII, sd, SLANTS)
+    parts, _ = levelled(shown, TRUE, RADII, SLANTS)
     assert parts == pytest.approx(whole, abs=2e-3)
 
 
