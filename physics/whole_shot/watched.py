@@ -29,6 +29,11 @@ STOPPING = 1.0
 SPIN_DRIFT = 0.03
 """How much a spin may change by itself from where it is seen to a hit, rad/s."""
 
+SLIPPERIEST = 1e-3
+"""Friction of ice below any that is known. With much less stones would glide for minutes and turn
+many times: places from a curve of so few cells do not move as its velocities say, and stones that
+lean on each other would be set apart thousands of times in a fit that is going astray."""
+
 SLIDING = 0.02
 """Friction between two stones that a fit sets out from: low, so that they slide. Once they
 stick, more of it changes nothing and no slope leads back."""
@@ -161,10 +166,11 @@ def watch(
         return None
     traces |= {name: known[name] for name in bystanders if len(known[name].t)}
     start = min(float(trace.t[0]) for trace in traces.values())
+    least = SLIPPERIEST if curling_size(radius) else 1e-5
     laws = (
         Unknown("restitution", _mean(priors.restitution), 0.0, 1.5, priors.restitution),
         Unknown("stone_friction", SLIDING, 0.0, 2.0, priors.stone_friction),
-        Unknown("friction", _mean(priors.friction), 1e-5, 1.0, priors.friction),
+        Unknown("friction", _mean(priors.friction), least, 1.0, priors.friction),
         Unknown("slope", 0.0, 0.0, 0.02, priors.slope),
         Unknown("v_c", V_C, 0.005, 0.5, priors.v_c),
         Unknown("turn", 0.0, -0.1, 0.1, priors.turn),
