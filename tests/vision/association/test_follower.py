@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from data.sheet import STONE
 from tests.synthetic.clip import render_still
 from tests.vision.detection.test_stones import CAMERA, RED, YELLOW, camera_of, scene_of
+from vision.association.expected import look_on_course
 from vision.association.follower import PATIENCE, Follower, StoneView
 from vision.association.lead import Lead
 from vision.detection.appearance import learn
@@ -81,6 +83,25 @@ def test_a_stone_that_is_gone_is_waited_for_and_then_given_up(follower: Follower
     left = follower.follow(views[2:], waiting)
     assert len(left) == 2 and not any(lead.missed for lead in left)
     assert all(len(shown.sightings) == 2 for shown in views)
+
+
+def test_what_is_hidden_is_not_looked_for_again_where_it_was_just_missed(
+    follower: Follower, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def counted(looks: list[Look], *rest: Any) -> list[Sighting | None]:
+        if len(looks) == 1:  # not those that look ahead
+            again.append(looks[0].places)
+        return look_on_course(looks, *rest)
+
+    again: list[np.ndarray] = []
+    leads = [Lead.to(s, 0.0) for s in follower.sought(view(START, 0))]
+    drifts = [view([*START[:2], (0.9 + 0.005 * k, -0.6)], k) for k in (1, 2)]
+    hidden = [view(START[:2], k) for k in (3, 4)]
+    monkeypatch.setattr("vision.association.follower.look_on_course", counted)
+    left = follower.follow([*drifts, *hidden], leads)
+    assert [lead.missed for lead in left] == [False, False, True]
+    (once,) = again  # in the first picture without it
+    assert once == pytest.approx(np.array([(0.91, -0.6)]), abs=4e-3)
 
 
 def test_what_shows_clearly_less_than_a_moment_ago_is_looked_for_beside_too(
