@@ -8,7 +8,7 @@ import pytest
 from tests.synthetic import PAINTS, Scene, render_still, still_camera, tilted_camera
 from tests.synthetic.camera import CameraPath
 from tests.vision.places import RINGS
-from vision.optics.pose import camera
+from vision.optics.pose import ROLL, camera
 from vision.optics.rig import ANYWHERE, OVERHEAD
 from vision.sheet.house_fit import RoughFit, fit_roughly, refine, start
 from vision.sheet.rings import Guess
@@ -57,6 +57,13 @@ def test_a_rough_fit_is_refined_to_millimetres(path: CameraPath) -> None:
     off = np.linalg.norm(fit.camera.ice(pixels) - RINGS, axis=1)
     assert np.sqrt((off**2).mean()) < 0.006
     assert fit.rms_px < 0.6
+
+
+def test_circles_alone_do_not_roll_a_view() -> None:
+    begin, *_ = start(guess(OVER), SIZE)
+    rough = roughly(render_still(SCENE, OVER), OVER)
+    assert rough is not None
+    assert abs(rough.view.vector[ROLL] - begin.vector[ROLL]) < 0.003
 
 
 def test_what_lies_aside_is_worth_less() -> None:
