@@ -21,14 +21,15 @@ from vision.film.clip import Frame
 from vision.film.picture import Picture
 from vision.film.shelf import Kept
 from vision.optics.linear import Observations
-from vision.optics.paint import CIRCLES, FIXED, TWELVE, Marks, joined
+from vision.optics.paint import CIRCLES, EIGHT, FIXED, TWELVE, Marks, joined
 from vision.optics.pose import View
 from vision.optics.resection import ViewSolution, solve_views
 from vision.optics.rig import R4, R8
 from vision.sheet.edges import MIN_CONTRAST
-from vision.sheet.marks import Evidence, measure_along
+from vision.sheet.marks import Evidence, measure_along, measure_marks
+from vision.sheet.mixing import lit
 from vision.sheet.normals import OUTSIDE, Normals, lay_out
-from vision.sheet.outline import PaintEdge
+from vision.sheet.outline import PaintEdge, find_edge
 from vision.sheet.stations import THIN
 
 Array = NDArray[np.float64]
@@ -68,6 +69,18 @@ MOST_MOVED = 0.3
 """Where the light that a shutter blurs moves edges by more than was known, px, they are measured
 anew."""
 
+SHARPER, RESTING, AS_MUCH = 1.25, 1.5, 0.6
+"""Where circles are in their profiles was told in a smeared frame if the 12-ft edge is so much
+steeper now; it is told anew where no pan smears by more, px, and so much of the 12- and 8-ft
+circles is seen of what was seen there."""
+
+EDGE_ROUNDS = 2
+"""Measurements by which such a frame tells it: the first shows how the profiles lie."""
+
+UNSURE = 0.5
+"""Part of that by which such a frame moves circles that is in doubt in the frames before, for these
+are smeared."""
+
 LONGEST_STRIDE = 8
 """Most frames that are followed together."""
 
@@ -88,6 +101,8 @@ class EdgeTracker:
         Colours on either side of each kind of edge.
     edge : PaintEdge
         Where the circles are in the profiles across them.
+    told : Evidence, optional
+        What the frame has shown that told that.
     stride : int
         How many frames may be followed together: the more, the better they are predicted.
     fit : ViewSolution, optional
@@ -96,15 +111,20 @@ class EdgeTracker:
         How far a pan smears edges along x and along y in the frames asked for last, px.
     smeared : float
         How far the edges of the last frame are smeared, by what they look like, px.
+    moved : ndarray, shape (3,)
+        How far beyond where frames before the last had them circles are found to be, along their
+        normals, px; whoever makes good for that sets it to 0.
     """
 
     size: tuple[int, int]
     palette: Array
     edge: PaintEdge
+    told: Evidence | None = None
     stride: int = 1
     fit: ViewSolution | None = None
     sweep: Array = field(default_factory=lambda: np.zeros(2))
     smeared: float = 0.0
+    moved: Array = field(default_factory=lambda: np.zeros(CIRCLES))
     _shutter: Shutter = field(default_factory=Shutter)
     _light: ShutterLight = field(init=False)
     _last: tuple[View, Array, Normals, Array] | None = None
@@ -161,6 +181,8 @@ class EdgeTracker:
         self.fit, shown = fits[count - 1], evidence[count - 1]
         self.smeared = smear(shown.slope)
         self._learn(shown.palette, count)
+        if self._is_sharper(shown):
+            self._tell_edge(frames[count - 1].picture, rig)
         rim = normals.normal[:, normals.kinds.get(TWELVE, slice(0))]
         self._shutter.learn(shown.slope, self.fit.view.sweep([last, *views][count - 1]) @ rim)
         return [
@@ -297,12 +319,39 @@ class EdgeTracker:
         self._light = known.taking(share, sd)
         return abs(self._light.share - used) * most
 
+    def _is_sharper(self, shown: Evidence) -> bool:
+        """Whether a frame would tell the edge better than the one that has told it."""
+        if self.told is None or self.blur > RESTING:
+            return False
+        both, told = [TWELVE, EIGHT], self.told
+        as_much = (shown.covered[both] > AS_MUCH * told.covered[both]).all()
+        return bool(as_much) and shown.steepness > SHARPER * told.steepness
+
+    def _tell_edge(self, picture: Picture, rig: Array) -> None:
+        """Tell by a frame that is sharper than those before where circles are in profiles."""
+        assert self.fit is not None
+        before, view, reach = self.edge, self.fit.view.vector, reach_beyond(0.0, self.size[0])
+        for _ in range(EDGE_ROUNDS):
+            shown = measure_marks(picture, view, rig, reach=reach, lines=False, edge=self.edge)
+            edge = find_edge(shown.profile, shown.step)
+            self.edge = lit(edge, picture, self.fit.view, rig, shown)
+        self.told, slope = shown, shown.steepness
+        self.moved = self.moved + self.edge.aside(slope) - before.aside(slope)
+        self._light = ShutterLight.of(self.edge, self.palette)
+
     def _learn(self, palette: Array, frames: int) -> None:
         """Take in the colours of the edges in the last of so many frames."""
         kept = (1 - LEARNING) ** frames
         mixed = kept * self.palette + (1 - kept) * palette
         mixed = np.where(np.isfinite(mixed), mixed, palette)
         self.palette = np.where(np.isfinite(mixed), mixed, self.palette)
+
+
+def put_right(marks: Marks, way: Array) -> Marks:
+    """Move what was measured on circles so far along their normals, (3,), px."""
+    along = np.append(way, np.zeros(FIXED + 1 - CIRCLES))[marks.line]
+    pixel = marks.pixel + marks.normal * along[:, None]
+    return replace(marks, pixel=pixel, sd=np.hypot(marks.sd, UNSURE * along))
 
 
 def _leading(good: Sequence[bool]) -> int:

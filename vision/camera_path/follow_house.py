@@ -195,7 +195,7 @@ class HouseFollower:
         piece, view = self._same(house, frame)
         if piece is None:
             prior = OVERHEAD if house.overhead else ANYWHERE
-            edges = EdgeTracker(self._size, house.evidence.palette, house.edge)
+            edges = EdgeTracker(self._size, house.evidence.palette, house.edge, house.evidence)
             piece = Piece(self._size, house.rig, prior, edges, self._shelf)
             view = house.view
             self._pieces.append(piece)

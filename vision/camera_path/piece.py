@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.camera_path.edge_tracker import HELD, LONGEST_STRIDE, EdgeTracker
+from vision.camera_path.edge_tracker import HELD, LONGEST_STRIDE, EdgeTracker, put_right
 from vision.camera_path.egomotion import foretold
 from vision.camera_path.ice_tracker import IceTracker
 from vision.camera_path.joint import Seen
@@ -186,6 +186,23 @@ class Piece:
             self.edges.stride = min(2 * len(seen), LONGEST_STRIDE) if whole else 1
         return seen
 
+    def _make_good(self, *others: list[Seen]) -> None:
+        """Move circles to where a sharper frame has told them, in all frames so far and others.
+
+        What these share is fitted anew: by what told it before the next would be taken apart.
+        """
+        moved = self.edges.moved
+        if not moved.any():
+            return
+        self.edges.moved = np.zeros(CIRCLES)
+        for frames in (self.seen, *others):
+            for k, seen in enumerate(frames):
+                marks = Kept(put_right(seen.marks.get(), moved))
+                marks.put_aside(self.shelf)
+                frames[k] = replace(seen, marks=marks)
+        self.rig = self._joint(self._spread()).rig
+        self._view_again(MEMORY)
+
     def take(self, frames: Sequence[Frame], seen: Sequence[Seen]) -> list[tuple[Frame, Camera]]:
         """Take in frames that were followed; give them back with provisional cameras.
 
@@ -193,6 +210,7 @@ class Piece:
         """
         for frame, new in zip(frames, seen, strict=True):
             self._add(new, frame.picture)
+        self._make_good()
         return self._held_back(frames)
 
     def _held_back(self, frames: Sequence[Frame]) -> list[tuple[Frame, Camera]]:
@@ -329,18 +347,20 @@ class Piece:
         settled = self.edges.settle([frame], [view], self.rig, view)
         first = settled[0] if settled else Seen(frame.index, frame.t, view, Kept(marks), True)
         self._add(first, frame.picture)
-        placed = [(frame, first)]
+        self._make_good(before)
+        placed = [frame]
         left = [*reversed(waiting)]
         while left and (followed := self.follow(left[: self.edges.stride])):
             for earlier, seen in zip(left, followed, strict=False):
                 self._add(seen, earlier.picture)
-                placed.append((earlier, seen))
+                placed.append(earlier)
+            self._make_good(before)
             del left[: len(followed)]
         placed.reverse()
-        self.seen = [*before, *(seen for _, seen in placed)]
+        self.seen = [*before, *reversed(self.seen)]
         self._picture, self._fresh = frame.picture, []
         self._ice.forget()
-        return self._held_back([earlier for earlier, _ in placed])
+        return self._held_back(placed)
 
     def camera(self, seen: Seen) -> Camera:
         """Give the provisional camera of a frame."""

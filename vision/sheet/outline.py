@@ -75,7 +75,7 @@ class PaintEdge:
     within: float = 0.0
     light: tuple[float, ...] = (0.0, 0.0, 0.0)
 
-    def beyond(self, slope: Array) -> Array:
+    def beyond(self, slope: Array | float) -> Array:
         """How far beyond the edge profiles cross the level, px, by their slopes there, per px.
 
         The level is that of a picture in which things rest. Where a pan blurs the edge, the level
@@ -83,6 +83,12 @@ class PaintEdge:
         """
         away = self.level / slope
         return np.asarray(away - np.clip(away, -abs(self.line), abs(self.line)))
+
+    def aside(self, slope: float) -> Array:
+        """How far along their normals circles are from half way, (3,), px; slope as `beyond`."""
+        found = np.array(self.light) / slope
+        found[0] += self.level / slope - float(self.beyond(slope)) - self.within
+        return found
 
 
 HALF_WAY = PaintEdge()

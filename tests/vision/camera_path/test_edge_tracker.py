@@ -7,12 +7,14 @@ import numpy as np
 
 from tests.synthetic import PAINTS, Key, cached_clip, render_still, sample_scene
 from tests.synthetic.camera import CameraPath
-from vision.camera_path.edge_tracker import LONGEST_STRIDE, EdgeTracker
+from vision.camera_path.edge_tracker import LONGEST_STRIDE, SHARPER, EdgeTracker, put_right
 from vision.film.clip import Frame, open_clip
-from vision.optics.paint import CENTRE_LINE, CIRCLES, HOG_LINE
+from vision.optics.paint import CENTRE_LINE, CIRCLES, EIGHT, FOUR, HOG_LINE, TWELVE
 from vision.optics.pose import View
 from vision.sheet.house import find_house
 from vision.sheet.house_fit import HouseFit
+from vision.sheet.marks import Evidence, measure_marks
+from vision.sheet.outline import PaintEdge
 
 SIZE = (1280, 720)
 
@@ -100,3 +102,28 @@ def test_a_house_of_other_colours_is_told() -> None:
     assert edges.looks_like(house.evidence.palette)
     assert edges.looks_like(0.4 * house.evidence.palette)  # faded
     assert not edges.looks_like(house.evidence.palette[:, ::-1])
+
+
+def smeared_evidence(edge: PaintEdge, steeper: float) -> Evidence:
+    """What the first frame shows, with its edges so much steeper."""
+    frames, house = filmed()
+    camera = house.view.vector, house.rig
+    shown = measure_marks(frames[0].image, *camera, reach=9.0, lines=False, edge=edge)
+    return replace(shown, slope=steeper * shown.slope)
+
+
+def test_a_sharper_frame_tells_anew_where_circles_are() -> None:
+    """A smeared one said that they lie a fifth of a step from half way; codes were blurred."""
+    frames, house = filmed()
+    wrong = PaintEdge(light=(-0.2, 0.2, -0.2))
+    for smeared, again in ((0.9 / SHARPER, True), (1.1 / SHARPER, False)):
+        told = smeared_evidence(wrong, smeared)
+        edges = EdgeTracker(SIZE, house.evidence.palette, wrong, told)
+        (seen,) = edges.settle(frames[:1], [house.view], house.rig, house.view)
+        assert bool(edges.moved.any()) == again
+        right = put_right(seen.marks.get(), edges.moved)
+        (true,) = tracker(house).settle(frames[:1], [house.view], house.rig, house.view)
+        for circle in (TWELVE, EIGHT, FOUR):
+            near, far = (m.pixel[m.line == circle] for m in (right, true.marks.get()))
+            aside = np.linalg.norm(near[:, None] - far, axis=2).min(1)
+            assert (np.median(aside) < 0.15) == again
