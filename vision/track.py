@@ -134,7 +134,7 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
         errors = np.hypot(errors, HARDLY_TOLD)
     edge = dict(zip(named, errors, strict=True))
     team = _teams(named, watch.appearance)
-    slants = slants_of(named, cameras)
+    slants = slants_of(named, cameras, disc)
     rows = [
         _rows(name, named[name], team[name], disc, edge[name], slants[name])
         for name in sorted(named)
@@ -146,14 +146,19 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
     )
 
 
-def slants_of(tracks: Mapping[str, Track], cameras: Sequence[Camera]) -> dict[str, Array]:
-    """By stone, slants of the view of its places (n, 2): see `Cameras.slants`."""
+def slants_of(
+    tracks: Mapping[str, Track], cameras: Sequence[Camera], disc: Stone
+) -> dict[str, Array]:
+    """By stone, slants of the view of its places (n, 2): see `Cameras.slants`.
+
+    On a plain disc nothing stands up: it looks as if seen from above.
+    """
     by_frame = {camera.frame: camera for camera in cameras}
     out = {}
     for name, track in tracks.items():
         places = track.sightings.columns("x", "y").T
         by = Cameras.of([by_frame[frame] for frame in track.frames], [1] * len(places))
-        out[name] = by.slants(places)
+        out[name] = 0 * places if is_plain(disc) else by.slants(places)
     return out
 
 
@@ -169,10 +174,9 @@ def off_axis(track: Track, slants: Array) -> Array:
 def _rows(name: str, track: Track, team: str, disc: Stone, edge: Array, slants: Array) -> Columns:
     seen = [*track.sightings]
     spectra = [sighting.spectrum for sighting in seen]
-    raised = 0 * slants if is_plain(disc) else slants  # on a plain disc nothing stands up
-    off = off_axis(track, raised)
+    off = off_axis(track, slants)
     theta, sd_theta = angles_in_parts(
-        np.array(track.times), spectra, handle_radii(disc), off, slants=raised
+        np.array(track.times), spectra, handle_radii(disc), off, slants=slants
     )
     seen = steadied(track.times, widened(track.times, seen))
     x, y, sd_x, sd_y, sd_place_x, sd_place_y = np.array(

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 from scipy.stats import chi2
 
-from data.sheet import STONE
+from data.sheet import STONE, Stone
 from data.tracks import SIGHTING_COLUMNS, teams
 from physics.filter.rate_filter import filtered, forward
 from physics.filter.stretch import Smoothed, Stretch
@@ -183,12 +183,13 @@ def test_the_filter_is_no_surer_of_a_clip_than_it_may_be() -> None:
         assert (pull.abs() < 2).mean() > 0.85
 
 
-def test_caps_seen_aslant_may_have_been_unrolled_aside() -> None:
-    """By 2 cm of height for each that the view goes aside."""
+@pytest.mark.parametrize(("disc", "more"), [(STONE, 0.024), (plain_disc(0.05), 0.0)])
+def test_caps_seen_aslant_may_have_been_unrolled_aside(disc: Stone, more: float) -> None:
+    """By 2 cm of height for each that the view goes aside; a plain disc shows nothing above it."""
     track = Track()
-    track.add(0, 0.0, sighting((0.5, -12.0)), STONE.radius)
+    track.add(0, 0.0, sighting((0.5, -12.0)), disc.radius)
     (seen,) = track.sightings
-    for position, aside in (np.array([0.5, 0.0, 10.0]), 0.024), (None, 0.0):
+    for position, aside in (np.array([0.5, 0.0, 10.0]), more), (None, 0.0):
         cameras = [Camera(0, 0.0, np.eye(3), (160, 120), position=position)]
-        off = off_axis(track, slants_of({"A": track}, cameras)["A"])
+        off = off_axis(track, slants_of({"A": track}, cameras, disc)["A"])
         assert off == pytest.approx(np.hypot(0.5 * (seen.sd_x + seen.sd_y), aside))
