@@ -217,7 +217,7 @@ class Piece:
         """Give frames with cameras, and those that waited: once what they share has been fitted."""
         self._held += frames
         self._refine()
-        fitted = len(self._due) <= len(REFINE_AT)
+        fitted = self._due[0] > REFINE_AT[0]
         return self.let_go() if fitted or len(self._held) > MOST_HELD else []
 
     def let_go(self) -> list[tuple[Frame, Camera]]:
