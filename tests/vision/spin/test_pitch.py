@@ -5,7 +5,9 @@ import pytest
 from numpy.typing import NDArray
 
 from tests.vision.spin.test_handle import RADII, RAYS
+from vision.film.shelf import Kept
 from vision.spin.align import Complex, align
+from vision.spin.angles import angles_in_parts
 from vision.spin.handle import cap_spectrum, handle_angles
 from vision.spin.pitch import levelled
 
@@ -96,3 +98,12 @@ def test_angles_of_a_stone_are_levelled() -> None:
     assert flat == pytest.approx(plain, abs=1e-9)
     assert abs(spin_off(aslant)) < 0.5 * abs(spin_off(plain))
     assert unsure.max() > 1.2 * sure.max()
+
+
+@pytest.mark.parametrize("most", [500, 40])
+def test_angles_that_are_told_part_by_part_are_levelled_too(most: int) -> None:
+    shown = [*map(Kept, pictures(0.35))]
+    sd = np.full(len(TIMES), 0.0005)
+    plain, _ = angles_in_parts(TIMES, shown, RADII, sd, most)
+    aslant, _ = angles_in_parts(TIMES, shown, RADII, sd, most, SLANTS)
+    assert np.ptp(aslant - plain) > 0.03
