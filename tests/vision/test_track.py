@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from numpy.typing import NDArray
 from scipy.stats import chi2
 
 from data.sheet import STONE, Stone
@@ -23,8 +24,9 @@ from vision.detection.stones import plain_disc
 from vision.film.clip import open_clip
 from vision.optics.camera import Camera
 from vision.optics.stick import stick_cameras
-from vision.track import off_axis, slants_of, track_stones
+from vision.track import _rows, off_axis, slants_of, track_stones
 
+Array = NDArray[np.float64]
 DATA = Path(__file__).resolve().parents[2] / "data"
 
 
@@ -193,3 +195,16 @@ def test_caps_seen_aslant_may_have_been_unrolled_aside(disc: Stone, more: float)
         cameras = [Camera(0, 0.0, np.eye(3), (160, 120), position=position)]
         off = off_axis(track, slants_of({"A": track}, cameras, disc)["A"])
         assert off == pytest.approx(np.hypot(0.5 * (seen.sd_x + seen.sd_y), aside))
+
+
+def test_angles_are_told_with_the_slants_of_the_view(monkeypatch: pytest.MonkeyPatch) -> None:
+    def told(times: Array, *_: object, slants: Array) -> tuple[Array, Array]:
+        given.append(slants)
+        return np.full(len(times), np.nan), np.full(len(times), np.nan)
+
+    given: list[Array] = []
+    monkeypatch.setattr("vision.track.angles_in_parts", told)
+    track, slants = Track(), np.array([[0.3, -0.2]])
+    track.add(0, 0.0, sighting((0.5, -12.0)), STONE.radius)
+    _rows("A", track, "", STONE, np.zeros(2), slants)
+    np.testing.assert_array_equal(given, [slants])
