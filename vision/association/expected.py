@@ -26,7 +26,7 @@ FOLLOWED = replace(EFFORT, coarse=1.0)
 in blocks: with paint of another hue beyond the granite, caps in Motion JPEG whose radius is 17 px
 came out by 0 to 3 px too large, and a stone in plain view was taken for none."""
 
-ROUGH = replace(FOLLOWED, light=False)
+ROUGH = replace(FOLLOWED, light=False, handle_rings=0)
 """For a place from which another one follows that is measured anew."""
 
 ON_COURSE = 0.15

@@ -128,10 +128,10 @@ def search_picture(
         new = np.hypot(*(places[:, None] - known).transpose(2, 0, 1)).min(1) > NEAREST * disc.radius
         places = places[new]
     refused: list[Refusal] = []
-    # The second time from the centre that the first has found, roughly.
+    # The second time from the centre that the first has found, roughly and without the handle.
     rough = (
         replace(search, least_evidence=search.least_again),
-        replace(EFFORT, rounds=1, light=False),
+        replace(EFFORT, rounds=1, light=False, handle_rings=0),
     )
     for least, effort in (rough, (search, EFFORT)):
         if not len(places):
