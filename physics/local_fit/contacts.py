@@ -209,7 +209,7 @@ def _evidence(fit: ShotFit, k: int, known: Mapping[str, Trace], radius: float) -
     possible = pushed and away <= REACH - 1 and push[0] >= 0.2 * radius
     possible &= bool(push[3] + 2 * error[3] >= push[0] / MOST_PUSH)
     possible &= bool(np.min(push[1:3] + 2 * error[1:3]) >= SHARE * np.max(push[1:3]))
-    if _displaced(fit, k, known, radius):
+    if possible and _displaced(fit, k, known, radius):
         both *= DISPLACED
     return _Evidence(both if possible else 0.0, pushed, -away)
 

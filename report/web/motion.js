@@ -1,8 +1,8 @@
 "use strict";
 /* How a stone glides, by the equations of physics/: laws of the ice and of curl, the one curve of
-   all glides (physics/simulator/curve.py) and the way of a stone along it (physics/simulator/motion.py). SI units,
-   radians, counter-clockwise positive. Parameters of the laws have the names that they have
-   there; `factor` multiplies all friction of an ice. */
+   all glides (physics/simulator/curve.py) and the way of a stone along it
+   (physics/simulator/motion.py). SI units, radians, counter-clockwise positive. Parameters of the
+   laws have the names that they have there; `factor` multiplies all friction of an ice. */
 const motion = (() => {
   const GRAVITY = 9.81, REST_SPEED = 1e-9, CELLS = 1024, LOWEST_TOP = 4;
 
