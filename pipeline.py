@@ -309,6 +309,11 @@ def _stale(folder: Path, inputs: Sequence[Path]) -> tuple[str, ...]:
     return tuple(name for name in WRITTEN if name not in kept)
 
 
+def _warned(texts: Sequence[str]) -> list[str]:
+    """Lines of warnings, as `report.summary.summary` has them."""
+    return [f"warning     {text}" for text in texts]
+
+
 def _do_run(arguments: argparse.Namespace, bars: Bars) -> str:
     from report.summary import summary
     from report.units import UNITS
@@ -366,7 +371,7 @@ def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:
         f"{count(len(stones), 'stone')} in {count(measured.frames, 'frame')}: "
         f"{folder / 'tracks.csv'}, {folder / 'camera.csv'}"
     ]
-    return "\n".join(lines + [f"warning: {text}" for text in measured.warnings])
+    return "\n".join([*lines, *_warned(measured.warnings)])
 
 
 def _do_check(arguments: argparse.Namespace, bars: Bars) -> str:
@@ -404,7 +409,7 @@ def _do_convert(arguments: argparse.Namespace, _: Bars) -> str:
     measured = convert(arguments.inputs, arguments.out, settings_of(arguments), arguments.over)
     stones = measured.sightings["stone"].nunique()
     lines = [f"{count(stones, 'stone')} in {count(measured.frames, 'frame')}: {arguments.out}"]
-    return "\n".join(lines + [f"warning: {text}" for text in measured.warnings])
+    return "\n".join([*lines, *_warned(measured.warnings)])
 
 
 def _convert_each(arguments: argparse.Namespace) -> str:
@@ -417,7 +422,7 @@ def _convert_each(arguments: argparse.Namespace) -> str:
     lines = [f"{count(len(done) - len(refused), 'file')} written"]
     for path, outcome in done.items():
         if not isinstance(outcome, CurlshotError):
-            lines += [str(path), *(f"warning: {text}" for text in outcome.warnings)]
+            lines += [str(path), *_warned(outcome.warnings)]
     if refused:
         reasons = "; ".join(str(refusal) for refusal in refused)
         rest = ", the others were" if len(refused) < len(done) else ""
@@ -458,7 +463,7 @@ def _do_simulate(arguments: argparse.Namespace, bars: Bars) -> str:
             write_odds(stage, start, outcomes, odds)
             outcome = {"nominal": outcome, **odds}
             lines += odds_text(odds, [folder / name for name in WHAT_IF])
-    lines += [f"warning: {text}" for text in start.assumed]
+    lines += _warned(start.assumed)
     return json.dumps(outcome, indent=1) if arguments.json else "\n".join(lines)
 
 

@@ -214,7 +214,9 @@ def _command(
 ) -> argparse.ArgumentParser:
     """Add a command that writes a folder, which has a `usual` name."""
     parser = _bare_command(commands, name, summary, examples)
-    parser.add_argument("-o", "--out", metavar="OUT", help=f"folder for the files ({usual})")
+    parser.add_argument(
+        "-o", "--out", type=values.folder, metavar="OUT", help=f"folder for the files ({usual})"
+    )
     return parser
 
 

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -14,6 +15,7 @@ from physics.prediction.what_if import Amount
     ("read", "text", "value"),
     [
         (values.positive, "0.5", 0.5),
+        (values.folder, "shot", Path("shot")),
         (values.fraction, "1", 1.0),
         (values.friction, "0.0109", 0.0109),
         (values.offset, "-0.05", -0.05),
@@ -41,6 +43,7 @@ def test_what_is_meant_is_read(read, text: str, value) -> None:
     [
         (values.positive, "-1", "not a positive number"),
         (values.positive, "inf", "not a positive number"),
+        (values.folder, "", "not the name of a folder"),
         (values.fraction, "1.2", "a number from 0 to 1"),
         (values.friction, "0.5", "a friction of ice"),
         (values.radius, "14.55", "a radius in metres"),
