@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from physics.filter.slowing import LEAST, MOST, course, stop_after
 from physics.local_fit.fit_rules import meeting_rules, slowing
 from physics.local_fit.segments import Piece
-from physics.local_fit.set_out import line, origin
 from physics.local_fit.shot_fit import Deceleration, Meeting, ShotFit, unknowns_of
 from physics.local_fit.traces import Trace
 from physics.statistics.normal_equations import eliminated, inverse_of_blocks
@@ -111,14 +110,14 @@ class _Solver:
         self.further = np.zeros((len(self.pieces), 2, 8))
         self.courses: dict[int, tuple[Floats, Floats, Floats]] = {}
         self.blocks = self._blocks()
-        self.origins = np.array([origin(p, traces[p.stone], meetings) for p in pieces])
+        self.origins = np.array([_origin(p, traces[p.stone], meetings) for p in pieces])
         self.theta = np.zeros(self.size)
         self.theta[len(self.theta) - len(self.pieces) :] = self.prior.fall
         for k, meeting in enumerate(self.meetings):
             self.theta[6 * len(self.pieces) + k] = meeting.t
         for i, piece in enumerate(self.pieces):
             states = self.theta[6 * i : 6 * i + 6].reshape(2, 3)
-            states[:, 0], states[:, 1] = line(piece, traces[piece.stone], self.origins[i])
+            states[:, 0], states[:, 1] = _first_guess(piece, traces[piece.stone], self.origins[i])
 
     def _blocks(self) -> list[NDArray[np.int64]]:
         """Unknowns that depend on each other: pieces are tied to others by meetings alone."""
@@ -294,3 +293,27 @@ class _Solver:
             if len(piece.samples)
         ]
         return inflation(runs, sum(run.size for run, _ in runs) - parameters, self.still)
+
+
+def _origin(piece: Piece, trace: Trace, meetings: Sequence[Meeting]) -> float:
+    """Time at which a piece's state is given, s: of the hit that opens it, else its first."""
+    if piece.opens is not None:
+        return meetings[piece.opens].t
+    if len(piece.samples):
+        return float(trace.t[piece.samples[0]])
+    return piece.start if np.isfinite(piece.start) else piece.end
+
+
+def _first_guess(piece: Piece, trace: Trace, start: float) -> tuple[Floats, Floats]:
+    """Place and velocity of a piece at a time, by a straight line; the velocity is 0 at rest.
+
+    The shortest pieces use the sightings beside them too.
+    """
+    samples = piece.samples
+    if len(samples) < 3:
+        low = max(int(np.searchsorted(trace.t, piece.start)) - 1, 0)
+        high = min(int(np.searchsorted(trace.t, piece.end)) + 1, len(trace.t))
+        samples = np.arange(low, high)
+    degree = 0 if piece.rest or len(samples) < 2 else 1
+    found = np.polynomial.polynomial.polyfit(trace.t[samples] - start, trace.xy[samples], degree)
+    return found[0], found[1] if degree else np.zeros(2)
