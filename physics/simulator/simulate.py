@@ -14,9 +14,9 @@ from itertools import combinations
 from data.errors import InputError
 from data.results import StoneState
 from physics.impact import Before, Number
-from physics.simulator.agenda import Agenda
 from physics.simulator.approach import first_contact
 from physics.simulator.bounds import leaves_at
+from physics.simulator.event_queue import EventQueue
 from physics.simulator.motion import Motion, Path, Point
 from physics.simulator.simulation import Hit, Rest, Shot, Simulation, check_shot
 
@@ -86,7 +86,7 @@ class _Run:
             (i, j): min(2 * shot.radius, math.dist((a.x, a.y), (b.x, b.y)))
             for (i, a), (j, b) in combinations(enumerate(shot.stones), 2)
         }
-        self.agenda = Agenda()
+        self.events = EventQueue()
         self.here: dict[int, _Now] = {}
         for k, stone in enumerate(shot.stones):
             if stone.vx or stone.vy:
@@ -98,7 +98,7 @@ class _Run:
             pair = self._next_pair(until)
             if pair is None:
                 break
-            self.t = max(self.t, self.agenda.time(pair))
+            self.t = max(self.t, self.events.time(pair))
             self._hit(*pair)
             self.here.clear()
             for k in pair:
@@ -144,7 +144,7 @@ class _Run:
             gap = distance - self.reach[pair]
             fastest = speed + speed2
             if fastest == 0 or gap > path.length + ahead.length:
-                self.agenda.drop(pair)
+                self.events.drop(pair)
                 continue
             rate = ((vx2 - vx) * dx + (vy2 - vy) * dy) / distance
             change = path.change + ahead.change
@@ -154,7 +154,7 @@ class _Run:
                 root = math.sqrt(rate * rate + 2 * change * gap)
                 soonest = (root + rate) / change if rate > 0 else 2 * gap / (root - rate)
                 soonest = max(soonest, gap / fastest)
-            self.agenda.expect(self.t + soonest, pair, exact=False)
+            self.events.expect(self.t + soonest, pair, exact=False)
 
     def _now(self, k: int) -> _Now:
         """Where stone `k` is at present; asked for once for each of the others."""
@@ -169,7 +169,7 @@ class _Run:
     def _next_pair(self, until: float) -> tuple[int, int] | None:
         """Return the pair that meets next; None where none does by then."""
         while True:
-            first = self.agenda.first()
+            first = self.events.first()
             if self.leaves:
                 k = min(self.leaves, key=self.leaves.__getitem__)
                 if self.leaves[k] <= min(first, until) and self.leaves[k] < math.inf:
@@ -177,17 +177,17 @@ class _Run:
                     continue
             if first > until or first == math.inf:
                 return None
-            due = self.agenda.due(first + SIMULTANEOUS)
+            due = self.events.due(first + SIMULTANEOUS)
             if all(exact for _, _, exact in due):
                 return min(pair for _, pair, _ in due)
             for _, pair, exact in due:
                 if not exact:
-                    self.agenda.expect(self._next_contact(*pair), pair, exact=True)
+                    self.events.expect(self._next_contact(*pair), pair, exact=True)
 
     def _take_away(self, k: int) -> None:
         """Take a stone that leaves the play off the sheet."""
         self.gone[k] = self.leaves.pop(k)
-        self.agenda.drop_all_of(k)
+        self.events.drop_all_of(k)
 
     def _rest(self, k: int, until: float) -> Rest:
         """Place at which stone `k` came to rest, left the play or was at the end."""

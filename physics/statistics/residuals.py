@@ -1,4 +1,4 @@
-"""What residuals tell of the noise: outliers, and errors that are alike from frame to frame."""
+"""What residuals tell of the noise: outliers, and autocorrelation from frame to frame."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ def huber_weights(residuals: Floats) -> Floats:
 def inflation(
     runs: Sequence[tuple[Floats, int]],
     free: float,
-    alike: Sequence[tuple[Floats, int]] = (),
+    further: Sequence[tuple[Floats, int]] = (),
 ) -> float:
-    """Factor for variances of residuals that are larger than stated, or alike in time.
+    """Factor for variances of residuals that are larger than stated, or correlated in time.
 
     Parameters
     ----------
@@ -43,17 +43,17 @@ def inflation(
         fitted to each column, about.
     free : float
         Residuals less parameters; below 1 nothing can be told.
-    alike : sequence of ((n, k) array, int)
-        Further residuals that only say how alike they are in time.
+    further : sequence of ((n, k) array, int)
+        More residuals, used for their autocorrelation alone.
     """
     if free < 1:
         return 1.0
     weighted = [(run * huber_weights(run), parameters) for run, parameters in runs]
     square = sum(float(np.sum(run * run)) for run, _ in weighted)
-    return max(1.0, square / free) * likeness([*weighted, *alike])
+    return max(1.0, square / free) * autocorrelation_factor([*weighted, *further])
 
 
-def likeness(runs: Sequence[tuple[Floats, int]]) -> float:
+def autocorrelation_factor(runs: Sequence[tuple[Floats, int]]) -> float:
     """Long-run variance of residuals over their variance: 1 for white noise, never less.
 
     Means and slopes have errors larger by this factor than white noise would give them. The

@@ -3,13 +3,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from physics.statistics.residuals import HUBER, huber_weights, inflation, likeness
+from physics.statistics.residuals import HUBER, autocorrelation_factor, huber_weights, inflation
 
 
 def test_alike_errors_are_told_from_white_ones() -> None:
     rng = np.random.default_rng(64)
     white = [(rng.normal(size=(60, 2)), 3) for _ in range(12)]
-    assert likeness(white) < 1.4
+    assert autocorrelation_factor(white) < 1.4
     keep = 0.8
     alike = []
     for _ in range(12):
@@ -17,9 +17,9 @@ def test_alike_errors_are_told_from_white_ones() -> None:
         for k in range(1, 60):
             r[k] = keep * r[k - 1] + np.sqrt(1 - keep**2) * r[k]
         alike.append((r - r.mean(axis=0), 1))
-    assert likeness(alike) == pytest.approx((1 + keep) / (1 - keep), rel=0.4)
-    assert likeness([]) == 1.0
-    assert likeness([(np.zeros((20, 2)), 1)]) == 1.0
+    assert autocorrelation_factor(alike) == pytest.approx((1 + keep) / (1 - keep), rel=0.4)
+    assert autocorrelation_factor([]) == 1.0
+    assert autocorrelation_factor([(np.zeros((20, 2)), 1)]) == 1.0
 
 
 def test_a_sighting_far_off_weighs_less_whatever_the_axes() -> None:

@@ -1,4 +1,4 @@
-"""Contacts to come, the first of them at hand."""
+"""A priority queue of the contacts to come."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ Expected = tuple[float, Pair, bool]
 """Time of a contact, s, or where it is not exact the earliest that it can be; its pair."""
 
 
-class Agenda:
-    """What is expected of each pair of stones: one contact at most."""
+class EventQueue:
+    """The next contact of each pair of stones, if any; the earliest of all comes first."""
 
     def __init__(self) -> None:
         self._by_pair: dict[Pair, Expected] = {}
-        # All that was ever expected by time; what has been overtaken is skipped.
+        # A heap of all that was ever expected; entries that have been replaced are skipped.
         self._queue: list[Expected] = []
 
     def expect(self, t: float, pair: Pair, *, exact: bool) -> None:
