@@ -13,7 +13,7 @@ from data.tracks import Table
 from physics.local_fit.candidates import LONG, REACH, candidates, causal, moves
 from physics.local_fit.fit import fit_shot
 from physics.local_fit.segments import Piece, cut
-from physics.local_fit.shot_fit import Deceleration, Encounter, Meeting, ShotFit
+from physics.local_fit.shot_fit import ContactState, Deceleration, Meeting, ShotFit
 from physics.local_fit.side_by_side import worth_fitting
 from physics.local_fit.traces import Trace, traces
 
@@ -191,7 +191,7 @@ class _Evidence(NamedTuple):
 def _evidence(fit: ShotFit, k: int, known: Mapping[str, Trace], radius: float) -> _Evidence:
     """Tell what speaks for meeting k."""
 
-    def told(states: Sequence[Encounter]) -> Floats:
+    def told(states: Sequence[ContactState]) -> Floats:
         state = states[0]
         change = state.after - state.before
         first, second = change @ state.normal
@@ -203,7 +203,7 @@ def _evidence(fit: ShotFit, k: int, known: Mapping[str, Trace], radius: float) -
     impulse, push = value[:2], value[2:]
     both = float(np.sqrt(impulse @ np.linalg.solve(cov[:2, :2] + 1e-12 * np.eye(2), impulse)))
     error = np.sqrt(np.diag(cov)[2:])
-    state = fit.encounter(k)
+    state = fit.contact_state(k)
     away = abs(float(np.hypot(*(state.places[1] - state.places[0]))) / (2 * radius) - 1)
     pushed = bool(push[0] >= 3 * error[0])
     possible = pushed and away <= REACH - 1 and push[0] >= 0.2 * radius
@@ -233,7 +233,7 @@ def _once(evidence: Sequence[_Evidence], fit: ShotFit) -> list[_Evidence]:
 def _contacts(fit: ShotFit) -> tuple[Contact, ...]:
     out = []
     for k, meeting in enumerate(fit.meetings):
-        state = fit.encounter(k)
+        state = fit.contact_state(k)
         first, second = meeting.stones
         nx, ny = (float(value) for value in state.normal)
         if np.hypot(*state.before[1]) > np.hypot(*state.before[0]):

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physics.filter.slowing import LEAST, MOST, course, stop_after
-from physics.local_fit.fit_rules import meeting_rules, slowing
+from physics.local_fit.constraints import acceleration_prior, contact_constraints
 from physics.local_fit.segments import Piece
 from physics.local_fit.shot_fit import Deceleration, Meeting, ShotFit, unknowns_of
 from physics.local_fit.traces import Trace
@@ -135,20 +135,20 @@ class _Solver:
         settled = False
         for done in range(STEPS):
             self._assign()
-            data, right = self._data()
-            rules, rules_right = self._rules()
-            cov = inverse_of_blocks(data + rules, self.blocks)
-            new = cov @ (right + rules_right)
+            data, right = self._sightings()
+            held, held_right = self._constraints()
+            cov = inverse_of_blocks(data + held, self.blocks)
+            new = cov @ (right + held_right)
             step = new - self.theta
             for k in range(len(self.meetings)):
-                step[first + k] = np.clip(step[first + k], *self._room(k))
+                step[first + k] = np.clip(step[first + k], *self._time_bounds(k))
             step[:first] = np.clip(step[:first], -FARTHEST, FARTHEST)
             step[last:] = np.clip(self.theta[last:] + step[last:], LEAST, MOST) - self.theta[last:]
             scale = np.sqrt(np.maximum(np.diag(cov), 1e-24))
             settled = bool(np.all(np.abs(step) < 0.02 * scale))
             self.theta = self.theta + (0.5 if done >= USUAL else 1.0) * step
             self.courses.clear()
-            self.inflation = self._excess(float(np.sum(cov * data)))
+            self.inflation = self._inflation(float(np.sum(cov * data)))
             if settled:
                 break
         return ShotFit(
@@ -161,7 +161,7 @@ class _Solver:
             self.sides,
         )
 
-    def _room(self, k: int) -> tuple[float, float]:
+    def _time_bounds(self, k: int) -> tuple[float, float]:
         """Least and most that the time of meeting k may move in one step."""
         meeting = self.meetings[k]
         times = self.theta[6 * len(self.pieces) : self.size - len(self.pieces)]
@@ -217,7 +217,7 @@ class _Solver:
         off = trace.xy[piece.samples] - fitted - tau[:, None] * drift
         return np.asarray(off / trace.sd[piece.samples])
 
-    def _data(self) -> tuple[Floats, Floats]:
+    def _sightings(self) -> tuple[Floats, Floats]:
         """Set up the normal equations of the sightings, outliers weighted down."""
         normal, right = np.zeros((self.size, self.size)), np.zeros(self.size)
         for i, piece in enumerate(self.pieces):
@@ -226,10 +226,10 @@ class _Solver:
             trace = self.traces[piece.stone]
             own = unknowns_of(i, len(self.pieces))
             weights = huber_weights(self._residuals(i)) / trace.sd[piece.samples] ** 2
-            normal[np.ix_(own, own)], right[own] = self._seen(i, weights)
+            normal[np.ix_(own, own)], right[own] = self._piece_equations(i, weights)
         return normal, right
 
-    def _seen(self, i: int, weights: Floats) -> tuple[Floats, Floats]:
+    def _piece_equations(self, i: int, weights: Floats) -> tuple[Floats, Floats]:
         """Set up the normal equations of one piece's sightings, of its own unknowns.
 
         Two further unknowns are eliminated at once: what the sightings say of the velocity is
@@ -253,7 +253,7 @@ class _Solver:
         normal, right, self.further[i] = eliminated(full, value, known)
         return normal, right
 
-    def _rules(self) -> tuple[Floats, Floats]:
+    def _constraints(self) -> tuple[Floats, Floats]:
         """Set up the normal equations of what is known besides the sightings."""
         normal, right = np.zeros((self.size, self.size)), np.zeros(self.size)
         first = 6 * len(self.pieces)
@@ -269,14 +269,14 @@ class _Solver:
                 normal[change, change] += STILL_SD**-2
                 continue
             normal[speed, speed] += 1e-3
-            turn, mean = slowing(self.theta[speed], self.prior)
+            turn, mean = acceleration_prior(self.theta[speed], self.prior)
             normal[np.ix_(change, change)] += turn
             right[change] += turn @ mean
         for k in range(len(self.meetings)):
             meeting = self.meetings[k]
             ranks = [self.sides[k, stone] for stone in meeting.stones]
             masses = np.array([self.masses.get(stone, 1.0) for stone in meeting.stones])
-            rows, values, sd = meeting_rules(
+            rows, values, sd = contact_constraints(
                 self.theta, first + k, self.origins, meeting, ranks, self.radius,
                 masses if self.momentum else None,
             )  # fmt: skip
@@ -285,7 +285,7 @@ class _Solver:
             right += weighted.T @ (rows @ self.theta - values)
         return normal, right
 
-    def _excess(self, parameters: float) -> float:
+    def _inflation(self, parameters: float) -> float:
         """Factor for residuals larger than stated, and alike from frame to frame."""
         runs = [
             (self._residuals(i), 1 if piece.rest else 3)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from data.results import Collision, Estimate, MeasuredState
 from physics.local_fit.noise import Noise, noises
-from physics.local_fit.shot_fit import Encounter, ShotFit
+from physics.local_fit.shot_fit import ContactState, ShotFit
 from physics.local_fit.spins import spins_at, stone_friction
 from physics.local_fit.traces import Trace
 
@@ -83,7 +83,7 @@ def _collision(
     note: str | None,
 ) -> Collision:
     first, second = joint.meetings[k].stones
-    state = joint.encounter(k)
+    state = joint.contact_state(k)
     mass = discs.of((first, second))
     spins = spins_at(joint, k, known, noise, mass)
     before, after = _states(joint, k, known, spins)
@@ -117,7 +117,7 @@ def _states(
 ) -> tuple[dict[str, MeasuredState], dict[str, MeasuredState]]:
     """States of the two stones before and after hit k, by stone, with their errors."""
 
-    def flat(states: Sequence[Encounter]) -> Floats:
+    def flat(states: Sequence[ContactState]) -> Floats:
         state = states[0]
         return np.array([state.places, state.before, state.after]).ravel()
 
@@ -142,7 +142,7 @@ def _state(
     return MeasuredState(x, y, vx, vy, spin.value, sd_x, sd_y, sd_vx, sd_vy, spin.stderr)
 
 
-def _restitutions(states: Sequence[Encounter]) -> Floats:
+def _restitutions(states: Sequence[ContactState]) -> Floats:
     out = []
     for state in states:
         closing = (state.before[0] - state.before[1]) @ state.normal
@@ -178,12 +178,12 @@ def _lost(momentum: Estimate) -> str | None:
 def _momentum(fit: ShotFit, k: int, mass: Floats) -> Estimate:
     """Relative change of momentum at hit k where it is not held, and its standard error."""
 
-    def change(states: Sequence[Encounter]) -> Floats:
+    def change(states: Sequence[ContactState]) -> Floats:
         out: Floats = mass @ (states[0].after - states[0].before)
         return out
 
     value, cov = fit.propagate([k], change)
-    total = float(np.hypot(*(mass @ fit.encounter(k).before)))
+    total = float(np.hypot(*(mass @ fit.contact_state(k).before)))
     if total < 1e-6:
         return Estimate()
     return Estimate(float(np.hypot(*value)) / total, float(np.sqrt(np.trace(cov))) / total)

@@ -19,7 +19,7 @@ from physics.local_fit.fit import fit_shot
 from physics.local_fit.glides import free, measure_glides
 from physics.local_fit.hits import Discs, measure_hits, pooled
 from physics.local_fit.segments import Piece
-from physics.local_fit.shot_fit import Deceleration, Encounter, Meeting, ShotFit
+from physics.local_fit.shot_fit import ContactState, Deceleration, Meeting, ShotFit
 from physics.local_fit.traces import Trace, traces
 from physics.statistics.residuals import huber_weights
 
@@ -162,7 +162,7 @@ def _scatter(trace: Trace, piece: Piece) -> Floats:
 def _distances(fit: ShotFit, radius: float) -> list[str]:
     """Say so where hits happen at another distance than two radii."""
 
-    def ratios(states: Sequence[Encounter]) -> Floats:
+    def ratios(states: Sequence[ContactState]) -> Floats:
         return np.array([np.hypot(*(s.places[1] - s.places[0])) / (2 * radius) for s in states])
 
     values, cov = fit.propagate(range(len(fit.meetings)), ratios)

@@ -39,7 +39,7 @@ class Meeting:
 
 
 @dataclass(frozen=True)
-class Encounter:
+class ContactState:
     """Places, and velocities before and after, of the two stones of a hit at its time."""
 
     t: float
@@ -125,7 +125,7 @@ class ShotFit:
         values = self.theta if theta is None else theta
         return float(values[6 * len(self.pieces) + k])
 
-    def encounter(self, k: int, theta: Floats | None = None) -> Encounter:
+    def contact_state(self, k: int, theta: Floats | None = None) -> ContactState:
         """State of the two stones at meeting k."""
         t = self.time(k, theta)
         places, before, after = [], [], []
@@ -135,19 +135,19 @@ class ShotFit:
             places.append(place)
             before.append(speed)
             after.append(self.motion(second, t, theta)[1])
-        return Encounter(t, np.array(places), np.array(before), np.array(after))
+        return ContactState(t, np.array(places), np.array(before), np.array(after))
 
     def propagate(
-        self, hits: Sequence[int], function: Callable[[Sequence[Encounter]], Floats]
+        self, hits: Sequence[int], function: Callable[[Sequence[ContactState]], Floats]
     ) -> tuple[Floats, Floats]:
         """Value and covariance of a function of the states at some hits, to first order.
 
         Parameters
         ----------
         hits : sequence of int
-            Ranks of the meetings whose encounters `function` takes.
+            Ranks of the meetings whose states `function` takes.
         function : callable
-            From the encounters to m numbers.
+            From these states to m numbers.
 
         Returns
         -------
@@ -158,7 +158,7 @@ class ShotFit:
         index = [6 * r + i for r in ranks for i in range(6)]
         index += [6 * len(self.pieces) + k for k in hits]
         index += [len(self.theta) - len(self.pieces) + r for r in ranks]
-        value = np.atleast_1d(function([self.encounter(k) for k in hits]))
+        value = np.atleast_1d(function([self.contact_state(k) for k in hits]))
         slopes = np.zeros((len(value), len(index)))
         for column, i in enumerate(index):
             step = 0.01 * float(np.sqrt(max(self.cov[i, i], 1e-24)))
@@ -166,6 +166,6 @@ class ShotFit:
             for sign in (1.0, -1.0):
                 moved = self.theta.copy()
                 moved[i] += sign * step
-                ends.append(np.atleast_1d(function([self.encounter(k, moved) for k in hits])))
+                ends.append(np.atleast_1d(function([self.contact_state(k, moved) for k in hits])))
             slopes[:, column] = (ends[0] - ends[1]) / (2 * step)
         return value, slopes @ self.cov[np.ix_(index, index)] @ slopes.T

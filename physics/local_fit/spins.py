@@ -11,7 +11,7 @@ from data.results import Estimate
 from physics.filter.rate_filter import filtered
 from physics.filter.stretch import Model, Stretch
 from physics.local_fit.noise import Noise
-from physics.local_fit.shot_fit import Encounter, ShotFit
+from physics.local_fit.shot_fit import ContactState, ShotFit
 from physics.local_fit.traces import Trace
 
 Floats = NDArray[np.float64]
@@ -139,7 +139,7 @@ def stone_friction(
         return Estimate(), f"the spin of {stone} before the hit is not seen"
     turn = radius * (first.value + second.value)
 
-    def parts(states: Sequence[Encounter]) -> Floats:
+    def parts(states: Sequence[ContactState]) -> Floats:
         state = states[0]
         normal = state.normal
         tangent = np.array([-normal[1], normal[0]])

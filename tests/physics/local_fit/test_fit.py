@@ -23,7 +23,7 @@ def test_exact_sightings_give_the_exact_hit() -> None:
     meetings = [Meeting(1.01, ("A", "B"), 1 / 30)]
     pieces, _ = cut_all(known, meetings, RADIUS)
     fit = fit_shot(known, pieces, meetings, RADIUS)
-    state, hit = fit.encounter(0), motion.hits[0]
+    state, hit = fit.contact_state(0), motion.hits[0]
     assert state.t == pytest.approx(hit.t, abs=1e-4)
     assert np.allclose(state.normal, hit.normal, atol=1e-3)
     assert np.allclose(state.before, [v[:2] for v in hit.before], atol=2e-3)
@@ -40,7 +40,7 @@ def test_momentum_is_held_only_when_asked_for() -> None:
             known, pieces, meetings, RADIUS,
             deceleration=Deceleration(0.1, 0.05, 0.05), momentum=momentum,
         )  # fmt: skip
-        state = fit.encounter(0)
+        state = fit.contact_state(0)
         changes.append(float(np.hypot(*np.sum(state.after - state.before, axis=0))))
     assert changes[0] < 0.1 * changes[1]
 

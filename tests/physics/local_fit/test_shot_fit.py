@@ -26,7 +26,7 @@ def fit(cov: np.ndarray) -> ShotFit:
 
 
 def test_states_at_a_hit_are_those_of_the_pieces_on_either_side() -> None:
-    state = fit(np.zeros((29, 29))).encounter(0)
+    state = fit(np.zeros((29, 29))).contact_state(0)
     assert state.t == 1.0
     assert state.places == pytest.approx(np.array([[0.0, -0.3], [0.0, 0.0]]))
     assert state.before == pytest.approx(np.array([[0.0, 1.8], [0.0, 0.0]]))

@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 
 from physics.filter.slowing import motion
-from physics.local_fit.fit_rules import DISTANCE_SD, DOUBT, meeting_rules, slowing
+from physics.local_fit.constraints import (
+    DISTANCE_SD,
+    DOUBT,
+    acceleration_prior,
+    contact_constraints,
+)
 from physics.local_fit.shot_fit import Deceleration, Meeting
 from tests.physics.watch import RADIUS
 
@@ -29,36 +34,36 @@ def unknowns(distance: float = 2 * RADIUS) -> np.ndarray:
     return theta
 
 
-def rules(theta: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def constraints(theta: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     meeting = Meeting(1.0, ("A", "B"), 0.02)
-    return meeting_rules(theta, AT, ORIGINS, meeting, RANKS, RADIUS, np.array([1.0, 1.2]))
+    return contact_constraints(theta, AT, ORIGINS, meeting, RANKS, RADIUS, np.array([1.0, 1.2]))
 
 
-def test_rules_are_differentiated_right() -> None:
+def test_constraints_are_differentiated_right() -> None:
     theta = unknowns()
-    rows, _, _ = rules(theta)
+    rows, _, _ = constraints(theta)
     for k in range(len(theta)):
         ends = []
         for sign in (1.0, -1.0):
             moved = theta.copy()
             moved[k] += sign * 1e-6
-            ends.append(rules(moved)[1])
+            ends.append(constraints(moved)[1])
         assert rows[:, k] == pytest.approx((ends[0] - ends[1]) / 2e-6, rel=1e-4, abs=1e-5), k
 
 
 def test_a_distance_that_is_off_has_less_of_a_say() -> None:
-    usual, _, sd = (part[5] for part in rules(unknowns()))
+    usual, _, sd = (part[5] for part in constraints(unknowns()))
     assert usual[24] != 0.0
     assert sd == pytest.approx(DISTANCE_SD * 2 * RADIUS)
     off = 3 * DOUBT * DISTANCE_SD
-    _, value, wide = (part[5] for part in rules(unknowns(2 * RADIUS * (1 + off))))
+    _, value, wide = (part[5] for part in constraints(unknowns(2 * RADIUS * (1 + off))))
     assert value == pytest.approx(2 * RADIUS * off)
     assert wide == pytest.approx(sd * np.sqrt(1 + 3**2))
 
 
 @pytest.mark.parametrize("speed", [(0.0, 2.0), (-1.2, 1.6)])
 def test_ice_slows_against_the_motion(speed: tuple[float, float]) -> None:
-    precision, mean = slowing(np.array(speed), Deceleration(0.1, 0.05, 0.02))
+    precision, mean = acceleration_prior(np.array(speed), Deceleration(0.1, 0.05, 0.02))
     along = np.array(speed) / np.hypot(*speed)
     assert mean == pytest.approx(-0.1 * along)
     assert along @ precision @ along == pytest.approx(0.05**-2)
@@ -67,6 +72,6 @@ def test_ice_slows_against_the_motion(speed: tuple[float, float]) -> None:
 
 def test_of_slow_stones_less_is_known() -> None:
     prior = Deceleration(0.1, 0.01, 0.01)
-    known = [slowing(np.array([0.0, v]), prior)[0][1, 1] for v in (0.01, 0.1, 0.5, 2.0)]
+    known = [acceleration_prior(np.array([0.0, v]), prior)[0][1, 1] for v in (0.01, 0.1, 0.5, 2.0)]
     assert known == sorted(known)
-    assert np.all(slowing(np.array([0.0, 0.01]), prior)[1] == 0)
+    assert np.all(acceleration_prior(np.array([0.0, 0.01]), prior)[1] == 0)

@@ -1,4 +1,7 @@
-"""What a fit of a shot knows besides the sightings: how ice slows, and what holds at a hit."""
+"""What a fit of a shot knows besides the sightings: how ice slows, and what holds at a hit.
+
+Each is linearised and goes into the normal equations like a further measurement.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +26,7 @@ DOUBT = 2.5
 """Normalised violation beyond which distance and momentum are no longer believed."""
 
 
-def slowing(speed: Floats, prior: Deceleration) -> tuple[Floats, Floats]:
+def acceleration_prior(speed: Floats, prior: Deceleration) -> tuple[Floats, Floats]:
     """Precision, shape (2, 2), and mean of an acceleration, given the velocity, m/s."""
     size = float(np.hypot(*speed))
     if size < 0.02:
@@ -47,7 +50,7 @@ class _State:
     by_speed: Floats
 
 
-def meeting_rules(
+def contact_constraints(
     theta: Floats,
     at: int,
     origins: Floats,
@@ -56,7 +59,7 @@ def meeting_rules(
     radius: float,
     masses: Floats | None,
 ) -> tuple[Floats, Floats, Floats]:
-    """Linearise what holds at a meeting: its time, paths that join, distance and momentum.
+    """Linearise what holds at a contact: its time, paths that join, distance and momentum.
 
     Parameters
     ----------
@@ -77,16 +80,16 @@ def meeting_rules(
 
     Returns
     -------
-    rows, values, sd : arrays, shapes (rules, n), (rules,) and (rules,)
-        Derivatives, values and standard deviations. A rule that the sightings contradict has
-        less of a say (Cauchy weights).
+    rows, values, sd : arrays, shapes (m, n), (m,) and (m,)
+        Derivatives, values and standard deviations. A constraint that the sightings contradict is
+        weighted down (Cauchy weights).
     """
     t = theta[at]
     rows: list[Floats] = []
     values: list[float] = []
     sd: list[float] = []
 
-    def rule(value: float, width: float, row: Floats) -> None:
+    def constraint(value: float, width: float, row: Floats) -> None:
         rows.append(row)
         values.append(value)
         sd.append(width)
@@ -101,18 +104,18 @@ def meeting_rules(
 
     timed = np.zeros(len(theta))
     timed[at] = 1.0
-    rule(t - meeting.t, 2 * meeting.looseness, timed)
+    constraint(t - meeting.t, 2 * meeting.looseness, timed)
     states = [(state(i), state(j)) for i, j in ranks]
     for old, new in states:
+        gap, by_gap = new.place - old.place, new.by_place - old.by_place
         for axis in range(2):
-            width = 1e-3 * radius
-            rule(new.place[axis] - old.place[axis], width, new.by_place[axis] - old.by_place[axis])
+            constraint(gap[axis], 1e-3 * radius, by_gap[axis])
     believed = len(rows)
     first, second = (old for old, _ in states)
     apart = second.place - first.place
     distance = max(float(np.hypot(*apart)), 1e-9)
     normal = apart / distance
-    rule(
+    constraint(
         distance - 2 * radius, DISTANCE_SD * 2 * radius, normal @ (second.by_place - first.by_place)
     )
     if masses is not None:
@@ -122,7 +125,7 @@ def meeting_rules(
         slopes = np.array([new.by_speed - old.by_speed for old, new in states])
         for axis in range(2):
             width = MOMENTUM_SD * speed + 1e-4
-            rule(float(masses @ change[:, axis]), width, masses @ slopes[:, axis])
+            constraint(float(masses @ change[:, axis]), width, masses @ slopes[:, axis])
     widths = np.array(sd)
     doubt = np.abs(values) / (DOUBT * widths)
     doubt[:believed] = 0.0
