@@ -15,7 +15,6 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from data.again import as_measured
 from data.angles import FASTEST_SPIN, attach, read_angles, spin_rate
 from data.clock import with_clock
 from data.columns import ANGLE_UNITS, LENGTH_UNITS, UNIT_NOT_SAID, UNIT_SAID
@@ -24,6 +23,7 @@ from data.errors import InputError
 from data.export import read_parquet
 from data.layouts import read_layout
 from data.project import is_project, read_project
+from data.read_back import as_measured
 from data.stone_names import chosen, named_by_file, refuse_shared_names
 from data.track_file import TrackFile
 from data.tracks import LENGTHS, SEEN_AS, check_sightings

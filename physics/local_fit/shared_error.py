@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.local_fit.traces import Trace, alike
+from physics.local_fit.traces import Trace, shared_correlation
 
 Floats = NDArray[np.float64]
 
@@ -62,7 +62,7 @@ def shared_error(
     gain = (-(cov @ slopes.T) * weights).reshape(len(cov), -1, 2) / sd * size
     sums = np.add.reduceat(gain, edges, axis=1)
     middle = mean(xy)
-    correlation = alike(middle)
+    correlation = shared_correlation(middle)
     field = [sums[:, :, axis] @ correlation for axis in range(2)]
     out = sum(field[axis] @ sums[:, :, axis].T for axis in range(2))
     # What the fit leaves of such a field, group by group.

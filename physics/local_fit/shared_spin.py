@@ -68,7 +68,7 @@ class _Way:
         slowing = (v[beyond] - v[row]) / (t[beyond] - t[row])
         return v[row] + slowing * (time - t[row]), sd[row]
 
-    def alike(self, row: int) -> Floats:
+    def covariance(self, row: int) -> Floats:
         """Covariance of the spins of the rows that tell one with that of one of them.
 
         Spins of two rows differ by what the ice may do between them at most.
@@ -143,7 +143,7 @@ def share_spins(
     before = np.array([way.table["omega"][row] for way, row in ends])
     cov = np.zeros((len(ends), len(ends)))
     for i, (way, row) in enumerate(ends):
-        like = way.alike(row)
+        like = way.covariance(row)
         for j, (other, there) in enumerate(ends):
             if other is way:
                 cov[i, j] = like[np.searchsorted(way.told, there)]
@@ -239,7 +239,7 @@ def _spread_out(
     """
     for way in {id(way): way for way, _ in ends}.values():
         at = [i for i, (other, _) in enumerate(ends) if other is way]
-        like = np.array([way.alike(ends[i][1]) for i in at])
+        like = np.array([way.covariance(ends[i][1]) for i in at])
         best = (like / np.sqrt(prior[at])[:, None]).argmax(0)
         rows = np.arange(len(way.told))
         omega, sd = way.table["omega"][way.told], way.table["sd_omega"][way.told]

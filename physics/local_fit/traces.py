@@ -154,7 +154,7 @@ def _filled(t: Floats, values: Floats, sd: Floats, least: float, default: float)
     return np.maximum(given, least)
 
 
-def alike(xy: Floats) -> Floats:
+def shared_correlation(xy: Floats) -> Floats:
     """Correlation of what places (n, 2), m, share: exp(-d² / 2 L²) of their distance d.
 
     L is `ALIKE_REACH`.

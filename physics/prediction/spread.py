@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from data.errors import InputError
 from data.results import MeasuredState, SimulatedHit, StoneState
 from physics.curl import FCV1Curl
-from physics.local_fit.traces import alike
+from physics.local_fit.traces import shared_correlation
 from physics.prediction.laws import Scaled
 from physics.simulator.simulate import simulate
 from physics.simulator.simulation import Hit, Shot, Simulation, StoneStart
@@ -160,7 +160,7 @@ def _together(shot: Shot, doubt: Doubt, rng: np.random.Generator) -> Floats:
     """Draw what the places share: displacements of all stones, shape (n, 2), m."""
     xy = np.array([(stone.x, stone.y) for stone in shot.stones])
     size = np.array([doubt.shared.get(stone.name, np.zeros(2)) for stone in shot.stones])
-    shared = rng.multivariate_normal(np.zeros(len(xy)), alike(xy), 2, method="eigh").T
+    shared = rng.multivariate_normal(np.zeros(len(xy)), shared_correlation(xy), 2, method="eigh").T
     return np.asarray(size * shared)
 
 

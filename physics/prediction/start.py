@@ -15,7 +15,7 @@ from data.sheet import SHEET, STONE, curling_size
 from physics.curl import NoCurl
 from physics.ice import IceLaw
 from physics.impact import Frictional
-from physics.local_fit.traces import alike
+from physics.local_fit.traces import shared_correlation
 from physics.prediction.laws import measured_laws
 from physics.simulator.bounds import Bounds
 from physics.simulator.curve import Curve, curve_for
@@ -117,7 +117,8 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     sd[[stone.vx == stone.vy == 0 for stone in stones], 2:] = 0.0
     # What the places share is alike near each other, of which none can be more than all.
     shared = np.minimum(results.shared_error or 0.0, sd[:, :2].min(axis=1))
-    together = np.outer(shared, shared) * alike(np.array([(stone.x, stone.y) for stone in stones]))
+    xy = np.array([(stone.x, stone.y) for stone in stones])
+    together = np.outer(shared, shared) * shared_correlation(xy)
     sd[:, :2] = np.sqrt(sd[:, :2] ** 2 - shared[:, None] ** 2)
     thrown = _fastest(stones)
     radius = results.radius * (laws.size.value or 1.0)

@@ -11,7 +11,7 @@ from physics.ice import Constant
 from physics.impact import Frictional, PointMass
 from physics.kalman import smooth
 from physics.local_fit.contacts import find_contacts
-from physics.local_fit.traces import alike
+from physics.local_fit.traces import shared_correlation
 from physics.prediction.hindcast import simulate_measured
 from physics.prediction.spread import Doubt, drawn, path_spread, simulated, simulated_hits
 from physics.simulator.simulate import simulate
@@ -128,7 +128,7 @@ def test_what_two_places_share_moves_both_and_leaves_the_hit_as_it_is() -> None:
         assert first.to_numpy() == pytest.approx([0.005, 0.005], rel=0.2)
         spread[name] = last.to_numpy()
     assert np.all(spread["apart"] > 0.03)
-    alone = np.sqrt(1 - alike(np.array([[0.1, -0.3], [0.0, 0.0]]))[0, 1])
+    alone = np.sqrt(1 - shared_correlation(np.array([[0.1, -0.3], [0.0, 0.0]]))[0, 1])
     assert spread["shared"] == pytest.approx(alone * spread["apart"], rel=0.2)
     assert alone < 0.5
 
