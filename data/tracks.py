@@ -222,9 +222,9 @@ def empty_tracks() -> pd.DataFrame:
     return pd.DataFrame(no_rows(TRACK_COLUMNS))
 
 
-def write_table(table: Table, path: Path, columns: Sequence[str] | None = None) -> None:
+def write_table(table: Table, path: Path) -> None:
     """Write a table as CSV, whole or not at all, nine significant digits, NaN as empty."""
-    names = list(table) if columns is None else list(columns)
+    names = list(table)
     values = [np.asarray(table[name]) for name in names]
     with whole_file(path) as part, part.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")

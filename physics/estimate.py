@@ -15,7 +15,6 @@ import pandas as pd
 
 from data.errors import InputError
 from data.results import Collision, Estimate, Friction, Glide, Joint, Method, StoneResult, Told
-from data.sheet import STONE
 from physics.local_fit.contacts import Contact
 from physics.local_fit.finite_differences import by_finite_differences
 from physics.local_fit.local import Local, estimate_locally
@@ -121,7 +120,6 @@ def estimate(
     *,
     radius: float,
     masses: Mapping[str, float] | None = None,
-    inertia: float = STONE.inertia,
 ) -> Estimates:
     """Estimate restitution, friction and the state of the stones at each hit.
 
@@ -135,19 +133,17 @@ def estimate(
         Of the discs, m.
     masses : mapping, optional
         Stone to mass in any unit; equal where absent.
-    inertia : float
-        k in I = k m R²; decides whether a contact can have slid throughout.
     """
 
     def beside_hits(seen: pd.DataFrame) -> Local:
-        return estimate_locally(seen, contacts, radius=radius, masses=masses, inertia=inertia)
+        return estimate_locally(seen, contacts, radius=radius, masses=masses)
 
     def centred(fit: GlobalFit) -> Estimate:
         return beside_hits(centred_sightings(sightings, fit)).restitution
 
     local = beside_hits(sightings)
     restitution, friction, unsure = local.restitution, local.friction, local.friction_doubt
-    fitted, doubt, end = _whole(local, radius, masses or {}, inertia, centred)
+    fitted, doubt, end = _whole(local, radius, masses or {}, centred)
     whole = fitted if doubt is None else None
     if fitted is not None and doubt is not None and _fits(fitted):
         restitution = _of_two(restitution, fitted["restitution"])
@@ -222,7 +218,6 @@ def _whole(
     local: Local,
     radius: float,
     masses: Mapping[str, float],
-    inertia: float,
     centred: Callable[[GlobalFit], Estimate],
 ) -> tuple[GlobalFit | None, str | None, str | None]:
     """Fit the whole shot through the simulator.
@@ -236,7 +231,7 @@ def _whole(
         return None, None, None
     watched = watch(
         local.known, local.fit, radius,
-        priors=loose_priors(radius), masses=masses, inertia=inertia,
+        priors=loose_priors(radius), masses=masses,
         bystanders=() if hits else _beside(local, radius),
     )  # fmt: skip
     if watched is None or (hits and not watched.hits):

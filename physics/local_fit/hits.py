@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,21 +23,12 @@ LOST = 0.2
 won, beyond three standard errors, something else touched the stones."""
 
 
-@dataclass(frozen=True)
-class Discs:
-    """What the stones are: ``radius`` (m), ``masses`` (any unit), k in I = k m R²."""
-
-    radius: float
-    masses: Mapping[str, float]
-    inertia: float
-
-    def of(self, stones: tuple[str, str]) -> Floats:
-        """Masses of two stones; 1 where absent."""
-        return np.array([self.masses.get(stone, 1.0) for stone in stones])
-
-
 def measure_hits(
-    joint: ShotFit, apart: ShotFit, known: Mapping[str, Trace], discs: Discs
+    joint: ShotFit,
+    apart: ShotFit,
+    known: Mapping[str, Trace],
+    radius: float,
+    masses: Mapping[str, float],
 ) -> tuple[tuple[Collision, ...], Estimate]:
     """Measure each hit of a fit, and the restitution of all together.
 
@@ -48,8 +38,10 @@ def measure_hits(
         The fit, with and without the momentum of each pair held.
     known : mapping
         Stone to its sightings.
-    discs : Discs
-        What the stones are.
+    radius : float
+        Of the discs, m.
+    masses : mapping
+        Stone to mass in any unit; 1 where absent.
 
     Returns
     -------
@@ -61,11 +53,14 @@ def measure_hits(
     count = len(joint.meetings)
     values, cov = joint.propagate(range(count), _restitutions)
     each = [Estimate(values[k], float(np.sqrt(cov[k, k]))) for k in range(count)]
-    changes = [_momentum(apart, k, discs.of(apart.meetings[k].stones)) for k in range(count)]
+    mass = [
+        np.array([masses.get(stone, 1.0) for stone in meeting.stones]) for meeting in joint.meetings
+    ]
+    changes = [_momentum(apart, k, mass[k]) for k in range(count)]
     notes = [_why_not(joint, k, known, each[k], changes[k]) for k in range(count)]
     noise = noises(joint, known)
     collisions = tuple(
-        _collision(joint, k, known, noise, discs, each[k], changes[k], notes[k])
+        _collision(joint, k, known, noise, radius, mass[k], each[k], changes[k], notes[k])
         for k in range(count)
     )
     usable = [k for k, note in enumerate(notes) if note is None]
@@ -77,26 +72,25 @@ def _collision(
     k: int,
     known: Mapping[str, Trace],
     noise: Mapping[str, Noise],
-    discs: Discs,
+    radius: float,
+    mass: Floats,
     restitution: Estimate,
     momentum: Estimate,
     note: str | None,
 ) -> Collision:
-    first, second = joint.meetings[k].stones
     state = joint.contact_state(k)
-    mass = discs.of((first, second))
     spins = spins_at(joint, k, known, noise, mass)
     before, after = _states(joint, k, known, spins)
     energy = [float(mass @ np.sum(speeds**2, axis=1)) for speeds in (state.before, state.after)]
     rubbing, why = Estimate(), note
     if note is None:
-        rubbing, why = stone_friction(joint, k, spins, discs.radius, discs.inertia)
+        rubbing, why = stone_friction(joint, k, spins, radius)
     at = 6 * len(joint.pieces) + k
     nx, ny = (float(value) for value in state.normal)
     return Collision(
         t=state.t,
         stderr_t=float(np.sqrt(joint.cov[at, at])),
-        stones=(first, second),
+        stones=joint.meetings[k].stones,
         normal=(nx, ny),
         restitution=restitution.value if note is None else None,
         stderr=restitution.stderr if note is None else None,

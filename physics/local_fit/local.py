@@ -13,11 +13,11 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from data.results import Collision, Estimate, Friction, Glide
-from data.sheet import GRAVITY, STONE
+from data.sheet import GRAVITY
 from physics.local_fit.contacts import Contact, cut_all
 from physics.local_fit.fit import fit_shot
 from physics.local_fit.glides import free, measure_glides
-from physics.local_fit.hits import Discs, measure_hits, pooled
+from physics.local_fit.hits import measure_hits, pooled
 from physics.local_fit.segments import Piece
 from physics.local_fit.shot_fit import ContactState, Deceleration, Meeting, ShotFit
 from physics.local_fit.traces import Trace, traces
@@ -69,7 +69,6 @@ def estimate_locally(
     *,
     radius: float,
     masses: Mapping[str, float] | None = None,
-    inertia: float = STONE.inertia,
 ) -> Local:
     """Estimate restitution and friction from the paths beside the hits.
 
@@ -98,8 +97,8 @@ def estimate_locally(
         unseen = ("restitution: no hit seen",)
         return Local(Estimate(), friction, (), glides, doubt, unseen, fit(pieces, prior), known)
     joint = fit(pieces, prior)
-    discs = Discs(radius, masses or {}, inertia)
-    collisions, restitution = measure_hits(joint, fit(pieces, prior, momentum=False), known, discs)
+    apart = fit(pieces, prior, momentum=False)
+    collisions, restitution = measure_hits(joint, apart, known, radius, masses or {})
     warnings = [text for hit in collisions for text in _doubts(hit)] + _distances(joint, radius)
     return Local(restitution, friction, collisions, glides, doubt, tuple(warnings), joint, known)
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.results import Estimate
+from data.sheet import STONE
 from physics.filter.rate_filter import filtered
 from physics.filter.stretch import Model, Stretch
 from physics.local_fit.noise import Noise
@@ -126,7 +127,6 @@ def stone_friction(
     k: int,
     spins: Sequence[tuple[Estimate, Estimate]],
     radius: float,
-    inertia: float,
 ) -> tuple[Estimate, str | None]:
     """Friction between the stones where they slid throughout the contact, else why it is unknown.
 
@@ -149,17 +149,14 @@ def stone_friction(
         closing = float((state.before[0] - state.before[1]) @ normal)
         rub = float(jump @ tangent) / push
         # Both impulses as changes of relative velocity, in which the masses drop out.
-        stick = slip / ((1 + 1 / inertia) * push)
+        stick = slip / ((1 + 1 / STONE.inertia) * push)
         return np.array([rub, stick, closing])
 
     value, cov = fit.propagate([k], parts)
     rub, stick = value[0] * np.sign(value[1]), abs(value[1])
     push = value[2] if value[2] > 0 else np.inf
-    spin_sd = (
-        radius
-        * float(np.hypot(first.stderr or 0.0, second.stderr or 0.0))
-        / ((1 + 1 / inertia) * push)
-    )
+    sd_turn = radius * float(np.hypot(first.stderr or 0.0, second.stderr or 0.0))
+    spin_sd = sd_turn / ((1 + 1 / STONE.inertia) * push)
     sd = float(np.sqrt(cov[0, 0]))
     room = stick - rub
     sd_room = float(np.sqrt(cov[0, 0] + cov[1, 1] + spin_sd**2))

@@ -224,7 +224,7 @@ def _sampled(
     onward = seen.shot({**values, **laws})
     impact: Impact = PointMass(laws["restitution"])
     if model == "frictional":
-        impact = Frictional(laws["restitution"], laws["stone_friction"], seen.inertia)
+        impact = Frictional(laws["restitution"], laws["stone_friction"])
     since = times - seen.start - lasts
     rest = simulate(replace(onward, stones=tuple(stones), impact=impact), until=float(since[-1]))
     table = rest.sample(since)

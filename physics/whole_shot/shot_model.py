@@ -104,8 +104,6 @@ class Watched:
         Of the discs, m.
     masses : mapping
         Stone to mass in any unit; equal where absent.
-    inertia : float
-        k in I = k m R².
     ice : callable
         From values of the unknowns to the law of the ice: `ice` or `penner`.
     """
@@ -118,7 +116,6 @@ class Watched:
     times: tuple[float, ...] = ()
     radius: float = STONE.radius
     masses: Mapping[str, float] = field(default_factory=dict)
-    inertia: float = STONE.inertia
     ice: Callable[[Mapping[str, float]], IceLaw] = ice
 
     @property
@@ -136,7 +133,7 @@ class Watched:
             )
             for name in self.traces
         )
-        impact = Frictional(values["restitution"], values["stone_friction"], self.inertia)
+        impact = Frictional(values["restitution"], values["stone_friction"])
         radius = self.radius * values.get("size", 1.0)
         curling = curling_size(self.radius)
         bend = curl(values) if curling else curl(values, loss=0.0)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.results import Estimate
-from data.sheet import STONE, curling_size
+from data.sheet import curling_size
 from physics.curl import FCV1Curl
 from physics.local_fit.noise import Noise, noises
 from physics.local_fit.shot_fit import ShotFit
@@ -113,7 +113,6 @@ def watch(
     *,
     priors: Priors,
     masses: Mapping[str, float] | None = None,
-    inertia: float = STONE.inertia,
     bystanders: Sequence[str] = (),
 ) -> Watched | None:
     """Gather what a whole fit needs: sightings, first guesses, spins and the order of hits.
@@ -133,8 +132,6 @@ def watch(
         What is known beforehand.
     masses : mapping, optional
         Stone to mass in any unit; equal where absent.
-    inertia : float
-        k in I = k m R².
     bystanders : sequence of str
         Stones that rest throughout and may be in the way.
 
@@ -197,7 +194,6 @@ def watch(
         tuple(times[k] for k in order),
         radius,
         masses or {},
-        inertia,
     )
 
 
