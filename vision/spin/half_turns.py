@@ -17,8 +17,9 @@ BESIDE, FEWEST = 0.4, 3
 def unfolded(times: Array, angles: Array) -> Array:
     """Take out half turns by which angles change faster than stones turn.
 
-    A handle that was hidden, or hardly seen, may be found again the wrong way round. After a
-    longer time, in which a stone may have turned so far, angles are left as they are.
+    A handle that was hidden, or hardly seen, may be found again the wrong way round. Where spins
+    are told before and after, stones turn by what lies between the two, however long that takes.
+    Else angles are left as they are after a time in which a stone may have turned so far.
 
     Parameters
     ----------
@@ -34,7 +35,8 @@ def unfolded(times: Array, angles: Array) -> Array:
     """
     told = np.flatnonzero(np.isfinite(angles))
     t, out = times[told], angles[told]
-    for k in np.flatnonzero(np.abs(np.diff(out)) > np.pi / 2) + 1:
+    far = (np.abs(np.diff(out)) > np.pi / 2) | (np.diff(t) > np.pi / 2 / FASTEST)
+    for k in np.flatnonzero(far) + 1:
         wait = t[k] - t[k - 1]
         before = (t < t[k]) & (t >= t[k - 1] - BESIDE)
         after = (t >= t[k]) & (t <= t[k] + BESIDE)
@@ -43,7 +45,10 @@ def unfolded(times: Array, angles: Array) -> Array:
         ]
         off = out[k] - out[k - 1] - wait * (np.mean(spins) if spins else 0.0)
         halves = np.round(off / np.pi)
-        if abs(off) > FASTEST * wait and abs(off - np.pi * halves) < np.pi / 4:
+        most = FASTEST * wait
+        if len(spins) == 2:
+            most = min(most, 0.5 * wait * abs(spins[1] - spins[0]) + np.pi / 2)
+        if abs(off) > most and abs(off - np.pi * halves) < np.pi / 4:
             out[k:] -= np.pi * halves
     unfolded_angles = angles.copy()
     unfolded_angles[told] = out

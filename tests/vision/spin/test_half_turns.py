@@ -55,10 +55,19 @@ def test_spins_beside_a_gap_are_told_by_enough_pictures_and_by_no_more() -> None
         np.testing.assert_allclose(unfolded(t, true + np.pi * after), true, atol=1e-9)
 
 
+@pytest.mark.parametrize("halves", [-1, 1])
+def test_a_stone_turns_on_while_its_handle_is_long_unseen(halves: int) -> None:
+    times, late = beside_a_gap(12, 1.0)
+    true = -1.4 * times - 0.1 * times * late
+    np.testing.assert_allclose(unfolded(times, true + np.pi * halves * late), true, atol=1e-9)
+
+
 def test_what_stones_may_turn_is_left() -> None:
     times, late = beside_a_gap(20, 0.7)
-    after_long = 3.0 * late  # so long out of sight a stone may turn so far
+    after_long = np.where(late, 1.8 + 4.3 * (times - 0.7), 0.0)  # a hit spun it out of sight
     assert np.array_equal(unfolded(times, after_long), after_long)
+    once, later = beside_a_gap(1, 0.7)  # one picture on either side tells no spin
+    assert np.array_equal(unfolded(once, 3.0 * later), 3.0 * later)
     fast = 9.0 * np.arange(40) / 5  # steps of more than a quarter turn, all alike
     assert np.array_equal(unfolded(np.arange(40) / 5, fast), fast)
     no_half_turn = np.where(np.arange(40) < 20, 0.0, 2.2)  # something else went wrong there
