@@ -132,7 +132,7 @@ def _survey(
     pieces = [replace(piece, opens=None, closes=None) for piece in by_hits]
     loose = fit_shot(known, pieces, (), radius, deceleration=free(radius))
     _, friction, prior = measure_glides(loose, known, radius)
-    fit = fit_shot(known, pieces, (), radius, deceleration=prior, start=loose)
+    fit = fit_shot(known, pieces, (), radius, deceleration=prior)
     a = prior.mean if friction.value is not None else 0.0
     return fit, Model(max(a, 0.0), prior.along, prior.fall, prior.sd_fall), noises(fit, known)
 

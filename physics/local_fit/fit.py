@@ -48,7 +48,6 @@ def fit_shot(
     deceleration: Deceleration | None = None,
     momentum: bool = True,
     still: Sequence[Floats] = (),
-    start: ShotFit | None = None,
 ) -> ShotFit:
     """Fit all pieces and the times of all meetings at once.
 
@@ -70,15 +69,11 @@ def fit_shot(
         Whether each pair's momentum is held (otherwise only their paths are joined).
     still : sequence of (n, 2) array
         Normalised residuals of stones that never move, for how alike errors are in time.
-    start : ShotFit, optional
-        A fit of the same pieces and meetings to set out from.
     """
     solver = _Solver(
         traces, pieces, meetings, radius, masses or {}, deceleration or Deceleration(), momentum
     )
     solver.still = [(residuals, 1) for residuals in still]
-    if start is not None:
-        solver.theta = start.theta.copy()
     return solver.solve()
 
 

@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from physics.local_fit import fit
 from physics.local_fit.contacts import cut_all
 from physics.local_fit.fit import _first_guess, _origin, fit_shot
 from physics.local_fit.segments import Piece
@@ -58,26 +57,6 @@ def test_covariance_follows_from_the_scatter() -> None:
         places.append(value)
         sd.append(np.sqrt(np.diag(cov)))
     assert np.allclose(np.std(places, axis=0), np.median(sd, axis=0), rtol=0.4)
-
-
-def test_from_another_fit_the_way_is_short_and_leads_to_the_same(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    known = traces(watch(hit_motion(), np.random.default_rng(64), sd=0.003))
-    meetings = [Meeting(1.0, ("A", "B"), 1 / 30)]
-    pieces, _ = cut_all(known, meetings, RADIUS)
-    prior = Deceleration(0.1, 0.05, 0.05)
-    loose = fit_shot(known, pieces, meetings, RADIUS)
-    alone = fit_shot(known, pieces, meetings, RADIUS, deceleration=prior)
-    on = fit_shot(known, pieces, meetings, RADIUS, deceleration=prior, start=loose)
-    sd = np.sqrt(np.diag(alone.cov))
-    assert np.all(np.abs(on.theta - alone.theta) < 0.05 * np.maximum(sd, 1e-9))
-    assert on.inflation == pytest.approx(alone.inflation, rel=1e-3)
-    monkeypatch.setattr(fit, "STEPS", 1)
-    one = fit_shot(known, pieces, meetings, RADIUS, deceleration=prior, start=alone)
-    assert np.all(np.abs(one.theta - alone.theta) < 0.05 * np.maximum(sd, 1e-9))
-    other = fit_shot(known, pieces, meetings, RADIUS, deceleration=prior)
-    assert not np.all(np.abs(other.theta - alone.theta) < 0.05 * np.maximum(sd, 1e-9))
 
 
 def trace() -> Trace:
