@@ -16,7 +16,7 @@ from vision.optics.linear import Linear, Observations
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-COPIED, REPEATED = 0.24, 0.72
+COPIED, REPEATED = 0.24, 0.28
 """How far pictures are aside, in residuals of their edges: those that move by much, and how much
 more those are that hardly move."""
 

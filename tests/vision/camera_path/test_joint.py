@@ -114,7 +114,7 @@ def test_a_shaking_picture_is_aside_wherever_in_the_clip_it_is() -> None:
     seen = clip(np.random.default_rng(6), count=TOGETHER + 1, zoom=0.5)
     cameras = fit_clip(seen, start_rig(OVERHEAD), OVERHEAD, SIZE).cameras
     aside = [np.sqrt(c.error.own[0, 0]) * c.f_px for c in cameras if c.error is not None]
-    np.testing.assert_allclose(aside, 0.15, rtol=0.35)
+    np.testing.assert_allclose(aside, 0.1, rtol=0.2)  # half of what is left of its edges
 
 
 def test_quality_falls_when_the_fit_is_bad() -> None:
