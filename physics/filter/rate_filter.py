@@ -39,14 +39,14 @@ State = tuple[Triple, Cov]
 Step = tuple[float, float, float, float, float, float]
 """As in `physics.filter.stretch.Steps`: reach, keep, q00, q01, q11, fade."""
 
-Look = tuple[float, Triple, float, float]
-"""What a sighting did: the error of what was expected, the state's covariance with what is seen,
-the variance of the latter, and its part that is not the place's."""
+Innovation = tuple[float, Triple, float, float]
+"""Sighted less predicted place, the covariance of the state with that difference, its variance, and
+the part of this variance that is not of the place."""
 
 
 @dataclass(frozen=True)
 class Forward:
-    """What the way forward through a stretch gave, for each pair: x, y and θ.
+    """Result of the forward pass through a stretch, for each pair: x, y and θ.
 
     Attributes
     ----------
@@ -56,21 +56,21 @@ class Forward:
         How place and rate go on from each time to the next.
     states : list of State, three times
         After the sighting at each time.
-    looks : list of Look or None, three times
-        What that sighting did; None where there was none or it was refused.
+    innovations : list of Innovation or None, three times
+        Of that sighting; None where there was none or it was refused.
     """
 
     drift: Floats
     steps: tuple[Sequence[Step], Sequence[Step], Sequence[Step]]
     states: tuple[list[State], list[State], list[State]]
-    looks: tuple[list[Look | None], list[Look | None], list[Look | None]]
+    innovations: tuple[list[Innovation | None], list[Innovation | None], list[Innovation | None]]
 
     @property
-    def innovations(self) -> Floats:
+    def normalised_innovations(self) -> Floats:
         """Normalised innovations of x, y and θ, shape (n, 3); NaN where nothing was used."""
         each = [
-            [np.nan if look is None else look[0] / sqrt(look[2]) for look in looked]
-            for looked in self.looks
+            [np.nan if one is None else one[0] / sqrt(one[2]) for one in of_pair]
+            for of_pair in self.innovations
         ]
         return np.array(each).T
 
@@ -88,17 +88,17 @@ def filtered(stretch: Stretch) -> Smoothed:
     way = forward(stretch)
     n = len(stretch.t)
     mean, spread = np.empty((n, 6)), np.empty((n, 6))
-    for states, looks, on, at in zip(
-        way.states, way.looks, way.steps, ([0, 2], [1, 3], [4, 5]), strict=True
+    for states, innovations, on, at in zip(
+        way.states, way.innovations, way.steps, ([0, 2], [1, 3], [4, 5]), strict=True
     ):
-        mean[:, at], spread[:, at] = _smoothed(states, looks, on)
+        mean[:, at], spread[:, at] = _smoothed(states, innovations, on)
     mean += way.drift
     mean[stretch.rest, 2:4], mean[stretch.idle, 5] = 0.0, 0.0
-    return mean, spread, np.array([look is not None for look in way.looks[0]], int)
+    return mean, spread, np.array([one is not None for one in way.innovations[0]], int)
 
 
 def forward(stretch: Stretch) -> Forward:
-    """Go forward through one stretch: what each sighting told that was not expected."""
+    """Run the forward pass through one stretch."""
     along, turning = steps(stretch)
     known = drift(stretch, along)
     moves, turns = _listed(along), _listed(turning)
@@ -120,7 +120,7 @@ def forward(stretch: Stretch) -> Forward:
             theta = _predicted(theta, turns[k - 1], slow[2])
         of_x = of_y = of_theta = None
         if zx == zx:  # not NaN
-            of_x, of_y = _look(x, zx, rx), _look(y, zy, ry)
+            of_x, of_y = _innovation(x, zx, rx), _innovation(y, zy, ry)
             if _distance(of_x) + _distance(of_y) < GATE or refused >= PATIENCE:
                 refused = 0
                 x, y = _updated(x, of_x), _updated(y, of_y)
@@ -128,17 +128,17 @@ def forward(stretch: Stretch) -> Forward:
                 refused += 1
                 of_x = of_y = None
         if angle == angle:
-            of_theta = _look(theta, angle, error)
+            of_theta = _innovation(theta, angle, error)
             if _distance(of_theta) < GATE or wrong >= PATIENCE:
                 wrong = 0
                 theta = _updated(theta, of_theta)
             else:
                 wrong += 1
                 of_theta = None
-        for state, so_far in zip((x, y, theta), out.states, strict=True):
-            so_far.append(state)
-        for look, looked in zip((of_x, of_y, of_theta), out.looks, strict=True):
-            looked.append(look)
+        for state, states in zip((x, y, theta), out.states, strict=True):
+            states.append(state)
+        for innovation, so_far in zip((of_x, of_y, of_theta), out.innovations, strict=True):
+            so_far.append(innovation)
     return out
 
 
@@ -148,7 +148,7 @@ def _listed(way: Steps) -> list[Step]:
 
 
 def _predicted(state: State, step: Step, slow: float) -> State:
-    """Go on by a step, to where lasting errors have the variance `slow`."""
+    """Predict one step ahead, to where lasting errors have the variance `slow`."""
     (place, rate, lasting), (p00, p01, p02, p11, p12, p22) = state
     reach, keep, q00, q01, q11, fade = step
     cross = p01 + reach * p11
@@ -165,7 +165,7 @@ def _predicted(state: State, step: Step, slow: float) -> State:
     )
 
 
-def _look(state: State, value: float, variance: float) -> Look:
+def _innovation(state: State, value: float, variance: float) -> Innovation:
     """Compare a sighting of the place with the state."""
     (place, _, lasting), (p00, p01, p02, _, p12, p22) = state
     c = (p00 + p02, p01 + p12, p02 + p22)
@@ -173,14 +173,14 @@ def _look(state: State, value: float, variance: float) -> Look:
     return value - place - lasting, c, c[0] + rest, rest
 
 
-def _distance(look: Look) -> float:
+def _distance(innovation: Innovation) -> float:
     """Squared normalised innovation."""
-    return look[0] ** 2 / look[2]
+    return innovation[0] ** 2 / innovation[2]
 
 
-def _updated(state: State, look: Look) -> State:
+def _updated(state: State, innovation: Innovation) -> State:
     (place, rate, lasting), (p00, p01, p02, p11, p12, p22) = state
-    error, (c0, c1, c2), total, _ = look
+    error, (c0, c1, c2), total, _ = innovation
     g0, g1, g2 = c0 / total, c1 / total, c2 / total
     return (
         (place + g0 * error, rate + g1 * error, lasting + g2 * error),
@@ -189,9 +189,9 @@ def _updated(state: State, look: Look) -> State:
 
 
 def _smoothed(
-    states: Sequence[State], looks: Sequence[Look | None], way: Sequence[Step]
+    states: Sequence[State], innovations: Sequence[Innovation | None], way: Sequence[Step]
 ) -> tuple[Floats, Floats]:
-    """Take what came later into account, from the last to the first.
+    """Run the backward pass, from the last time to the first.
 
     Returns place and rate, and their standard deviations, each (n, 2).
     """
@@ -202,9 +202,9 @@ def _smoothed(
     for k in range(len(states) - 1, -1, -1):
         slopes.append((l0, l1, l2))
         bends.append((m00, m01, m02, m11, m12, m22))
-        look = looks[k]
-        if look is not None:
-            error, (c0, c1, c2), total, rest = look
+        innovation = innovations[k]
+        if innovation is not None:
+            error, (c0, c1, c2), total, rest = innovation
             # Columns of 1 − gain · shown: (a, −b, −c), (0, 1, 0) and (−d, −b, 1 − c).
             a, b, c, d = rest / total, c1 / total, c2 / total, c0 / total
             n0, n1, n2 = (

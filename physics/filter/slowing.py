@@ -209,7 +209,7 @@ def course(x: Floats, tau: Floats, power: float) -> tuple[Floats, Floats]:
 
 
 @dataclass(frozen=True)
-class Moment:
+class MotionState:
     """A motion at one time.
 
     Attributes
@@ -227,20 +227,20 @@ class Moment:
     by_speed: Floats
 
 
-def moment(x: Floats, tau: float, power: float) -> Moment:
+def motion_state(x: Floats, tau: float, power: float) -> MotionState:
     """Return what `course` says of one time, and the like of the velocity."""
     times = np.array([tau])
     place, by_place = course(x, times, power)
     c, q = time_left(x), 1 + power
     if q * tau >= c:
-        return Moment(place[0], np.zeros(2), np.zeros(2), by_place[0], np.zeros((2, 7)))
+        return MotionState(place[0], np.zeros(2), np.zeros(2), by_place[0], np.zeros((2, 7)))
     bent, by_speed = _bent(x, _of_velocities(times, c, q), c)
     for axis in range(2):
         by_speed[:, axis, 3 * axis + 1] += 1.0
     now, aside = _of_changes(times, c, q)
     across = _across(x)[0]
     change = now * (x[:, 2] - across) + aside * across
-    return Moment(place[0], x[:, 1] + bent[0], change, by_place[0], by_speed[0])
+    return MotionState(place[0], x[:, 1] + bent[0], change, by_place[0], by_speed[0])
 
 
 def motion(x: Floats, tau: float, power: float) -> tuple[Floats, Floats]:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physics.filter.stretch import PLACE_MEMORY
-from physics.local_fit.one_glide import ACCELERATION_SD, OUTLIER, SPEED_SD, joined
+from physics.local_fit.segment_merging import ACCELERATION_SD, OUTLIER, SPEED_SD, merge_segments
 from physics.local_fit.traces import LASTING
 
 Floats = NDArray[np.float64]
@@ -23,9 +23,9 @@ BREAK_COST = 12.0
 FEWEST = 4
 """Sightings that make a segment; fewer are taken for outliers."""
 
-HOPELESS, YOUNG = 40.0, 8
-"""Cost above the cheapest partition's, some three breaks, from which a segment is given up, and how
-many sightings it is given before."""
+PRUNED_FROM, PRUNED_AFTER = 40.0, 8
+"""Cost above that of the cheapest partition, some three breaks, from which a segment is pruned, and
+how many sightings it has before it may be."""
 
 STILL = 25.0
 """Squared normalised shift of a mean place, two axes, below which it is no trace of a motion."""
@@ -45,7 +45,7 @@ def breaks(t: Floats, xy: Floats, sd: Floats, lasting: float = LASTING) -> list[
     programming (Killick et al., 2012, J. Am. Stat. Assoc. 107, 1590), the likelihood of each
     segment coming from a recursive least-squares filter of place, velocity and acceleration. Of
     the breaks that white errors leave those are kept that neither lasting errors explain nor one
-    glide that slows the more the slower it is (`physics.local_fit.one_glide`).
+    glide that slows the more the slower it is (`physics.local_fit.segment_merging`).
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def _breaks(samples: bytes, lasting: float) -> tuple[float, ...]:
     alike = 2 * PLACE_MEMORY / float(np.median(np.diff(t)))
     held = (1 + max(ALIKE, lasting * alike)) * variance
     starts = _starts(t, xy, held, np.isin(np.arange(n), sought))
-    starts = joined(t, xy, held, starts, BREAK_COST)
+    starts = merge_segments(t, xy, held, starts, BREAK_COST)
     return tuple(0.5 * float(t[j - 1] + t[j]) for j in starts)
 
 
@@ -114,7 +114,7 @@ def _starts(t: Floats, xy: Floats, variance: Floats, may: NDArray[np.bool_]) -> 
             state = np.concatenate([state, unknown], axis=2)
         pick = int(cost.argmin())
         best[j + 1], origin[j + 1] = cost[pick], starts[pick]
-        keep = (cost < best[j + 1] + HOPELESS) | (starts > j - YOUNG)
+        keep = (cost < best[j + 1] + PRUNED_FROM) | (starts > j - PRUNED_AFTER)
         if not keep.all():
             starts, cost, state = starts[keep], cost[keep], state[:, :, keep]
     found: list[int] = []

@@ -40,16 +40,16 @@ def candidates(known: Mapping[str, Trace], radius: float) -> list[Meeting]:
     for first, second in combinations(sorted(known), 2):
         if first in moving or second in moving:
             found += _approaches(known[first], known[second], turns, radius)
-    found += _passed_on(found, known, radius)
-    return causal(sorted(found, key=lambda meeting: meeting.t), known)
+    found += _transmitted(found, known, radius)
+    return in_causal_order(sorted(found, key=lambda meeting: meeting.t), known)
 
 
-def _passed_on(
+def _transmitted(
     meetings: Sequence[Meeting], known: Mapping[str, Trace], radius: float
 ) -> list[Meeting]:
-    """Give the meetings of stones that touch one that is hit, where there are none yet.
+    """Add candidates of stones that touch one that is hit, where there are none yet.
 
-    A hit goes on through a row of stones that touch, each of which may hardly move.
+    An impulse is transmitted through a row of touching stones, each of which may hardly move.
     """
     out: list[Meeting] = []
     for meeting in (every := list(meetings)):
@@ -72,8 +72,8 @@ def _passed_on(
     return out
 
 
-def causal(meetings: Sequence[Meeting], known: Mapping[str, Trace]) -> list[Meeting]:
-    """Put the hits that set touching stones in motion, one after the other, before theirs.
+def in_causal_order(meetings: Sequence[Meeting], known: Mapping[str, Trace]) -> list[Meeting]:
+    """Order hits of about the same time by cause: each after those that drive its stones.
 
     Parameters
     ----------
@@ -95,10 +95,10 @@ def causal(meetings: Sequence[Meeting], known: Mapping[str, Trace]) -> list[Meet
 
 
 def _chain(meetings: Sequence[Meeting], k: int, known: Mapping[str, Trace]) -> list[int]:
-    """Ranks of the meetings, of about the time of meeting k, that brought it about, and its own.
+    """Ranks of the meetings of about the time of meeting k that caused it, then k itself.
 
-    Those of its stones with others that came nearer; else from one whose stones did, hit by hit,
-    each of which sets a stone of the next in motion.
+    Those of its stones with others that came nearer; else the shortest chain that begins with a
+    pair that came nearer, in which each meeting shares a stone with the next.
     """
     last = meetings[k]
     if _closing(last, known, last.t) > 0:
@@ -165,7 +165,7 @@ def _approaches(
         low, high = t[run[0]], t[run[-1]]
         one, other = ([x for x in turns.get(p.stone, ()) if low <= x <= high] for p in (a, b))
         times = _meeting_times(t, distance, run, noise, (one, other))
-        times = _where_seen(_where_seen(times, one, b), other, a)
+        times = _at_turns_if_hidden(_at_turns_if_hidden(times, one, b), other, a)
         for time in times:
             if moves(a, time, radius) or moves(b, time, radius):
                 gap = max(a.gap(time), b.gap(time))
@@ -173,10 +173,10 @@ def _approaches(
     return out
 
 
-def _where_seen(times: list[float], turns: Sequence[float], hidden: Trace) -> list[float]:
-    """Give, for times while one stone is out of sight for long, those at which the other turned.
+def _at_turns_if_hidden(times: list[float], turns: Sequence[float], hidden: Trace) -> list[float]:
+    """Replace times while one stone is long out of sight by those at which the other turned.
 
-    Of a stone out of sight no way is known: where two seem closest then is chance.
+    The path of a stone out of sight is unknown: when two seem closest then is chance.
     """
     for turn in turns:
         k = int(np.searchsorted(hidden.t, turn))

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.tracks import Table
-from physics.local_fit.candidates import LONG, REACH, candidates, causal, moves
+from physics.local_fit.candidate_pruning import prune_candidates
+from physics.local_fit.candidates import LONG, REACH, candidates, in_causal_order, moves
 from physics.local_fit.fit import fit_shot
 from physics.local_fit.segments import Piece, cut
 from physics.local_fit.shot_fit import ContactState, Deceleration, Meeting, ShotFit
-from physics.local_fit.side_by_side import worth_fitting
 from physics.local_fit.traces import Trace, traces
 
 Floats = NDArray[np.float64]
@@ -77,13 +77,13 @@ def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
         In order of time.
     """
     known = traces(sightings)
-    meetings = worth_fitting(candidates(known, radius), known)
+    meetings = prune_candidates(candidates(known, radius), known)
     cuts: dict[str, list[Piece]] = {}
     ordered, beyond = False, FURTHER
     while meetings:
         pieces, cuts = cut_all(known, meetings, radius, cuts)
         fit = fit_shot(known, pieces, meetings, radius, deceleration=Deceleration(0.0, 0.5, 0.5))
-        other = None if ordered else _other_order(fit, known)
+        other = None if ordered else _reordered(fit, known)
         if other is not None:
             meetings, cuts, ordered = other, {}, True
             continue
@@ -114,10 +114,10 @@ def _displaced(fit: ShotFit, k: int, known: Mapping[str, Trace], radius: float) 
     )
 
 
-def _other_order(fit: ShotFit, known: Mapping[str, Trace]) -> list[Meeting] | None:
-    """Give the meetings of a fit at their times there in another order if cause asks for it."""
+def _reordered(fit: ShotFit, known: Mapping[str, Trace]) -> list[Meeting] | None:
+    """Meetings of a fit at the times that it found, if cause asks for another order; else None."""
     met = sorted(_at_times(fit), key=lambda meeting: meeting.t)
-    other = causal(met, known)
+    other = in_causal_order(met, known)
     return other if [m.stones for m in other] != [m.stones for m in met] else None
 
 

@@ -43,7 +43,7 @@ WORST = 0.02
 
 
 def free(radius: float) -> Deceleration:
-    """Return what is assumed of the decelerations of discs when they are to be measured."""
+    """Weak prior of the decelerations of discs, for when they are to be measured."""
     fall = FALL if curling_size(radius) else EVEN
     return Deceleration(0.0, 3.0, 3.0, float(fall.value or 0.0), float(fall.stderr or 0.0))
 
@@ -63,9 +63,9 @@ def measure_glides(
         What to assume of a glide that is too short to tell.
     """
     law = free(radius)
-    each = list(_each(fit, known, radius))
+    each = list(_long_glides(fit, known, radius))
     power, sd_power = _power(fit, [one.rank for one in each], law)
-    pooled = random_effects(*_at_one(fit, each, power, sd_power))
+    pooled = random_effects(*_at_1_m_per_s(fit, each, power, sd_power))
     friction = _friction(fit, each, law, power, sd_power)
     spread = pooled.spread if pooled.excess > CLEAR else 0.0
     usual = USUAL if curling_size(radius) else ANY
@@ -83,11 +83,11 @@ def measure_glides(
 
 
 @dataclass(frozen=True)
-class _Told:
-    """A glide, and the deceleration that its piece tells at its speed half-way, m/s and m/s².
+class _MeasuredGlide:
+    """A glide with its deceleration half-way, m/s², at the speed there, m/s.
 
-    ``by_fit`` are its derivatives by the unknowns of the fit, ``bent`` is its error from what
-    places share.
+    ``by_fit`` are the derivatives of the deceleration by the unknowns of the fit, ``bent`` is its
+    error from the error that places share.
     """
 
     glide: Glide
@@ -98,8 +98,10 @@ class _Told:
     bent: float
 
 
-def _each(fit: ShotFit, known: Mapping[str, Trace], radius: float) -> Iterator[_Told]:
-    """Each glide that is long enough."""
+def _long_glides(
+    fit: ShotFit, known: Mapping[str, Trace], radius: float
+) -> Iterator[_MeasuredGlide]:
+    """Measure each glide that is long enough."""
     for i, piece in enumerate(fit.pieces):
         if piece.rest or len(piece.samples) < 5:
             continue
@@ -114,7 +116,7 @@ def _each(fit: ShotFit, known: Mapping[str, Trace], radius: float) -> Iterator[_
         to_left = np.array([-along[1], along[0]])
         slowing, by_fit = _acceleration(fit, i, middle, -along)
         aside, aside_by_fit = _acceleration(fit, i, middle, to_left)
-        bend = _bend(known[piece.stone].sd_place[piece.samples], speed, end - start)
+        bend = _acceleration_error(known[piece.stone].sd_place[piece.samples], speed, end - start)
         bent, bent_aside = (float(np.hypot(*(bend * way))) for way in (along, to_left))
         sd = float(np.hypot(np.sqrt(by_fit @ fit.cov @ by_fit), bent)) / GRAVITY
         sd_aside = float(np.hypot(np.sqrt(aside_by_fit @ fit.cov @ aside_by_fit), bent_aside))
@@ -123,13 +125,13 @@ def _each(fit: ShotFit, known: Mapping[str, Trace], radius: float) -> Iterator[_
         glide = Glide(
             piece.stone, start, end, slowing / GRAVITY, sd, aside / speed, sd_aside / speed, speed
         )
-        yield _Told(glide, i, speed, slowing, by_fit, bent)
+        yield _MeasuredGlide(glide, i, speed, slowing, by_fit, bent)
 
 
-def _at_one(
-    fit: ShotFit, each: Sequence[_Told], power: float, sd_power: float
+def _at_1_m_per_s(
+    fit: ShotFit, each: Sequence[_MeasuredGlide], power: float, sd_power: float
 ) -> tuple[Floats, Floats]:
-    """Decelerations at 1 m/s, with covariance: the power that leads there is that of all."""
+    """Decelerations at 1 m/s and their covariance, by one power of the speed for all."""
     logs = np.log([one.speed for one in each])
     scale = np.exp(power * logs)
     values = scale * [one.value for one in each]
@@ -163,7 +165,7 @@ def _power(fit: ShotFit, ranks: Sequence[int], law: Deceleration) -> tuple[float
     return law.fall + float(told @ (fit.theta[at] - law.fall)) / every, every**-0.5
 
 
-def _bend(sd_place: Floats, speed: float, duration: float) -> Floats:
+def _acceleration_error(sd_place: Floats, speed: float, duration: float) -> Floats:
     """Error of a deceleration on either axis, m/s², from the error that places share.
 
     Places whose error is s at one end, the other or between bend the path in time like an
@@ -175,29 +177,29 @@ def _bend(sd_place: Floats, speed: float, duration: float) -> Floats:
 
 
 def _friction(
-    fit: ShotFit, each: Sequence[_Told], law: Deceleration, power: float, sd_power: float
+    fit: ShotFit, each: Sequence[_MeasuredGlide], law: Deceleration, power: float, sd_power: float
 ) -> Friction:
     """Friction that the glides show: the same at all speeds unless they tell that it falls.
 
     If it does it is that at 1 m/s, with a law of `physics.ice.Fit`'s form with FCV1's v_c: the
     same there and at the mean of the speeds. If not, what it would be at 1 m/s is in the error.
     """
-    flat = _at_one(fit, each, 0.0, 0.0)
+    flat = _at_1_m_per_s(fit, each, 0.0, 0.0)
     even = random_effects(*flat).mean
     if even.value is None or even.stderr is None:
         return Friction()
     if not law.sd_fall:
         return Friction(even.value / GRAVITY, even.stderr / GRAVITY)
     speeds = np.array([one.speed for one in each])
-    values, cov = _at_one(fit, each, power, sd_power)
-    form = _form(speeds, power)
+    values, cov = _at_1_m_per_s(fit, each, power, sd_power)
+    form = _law_difference(speeds, power)
     steep = values * (1 + form), cov
     pooled = random_effects(*steep)
     # How far the form leads astray is no error that glides tell of: it has no say in the weights.
     lean = weighted_mean(values * form, cov, pooled.spread**2)[0]
     value = float(pooled.mean.value or 0.0) / GRAVITY
     stderr = float(np.hypot(pooled.mean.stderr or 0.0, lean)) / GRAVITY
-    if _odds(flat, steep, Estimate(power, sd_power), law) < TOLD:
+    if _bayes_factor(flat, steep, Estimate(power, sd_power), law) < TOLD:
         usual = even.value / GRAVITY
         return Friction(usual, float(np.hypot(stderr, usual - value)))
     if power <= 0 or value <= 0:
@@ -205,20 +207,21 @@ def _friction(
     v_c, mean = FCV1().v_c, float(np.exp(np.mean(np.log(speeds))))
     fall = min(power, STEEPEST)
     if abs(mean - 1) > 1e-3:
-        there = value / (1 + float(_form(np.array([mean]), fall)[0])) * mean**-fall
+        there = value / (1 + float(_law_difference(np.array([mean]), fall)[0])) * mean**-fall
         a = (there - value) / (1 / (mean + v_c) - 1 / (1 + v_c))
     else:
         a = value * fall * (1 + v_c) ** 2
     return Friction(value, stderr, "fit", a, v_c, value - a / (1 + v_c))
 
 
-def _odds(
+def _bayes_factor(
     even: tuple[Floats, Floats], bent: tuple[Floats, Floats], power: Estimate, law: Deceleration
 ) -> float:
-    """How much more probable the glides are by a power of the speed than without.
+    """Bayes factor of a deceleration that falls as a power of the speed against a constant one.
 
-    Of each by how probable the power 0 is beforehand and with it (Dickey, 1971, Annals of
-    Mathematical Statistics 42, 204); of all by how well they agree, `even` and `bent`.
+    Within glides it is the ratio of the prior to the posterior density at the power 0 (Dickey,
+    1971, Annals of Mathematical Statistics 42, 204); between them it follows from how well the
+    decelerations agree without and with the power, `even` and `bent`.
     """
     value, error = float(power.value or 0.0), float(power.stderr or law.sd_fall)
     each = (value / error) ** 2 - (law.fall / law.sd_fall) ** 2 + 2 * np.log(error / law.sd_fall)
@@ -228,10 +231,11 @@ def _odds(
     return float(np.exp(np.clip(0.5 * (each + misfits[0] - misfits[1]), -50.0, 50.0)))
 
 
-def _form(speeds: Floats, power: float) -> Floats:
-    """Tell what a friction at 1 m/s is more than by a power of the speed, as a part, and unsure by.
+def _law_difference(speeds: Floats, power: float) -> Floats:
+    """Relative correction of a friction at 1 m/s that a power law gave, and its standard error.
 
-    FCV1's law and the power that falls alike at a speed are not alike at 1 m/s: half of that.
+    FCV1's law and the power law with the same slope at a speed differ at 1 m/s; the truth is taken
+    to lie half-way, give or take that half.
     """
     v_c = FCV1().v_c
     falling = np.minimum(power * (speeds + v_c) ** 2 / speeds, speeds + v_c)

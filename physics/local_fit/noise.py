@@ -1,9 +1,9 @@
-"""How the sightings of a shot err: anew in each picture, and alike for a while.
+"""Noise of the sightings of a shot: white noise, and errors that are correlated in time.
 
-Light, shadow and where edges fall between pixels change slowly as a stone moves on. What the
-sightings differ by from a smooth motion tells both parts: neighbours scatter by the one, whole
-stretches by both. What lies farther out than either explains is taken for a worse sighting, if
-it is not so far that the filter refuses it.
+Light, shadow and where edges fall between pixels change slowly as a stone moves on. The residuals
+from a smooth motion tell both parts: the scatter of neighbours is white noise, that of a whole
+stretch is both. A residual larger than either explains is taken for a worse sighting, unless it is
+so large that the filter refuses it.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ MOST = 60
 class Noise:
     """Standard deviations of the sightings of one stone: x, y and θ, (n, 3) each.
 
-    ``white`` is of what is anew in each of them, ``slow`` of what lasts for a while.
+    ``white`` is independent from sighting to sighting, ``slow`` correlated in time.
     """
 
     white: Floats
@@ -78,9 +78,9 @@ class Run:
 
 
 def noises(fit: ShotFit, known: Mapping[str, Trace]) -> dict[str, Noise]:
-    """Tell how the sightings of each stone err.
+    """Estimate the noise of the sightings of each stone.
 
-    What they state is taken for all of it; the scatter says how much of that is anew.
+    Their stated errors are taken for the whole; the scatter says how much of it is white.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def noises(fit: ShotFit, known: Mapping[str, Trace]) -> dict[str, Noise]:
 
 
 def _noise(white: Floats, slow: Floats) -> Noise:
-    """Let what few sightings are much worse by than the others be anew in them."""
+    """Count as white what few sightings are much worse by than the others."""
     lasting = np.minimum(slow, WORSE * np.median(slow, axis=0))
     return Noise(np.sqrt(white**2 + slow**2 - lasting**2), lasting)
 
@@ -162,9 +162,9 @@ def _angles(fit: ShotFit, known: Mapping[str, Trace]) -> Iterator[Run]:
 def _errors(
     runs: Sequence[Run], known: Mapping[str, Trace], memory: float
 ) -> dict[str, tuple[Floats, float]]:
-    """By stone how large its sightings' errors are, anew and lasting, to what is stated."""
-    white = _whites(runs)
-    slow = _slows(runs, white, memory)
+    """By stone the size of its white and its lasting errors, relative to what is stated."""
+    white = _white_levels(runs)
+    slow = _lasting_levels(runs, white, memory)
     out = {}
     for name, trace in known.items():
         anew, lasting = white.get(name, white[""]), slow.get(name, slow[""])
@@ -176,8 +176,8 @@ def _errors(
     return out
 
 
-def _whites(runs: Sequence[Run]) -> dict[str, float]:
-    """Size of what is anew in each sighting, by stone, and of all under the name ""."""
+def _white_levels(runs: Sequence[Run]) -> dict[str, float]:
+    """Size of the white noise by stone, and of all under the name ""."""
     scatter: dict[str, list[Floats]] = {}
     for run in runs:
         own = local_residuals(run.t, run.off[:, None])
@@ -200,11 +200,14 @@ def _square(scatter: Floats) -> float:
     return float(np.mean(np.clip(scatter, -most, most) ** 2))
 
 
-def _slows(runs: Sequence[Run], white: Mapping[str, float], memory: float) -> dict[str, float]:
-    """Size of lasting errors, by stone, and of all under the name "".
+def _lasting_levels(
+    runs: Sequence[Run], white: Mapping[str, float], memory: float
+) -> dict[str, float]:
+    """Size of lasting errors by stone, and of all under the name "".
 
-    By what residuals are larger than their scatter, over how large those of a unit error would
-    be. A stone of which little is seen errs as the others of its shot, and a shot as is stated.
+    Their variance is the excess of the residuals' squares over white noise, divided by that of a
+    lasting error of unit variance. Little data shrinks a stone towards the others of its shot, and
+    a shot towards what is stated.
     """
     sums: dict[str, Floats] = {}
     for run in runs:
@@ -212,7 +215,7 @@ def _slows(runs: Sequence[Run], white: Mapping[str, float], memory: float) -> di
         usual = WILD * max(1.0, size, level(run.off[:, None]))
         n = len(run.off)
         excess = float(np.sum(np.clip(run.off, -usual, usual) ** 2)) - size**2 * (n - run.free)
-        unit = n * _left(run.t, memory)
+        unit = n * _share_left(run.t, memory)
         weight = float(np.median(np.diff(run.t))) / memory
         for name in (run.stone, ""):
             stated = max(1.0 - white.get(name, white[""]) ** 2, 0.0)
@@ -227,7 +230,7 @@ def _slows(runs: Sequence[Run], white: Mapping[str, float], memory: float) -> di
     return {name: float(np.sqrt(square)) for name, square in ({"": usual} | held).items()}
 
 
-def _left(t: Floats, memory: float) -> float:
+def _share_left(t: Floats, memory: float) -> float:
     """Share of the variance of a lasting error that a parabola fitted to it leaves."""
     t = t[:: -(-len(t) // MOST)]
     tau = (t - t[0]) / (t[-1] - t[0])

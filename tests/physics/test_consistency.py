@@ -75,7 +75,7 @@ def within_bounds(values: Floats, checks: int = 1) -> bool:
 
 def test_innovations_are_as_large_as_expected() -> None:
     rng = np.random.default_rng(51)
-    found = np.concatenate([forward(drawn(rng)[0]).innovations[5:] for _ in range(25)])
+    found = np.concatenate([forward(drawn(rng)[0]).normalised_innovations[5:] for _ in range(25)])
     assert len(found) > 500
     assert all(within_bounds(found[:, axis], checks=3) for axis in range(3))
     white = found[1:] * found[:-1]
@@ -119,7 +119,7 @@ def test_innovations_of_a_shot_are_as_large_as_expected(stated: bool, slow: floa
                 t = group["t"].to_numpy()
                 off = lasting(rng, t, slow, PLACE_MEMORY)
                 seen.loc[group.index, column] += off
-        each += [forward(stretch).innovations[6:] for stretch in stretches_of(seen)]
+        each += [forward(stretch).normalised_innovations[6:] for stretch in stretches_of(seen)]
     found = np.concatenate(each)
     assert len(found) > 200
     for axis in range(3):
@@ -136,7 +136,7 @@ def test_innovations_of_imported_tracks_are_as_large_as_expected(shared: Path) -
         (airtable(shared), 0.035),  # marked by a program; nobody knows how it errs
     ):
         moving = [each for each in stretches_of(seen, radius) if len(each.t) > 12]
-        each = [forward(stretch).innovations[6:, :2] for stretch in moving]
+        each = [forward(stretch).normalised_innovations[6:, :2] for stretch in moving]
         assert 0.6 < np.nanmean(np.concatenate(each) ** 2) < 1.7
         # Each for its own size, or a short one with large innovations would speak for all.
         products = [told[1:] * told[:-1] / np.nanmean(told**2) for told in each]

@@ -14,8 +14,8 @@ from physics.filter.slowing import (
     at_speed,
     change_by,
     course,
-    moment,
     motion,
+    motion_state,
     stop_after,
     time_left,
 )
@@ -51,7 +51,7 @@ def test_slopes_are_those_of_places_and_velocities(
     start: NDArray[np.float64], power: float, share: float
 ) -> None:
     tau = share * stop_after(start, power)
-    now = moment(start, tau, power)
+    now = motion_state(start, tau, power)
     for k in range(7):
         ends = []
         for sign in (1.0, -1.0):
@@ -71,7 +71,7 @@ def test_velocity_is_that_of_places_and_acceleration_that_of_velocity(
     power: float, share: float
 ) -> None:
     tau, step = share * stop_after(BENT, power), 1e-4
-    now = moment(BENT, tau, power)
+    now = motion_state(BENT, tau, power)
     (before, slow), (after, fast) = (motion(BENT, tau + s * step, power) for s in (-1, 1))
     assert now.speed == pytest.approx((after - before) / (2 * step), abs=1e-6)
     assert now.change == pytest.approx((fast - slow) / (2 * step), abs=1e-5)
@@ -96,7 +96,7 @@ def test_the_way_of_a_curling_stone_is_followed_to_its_rest() -> None:
 
 @given(POWERS, st.floats(0.05, 0.95))
 def test_deceleration_is_a_power_of_the_speed(power: float, share: float) -> None:
-    now = moment(SLOWED, share * stop_after(SLOWED, power), power)
+    now = motion_state(SLOWED, share * stop_after(SLOWED, power), power)
     slower = float(np.hypot(*now.speed) / np.hypot(*SLOWED[:, 1]))
     ratio = float(np.hypot(*now.change) / np.hypot(*SLOWED[:, 2]))
     assert ratio == pytest.approx(slower**-power)

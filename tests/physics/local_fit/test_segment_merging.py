@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 
 from physics.local_fit.breaks import breaks
-from physics.local_fit.one_glide import glide_cost, joined
+from physics.local_fit.segment_merging import glide_cost, merge_segments
 from tests.synthetic.physics import Ice, Start, simulate
 
 T = np.arange(0, 5, 1 / 30)
@@ -41,8 +41,8 @@ def test_a_push_in_such_a_glide_is_a_break() -> None:
 def test_neighbours_are_joined_until_a_cut_pays() -> None:
     y = slow_glide() + 0.3 * np.maximum(T - 2.5, 0)
     variance = np.full(len(T), SD**2)
-    assert joined(T, seen(y, 1), variance, [30, 75, 120], 12.0) == [75]
-    assert joined(T, seen(y, 1), variance, [], 12.0) == []
+    assert merge_segments(T, seen(y, 1), variance, [30, 75, 120], 12.0) == [75]
+    assert merge_segments(T, seen(y, 1), variance, [], 12.0) == []
 
 
 def test_places_that_are_no_glide_at_all_cost_without_end() -> None:

@@ -1,4 +1,8 @@
-"""Whether stretches of a path are one glide: stones slow the more the slower they are."""
+"""Merge neighbouring segments of a path that one glide explains.
+
+A stone is slowed the more the slower it is, so that segments of constant acceleration end where
+its motion does not.
+"""
 
 from __future__ import annotations
 
@@ -25,13 +29,13 @@ STEPS = 12
 """Most Gauss-Newton steps of one glide."""
 
 
-def joined(
+def merge_segments(
     t: Floats, xy: Floats, variance: Floats, starts: Sequence[int], most: float
 ) -> list[int]:
-    """Leave out those starts of stretches at which a glide goes on.
+    """Drop the starts of segments at which a glide goes on.
 
-    Neighbours are joined, the most probable first, as long as one glide slowed by a power of its
-    speed makes their sightings more probable than two.
+    Neighbours are merged, the most probable pair first, as long as one glide slowed by a power of
+    its speed makes their sightings more probable than two do.
 
     Parameters
     ----------
@@ -67,7 +71,7 @@ def joined(
 def glide_cost(t: Floats, xy: Floats, variance: Floats) -> float:
     """Minus twice the log likelihood of a stretch as one glide, but for what all stretches share.
 
-    By Laplace's method; parameters are those of `joined`.
+    By Laplace's method; parameters are those of `merge_segments`.
     """
     if len(t) < FEWEST:
         return np.inf

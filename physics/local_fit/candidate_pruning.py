@@ -1,8 +1,8 @@
-"""Stones that go on side by side: which of many meetings left the ways of two as they were.
+"""Prune candidates of contacts at which the relative velocity of the two stones did not change.
 
-Of stones that lie or go together every pair is near all the time, and may have met at any of many
-moments. To fit hundreds of such meetings takes minutes; to see that the one stone went on, as seen
-from the other, as it did before takes none.
+Stones that lie or move side by side are near each other all the time, so that each pair has
+candidates at many times. To fit hundreds of them takes minutes; a test of the relative velocity
+before and after each takes none.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ CHANGED = 14.0
 brings stones near each other where noise does, leaves one in twenty as large."""
 
 
-def worth_fitting(meetings: Sequence[Meeting], known: Mapping[str, Trace]) -> list[Meeting]:
-    """Return all meetings if they are few, else those that changed how their stones move apart.
+def prune_candidates(meetings: Sequence[Meeting], known: Mapping[str, Trace]) -> list[Meeting]:
+    """Return all meetings if they are few, else those at which a relative velocity changed.
 
     Parameters
     ----------

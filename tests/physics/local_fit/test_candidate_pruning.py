@@ -7,9 +7,9 @@ import pandas as pd
 import pytest
 
 from data.tracks import check_sightings
+from physics.local_fit.candidate_pruning import MANY, prune_candidates
 from physics.local_fit.candidates import candidates
 from physics.local_fit.contacts import find_contacts
-from physics.local_fit.side_by_side import MANY, worth_fitting
 from physics.local_fit.traces import traces
 from tests.physics.watch import NAMES, RADIUS
 
@@ -40,12 +40,12 @@ def test_stones_that_go_together_hit_none() -> None:
     known = traces(row(hit=False))
     every = candidates(known, RADIUS)
     assert len(every) > MANY
-    assert len(worth_fitting(every, known)) < len(every) / 4
+    assert len(prune_candidates(every, known)) < len(every) / 4
     assert find_contacts(row(hit=False), RADIUS) == ()
 
 
 def test_a_hit_among_stones_that_go_together_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("physics.local_fit.side_by_side.MANY", 0)
+    monkeypatch.setattr("physics.local_fit.candidate_pruning.MANY", 0)
     (hit,) = find_contacts(row(hit=True), RADIUS)
     assert {*hit.stones} == {"A", "B"}
     assert abs(hit.t - 1.5) < 4 * hit.stderr_t
@@ -54,4 +54,4 @@ def test_a_hit_among_stones_that_go_together_is_kept(monkeypatch: pytest.MonkeyP
 def test_few_meetings_are_all_fitted() -> None:
     known = traces(row(hit=False))
     few = candidates(known, RADIUS)[:MANY]
-    assert worth_fitting(few, known) == few
+    assert prune_candidates(few, known) == few
