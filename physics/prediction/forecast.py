@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from data.errors import InputError
 from data.results import Estimate, Prediction
-from data.sheet import curling_size
+from data.sheet import STONE
 from physics.estimate import Estimates
 from physics.impact import Frictional, Impact, PointMass
 from physics.local_fit.contacts import cut_all
@@ -23,7 +23,7 @@ from physics.prediction.hindcast import explained_until, score
 from physics.simulator.simulate import simulate
 from physics.whole_shot.law_choice import fit_with_chosen_laws
 from physics.whole_shot.shot_model import penner
-from physics.whole_shot.watched import LITERATURE, Priors, loose_priors, watch
+from physics.whole_shot.watched import Priors, literature, watch
 from physics.whole_shot.whole_fit import GlobalFit, draw_choices
 
 Floats = NDArray[np.float64]
@@ -40,18 +40,17 @@ MOST = {"restitution": 1.0, "stone_friction": 1.0, "size": 1.3}
 UNSURE = 3.0
 """Odds up to which other laws of the ice are no reason to give up plainer ones."""
 
-ASSUMED = replace(LITERATURE, size=Estimate(1.0, 0.0))
-"""Laws of a shot of which nothing is known: those of the literature, and stones that meet at two
-radii."""
-
 
 def assumed(radius: float) -> Priors:
     """Return laws of a shot of which nothing is known, for discs of a radius, m.
 
-    Curling ice has the friction of the literature; what else discs glide on may have any.
+    Those of the literature, and discs that meet at two radii.
     """
-    friction = ASSUMED.friction if curling_size(radius) else loose_priors(radius).friction
-    return replace(ASSUMED, friction=friction)
+    return replace(literature(radius), size=Estimate(1.0, 0.0))
+
+
+ASSUMED = assumed(STONE.radius)
+"""Laws of a shot of curling stones of which nothing is known."""
 
 
 def predict(

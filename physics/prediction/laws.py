@@ -13,7 +13,7 @@ from data.sheet import curling_size
 from physics.curl import Curl, FCV1Curl, NoCurl
 from physics.estimate import Estimates
 from physics.ice import Constant, Fit, IceLaw
-from physics.whole_shot.watched import FRICTION, LITERATURE, RESTITUTION, STONE_FRICTION, Priors
+from physics.whole_shot.watched import FRICTION, LITERATURE, STONE_FRICTION, Priors, literature
 
 UNSCALED = Estimate(1.0, 0.0)
 """Stones that meet at two radii."""
@@ -78,8 +78,8 @@ def measured_laws(shot: Estimates | Results, radius: float) -> Laws:
     assumed: dict[str, str] = {}
     restitution = shot.restitution
     if restitution.value is None:
-        restitution = LITERATURE.restitution
-        assumed["restitution"] = f"restitution not measured, {RESTITUTION} assumed"
+        restitution = literature(radius).restitution
+        assumed["restitution"] = f"restitution not measured, {restitution.value} assumed"
     e = min(max(restitution.value or 0.0, 0.0), 1.0)
     rubbing = between_stones(shot.laws, shot.collisions)
     if rubbing.value is None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -88,7 +88,19 @@ LITERATURE = Priors(
     Estimate(FRICTION, 0.003),
     Estimate(1.0, 0.01),
 )
-"""Priors of a shot of which nothing is known yet; sources at `Priors`."""
+"""Priors of a shot of curling stones of which nothing is known yet; sources at `Priors`."""
+
+
+def literature(radius: float) -> Priors:
+    """Return priors of a shot of which nothing is known yet, for discs of a radius, m.
+
+    Curling stones have those of `LITERATURE`. Other discs may glide on anything, and bounce less
+    or more: 0.56 was measured of pucks with soft rims, billiard balls have 0.92 to 0.98.
+    """
+    if curling_size(radius):
+        return LITERATURE
+    anything = loose_priors(radius).friction
+    return replace(LITERATURE, restitution=Estimate(0.7, 0.2), friction=anything)
 
 
 def loose_priors(radius: float) -> Priors:
