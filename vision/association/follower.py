@@ -155,21 +155,26 @@ class Follower:
         for begin in range(0, len(views), self.patience.block):
             block = views[begin : begin + self.patience.block]
             step = _time_between(block, leads)
-            for view, seen in zip(block, self._ahead(block, leads, step), strict=True):
-                leads = self._step(view, leads, seen, step)
+            ahead = self._ahead(block, leads, step)
+            for k in range(len(block)):
+                leads = self._step(block[k:], leads, ahead[k:], step)
         return list(leads)
 
     def _step(
-        self, view: StoneView, leads: Sequence[Lead], ahead: Sequence[Foreseen], step: float
+        self,
+        views: Sequence[StoneView],
+        leads: Sequence[Lead],
+        ahead: Sequence[list[Foreseen]],
+        step: float,
     ) -> list[Lead]:
-        """Add to a view the stones to which leads point; some were measured ahead."""
+        """Add to the first of views the stones to which leads point; some were measured ahead."""
         if not leads:
             return []
-        t = view.frame.t
+        view, t = views[0], views[0].frame.t
         apart = NEAREST * self.disc.radius
         near, still = ON_COURSE * self.disc.radius, STILL * self.disc.radius
         expected = [lead.at(t) for lead in leads]
-        found = self._measured(view, leads, expected, ahead, step)
+        found = self._measured(views, leads, expected, ahead, step)
         going: list[tuple[Lead, Sighting | None]] = []
         lost: list[Lead] = []
         # The best first: of two leads to one stone, the other is lost.
@@ -224,14 +229,18 @@ class Follower:
 
     def _measured(
         self,
-        view: StoneView,
+        views: Sequence[StoneView],
         leads: Sequence[Lead],
         expected: Sequence[Place],
-        ahead: Sequence[Foreseen],
+        ahead: Sequence[list[Foreseen]],
         step: float,
     ) -> list[Sighting | None]:
-        """Look at each stone where it is expected, unless it was measured ahead."""
-        nearest = [_nearest(ahead, place) for place in expected]
+        """Look at each stone where it is expected, unless it was measured ahead.
+
+        One that has taken another course, as after a hit, is measured ahead anew.
+        """
+        view = views[0]
+        nearest = [_nearest(ahead[0], place) for place in expected]
         course, settled = ON_COURSE * self.disc.radius, SETTLED * self.disc.radius
         found = [seen if away < course else None for away, seen in nearest]
         others = [
@@ -241,10 +250,11 @@ class Follower:
             if found[index] is None and away > (course if lead.missed else settled)
         ]
         if others:
-            look = _look_at(view, leads, expected, others, step)
-            seen = look_on_course([look], self.appearance, self.disc, self.search)
-            for index, sighting in zip(others, seen, strict=True):
-                found[index] = sighting
+            anew = self._ahead(views, [leads[i] for i in others], step)
+            for so_far, more in zip(ahead, anew, strict=True):
+                so_far += more
+            for index in others:
+                found[index] = _nearest(anew[0], expected[index])[1]
         astray = [
             index
             for index, (lead, sighting) in enumerate(zip(leads, found, strict=True))

@@ -18,6 +18,10 @@ STEADY = 5
 DECELERATION = 0.1
 """Of a stone on ice, about, m/s²."""
 
+MEMORY = 8
+"""Sightings on one course that say together where a stone is and how fast: a course is not quite
+straight, and a touch may change it by little."""
+
 NEWEST = 0.2
 """Share of the last sighting in the evidence that is usual for a stone: one that goes astray bit by
 bit, along the edge of paint as light as its granite, still falls below that."""
@@ -48,6 +52,8 @@ class Lead:
         For how many sightings it has neither left nor turned.
     portrait : Portrait, optional
         Its picture when it was last measured, if it rests.
+    along : int
+        How many sightings on its course it is known by, up to `MEMORY`.
     """
 
     place: tuple[float, float]
@@ -59,6 +65,7 @@ class Lead:
     facing: Kept[Complex] | None = None
     steady: int = 0
     portrait: Portrait | None = None
+    along: int = 1
 
     @classmethod
     def to(cls, sighting: Sighting, t: float) -> Lead:
@@ -105,13 +112,19 @@ class Lead:
         away_x, away_y = x - ahead_x, y - ahead_y
         if hypot(away_x, away_y) > near:
             place, velocity = (x, y), ((x - self.place[0]) / step, (y - self.place[1]) / step)
+            along = 2
         else:
-            place = ahead_x + 0.6 * away_x, ahead_y + 0.6 * away_y
-            velocity = vx + 0.3 * away_x / step, vy + 0.3 * away_y / step
+            along = min(self.along + 1, MEMORY)
+            # As a straight line fitted to so many would be corrected (Brookner, 1998, Tracking and
+            # Kalman filtering made easy: the expanding-memory g-h filter).
+            by_speed = 6 / (along * (along + 1))
+            by_place = (2 * along - 1) * by_speed / 3
+            place = ahead_x + by_place * away_x, ahead_y + by_place * away_y
+            velocity = vx + by_speed * away_x / step, vy + by_speed * away_y / step
         left = hypot(x - self.anchor[0], y - self.anchor[1])
         score = self.score + NEWEST * (sighting.score - self.score)
         if left >= still or self._turned(sighting):
-            return Lead(place, velocity, t, (x, y), score, facing=sighting.spectrum)
+            return Lead(place, velocity, t, (x, y), score, facing=sighting.spectrum, along=along)
         return Lead(
             place,
             velocity,
@@ -121,6 +134,7 @@ class Lead:
             facing=sighting.spectrum if self.facing is None else self.facing,
             steady=self.steady + 1,
             portrait=None if sighting.measured else self.portrait,
+            along=along,
         )
 
     def _turned(self, sighting: Sighting) -> bool:

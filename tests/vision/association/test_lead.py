@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.vision.association.test_follow import sighting
-from vision.association.lead import DECELERATION, STEADY, Lead
+from vision.association.lead import DECELERATION, MEMORY, STEADY, Lead
 from vision.film.shelf import Kept
 
 NEAR, STILL = 0.02, 0.004
@@ -19,10 +19,27 @@ def followed(places: list[tuple[float, float]], step: float = 0.04) -> Lead:
 
 @pytest.mark.parametrize("step", [0.04, -0.04])
 def test_a_lead_points_to_where_a_stone_glides_to_or_came_from(step: float) -> None:
-    lead = followed([(0.1 + 0.5 * step * k, -1.2 * step * k) for k in range(12)], step)
-    np.testing.assert_allclose(lead.velocity, (0.5, -1.2), rtol=0.02)
-    np.testing.assert_allclose(lead.at(12 * step), (0.1 + 6 * step, -14.4 * step), atol=1e-3)
+    start, velocity, slower = np.array([0.1, 0.0]), np.array([0.5, -1.2]), DECELERATION / 1.3
+
+    def glided(t: float) -> tuple[float, float]:
+        x, y = start + velocity * (t - 0.5 * slower * t**2)
+        return float(x), float(y)
+
+    lead = followed([glided(step * k) for k in range(12)], step)
+    np.testing.assert_allclose(lead.velocity, velocity * (1 - slower * 11 * step), rtol=0.002)
+    np.testing.assert_allclose(lead.at(20 * step), glided(20 * step), atol=1e-3)
     assert not lead.rests
+
+
+def test_a_lead_goes_by_all_that_was_seen_on_its_course_of_late() -> None:
+    at, ahead = np.arange(MEMORY), 8
+    noise = np.random.default_rng(5).normal(0, 0.001, (500, MEMORY))
+    leads = [followed([(x, 0.0) for x in row]) for row in (0.02 * at + noise).tolist()]
+    expected = [lead.place[0] + ahead * 0.04 * lead.velocity[0] for lead in leads]
+    # A straight line fitted to so many places is as unsure so far beyond them.
+    beyond = MEMORY - 1 + ahead - at.mean()
+    sd = 0.001 * np.sqrt(1 / MEMORY + beyond**2 / ((at - at.mean()) ** 2).sum())
+    assert np.std(expected) == pytest.approx(sd, rel=0.1)
 
 
 def test_a_new_course_is_taken_at_once() -> None:
