@@ -6,9 +6,9 @@ deceleration is taken out of the measurements before the filter and put back aft
 that the filter itself stays linear and the backward pass (Rauch, Tung and Striebel, 1965,
 AIAA J. 3, 1445) exact. A filter never runs across a hit.
 
-How sightings err is told by the shot itself (`physics.local_fit.noise`): what is anew in each of
-them is the filter's measurement noise, what lasts for a while a state beside each pair, and what
-all share is added to the places and, as an error of the scale, to the velocities in the end.
+The noise of sightings is estimated from the shot itself (`physics.local_fit.noise`): its white part
+is the filter's measurement noise, its correlated part a further state of each pair. The error that
+all places share is added in the end, to places and, as an error of the scale, to velocities.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 UNTOLD = 2.5
-"""Standard deviation of a spin that nothing is known of, rad/s."""
+"""Standard deviation from which a spin is unknown, rad/s."""
 
 UNSEEN_SCALE = 0.8
 """Part of `Trace.sd_scale` that adds to the errors of velocities: the rest, which changes under
@@ -106,7 +106,7 @@ def smoothed(
     all_times = np.concatenate([np.asarray(sightings["t"], float), [*unseen.values()]])
     times, first = np.unique(all_times, return_index=True)
     frames = np.concatenate([np.asarray(sightings["frame"], int), np.array([*unseen], int)])[first]
-    fit, model, noise = _survey(known, contacts, radius)
+    fit, model, noise = _fit_pieces(known, contacts, radius)
     each = {}
     for name, trace in known.items():
         inside = (times >= trace.t[0]) & (times <= trace.t[-1])
@@ -121,13 +121,10 @@ def smoothed(
     return {name: tracks[name] for name in TRACK_COLUMNS}
 
 
-def _survey(
+def _fit_pieces(
     known: dict[str, Trace], contacts: Sequence[Contact], radius: float
 ) -> tuple[ShotFit, Model, dict[str, Noise]]:
-    """Fit each stretch between hits by itself.
-
-    It tells where stones rest, how the ice slows them and how their sightings err.
-    """
+    """Fit each stretch between hits by itself: rests, the law of the ice, noise of sightings."""
     by_hits, _ = cut_all(known, contacts, radius)
     pieces = [replace(piece, opens=None, closes=None) for piece in by_hits]
     loose = fit_shot(known, pieces, (), radius, deceleration=free(radius))
@@ -169,7 +166,7 @@ def _track(
     for k in np.unique(part):
         at = np.flatnonzero(part == k)
         if 0 < k < len(hits) and np.isfinite(z[at, 0]).sum() < 2:
-            _bridge(hits, part, t, mean, spread, at)
+            _interpolate(hits, part, t, mean, spread, at)
     untold = spread[:, 5] > UNTOLD
     if not np.isfinite(trace.theta).any():
         untold[:] = True
@@ -190,7 +187,7 @@ def _track(
 def _modes(
     stone: str, t: Floats, fit: ShotFit
 ) -> tuple[NDArray[np.int64], NDArray[np.bool_], NDArray[np.bool_], Floats]:
-    """Per time: its piece, whether the stone rests, whether it also spins not, rough velocity."""
+    """Per time: its piece, whether the stone rests, whether its spin does too, rough velocity."""
     place = np.zeros(len(t), dtype=int)
     rest = np.ones(len(t), dtype=bool)
     idle = np.ones(len(t), dtype=bool)
@@ -208,7 +205,7 @@ def _modes(
     return place, rest, idle, speed
 
 
-def _bridge(
+def _interpolate(
     hits: Sequence[Contact],
     part: NDArray[np.int64],
     t: Floats,
@@ -216,10 +213,10 @@ def _bridge(
     spread: Floats,
     at: NDArray[np.int64],
 ) -> None:
-    """Fill in how a stone moved from one hit to the next where it was seen once or never.
+    """Interpolate between two hits a stone that was seen once there or never.
 
-    By a straight line from where its motion before leads to at the one hit to where its motion
-    after comes from at the other.
+    On a straight line between its places at the two hits, extrapolated from its motion before the
+    first and after the second.
 
     Parameters
     ----------
@@ -255,10 +252,11 @@ def _bridge(
 def _widen(
     hits: Sequence[Contact], part: NDArray[np.int64], t: Floats, mean: Floats, spread: Floats
 ) -> None:
-    """Widen the rates of rows so near a hit that they may lie on its other side.
+    """Widen the errors of velocity and spin of rows that may lie on the other side of a hit.
 
     With the probability p that a row does, its rates have p (1 - p) times the square of their
-    change in the hit added to their variance. Parameters as of `_bridge`; ``spread`` is changed.
+    change in the hit added to their variance. Parameters as of `_interpolate`; ``spread`` is
+    changed.
     """
     rates = [2, 3, 5]
     for k, hit in enumerate(hits, 1):

@@ -1,1 +1,1 @@
-"""How the filter takes a stone between two hits: its motion, place and rate by rate."""
+"""The Kalman filter of one stone between two hits, and its process model."""

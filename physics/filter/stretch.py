@@ -1,7 +1,7 @@
-"""One stone between two hits, as the filter takes it, and how its motion goes on in each step.
+"""Input and process model of the filter: one stone between two hits.
 
-Place and rate make a pair on each axis: x with vx, y with vy, θ with ω. No pair has a say in
-another's motion, and x and y move on alike.
+Place and rate make a pair on each axis: x with vx, y with vy, θ with ω. The pairs are independent,
+and x and y have the same model.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ START_SD = (3.0, 10.0)
 """What is known of speed (m/s) and spin (rad/s) before the first sighting."""
 
 JUMP_SD = (1.0, 3.0)
-"""How much velocity (m/s) and spin (rad/s) change where a motion changes of itself, per change of
-the rough velocity (m/s): an impulse that rubs turns a stone by μ / (k R) of what it stops."""
+"""How much velocity (m/s) and spin (rad/s) change where a motion changes without a hit, per change
+of the rough velocity (m/s): a push of Δv that rubs turns a stone by up to μ Δv / (k R)."""
 
 LEAST_JUMP = 0.02
 """Of the rough velocity, m/s."""
@@ -57,7 +57,7 @@ GATE = 100.0
 """Squared normalised innovation beyond which a sighting is refused."""
 
 PATIENCE = 2
-"""After so many refusals in a row the filter is wrong and the sightings are right."""
+"""Refusals in a row after which the filter is taken to be wrong, and sightings to be right."""
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ Filter = Callable[[Stretch], Smoothed]
 
 @dataclass(frozen=True)
 class Steps:
-    """How place and rate of a pair go on from each time to the next, n − 1 steps.
+    """State transitions of a pair from each time to the next, n − 1 steps.
 
     place' = place + ``reach`` rate and rate' = ``keep`` rate, with noise of variance ``q00`` of
     the place and ``q11`` of the rate and covariance ``q01``; the error that lasts falls by
@@ -141,7 +141,7 @@ class Steps:
 
 
 def steps(stretch: Stretch) -> tuple[Steps, Steps]:
-    """Give the steps of either place, and those of the angle."""
+    """State transitions of x or y, and those of the angle."""
     rest, idle = stretch.rest, stretch.idle
     speed = np.maximum(np.hypot(stretch.speed[:-1, 0], stretch.speed[:-1, 1]), 1e-6)
     slower, turning = np.minimum(np.divide.outer(LOSS_SD, speed).T, MOST_LOSS_SD).T
@@ -156,9 +156,9 @@ def steps(stretch: Stretch) -> tuple[Steps, Steps]:
 
 
 def _steps(stretch: Stretch, still: Bools, deviation: Floats, sudden: Floats, kind: int) -> Steps:
-    """Give the steps of a pair of that kind.
+    """State transitions of a place (`kind` 0) or of the angle (1).
 
-    By what its acceleration deviates by, and what else its rate changes by at once.
+    ``deviation`` is of its acceleration, ``sudden`` of what else its rate changes by at once.
     """
     dt = np.diff(stretch.t)
     was, ends = still[:-1], still[1:]
@@ -180,7 +180,7 @@ def _steps(stretch: Stretch, still: Bools, deviation: Floats, sudden: Floats, ki
 
 
 def drift(stretch: Stretch, along: Steps) -> Floats:
-    """Tell what the ice is known to have done to the pairs since the first time, shape (n, 6).
+    """Known change of the state by the ice since the first time, shape (n, 6).
 
     It is taken out of the sightings before the filter and put back afterwards.
     """

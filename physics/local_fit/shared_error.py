@@ -1,4 +1,4 @@
-"""What places share: an error that is alike for sightings near each other on the ice."""
+"""The error that places share: a random field on the ice, alike at places near each other."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ MEDIAN = 0.4549
 def shared_error(
     traces: Mapping[str, Trace], residuals: Floats, slopes: Floats, cov: Floats, weights: Floats
 ) -> Floats:
-    """Covariance of a fit's unknowns that what places share gives them.
+    """Covariance of a fit's unknowns due to the error that places share.
 
-    A map of the ice is wrong alike at places near each other: by a field whose correlation falls
-    with their distance (`physics.local_fit.traces.alike`). The unknowns follow such an error as
-    they follow the sightings. The size of the field is stated, `sd_place`, and shows in what the
-    fit leaves: the two have the same say in its square, where noise does not hide it.
+    The map of the ice is off by a random field whose correlation falls with the distance
+    (`physics.local_fit.traces.shared_correlation`), and the unknowns follow it as they follow the
+    sightings. Its variance is the mean of what is stated, `sd_place` squared, and of what the
+    residuals show, as far as noise does not hide it.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def shared_error(
 
 
 def _shown(off: Floats, left: Floats, noise: Floats) -> float:
-    """Factor on the variances `left` that residuals show, 1 as far as noise hides them.
+    """Factor on the variances `left` that residuals show, shrunk to 1 as far as noise hides them.
 
     A fit follows a field over a short path and leaves next to nothing of it: whatever else
     residuals have in them would pass for a field many times as large.

@@ -3,9 +3,9 @@
 In a hit both stones are rubbed by the same impulse at the same lever, so that the spins of equal
 stones change by the same amount (of others, as their masses have it), and that is as their
 velocities change along the line of the contact: an impulse that gives a disc Δv across the normal
-turns it by Δv / (k R) (Wang and Mason, 1992, J. Appl. Mech. 59, 635). Light on a turning cap and
-few pictures make spins err alike all the way from one hit to the next; what a hit tells of one end
-of that way thus mends all of it, as far as the ice leaves a spin as it is.
+turns it by Δv / (k R) (Wang and Mason, 1992, J. Appl. Mech. 59, 635). The error of a spin is
+correlated all the way from one hit to the next (light on a turning cap, few pictures), so that what
+a hit tells of one end corrects all of that stretch, as far as the ice leaves a spin unchanged.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ ASIDE = 0.007
 a share of its radius: caps lie beside their stones' centres."""
 
 WILD = 3.0
-"""Standard errors beyond which a hit tells otherwise than what is seen, and is not heard."""
+"""Standard errors beyond which a hit contradicts what is seen, and is ignored."""
 
 
 End = tuple[str, int, bool]
@@ -44,7 +44,7 @@ End = tuple[str, int, bool]
 
 
 @dataclass(frozen=True)
-class _Way:
+class _Stretch:
     """A stone from one hit to the next: its table, its rows there, and those that tell its spin."""
 
     table: Columns
@@ -52,11 +52,11 @@ class _Way:
     told: NDArray[np.intp]
 
     def spin_row(self, time: float) -> int:
-        """Row that tells the spin at a hit at either end of the way."""
+        """Row that tells the spin at a hit at either end."""
         return _best(self.table["t"], self.table["sd_omega"], self.told, time)
 
     def state(self, time: float) -> tuple[Floats, Floats]:
-        """Velocity at a hit at either end of the way, m/s, and errors of it and of the place."""
+        """Velocity at a hit at either end, m/s, and errors of it and of the place."""
         t, x, y = (self.table[name] for name in ("t", "vx", "vy"))
         v = np.stack([x, y], axis=1)
         sd = np.stack([self.table[name] for name in ("sd_vx", "sd_vy", "sd_x", "sd_y")], axis=1)
@@ -69,7 +69,7 @@ class _Way:
         return v[row] + slowing * (time - t[row]), sd[row]
 
     def covariance(self, row: int) -> Floats:
-        """Covariance of the spins of the rows that tell one with that of one of them.
+        """Covariance of the spins of all rows with that of one of them.
 
         Spins of two rows differ by what the ice may do between them at most.
         """
@@ -85,10 +85,10 @@ class _Way:
 
 @dataclass(frozen=True)
 class _Side:
-    """A stone in a hit: its ways there and on, the numbers of its spins if told, and its mass."""
+    """A stone in a hit: its stretches on either side, the ranks of its spins, and its mass."""
 
-    before: _Way
-    after: _Way
+    before: _Stretch
+    after: _Stretch
     spin_before: int | None
     spin_after: int | None
     mass: float
@@ -125,28 +125,28 @@ def share_spins(
         stone: sorted((hit for hit in contacts if stone in hit.stones), key=lambda hit: hit.t)
         for stone in tables
     }
-    ways = {
-        (stone, k): way
+    stretches = {
+        (stone, k): stretch
         for stone, own in hits.items()
-        for k, way in enumerate(_ways(tables[stone], [hit.t for hit in own]))
+        for k, stretch in enumerate(_stretches(tables[stone], [hit.t for hit in own]))
     }
-    # The unknowns: the spin of each way at either hit, told by a row of it.
-    ends: list[tuple[_Way, int]] = []
+    # The unknowns: the spin of each stretch at either hit, told by a row of it.
+    ends: list[tuple[_Stretch, int]] = []
     number: dict[End, int] = {}
-    for (stone, k), way in ways.items():
+    for (stone, k), stretch in stretches.items():
         for hit, late in ((k - 1, True), (k, False)):
-            if 0 <= hit < len(hits[stone]) and len(way.told):
+            if 0 <= hit < len(hits[stone]) and len(stretch.told):
                 number[stone, hit, late] = len(ends)
-                ends.append((way, way.spin_row(hits[stone][hit].t)))
+                ends.append((stretch, stretch.spin_row(hits[stone][hit].t)))
     if not ends:
         return
-    before = np.array([way.table["omega"][row] for way, row in ends])
+    before = np.array([stretch.table["omega"][row] for stretch, row in ends])
     cov = np.zeros((len(ends), len(ends)))
-    for i, (way, row) in enumerate(ends):
-        like = way.covariance(row)
+    for i, (stretch, row) in enumerate(ends):
+        like = stretch.covariance(row)
         for j, (other, there) in enumerate(ends):
-            if other is way:
-                cov[i, j] = like[np.searchsorted(way.told, there)]
+            if other is stretch:
+                cov[i, j] = like[np.searchsorted(stretch.told, there)]
     mean, prior = before, np.diag(cov)
     for met in sorted(contacts, key=lambda met: met.t):
         sides = []
@@ -154,30 +154,32 @@ def share_spins(
             k = hits[stone].index(met)
             rows = [number.get((stone, k, late)) for late in (False, True)]
             mass = masses.get(stone, 1.0)
-            sides.append(_Side(ways[stone, k], ways[stone, k + 1], rows[0], rows[1], mass))
-        for seen, value, sd in _tells(met, sides, mean, cov, radius):
+            sides.append(
+                _Side(stretches[stone, k], stretches[stone, k + 1], rows[0], rows[1], mass)
+            )
+        for seen, value, sd in _constraints(met, sides, mean, cov, radius):
             off, spread = value - seen @ mean, float(seen @ cov @ seen) + sd**2
             if off**2 < WILD**2 * spread:
                 gain = cov @ seen / spread
                 mean, cov = mean + gain * off, cov - np.outer(gain, seen @ cov)
-    _spread_out(ends, mean - before, prior, prior - np.diag(cov))
+    _correct_rows(ends, mean - before, prior, prior - np.diag(cov))
 
 
-def _ways(table: Columns, times: Sequence[float]) -> list[_Way]:
+def _stretches(table: Columns, times: Sequence[float]) -> list[_Stretch]:
     """Cut a stone's rows at its hits."""
     part = np.searchsorted(np.array(times), table["t"], side="right")
     moving = np.isfinite(table["sd_vx"])
     told = np.isfinite(table["sd_omega"])
     return [
-        _Way(table, np.flatnonzero((part == k) & moving), np.flatnonzero((part == k) & told))
+        _Stretch(table, np.flatnonzero((part == k) & moving), np.flatnonzero((part == k) & told))
         for k in range(len(times) + 1)
     ]
 
 
-def _tells(
+def _constraints(
     hit: Contact, sides: Sequence[_Side], mean: Floats, cov: Floats, radius: float
 ) -> Iterator[tuple[Floats, float, float]]:
-    """Give what a hit tells: a sum of spins by their weights, its value and standard error.
+    """Linear constraints on spins that a hit gives: weights, value and standard error of each.
 
     Changes of spin and of velocity are those of a stone of the mean mass of the two: such a one
     turns by as much as the other.
@@ -196,17 +198,17 @@ def _tells(
     if len(changes) == 2:
         told = min(changes, key=lambda seen: float(seen @ cov @ seen))
         yield changes[0] - changes[1], 0.0, float(np.hypot(SLACK, unlike * (told @ mean)))
-    rub = _rub(hit, sides, radius)
+    rub = _spin_change(hit, sides, radius)
     if changes and rub is not None:
         yield changes[0], rub[0], float(np.hypot(rub[1], unlike * rub[0]))
 
 
-def _rub(hit: Contact, sides: Sequence[_Side], radius: float) -> tuple[float, float] | None:
-    """Change of spin that the velocities tell of, rad/s, and its standard error."""
-    ways = [way for side in sides for way in (side.before, side.after)]
-    if not all(len(way.rows) for way in ways):
+def _spin_change(hit: Contact, sides: Sequence[_Side], radius: float) -> tuple[float, float] | None:
+    """Change of spin that the changes of velocity imply, rad/s, and its standard error."""
+    stretches = [stretch for side in sides for stretch in (side.before, side.after)]
+    if not all(len(stretch.rows) for stretch in stretches):
         return None
-    states = [way.state(hit.t) for way in ways]
+    states = [stretch.state(hit.t) for stretch in stretches]
     v1, w1, v2, w2 = (velocity for velocity, _ in states)
     normal = np.array(hit.normal)
     tangent = np.array([-normal[1], normal[0]])
@@ -226,24 +228,24 @@ def _rub(hit: Contact, sides: Sequence[_Side], radius: float) -> tuple[float, fl
     return float(weight @ changes / weight.sum()), error
 
 
-def _spread_out(
-    ends: Sequence[tuple[_Way, int]], change: Floats, prior: Floats, less: Floats
+def _correct_rows(
+    ends: Sequence[tuple[_Stretch, int]], change: Floats, prior: Floats, less: Floats
 ) -> None:
-    """Change the spins of all rows by what was learned of that end of their way that is most like.
+    """Correct the spins of all rows, each by the more correlated end of its stretch.
 
     Parameters
     ----------
-    ends : sequence of (_Way, int)
+    ends : sequence of (_Stretch, int)
     change, prior, less : ndarray, shape (n,)
         By how much their spins changed, their variances before, and by how much these fell.
     """
-    for way in {id(way): way for way, _ in ends}.values():
-        at = [i for i, (other, _) in enumerate(ends) if other is way]
-        like = np.array([way.covariance(ends[i][1]) for i in at])
+    for stretch in {id(stretch): stretch for stretch, _ in ends}.values():
+        at = [i for i, (other, _) in enumerate(ends) if other is stretch]
+        like = np.array([stretch.covariance(ends[i][1]) for i in at])
         best = (like / np.sqrt(prior[at])[:, None]).argmax(0)
-        rows = np.arange(len(way.told))
-        omega, sd = way.table["omega"][way.told], way.table["sd_omega"][way.told]
+        rows = np.arange(len(stretch.told))
+        omega, sd = stretch.table["omega"][stretch.told], stretch.table["sd_omega"][stretch.told]
         gain = np.where(omega == 0, 0.0, like[best, rows] / prior[at][best])  # at rest it has none
-        way.table["omega"][way.told] = omega + gain * change[at][best]
+        stretch.table["omega"][stretch.told] = omega + gain * change[at][best]
         variance = sd**2 - gain**2 * less[at][best]
-        way.table["sd_omega"][way.told] = np.sqrt(np.maximum(variance, 0.0))
+        stretch.table["sd_omega"][stretch.told] = np.sqrt(np.maximum(variance, 0.0))

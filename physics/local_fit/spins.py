@@ -18,7 +18,7 @@ from physics.local_fit.traces import Trace
 Floats = NDArray[np.float64]
 
 POOR = 0.3
-"""Standard error of a spin, rad/s, from which the other stone's is asked for help."""
+"""Standard error of a spin, rad/s, from which the other stone's helps to tell it."""
 
 
 def spins_at(

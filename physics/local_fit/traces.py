@@ -15,14 +15,14 @@ SMALLEST_SD = 1e-5
 """Smallest standard deviation of a place, m: what no track at hand surpasses."""
 
 SHARED = "sd_place_x", "sd_place_y"
-"""Columns of what places share."""
+"""Columns of the standard error that places near each other share."""
 
 PLACE_REACH = 1.0
-"""Way, m, over which a stone's speed is off by what its places share: at both ends of it that error
-is another one."""
+"""Distance, m, over which the error that places share makes one of the speed: it is independent at
+the two ends."""
 
-ALIKE_REACH = 0.5
-"""Distance over which the error that places share is alike, m. Errors of stones under way, in 85
+CORRELATION_LENGTH = 0.5
+"""Correlation length of the error that places share, m. Errors of stones under way, in 85
 clips with truth, differ by half of their variance 60 cm apart; what differs sooner shows."""
 
 LASTING = 0.35
@@ -46,7 +46,7 @@ class Trace:
     theta, sd_theta : (n,) array
         Angle and its standard deviation, rad; NaN where unknown.
     sd_place : (n, 2) array
-        Standard deviation of what the places share, m; 0 where unknown.
+        Standard deviation of the error that places share, m; 0 where unknown.
     lasting : float
         Share of the variance of places that lasts for a while.
     """
@@ -69,8 +69,7 @@ class Trace:
     def sd_scale(self) -> Floats:
         """Relative error of velocities by that of places, shape (n, 2).
 
-        What places share is alike for neighbours only: under way it changes, as if the stone
-        had moved faster or slower.
+        The error that places share changes under way, as if the stone had moved faster or slower.
         """
         return self.sd_place / PLACE_REACH
 
@@ -155,12 +154,12 @@ def _filled(t: Floats, values: Floats, sd: Floats, least: float, default: float)
 
 
 def shared_correlation(xy: Floats) -> Floats:
-    """Correlation of what places (n, 2), m, share: exp(-d² / 2 L²) of their distance d.
+    """Correlation of the error that places (n, 2), m, share: exp(-d² / 2 L²), d their distance.
 
-    L is `ALIKE_REACH`.
+    L is `CORRELATION_LENGTH`.
     """
     apart = np.sum((xy[:, None] - xy[None]) ** 2, axis=2)
-    out: Floats = np.exp(-apart / (2 * ALIKE_REACH**2))
+    out: Floats = np.exp(-apart / (2 * CORRELATION_LENGTH**2))
     return out
 
 

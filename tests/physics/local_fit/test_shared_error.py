@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from physics.local_fit.shared_error import shared_error
-from physics.local_fit.traces import ALIKE_REACH, Trace
+from physics.local_fit.traces import CORRELATION_LENGTH, Trace
 
 Floats = NDArray[np.float64]
 COUNT, SIZE, SD = 150, 2e-3, 4e-4
@@ -21,7 +21,7 @@ def fitted(
     """Errors of the six unknowns of a parabola in time, and the variances that are stated."""
     path = np.stack([0.2 * t, 1.6 * t - 0.1 * t**2], axis=1)
     apart = np.sum((path[:, None] - path[None]) ** 2, axis=2)
-    root = np.linalg.cholesky(np.exp(-apart / (2 * ALIKE_REACH**2)) + 1e-9 * np.eye(COUNT))
+    root = np.linalg.cholesky(np.exp(-apart / (2 * CORRELATION_LENGTH**2)) + 1e-9 * np.eye(COUNT))
     off = field * root @ rng.normal(size=(COUNT, 2)) + SD * rng.normal(size=(COUNT, 2))
     by_axis = np.zeros((COUNT, 2, 6))
     for axis in range(2):

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from physics.local_fit.traces import ALIKE_REACH, local_residuals, shared_correlation, traces
+from physics.local_fit.traces import CORRELATION_LENGTH, local_residuals, shared_correlation, traces
 from tests.physics.watch import hit_motion, watch
 
 
@@ -41,7 +41,9 @@ def test_angles_are_made_continuous() -> None:
 
 
 def test_what_places_share_fades_with_their_distance() -> None:
-    shared = shared_correlation(np.array([[0.0, 0.0], [0.6, 0.8], [30.0, 0.0]]) * ALIKE_REACH)
+    shared = shared_correlation(
+        np.array([[0.0, 0.0], [0.6, 0.8], [30.0, 0.0]]) * CORRELATION_LENGTH
+    )
     assert np.diag(shared) == pytest.approx(1.0)
     assert shared[0, 1] == shared[1, 0] == pytest.approx(np.exp(-0.5))
     assert shared[0, 2] < 1e-12
