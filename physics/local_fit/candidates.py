@@ -27,6 +27,10 @@ LITTLE = 0.25
 LONG = 1.0
 """Time within which it shows that a stone was hardly moved, s."""
 
+GAP, SIDE = 2.5, 6
+"""Usual times between sightings that make a gap, and how many sightings either side of it say how
+stones went on in it."""
+
 OUT_OF_SIGHT = 0.5
 """Time out of sight, s, after which the sightings at its ends do not tell the way between them."""
 
@@ -148,7 +152,7 @@ def _approaches(
     t = t[(t >= start) & (t <= end)]
     if len(t) < 3:
         return []
-    apart = _at(b, t) - _at(a, t)
+    t, apart = _through_gaps(t, _at(b, t) - _at(a, t))
     distance = np.hypot(apart[:, 0], apart[:, 1])
     # Between two sightings they may have come closer by what they move in that time.
     noise = 3 * np.sqrt(np.mean(a.sd**2) + np.mean(b.sd**2))
@@ -230,6 +234,31 @@ def moves(path: Trace, time: float, radius: float, within: float = LITTLE) -> bo
 
 def _at(path: Trace, t: Floats) -> Floats:
     return np.column_stack([np.interp(t, path.t, path.xy[:, axis]) for axis in range(2)])
+
+
+def _through_gaps(t: Floats, apart: Floats) -> tuple[Floats, Floats]:
+    """Add to places relative to each other where ways before and after a gap in both cross.
+
+    A stone that hits another out of sight may be on the same side of it, and as far from it, at
+    both ends of the gap.
+    """
+    gaps = np.diff(t)
+    times, crossings, ranks = [], [], []
+    for k in np.flatnonzero(gaps > GAP * np.median(gaps)).tolist():
+        if not 0 < k < len(t) - 2:
+            continue
+        first, last = max(k - SIDE, 0), min(k + 1 + SIDE, len(t) - 1)
+        before = (apart[k] - apart[first]) / (t[k] - t[first])
+        after = (apart[last] - apart[k + 1]) / (t[last] - t[k + 1])
+        turn = after - before
+        since = (apart[k] - apart[k + 1] + gaps[k] * after) @ turn / max(turn @ turn, 1e-12)
+        if 0 < since < gaps[k]:
+            times.append(t[k] + since)
+            crossings.append(apart[k] + since * before)
+            ranks.append(k + 1)
+    if not ranks:
+        return t, apart
+    return np.insert(t, ranks, times), np.insert(apart, ranks, crossings, axis=0)
 
 
 def _over_gaps(a: Trace, b: Trace, t: Floats, step: Floats) -> Floats:

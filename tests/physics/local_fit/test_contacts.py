@@ -178,6 +178,26 @@ def test_hit_behind_a_broom_is_found_from_the_paths_beside_it() -> None:
     assert hit.t == pytest.approx(motion.hits[0].t, abs=0.03)
 
 
+@pytest.mark.parametrize("gap", [0.2, 0.6, 1.0])
+@pytest.mark.parametrize(("speed", "beside", "share"), [(0.6, 0.05, 0.5), (2.0, 0.12, 0.2)])
+def test_a_hit_while_both_stones_are_out_of_sight_is_where_their_ways_cross(
+    speed: float, beside: float, share: float, gap: float
+) -> None:
+    motion = hit_motion(speed, beside, before=2.0, after=2.5)
+    seen = watch(motion, np.random.default_rng(5), sd=0.002)
+    since = seen["t"] - motion.hits[0].t + share * gap
+    (hit,) = find_contacts(seen[(since < 0) | (since > gap)].reset_index(drop=True), RADIUS)
+    assert abs(hit.t - motion.hits[0].t) < max(0.01, 3 * hit.stderr_t)
+
+
+def test_a_near_miss_out_of_sight_is_no_hit() -> None:
+    starts = [Start(0.32, -2.0, 0.0, 1.25, 0.3, 1.0), Start(0.0, 0.0)]
+    motion = simulate(starts, 4.0, ice=Ice(b=0.0109), impact=Impact(), step=5e-4, keep_every=4)
+    seen = watch(motion, np.random.default_rng(5), sd=0.002)
+    passing = seen["t"].between(1.4, 2.0)
+    assert find_contacts(seen[~passing].reset_index(drop=True), RADIUS) == ()
+
+
 @pytest.mark.parametrize("until", [0.16, 0.35])
 def test_hit_of_a_stone_long_out_of_sight_is_where_the_other_starts(until: float) -> None:
     rng = np.random.default_rng(8)
