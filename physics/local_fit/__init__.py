@@ -1,1 +1,18 @@
-"""Beside the hits: pieces of paths fitted, hits and glides with what they tell."""
+"""Fit of the paths beside the hits: which hits there were, and what they and the glides tell.
+
+In the order of the work:
+
+`traces` has the sightings of each stone as arrays. `breaks` and `segment_merging` find where a path
+stops being one glide, and `segments` cuts it there and at its hits into pieces. `candidates` finds
+where two paths come near enough for a hit; of very many `candidate_pruning` keeps some. `fit` fits
+all pieces and the times of all meetings at once, held together by `constraints`; its result is a
+`shot_fit.ShotFit`. `contacts` strikes off meetings until all that are left are hits.
+
+From a fit with the hits known, `glides` measures the friction, `hits` the restitution, and `spins`
+the spins and the friction between stones, with the `noise` of the sightings as the shot shows it;
+`local` puts them together. `shared_error` and `shared_spin` are of errors that sightings, and
+stones in a hit, have in common. `finite_differences` is the method of the study, for comparison.
+
+A *sighting* is a measured place (and angle) of a stone, a *piece* a stretch of one stone's path
+without a hit, a *meeting* of two stones what may be a hit, a *contact* one that is.
+"""
