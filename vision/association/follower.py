@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from data.sheet import Stone
 from vision.association.expected import ON_COURSE, SETTLED, look_beside, look_on_course
-from vision.association.lead import Lead
+from vision.association.lead import DOUBTFUL, Lead
 from vision.association.still import portraits, unchanged
 from vision.detection.appearance import Appearance
 from vision.detection.rays import Look
@@ -38,12 +38,6 @@ Foreseen = tuple[Place, Sighting | None]
 
 STILL = 0.03
 """How far from where it rests a stone may be seen, in radii."""
-
-DOUBTFUL = 0.85
-"""Share of a stone's usual evidence below which it may rather be beside where it is expected, as
-after a hit, and of what shows there, below which it is: on paint of its cap's colour, one that has
-been pushed 25 mm aside still shows 0.6 to 0.75 of it where it was; drawn aside by as much along
-paint as light as granite, 0.6 to 0.8."""
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from math import hypot
 
 from vision.association.still import Portrait
@@ -25,6 +26,12 @@ straight, and a touch may change it by little."""
 NEWEST = 0.2
 """Share of the last sighting in the evidence that is usual for a stone: one that goes astray bit by
 bit, along the edge of paint as light as its granite, still falls below that."""
+
+DOUBTFUL = 0.85
+"""Share of a stone's usual evidence below which it may rather be beside where it is expected, as
+after a hit, and of what shows there, below which it is: on paint of its cap's colour, one that has
+been pushed 25 mm aside still shows 0.6 to 0.75 of it where it was; drawn aside by as much along
+paint as light as granite, 0.6 to 0.8."""
 
 TURNED = 0.06
 """A cap that has turned by more spins on the spot, rad."""
@@ -49,7 +56,7 @@ class Lead:
     facing : Kept of ndarray, optional
         How its cap looked when it came there (`vision.spin.handle.cap_spectrum`).
     steady : int
-        For how many sightings it has neither left nor turned.
+        For how many clear sightings it has neither left nor turned.
     portrait : Portrait, optional
         Its picture when it was last measured, if it rests.
     along : int
@@ -72,6 +79,11 @@ class Lead:
         """Lead to a stone of which nothing is known but one sighting."""
         place = sighting.x, sighting.y
         return cls(place, (0.0, 0.0), t, place, sighting.score, facing=sighting.spectrum)
+
+    def if_rested(self, others: Iterable[Lead]) -> Lead:
+        """Lead to a stone at rest if one of others, which began at its place, says that it is."""
+        rested = any(lead.rests and lead.anchor == self.anchor for lead in others)
+        return replace(self, steady=STEADY) if rested else self
 
     @property
     def rests(self) -> bool:
@@ -123,7 +135,9 @@ class Lead:
             velocity = vx + by_speed * away_x / step, vy + by_speed * away_y / step
         left = hypot(x - self.anchor[0], y - self.anchor[1])
         score = self.score + NEWEST * (sighting.score - self.score)
-        if left >= still or self._turned(sighting):
+        # What covers a stone by half draws it aside, or shows it turned.
+        clear = sighting.score >= DOUBTFUL * self.score
+        if clear and (left >= still or self._turned(sighting)):
             return Lead(place, velocity, t, (x, y), score, facing=sighting.spectrum, along=along)
         return Lead(
             place,
@@ -132,7 +146,7 @@ class Lead:
             self.anchor,
             score,
             facing=sighting.spectrum if self.facing is None else self.facing,
-            steady=self.steady + 1,
+            steady=self.steady + clear,
             portrait=None if sighting.measured else self.portrait,
             along=along,
         )

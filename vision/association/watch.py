@@ -56,7 +56,8 @@ class Pace:
         Pictures that are kept to learn from and to follow stones back through, fewer if they are
         very large; when so many are new, the last of them is searched.
     hurry : int
-        The same while a stone that rested is hidden: hit unseen, it may show for a moment only.
+        The same while a stone that rested is hidden: hit unseen, it may show for a moment only;
+        and while none is seen of those that are known: they may come at any time.
     lesson : int
         Each how manieth of them is looked at to learn what the stones look like.
     doubt : int
@@ -211,7 +212,7 @@ class Watch:
         while len(self._recent) > self._most:
             self._put_aside(self._recent.popleft())
         self._since += len(views)
-        if self._since >= (self._pace.hurry if self._hidden(views[-1]) else self._most):
+        if self._since >= (self._pace.hurry if self._misses(views[-1]) else self._most):
             self._search_for_new(views[-1])
 
     def _put_aside(self, view: StoneView) -> None:
@@ -219,8 +220,10 @@ class Watch:
         view.put_aside(self._shelf)
         self._seen[view.frame.index] = view.frame.t, Rows(view.sightings)
 
-    def _hidden(self, view: StoneView) -> bool:
-        """Whether a view shows the place of a stone that is missed there."""
+    def _misses(self, view: StoneView) -> bool:
+        """Whether none of the known stones is followed, or a view shows where one is missed."""
+        if not self._leads:
+            return self._knows
         missed = np.array([lead.place for lead in self._leads if lead.missed]).reshape(-1, 2)
         seen = view.camera.project(missed, self.disc.cap_height)
         return bool(np.any(np.all((seen > 0) & (seen < view.camera.size), axis=1)))
@@ -232,9 +235,10 @@ class Watch:
         if self._look_for_colours(view):
             fresh += self._find(view)
         leads = [Lead.to(sighting, view.frame.t) for sighting in fresh]
-        self._leads += leads
         if self._knows:
-            self._follower.follow([*self._recent][-2::-1], leads)
+            before = self._follower.follow([*self._recent][-2::-1], leads)
+            leads = [lead.if_rested(before) for lead in leads]
+        self._leads += leads
         if self.appearance is not None:
             measure_again(not_searched, self.appearance, self.disc, self._search)
 

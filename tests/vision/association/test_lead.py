@@ -57,6 +57,23 @@ def test_a_stone_that_stays_rests_until_it_leaves() -> None:
     assert not gone.rests and gone.anchor == (0.3, 0.21)
 
 
+def test_what_is_half_covered_tells_not_that_a_stone_has_left_nor_that_it_rests() -> None:
+    lead = followed([(0.3, 0.2)] * (STEADY + 1))
+    aside = sighting((0.3, 0.21))
+    covered = aside._replace(score=0.8 * aside.score)
+    half = lead.on(covered, 1.0, NEAR, STILL)
+    assert half.rests and half.anchor == (0.3, 0.2) and half.steady == lead.steady
+    assert not lead.on(aside, 1.0, NEAR, STILL).rests
+
+
+def test_a_stone_found_anew_rests_if_it_did_before() -> None:
+    new = Lead.to(sighting((0.3, 0.2)), 1.0)
+    back = [followed([(0.3, 0.2)] * (STEADY + 1), -0.04), followed([(0.3, 0.2), (0.3, 0.3)])]
+    assert new.if_rested(back).rests
+    assert not new.if_rested(back[1:]).rests
+    assert not Lead.to(sighting((0.3, 0.5)), 1.0).if_rested(back).rests
+
+
 def test_a_cap_that_turns_on_the_spot_does_not_rest() -> None:
     rng = np.random.default_rng(3)
     cap = rng.normal(0, 1, (17, 4, 3)) + 1j * rng.normal(0, 1, (17, 4, 3))

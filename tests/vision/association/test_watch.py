@@ -180,8 +180,34 @@ def test_stones_out_of_the_picture_are_not_hidden() -> None:
     for place in ((0.3, 0.2), (9.0, 0.2)):
         lead = Lead(place, (0.0, 0.0), 0.0, place, 1.0, missed=True)
         watch._leads = [lead]
-        hidden.append(watch._hidden(view))
+        hidden.append(watch._misses(view))
     assert hidden == [True, False]
+
+
+def test_stones_that_show_briefly_after_a_bare_beginning_are_seen() -> None:
+    bare, shown, left = picture([]), picture(AT_REST), picture(AT_REST[1:])
+    watch, camera = Watch(), camera_of(CAMERA, scene_of(AT_REST))
+    for index in range(40):
+        image = bare if index < 10 else shown if index < 27 else left
+        watch.look(Frame(index, index / 25, image), camera)
+    counts = [len(sightings) for _, _, sightings in watch.finish()]
+    assert counts == [0] * 10 + [3] * 17 + [2] * 13
+
+
+def test_a_stone_hidden_soon_after_it_was_found_is_looked_for_where_it_went() -> None:
+    # All are found in the picture 31, looking back to 8, and the first is hidden from 33 on.
+    hit = [(-0.2, -0.5, RED), *AT_REST[1:]]
+    pictures = {
+        range(8): picture(AT_REST[1:]), range(8, 33): picture(AT_REST),
+        range(33, 44): picture(AT_REST[1:]), range(44, 54): picture(hit),
+    }  # fmt: skip
+    watch, camera = Watch(), camera_of(CAMERA, scene_of(AT_REST))
+    for index in range(80):
+        image = next((p for some, p in pictures.items() if index in some), None)
+        image = picture(AT_REST[1:]) if image is None else image
+        watch.look(Frame(index, index / 25, image), camera)
+    counts = [len(sightings) for _, _, sightings in watch.finish()]
+    assert counts == [2] * 8 + [3] * 25 + [2] * 11 + [3] * 10 + [2] * 26
 
 
 @pytest.mark.parametrize("jump", [0.02, 0.025, 0.03, 0.13])
