@@ -61,6 +61,15 @@ def test_a_distance_that_is_off_has_less_of_a_say() -> None:
     assert wide == pytest.approx(sd * np.sqrt(1 + 3**2))
 
 
+def test_paths_join_however_far_they_are_apart() -> None:
+    theta = unknowns()
+    apart = theta.copy()
+    apart[6] += 0.5  # the path of the first stone after the hit, in x
+    _, values, sd = constraints(apart)
+    assert values[1] == pytest.approx(0.5)
+    assert np.array_equal(sd[:5], constraints(theta)[2][:5])
+
+
 @pytest.mark.parametrize("speed", [(0.0, 2.0), (-1.2, 1.6)])
 def test_ice_slows_against_the_motion(speed: tuple[float, float]) -> None:
     precision, mean = acceleration_prior(np.array(speed), Deceleration(0.1, 0.05, 0.02))

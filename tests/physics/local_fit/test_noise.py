@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from physics.filter.stretch import ANGLE_MEMORY, PLACE_MEMORY
 from physics.local_fit.contacts import cut_all, find_contacts
 from physics.local_fit.fit import fit_shot
-from physics.local_fit.noise import Noise, noises
+from physics.local_fit.noise import Noise, _square, noises
 from physics.local_fit.shot_fit import Deceleration
 from physics.local_fit.traces import traces
 from tests.physics.watch import RADIUS, hit_motion, lasting, watch
@@ -119,3 +119,9 @@ def test_what_a_few_sightings_are_much_worse_by_is_anew_in_them() -> None:
         assert np.all(after.slow[:3, :2] <= 2.001 * usually)
         assert np.all(after.white[:3, :2] > 5 * before[str(name)].white[:3, :2])
         np.testing.assert_allclose(after.slow[3:, :2], np.tile(usually, (len(group) - 3, 1)))
+
+
+def test_a_few_sightings_far_off_hardly_widen_the_others() -> None:
+    scatter = np.random.default_rng(7).normal(0, 1, (1000, 1))
+    scatter[::50] = 30.0
+    assert 0.9 < _square(scatter) < 1.3

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from physics.local_fit.shared_error import shared_error
+from physics.local_fit.shared_error import _shown, shared_error
 from physics.local_fit.traces import CORRELATION_LENGTH, Trace
 
 Floats = NDArray[np.float64]
@@ -68,6 +68,17 @@ def test_a_path_so_short_that_nothing_of_the_field_is_left_has_the_errors_that_a
     errors, variances = map(np.array, zip(*each, strict=True))
     ratio = np.sqrt(variances.mean(axis=0) / np.mean(errors**2, axis=0))
     assert np.all((ratio > 0.8) & (ratio < 1.5))
+
+
+@pytest.mark.parametrize(
+    ("noise", "low", "high"), [(0.0, 3.5, 4.5), (1.0, 2.0, 3.0), (1e6, 0.9, 1.1)]
+)
+def test_noise_hides_how_large_a_field_is(noise: float, low: float, high: float) -> None:
+    """Of a field twice as large as stated, known alone, beside noise of its size, and under it."""
+    rng = np.random.default_rng(4)
+    left, noises = np.ones((2000, 2)), np.full((2000, 2), noise)
+    off = rng.normal(size=left.shape) * np.sqrt(4 * left + noises)
+    assert low < _shown(off, left, noises) < high
 
 
 def test_places_that_share_nothing_add_nothing() -> None:

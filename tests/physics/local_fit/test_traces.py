@@ -32,6 +32,14 @@ def test_white_residuals_keep_their_size_on_a_parabola() -> None:
     assert local_residuals(t[:4], values[:4]).shape == (0, 1)
 
 
+def test_a_gap_is_as_long_as_the_stone_was_not_seen_at_a_time() -> None:
+    seen = watch(hit_motion(), np.random.default_rng(55))
+    hidden = seen[(seen["t"] < 0.5) | (seen["t"] > 0.9)]
+    trace = traces(hidden)["A"]
+    assert trace.gap(0.7) == pytest.approx(0.4, abs=2 / 30)
+    assert trace.gap(0.3) == pytest.approx(1 / 30)
+
+
 def test_angles_are_made_continuous() -> None:
     seen = watch(hit_motion(), np.random.default_rng(54))
     turning = seen["stone"] == "A"
