@@ -63,3 +63,12 @@ def test_a_stone_at_rest_has_no_breaks_and_a_small_nudge_is_one() -> None:
         assert breaks(t, xy, sd) == []
         xy[150:, 1] += 0.006
         assert breaks(t, xy, sd) == pytest.approx([t[150]], abs=0.2)
+
+
+def test_a_stone_at_rest_under_a_camera_that_wanders_has_no_breaks() -> None:
+    """Its places go 1 mm to and fro in a minute, by many times what they are said to err by."""
+    rng, t = np.random.default_rng(0), np.arange(3600) / 60
+    wander = np.convolve(rng.normal(0, 3e-5, len(t)), 0.998 ** np.arange(len(t)))[: len(t)]
+    xy = np.stack([wander, wander[::-1]], axis=1) + rng.normal(0, 1e-4, (len(t), 2))
+    assert np.abs(xy).max() < 0.002
+    assert breaks(t, xy, np.full((len(t), 2), 1.5e-4)) == []

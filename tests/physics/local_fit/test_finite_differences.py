@@ -1,13 +1,32 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from data.results import Collision, Estimate
 from physics.estimate import estimate
 from physics.local_fit.contacts import find_contacts
+from physics.local_fit.finite_differences import by_finite_differences
+from physics.local_fit.traces import traces
 from tests.physics.watch import RADIUS, hit_motion, watch
 
 E = 0.5
+
+
+def test_stones_that_part_or_lie_still_tell_nothing() -> None:
+    motion = hit_motion(1.5, 0.0, before=1.0, after=1.0)
+    known = traces(watch(motion, np.random.default_rng(5), sd=0.001))
+    (contact,) = find_contacts(watch(motion, np.random.default_rng(5), sd=0.001), RADIUS)
+    late = Collision(
+        contact.t + 0.6, 0.0, contact.stones, contact.normal, None, None, {}, {}
+    )  # fmt: skip
+    assert by_finite_differences(known, [late], {}).hits == (Estimate(),)
+    still = {"B": replace(known["B"], xy=np.zeros_like(known["B"].xy))}
+    early = replace(late, t=contact.t)
+    found = by_finite_differences({**known, **still}, [early], {"B": 2.0})
+    assert found.friction == Estimate()
 
 
 def test_the_method_of_the_study_beside_ours() -> None:
