@@ -126,6 +126,9 @@ class Watch:
         view = StoneView(frame, camera, before=self._before)
         self._before = camera
         self._waiting.append(view)
+        # The next search goes back no farther: no more pictures than that are held at all.
+        while self._recent and len(self._recent) + len(self._waiting) > self._most:
+            self._put_aside(self._recent.popleft())
         self._seen[frame.index] = frame.t, view.sightings
         if len(self._waiting) >= (self._patience.block if self._knows else self._most):
             self._catch_up()
@@ -209,8 +212,6 @@ class Watch:
         if self._knows:
             self._leads = self._follower.follow(views, self._leads)
         self._recent.extend(views)
-        while len(self._recent) > self._most:
-            self._put_aside(self._recent.popleft())
         self._since += len(views)
         if self._since >= (self._pace.hurry if self._misses(views[-1]) else self._most):
             self._search_for_new(views[-1])

@@ -93,7 +93,7 @@ class Bands:
     def of(cls, rims: Sequence[Rim], rays: Rays) -> Bands:
         """Cut them out of the falls along the rays."""
         step = float(rays.radius[1] - rays.radius[0])
-        half = int(np.clip(round(_EDGE_WIDTH / step), 2, 4))
+        half = min(max(round(_EDGE_WIDTH / step), 2), 4)
         reach = [rim.radius + 4 * rim.width * np.array([-1, 1]) for rim in rims]
         ranks = [np.searchsorted(rays.radius, ends).tolist() for ends in reach]
         steps = max(last - first for first, last in ranks)

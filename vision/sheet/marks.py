@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,7 +79,7 @@ class Evidence:
         seen = np.isfinite(self.crossing)
         return _mean_profile(self.rim.T[seen], self.crossing[seen])
 
-    @property
+    @cached_property
     def steepness(self) -> float:
         """Usual slope of the profiles across the 12-ft edge, per px; 0 where none is seen."""
         seen = self.slope[np.isfinite(self.slope)]
