@@ -168,9 +168,8 @@ def test_the_filter_is_no_surer_of_a_clip_than_it_may_be() -> None:
         return filtered(stretch)
 
     tracks = smooth(seen, find_contacts(seen, STONE.radius), radius=STONE.radius, run=spy)
-    square = (
-        np.concatenate([forward(s).innovations[6:] for s in stretches if not s.rest.any()]) ** 2
-    )
+    moving = [forward(s) for s in stretches if not s.rest.any()]
+    square = np.concatenate([each.normalised_innovations[6:] for each in moving]) ** 2
     for axis in range(3):
         found = square[np.isfinite(square[:, axis]), axis]
         assert len(found) > 100
