@@ -31,8 +31,8 @@ MOST_PUSH = 3.0
 SHARE = 0.15
 """Smallest part of the other's change of velocity that a stone must show in a hit."""
 
-FURTHER = 4
-"""How often hits that lie at the bounds of where they may are sought from there on."""
+MOST_RESTARTS = 4
+"""How often a search goes on from where hits lie at the bounds of their times."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
     known = traces(sightings)
     meetings = prune_candidates(candidates(known, radius), known)
     cuts: dict[str, list[Piece]] = {}
-    ordered, beyond = False, FURTHER
+    ordered, restarts = False, MOST_RESTARTS
     while meetings:
         pieces, cuts = cut_all(known, meetings, radius, cuts)
         fit = fit_shot(known, pieces, meetings, radius, deceleration=Deceleration(0.0, 0.5, 0.5))
@@ -89,14 +89,14 @@ def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
             continue
         evidence = _once([_evidence(fit, k, known, radius) for k in range(len(meetings))], fit)
         weakest = min(range(len(meetings)), key=evidence.__getitem__)
-        told = evidence[weakest].hit >= SIGNIFICANT
-        late = (_at_bounds(fit) if told else _ended(fit, weakest)) if beyond else set()
-        if told and not late:
-            return _contacts(fit)
-        if late:
-            meetings, beyond = _at_times(fit), beyond - 1
-            cuts = {name: run for name, run in cuts.items() if name not in late}
+        significant = evidence[weakest].hit >= SIGNIFICANT
+        misplaced = _at_bounds(fit) if significant else _ended(fit, weakest)
+        if misplaced and restarts:
+            meetings, restarts = _at_times(fit), restarts - 1
+            cuts = {name: run for name, run in cuts.items() if name not in misplaced}
             continue
+        if significant:
+            return _contacts(fit)
         struck = meetings[weakest]
         meetings = [meeting for meeting in meetings if meeting is not struck]
         cuts = {name: run for name, run in cuts.items() if name not in struck.stones}
@@ -105,7 +105,7 @@ def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
 
 
 def _displaced(fit: ShotFit, k: int, known: Mapping[str, Trace], radius: float) -> bool:
-    """Whether a stone of meeting k that rested, and has no other, lies elsewhere afterwards."""
+    """Whether a stone that rested, and has no meeting but k, lies elsewhere afterwards."""
     return any(
         fit.pieces[fit.sides[k, stone][0]].rest
         and sum(stone in meeting.stones for meeting in fit.meetings) == 1
@@ -127,7 +127,7 @@ def _at_times(fit: ShotFit) -> list[Meeting]:
 
 
 def _at_bounds(fit: ShotFit) -> set[str]:
-    """Stones of the meetings that lie as far from where they were sought as they may."""
+    """Stones of the meetings whose times lie at their bounds."""
     moved = [abs(fit.time(k) - m.t) / m.looseness for k, m in enumerate(fit.meetings)]
     return {s for m, far in zip(fit.meetings, moved, strict=True) if far > 2.99 for s in m.stones}
 
@@ -135,8 +135,8 @@ def _at_bounds(fit: ShotFit) -> set[str]:
 def _ended(fit: ShotFit, k: int) -> set[str]:
     """Stones of meeting k if the fit has one at rest by then on the path that opens with it.
 
-    Who was hit moves. Of a stone at rest neither sightings nor momentum tell how fast it was, so
-    that its error is without bounds: the fit set out too far from where the hit is.
+    A stone that was hit moves. Of one at rest neither sightings nor momentum tell how fast it was,
+    so that its error has no bounds: the first guess of the time was too far off.
     """
     stones = fit.meetings[k].stones
     at_rest = any(fit.stop(fit.sides[k, stone][1]) <= fit.time(k) for stone in stones)
@@ -215,10 +215,10 @@ def _evidence(fit: ShotFit, k: int, known: Mapping[str, Trace], radius: float) -
 
 
 def _once(evidence: Sequence[_Evidence], fit: ShotFit) -> list[_Evidence]:
-    """Let one hit be one meeting: of two without anything between them the weaker is none.
+    """Of two meetings of a pair without anything between them, leave no evidence for the weaker.
 
     Stones that hit each other go apart, and ice does not bring them together again: before they
-    meet once more another hit, or a break, changes the way of either.
+    hit once more, another hit or a break changes the motion of one of them.
     """
     out = list(evidence)
     for k, meeting in enumerate(fit.meetings):
