@@ -13,11 +13,13 @@ from physics.whole_shot.whole_fit import GlobalFit
 Floats = NDArray[np.float64]
 
 
-def centred(trace: Trace, residuals: Floats, noise: float) -> tuple[Floats, Floats]:
+def centred(
+    trace: Trace, residuals: Floats, noise: float, share: float = 1.0
+) -> tuple[Floats, Floats]:
     """Take out of residuals what the stone's cap is beside its centre by, as far as it shows.
 
-    The cap stays where it is in the stone's frame. It is known to be in the middle to what
-    places are stated to share, `sd_place`, on either axis.
+    The cap stays where it is in the stone's frame. It is known to be in the middle to a share of
+    what places are stated to share, `sd_place`, on either axis.
 
     Parameters
     ----------
@@ -27,6 +29,8 @@ def centred(trace: Trace, residuals: Floats, noise: float) -> tuple[Floats, Floa
         Sighted less fitted places over their standard deviations.
     noise : float
         Factor on the stated variances of the places.
+    share : float
+        Of `sd_place`.
 
     Returns
     -------
@@ -35,7 +39,7 @@ def centred(trace: Trace, residuals: Floats, noise: float) -> tuple[Floats, Floa
     beside : (2,) array
         By how much the cap is beside the centre, in its own standard deviations: a residual too.
     """
-    size = float(np.median(trace.sd_place))
+    size = share * float(np.median(trace.sd_place))
     if not size or not np.isfinite(trace.theta).any():
         return residuals, np.zeros(2)
     rows = size * _turns(trace, trace.t) / trace.sd[:, :, None]
@@ -54,7 +58,8 @@ def centred_sightings(sightings: pd.DataFrame, fit: GlobalFit) -> pd.DataFrame:
         if not np.isfinite(trace.theta).any():
             continue
         own = out["stone"] == stone
-        beside = np.median(trace.sd_place) * centred(trace, run, fit.inflation)[1]
+        size = shot.beside * np.median(trace.sd_place)
+        beside = size * centred(trace, run, fit.inflation, shot.beside)[1]
         out.loc[own, ["x", "y"]] -= _turns(trace, out.loc[own, "t"].to_numpy(float)) @ beside
     return out
 

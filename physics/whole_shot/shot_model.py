@@ -104,6 +104,8 @@ class Watched:
         Of the discs, m.
     masses : mapping
         Stone to mass in any unit; equal where absent.
+    beside : float
+        By what share of what places share, `sd_place`, caps may be beside the centres.
     ice : callable
         From values of the unknowns to the law of the ice: `ice` or `penner`.
     """
@@ -116,6 +118,7 @@ class Watched:
     times: tuple[float, ...] = ()
     radius: float = STONE.radius
     masses: Mapping[str, float] = field(default_factory=dict)
+    beside: float = 1.0
     ice: Callable[[Mapping[str, float]], IceLaw] = ice
 
     @property

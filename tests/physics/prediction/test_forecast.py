@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+import physics.prediction.forecast
 from data.results import Estimate, Prediction
 from physics.estimate import estimate
 from physics.kalman import smooth
@@ -189,6 +190,20 @@ def test_where_nothing_tells_laws_apart_the_plainest_are_predicted_with() -> Non
     for stone, error in sure.rest_error.items():
         assert unsure.rest_error[stone] == pytest.approx(error, abs=1e-3)
         assert (unsure.rest_sd[stone] or 0.0) > 2 * (sure.rest_sd[stone] or 0.0)
+
+
+def test_caps_beside_their_centres_leave_aims_open_by_half_of_what_places_share(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    motion = hit_motion(1.3, 0.08, before=0.7, after=1.5)
+    seen = watch(motion, np.random.default_rng(9), sd=0.0003)
+    seen["sd_place_x"] = seen["sd_place_y"] = 0.002
+    half = forecast(seen, even(known()))["frictional"]
+    monkeypatch.setattr(physics.prediction.forecast, "BESIDE", 1.0)
+    whole = forecast(seen, even(known()))["frictional"]
+    for stone, error in half.rest_error.items():
+        sd = half.rest_sd[stone] or 0.0
+        assert (error or 1.0) < 2 * sd < 1.6 * (whole.rest_sd[stone] or 0.0)
 
 
 SMALL = 0.2

@@ -50,6 +50,15 @@ def test_it_is_known_beforehand_to_what_places_share() -> None:
     assert centred(seen, residuals / 10, noise)[1] == pytest.approx([0.15 / 2, 0.0], abs=1e-9)
 
 
+def test_a_share_of_what_places_share_is_as_if_they_shared_less() -> None:
+    residuals = wobble(trace(0.2), 0.003, -0.001)
+    left, beside = centred(trace(0.2), residuals, 20.0, 0.25)
+    expected = centred(trace(0.2, place=PLACE / 4), residuals, 20.0)
+    assert left == pytest.approx(expected[0])
+    assert beside == pytest.approx(expected[1])
+    assert beside != pytest.approx(centred(trace(0.2), residuals, 20.0)[1], rel=0.1)
+
+
 @pytest.mark.parametrize("seen", [trace(5.0, place=0.0), trace(5.0, known=False)])
 def test_nothing_is_taken_out_without_angles_or_a_stated_error(seen: Trace) -> None:
     residuals = np.random.default_rng(1).normal(size=(COUNT, 2))
