@@ -129,7 +129,9 @@ def test_quality_falls_when_the_fit_is_bad() -> None:
     assert np.trace(bad.place_cov((1.0, 1.0))) > 4 * np.trace(good.place_cov((1.0, 1.0)))
 
 
-@pytest.mark.parametrize(("columns", "told"), [(0, False), (20, False), (150, True), (-150, True)])
+@pytest.mark.parametrize(
+    ("columns", "told"), [(0, False), (20, False), (80, True), (150, True), (-150, True)]
+)
 def test_a_picture_cropped_off_its_middle_is_told_and_less_trusted(
     columns: int, told: bool
 ) -> None:
