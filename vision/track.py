@@ -23,7 +23,6 @@ from vision.detection.patch import HANDLE_HEIGHT_SD, handle_radii, is_plain
 from vision.detection.roundness import edge_errors
 from vision.detection.smeared import widened
 from vision.detection.steady import steadied
-from vision.detection.stones import FOLLOWING, Search
 from vision.film.clip import Clip
 from vision.optics.camera import Camera
 from vision.optics.cameras import Cameras
@@ -73,7 +72,6 @@ def track_stones(
     *,
     disc: Stone = STONE,
     progress: Progress = no_progress,
-    search: Search = FOLLOWING,
 ) -> StoneTracks:
     """Find, follow and name the stones of a clip and measure how they are turned.
 
@@ -87,8 +85,6 @@ def track_stones(
         Size of the stones, or `plain_disc(radius)` for other discs.
     progress : Progress
         Told how far it is.
-    search : Search
-        Where stones are sought and what they must show.
 
     Returns
     -------
@@ -96,7 +92,7 @@ def track_stones(
         Possibly without any stone; then a warning says so.
     """
     by_frame = {camera.frame: camera for camera in cameras}
-    watch = Watch(disc, search)
+    watch = Watch(disc)
     for done, frame in enumerate(clip):
         if frame.index in by_frame:
             watch.look(frame, by_frame[frame.index])
