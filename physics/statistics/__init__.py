@@ -1,1 +1,1 @@
-"""What fits share, and what many values say together."""
+"""Statistics that several fits share, and means of many values."""
