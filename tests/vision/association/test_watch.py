@@ -197,14 +197,10 @@ def test_stones_that_show_briefly_after_a_bare_beginning_are_seen() -> None:
 def test_a_stone_hidden_soon_after_it_was_found_is_looked_for_where_it_went() -> None:
     # All are found in the picture 31, looking back to 8, and the first is hidden from 33 on.
     hit = [(-0.2, -0.5, RED), *AT_REST[1:]]
-    pictures = {
-        range(8): picture(AT_REST[1:]), range(8, 33): picture(AT_REST),
-        range(33, 44): picture(AT_REST[1:]), range(44, 54): picture(hit),
-    }  # fmt: skip
+    rest, without, moved = picture(AT_REST), picture(AT_REST[1:]), picture(hit)
+    images = [without] * 8 + [rest] * 25 + [without] * 11 + [moved] * 10 + [without] * 26
     watch, camera = Watch(), camera_of(CAMERA, scene_of(AT_REST))
-    for index in range(80):
-        image = next((p for some, p in pictures.items() if index in some), None)
-        image = picture(AT_REST[1:]) if image is None else image
+    for index, image in enumerate(images):
         watch.look(Frame(index, index / 25, image), camera)
     counts = [len(sightings) for _, _, sightings in watch.finish()]
     assert counts == [2] * 8 + [3] * 25 + [2] * 11 + [3] * 10 + [2] * 26
