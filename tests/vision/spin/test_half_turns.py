@@ -66,6 +66,9 @@ def test_what_stones_may_turn_is_left() -> None:
     times, late = beside_a_gap(20, 0.7)
     after_long = np.where(late, 1.8 + 4.3 * (times - 0.7), 0.0)  # a hit spun it out of sight
     assert np.array_equal(unfolded(times, after_long), after_long)
+    few, _ = beside_a_gap(3, 4.0)
+    noisy = -0.8 * few + np.array([-0.03, 0.0, 0.03] * 2)  # 3 rad astray over so long
+    assert np.array_equal(unfolded(few, noisy), noisy)
     once, later = beside_a_gap(1, 0.7)  # one picture on either side tells no spin
     assert np.array_equal(unfolded(once, 3.0 * later), 3.0 * later)
     fast = 9.0 * np.arange(40) / 5  # steps of more than a quarter turn, all alike
