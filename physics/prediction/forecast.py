@@ -38,10 +38,10 @@ MOST = {"restitution": 1.0, "stone_friction": 1.0, "size": 1.3}
 """Bounds of what is drawn of the laws of hits, of which nothing is seen before one."""
 
 BESIDE = 0.5
-"""By what share of what places share caps may be beside the centres before a hit. There stones turn
-by little, and a cap aside may pass for an aim: with all of it aims of 35 clips were 1.6 mm off in
-the mean of squares, 0.49 of what is stated, with half 1.5 mm and 0.7. A whole shot tells where its
-caps are."""
+"""How far caps may be beside the centres of their stones, as a part of the error that all places of
+a stone have in common, where only what comes before a hit is fitted. There stones turn by little,
+and a cap aside may pass for an aim: with all of it aims of 35 clips were 1.6 mm off (r.m.s.), 0.49
+of what is stated, with half 1.5 mm and 0.7. A whole shot tells where its caps are."""
 
 UNSURE = 3.0
 """Odds up to which other laws of the ice are no reason to give up plainer ones."""

@@ -18,8 +18,8 @@ def centred(
 ) -> tuple[Floats, Floats]:
     """Take out of residuals what the stone's cap is beside its centre by, as far as it shows.
 
-    The cap stays where it is in the stone's frame. It is known to be in the middle to a share of
-    what places are stated to share, `sd_place`, on either axis.
+    The cap stays where it is in the stone's frame. It is known to be in the middle to `sd_place`,
+    the error that all its places have in common, or to a part of that, on either axis.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ def centred(
     noise : float
         Factor on the stated variances of the places.
     share : float
-        Of `sd_place`.
+        What part of `sd_place`.
 
     Returns
     -------

@@ -105,7 +105,8 @@ class Watched:
     masses : mapping
         Stone to mass in any unit; equal where absent.
     beside : float
-        By what share of what places share, `sd_place`, caps may be beside the centres.
+        How far caps may be beside the centres of their stones, as a part of `sd_place`, the error
+        that all places of a stone have in common.
     ice : callable
         From values of the unknowns to the law of the ice: `ice` or `penner`.
     """

@@ -48,6 +48,13 @@ def test_a_new_course_is_taken_at_once() -> None:
     np.testing.assert_allclose(lead.velocity, (2.5, 0.0), atol=0.05)
 
 
+def test_the_place_of_a_stone_that_stays_is_told_by_all_that_was_seen_of_it_of_late() -> None:
+    lead = followed([(0.3, 0.2)] * (MEMORY - 1) + [(0.303, 0.2)])
+    at = np.arange(MEMORY)
+    line = np.polyfit(at, 0.003 * (at == at[-1]), 1)
+    assert lead.place == pytest.approx((0.3 + np.polyval(line, at[-1]), 0.2))
+
+
 def test_a_stone_that_stays_rests_until_it_leaves() -> None:
     places = [(0.3, 0.2)] * STEADY
     assert not followed(places).rests
