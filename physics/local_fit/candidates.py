@@ -252,8 +252,9 @@ def _through_gaps(t: Floats, apart: Floats) -> tuple[Floats, Floats]:
         after = (apart[last] - apart[k + 1]) / (t[last] - t[k + 1])
         turn = after - before
         since = (apart[k] - apart[k + 1] + gaps[k] * after) @ turn / max(turn @ turn, 1e-12)
-        if 0 < since < gaps[k]:
-            times.append(t[k] + since)
+        time = t[k] + since
+        if t[k] < time < t[k + 1]:
+            times.append(time)
             crossings.append(apart[k] + since * before)
             ranks.append(k + 1)
     if not ranks:

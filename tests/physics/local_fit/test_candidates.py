@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from physics.local_fit.candidates import candidates
+from physics.local_fit.candidates import _through_gaps, candidates
 from physics.local_fit.traces import Trace, traces
 from tests.physics.watch import RADIUS, hit_motion, watch
 from tests.synthetic.physics import Start
@@ -31,6 +31,29 @@ def test_paths_within_reach_are_candidates_at_their_nearest(beside: float, count
     for meeting in found:
         assert meeting.stones == ("A", "B")
         assert meeting.t == pytest.approx(0.5, abs=0.04)
+
+
+@pytest.mark.parametrize(("turned", "count"), [(1.1, 1), (0.7, 0), (1.6, 0)])
+def test_ways_that_cross_beside_a_gap_do_not_cross_in_it(turned: float, count: int) -> None:
+    every = np.arange(0, 2.5, 0.04)
+    t = every[(every < 1.0) | (every > 1.3)]
+    late = np.maximum(t - turned, 0.0)
+    apart = np.column_stack([0.3 + 0.5 * late, 0.8 - 0.7 * t + 1.2 * late])
+    times, places = _through_gaps(t, apart)
+    assert len(times) == len(places) == len(t) + count
+    assert np.all(np.diff(times) > 0)
+    if count:
+        (rank,) = np.flatnonzero(~np.isin(times, t))
+        assert times[rank] == pytest.approx(turned)
+        assert places[rank] == pytest.approx((0.3, 0.8 - 0.7 * turned))
+
+
+def test_places_too_few_or_at_the_ends_tell_no_way_through_a_gap() -> None:
+    for t in ([0.0, 0.04, 0.08], [0.0, 1.0, 1.04, 1.08], [0.0, 0.04, 0.08, 1.0]):
+        apart = np.column_stack([t, np.square(t)])
+        times, places = _through_gaps(np.array(t), apart)
+        assert times.tolist() == t
+        assert places is apart
 
 
 def test_stones_that_rest_side_by_side_never_meet() -> None:
