@@ -37,8 +37,8 @@ DRAWS = 48
 MOST = {"restitution": 1.0, "stone_friction": 1.0, "size": 1.3}
 """Bounds of what is drawn of the laws of hits, of which nothing is seen before one."""
 
-BESIDE = 0.5
-"""How far caps may be beside the centres of their stones, as a part of the error that all places of
+OFF_CENTRE = 0.5
+"""How far caps may be off the centres of their stones, as a part of the error that all places of
 a stone have in common, where only what comes before a hit is fitted. There stones turn by little,
 and a cap aside may pass for an aim: with all of it aims of 35 clips were 1.6 mm off (r.m.s.), 0.49
 of what is stated, with half 1.5 mm and 0.7. A whole shot tells where its caps are."""
@@ -142,7 +142,7 @@ def _before(
     held = {
         name: law.value or 0.0 for name, law in vars(laws).items() if name in MOST or not law.stderr
     }
-    return fit_with_chosen_laws(replace(watched, beside=BESIDE), held)
+    return fit_with_chosen_laws(replace(watched, off_centre=OFF_CENTRE), held)
 
 
 def _scored(

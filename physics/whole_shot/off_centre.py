@@ -58,8 +58,8 @@ def centred_sightings(sightings: pd.DataFrame, fit: GlobalFit) -> pd.DataFrame:
         if not np.isfinite(trace.theta).any():
             continue
         own = out["stone"] == stone
-        size = shot.beside * np.median(trace.sd_place)
-        beside = size * centred(trace, run, fit.inflation, shot.beside)[1]
+        size = shot.off_centre * np.median(trace.sd_place)
+        beside = size * centred(trace, run, fit.inflation, shot.off_centre)[1]
         out.loc[own, ["x", "y"]] -= _turns(trace, out.loc[own, "t"].to_numpy(float)) @ beside
     return out
 

@@ -104,8 +104,8 @@ class Watched:
         Of the discs, m.
     masses : mapping
         Stone to mass in any unit; equal where absent.
-    beside : float
-        How far caps may be beside the centres of their stones, as a part of `sd_place`, the error
+    off_centre : float
+        How far caps may be off the centres of their stones, as a part of `sd_place`, the error
         that all places of a stone have in common.
     ice : callable
         From values of the unknowns to the law of the ice: `ice` or `penner`.
@@ -119,7 +119,7 @@ class Watched:
     times: tuple[float, ...] = ()
     radius: float = STONE.radius
     masses: Mapping[str, float] = field(default_factory=dict)
-    beside: float = 1.0
+    off_centre: float = 1.0
     ice: Callable[[Mapping[str, float]], IceLaw] = ice
 
     @property

@@ -47,7 +47,7 @@ SLOPE, KNEE, TURN = Estimate(0.002, 0.001), Estimate(V_C, 0.04), Estimate(0.0, 0
 FCV1, some 0.0035 in Penner's law; no ice is known whose friction hardly falls), and of the turn of
 a path at 1 m/s, rad/s (0.0082 in FCV1)."""
 
-BESIDE = 1.0
+NEAR_HIT = 1.0
 """Time beside a hit in whose middle a spin is told, s: far enough from where it changes."""
 
 
@@ -303,7 +303,7 @@ def _seen(
     if piece.rest or piece.start >= end or not len(seen):
         return []
     hits = [fit.time(k) for k in (piece.opens, piece.closes) if k is not None]
-    near = seen[np.abs(seen - (hits or seen)[0]) < BESIDE]
+    near = seen[np.abs(seen - (hits or seen)[0]) < NEAR_HIT]
     middle = float(np.mean(near)) if len(near) else np.inf
     spin = spin_on(fit, rank, known, noise, middle) if middle < end else Estimate()
     if spin.value is None or spin.stderr is None:

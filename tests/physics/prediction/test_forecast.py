@@ -199,7 +199,7 @@ def test_caps_beside_their_centres_leave_aims_open_by_half_of_what_places_share(
     seen = watch(motion, np.random.default_rng(9), sd=0.0003)
     seen["sd_place_x"] = seen["sd_place_y"] = 0.002
     half = forecast(seen, even(known()))["frictional"]
-    monkeypatch.setattr(physics.prediction.forecast, "BESIDE", 1.0)
+    monkeypatch.setattr(physics.prediction.forecast, "OFF_CENTRE", 1.0)
     whole = forecast(seen, even(known()))["frictional"]
     for stone, error in half.rest_error.items():
         sd = half.rest_sd[stone] or 0.0
