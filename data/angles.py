@@ -78,7 +78,7 @@ def read_angles(path: Path, angle_unit: str | None = None, fps: float | None = N
     InputError
         One line: no angle, several tracks, or a unit that cannot be told.
     """
-    table = read_text_table(path, _is_header)
+    table = read_text_table(path, _is_header, "angles: no header with t and θ")
     if not table.rows:
         raise InputError(f"{path}: a header without rows of data")
     names = _names(table)
@@ -89,7 +89,7 @@ def read_angles(path: Path, angle_unit: str | None = None, fps: float | None = N
         if name in names
     }
     doubled = [name for name in names if name in (*_CONTINUOUS, *_WRAPPED, "x")]
-    if len(doubled) > len(set(doubled)):
+    if "stone" in names or len(doubled) > len(set(doubled)):
         raise InputError(f"{path}: several tracks; an angle needs one export per stone")
     clock = clock_column(table, names, fps)
     values = values_of(table, {clock, *columns.values()})
@@ -185,7 +185,9 @@ def spin_rate(t: Array, theta: Array) -> float:
 
 def _is_header(cells: Sequence[str]) -> bool:
     names = [plain_name(cell) for cell in cells]
-    return names[0] in ("t", "time") or any(name in (*_CONTINUOUS, *_WRAPPED) for name in names)
+    if names[0] in ("t", "time") or {"stone", "t"} <= set(names):  # a track may be named stone
+        return True
+    return any(name in (*_CONTINUOUS, *_WRAPPED) for name in names)
 
 
 def _names(table: TextTable) -> list[str]:

@@ -117,7 +117,11 @@ class TextTable:
             yield self.split(row), line
 
 
-def read_text_table(path: Path, is_header: Callable[[Sequence[str]], bool]) -> TextTable:
+def read_text_table(
+    path: Path,
+    is_header: Callable[[Sequence[str]], bool],
+    sought: str = "tracks: no header with t, x and y",
+) -> TextTable:
     """Read a file as a text table, whatever its dialect.
 
     Parameters
@@ -126,6 +130,8 @@ def read_text_table(path: Path, is_header: Callable[[Sequence[str]], bool]) -> T
         The file.
     is_header : callable
         Tells from the cells of a line whether it is the header.
+    sought : str
+        What a file that is no table was to hold, and the header that it lacks.
 
     Raises
     ------
@@ -146,7 +152,7 @@ def read_text_table(path: Path, is_header: Callable[[Sequence[str]], bool]) -> T
             return _without_header(path, title, delimiter, lines[k:])
         title = line
     raise InputError(
-        f"{path}: not a table of tracks: no header with t, x and y, and no rows of numbers"
+        f"{path}: not a table of {sought}, and no rows of numbers"
         f" (line {lines[0][0]}: {quoted(lines[0][1])})"
     )
 

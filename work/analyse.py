@@ -74,10 +74,7 @@ def analyse(
 
     sightings, radius = measured.sightings, settings.radius
     if sightings.empty:
-        raise SceneError(
-            f"{measured.files[0]}: no stone was found; curlshot check shows where the house was"
-            " taken to be, and --house points at another"
-        )
+        raise SceneError(f"{measured.files[0]}: no stone was found; {_way_out(settings)}")
     progress("physics", 0, 1)
     masses = (
         _check_masses(settings.masses, list(sightings["stone"].unique())) or measured.masses or None
@@ -173,6 +170,14 @@ def _pace(friction: Estimate) -> tuple[str, ...]:
         f" (about {times:.2g} times) or tracks in another length unit would look so: then speeds"
         " are not real ones, e is",
     )
+
+
+def _way_out(settings: Settings) -> str:
+    """Say what to do where no stone was found, by how the camera was known."""
+    if settings.stick is not None or settings.camera is not None:
+        given = "--camera" if settings.stick is None else "--stick"
+        return f"curlshot check shows what was looked at; check --radius and {given}"
+    return "curlshot check shows where the house was taken to be, and --house points at another"
 
 
 def _timed(contacts: Sequence[Contact], hits: Sequence[Collision]) -> list[Contact]:

@@ -100,6 +100,9 @@ def test_angles_meet_places_of_the_same_moment_only(tmp_path: Path) -> None:
         ("t\tθ\n0\t\n1\t\n", "no row with an angle"),
         ("t\tθ\n", "without rows"),
         ("1\t2\t3\t4\n2\t3\t4\t5\n", "4 columns without a header"),
+        ("stone,t,x,y\nA,0,1,2\nB,0,3,4\n", "several tracks; an angle needs one export per stone"),
+        ("stone,t,θ\nA,0,1\nA,1,2\n", "several tracks"),
+        ("hello there\n", "not a table of angles: no header with t and θ, and no rows of numbers"),
     ],
 )
 def test_what_is_no_angle_is_refused(tmp_path: Path, text: str, reason: str) -> None:
@@ -179,3 +182,8 @@ def test_the_road_of_the_paper_from_text_files_alone(tmp_path: Path) -> None:
                 assert abs(hit[when][stone]["omega"] - omega) < 0.1
     assert (out / "report.html").stat().st_size > 10_000
     assert len(list((out / "figures").glob("*.png"))) >= 3
+
+
+def test_a_track_named_stone_is_no_column_of_stones(tmp_path: Path) -> None:
+    track = read_angles(put(tmp_path, "#multi:\n\tstone\t\nt\tθ\t\n0\t1\n0.1\t1.2\n"))
+    assert track.theta == pytest.approx([1.0, 1.2])

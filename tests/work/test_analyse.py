@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from data.errors import SceneError
 from data.sheet import HOUSE
 from data.tracks import SIGHTING_COLUMNS
 from work.analyse import analyse
@@ -58,3 +59,19 @@ def test_stones_of_which_it_is_not_said_have_no_say_in_what_places_share() -> No
 
     assert shared(told) == pytest.approx(np.hypot(0.004, 0.003) / np.sqrt(2))
     assert shared(still) is None
+
+
+@pytest.mark.parametrize(
+    ("settings", "said"),
+    [
+        (Settings(), "--house points at another"),
+        (Settings(stick=(1.0, 1.0, 90.0, 1.0, 0.5)), "check --radius and --stick"),
+        (Settings(camera=Path("camera.csv")), "check --radius and --camera"),
+    ],
+)
+def test_what_to_do_where_no_stone_was_found_goes_by_how_the_camera_was_known(
+    settings: Settings, said: str
+) -> None:
+    nothing = pd.DataFrame(columns=list(SIGHTING_COLUMNS))
+    with pytest.raises(SceneError, match=rf"a\.mp4: no stone was found; curlshot check .*{said}$"):
+        analyse(Measured((Path("a.mp4"),), nothing, 25.0, 20, ()), settings)

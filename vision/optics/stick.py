@@ -33,7 +33,7 @@ def stick_camera(stick: Stick, size: tuple[int, int], frame: int = 0, t: float =
     pixels = float(np.hypot(x2 - x1, y2 - y1))
     if not (np.isfinite(stick).all() and metres > 0 and pixels >= 2):
         raise InputError(
-            f"stick {','.join(f'{value:g}' for value in stick)}: needs two ends at least 2 px apart"
+            f"stick {_written(stick)}: needs two ends at least 2 px apart"
             " and a length in metres above 0"
         )
     scale = pixels / metres
@@ -49,11 +49,23 @@ def stick_cameras(
     Raises
     ------
     InputError
-        As `stick_camera`.
+        As `stick_camera`, or where an end lies beside the picture, as it does when its pixels were
+        read off a larger copy of it: its scale would then be wrong.
     """
+    width, height = clip.size
+    if not all(0 <= x <= width and 0 <= y <= height for x, y in (stick[:2], stick[2:4])):
+        raise InputError(
+            f"stick {_written(stick)}: not in a picture of {width} × {height} px; read its ends in"
+            " the clip's own pixels"
+        )
     cameras: list[Camera] = []
     for done, frame in enumerate(clip, 1):
         cameras.append(stick_camera(stick, clip.size, frame.index, frame.t))
         placed(frame, cameras[-1])
         progress("camera", done, clip.expected)
     return tuple(cameras)
+
+
+def _written(stick: Stick) -> str:
+    """Stick as it is given after ``--stick``."""
+    return ",".join(f"{value:g}" for value in stick)

@@ -43,6 +43,16 @@ def test_a_stick_without_a_length_is_refused(
         stick_camera(stick, (320, 240))
 
 
+@pytest.mark.parametrize("beside", [(-1, 10), (65, 10), (10, -1), (10, 49), (math.nan, 10)])
+def test_a_stick_beside_the_picture_is_refused(tmp_path: Path, beside: tuple[float, float]) -> None:
+    cv2.imwrite(str(tmp_path / "0.png"), np.full((48, 64, 3), 90, np.uint8))
+    clip = open_clip([tmp_path / "0.png"], 10.0)
+    for stick in ((30.0, 30.0, *beside, 0.5), (*beside, 30.0, 30.0, 0.5)):
+        with pytest.raises(InputError, match=r"stick .*not in a picture of 64 × 48 px"):
+            stick_cameras(clip, stick)
+    assert len(stick_cameras(clip, (0.0, 0.0, 64.0, 48.0, 0.5))) == 1
+
+
 def test_every_frame_has_the_camera_of_the_stick(tmp_path: Path) -> None:
     files = [tmp_path / f"{k}.png" for k in range(3)]
     for file in files:
