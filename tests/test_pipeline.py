@@ -295,6 +295,7 @@ def bad_inputs(folder: Path) -> dict[str, list[str | Path]]:
         "mass of nobody": ["run", folder / "good.csv", "--mass", "Q=1"],
         "mass of some": ["run", folder / "good.csv", "--mass", "A=1"],
         "discs like dots": [*still, "--stick", "10,10,110,10,1", "--radius", "1e-9"],
+        "a diameter": [*still, "--radius", "0.291"],
         "discs like moons": [*still, "--stick", "10,10,110,10,1", "--radius", "1e9"],
         "half a run": ["simulate", folder / "alone.json"],
         "no number": ["simulate", folder / "good.toml", "--speed", "fast"],

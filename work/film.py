@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 SPREADSHEETS = frozenset({".ods", ".xls", ".xlsx"})
 
+STONE_RADII = (0.12, 0.18)
+"""m; below it a cap leaves hardly any granite to see, above it are diameters."""
+
 
 @dataclass(frozen=True)
 class Filmed:
@@ -117,10 +120,24 @@ def check_size(radius: float, camera: Camera) -> None:
 
 
 def disc_of(settings: Settings) -> Stone:
-    """Say what is looked for: stones in a house or of their size, else plain discs."""
+    """Say what is looked for: stones in a house or of their size, else plain discs.
+
+    Raises
+    ------
+    InputError
+        Discs in a house of a size at which no granite is left about a cap, or whose diameter was
+        given.
+    """
     from vision.detection.stones import plain_disc
 
     sized_as_stones = settings.camera is None or curling_size(settings.radius)
-    if settings.stick is None and sized_as_stones:
-        return replace(STONE, radius=settings.radius)
-    return plain_disc(settings.radius)
+    if settings.stick is not None or not sized_as_stones:
+        return plain_disc(settings.radius)
+    least, most = STONE_RADII
+    if not least <= settings.radius <= most:
+        raise InputError(
+            f"radius {settings.radius:g} m: in a house stones are looked for, which have"
+            f" {STONE.radius:g} m ({least:g} to {most:g} are taken); for other discs give the scale"
+            " with --stick or --camera"
+        )
+    return replace(STONE, radius=settings.radius)

@@ -30,6 +30,16 @@ def test_discs_are_more_than_a_dot_and_less_than_the_picture(scale: float, fine:
             check_size(STONE.radius, camera(scale))
 
 
+@pytest.mark.parametrize("radius", [0.05, 0.115, 0.291])
+def test_what_is_no_stone_by_its_radius_is_not_looked_for_in_a_house(radius: float) -> None:
+    with pytest.raises(
+        InputError, match=rf"radius {radius:g} m: in a house .* --stick or --camera"
+    ):
+        disc_of(Settings(radius=radius))
+    assert disc_of(Settings(radius=0.12)).radius == 0.12
+    assert disc_of(Settings(radius=radius, camera=Path("camera.csv"))).cap_radius == 0.0
+
+
 def test_stones_are_looked_for_in_a_house_and_discs_elsewhere() -> None:
     assert disc_of(Settings()) == STONE
     assert disc_of(Settings(radius=0.14)).cap_height == STONE.cap_height
