@@ -131,11 +131,12 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
     edge = dict(zip(named, errors, strict=True))
     team = _teams(named, watch.appearance)
     slants = slants_of(named, cameras, disc)
+    late = seen_late({names[number]: tracks[int(number)] for number in rest}, cameras, disc)
+    del tracks  # each goes when its rows are made
     rows = [
-        _rows(name, named[name], team[name], disc, edge[name], slants[name])
+        _rows(name, named.pop(name), team[name], disc, edge[name], slants[name])
         for name in sorted(named)
     ]
-    late = seen_late({names[number]: tracks[int(number)] for number in rest}, cameras, disc)
     return StoneTracks(
         {name: np.concatenate([part[name] for part in rows]) for name in SIGHTING_COLUMNS},
         (*late, *_without_colour(watch.appearance)),
@@ -168,13 +169,12 @@ def off_axis(track: Track, slants: Array) -> Array:
 
 
 def _rows(name: str, track: Track, team: str, disc: Stone, edge: Array, slants: Array) -> Columns:
-    seen = [*track.sightings]
-    spectra = [sighting.spectrum for sighting in seen]
-    off = off_axis(track, slants)
+    off, spectra = off_axis(track, slants), track.sightings.spectra
     theta, sd_theta = angles_in_parts(
         np.array(track.times), spectra, handle_radii(disc), off, slants=slants
     )
-    seen = steadied(track.times, widened(track.times, seen))
+    # Made only now: the angles take much memory, and so do the sightings of a long clip.
+    seen = steadied(track.times, widened(track.times, [*track.sightings]))
     x, y, sd_x, sd_y, sd_place_x, sd_place_y = np.array(
         [(item.x, item.y, item.sd_x, item.sd_y, *item.sd_place) for item in seen]
     ).T

@@ -219,7 +219,9 @@ class Watch:
     def _put_aside(self, view: StoneView) -> None:
         """Keep of a view that is done what takes little memory."""
         view.put_aside(self._shelf)
-        self._seen[view.frame.index] = view.frame.t, Rows(view.sightings)
+        rows = Rows(view.sightings)
+        rows.put_aside(self._shelf)
+        self._seen[view.frame.index] = view.frame.t, rows
 
     def _misses(self, view: StoneView) -> bool:
         """Whether none of the known stones is followed, or a view shows where one is missed."""

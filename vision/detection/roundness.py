@@ -60,12 +60,13 @@ def edge_errors(stones: Sequence[Sequence[Sighting]], radius: float) -> Array:
     """
     told, bends, pixels, apart = [], [], [], []
     for k, each in enumerate(stones):  # one after the other: they may be made as they are asked for
-        whole = [s for s in each if s.visible > WHOLE]
+        whole = [(*s.light, s.pixel_size, *s.bends) for s in each if s.visible > WHOLE]
         if whole:
             told.append(k)
-            bends.append(np.median([s.bends for s in whole], axis=0))
-            pixels.append(np.median([s.pixel_size for s in whole]))
-            apart.append(_apart(whole))
+            light, pixel, bend = np.split(np.array(whole), [2, 3], axis=1)
+            bends.append(np.median(bend, axis=0))
+            pixels.append(np.median(pixel))
+            apart.append(_apart(light))
     sizes = np.array(pixels)
     bent = (USUAL_STONES * USUAL**2 + np.square(bends).sum() / 6) / (USUAL_STONES + len(told))
     by_pixels = min(bent, PIXELS**2 * float((sizes**2).sum()) / max(len(told), 1))
@@ -76,9 +77,8 @@ def edge_errors(stones: Sequence[Sequence[Sighting]], radius: float) -> Array:
     return np.asarray(np.sqrt(found))
 
 
-def _apart(seen: Sequence[Sighting]) -> Array:
+def _apart(light: Array) -> Array:
     """Tell how far the middle may be off as edges by hue and by lightness are apart, (2,), m."""
-    light = np.array([s.light for s in seen])
     light = light[np.isfinite(light).all(1)]
     off = np.median(light, axis=0) if len(light) else np.zeros(2)
     return np.asarray(APART * np.minimum(np.abs(off), MOST_APART))

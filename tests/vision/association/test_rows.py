@@ -6,9 +6,9 @@ import tracemalloc
 import numpy as np
 
 from tests.vision.association.test_follow import sighting
-from vision.association.rows import Rows
+from vision.association.rows import AT_ONCE, Rows
 from vision.detection.sighting import Sighting
-from vision.film.shelf import Kept
+from vision.film.shelf import Kept, Shelf
 
 
 def shown(rank: int) -> Sighting:
@@ -47,3 +47,27 @@ def test_rows_take_a_few_hundred_bytes_each() -> None:
     held = tracemalloc.get_traced_memory()[0] - begin
     tracemalloc.stop()
     assert held < 250 * len(rows)
+
+
+def test_rows_that_are_put_aside_are_as_they_were_and_take_next_to_nothing() -> None:
+    seen = [shown(rank) for rank in range(3)]
+    shelf, held = Shelf(), [Rows(seen * 100) for _ in range(30)]
+    gc.collect()
+    tracemalloc.start()
+    begin = tracemalloc.get_traced_memory()[0]
+    more = [Rows(seen * 100) for _ in range(30)]
+    for rows in more:
+        rows.put_aside(shelf)
+    gc.collect()
+    taken = tracemalloc.get_traced_memory()[0] - begin
+    tracemalloc.stop()
+    assert taken < 30 * 300 * 20
+    for one, other in zip(held, more, strict=True):
+        assert [s.pixel for s in one] == [s.pixel for s in other]
+        np.testing.assert_array_equal(one.columns("x", "score"), other.columns("x", "score"))
+
+
+def test_many_rows_are_unpacked_in_their_order() -> None:
+    rows = Rows(shown(rank % 5) for rank in range(2 * AT_ONCE + 3))
+    assert [s.x for s in rows] == [shown(rank % 5).x for rank in range(2 * AT_ONCE + 3)]
+    assert [s.spectrum for s in rows] == [*rows.spectra]
