@@ -102,7 +102,7 @@ def check_target(path: Path, inputs: Sequence[Path]) -> None:
     endings = (*WRITERS, *PROJECTS)
     if path.suffix.lower() not in endings:
         raise InputError(f"{path}: tracks are written as {', '.join(endings)}; end the name so")
-    check_folder(path.parent)
+    check_folder(path.parent, how="")
     if path.is_dir():
         raise InputError(f"{path}: is a folder; name another file to write")
     if path.resolve() in {file.resolve() for file in inputs}:

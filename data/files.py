@@ -65,16 +65,16 @@ def relative_path(path: Path, folder: Path) -> str:
         return path.resolve().as_posix()
 
 
-def check_folder(out: str | Path | None) -> Path | None:
-    """Refuse a bad place for results before an hour of work, not after."""
+def check_folder(out: str | Path | None, how: str = " with -o") -> Path | None:
+    """Refuse a bad place for results before an hour of work, not after; `how` to name another."""
     if out is None:
         return None
     folder = Path(out)
     there = next(part for part in (folder, *folder.parents) if part.exists())
     if not there.is_dir():
-        raise InputError(f"{there}: is a file; name a folder for the results with -o")
+        raise InputError(f"{there}: is a file; name a folder for the results{how}")
     if not os.access(there, os.W_OK | os.X_OK):
-        raise InputError(f"{there}: nothing can be written here; name another folder with -o")
+        raise InputError(f"{there}: nothing can be written here; name another folder{how}")
     return folder
 
 

@@ -24,13 +24,17 @@ def find_inputs(names: Sequence[str | Path]) -> tuple[Path, ...]:
     Raises
     ------
     InputError
-        Something that is not there, or a folder without pictures.
+        Something that is not there, a folder without pictures, or an empty name.
     """
     found: list[Path] = []
     for name in names:
+        if not str(name).strip():  # as of an unset variable; it would be the working folder
+            raise InputError("an empty name; name a clip, pictures or a table of tracks")
         path = Path(name)
         if path.is_dir():
             pictures = [p for p in path.iterdir() if p.suffix.lower() in IMAGE_SUFFIXES]
+            if not pictures and (path / "tracks.csv").exists():
+                raise InputError(f"{path}: the folder of a run; name its {path / 'tracks.csv'}")
             if not pictures:
                 raise InputError(
                     f"{path}: no pictures in this folder; clips are named as {path / '*.mp4'}"

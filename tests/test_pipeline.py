@@ -497,4 +497,8 @@ def test_convert_does_not_write_over_its_input(
     for out, why in ((table, "is what is to be converted"), (folder, "is a folder")):
         assert pipeline.main(["convert", str(table), str(out)]) == 2
         assert f"{out}: {why}" in capsys.readouterr().err
+    assert pipeline.main(["convert", str(table), str(table / "c.csv")]) == 2
+    refusal = capsys.readouterr().err
+    assert f"{table}: is a file" in refusal
+    assert "-o" not in refusal.split("; ")[-1]  # convert knows no -o
     assert table.read_bytes() == before

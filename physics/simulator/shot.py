@@ -107,10 +107,11 @@ def read_shot(path: Path) -> Shot:
         content = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise InputError(f"{path}: not a text file") from None
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{path}: not TOML: {error}") from None
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        if path.suffix.lower() != ".toml":
+            raise InputError(f"{path}: no shot; name a SHOT.toml or the folder of a run") from None
+        why = error if isinstance(error, tomllib.TOMLDecodeError) else "not a text file"
+        raise InputError(f"{path}: not TOML: {why}") from None
     faults: list[str] = []
     _Table("file", content, faults).only(("physics", "stone"))
     shot = _shot(content, faults)

@@ -51,6 +51,24 @@ def test_nothing_named_is_a_mistake() -> None:
         find_inputs([])
 
 
+def test_an_empty_name_is_not_the_working_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made(tmp_path, "1.png")
+    monkeypatch.chdir(tmp_path)
+    assert len(find_inputs(["."])) == 1
+    with pytest.raises(InputError, match="an empty name"):
+        find_inputs(["1.png", ""])
+
+
+def test_the_folder_of_a_run_is_answered_by_its_tracks(tmp_path: Path) -> None:
+    made(tmp_path / "run", "tracks.csv", "overlay.mp4")
+    with pytest.raises(InputError, match=r"run: the folder of a run; name its .*tracks\.csv$"):
+        find_inputs([tmp_path / "run"])
+    made(tmp_path / "run", "1.png")
+    assert [path.name for path in find_inputs([tmp_path / "run"])] == ["1.png"]
+
+
 @pytest.mark.parametrize(
     ("names", "times"),
     [

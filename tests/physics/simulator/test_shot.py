@@ -152,11 +152,15 @@ def test_a_small_overlap_is_measuring(tmp_path: Path) -> None:
 
 
 def test_files_that_are_none(tmp_path: Path) -> None:
-    (tmp_path / "binary").write_bytes(b"\xff\xfe\x00\x81")
+    for name in ("binary", "binary.toml"):
+        (tmp_path / name).write_bytes(b"\xff\xfe\x00\x81")
+    (tmp_path / "tracks.csv").write_text("stone,t,x,y\n")
     for name, message in (
         ("missing.toml", "No such file"),
         ("", "directory"),
-        ("binary", "not a text file"),
+        ("binary.toml", "not a text file"),
+        ("binary", "no shot; name a SHOT.toml or the folder of a run"),
+        ("tracks.csv", "no shot; name a SHOT.toml or the folder of a run"),
     ):
         with pytest.raises(InputError, match=message):
             read_shot(tmp_path / name)
