@@ -182,10 +182,12 @@ def follow(
     """
     tracks: list[Track] = []
     closed: list[Track] = []
-    count, begin, t = 0, inf, -inf
-    for frame, t, sightings in frames:
+    count, begin, t, step = 0, inf, -inf, inf
+    for frame, now, sightings in frames:
+        step, t = min(step, now - t), now
         count, begin = count + 1, min(begin, t)
-        for index in [i for i, track in enumerate(tracks) if _given_up(track, t, gate)][::-1]:
+        lost = [i for i, track in enumerate(tracks) if _given_up(track, t, step, gate)]
+        for index in reversed(lost):
             closed.append(tracks.pop(index))
         taken = _assign(tracks, t, sightings, radius, gate)
         for column, sighting in enumerate(sightings):
@@ -234,10 +236,11 @@ def _convincing(track: Track, gate: Gate) -> bool:
     return shown >= (gate.least_open if brief and np.median(visible) > OPEN else gate.least_score)
 
 
-def _given_up(track: Track, t: float, gate: Gate) -> bool:
+def _given_up(track: Track, t: float, step: float, gate: Gate) -> bool:
+    """Say whether a track ended by time t; pictures are a `step` apart or more, s."""
     wait = t - track.times[-1]
     if len(track.frames) < gate.births:
-        return wait > 0.25 * gate.patience
+        return wait > max(0.25 * gate.patience, 1.5 * step)
     return track.speed > 0 and wait > gate.patience
 
 

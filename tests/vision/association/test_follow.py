@@ -133,6 +133,17 @@ def test_a_blip_is_no_stone_and_single_pictures_count() -> None:
     assert len(follow([(0, 0.0, [sighting((0, 0)), sighting((1, 1))])], R)) == 2
 
 
+@pytest.mark.parametrize("fps", [1.0, 0.1])
+def test_pictures_may_be_seconds_apart(fps: float) -> None:
+    frames = clip([lambda t: (0.0, 0.0), lambda t: (1.0, 0.5)], 6 / fps, fps)
+    assert [len(track.frames) for track in follow(frames, R)] == [6, 6]
+
+
+def test_a_newcomer_is_given_up_over_a_gap_as_long_as_pictures_are_close() -> None:
+    frames = clip([lambda t: (0.0, 0.0) if not 0.1 < t < 1.5 else None], 2.5)
+    assert [track.frames[0] for track in follow(frames, R)] == [38]
+
+
 def test_colours_part_stones_that_swap_places_unseen() -> None:
     def first(t: float) -> Place | None:
         return (0.0, 0.0) if t < 1 else ((0.3, 0.0) if t > 1.4 else None)
