@@ -44,6 +44,9 @@ NOTHING = 0.05
 """By how much, in such logarithms, a spin must be the more probable for a cap to be seen to turn in
 a stretch."""
 
+SIDES = 512
+"""Columns that are solved for at once: more take memory, and little less time each."""
+
 OFTEN = 0.9
 """Share of the pictures that must show a ring for it to be used."""
 
@@ -86,10 +89,10 @@ def unlit(times: Array, pictures: Complex, angles: Array) -> Unlit:
     knots = _between_knots(times)
     held = knots.T @ knots + 1e-6 * np.eye(knots.shape[1])
     phase = np.exp(-1j * ORDERS * angles[:, None])
-    own = phase - knots @ np.linalg.solve(held, knots.T @ phase)
+    sides = phase.view(np.float64)  # real matrices need not be made complex, twice as large
+    own = (sides - knots @ np.linalg.solve(held, knots.T @ sides)).view(np.complex128)
     pulled = _times(knots.T, flat)
-    light = np.linalg.solve(held, pulled.reshape(len(held), -1)).reshape(pulled.shape)
-    dark = flat - _times(knots, light)
+    dark = flat - _times(knots, _solved(held, pulled))
     left = np.sum(np.abs(own) ** 2, axis=0) + FAINT * len(times)
     pull = np.einsum("nk,nkx->kx", own.conj().astype(np.complex64), dark)
     cap = np.asarray(pull / left[:, None], np.complex64)
@@ -115,7 +118,17 @@ def _between_knots(times: Array) -> Array:
     return weights
 
 
-def _times(matrix: Array, values: Complex | NDArray[np.complex128]) -> Complex:
+def _solved(matrix: Array, values: Complex) -> Complex:
+    """Solve for values (n, …) with a real matrix (n, n): in parts, which take less memory."""
+    sides = values.reshape(len(values), -1).view(np.float32)
+    found = np.empty_like(sides)
+    for begin in range(0, sides.shape[1], SIDES):
+        part = slice(begin, begin + SIDES)
+        found[:, part] = np.linalg.solve(matrix, sides[:, part])
+    return found.view(np.complex64).reshape(values.shape)
+
+
+def _times(matrix: Array, values: Complex) -> Complex:
     """Product of a matrix (m, n) and values (n, orders, …), both in single precision."""
     parts = np.ascontiguousarray(values, np.complex64).reshape(len(values), -1).view(np.float32)
     product = matrix.astype(np.float32) @ parts

@@ -6,7 +6,7 @@ import pytest
 from numpy.typing import NDArray
 
 from vision.spin.align import ORDERS
-from vision.spin.glints import SPINS, _likely, course, unlit
+from vision.spin.glints import SPINS, _likely, _solved, course, unlit
 from vision.spin.handle import LEAST, cap_spectrum, handle_angles
 
 RAYS = 64
@@ -177,3 +177,11 @@ def test_light_along_straight_lines_between_knots_leaves_nothing_in_a_long_clip(
     left = np.abs(found.pictures - turning)[:, 3:]
     assert left.mean() < 0.1 * np.abs(turning).mean()
     assert found.share > 0.9
+
+
+def test_a_system_is_solved_in_parts_as_in_one() -> None:
+    rng = np.random.default_rng(3)
+    matrix = np.eye(40) * 9 + rng.normal(size=(40, 40))
+    values = rng.normal(size=(40, 17, 51, 2)).astype(np.float32).view(np.complex64)[..., 0]
+    whole = np.linalg.solve(matrix, values.reshape(40, -1)).reshape(values.shape)
+    np.testing.assert_allclose(_solved(matrix, values), whole, rtol=0, atol=1e-7)
