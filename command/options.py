@@ -90,7 +90,7 @@ def what_if_options(parser: argparse.ArgumentParser) -> None:
         "--spin",
         type=values.amount,
         metavar="W",
-        help="of the thrown stone: rad/s, or a factor as 0.5x",
+        help="of the thrown stone: rad/s, or a factor as 0.5x; -1x is the other way round",
     )
     change.add_argument(
         "--samples",

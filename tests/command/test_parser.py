@@ -27,6 +27,8 @@ def test_there_is_a_parser_for_every_work(capsys) -> None:
         (("track",), "CLIP"),
         (("run", "a.mp4", "--fps", "0"), "--fps: '0' is not a positive number"),
         (("run", "a.mp4", "--frames", "3"), "FIRST:LAST"),
+        (("run", "a.mp4", "--frames", "-5:-1"), "'-5:-1' is not FIRST:LAST"),
+        (("simulate", "a.toml", "--speed", "-2x"), "'-2x' is not a speed above 0"),
     ],
 )
 def test_a_mistake_is_one_line_and_exit_code_2(capsys, words, part: str) -> None:
@@ -34,6 +36,11 @@ def test_a_mistake_is_one_line_and_exit_code_2(capsys, words, part: str) -> None
     assert code == 2
     assert text.count("\n") == 1
     assert part in text and "--help" in text
+
+
+def test_a_factor_may_be_negative() -> None:
+    parsed = command_line("1.0").parse_args(["simulate", "a.toml", "--spin", "-1x"])
+    assert (parsed.spin.value, parsed.spin.relative) == (-1.0, True)
 
 
 def test_the_version_is_told(capsys) -> None:
