@@ -20,7 +20,7 @@ def moving_stones(
     moved = []
     for name, group in tracks.groupby("stone", sort=True):
         places = group[["x", "y"]].to_numpy(float)
-        window = min(5, len(places))
+        window = min(5, (len(places) + 1) // 2)
         # Means of a few rows: one wild row is no motion.
         kernel = np.ones(window) / window
         calm = np.stack([np.convolve(places[:, k], kernel, "valid") for k in (0, 1)], axis=1)

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from report import tables
@@ -30,3 +31,10 @@ def test_only_stones_that_moved_count_as_moving(shot):
     still["x"] += np.random.default_rng(1).normal(0, 0.01, len(still))
     assert tables.moving_stones(still) == ()
     assert tables.moving_stones(shot.tracks[shot.tracks["frame"] == 0]) == ()
+
+
+@pytest.mark.parametrize("rows", [2, 3, 5, 12])
+def test_a_stone_may_have_moved_in_a_few_rows(rows: int) -> None:
+    glide = pd.DataFrame({"stone": "A", "x": 0.0, "y": np.linspace(0, 0.7, rows)})
+    assert tables.moving_stones(glide) == ("A",)
+    assert tables.moving_stones(glide.assign(y=0.02 * glide["y"])) == ()
