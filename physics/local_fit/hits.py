@@ -22,6 +22,14 @@ LOST = 0.2
 """Share of the momentum that no scale, mass or map of the ice is off by: if more of it is lost or
 won, beyond three standard errors, something else touched the stones."""
 
+SEEN = 4
+"""Sightings of a stone between two hits from which they tell its velocity there. By fewer it is
+told by the momentum of the hits, as if there were no others."""
+
+UNLIKE = 0.05
+"""Standard deviation beyond their errors by which restitutions of hits in quick succession differ
+where one of them was not told, or not as it was."""
+
 
 def measure_hits(
     joint: ShotFit,
@@ -52,12 +60,14 @@ def measure_hits(
     """
     count = len(joint.meetings)
     values, cov = joint.propagate(range(count), _restitutions)
+    more = _scatter(joint, values, cov)
+    cov = cov + np.diag(more**2)
     each = [Estimate(values[k], float(np.sqrt(cov[k, k]))) for k in range(count)]
     mass = [
         np.array([masses.get(stone, 1.0) for stone in meeting.stones]) for meeting in joint.meetings
     ]
     changes = [_momentum(apart, k, mass[k]) for k in range(count)]
-    notes = [_why_not(joint, k, known, each[k], changes[k]) for k in range(count)]
+    notes = [_why_not(joint, k, known, each[k], changes[k], more[k]) for k in range(count)]
     noise = noises(joint, known)
     collisions = tuple(
         _collision(joint, k, known, noise, radius, mass[k], each[k], changes[k], notes[k])
@@ -145,11 +155,57 @@ def _restitutions(states: Sequence[ContactState]) -> Floats:
     return np.array(out)
 
 
+def _scatter(fit: ShotFit, values: Floats, cov: Floats) -> Floats:
+    """By how much restitutions of hits in quick succession differ beyond their errors, per hit.
+
+    A hit that was not told changes what momentum says of those beside it, some by more and some by
+    less, which shows in nothing else. See DerSimonian and Laird, 1986, Control. Clin. Trials 7,
+    177.
+    """
+    out = np.zeros(len(values))
+    for group in _successions(fit):
+        hits = [k for k in group if cov[k, k] < WORST**2]
+        if len(hits) < 2:
+            continue
+        weights = 1 / np.diag(cov)[hits]
+        mean = weights @ values[hits] / weights.sum()
+        excess = weights @ (values[hits] - mean) ** 2 - (len(hits) - 1)
+        out[hits] = np.sqrt(max(excess, 0.0) / (weights.sum() - weights @ weights / weights.sum()))
+    return out
+
+
+def _successions(fit: ShotFit) -> list[list[int]]:
+    """Ranks of the hits by groups: those between which a stone is hardly seen are in one."""
+    group = list(range(len(fit.meetings)))
+    for piece in fit.pieces:
+        if piece.opens is not None and piece.closes is not None and len(piece.samples) < SEEN:
+            one, other = group[piece.opens], group[piece.closes]
+            group = [one if g == other else g for g in group]
+    return [[k for k, g in enumerate(group) if g == first] for first in sorted({*group})]
+
+
 def _why_not(
-    fit: ShotFit, k: int, known: Mapping[str, Trace], restitution: Estimate, momentum: Estimate
+    fit: ShotFit,
+    k: int,
+    known: Mapping[str, Trace],
+    restitution: Estimate,
+    momentum: Estimate,
+    scatter: float,
 ) -> str | None:
     """Why a hit cannot tell its restitution; None where it can."""
-    stderr = np.nan if restitution.stderr is None else restitution.stderr
+    value, stderr = (
+        np.nan if number is None else number for number in (restitution.value, restitution.stderr)
+    )
+    if scatter > UNLIKE:
+        return (
+            f"restitution unknown: hits in quick succession would have ones that differ by"
+            f" {scatter:.2g}, as where a hit between them was not told"
+        )
+    if value > 1 + 2 * stderr:
+        return (
+            f"restitution unknown: {value:.3f} ± {stderr:.3f} is more than 1, which no hit gives:"
+            " times or tracks are off, or something pushed a stone"
+        )
     if stderr < WORST:
         return _lost(momentum)
     for stone in fit.meetings[k].stones:

@@ -133,11 +133,6 @@ def _doubts(hit: Collision) -> list[str]:
     """Say what is missing or odd about a hit."""
     name = f"hit of {hit.stones[0]} and {hit.stones[1]} at {hit.t:.2f} s"
     out = [f"{name}: {hit.note}"] if hit.note else []
-    if hit.restitution and hit.stderr and hit.restitution > 1 + 2 * hit.stderr:
-        out.append(
-            f"{name}: restitution {hit.restitution:.3f} ± {hit.stderr:.3f} is more than 1, which"
-            " no hit gives: times or tracks are off, or something pushed a stone"
-        )
     residual, stderr = hit.momentum_residual, hit.stderr_momentum
     if hit.note is None and residual and stderr and residual > max(0.05, 3 * stderr):
         out.append(

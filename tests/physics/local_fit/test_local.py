@@ -58,6 +58,8 @@ def test_a_restitution_above_1_is_odd(restitution: float, said: int) -> None:
     seen = watch(motion, np.random.default_rng(8), sd=0.002)
     found = estimate_locally(seen, find_contacts(seen, RADIUS), radius=RADIUS)
     assert sum("is more than 1" in text for text in found.warnings) == said
+    (hit,) = found.collisions
+    assert (hit.restitution is None) == bool(said)
 
 
 @pytest.mark.parametrize("offset", [-0.13, 0.13])
@@ -77,3 +79,27 @@ def test_ice_that_bends_slow_ways_leads_no_restitution_astray(offset: float) -> 
     seen[["sd_x", "sd_y"]] = 0.003
     found = estimate_locally(seen, find_contacts(seen, RADIUS), radius=RADIUS)
     assert found.restitution.value == pytest.approx(0.83, abs=0.002)
+
+
+@pytest.mark.parametrize("turn", [0.0, 30.0])
+def test_hits_beside_one_that_is_not_told_tell_no_restitution(turn: float) -> None:
+    """Three hits within a frame, of three stones in a row (found) or in a wedge (one is not)."""
+    gap, turn = 2 * RADIUS + 0.002, np.radians(turn)
+    further = [Start(0.0, gap), Start(0.0, 2 * gap)]
+    if turn:
+        further = [Start(side * gap * np.sin(turn), gap * np.cos(turn)) for side in (-1.0, 1.0)]
+    start = [Start(0.02 if turn else 0.0, -1.5, 0.0, 1.4), Start(0.0, 0.0), *further]
+    motion = simulate(start, 3.0, impact=Impact(0.83), step=2e-4, keep_every=10)
+    seen = watch(motion, np.random.default_rng(4), sd=0.001)
+    contacts = find_contacts(seen, RADIUS)
+    if turn:
+        contacts = tuple(hit for hit in contacts if hit.stones != ("B", "C"))
+    found = estimate_locally(seen, contacts, radius=RADIUS)
+    assert len(found.collisions) == (2 if turn else 3)
+    for hit in found.collisions:
+        if turn:
+            assert hit.restitution is None
+            assert "in quick succession" in str(hit.note)
+        else:
+            assert hit.restitution == pytest.approx(0.83, abs=2 * (hit.stderr or 0.0))
+    assert (found.restitution.value is None) == bool(turn)
