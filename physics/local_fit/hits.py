@@ -23,8 +23,8 @@ LOST = 0.2
 won, beyond three standard errors, something else touched the stones."""
 
 SEEN = 4
-"""Sightings of a stone between two hits from which they tell its velocity there. By fewer it is
-told by the momentum of the hits, as if there were no others."""
+"""Sightings of a stone on one side of a hit from which they tell its velocity there. By fewer it is
+told, between two hits, by their momentum, as if there were no others."""
 
 UNLIKE = 0.05
 """Standard deviation beyond their errors by which restitutions of hits in quick succession differ
@@ -211,7 +211,7 @@ def _why_not(
     for stone in fit.meetings[k].stones:
         for rank, when in zip(fit.sides[k, stone], ("before", "after"), strict=True):
             seen = len(fit.pieces[rank].samples)
-            if seen < 4:
+            if seen < SEEN:
                 return f"restitution unknown: {stone} is seen {seen} times {when} it"
     return f"restitution unknown: its standard error would be {stderr:.2g}"
 
