@@ -115,9 +115,7 @@ def changed(start: Start, changes: Changes) -> Start:
     return replace(start, shot=replace(shot, stones=tuple(stones)))
 
 
-def sample(
-    start: Start, count: int, throw_sd: tuple[float, float] = THROW_SD, seed: int = 0
-) -> pd.DataFrame:
+def sample(start: Start, count: int, throw_sd: tuple[float, float] = THROW_SD) -> pd.DataFrame:
     """Simulate a shot many times, each a little off.
 
     States, restitution, frictions, curl and the distance at which stones meet are drawn from their
@@ -132,8 +130,6 @@ def sample(
         Number of samples.
     throw_sd : (float, float)
         Standard deviations of speed (m/s) and direction (rad) of the stone as it is let go.
-    seed : int
-        Of the random numbers.
 
     Returns
     -------
@@ -141,7 +137,7 @@ def sample(
         ``sample, stone, x, y, hits, in_play``: places of rest, m, hits of each stone, and 0
         for one that has left the sheet at that place.
     """
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     shot = start.shot
     places = States.of(shot, count)
     for item, sd in zip(fields(places), start.sd.T, strict=True):

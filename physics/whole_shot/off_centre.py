@@ -37,9 +37,10 @@ def centred(
     residuals : (n, 2) array
         Those that are left.
     beside : (2,) array
-        By how much the cap is beside the centre, in its own standard deviations: a residual too.
+        By how much the cap is beside the centre, in its own standard deviations (`_sd_aside`): a
+        residual too.
     """
-    size = share * float(np.median(trace.sd_place))
+    size = _sd_aside(trace, share)
     if not size or not np.isfinite(trace.theta).any():
         return residuals, np.zeros(2)
     rows = size * _turns(trace, trace.t) / trace.sd[:, :, None]
@@ -58,10 +59,15 @@ def centred_sightings(sightings: pd.DataFrame, fit: GlobalFit) -> pd.DataFrame:
         if not np.isfinite(trace.theta).any():
             continue
         own = out["stone"] == stone
-        size = shot.off_centre * np.median(trace.sd_place)
-        beside = size * centred(trace, run, fit.inflation, shot.off_centre)[1]
+        _, beside = centred(trace, run, fit.inflation, shot.off_centre)
+        beside *= _sd_aside(trace, shot.off_centre)
         out.loc[own, ["x", "y"]] -= _turns(trace, out.loc[own, "t"].to_numpy(float)) @ beside
     return out
+
+
+def _sd_aside(trace: Trace, share: float) -> float:
+    """By how much a cap may be beside its stone's centre on either axis, m; 0 if not known."""
+    return share * float(np.median(trace.sd_place))
 
 
 def _turns(trace: Trace, t: Floats) -> Floats:

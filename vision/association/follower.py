@@ -39,34 +39,21 @@ Foreseen = tuple[Place, Sighting | None]
 STILL = 0.03
 """How far from where it rests a stone may be seen, in radii."""
 
+BLOCK = 8
+"""Pictures that are looked at together."""
 
-@dataclass(frozen=True)
-class Patience:
-    """How stones are followed.
+WAIT = 0.3
+"""Time for which a stone is still looked for where it is expected, s."""
 
-    Attributes
-    ----------
-    block : int
-        Pictures that are looked at together.
-    wait : float
-        Time for which a stone is still looked for where it is expected, s.
-    rest : float
-        The same for one that rested: who covers it may do so for long, and show it now and then.
-    trust : float
-        Time from one measurement of a stone that looks unchanged to the next, s; it is due when
-        a block begins.
-    reach : float
-        How far, in radii, a stone may be from where it is expected or from where it was.
-    """
+WAIT_AT_REST = 2.0
+"""The same for one that rested: who covers it may do so for long, and show it now and then."""
 
-    block: int = 8
-    wait: float = 0.3
-    rest: float = 2.0
-    trust: float = 0.5
-    reach: float = 1.5
+TRUST = 0.5
+"""Time from one measurement of a stone that looks unchanged to the next, s; it is due when a block
+begins."""
 
-
-PATIENCE = Patience()
+REACH = 1.5
+"""How far, in radii, a stone may be from where it is expected or from where it was."""
 
 
 @dataclass(frozen=True)
@@ -123,13 +110,11 @@ class Follower:
         None for plain discs.
     disc : Stone
     search : Search
-    patience : Patience
     """
 
     appearance: Appearance | None
     disc: Stone
     search: Search
-    patience: Patience
 
     def follow(self, views: Sequence[StoneView], leads: Sequence[Lead]) -> list[Lead]:
         """Add to views, one after the other, the stones to which leads point.
@@ -146,8 +131,8 @@ class Follower:
         list of Lead
             Where those in the last view lead on to.
         """
-        for begin in range(0, len(views), self.patience.block):
-            block = views[begin : begin + self.patience.block]
+        for begin in range(0, len(views), BLOCK):
+            block = views[begin : begin + BLOCK]
             step = _time_between(block, leads)
             ahead = self._ahead(block, leads, step)
             for k in range(len(block)):
@@ -186,7 +171,7 @@ class Follower:
             if nearby is not None:
                 view.sightings.append(nearby)
                 going.append((lead.on(nearby, t, near, still), nearby))
-            elif abs(t - lead.t) < (self.patience.rest if lead.rests else self.patience.wait):
+            elif abs(t - lead.t) < (WAIT_AT_REST if lead.rests else WAIT):
                 going.append((replace(lead, missed=True), None))
         return self._portrayed(view, going)
 
@@ -206,7 +191,7 @@ class Follower:
         ]
         # Now and then even what looks unchanged is measured.
         for i, portrait in known.items():
-            if abs(views[0].frame.t - portrait.t) >= self.patience.trust:
+            if abs(views[0].frame.t - portrait.t) >= TRUST:
                 alike[0].pop(i, None)
         out: list[list[Foreseen]] = []
         looks = []
@@ -284,7 +269,7 @@ class Follower:
     def _near(self, view: StoneView, lead: Lead) -> Sighting | None:
         """Seek a stone that is not where it is expected about there and about its last place."""
         either = np.array([lead.at(view.frame.t), lead.place])
-        reach = self.patience.reach * self.disc.radius
+        reach = REACH * self.disc.radius
         low = either.min(0) - reach - self.disc.radius
         high = either.max(0) + reach + self.disc.radius
         bounds = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from data.sheet import STONE, Stone
 from vision.association.again import measure_again
-from vision.association.follower import PATIENCE, Follower, Patience, StoneView
+from vision.association.follower import BLOCK, Follower, StoneView
 from vision.association.lead import Lead
 from vision.association.rows import Rows
 from vision.detection.appearance import (
@@ -45,37 +45,26 @@ AT_ONCE = 64
 MOST_KEPT = 24 * 1920 * 1080
 """Pixels that the pictures kept may have together: beyond that there are fewer of them."""
 
+MEMORY = 24
+"""Pictures that are kept to learn from and to follow stones back through, fewer if they are very
+large; when so many are new, the last of them is searched."""
 
-@dataclass(frozen=True)
-class Pace:
-    """How often the ice is searched.
+HURRY = 8
+"""The same while a stone that rested is hidden: hit unseen, it may show for a moment only; and
+while none is seen of those that are known: they may come at any time."""
 
-    Attributes
-    ----------
-    memory : int
-        Pictures that are kept to learn from and to follow stones back through, fewer if they are
-        very large; when so many are new, the last of them is searched.
-    hurry : int
-        The same while a stone that rested is hidden: hit unseen, it may show for a moment only;
-        and while none is seen of those that are known: they may come at any time.
-    lesson : int
-        Each how manieth of them is looked at to learn what the stones look like.
-    doubt : int
-        The same where these show a stone, but none that convinces.
-    lessons : int
-        After so many sightings that taught, none of another colour is learned from.
-    """
+LESSON, DOUBTFUL_LESSON = 8, 2
+"""Each how manieth of them is looked at to learn what the stones look like, and each how manieth
+where these show a stone, but none that convinces."""
 
-    memory: int = 24
-    hurry: int = 8
-    lesson: int = 8
-    doubt: int = 2
-    lessons: int = 200
+MOST_LESSONS = 200
+"""After so many sightings that taught, none of another colour is learned from."""
 
-    def kept(self, size: tuple[int, int]) -> int:
-        """How many pictures of a size, px, are kept; never fewer than in a hurry."""
-        width, height = size
-        return min(self.memory, max(MOST_KEPT // (width * height), self.hurry))
+
+def pictures_kept(size: tuple[int, int]) -> int:
+    """How many pictures of a size, px, are kept; never fewer than in a hurry."""
+    width, height = size
+    return min(MEMORY, max(MOST_KEPT // (width * height), HURRY))
 
 
 class Watch:
@@ -87,21 +76,11 @@ class Watch:
         Size of the stones, or `vision.detection.stones.plain_disc`.
     search : Search
         Where stones are sought and what they must show.
-    pace : Pace
-        How often all of the ice is searched.
-    patience : Patience
-        How known stones are followed.
     """
 
-    def __init__(
-        self,
-        disc: Stone = STONE,
-        search: Search = FOLLOWING,
-        pace: Pace = Pace(),
-        patience: Patience = PATIENCE,
-    ):
+    def __init__(self, disc: Stone = STONE, search: Search = FOLLOWING):
         self.appearance: Appearance | None = None
-        self.disc, self._search, self._pace, self._patience = disc, search, pace, patience
+        self.disc, self._search = disc, search
         self._lessons: list[Sighting] = []
         self._waiting: list[StoneView] = []
         self._recent: deque[StoneView] = deque()
@@ -110,12 +89,12 @@ class Watch:
         self._gain = np.ones(3)
         self._before: Camera | None = None
         self._leads: list[Lead] = []
-        self._since = self._most = pace.memory
+        self._since = self._most = MEMORY
         self._seen: dict[int, tuple[float, Sequence[Sighting]]] = {}
 
     def look(self, frame: Frame, camera: Camera) -> None:
         """Take in a frame; it waits for some more, the first ones until the stones are learned."""
-        self._most = self._pace.kept(camera.size)
+        self._most = pictures_kept(camera.size)
         if not self._knows:
             self._gain = np.full(3, brightening(frame.picture, camera))
         frame = replace(frame, picture=brightened(frame.picture, self._gain))
@@ -130,7 +109,7 @@ class Watch:
         while self._recent and len(self._recent) + len(self._waiting) > self._most:
             self._put_aside(self._recent.popleft())
         self._seen[frame.index] = frame.t, view.sightings
-        if len(self._waiting) >= (self._patience.block if self._knows else self._most):
+        if len(self._waiting) >= (BLOCK if self._knows else self._most):
             self._catch_up()
 
     @property
@@ -171,7 +150,7 @@ class Watch:
 
     @property
     def _follower(self) -> Follower:
-        return Follower(self.appearance, self.disc, self._search, self._patience)
+        return Follower(self.appearance, self.disc, self._search)
 
     def _catch_up(self) -> None:
         if self._waiting and not self._knows:
@@ -179,19 +158,18 @@ class Watch:
             self._learn(self._waiting)
             if self._knows:
                 self._balance = Balance(self._waiting[-1].frame.picture, self._waiting[-1].camera)
-        size = self._patience.block
-        for begin in range(0, len(self._waiting), size):
-            self._see(self._waiting[begin : begin + size])
+        for begin in range(0, len(self._waiting), BLOCK):
+            self._see(self._waiting[begin : begin + BLOCK])
         self._waiting = []
 
     def _learn(self, views: Iterable[StoneView]) -> None:
         views = list(views)[::-1]
-        found = self._of_any_colour(views[:: self._pace.lesson], self._search.radius_px)
+        found = self._of_any_colour(views[::LESSON], self._search.radius_px)
         if len(by_colour([*self._lessons, *convincing(found)])) < MOST_COLOURS:
-            found = self._of_any_colour(views[:: self._pace.lesson])
+            found = self._of_any_colour(views[::LESSON])
         if found and not convincing(found):
             # A stone far away convinces in some pictures only.
-            found = self._of_any_colour(views[1 :: self._pace.doubt])
+            found = self._of_any_colour(views[1::DOUBTFUL_LESSON])
         self._lessons += convincing(found)
         self.appearance = learn(self._lessons)
 
@@ -213,7 +191,7 @@ class Watch:
             self._leads = self._follower.follow(views, self._leads)
         self._recent.extend(views)
         self._since += len(views)
-        if self._since >= (self._pace.hurry if self._misses(views[-1]) else self._most):
+        if self._since >= (HURRY if self._misses(views[-1]) else self._most):
             self._search_for_new(views[-1])
 
     def _put_aside(self, view: StoneView) -> None:
@@ -259,7 +237,7 @@ class Watch:
 
     def _look_for_colours(self, view: StoneView) -> bool:
         """See whether there are stones of a colour that is not known yet, and learn it."""
-        if self.appearance is None or len(self._lessons) >= self._pace.lessons:
+        if self.appearance is None or len(self._lessons) >= MOST_LESSONS:
             return False
         shown = {self.appearance.nearest(stone.colour)[0] for stone in view.sightings}
         if len(shown) == MOST_COLOURS:

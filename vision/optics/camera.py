@@ -168,12 +168,12 @@ class Camera:
         error = self.error
         return projection.shared_place_cov(xy, by_camera, error.shared, error.scale, error.drift)
 
-    def place_sd(self, ice: ArrayLike, height: float = 0.0) -> Array:
+    def place_sd(self, ice: ArrayLike) -> Array:
         """Give the standard deviation per axis, m, of mapped points: the part frames share.
 
         Root mean square of the two axes; 0 where nothing is known of it.
         """
-        cov = self.shared_place_cov(ice, height)
+        cov = self.shared_place_cov(ice)
         return np.asarray(np.sqrt(np.trace(cov, axis1=-2, axis2=-1) / 2))
 
     def place_jacobian(self, ice: ArrayLike, height: float = 0.0) -> Array:

@@ -11,7 +11,7 @@ from data.sheet import STONE
 from tests.synthetic.clip import render_still
 from tests.vision.detection.test_stones import CAMERA, RED, YELLOW, camera_of, scene_of
 from vision.association.expected import look_on_course
-from vision.association.follower import PATIENCE, Follower, StoneView
+from vision.association.follower import Follower, StoneView
 from vision.association.lead import Lead
 from vision.detection.appearance import learn
 from vision.detection.rays import Look
@@ -38,7 +38,7 @@ def first() -> StoneView:
 @pytest.fixture(scope="module")
 def follower(first: StoneView) -> Follower:
     found = search_picture(first.frame.picture, first.camera).stones
-    return Follower(learn(found), STONE, FOLLOWING, PATIENCE)
+    return Follower(learn(found), STONE, FOLLOWING)
 
 
 def seen(views: list[StoneView], true: list[Places]) -> np.ndarray:

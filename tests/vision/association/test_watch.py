@@ -14,7 +14,7 @@ from tests.synthetic.scenes import PAINTS
 from tests.vision.detection.test_stones import BLUE, CAMERA, RED, YELLOW, camera_of, scene_of
 from vision.association.follower import StoneView
 from vision.association.lead import Lead
-from vision.association.watch import Pace, Watch
+from vision.association.watch import Watch, pictures_kept
 from vision.detection.placing import placed_by
 from vision.detection.rays import Look
 from vision.detection.stones import FOLLOWING, Findings, Search
@@ -50,7 +50,7 @@ def test_a_stone_found_late_is_followed_back_also_one_of_a_new_colour(
      ((3840, 2160), 8), ((7680, 4320), 8)],
 )  # fmt: skip
 def test_of_large_pictures_fewer_are_kept(size: tuple[int, int], kept: int) -> None:
-    assert Pace().kept(size) == kept
+    assert pictures_kept(size) == kept
 
 
 def test_with_fewer_pictures_kept_a_late_stone_is_followed_back_as_well(
