@@ -309,11 +309,6 @@ def _stale(folder: Path, inputs: Sequence[Path]) -> tuple[str, ...]:
     return tuple(name for name in WRITTEN if name not in kept)
 
 
-def _warned(texts: Sequence[str]) -> list[str]:
-    """Lines of warnings, as `report.summary.summary` has them."""
-    return [f"warning     {text}" for text in texts]
-
-
 def _do_run(arguments: argparse.Namespace, bars: Bars) -> str:
     from report.summary import summary
     from report.units import UNITS
@@ -355,7 +350,7 @@ def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:
     from data.tracks import write_table, write_tracks
     from physics.kalman import smoothed
     from physics.local_fit.contacts import find_contacts
-    from report.numbers import count
+    from report.numbers import count, warned
     from vision.optics.camera import camera_columns
 
     settings, folder = settings_of(arguments), out_folder(arguments, arguments.inputs[0])
@@ -371,7 +366,7 @@ def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:
         f"{count(len(stones), 'stone')} in {count(measured.frames, 'frame')}: "
         f"{folder / 'tracks.csv'}, {folder / 'camera.csv'}"
     ]
-    return "\n".join([*lines, *_warned(measured.warnings)])
+    return "\n".join([*lines, *warned(measured.warnings)])
 
 
 def _do_check(arguments: argparse.Namespace, bars: Bars) -> str:
@@ -402,18 +397,18 @@ def _do_estimate(arguments: argparse.Namespace, bars: Bars) -> str:
 
 
 def _do_convert(arguments: argparse.Namespace, _: Bars) -> str:
-    from report.numbers import count
+    from report.numbers import count, warned
 
     if Path(arguments.out).suffix == "" and Path(arguments.out).name.startswith("."):
         return _convert_each(arguments)
     measured = convert(arguments.inputs, arguments.out, settings_of(arguments), arguments.over)
     stones = measured.sightings["stone"].nunique()
     lines = [f"{count(stones, 'stone')} in {count(measured.frames, 'frame')}: {arguments.out}"]
-    return "\n".join([*lines, *_warned(measured.warnings)])
+    return "\n".join([*lines, *warned(measured.warnings)])
 
 
 def _convert_each(arguments: argparse.Namespace) -> str:
-    from report.numbers import count
+    from report.numbers import count, warned
 
     if arguments.over is not None:
         raise InputError("--over: one clip cannot be behind many projects; convert one at a time")
@@ -422,7 +417,7 @@ def _convert_each(arguments: argparse.Namespace) -> str:
     lines = [f"{count(len(done) - len(refused), 'file')} written"]
     for path, outcome in done.items():
         if not isinstance(outcome, CurlshotError):
-            lines += [str(path), *_warned(outcome.warnings)]
+            lines += [str(path), *warned(outcome.warnings)]
     if refused:
         reasons = "; ".join(str(refusal) for refusal in refused)
         rest = ", the others were" if len(refused) < len(done) else ""
@@ -434,6 +429,7 @@ def _do_simulate(arguments: argparse.Namespace, bars: Bars) -> str:
     from data.tracks import write_table
     from physics.prediction.what_if import Changes, changed
     from physics.simulator.simulate import simulate
+    from report.numbers import warned
     from report.summary import odds_text, simulation_json, simulation_text
     from report.whatif import write_odds
 
@@ -463,7 +459,7 @@ def _do_simulate(arguments: argparse.Namespace, bars: Bars) -> str:
             write_odds(stage, start, outcomes, odds)
             outcome = {"nominal": outcome, **odds}
             lines += odds_text(odds, [folder / name for name in WHAT_IF])
-    lines += _warned(start.assumed)
+    lines += warned(start.assumed)
     return json.dumps(outcome, indent=1) if arguments.json else "\n".join(lines)
 
 

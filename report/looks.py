@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from report.numbers import count
+from report.numbers import count, warned
 from vision.detection.sighting import Refusal, Sighting
 from vision.film.clip import Frame
 from vision.optics.camera import Camera, camera_table
@@ -124,7 +124,7 @@ def check_lines(
         )
     most = max(len(look.stones) for look in looks)
     lines.append(f"stones      {most} at most in one of {count(len(looks), 'frame')} looked at")
-    return lines + [f"warning     {text}" for text in warnings]
+    return lines + warned(warnings)
 
 
 def numbered(refused: Sequence[Refusal], apart: float) -> list[Refusal]:

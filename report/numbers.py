@@ -1,8 +1,9 @@
-"""Numbers as people read them: rounded to what their error allows."""
+"""Numbers as people read them, rounded to what their error allows, and warnings beside them."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 DASH = "—"
 MINUS = "−"
@@ -67,6 +68,11 @@ def plus_minus(value: float | None, stderr: float | None) -> str:
     """Write "value ± standard error", rounded by `parts`."""
     first, second = parts(value, stderr)
     return first if second is None else f"{first} ± {second}"
+
+
+def warned(texts: Iterable[str]) -> list[str]:
+    """Write each warning on a line of its own, as a summary has them."""
+    return [f"warning     {text}" for text in texts]
 
 
 def count(number: int, what: str) -> str:

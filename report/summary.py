@@ -14,7 +14,7 @@ from physics.prediction.forecast import AFTER
 from physics.simulator.simulation import Simulation
 from physics.statistics.pool import Pooled
 from physics.statistics.season import POSSIBLE
-from report.numbers import count, plus_minus
+from report.numbers import count, plus_minus, warned
 from report.tables import moving_stones, rest_table, shot_stone
 from report.units import METRES, Unit
 
@@ -93,12 +93,12 @@ def season_text(shots: pd.DataFrame, pooled: Mapping[str, Pooled]) -> list[str]:
             text += f"; shot to shot {plus_minus(mean.scatter, mean.stderr_scatter)}"
         lines.append(text)
         low, high = POSSIBLE[name]
-        lines += [
-            f"warning     {shot['shot']}: {sign} = {plus_minus(shot[name], shot[f'stderr_{name}'])}"
+        lines += warned(
+            f"{shot['shot']}: {sign} = {plus_minus(shot[name], shot[f'stderr_{name}'])}"
             " cannot be; it counts in the mean with its error"
             for shot in shots.to_dict("records")
             if shot[name] < low or shot[name] > high
-        ]
+        )
     return lines
 
 
@@ -151,7 +151,7 @@ def summary(
             )
     if house is not None:
         lines.append(f"shot stone  {_shot_stone(results, tracks, house, unit)}")
-    lines += [f"warning     {text}" for text in results.warnings]
+    lines += warned(results.warnings)
     if out is not None:
         report = out / "report.html"
         lines.append(f"written     {report if report.exists() else out}")
