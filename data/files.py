@@ -11,6 +11,9 @@ from pathlib import Path
 
 from data.errors import InputError
 
+FILES = (".csv", ".json", ".html", ".mp4", ".png", ".txt", ".trk", ".trz", ".parquet")
+"""Endings by which a person means a file, not a folder that is to be made."""
+
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
@@ -73,6 +76,8 @@ def check_folder(out: str | Path | None, how: str = " with -o") -> Path | None:
     there = next(part for part in (folder, *folder.parents) if part.exists())
     if not there.is_dir():
         raise InputError(f"{there}: is a file; name a folder for the results{how}")
+    if there != folder and folder.suffix.lower() in FILES:
+        raise InputError(f"{folder}: would be a folder of results; name it unlike a file{how}")
     if not os.access(there, os.W_OK | os.X_OK):
         raise InputError(f"{there}: nothing can be written here; name another folder{how}")
     return folder

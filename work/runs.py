@@ -30,7 +30,7 @@ def find_runs(names: Sequence[str | Path]) -> dict[str, Results]:
     Raises
     ------
     InputError
-        Where there are none, or one is no results.json.
+        Where there are none, one is no results.json, or not all are of discs of one size.
     """
     from data.results_file import read_results
 
@@ -43,4 +43,12 @@ def find_runs(names: Sequence[str | Path]) -> dict[str, Results]:
         found += [here] if here.exists() else below
     unique = dict.fromkeys(path.resolve() for path in found)
     folders = apart([path.parent.with_name(f"{path.parent.name}.run") for path in unique])
-    return {name: read_results(path) for name, path in zip(folders, unique, strict=True)}
+    runs = {name: read_results(path) for name, path in zip(folders, unique, strict=True)}
+    first, *others = runs
+    for name in others:
+        if runs[name].radius != runs[first].radius:
+            raise InputError(
+                f"{name}: of discs of radius {runs[name].radius:g} m, but those of {first} have"
+                f" {runs[first].radius:g} m; name runs of one kind of disc"
+            )
+    return runs

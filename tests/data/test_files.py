@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from data.errors import InputError
-from data.files import staged, whole_file, write_text
+from data.files import check_folder, staged, whole_file, write_text
 
 
 def names(folder: Path) -> list[str]:
@@ -96,3 +96,11 @@ def test_a_file_that_cannot_be_written_is_named_itself(tmp_path: Path) -> None:
     path = tmp_path / "file" / "a.csv"
     with pytest.raises(InputError, match=rf"^{path}: cannot be written \(.+\)$"):
         write_text(path, "a")
+
+
+def test_results_do_not_go_into_a_new_folder_named_like_a_file(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"tracks\.csv: would be a folder of results; name"):
+        check_folder(tmp_path / "tracks.csv")
+    for name in ("season.2026", "old.csv"):
+        (tmp_path / "old.csv").mkdir(exist_ok=True)
+        assert check_folder(tmp_path / name) == tmp_path / name

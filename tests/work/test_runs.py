@@ -10,9 +10,9 @@ from data.results_file import write_results
 from work.runs import apart, find_runs
 
 
-def written(folder: Path) -> Path:
+def written(folder: Path, radius: float = 0.1455) -> Path:
     folder.mkdir(parents=True)
-    nothing = Results(Input(("a.mp4",), 25.0, 10, 0.4), Estimate(), Friction())
+    nothing = Results(Input(("a.mp4",), 25.0, 10, 0.4), Estimate(), Friction(), radius=radius)
     write_results(nothing, folder / "results.json")
     return folder
 
@@ -33,3 +33,9 @@ def test_runs_are_found_in_folders_of_folders(tmp_path: Path) -> None:
 def test_a_run_without_results_is_named(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="name the folders of runs"):
         find_runs([tmp_path])
+
+
+def test_runs_of_stones_and_of_pucks_are_no_season(tmp_path: Path) -> None:
+    runs = [written(tmp_path / "stones"), written(tmp_path / "pucks", 0.0465)]
+    with pytest.raises(InputError, match=r"^pucks: of discs of radius 0.0465 m, but .*0.1455 m"):
+        find_runs(runs)
