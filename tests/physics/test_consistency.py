@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
 import pandas as pd
@@ -102,7 +103,8 @@ def stretches_of(seen: pd.DataFrame, radius: float = RADIUS) -> list[Stretch]:
         kept.append(stretch)
         return filtered(stretch)
 
-    smooth(seen, find_contacts(seen, radius), radius=radius, run=spy)
+    with patch("physics.kalman.filtered", spy):
+        smooth(seen, find_contacts(seen, radius), radius=radius)
     return [stretch for stretch in kept if not stretch.rest.any()]
 
 

@@ -1,7 +1,6 @@
 """The filter of `physics.kalman` in matrices, by filterpy, to which `rate_filter` is held.
 
-Slower by far, and nothing but the textbook's equations. Whoever wants to couple the pairs
-(curl, say) begins here: ``smooth(…, run=reference_filter.filtered)``.
+Slower by far, and nothing but the textbook's equations.
 """
 
 from __future__ import annotations
