@@ -32,8 +32,9 @@ ENOUGH = 2.8
 """A judgement at which nothing farther from the middle is tried: all of three circles, nearly."""
 
 TWO, LESS = 2.3, 1.0
-"""A judgement at which hypotheses are not tried that were seen by so much less than the best: two
-circles alone give less, and of a 4-ft circle taken for the 12-ft one there are no more."""
+"""A judgement of what is in view at which hypotheses are not tried that were seen by so much less
+than the best: two circles alone give less, and of a 4-ft circle taken for the 12-ft one there are
+no more."""
 
 ENOUGH_BESIDE = 2.5
 """The same for a house that lies just where a sheet beside has one; people stand on it."""
@@ -192,13 +193,18 @@ def _from(small: Image, seen: Guess) -> RoughFit | None:
     return fit_roughly(small, *there, seen.scale, float(seen.centre[0]))
 
 
+def _in_view(fit: RoughFit) -> float:
+    """Judge a fit as if the picture showed all of each circle of which it shows a part."""
+    return fit.score + float((fit.evidence.support - fit.evidence.covered).sum())
+
+
 def _rough_fits(small: Image, factor: float, hypotheses: Sequence[Guess]) -> list[RoughFit]:
     """Fit hypotheses in a small picture: what they become, that which explains most first."""
     fits: list[RoughFit] = []
     there = [_enlarged(guess, factor) for guess in hypotheses]
     aside = [abs(guess.centre[0] - small.shape[1] / 2) for guess in there]
     for k, here in enumerate(there):
-        if here.score < there[0].score - LESS and any(fit.score > TWO for fit in fits):
+        if here.score < there[0].score - LESS and any(_in_view(fit) > TWO for fit in fits):
             continue
         for seen in _ways(here):
             fitted = _from(small, seen)

@@ -246,10 +246,12 @@ def test_real_close_ups_are_refused(shared: Path) -> None:
         assert find_house(np.asarray(image, np.uint8)) is None, negative["file"]
 
 
+@pytest.mark.parametrize("aside", [0.3, 2.2])  # the whole house in view, and half of it
 def test_rings_seen_by_much_less_than_those_that_fit_are_not_tried(
-    monkeypatch: pytest.MonkeyPatch,
+    aside: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    image = render_still(sample_scene(), still_camera(px_per_m=130.0), 1.0)
+    camera = still_camera(px_per_m=130.0, target=(0.0, aside))
+    image = render_still(sample_scene(), camera, 1.0)
     best, *_ = guesses(np.asarray(cv2.resize(image, (320, 180)), np.uint8))
     there = replace(best, centre=4 * (best.centre + 0.5) - 0.5, scale=4 * best.scale)
     tried = []
