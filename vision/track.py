@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from data.progress import Progress, no_progress
 from data.sheet import STONE, Stone
 from data.tracks import SIGHTING_COLUMNS, Columns, no_rows, order_of_motion
-from vision.association.follow import Gate, Track, follow
+from vision.association.follow import Track, follow
 from vision.association.late import seen_late
 from vision.association.naming import names_by_motion
 from vision.association.rejoin import rejoined
@@ -33,9 +33,12 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-TOLD = Gate(least_score=1.15, least_open=1.5)
-"""Evidence in tracks of stones: in the open they show 2 to 3, half covered 1.3 or more; people who
-stand about 1.08, and for a moment 1.2."""
+TOLD = 1.15, 1.5
+"""Least evidence in tracks of stones, and in brief ones in the open: there they show 2 to 3, half
+covered 1.3 or more; people who stand about 1.08, and for a moment 1.2."""
+
+PLAIN = 0.85, 0.85
+"""The same for plain discs."""
 
 HARDLY_TOLD = 0.004
 """How far aside a stone lies, m per axis, whose cap is hardly told from granite: lamps mirrored on
@@ -116,8 +119,8 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
         As `track_stones`.
     """
     disc = watch.disc
-    gate = Gate(least_score=0.85, least_open=0.85) if is_plain(disc) else TOLD
-    tracks = rejoined(follow(watch.finish(cameras), disc.radius, gate), disc.radius, gate)
+    least = PLAIN if is_plain(disc) else TOLD
+    tracks = rejoined(follow(watch.finish(cameras), disc.radius, *least), disc.radius)
     moved, rest = names_by_motion(tracks, disc.radius)
     names = order_of_motion(dict(moved), rest)
     named = {names[str(number)]: track for number, track in enumerate(tracks)}

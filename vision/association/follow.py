@@ -10,7 +10,7 @@ would meet, a hit is expected.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import combinations
 from math import dist, hypot, inf, sqrt
 
@@ -34,52 +34,28 @@ _FORBIDDEN = 1e6
 """Cost of a pair that may not be: more than all others together."""
 
 
-@dataclass(frozen=True)
-class Gate:
-    """When a sighting may belong to a track. Lengths are shares of the disc's radius.
+REACH, GROWTH, MOST_REACH = 1.25, 2.0, 3.5
+"""Largest distance from where a stone seen in the frame before is expected, how much that grows per
+second out of sight, and what it grows to at most, all in radii."""
 
-    Attributes
-    ----------
-    reach : float
-        Largest distance from where a stone seen in the frame before is expected.
-    growth : float
-        How much that grows per second out of sight.
-    most : float
-        Beyond this it grows no more.
-    colours : float
-        Difference of cap colours (L*a*b* units) that says: another stone.
-    patience : float
-        Seconds for which a moving stone is waited for.
-    births : int
-        Sightings that make a track.
-    told : int
-        Sightings that tell how a stone moves, so that a hit nobody sees is expected.
-    least_score : float
-        Evidence that the better part of a track's sightings must show.
-    least_open, brief : float
-        The same for a track no longer than `brief`, s, of what nothing covers: shoulders look like
-        a stone for a few frames where a person turns.
-    deceleration : float
-        Of a stone that glides unseen, m/s².
-    restitution : float
-        Of a hit that nobody saw.
-    """
+OTHER = 45.0
+"""Difference of cap colours, L*a*b* units, that says: another stone."""
 
-    reach: float = 1.25
-    growth: float = 2.0
-    most: float = 3.5
-    colours: float = 45.0
-    patience: float = 3.0
-    births: int = 5
-    told: int = 3
-    least_score: float = 0.0
-    least_open: float = 0.0
-    brief: float = 0.5
-    deceleration: float = DECELERATION
-    restitution: float = 0.85
+PATIENCE = 3.0
+"""Seconds for which a moving stone is waited for."""
 
+BIRTHS = 5
+"""Sightings that make a track."""
 
-GATE = Gate()
+MOTION_TOLD = 3
+"""Sightings that tell how a stone moves, so that a hit nobody sees is expected."""
+
+BRIEF = 0.5
+"""A track no longer than this, s, must show more in the open: shoulders look like a stone for a few
+frames where a person turns."""
+
+RESTITUTION = 0.85
+"""Of a hit that nobody saw."""
 
 
 @dataclass
@@ -109,13 +85,13 @@ class Track:
         speed = hypot(*self._velocity)
         return speed if speed > 3 * sqrt(self._covariance[2]) else 0.0
 
-    def expected(self, t: float, deceleration: float) -> Pair:
+    def expected(self, t: float) -> Pair:
         """Place at time t if nothing hits it: it glides on, slows down and stops."""
         speed = self.speed
         if speed == 0:
             return self._place
-        wait = min(t - self.times[-1], speed / deceleration if deceleration > 0 else inf)
-        path = wait - 0.5 * deceleration * wait**2 / speed
+        wait = min(t - self.times[-1], speed / DECELERATION)
+        path = wait - 0.5 * DECELERATION * wait**2 / speed
         (x, y), (vx, vy) = self._place, self._velocity
         return x + vx * path, y + vy * path
 
@@ -162,7 +138,10 @@ class Track:
 
 
 def follow(
-    frames: Iterable[tuple[int, float, Sequence[Sighting]]], radius: float, gate: Gate = GATE
+    frames: Iterable[tuple[int, float, Sequence[Sighting]]],
+    radius: float,
+    least_score: float = 0.0,
+    least_open: float = 0.0,
 ) -> list[Track]:
     """Join the sightings of a clip to tracks.
 
@@ -172,8 +151,10 @@ def follow(
         In order of time; read once.
     radius : float
         Of the discs, m.
-    gate : Gate
-        When a sighting may belong to a track.
+    least_score : float
+        Evidence that the better part of a track's sightings must show.
+    least_open : float
+        The same for a track no longer than `BRIEF` of what nothing covers.
 
     Returns
     -------
@@ -186,10 +167,10 @@ def follow(
     for frame, now, sightings in frames:
         step, t = min(step, now - t), now
         count, begin = count + 1, min(begin, t)
-        lost = [i for i, track in enumerate(tracks) if _given_up(track, t, step, gate)]
+        lost = [i for i, track in enumerate(tracks) if _given_up(track, t, step)]
         for index in reversed(lost):
             closed.append(tracks.pop(index))
-        taken = _assign(tracks, t, sightings, radius, gate)
+        taken = _assign(tracks, t, sightings, radius)
         for column, sighting in enumerate(sightings):
             if column in taken:
                 taken[column].add(frame, t, sighting, radius)
@@ -197,13 +178,13 @@ def follow(
                 track = Track()
                 track.add(frame, t, sighting, radius)
                 tracks.append(track)
-    births = min(gate.births, (count + 1) // 2)
-    if t - begin < 2 * gate.brief:  # all tracks are brief
-        gate = replace(gate, least_open=gate.least_score)
+    births = min(BIRTHS, (count + 1) // 2)
+    if t - begin < 2 * BRIEF:  # all tracks are brief
+        least_open = least_score
     stones = [
         track
         for track in closed + tracks
-        if len(track.frames) >= births and _convincing(track, gate)
+        if len(track.frames) >= births and _convincing(track, least_score, least_open)
     ]
     return sorted(
         (track for track in stones if not any(_beneath(track, o, radius) for o in stones)),
@@ -223,7 +204,7 @@ def _beneath(track: Track, other: Track, radius: float) -> bool:
     return bool((np.hypot(*away) < radius).all())
 
 
-def _convincing(track: Track, gate: Gate) -> bool:
+def _convincing(track: Track, least_score: float, least_open: float) -> bool:
     """Say whether the better quarter of what was measured shows enough.
 
     What looks unchanged shows nothing more.
@@ -232,33 +213,30 @@ def _convincing(track: Track, gate: Gate) -> bool:
     if not measured.any():
         return False
     shown = float(np.percentile(score[measured > 0], 75))
-    brief = track.times[-1] - track.times[0] < gate.brief
-    return shown >= (gate.least_open if brief and np.median(visible) > OPEN else gate.least_score)
+    brief = track.times[-1] - track.times[0] < BRIEF
+    return shown >= (least_open if brief and np.median(visible) > OPEN else least_score)
 
 
-def _given_up(track: Track, t: float, step: float, gate: Gate) -> bool:
+def _given_up(track: Track, t: float, step: float) -> bool:
     """Say whether a track ended by time t; pictures are a `step` apart or more, s."""
     wait = t - track.times[-1]
-    if len(track.frames) < gate.births:
-        return wait > max(0.25 * gate.patience, 1.5 * step)
-    return track.speed > 0 and wait > gate.patience
+    if len(track.frames) < BIRTHS:
+        return wait > max(0.25 * PATIENCE, 1.5 * step)
+    return track.speed > 0 and wait > PATIENCE
 
 
 def _assign(
-    tracks: Sequence[Track], t: float, sightings: Sequence[Sighting], radius: float, gate: Gate
+    tracks: Sequence[Track], t: float, sightings: Sequence[Sighting], radius: float
 ) -> dict[int, Track]:
     """Sighting index to the track that it continues."""
     if not tracks or not sightings:
         return {}
     seen = np.array([(s.x, s.y) for s in sightings])
-    struck = _struck(tracks, t, radius, gate)
+    struck = _struck(tracks, t, radius)
     waits = t - np.array([track.times[-1] for track in tracks])
-    reach = np.minimum(gate.reach + gate.growth * waits, gate.most)[:, None] * radius
+    reach = np.minimum(REACH + GROWTH * waits, MOST_REACH)[:, None] * radius
     expected = np.array(
-        [
-            struck[row] if row in struck else track.expected(t, gate.deceleration)
-            for row, track in enumerate(tracks)
-        ]
+        [struck[row] if row in struck else track.expected(t) for row, track in enumerate(tracks)]
     )
     last = np.array([track._place for track in tracks])
     away, near = (
@@ -270,9 +248,9 @@ def _assign(
         np.array([track.colour for track in tracks]), np.array([s.colour for s in sightings])
     )
     # Young tracks yield to old ones.
-    youth = np.array([0.5 if len(track.frames) < gate.births else 0.0 for track in tracks])
-    value = distance**2 + (0.5 * unlike / gate.colours) ** 2 + youth[:, None]
-    cost = np.where((distance < 1) & (unlike < gate.colours), value, _FORBIDDEN)
+    youth = np.array([0.5 if len(track.frames) < BIRTHS else 0.0 for track in tracks])
+    value = distance**2 + (0.5 * unlike / OTHER) ** 2 + youth[:, None]
+    cost = np.where((distance < 1) & (unlike < OTHER), value, _FORBIDDEN)
     return {column: tracks[row] for row, column in _paired(cost)}
 
 
@@ -284,7 +262,7 @@ def _paired(cost: Array) -> list[tuple[int, int]]:
     return [pair for pair in assign(cost) if allowed[pair]]
 
 
-def _struck(tracks: Sequence[Track], t: float, radius: float, gate: Gate) -> dict[int, Array]:
+def _struck(tracks: Sequence[Track], t: float, radius: float) -> dict[int, Array]:
     """Where stones are expected that have met since they were seen, by their ranks.
 
     Their paths are taken as straight; each stone's first meeting counts, and of the two only
@@ -303,7 +281,7 @@ def _struck(tracks: Sequence[Track], t: float, radius: float, gate: Gate) -> dic
     places = np.array([track._place for track in tracks])
     ways = np.array([track._velocity if track.speed > 0 else (0.0, 0.0) for track in tracks])
     since = np.array([track.times[-1] for track in tracks])
-    known = np.array([len(track.times) >= gate.told for track in tracks])
+    known = np.array([len(track.times) >= MOTION_TOLD for track in tracks])
     first, second = np.array(near).T
     start = np.maximum(since[first], since[second])
     apart = places[second] + ways[second] * (start - since[second])[:, None]
@@ -323,7 +301,7 @@ def _struck(tracks: Sequence[Track], t: float, radius: float, gate: Gate) -> dic
             continue
         there = [places[i] + ways[i] * (at[k] - since[i]) for i in pair]
         normal = (there[1] - there[0]) / (2 * radius)
-        push = -0.5 * (1 + gate.restitution) * float(closing[k] @ normal) * normal
+        push = -0.5 * (1 + RESTITUTION) * float(closing[k] @ normal) * normal
         for i, place, change in zip(pair, there, (-push, push), strict=True):
             out[i] = place + (ways[i] + change) * (t - at[k])
     return out

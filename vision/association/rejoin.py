@@ -12,7 +12,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import hypot
 
-from vision.association.follow import GATE, Gate, Track
+from vision.association.follow import OTHER, PATIENCE, REACH, Track
+from vision.association.lead import DECELERATION
 from vision.detection.appearance import colour_difference
 
 BEGINNING = 0.4
@@ -25,7 +26,7 @@ STRAY = 0.5
 """How much farther from the end of the first track the way may lead per second unseen, radii."""
 
 
-def rejoined(tracks: Sequence[Track], radius: float, gate: Gate = GATE) -> list[Track]:
+def rejoined(tracks: Sequence[Track], radius: float) -> list[Track]:
     """Join each track that begins in motion to the one whose stone it goes on with.
 
     Parameters
@@ -34,8 +35,6 @@ def rejoined(tracks: Sequence[Track], radius: float, gate: Gate = GATE) -> list[
         In order of birth; those that go on are made longer.
     radius : float
         Of the discs, m.
-    gate : Gate
-        When a sighting may belong to a track.
 
     Returns
     -------
@@ -44,7 +43,7 @@ def rejoined(tracks: Sequence[Track], radius: float, gate: Gate = GATE) -> list[
     """
     out: list[Track] = []
     for track in tracks:
-        before = [other for other in out if _goes_on(other, track, radius, gate)]
+        before = [other for other in out if _goes_on(other, track, radius)]
         if len(before) == 1:
             before[0].go_on(track)
         else:
@@ -52,12 +51,12 @@ def rejoined(tracks: Sequence[Track], radius: float, gate: Gate = GATE) -> list[
     return out
 
 
-def _goes_on(first: Track, second: Track, radius: float, gate: Gate) -> bool:
+def _goes_on(first: Track, second: Track, radius: float) -> bool:
     """Whether a track may be that of a stone that has gone out of sight."""
     unseen = second.times[0] - first.times[-1]
-    if not 0 < unseen < gate.patience:
+    if not 0 < unseen < PATIENCE:
         return False
-    if colour_difference(first.colour, second.colour) > gate.colours:
+    if colour_difference(first.colour, second.colour) > OTHER:
         return False
     begun = [k for k, t in enumerate(second.times) if t - second.times[0] <= BEGINNING]
     here, there = second.sightings[0], second.sightings[begun[-1]]
@@ -66,10 +65,10 @@ def _goes_on(first: Track, second: Track, radius: float, gate: Gate) -> bool:
     if way < LEAST_WAY * radius:
         return False
     speed = way / (second.times[begun[-1]] - second.times[0])
-    back = (speed + 0.5 * gate.deceleration * unseen) * unseen / way
+    back = (speed + 0.5 * DECELERATION * unseen) * unseen / way
     end = first.sightings[-1]
     if first.speed == 0:
         nearest = ((here.x - end.x) * dx + (here.y - end.y) * dy) / way**2
         back = min(max(nearest, 0.0), back)
     off = hypot(here.x - back * dx - end.x, here.y - back * dy - end.y)
-    return off < (gate.reach + STRAY * unseen) * radius
+    return off < (REACH + STRAY * unseen) * radius

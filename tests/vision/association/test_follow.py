@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from data.tracks import order_of_motion
-from vision.association.follow import Gate, Track, follow
+from vision.association.follow import Track, follow
 from vision.association.naming import names_by_motion
 from vision.detection.sighting import Sighting
 
@@ -157,12 +157,10 @@ def test_colours_part_stones_that_swap_places_unseen() -> None:
 
 
 def test_what_looks_a_little_like_a_stone_for_a_moment_is_none() -> None:
-    gate = Gate(least_score=1.1, least_open=1.5)
-
     def seen(score: float, visible: float, frames: int, of: int = 100) -> int:
         shoulder = sighting((1.0, 0.0), score=score)._replace(visible=visible)
         shown = [(i, i / 25, [shoulder] if i >= of - frames else []) for i in range(of)]
-        return len(follow(shown, R, gate))
+        return len(follow(shown, R, 1.1, 1.5))
 
     assert seen(1.2, 0.9, 10) == 0
     assert seen(1.2, 0.9, 30) == 1  # in the open for longer: dull, but it stays
@@ -172,19 +170,17 @@ def test_what_looks_a_little_like_a_stone_for_a_moment_is_none() -> None:
 
 
 def test_what_looks_unchanged_is_no_more_evidence() -> None:
-    gate = Gate(least_score=1.15, least_open=1.5)
-
     def kept(measured: float, then: float) -> int:
         seen = [sighting((1.0, 0.0), score=measured)] * 10 + [
             sighting((1.0, 0.0), score=then)._replace(measured=i == 0) for i in range(60)
         ]
-        return len(follow([(i, i / 25, [one]) for i, one in enumerate(seen)], R, gate))
+        return len(follow([(i, i / 25, [one]) for i, one in enumerate(seen)], R, 1.15, 1.5))
 
     assert kept(1.0, 1.2) == 0
     assert kept(1.0, 2.0) == 0  # one look in eleven
     assert kept(1.2, 1.2) == 1
     never = [(i, i / 25, [sighting((1.0, 0.0))._replace(measured=False)]) for i in range(60)]
-    assert follow(never, R, gate) == []
+    assert follow(never, R, 1.15, 1.5) == []
 
 
 def test_a_stone_that_a_jersey_half_covers_keeps_its_name() -> None:
