@@ -48,6 +48,19 @@ def test_ways_that_cross_beside_a_gap_do_not_cross_in_it(turned: float, count: i
         assert places[rank] == pytest.approx((0.3, 0.8 - 0.7 * turned))
 
 
+def test_ways_through_a_gap_are_told_by_several_sightings_but_not_by_an_earlier_hit() -> None:
+    every = np.arange(0, 2.5, 0.04)
+    t = every[(every < 1.0) | (every > 1.3)]
+    early, late = np.minimum(t - 0.7, 0.0), np.maximum(t - 1.1, 0.0)
+    apart = np.column_stack(
+        [0.3 - 2.0 * early + 0.5 * late, 0.8 - 0.7 * t + 2.0 * early + 1.2 * late]
+    )
+    for seed in range(30):
+        noise = np.random.default_rng(seed).normal(0, 0.004, apart.shape)
+        times, _ = _through_gaps(t, apart + noise)
+        assert times[~np.isin(times, t)] == pytest.approx([1.1], abs=0.026)
+
+
 def test_places_too_few_or_at_the_ends_tell_no_way_through_a_gap() -> None:
     for t in ([0.0, 0.04, 0.08], [0.0, 1.0, 1.04, 1.08], [0.0, 0.04, 0.08, 1.0]):
         apart = np.column_stack([t, np.square(t)])

@@ -1,10 +1,13 @@
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
+import pandas as pd
 import pytest
 
 from physics.local_fit.traces import Trace
-from physics.whole_shot.off_centre import centred
+from physics.whole_shot.off_centre import centred, centred_sightings
 
 SD, PLACE = 0.0005, 0.002
 COUNT = 200
@@ -65,3 +68,25 @@ def test_nothing_is_taken_out_without_angles_or_a_stated_error(seen: Trace) -> N
     left, beside = centred(seen, residuals, 1.0)
     assert left is residuals
     assert not beside.any()
+
+
+@pytest.mark.parametrize("share", [1.0, 0.25])
+def test_sightings_are_put_over_the_centre_by_as_much_as_the_fit_allows(share: float) -> None:
+    """As much noise as this leaves part of what is known beforehand, the more the more that is."""
+    seen, noise = trace(5.0), COUNT * (PLACE / SD) ** 2
+    residuals = wobble(seen, 0.003, 0.0) / 10
+    shot = SimpleNamespace(
+        traces={"A": seen, "B": trace(5.0, known=False)},
+        off_centre=share,
+        residuals=lambda _: [residuals, residuals],
+    )
+    fit = SimpleNamespace(shots=[shot], simulation=lambda: None, inflation=noise)
+    both = [pd.DataFrame({"stone": name, "t": seen.t, "x": 1.0, "y": 2.0}) for name in "AB"]
+    table = pd.concat(both, ignore_index=True)
+    moved = centred_sightings(table, fit)  # type: ignore[arg-type]
+    kept = share**2 / (1 + share**2)
+    expected = table.loc[table["stone"] == "A", ["x", "y"]] - kept * SD * residuals
+    assert moved.loc[moved["stone"] == "A", ["x", "y"]].to_numpy() == pytest.approx(
+        expected.to_numpy(), abs=1e-9
+    )
+    assert moved[moved["stone"] == "B"].equals(table[table["stone"] == "B"])

@@ -1,16 +1,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from tests.vision.cameras import SIZE, marks, true_rig, views
-from vision.optics.bundle import FAMILIES, PAINT_SD, _Problem, _State, bundle
+from vision.optics.bundle import FAMILIES, PAINT_SD, _is_cropped, _Problem, _State, bundle
 from vision.optics.paint import CIRCLES, Marks
 from vision.optics.pose import View
 from vision.optics.resection import solve_view
-from vision.optics.rig import OVERHEAD, POSITION, R4, R8, start_rig
+from vision.optics.rig import OVERHEAD, POSITION, R4, R8, RIG_SIZE, start_rig
 from vision.optics.shared import Bundle
 
 VIEWS = [View(np.array([0.19, -0.02 * k, 0.03, 7.1 + 0.01 * k])) for k in range(5)]
@@ -106,3 +107,18 @@ def test_a_step_that_ends_below_the_ice_is_no_end() -> None:
     state = problem.settled(state, problem.see(state), noise)
     costs = [problem.cost(s, problem.see(s), PAINT_SD, noise) for s in (above, state)]
     assert np.isfinite(state.views).all() and costs[1] > costs[0]
+
+
+@pytest.mark.parametrize(
+    ("far", "gain", "cropped"),
+    [(0.06, 60.0, True), (0.04, 60.0, False), (0.06, 40.0, False),
+     (0.12, 30.0, True), (0.08, 30.0, False), (0.30, 15.0, False)],
+)  # fmt: skip
+def test_an_axis_is_aside_if_it_is_far_enough_and_sure_enough(
+    far: float, gain: float, cropped: bool
+) -> None:
+    rig = np.zeros(RIG_SIZE)
+    rig[POSITION] = 0.0, 0.0, 8.0
+    problem = SimpleNamespace(aside=lambda *_: (gain, far * np.array([0.6, -0.8])))
+    state = SimpleNamespace(rig=rig)
+    assert _is_cropped(problem, state, PAINT_SD, np.ones(FAMILIES)) is cropped  # type: ignore[arg-type]
