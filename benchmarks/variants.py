@@ -14,17 +14,19 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
 import pipeline
-from data.results import Prediction
-from physics.estimate import estimate
+from data.results import Estimate, Prediction
+from physics.estimate import Estimates, estimate
 from physics.local_fit.contacts import find_contacts
 from physics.prediction.forecast import predict
-from physics.prediction.laws import measured_priors
+from physics.prediction.laws import measured_laws
+from physics.whole_shot.watched import Priors, literature
 from tests.synthetic.clip import Truth, cached_clip
 from tests.synthetic.scenes import sample_variant
 from work.analyse import Run
@@ -69,8 +71,23 @@ def foretold(done: Run, sightings: pd.DataFrame) -> Prediction:
     """Predict the shot from what was seen before its first hit, with the laws as measured."""
     results = done.results
     found = estimate(sightings, find_contacts(sightings, results.radius), radius=results.radius)
-    laws = measured_priors(found, results.radius)
+    laws = as_measured(found, results.radius)
     return predict(sightings, done.tracks, found, radius=results.radius, laws=laws)["frictional"]
+
+
+def as_measured(shot: Estimates, radius: float) -> Priors:
+    """Return the laws of a measured shot as what is known of them before it is seen again.
+
+    How friction falls and paths curl is as the fit of the whole shot has it, else as on any ice.
+    """
+    laws, usual = measured_laws(shot, radius), literature(radius).friction
+    told = Estimate(shot.friction.value, shot.friction.stderr)
+    friction = usual if told.value is None else told
+    known = Priors(laws.restitution, laws.stone_friction, friction, laws.size)
+    if shot.whole is None:
+        return known
+    shape = {name: Estimate(shot.whole[name].value, 0.0) for name in ("slope", "v_c", "turn")}
+    return replace(known, **shape)
 
 
 def _places(errors: Mapping[str, float | None], stated: Mapping[str, float | None]) -> str:

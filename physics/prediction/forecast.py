@@ -157,10 +157,14 @@ def _scored(
     clock = clock[clock >= first]
     if clock.empty:
         return Prediction(None, note="nothing is seen after the first hit")
-    table = _likely(fit, laws, model, first, clock.to_numpy(float))
-    table["frame"] = clock.index.to_numpy()[table["frame"].to_numpy()]
+    times, ends = clock.to_numpy(float), (first + AFTER, float(clock.iloc[-1]))
+    every = np.union1d(times, ends)
+    likely = _likely(fit, laws, model, first, every)
+    places = [_places(likely, rank) for rank in np.searchsorted(every, ends).tolist()]
+    soon, last = _spreads(fit, laws, model, first, ends, places)
+    frames = pd.Series(clock.index, index=np.searchsorted(every, times))
+    table = likely.assign(frame=likely["frame"].map(frames)).dropna(subset="frame")
     found = score(tracks, table, first, explained_until(tracks, estimates, first), None)
-    soon, last = _spreads(fit, laws, model, first, (first + AFTER, float(clock.iloc[-1])))
     after = _errors_at(tracks, table, first + AFTER, found.rest_error)
     return Prediction(
         found.rmse,
@@ -237,34 +241,40 @@ def _sampled(
     return table
 
 
+def _places(table: pd.DataFrame, rank: int) -> dict[str, Floats]:
+    """Places of the stones at one of the times of a simulated table, m."""
+    now = table[table["frame"] == rank]
+    return dict(zip(now["stone"], now[["x", "y"]].to_numpy(float), strict=True))
+
+
 def _spreads(
-    fit: GlobalFit, laws: Priors, model: str, first: float, times: Sequence[float]
+    fit: GlobalFit,
+    laws: Priors,
+    model: str,
+    first: float,
+    times: Sequence[float],
+    likely: Sequence[Mapping[str, Floats]],
 ) -> list[dict[str, float]]:
     """Tell how far each stone's place may be off at some times, both axes together, m.
 
-    It is the root mean square distance from the likeliest place over draws of what is not known of
+    It is the root mean square distance from the likeliest places over draws of what is not known of
     states and laws.
     """
     rng = np.random.default_rng(0)
-    places: list[dict[str, list[Floats]]] = [{} for _ in times]
+    squares: list[dict[str, list[float]]] = [{stone: [] for stone in places} for places in likely]
     until = np.unique(times)
-    runs = [_likely(fit, laws, model, first, until)]
     for own, row in draw_choices(fit, DRAWS, rng):
         drawn = {}
         for name, most in MOST.items():
             law: Estimate = getattr(laws, name)
             value = rng.normal(law.value or 0.0, law.stderr or 0.0)
             drawn[name] = float(np.clip(value, 1e-5, most))
-        runs.append(_sampled(own, own.state(values=row), drawn, model, first, until))
-    for table in runs:
-        for found, rank in zip(places, np.searchsorted(until, times).tolist(), strict=True):
-            now = table[table["frame"] == rank]
-            for stone, xy in zip(now["stone"], now[["x", "y"]].to_numpy(float), strict=True):
-                found.setdefault(str(stone), []).append(xy)
+        table = _sampled(own, own.state(values=row), drawn, model, first, until)
+        for found, usual, rank in zip(squares, likely, np.searchsorted(until, times), strict=True):
+            there = _places(table, int(rank))
+            for stone in there.keys() & usual.keys():
+                found[stone].append(float(np.sum((there[stone] - usual[stone]) ** 2)))
     return [
-        {
-            name: float(np.sqrt(np.mean(np.sum((np.array(xy[1:]) - xy[0]) ** 2, axis=1))))
-            for name, xy in found.items()
-        }
-        for found in places
+        {stone: float(np.sqrt(np.mean(off))) for stone, off in found.items() if off}
+        for found in squares
     ]

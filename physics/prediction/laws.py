@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,7 +13,7 @@ from data.sheet import curling_size
 from physics.curl import Curl, FCV1Curl, NoCurl
 from physics.estimate import Estimates
 from physics.ice import Constant, Fit, IceLaw
-from physics.whole_shot.watched import FRICTION, LITERATURE, STONE_FRICTION, Priors, literature
+from physics.whole_shot.watched import LITERATURE, STONE_FRICTION, literature
 
 UNSCALED = Estimate(1.0, 0.0)
 """Stones that meet at two radii."""
@@ -89,7 +89,7 @@ def measured_laws(shot: Estimates | Results, radius: float) -> Laws:
         # Hits that do not tell it hardly depend on it.
         doubt = 0.0 if shot.collisions else LITERATURE.stone_friction.stderr
         rubbing = Estimate(least, doubt)
-    ice, sd_friction = _ice(shot.friction, assumed)
+    ice, sd_friction = _ice(shot.friction, literature(radius).friction, assumed)
     curling = curling_size(radius)
     return Laws(
         Estimate(e, restitution.stderr),
@@ -101,23 +101,6 @@ def measured_laws(shot: Estimates | Results, radius: float) -> Laws:
         _of(shot.laws, "size") or UNSCALED,
         assumed,
     )
-
-
-def measured_priors(shot: Estimates, radius: float) -> Priors:
-    """Return the laws of a measured shot as what is known of them before it is seen again.
-
-    How friction falls and paths curl is as the fit of the whole shot has it, else as on any ice.
-    """
-    laws = measured_laws(shot, radius)
-    friction = Estimate(shot.friction.value, shot.friction.stderr)
-    if friction.value is None:
-        friction = LITERATURE.friction
-    known = Priors(laws.restitution, laws.stone_friction, friction, laws.size)
-    whole = shot.whole
-    if whole is None:
-        return known
-    shape = {name: Estimate(whole[name].value, 0.0) for name in ("slope", "v_c", "turn")}
-    return replace(known, **shape)
 
 
 def between_stones(laws: Joint | None, collisions: Sequence[Collision]) -> Estimate:
@@ -145,19 +128,20 @@ def _of(laws: Joint | None, name: str) -> Estimate | None:
     return Estimate(laws.values[k], float(np.sqrt(laws.cov[k][k])))
 
 
-def _ice(friction: Friction, assumed: dict[str, str]) -> tuple[IceLaw, float]:
-    """Return the law of the ice and the relative error of its friction."""
+def _ice(friction: Friction, usual: Estimate, assumed: dict[str, str]) -> tuple[IceLaw, float]:
+    """Return the law of the ice and the relative error of its friction, the usual one if untold."""
     if friction.value is None:
-        assumed["friction"] = f"friction not measured, {FRICTION} assumed"
-        return Constant(FRICTION), (LITERATURE.friction.stderr or 0.0) / FRICTION
-    if friction.value <= 0:
-        assumed["friction"] = f"friction came out as {friction.value:.4f}, 0 used"
+        friction = Friction(usual.value, usual.stderr)
+        assumed["friction"] = f"friction not measured, {usual.value} assumed"
+    value = friction.value or 0.0
+    if value <= 0:
+        assumed["friction"] = f"friction came out as {value:.4f}, 0 used"
         return Constant(LEAST_FRICTION), 0.0
-    sd = (friction.stderr or 0.0) / friction.value
+    sd = (friction.stderr or 0.0) / value
     a, v_c, b = friction.a, friction.v_c, friction.b
     if friction.law == "fit" and a is not None and v_c is not None and b is not None:
         return Fit(a, v_c, b), sd
-    return Constant(friction.value), sd
+    return Constant(value), sd
 
 
 def _rub(hit: Collision) -> float:

@@ -12,7 +12,6 @@ from physics.estimate import estimate
 from physics.kalman import smooth
 from physics.local_fit.contacts import find_contacts
 from physics.prediction.forecast import ASSUMED, assumed, predict
-from physics.prediction.laws import measured_priors
 from physics.whole_shot.watched import Priors
 from tests.physics.watch import RADIUS, hit_motion, watch
 from tests.synthetic.physics import Ice, Impact, Motion, Start
@@ -161,7 +160,10 @@ def test_a_shot_is_foretold_with_the_ice_that_the_whole_of_it_has_shown(ice: Ice
     seen = far_shot(ice, 3)
     contacts = find_contacts(seen, RADIUS)
     found = estimate(seen, contacts, radius=RADIUS)
-    laws = measured_priors(found, RADIUS)
+    assert found.whole is not None
+    shape = {name: Estimate(found.whole[name].value, 0.0) for name in ("slope", "v_c", "turn")}
+    friction = Estimate(found.friction.value, found.friction.stderr)
+    laws = replace(known(), friction=friction, **shape)
     tracks = smooth(seen, contacts, radius=RADIUS)
     made = predict(seen, tracks, found, radius=RADIUS, laws=laws)["frictional"]
     assert set(made.rest_error) == {"A", "B"}

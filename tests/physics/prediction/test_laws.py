@@ -56,6 +56,7 @@ def test_what_a_shot_does_not_tell_is_assumed_with_its_doubt() -> None:
     other = measured_laws(Estimates(), R / 5)
     assert other.restitution.stderr > 3 * laws.restitution.stderr
     assert f"{other.restitution.value} assumed" in other.assumed["restitution"]
+    assert other.sd_friction > 3 * laws.sd_friction > 0
     rubbed = measured_laws(Estimates(collisions=(hit(None, None, aside=0.18),)), R)
     assert rubbed.stone_friction.value == pytest.approx(0.2)
     assert "at least about 0.2" in rubbed.assumed["stone_friction"]
