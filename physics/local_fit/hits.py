@@ -12,6 +12,7 @@ from physics.local_fit.noise import Noise, noises
 from physics.local_fit.shot_fit import ContactState, ShotFit
 from physics.local_fit.spins import spins_at, stone_friction
 from physics.local_fit.traces import Trace
+from physics.statistics.random_effects import random_effects
 
 Floats = NDArray[np.float64]
 
@@ -159,18 +160,12 @@ def _scatter(fit: ShotFit, values: Floats, cov: Floats) -> Floats:
     """By how much restitutions of hits in quick succession differ beyond their errors, per hit.
 
     A hit that was not told changes what momentum says of those beside it, some by more and some by
-    less, which shows in nothing else. See DerSimonian and Laird, 1986, Control. Clin. Trials 7,
-    177.
+    less, which shows in nothing else.
     """
     out = np.zeros(len(values))
     for group in _successions(fit):
         hits = [k for k in group if cov[k, k] < WORST**2]
-        if len(hits) < 2:
-            continue
-        weights = 1 / np.diag(cov)[hits]
-        mean = weights @ values[hits] / weights.sum()
-        excess = weights @ (values[hits] - mean) ** 2 - (len(hits) - 1)
-        out[hits] = np.sqrt(max(excess, 0.0) / (weights.sum() - weights @ weights / weights.sum()))
+        out[hits] = random_effects(values[hits], cov[np.ix_(hits, hits)]).spread
     return out
 
 
