@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -31,8 +31,11 @@ MOST_PUSH = 3.0
 SHARE = 0.15
 """Smallest part of the other's change of velocity that a stone must show in a hit."""
 
+MOST_PASSED = 3
+"""Sightings past which the time of a hit may go where no gap lets it go farther."""
+
 MOST_RESTARTS = 4
-"""How often a search goes on from where hits lie at the bounds of their times."""
+"""How often a search goes on from where hits lie past so many."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +93,10 @@ def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
         evidence = _once([_evidence(fit, k, known, radius) for k in range(len(meetings))], fit)
         weakest = min(range(len(meetings)), key=evidence.__getitem__)
         significant = evidence[weakest].hit >= SIGNIFICANT
-        misplaced = _at_bounds(fit) if significant else _ended(fit, weakest)
+        if significant:
+            misplaced = _past(fit, range(len(meetings)), known, MOST_PASSED)
+        else:
+            misplaced = _ended(fit, weakest) | _past(fit, [weakest], known, MOST_PASSED + 1)
         if misplaced and restarts:
             meetings, restarts = _at_times(fit), restarts - 1
             cuts = {name: run for name, run in cuts.items() if name not in misplaced}
@@ -126,10 +132,19 @@ def _at_times(fit: ShotFit) -> list[Meeting]:
     return [replace(m, t=fit.time(k)) for k, m in enumerate(fit.meetings)]
 
 
-def _at_bounds(fit: ShotFit) -> set[str]:
-    """Stones of the meetings whose times lie at their bounds."""
-    moved = [abs(fit.time(k) - m.t) / m.looseness for k, m in enumerate(fit.meetings)]
-    return {s for m, far in zip(fit.meetings, moved, strict=True) if far > 2.99 for s in m.stones}
+def _past(fit: ShotFit, asked: Iterable[int], known: Mapping[str, Trace], most: int) -> set[str]:
+    """Stones of the meetings asked for whose times went past as many sightings, or more.
+
+    These lie on the wrong side of the meeting: of one that was sought in a gap, all of those from
+    the end of the gap to the hit.
+    """
+    out: set[str] = set()
+    for k in asked:
+        meeting = fit.meetings[k]
+        ends = (meeting.t, fit.time(k))
+        if any(np.ptp(np.searchsorted(known[s].t, ends)) >= most for s in meeting.stones):
+            out.update(meeting.stones)
+    return out
 
 
 def _ended(fit: ShotFit, k: int) -> set[str]:

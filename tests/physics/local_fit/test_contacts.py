@@ -178,6 +178,16 @@ def test_hit_behind_a_broom_is_found_from_the_paths_beside_it() -> None:
     assert hit.t == pytest.approx(motion.hits[0].t, abs=0.03)
 
 
+@pytest.mark.parametrize("beside", [0.05, 0.12])
+def test_what_is_hidden_until_shortly_before_hides_no_hit(beside: float) -> None:
+    motion = hit_motion(1.6, beside)
+    seen = watch(motion, np.random.default_rng(4), sd=0.001)
+    before = motion.hits[0].t - seen["t"]
+    hidden = (seen["stone"] == "B") & before.between(0.17, 0.61)
+    (hit,) = find_contacts(seen[~hidden].reset_index(drop=True), RADIUS)
+    assert hit.t == pytest.approx(motion.hits[0].t, abs=0.005)
+
+
 @pytest.mark.parametrize("gap", [0.2, 0.6, 1.0])
 @pytest.mark.parametrize(("speed", "beside", "share"), [(0.6, 0.05, 0.5), (2.0, 0.12, 0.2)])
 def test_a_hit_while_both_stones_are_out_of_sight_is_where_their_ways_cross(
