@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from data.tracks import TRACK_COLUMNS, Columns, Table, no_rows, teams
 from physics.filter.rate_filter import filtered
-from physics.filter.stretch import START_SD, Model, Stretch
+from physics.filter.stretch import START_SD, Filter, Model, Stretch
 from physics.local_fit.contacts import Contact, cut_all
 from physics.local_fit.fit import fit_shot
 from physics.local_fit.glides import free, measure_glides
@@ -54,12 +54,15 @@ def smooth(
     *,
     radius: float,
     masses: Mapping[str, float] | None = None,
+    run: Filter = filtered,
     unseen: Mapping[int, float] = MappingProxyType({}),
 ) -> pd.DataFrame:
     """Turn sightings into tracks, as a DataFrame: see `smoothed`."""
     import pandas as pd
 
-    return pd.DataFrame(smoothed(sightings, contacts, radius=radius, masses=masses, unseen=unseen))
+    return pd.DataFrame(
+        smoothed(sightings, contacts, radius=radius, masses=masses, run=run, unseen=unseen)
+    )
 
 
 def smoothed(
@@ -68,6 +71,7 @@ def smoothed(
     *,
     radius: float,
     masses: Mapping[str, float] | None = None,
+    run: Filter = filtered,
     unseen: Mapping[int, float] = MappingProxyType({}),
 ) -> Columns:
     """Turn sightings into tracks: one row per stone and time from its first to its last.
@@ -82,6 +86,9 @@ def smoothed(
         Of the discs, m.
     masses : mapping, optional
         Stone to mass in any unit; all are equal if not given.
+    run : Filter
+        Filters one stone from hit to hit; `physics.filter.reference_filter.filtered` does it with
+        matrices.
     unseen : mapping of int to float
         Frames with their times, s, at which nothing was measured but states are wanted.
 
@@ -105,7 +112,9 @@ def smoothed(
     for name, trace in known.items():
         inside = (times >= trace.t[0]) & (times <= trace.t[-1])
         hits = sorted((c for c in contacts if name in c.stones), key=lambda c: c.t)
-        each[name] = _track(trace, times[inside], frames[inside], hits, fit, model, noise[name])
+        each[name] = _track(
+            trace, times[inside], frames[inside], hits, fit, model, noise[name], run
+        )
     share_spins(each, contacts, radius, masses)
     team, tables = teams(sightings), list(each.values())
     tracks = {name: np.concatenate([table[name] for table in tables]) for name in tables[0]}
@@ -134,6 +143,7 @@ def _track(
     fit: ShotFit,
     model: Model,
     noise: Noise,
+    run: Filter,
 ) -> Columns:
     """Run the filter over one stone, hit to hit."""
     row = np.clip(np.searchsorted(trace.t, t), 0, len(trace.t) - 1)
@@ -148,7 +158,7 @@ def _track(
     for k in np.unique(part):
         at = np.flatnonzero(part == k)
         if np.isfinite(z[at, 0]).any():
-            mean[at], spread[at], seen[at] = filtered(
+            mean[at], spread[at], seen[at] = run(
                 Stretch(
                     t[at], z[at], white[at], slow[at],
                     place[at], rest[at], idle[at], speed[at], model,

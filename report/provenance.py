@@ -10,7 +10,7 @@ from importlib import metadata
 from pathlib import Path
 
 LIBRARIES = (
-    "numpy", "scipy", "pandas", "opencv-python-headless", "av", "matplotlib",
+    "numpy", "scipy", "pandas", "filterpy", "opencv-python-headless", "av", "matplotlib",
 )  # fmt: skip
 
 MOST_FILES = 6

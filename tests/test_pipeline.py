@@ -459,7 +459,7 @@ def test_a_clip_is_tracked_without_what_takes_long_to_load(tmp_path: Path) -> No
     code = (
         "import sys, pipeline\n"
         f"pipeline.main(['track', {clip!r}, '--frames', '0:9', '-q', '-o', {str(tmp_path)!r}])\n"
-        "print({'pandas', 'scipy', 'matplotlib'} & sys.modules.keys() or 'none')"
+        "print({'pandas', 'scipy', 'filterpy', 'matplotlib'} & sys.modules.keys() or 'none')"
     )
     done = in_python(code)
     assert done.stdout.splitlines()[-1] == "none"

@@ -3,7 +3,7 @@
 What a sighting shows is the place, an error that lasts for a while and one that is anew. As the
 pairs are independent, the equations of Kalman come down to a few products per step, and so do
 those of the backward pass in the form of Bryson and Frazier (Bierman, 1973, Automatica 9, 503),
-which inverts nothing. Its tests hold it to the same with matrices, by filterpy.
+which inverts nothing. `physics.filter.reference_filter` does the same with matrices.
 """
 
 from __future__ import annotations

@@ -6,6 +6,7 @@ and x and y have the same model.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -117,6 +118,9 @@ class Stretch:
 
 Smoothed = tuple[Floats, Floats, NDArray[np.int64]]
 """x, y, vx, vy, θ, ω, shape (n, 6); their standard deviations; whether each sighting was used."""
+
+Filter = Callable[[Stretch], Smoothed]
+"""Filters a stretch and smooths it backwards."""
 
 
 @dataclass(frozen=True)

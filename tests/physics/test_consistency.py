@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from unittest.mock import patch
 
 import numpy as np
 import pandas as pd
@@ -103,8 +102,7 @@ def stretches_of(seen: pd.DataFrame, radius: float = RADIUS) -> list[Stretch]:
         kept.append(stretch)
         return filtered(stretch)
 
-    with patch("physics.kalman.filtered", spy):
-        smooth(seen, find_contacts(seen, radius), radius=radius)
+    smooth(seen, find_contacts(seen, radius), radius=radius, run=spy)
     return [stretch for stretch in kept if not stretch.rest.any()]
 
 

@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from unittest.mock import patch
 
 import numpy as np
 import pandas as pd
@@ -168,8 +167,7 @@ def test_the_filter_is_no_surer_of_a_clip_than_it_may_be() -> None:
         stretches.append(stretch)
         return filtered(stretch)
 
-    with patch("physics.kalman.filtered", spy):
-        tracks = smooth(seen, find_contacts(seen, STONE.radius), radius=STONE.radius)
+    tracks = smooth(seen, find_contacts(seen, STONE.radius), radius=STONE.radius, run=spy)
     moving = [forward(s) for s in stretches if not s.rest.any()]
     square = np.concatenate([each.normalised_innovations[6:] for each in moving]) ** 2
     for axis in range(3):

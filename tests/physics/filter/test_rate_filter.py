@@ -1,17 +1,14 @@
 from __future__ import annotations
 
-from unittest.mock import patch
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from physics.filter import rate_filter
+from physics.filter import rate_filter, reference_filter
 from physics.filter.stretch import Model, Stretch
 from physics.kalman import smooth
 from physics.local_fit.contacts import find_contacts
-from tests.physics.filter import reference_filter
 from tests.physics.watch import RADIUS, hit_motion, watch
 
 
@@ -54,8 +51,7 @@ def test_tracks_are_the_same_by_either_filter() -> None:
     seen = watch(hit_motion(1.2, 0.08, after=1.5), np.random.default_rng(5), sd=0.006)
     contacts = find_contacts(seen, RADIUS)
     fast = smooth(seen, contacts, radius=RADIUS)
-    with patch("physics.kalman.filtered", reference_filter.filtered):
-        slow = smooth(seen, contacts, radius=RADIUS)
+    slow = smooth(seen, contacts, radius=RADIUS, run=reference_filter.filtered)
     numbers = fast.columns.drop(["stone", "team"])
     np.testing.assert_allclose(fast[numbers], slow[numbers], rtol=1e-9, atol=1e-9)
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from physics.filter.reference_filter import filtered
 from physics.filter.stretch import ANYWHERE_SD, GATE, PATIENCE, Model, Stretch, drift, steps
-from tests.physics.filter.reference_filter import filtered
 
 N = 9
 

@@ -1,6 +1,7 @@
 """The filter of `physics.kalman` in matrices, by filterpy, to which `rate_filter` is held.
 
-Slower by far, and nothing but the textbook's equations.
+Slower by far, and nothing but the textbook's equations. Whoever wants to couple the pairs
+(curl, say) begins here: ``smooth(…, run=reference_filter.filtered)``.
 """
 
 from __future__ import annotations
