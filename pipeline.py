@@ -99,7 +99,7 @@ def run(
     data.errors.CurlshotError
         Where the input cannot be used; then nothing is written.
     """
-    folder = check_folder(out)
+    folder = None if out is None else check_folder(out)
     files = find_inputs(inputs or (sample_clip(),))
     if folder is not None:
         own = {folder.resolve() / name for name in WRITTEN}
@@ -131,7 +131,6 @@ def run_each(
         Why the others could not be used.
     """
     folder = check_folder(out)
-    assert folder is not None
     done: dict[str, Run] = {}
     failed: dict[str, CurlshotError] = {}
     for name, clip in apart(clips).items():
@@ -225,7 +224,7 @@ def season(
     """
     from physics.statistics.season import hits_table, pooled, shots_table
 
-    folder = check_folder(out)
+    folder = None if out is None else check_folder(out)
     shots, hits = shots_table(runs), hits_table(runs)
     means = pooled(shots)
     if folder is None:
@@ -354,7 +353,6 @@ def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:
     from vision.optics.camera import camera_columns
 
     settings, folder = settings_of(arguments), out_folder(arguments, arguments.inputs[0])
-    check_folder(folder)
     measured = measure(arguments.inputs, replace(settings, clip=True), bars)
     contacts = find_contacts(measured.table, settings.radius)
     tracks = smoothed(measured.table, contacts, radius=settings.radius)
@@ -371,7 +369,6 @@ def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:
 
 def _do_check(arguments: argparse.Namespace, bars: Bars) -> str:
     settings, folder = settings_of(arguments), out_folder(arguments, arguments.inputs[0])
-    check_folder(folder)
     figure, lines = check(arguments.inputs, settings, bars)
     with staged(folder) as stage:
         figure.savefig(stage / "check.png", dpi=CHECK_DPI)
@@ -385,7 +382,6 @@ def _do_estimate(arguments: argparse.Namespace, bars: Bars) -> str:
     from report.units import UNITS
 
     settings, folder = settings_of(arguments), out_folder(arguments, arguments.inputs[0])
-    check_folder(folder)
     refuse_clips(find_inputs(arguments.inputs), "run")
     measured = measure(arguments.inputs, settings, bars)
     done = analyse(measured, settings, bars)
@@ -435,7 +431,6 @@ def _do_simulate(arguments: argparse.Namespace, bars: Bars) -> str:
 
     shot = shot_file(arguments.shot)
     folder = what_if_folder(arguments, shot)
-    check_folder(folder)
     start = read_start(shot, folder)
     changes = Changes(
         arguments.restitution,

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from data.errors import InputError
+from data.files import check_folder
 from data.sheet import STONE
 from work.settings import Settings
 from work.simulate import measured_shot
@@ -42,20 +43,20 @@ def settings_of(arguments: argparse.Namespace) -> Settings:
 
 
 def out_folder(arguments: argparse.Namespace, first: str | Path) -> Path:
-    """Folder for the files: as given, else NAME-curlshot in the current folder."""
+    """Folder for the files: as given, else NAME-curlshot in the current folder; checked."""
     if arguments.out is not None:
-        return Path(arguments.out)
+        return check_folder(arguments.out)
     path = Path(first)
     name = path.name if path.is_dir() else path.stem
     plain = re.sub(r"[*?\[\]]", "", name)  # a glob's signs do not belong in a name
-    return Path(f"{plain or 'out'}-curlshot")
+    return check_folder(f"{plain or 'out'}-curlshot")
 
 
 def what_if_folder(arguments: argparse.Namespace, shot: Path) -> Path:
     """Folder for the simulation of a shot; of a measured one by default RUN-whatif."""
     if arguments.out is not None or not measured_shot(shot):
         return out_folder(arguments, shot)
-    return Path(f"{shot.resolve().parent.name.removesuffix('-curlshot')}-whatif")
+    return check_folder(f"{shot.resolve().parent.name.removesuffix('-curlshot')}-whatif")
 
 
 def _by_stone(option: str, pairs: Sequence[tuple[str, T]]) -> dict[str, T]:

@@ -68,10 +68,8 @@ def relative_path(path: Path, folder: Path) -> str:
         return path.resolve().as_posix()
 
 
-def check_folder(out: str | Path | None, how: str = " with -o") -> Path | None:
+def check_folder(out: str | Path, how: str = " with -o") -> Path:
     """Refuse a bad place for results before an hour of work, not after; `how` to name another."""
-    if out is None:
-        return None
     folder = Path(out)
     there = next(part for part in (folder, *folder.parents) if part.exists())
     if not there.is_dir():
