@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -284,18 +284,3 @@ def read_tracks(path: Path) -> pd.DataFrame:
     if not (np.abs(states) < FARTHEST).all():  # NaN is refused too
         raise InputError(f"{path}: times, places or velocities that are none")
     return table
-
-
-def order_of_motion(first_moved: dict[str, float], others: Iterable[str]) -> dict[str, str]:
-    """Names by the order in which stones first move: A the thrown one, then B, C and so on.
-
-    Parameters
-    ----------
-    first_moved : dict
-        Old name to the time at which it first moved.
-    others : iterable of str
-        Old names of the stones that never move, in the order they shall be named.
-    """
-    order = sorted(first_moved, key=lambda name: first_moved[name])
-    order += [name for name in others if name not in first_moved]
-    return {old: stone_name(index) for index, old in enumerate(order)}

@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from data.progress import Progress, no_progress
 from data.sheet import STONE, Stone
-from data.tracks import SIGHTING_COLUMNS, Columns, no_rows, order_of_motion
+from data.tracks import SIGHTING_COLUMNS, Columns, no_rows
 from vision.association.follow import Track, follow
 from vision.association.late import seen_late
-from vision.association.naming import names_by_motion
+from vision.association.naming import named_by_motion
 from vision.association.rejoin import rejoined
 from vision.association.watch import Watch
 from vision.detection.appearance import Appearance
@@ -69,13 +68,7 @@ class StoneTracks:
         return pd.DataFrame(self.table)
 
 
-def track_stones(
-    clip: Clip,
-    cameras: Sequence[Camera],
-    *,
-    disc: Stone = STONE,
-    progress: Progress = no_progress,
-) -> StoneTracks:
+def track_stones(clip: Clip, cameras: Sequence[Camera], *, disc: Stone = STONE) -> StoneTracks:
     """Find, follow and name the stones of a clip and measure how they are turned.
 
     Parameters
@@ -86,8 +79,6 @@ def track_stones(
         One per frame; frames without one are left out.
     disc : Stone
         Size of the stones, or `plain_disc(radius)` for other discs.
-    progress : Progress
-        Told how far it is.
 
     Returns
     -------
@@ -96,10 +87,9 @@ def track_stones(
     """
     by_frame = {camera.frame: camera for camera in cameras}
     watch = Watch(disc)
-    for done, frame in enumerate(clip):
+    for frame in clip:
         if frame.index in by_frame:
             watch.look(frame, by_frame[frame.index])
-        progress("following the stones", done + 1, clip.expected)
     return tracks_of(watch, cameras)
 
 
@@ -121,9 +111,7 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
     disc = watch.disc
     least = PLAIN if is_plain(disc) else TOLD
     tracks = rejoined(follow(watch.finish(cameras), disc.radius, *least), disc.radius)
-    moved, rest = names_by_motion(tracks, disc.radius)
-    names = order_of_motion(dict(moved), rest)
-    named = {names[str(number)]: track for number, track in enumerate(tracks)}
+    named, rest = named_by_motion(tracks, disc.radius)
     if not named:
         return StoneTracks(no_rows(SIGHTING_COLUMNS), ("no stones were found on the ice",))
     errors = edge_errors(
@@ -134,7 +122,7 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
     edge = dict(zip(named, errors, strict=True))
     team = _teams(named, watch.appearance)
     slants = slants_of(named, cameras, disc)
-    late = seen_late({names[number]: tracks[int(number)] for number in rest}, cameras, disc)
+    late = seen_late({name: named[name] for name in rest}, cameras, disc)
     del tracks  # each goes when its rows are made
     rows = [
         _rows(name, named.pop(name), team[name], disc, edge[name], slants[name])

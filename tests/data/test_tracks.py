@@ -16,7 +16,6 @@ from data.tracks import (
     TRACK_COLUMNS,
     check_sightings,
     empty_tracks,
-    order_of_motion,
     read_tracks,
     stone_name,
     teams,
@@ -184,11 +183,6 @@ def test_any_text_is_read_or_refused(tmp_path: Path, cells: list[str]) -> None:
 def test_names_of_stones() -> None:
     assert [stone_name(k) for k in (0, 1, 25, 26, 52)] == ["A", "B", "Z", "A1", "A2"]
     assert len({stone_name(k) for k in range(200)}) == 200
-
-
-def test_the_thrown_stone_is_a() -> None:
-    names = order_of_motion({"p": 3.0, "q": 1.0, "r": 2.0}, ["s", "p", "u"])
-    assert names == {"q": "A", "r": "B", "p": "C", "s": "D", "u": "E"}
 
 
 def test_no_tracks_have_the_columns_of_tracks() -> None:

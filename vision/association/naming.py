@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
+from data.tracks import stone_name
 from vision.association.follow import Track
 
 LEFT, JITTER = 0.25, 6.0
@@ -61,25 +62,29 @@ def _first_speed(track: Track) -> float:
     return float(np.hypot(last.x - first.x, last.y - first.y) / wait) if wait > 0 else 0.0
 
 
-def names_by_motion(
+def named_by_motion(
     tracks: Sequence[Track], radius: float
-) -> tuple[Mapping[str, float], Sequence[str]]:
-    """Tell the times of first motion, and the stones at rest by their distance to the tee.
+) -> tuple[dict[str, Track], tuple[str, ...]]:
+    """Name stones by the order in which they first move: A the thrown one, then B, C and so on.
+
+    Then those that stay where they are, by their distance to the tee.
 
     Returns
     -------
-    moved : mapping
-        Number of the track, as text, to its time; the faster first among equals.
-    rest : sequence of str
-        The others.
+    named : dict of str to Track
+        In the order of their names; the faster first of those that move at the same time.
+    rest : tuple of str
+        Names of those that stay.
     """
-    moved: list[tuple[float, float, str]] = []
-    rest: list[tuple[float, str]] = []
+    moved: list[tuple[float, float, int]] = []
+    rest: list[tuple[float, int]] = []
     for number, track in enumerate(tracks):
         start = first_motion(track, radius)
         if start is None:
             x, y = np.median(track.sightings.columns("x", "y"), axis=1)
-            rest.append((float(np.hypot(x, y)), str(number)))
+            rest.append((float(np.hypot(x, y)), number))
         else:
-            moved.append((start, -_first_speed(track), str(number)))
-    return {name: start for start, _, name in sorted(moved)}, [name for _, name in sorted(rest)]
+            moved.append((start, -_first_speed(track), number))
+    order = [number for *_, number in sorted(moved)] + [number for _, number in sorted(rest)]
+    named = {stone_name(rank): tracks[number] for rank, number in enumerate(order)}
+    return named, tuple(named)[len(moved) :]

@@ -5,9 +5,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import pytest
 
-from data.tracks import order_of_motion
 from vision.association.follow import Track, follow
-from vision.association.naming import names_by_motion
+from vision.association.naming import named_by_motion
 from vision.detection.sighting import Sighting
 
 R = 0.1455
@@ -104,10 +103,8 @@ def test_three_stones_within_a_fifth_of_a_second() -> None:
 
     tracks = follow(clip([a, b, c], 2.0), R)
     assert len(tracks) == 3
-    moved, rest = names_by_motion(tracks, R)
+    by_name, rest = named_by_motion(tracks, R)
     assert not rest
-    names = order_of_motion(dict(moved), rest)
-    by_name = {names[str(n)]: track for n, track in enumerate(tracks)}
     assert by_name["A"].sightings[0].y > 1.5
     assert by_name["B"].sightings[0].y == pytest.approx(0, abs=0.01)
     assert by_name["C"].sightings[0].y == pytest.approx(-gap - 2 * R, abs=0.01)

@@ -2,10 +2,9 @@ from __future__ import annotations
 
 import pytest
 
-from data.tracks import order_of_motion
 from tests.vision.association.test_follow import R, clip
 from vision.association.follow import follow
-from vision.association.naming import first_motion, names_by_motion
+from vision.association.naming import first_motion, named_by_motion
 
 
 def test_jitter_is_no_motion_and_a_start_is_timed_to_a_frame() -> None:
@@ -25,9 +24,9 @@ def test_a_stone_that_enters_moving_moves_from_its_first_frame() -> None:
 def test_resting_stones_are_named_by_their_distance_to_the_tee() -> None:
     paths = [lambda t: (1.5, 0.0), lambda t: (0.0, 0.2), lambda t: (0.0, 2.0 - t)]
     tracks = follow(clip(paths, 1.0), R)
-    moved, rest = names_by_motion(tracks, R)
-    names = order_of_motion(dict(moved), rest)
-    start = {names[str(n)]: track.sightings[0] for n, track in enumerate(tracks)}
+    named, rest = named_by_motion(tracks, R)
+    assert rest == ("B", "C")
+    start = {name: track.sightings[0] for name, track in named.items()}
     assert start["A"].y == pytest.approx(2, abs=0.01)
     assert start["B"].y == pytest.approx(0.2, abs=0.01)
     assert start["C"].x == pytest.approx(1.5, abs=0.01)
