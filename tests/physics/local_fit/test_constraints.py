@@ -51,6 +51,20 @@ def test_constraints_are_differentiated_right() -> None:
         assert rows[:, k] == pytest.approx((ends[0] - ends[1]) / 2e-6, rel=1e-4, abs=1e-5), k
 
 
+def test_momentum_stays_where_masses_are_known() -> None:
+    theta, masses = unknowns(), np.array([1.0, 1.2])
+    meeting = Meeting(1.0, ("A", "B"), 0.02)
+    without = contact_constraints(theta, AT, ORIGINS, meeting, RANKS, RADIUS, None)
+    _, values, _ = constraints(theta)
+    assert len(without[1]) == len(values) - 2
+    speeds = [
+        motion(theta[6 * k : 6 * k + 6].reshape(2, 3), 1.0 - ORIGINS[k], theta[25 + k])[1]
+        for k in range(4)
+    ]
+    change = np.array([speeds[1] - speeds[0], speeds[3] - speeds[2]])
+    assert values[-2:] == pytest.approx(masses @ change / masses.mean())
+
+
 def test_a_distance_that_is_off_has_less_of_a_say() -> None:
     usual, _, sd = (part[5] for part in constraints(unknowns()))
     assert usual[24] != 0.0
