@@ -128,6 +128,7 @@ class EdgeTracker:
     _shutter: Shutter = field(default_factory=Shutter)
     _light: ShutterLight = field(init=False)
     _last: tuple[View, Array, Normals, Array] | None = None
+    _focal: float = 0.0
 
     def __post_init__(self) -> None:
         self._light = ShutterLight.of(self.edge, self.palette)
@@ -151,6 +152,7 @@ class EdgeTracker:
             The first of the frames, as many as went well; none where the first does not show
             enough of the circles.
         """
+        self._zoom(last.focal, views[0].focal)
         again, smeared, known = False, 0.0, self._light
         for _ in range(ROUNDS):
             steps = [now.sweep(old) for now, old in zip(views, [last, *views], strict=False)]
@@ -231,7 +233,7 @@ class EdgeTracker:
     @property
     def _reach(self) -> float:
         """Half length of the normals, px."""
-        return reach_beyond(self.blur, self.size[0])
+        return reach_beyond(self.blur, self.size[0]) + self.edge.reach
 
     def _laid(self, views: Sequence[View], rig: Array) -> tuple[Normals, Array]:
         """Give normals and where they stand in views, of which at least the first has them.
@@ -302,6 +304,16 @@ class EdgeTracker:
         near &= reach_beyond(smear(evidence.slope), self.size[0]) < TOO_SHORT * self._reach
         return near and _enough(rig, evidence.visible, _explained(evidence, fit), GOOD_SUPPORT)
 
+    def _zoom(self, before: float, now: float) -> None:
+        """Take outlines drawn alone to be as much wider as the view has zoomed since it was told.
+
+        `before` is the focal length with which that was, if no frame was seen yet.
+        """
+        if self.edge.within:
+            wider = now / (self._focal or before)
+            self.edge = replace(self.edge, within=self.edge.within * wider)
+        self._focal = now
+
     @property
     def _pan(self) -> Smeared:
         return Smeared(self.sweep, self.palette, self.edge)
@@ -330,12 +342,13 @@ class EdgeTracker:
     def _tell_edge(self, picture: Picture, rig: Array) -> None:
         """Tell by a frame that is sharper than those before where circles are in profiles."""
         assert self.fit is not None
-        before, view, reach = self.edge, self.fit.view.vector, reach_beyond(0.0, self.size[0])
+        before, view, least = self.edge, self.fit.view.vector, reach_beyond(0.0, self.size[0])
         for _ in range(EDGE_ROUNDS):
+            reach = least + self.edge.reach
             shown = measure_marks(picture, view, rig, reach=reach, lines=False, edge=self.edge)
             edge = find_edge(shown.profile, shown.step)
             self.edge = lit(edge, picture, self.fit.view, rig, shown)
-        self.told, slope = shown, shown.steepness
+        self._focal, self.told, slope = self.fit.view.focal, shown, shown.steepness
         self.moved = self.moved + self.edge.aside(slope) - before.aside(slope)
         self._light = ShutterLight.of(self.edge, self.palette)
 

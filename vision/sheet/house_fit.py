@@ -43,6 +43,9 @@ it is rolled, and marks that slide along them leave the line in which they were 
 LEAST_MARKS = 30
 """Edge points without which there is no camera; three whole circles give hundreds."""
 
+ROUNDS, SETTLED = 4, 0.1
+"""How often circles are measured anew, and how well they tell half an outline's width then, px."""
+
 TILT_GAIN = 8.0
 """By how much the log likelihood must rise for a camera that does not hang over the tee."""
 
@@ -176,16 +179,16 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
     rig = sides(image, view, rig)
     prior = OVERHEAD if overhead else ANYWHERE
     edge = HALF_WAY
-    for reach in (8.0, 6.0, 6.0):
-        evidence = measure_marks(image, view.vector, rig, reach=reach, edge=edge)
+    for reach in (8.0, *ROUNDS * (6.0,)):
+        evidence = measure_marks(image, view.vector, rig, reach=reach + edge.reach, edge=edge)
         if len(evidence.marks) < LEAST_MARKS:
             return None
         fit = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
         view, rig = fit.views[0], fit.rig
         if any(edge.light):
             break
-        edge = find_edge(evidence.profile, evidence.step)
-        if reach < 8.0:
+        before, edge = edge, find_edge(evidence.profile, evidence.step)
+        if reach < 8.0 and abs(edge.within - before.within) < SETTLED:
             edge = lit(edge, image, view, rig, evidence)
             if not any(edge.light):
                 break

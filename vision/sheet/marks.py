@@ -166,15 +166,16 @@ def measure_along(
         value[..., places.kinds.get(kind, slice(0))] -= np.float32(edge.light[kind])
     if levels is not None:
         value -= levels[:wide].astype(np.float32)
-    rising, inset = value.copy(), np.zeros((len(good), 1))
+    rising, inset = value.copy(), np.zeros(good.shape)
     for k, one in enumerate(colours[..., :wide]):
         for part in outlines(one, places.kinds, value[k], good[k], found[k]):
             rising[k][:, part] = summed(value[k][:, part])
-            inset[k] += edge.within * (part == rim)
+            inset[k, part] = edge.within * normals.magnified[part]
     sample, rise, crossed = crossings(rising)
     step = 2 * normals.wanted / (SAMPLES - 1)
     slope = rise[..., rim] / step
-    sample[..., rim] -= (edge.beyond(slope) + inset) / step
+    sample -= inset / step
+    sample[..., rim] -= edge.beyond(slope) / step
     off = sample / (SAMPLES // 2) - 1
     shorter = normals.reach[:wide] < normals.wanted
     good &= crossed & ~(shorter & (np.abs(off) > CLEAR))

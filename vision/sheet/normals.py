@@ -71,6 +71,8 @@ class Normals:
         That of each, px.
     visible : ndarray, shape (3,)
         Fraction of each circle inside the picture.
+    magnified : ndarray, shape (n,)
+        How much larger than usual what lies across a circle looks there; 1 on lines.
     samples : ndarray of float32, shape (2, SAMPLES, n)
         From the place to the samples along the normal, x and y, px.
     """
@@ -85,6 +87,7 @@ class Normals:
     wanted: float
     reach: Array
     visible: Array
+    magnified: Array
     samples: Profiles
 
     @property
@@ -191,8 +194,21 @@ def lay_out(
     samples = _SHARES[:, None] * (normal * reaches).astype(np.float32)[:, None]
     return Normals(
         kinds, on.line[at], on.along[at], on.foot[:, at], on.way[:, at], place[:, at], normal,
-        reach, reaches, shown[:CIRCLES] / on.count[:CIRCLES], samples,
+        reach, reaches, shown[:CIRCLES] / on.count[:CIRCLES],
+        _magnified(place, measure, on, at, normal), samples,
     )  # fmt: skip
+
+
+def _magnified(place: Array, measure: Array, on: Stations, at: Index, normal: Array) -> Array:
+    """How large what lies across the circles looks at some stations, by how far apart these are."""
+    number, found = int(on.count[:CIRCLES].sum()), np.ones(len(at))
+    rings = place[:, :number].reshape(2, CIRCLES, -1)
+    outward = np.array(np.gradient(rings, measure[on.start[:CIRCLES]], axis=1)).reshape(2, -1)
+    circles = at < number
+    if circles.any():
+        size = np.abs((outward[:, at[circles]] * normal[:, circles]).sum(0))
+        found[circles] = size / np.mean(size)
+    return found
 
 
 def _within(place: Array, margin: float, size: tuple[int, int]) -> Flags:

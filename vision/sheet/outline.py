@@ -41,6 +41,10 @@ blur, a narrow dark line looks much like a wider one that is less dark."""
 HALF_IN_DOUBT = 0.3
 """The same of half the width of an outline that is drawn alone."""
 
+CLEAR_OF = 4.0
+"""How far normals reach beyond the edge of an outline drawn alone, in halves of its width: the
+outer quarters of a profile, which tell what is beside it, are clear of it so."""
+
 LEAST_SIDE = 4
 """Samples of a profile on either side without which no line is looked for: what paint and ice are
 like there is not known."""
@@ -63,7 +67,8 @@ class PaintEdge:
         How far the line moves the place half way between ice and paint off the edge, px, if the
         edge is blurred by much more than the line is wide: its depth times its width.
     within : float
-        How far within the edge the middle of an outline lies that is drawn alone, px.
+        How far within the edge the middle of an outline lies that is drawn alone, px; alike for
+        all circles, each of which is measured to its outer side.
     light : tuple of float
         Levels at which the circles (12, 8 and 4 ft) are crossed beside that, as light was blurred
         before it was coded (see `vision.sheet.mixing`).
@@ -74,6 +79,11 @@ class PaintEdge:
     line: float = 0.0
     within: float = 0.0
     light: tuple[float, ...] = (0.0, 0.0, 0.0)
+
+    @property
+    def reach(self) -> float:
+        """How much longer normals must be to show what is beside an outline drawn alone, px."""
+        return CLEAR_OF * self.within
 
     def beyond(self, slope: Array | float) -> Array:
         """How far beyond the edge profiles cross the level, px, by their slopes there, per px.
@@ -87,8 +97,8 @@ class PaintEdge:
     def aside(self, slope: float) -> Array:
         """How far along their normals circles are from half way, (3,), px; slope as `beyond`."""
         found = np.array(self.light) / slope
-        found[0] += self.level / slope - float(self.beyond(slope)) - self.within
-        return found
+        found[0] += self.level / slope - float(self.beyond(slope))
+        return found - self.within
 
 
 HALF_WAY = PaintEdge()

@@ -5,18 +5,19 @@ from functools import cache
 
 import numpy as np
 
-from tests.synthetic import PAINTS, Key, cached_clip, render_still, sample_scene
+from tests.synthetic import PAINTS, Key, Paint, cached_clip, render_still, sample_scene
 from tests.synthetic.camera import CameraPath
 from vision.camera_path.edge_tracker import LONGEST_STRIDE, SHARPER, EdgeTracker, put_right
 from vision.film.clip import Frame, open_clip
 from vision.optics.paint import CENTRE_LINE, CIRCLES, EIGHT, FOUR, HOG_LINE, TWELVE
-from vision.optics.pose import View
+from vision.optics.pose import View, project
 from vision.sheet.house import find_house
 from vision.sheet.house_fit import HouseFit
 from vision.sheet.marks import Evidence, measure_marks
 from vision.sheet.outline import PaintEdge
 
 SIZE = (1280, 720)
+ANGLE = np.arange(16) * np.pi / 8
 
 
 @cache
@@ -102,6 +103,19 @@ def test_a_house_of_other_colours_is_told() -> None:
     assert edges.looks_like(house.evidence.palette)
     assert edges.looks_like(0.4 * house.evidence.palette)  # faded
     assert not edges.looks_like(house.evidence.palette[:, ::-1])
+
+
+def test_outlines_alone_that_are_wider_than_usual_normals_are_followed() -> None:
+    path = CameraPath(SIZE, (0.0, 0.0, 9.0), (Key(0.0, 0.0, 0.3, 175),))
+    bare = Paint(*[(222, 226, 226)] * 4, outline=(150, 60, 30), outline_width=0.045)
+    image = render_still(replace(sample_scene(), paint=bare), path, 0.0)
+    house = find_house(image)
+    assert house is not None
+    aside = View(house.view.vector + np.array([0.0, 3.0 / house.view.focal, 0.0, 0.0]))
+    (seen,) = tracker(house).settle([Frame(0, 0.0, image)], [aside], house.rig, house.view)
+    rim = 1.829 * np.stack([np.cos(ANGLE), np.sin(ANGLE)], -1)
+    true = path.at(0.0).project(np.c_[rim, 0 * ANGLE])
+    assert np.abs(project(rim, seen.view.vector, house.rig, SIZE) - true).max() < 0.2
 
 
 def smeared_evidence(edge: PaintEdge, steeper: float) -> Evidence:
