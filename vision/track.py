@@ -44,6 +44,12 @@ HARDLY_TOLD = 0.004
 it move the edge that is found. Five filmed ones lay 2 to 7 mm off."""
 
 
+IN_PICTURE, ON_ICE, IN_THE_OPEN = 0.75, 2.0, 1.6
+"""How far a graphic laid over the picture is found to stray in it, px, where what rests on the ice
+strays so much, and evidence that only stones show, such as one that a camera goes along with. The
+icons of a score stray by 0.2 to 0.5, stones of 160 clips by 3 or more or as far as the ice."""
+
+
 @dataclass(frozen=True)
 class StoneTracks:
     """The stones of a clip.
@@ -111,6 +117,7 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
     disc = watch.disc
     least = PLAIN if is_plain(disc) else TOLD
     tracks = rejoined(follow(watch.finish(cameras), disc.radius, *least), disc.radius)
+    tracks = [track for track in tracks if not is_graphic(track, cameras, disc)]
     named, rest = named_by_motion(tracks, disc.radius)
     if not named:
         return StoneTracks(no_rows(SIGHTING_COLUMNS), ("no stones were found on the ice",))
@@ -132,6 +139,19 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
         {name: np.concatenate([part[name] for part in rows]) for name in SIGHTING_COLUMNS},
         (*late, *_without_colour(watch.appearance)),
     )
+
+
+def is_graphic(track: Track, cameras: Sequence[Camera], disc: Stone) -> bool:
+    """Whether what was taken for a stone stays where it is in the picture while the ice moves."""
+    x, y, score = track.sightings.columns("x", "y", "score")
+    if np.percentile(score, 75) > IN_THE_OPEN:
+        return False
+    by_frame = {camera.frame: camera for camera in cameras}
+    by = Cameras.of([by_frame[frame] for frame in track.frames], [1] * len(x))
+    both = np.column_stack([x, y, np.full(len(x), np.median(x)), np.full(len(x), np.median(y))])
+    seen = by.project(both.reshape(-1, 2, 2), disc.cap_height)
+    own, rested = np.hypot(*np.median(np.abs(seen - np.median(seen, 0)), 0).T)
+    return bool(own < IN_PICTURE and rested > max(ON_ICE, 5 * own))
 
 
 def slants_of(

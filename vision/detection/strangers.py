@@ -20,11 +20,16 @@ from vision.detection.patch import is_plain
 from vision.detection.rays import Look
 from vision.detection.sighting import Sighting
 from vision.detection.stones import Findings, Search, apart, search_picture
+from vision.film.lab import chroma
 
 UNKNOWN, SAME = -0.25, 0.05
 """What evidence by shape counts less than that by colours where nothing is known of the granite,
 and more where it is that of other stones. Of 127 real frames without colours (some 600 stones) the
 roundest print has 1.6 and clothes 1.6, of granite like that of the stones there 1.3."""
+
+
+MOST_HUE = 36.0
+"""Distance from grey, L*a*b* units, from which on what is around a disc is no granite but paint."""
 
 
 def strangers(looks: Sequence[Look], disc: Stone, search: Search) -> list[Findings]:
@@ -77,6 +82,10 @@ def by_shape(
 
 def weighed(stone: Sighting, granite: Colour | None) -> Sighting:
     """Give a stone told by its shape the evidence that it has beside those told by colours."""
-    seen = stone.granite_samples
-    same = granite is not None and len(seen) and alike(np.median(seen, axis=0), granite.mean)
+    if not len(stone.granite_samples):
+        return stone._replace(score=stone.score + UNKNOWN)
+    own = np.median(stone.granite_samples, axis=0)
+    if chroma(own) > MOST_HUE:
+        return stone._replace(score=0.0)
+    same = granite is not None and alike(own, granite.mean)
     return stone._replace(score=stone.score + (SAME if same else UNKNOWN))

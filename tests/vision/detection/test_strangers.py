@@ -79,6 +79,13 @@ def test_black_caps_in_light_granite_are_found_beside_vivid_ones_in_dark_granite
     assert misses(found, scene).max() < 0.010
 
 
+@pytest.mark.parametrize(("paint", "count"), [((225, 60, 200), 0), ((120, 122, 124), 4)])
+def test_round_marks_on_vivid_paint_are_no_stones(paint: Colour, count: int) -> None:
+    scene = painted(BLACK, WHITE, BLACK, WHITE)
+    scene = replace(scene, stones=tuple(replace(one, granite=paint) for one in scene.stones))
+    assert len(seen(scene)) == count
+
+
 def test_granite_that_others_have_makes_a_doubtful_stone_one() -> None:
     """Evidence by shape that convinces beside stones of such granite, and not alone."""
     scene = painted(BLUE, DULL, BLUE, DULL)
