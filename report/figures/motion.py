@@ -28,14 +28,13 @@ from report.figures.parts import (
     said,
     set_height,
     short,
-    speed_of,
     speeds,
     time_axis,
     title,
 )
 from report.numbers import plus_minus
 from report.style import AFTER, BEFORE, GREEN, new_figure, stone_colours, styled
-from report.tables import moving_stones
+from report.tables import magnitude, moving_stones
 
 _TANGENT = 0.4  # s of fitted velocity drawn on either side of a hit, at most
 _STILL = 1e-3  # m/s; slower is at rest
@@ -219,7 +218,7 @@ def _draw_glides(
         handles.append(line(f"{ends[0]:.1f}–{ends[1]:.1f} s: {label}", color=GREEN, lw=2.6))
     for _, colour, hit, state, _ in _sides(stone, hits):
         sd = getattr(state, "sd_vx", None), getattr(state, "sd_vy", None)
-        value, error = speed_of(*np.array([state.vx, state.vy, *(s or 0.0 for s in sd)], float))
+        value, error = magnitude(*np.array([state.vx, state.vy, *(s or 0.0 for s in sd)], float))
         _draw_point(ax, hit.t, float(value), float(error), colour)
     legend_beside(ax, handles, "μ of the glides")
 

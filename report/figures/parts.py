@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from data.results import Collision
 from report.numbers import fixed, parts
 from report.style import BLACK, GREY, PALE, plain_text
+from report.tables import magnitude
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -59,16 +60,7 @@ def hits_of(collisions: Sequence[Collision], stone: str) -> list[tuple[int, Coll
 
 def speeds(rows: pd.DataFrame) -> tuple[Array, Array]:
     """Speed of each row and its standard deviation, m/s."""
-    vx, vy, sx, sy = rows[["vx", "vy", "sd_vx", "sd_vy"]].to_numpy(float).T
-    return speed_of(vx, vy, sx, sy)
-
-
-def speed_of(vx: Array, vy: Array, sx: Array, sy: Array) -> tuple[Array, Array]:
-    """Speed and its standard deviation from a velocity and those of its parts."""
-    speed = np.hypot(vx, vy)
-    slow = speed < 1e-9
-    along = np.hypot(vx * sx, vy * sy) / np.where(slow, 1.0, speed)
-    return speed, np.where(slow, np.fmax(sx, sy), along)
+    return magnitude(*rows[["vx", "vy", "sd_vx", "sd_vy"]].to_numpy(float).T)
 
 
 def broken(t: Array, *columns: Array, cuts: Sequence[float] = ()) -> list[Array]:

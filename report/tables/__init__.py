@@ -11,7 +11,7 @@ from report.tables.shot import (
     score_table,
     stone_table,
 )
-from report.tables.states import in_axes, measured_table, simulated_table
+from report.tables.states import in_axes, magnitude, measured_table, simulated_table
 
 __all__ = [
     "choice_table",
@@ -21,6 +21,7 @@ __all__ = [
     "ice_table",
     "in_axes",
     "law_table",
+    "magnitude",
     "measured_table",
     "method_table",
     "moving_stones",

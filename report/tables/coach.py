@@ -14,6 +14,7 @@ from data.results import Collision, MeasuredState
 from data.sheet import SHEET, STONE
 from report.tables.rest import STILL, thrown
 from report.tables.shot import moving_stones
+from report.tables.states import magnitude
 
 
 def speed_table(
@@ -73,11 +74,8 @@ def takeout_table(collisions: Sequence[Collision]) -> pd.DataFrame:
 
 
 def _speed(state: MeasuredState) -> tuple[float, float]:
-    speed = float(np.hypot(state.vx, state.vy))
-    errors = [np.nan if sd is None else sd for sd in (state.sd_vx, state.sd_vy)]
-    if speed < 1e-9:
-        return speed, float(max(errors))
-    return speed, float(np.hypot(state.vx * errors[0], state.vy * errors[1])) / speed
+    speed, sd = magnitude(*np.array([state.vx, state.vy, state.sd_vx, state.sd_vy], float))
+    return float(speed), float(sd)
 
 
 def _crossing(track: pd.DataFrame, line: float, side: float) -> dict[str, object]:
@@ -91,7 +89,6 @@ def _crossing(track: pd.DataFrame, line: float, side: float) -> dict[str, object
         return {"note": f"came no nearer than {ahead.min():.1f} m, as far as was seen"}
     k = max(int(past[0]), 1)
     share = ahead[k - 1] / max(ahead[k - 1] - ahead[k], 1e-12)
-    speed = np.hypot(vx, vy)
-    sd = np.hypot(vx * sx, vy * sy) / np.maximum(speed, 1e-9)
+    speed, sd = magnitude(vx, vy, sx, sy)
     between = [float(a[k - 1] + share * (a[k] - a[k - 1])) for a in (t, speed, sd)]
     return dict(zip(("t", "speed", "sd"), between, strict=True))

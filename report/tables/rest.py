@@ -13,6 +13,7 @@ import pandas as pd
 from data.results import Collision
 from data.sheet import HOUSE, STONE, House
 from report.tables.shot import moving_stones
+from report.tables.states import magnitude
 from report.tables.teams import team_names
 
 STILL = 0.03
@@ -199,11 +200,7 @@ def _leaves(track: pd.DataFrame, reach: float) -> bool:
 
 
 def _place(track: pd.DataFrame) -> dict[str, object]:
-    x, y, sx, sy = track[["x", "y", "sd_x", "sd_y"]].iloc[-1].to_numpy(float)
-    distance = float(np.hypot(x, y))
-    error = float(np.hypot(x * sx, y * sy)) / max(distance, 1e-9)
-    return {
-        **dict(zip(("x", "y", "sd_x", "sd_y"), (x, y, sx, sy), strict=True)),
-        "to_tee": distance,
-        "sd_to_tee": error,
-    }
+    place = track[["x", "y", "sd_x", "sd_y"]].iloc[-1].to_numpy(float)
+    distance, error = magnitude(*place)
+    names = ("x", "y", "sd_x", "sd_y", "to_tee", "sd_to_tee")
+    return dict(zip(names, (*place.tolist(), float(distance), float(error)), strict=True))

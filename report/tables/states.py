@@ -7,8 +7,11 @@ from dataclasses import asdict
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from data.results import Collision, MeasuredState, SimulatedHit, SimulationScore
+
+Array = NDArray[np.float64]
 
 STATE_COLUMNS = ("x", "y", "vx", "vy", "omega")
 COLUMNS = (
@@ -36,6 +39,14 @@ def in_axes(
         np.hypot(state.sd_vx * ny, state.sd_vy * nx),
     )
     return (along, float(errors[0])), (across, float(errors[1]))
+
+
+def magnitude(x: Array, y: Array, sd_x: Array, sd_y: Array) -> tuple[Array, Array]:
+    """Lengths of vectors and their standard deviations from those of their parts."""
+    length = np.hypot(x, y)
+    short = length < 1e-9
+    along = np.hypot(x * sd_x, y * sd_y) / np.where(short, 1.0, length)
+    return length, np.where(short, np.fmax(sd_x, sd_y), along)
 
 
 def measured_table(collisions: Sequence[Collision]) -> pd.DataFrame:

@@ -30,7 +30,7 @@ def test_a_line_breaks_in_long_gaps_and_at_cuts():
 
 
 def test_the_error_of_a_speed_is_that_along_its_velocity():
-    speed, sd = parts.speed_of(*np.array([[3.0, 0.0], [4.0, 0.0], [0.1, 0.1], [0.2, 0.2]]))
+    speed, sd = parts.magnitude(*np.array([[3.0, 0.0], [4.0, 0.0], [0.1, 0.1], [0.2, 0.2]]))
     assert speed.tolist() == [5.0, 0.0]
     assert sd == pytest.approx([np.hypot(0.6 * 0.1, 0.8 * 0.2), 0.2])
 
