@@ -27,6 +27,9 @@ PRUNED_FROM, PRUNED_AFTER = 40.0, 8
 """Cost above that of the cheapest partition, some three breaks, from which a segment is pruned, and
 how many sightings it has before it may be."""
 
+PRUNED_EACH = 4
+"""Each how manieth sighting they are pruned: more often takes longer than to go on with them."""
+
 STILL = 25.0
 """Squared normalised shift of a mean place, two axes, below which it is no trace of a motion."""
 
@@ -86,37 +89,43 @@ def _breaks(samples: bytes, lasting: float) -> tuple[float, ...]:
 
 def _starts(t: Floats, xy: Floats, variance: Floats, may: NDArray[np.bool_]) -> list[int]:
     """Find the samples, of those that may, at which all segments but the first begin."""
-    n = len(t)
+    n, count = len(t), 0
     best = np.full(n + 1, np.inf)
     best[0] = -BREAK_COST
     origin = np.zeros(n + 1, dtype=int)
-    starts, cost = np.empty(0, dtype=int), np.empty(0)
-    # Mean (two axes) and covariance of place, velocity and acceleration, side by side, by start.
-    state = np.empty((3, 5, 0))
-    unknown = np.zeros((3, 5, 1))
-    unknown[[1, 2], [3, 4], 0] = SPEED_SD**2, ACCELERATION_SD**2
+    # By segment that is tried: where it begins, its cost, powers of the time since then, and of
+    # place, velocity and acceleration the mean (two axes) and the covariance, side by side.
+    starts, cost = np.empty(n, dtype=int), np.empty(n)
+    since, state = np.ones((3, n)), np.empty((3, 5, n))
+    unknown = np.zeros((3, 5))
+    unknown[[1, 2], [3, 4]] = SPEED_SD**2, ACCELERATION_SD**2
     for j in range(n):
-        tau = t[j] - t[starts]
-        half = 0.5 * tau * tau
-        expected = state[0] + tau * state[1] + half * state[2]
-        error, gain = xy[j, :, None] - expected[:2], expected[2:]
-        total = gain[0] + tau * gain[1] + half * gain[2] + variance[j]
-        distance = (error[0] * error[0] + error[1] * error[1]) / total
+        now, powers, noise = state[..., :count], since[:, :count], variance[j]
+        np.subtract(t[j], t[starts[:count]], out=powers[1])
+        np.multiply(powers[1], 0.5 * powers[1], out=powers[2])
+        beyond = (now * powers[:, None]).sum(0)
+        beyond[:2] -= xy[j, :, None]
+        away, gain = beyond[:2], beyond[2:]
+        total = (gain * powers).sum(0) + noise
+        distance = (away * away).sum(0) / total
         ok = distance < OUTLIER
-        cost = cost + np.where(ok, distance + 2 * np.log(total / variance[j]), OUTLIER)
-        share = np.where(ok, 1.0 / total, 0.0)
-        state += (gain * share)[:, None] * np.concatenate([error, -gain])
+        cost[:count] += np.where(ok, distance + 2 * np.log(total / noise), OUTLIER)
+        now -= (gain * np.where(ok, 1.0 / total, 0.0))[:, None] * beyond
         if may[j] or not j:
             # A segment that begins here knows its place and nothing of its motion.
-            unknown[0, :3, 0] = *xy[j], variance[j]
-            starts = np.concatenate([starts, [j]])
-            cost = np.concatenate([cost, [best[j] + BREAK_COST]])
-            state = np.concatenate([state, unknown], axis=2)
-        pick = int(cost.argmin())
+            unknown[0, :3] = *xy[j], noise
+            starts[count], cost[count], state[..., count] = j, best[j] + BREAK_COST, unknown
+            count += 1
+        pick = int(cost[:count].argmin())
         best[j + 1], origin[j + 1] = cost[pick], starts[pick]
-        keep = (cost < best[j + 1] + PRUNED_FROM) | (starts > j - PRUNED_AFTER)
-        if not keep.all():
-            starts, cost, state = starts[keep], cost[keep], state[:, :, keep]
+        if j % PRUNED_EACH:
+            continue
+        keep = cost[:count] < best[j + 1] + PRUNED_FROM
+        left = np.flatnonzero(keep | (starts[:count] > j - PRUNED_AFTER))
+        if len(left) < count:
+            count = len(left)
+            starts[:count], cost[:count] = starts[left], cost[left]
+            state[..., :count] = state[..., left]
     found: list[int] = []
     j = int(origin[n])
     while j > 0:

@@ -104,6 +104,7 @@ class _Solver:
         }
         self.further = np.zeros((len(self.pieces), 2, 8))
         self.courses: dict[int, tuple[Floats, Floats, Floats]] = {}
+        self.left: dict[int, Floats] = {}
         self.blocks = self._blocks()
         self.origins = np.array([_origin(p, traces[p.stone], meetings) for p in pieces])
         self.theta = np.zeros(self.size)
@@ -142,7 +143,7 @@ class _Solver:
             scale = np.sqrt(np.maximum(np.diag(cov), 1e-24))
             settled = bool(np.all(np.abs(step) < 0.02 * scale))
             self.theta = self.theta + (0.5 if done >= USUAL else 1.0) * step
-            self.courses.clear()
+            self._forget(step)
             self.inflation = self._inflation(float(np.sum(cov * data)))
             if settled:
                 break
@@ -155,6 +156,13 @@ class _Solver:
             self.inflation,
             self.sides,
         )
+
+    def _forget(self, step: Floats) -> None:
+        """Let go of what is known of pieces that a step has moved, or that drift anew."""
+        for i, piece in enumerate(self.pieces):
+            if not piece.rest or step[[6 * i, 6 * i + 3]].any():
+                self.courses.pop(i, None)
+                self.left.pop(i, None)
 
     def _time_bounds(self, k: int) -> tuple[float, float]:
         """Least and most that the time of meeting k may move in one step."""
@@ -182,6 +190,7 @@ class _Solver:
                 if len(samples) != len(self.pieces[rank].samples):
                     self.pieces[rank] = replace(self.pieces[rank], samples=samples)
                     self.courses.pop(rank, None)
+                    self.left.pop(rank, None)
 
     def _motion(self, i: int) -> tuple[Floats, float]:
         """State of a piece at its origin, shape (2, 3), and the power that slows it."""
@@ -206,11 +215,13 @@ class _Solver:
         return self.courses[i]
 
     def _residuals(self, i: int) -> Floats:
-        piece = self.pieces[i]
-        trace, (tau, fitted, _) = self.traces[piece.stone], self._course(i)
-        drift = self.further[i] @ np.append(-self.theta[unknowns_of(i, len(self.pieces))], 1.0)
-        off = trace.xy[piece.samples] - fitted - tau[:, None] * drift
-        return np.asarray(off / trace.sd[piece.samples])
+        if i not in self.left:
+            piece = self.pieces[i]
+            trace, (tau, fitted, _) = self.traces[piece.stone], self._course(i)
+            drift = self.further[i] @ np.append(-self.theta[unknowns_of(i, len(self.pieces))], 1.0)
+            off = trace.xy[piece.samples] - fitted - tau[:, None] * drift
+            self.left[i] = off / trace.sd[piece.samples]
+        return self.left[i]
 
     def _sightings(self) -> tuple[Floats, Floats]:
         """Set up the normal equations of the sightings, outliers weighted down."""
@@ -309,6 +320,10 @@ def _first_guess(piece: Piece, trace: Trace, start: float) -> tuple[Floats, Floa
         low = max(int(np.searchsorted(trace.t, piece.start)) - 1, 0)
         high = min(int(np.searchsorted(trace.t, piece.end)) + 1, len(trace.t))
         samples = np.arange(low, high)
-    degree = 0 if piece.rest or len(samples) < 2 else 1
-    found = np.polynomial.polynomial.polyfit(trace.t[samples] - start, trace.xy[samples], degree)
-    return found[0], found[1] if degree else np.zeros(2)
+    t, places = trace.t[samples], trace.xy[samples]
+    middle = places.mean(0)
+    if piece.rest or len(samples) < 2:
+        return middle, np.zeros(2)
+    late = t - t.mean()
+    speed = late @ places / (late @ late)
+    return middle + (start - t.mean()) * speed, speed

@@ -76,7 +76,7 @@ def glide_cost(t: Floats, xy: Floats, variance: Floats) -> float:
     if len(t) < FEWEST:
         return np.inf
     tau = t - t[0]
-    c = np.polynomial.polynomial.polyfit(tau, xy, 2)
+    c = np.polyfit(tau, xy, 2)[::-1]
     theta = np.array([*c[:, 0], *c[:, 1], float(FALL.value or 0.0)]) * [1, 1, 2, 1, 1, 2, 1]
     mean, power_sd = np.append(np.zeros(6), theta[6]), float(FALL.stderr or 0.0)
     known = np.array([0.0, SPEED_SD, ACCELERATION_SD, 0.0, SPEED_SD, ACCELERATION_SD, power_sd])

@@ -124,7 +124,7 @@ def _motion(path: Trace, samples: NDArray[Any]) -> _Motion:
     slope = tau @ path.xy[samples] / (tau @ tau)
     last = slope
     if len(t) >= CURVED:
-        coefficients = np.polynomial.polynomial.polyfit(tau / tau[-1], path.xy[samples], 2)
+        coefficients = np.polyfit(tau / tau[-1], path.xy[samples], 2)[::-1]
         last = (coefficients[1] + 2 * coefficients[2]) / tau[-1]
     return _Motion(slope, sd / float(np.sqrt(tau @ tau)), last)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +56,14 @@ class ContactState:
         return out
 
 
+@lru_cache(maxsize=256)
+def _motion(x: bytes, tau: float, power: float) -> tuple[Floats, Floats]:
+    """As `motion`: derivatives by each unknown ask for all pieces, and move one of them."""
+    place, speed = motion(np.frombuffer(x).reshape(2, 3), tau, power)
+    place.flags.writeable = speed.flags.writeable = False  # all who ask share them
+    return place, speed
+
+
 def unknowns_of(rank: int, pieces: int) -> NDArray[np.int64]:
     """Where among the unknowns of a fit those of one of its pieces are: its state, its power."""
     return np.append(np.arange(6 * rank, 6 * rank + 6), rank - pieces)
@@ -94,8 +103,8 @@ class ShotFit:
     def motion(self, rank: int, t: float, theta: Floats | None = None) -> tuple[Floats, Floats]:
         """Place and velocity on piece `rank` at time t."""
         values = self.theta if theta is None else theta
-        x = values[6 * rank : 6 * rank + 6].reshape(2, 3)
-        return motion(x, t - self.origins[rank], float(values[rank - len(self.pieces)]))
+        x, power = values[6 * rank : 6 * rank + 6], float(values[rank - len(self.pieces)])
+        return _motion(x.tobytes(), t - float(self.origins[rank]), power)
 
     def places(self, rank: int, t: Floats) -> Floats:
         """Places on piece `rank` at times t, shape (n, 2)."""

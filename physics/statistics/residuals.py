@@ -48,9 +48,12 @@ def inflation(
     """
     if free < 1:
         return 1.0
-    weighted = [(run * huber_weights(run), parameters) for run, parameters in runs]
-    square = sum(float(np.sum(run * run)) for run, _ in weighted)
-    return max(1.0, square / free) * autocorrelation_factor([*weighted, *further])
+    each, parameters = zip(*runs, strict=True)
+    together = np.concatenate(each)
+    together = together * huber_weights(together)
+    weighted = np.split(together, np.cumsum([len(run) for run in each])[:-1])
+    alike = autocorrelation_factor([*zip(weighted, parameters, strict=True), *further])
+    return max(1.0, float(np.sum(together * together)) / free) * alike
 
 
 def autocorrelation_factor(runs: Sequence[tuple[Floats, int]]) -> float:
@@ -72,13 +75,11 @@ def autocorrelation_factor(runs: Sequence[tuple[Floats, int]]) -> float:
     if level <= 0:
         return 1.0
     lags = np.arange(1, LONGEST)
-    seen, lost, size = np.zeros(len(lags)), np.zeros(len(lags)), np.zeros(len(lags))
-    for residuals, parameters in runs:
-        count, columns = residuals.shape
-        products = np.where(lags <= LAGS * count / parameters, (count - lags) * columns, 0)
-        size += products
-        lost += products * parameters / count
-        seen += np.where(products > 0, _products(residuals, len(lags)), 0.0)
+    counts, columns = np.array([r.shape for r, _ in runs]).T[:, :, None]
+    parameters = np.array([[p] for _, p in runs])
+    products = np.where(lags <= LAGS * counts / parameters, (counts - lags) * columns, 0)
+    size, lost = products.sum(0), (products * parameters / counts).sum(0)
+    seen = np.where(products > 0, _products([r for r, _ in runs], len(lags)), 0.0).sum(0)
     told = size > 0
     seen, lost, size = seen[told] / level / size[told], lost[told] / size[told], size[told]
     ratio = 1.0
@@ -89,8 +90,13 @@ def autocorrelation_factor(runs: Sequence[tuple[Floats, int]]) -> float:
     return ratio
 
 
-def _products(residuals: Floats, most: int) -> Floats:
-    """Sum the products of residuals 1, 2 … `most` apart (by Fourier transforms)."""
-    length = len(residuals) + most
-    power = np.abs(np.fft.rfft(residuals, length, axis=0)) ** 2
-    return np.asarray(np.fft.irfft(power.sum(1), length)[1 : most + 1])
+def _products(runs: Sequence[Floats], most: int) -> Floats:
+    """Sum the products of residuals 1, 2 … `most` apart of each run (by Fourier transforms)."""
+    longest = max(len(run) for run in runs) + most
+    length = 1 << (longest - 1).bit_length()  # of a prime it would take five times as long
+    ends = np.cumsum([run.shape[1] for run in runs])
+    padded = np.zeros((int(ends[-1]), length))
+    for run, end in zip(runs, ends.tolist(), strict=True):
+        padded[end - run.shape[1] : end, : len(run)] = run.T
+    power = np.add.reduceat(np.abs(np.fft.rfft(padded)) ** 2, [0, *ends[:-1]])
+    return np.asarray(np.fft.irfft(power, length)[:, 1 : most + 1])

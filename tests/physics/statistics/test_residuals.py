@@ -3,7 +3,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from physics.statistics.residuals import HUBER, autocorrelation_factor, huber_weights, inflation
+from physics.statistics.residuals import (
+    HUBER,
+    _products,
+    autocorrelation_factor,
+    huber_weights,
+    inflation,
+)
 
 
 def test_alike_errors_are_told_from_white_ones() -> None:
@@ -20,6 +26,13 @@ def test_alike_errors_are_told_from_white_ones() -> None:
     assert autocorrelation_factor(alike) == pytest.approx((1 + keep) / (1 - keep), rel=0.4)
     assert autocorrelation_factor([]) == 1.0
     assert autocorrelation_factor([(np.zeros((20, 2)), 1)]) == 1.0
+
+
+def test_products_of_neighbours_are_summed_run_by_run() -> None:
+    rng = np.random.default_rng(66)
+    runs = [rng.normal(size=shape) for shape in ((61, 2), (8, 2), (40, 3))]
+    due = [[np.sum(run[lag:] * run[:-lag]) for lag in range(1, 12)] for run in runs]
+    np.testing.assert_allclose(_products(runs, 11), due, atol=1e-9)
 
 
 def test_a_sighting_far_off_weighs_less_whatever_the_axes() -> None:
