@@ -173,7 +173,7 @@ class Follower:
                 going.append((lead.on(nearby, t, near, still), nearby))
             elif abs(t - lead.t) < (WAIT_AT_REST if lead.rests else WAIT):
                 going.append((replace(lead, missed=True), None))
-        return self._portrayed(view, going)
+        return self._portrayed(view, going, ahead[1] if len(views) > 1 else [])
 
     def _ahead(
         self, views: Sequence[StoneView], leads: Sequence[Lead], step: float
@@ -250,14 +250,19 @@ class Follower:
         return found
 
     def _portrayed(
-        self, view: StoneView, going: Sequence[tuple[Lead, Sighting | None]]
+        self,
+        view: StoneView,
+        going: Sequence[tuple[Lead, Sighting | None]],
+        after: Sequence[Foreseen],
     ) -> list[Lead]:
-        """Take the portraits of the stones at rest that have just been measured."""
+        """Take the portraits of the stones at rest that were measured, and will not be next."""
         leads = [lead for lead, _ in going]
+        measured = [seen for _, seen in after if seen is not None and seen.measured]
         due = [
             (index, sighting)
             for index, (lead, sighting) in enumerate(going)
             if lead.rests and sighting is not None and sighting.measured
+            if _away(measured, sighting.x, sighting.y) > STILL * self.disc.radius
         ]
         taken = portraits(
             view.frame.picture, view.camera, view.frame.t, [s for _, s in due], self.disc

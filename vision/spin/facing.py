@@ -7,7 +7,7 @@ together is the maximum of their circular cross-correlation.
 from __future__ import annotations
 
 from functools import lru_cache
-from math import ceil, nan
+from math import ceil, nan, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,11 +48,16 @@ def angle_between(
     reference: Complex, spectrum: Complex, expected: float, reach: float
 ) -> tuple[float, float]:
     """Angle by which one cap is turned against a reference: `angles_between` of one, to 2 mrad."""
-    cross, energy = _crossed(reference, spectrum[None])
-    if not energy[0]:
+    model, seen = reference[1:-1], spectrum[1:-1]
+    shown = rings_seen(seen[None])[0]
+    if not shown.all():
+        model = np.where(shown[:, None], model, np.complex64(0))
+    energy = sqrt(np.vdot(model, model).real * np.vdot(seen, seen).real)
+    if not energy:
         return nan, 0.0
-    angle, value = _nearest(cross, np.array([expected]), reach)
-    return float(angle[0]), float(value[0] / energy[0])
+    cross = (seen * model.conj()).reshape(len(HARMONICS), -1).sum(1)
+    angle, value = _nearest(cross[None], np.array([expected]), reach)
+    return float(angle[0]), float(value[0] / energy)
 
 
 def angles_between(

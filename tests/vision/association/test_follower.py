@@ -13,6 +13,7 @@ from tests.vision.detection.test_stones import CAMERA, RED, YELLOW, camera_of, s
 from vision.association.expected import look_on_course
 from vision.association.follower import Follower, StoneView
 from vision.association.lead import Lead
+from vision.association.still import Portrait, portraits
 from vision.detection.appearance import learn
 from vision.detection.rays import Look
 from vision.detection.sighting import Sighting
@@ -119,6 +120,25 @@ def test_a_stone_that_sets_off_is_measured_in_the_next_pictures_at_once(
     assert together[:2] == [6, 5]
     assert len(together) <= 3  # not one by one
     assert seen(views[1:], true[1:]).max() < 0.006
+
+
+def test_stones_at_rest_are_portrayed_where_they_will_not_be_measured_next(
+    follower: Follower, first: StoneView, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def counted(*about: Any) -> list[Portrait | None]:
+        taken.append(len(about[3]))
+        return portraits(*about)
+
+    taken: list[int] = []
+    monkeypatch.setattr("vision.association.follower.portraits", counted)
+    frames = [replace(first.frame, index=k, t=k / 10) for k in range(1, 15)]
+    views = [StoneView(frame, first.camera) for frame in frames]
+    leads = [Lead.to(s, 0.0) for s in follower.sought(view(START, 0))]
+    left = follower.follow(views, leads)
+    # The first eight are measured together; what looks the same later is not.
+    assert taken == [*[0] * 7, 3, *[0] * 6]
+    assert all(lead.portrait is not None for lead in left)
+    assert [sum(s.measured for s in shown.sightings) for shown in views] == [*[3] * 8, *[0] * 6]
 
 
 def test_what_shows_clearly_less_than_a_moment_ago_is_looked_for_beside_too(
