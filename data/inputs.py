@@ -7,7 +7,6 @@ import re
 from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
-from statistics import median_low
 
 from data.errors import InputError
 
@@ -78,7 +77,8 @@ def picture_times(paths: Sequence[Path]) -> list[float] | None:
     steps = [after - before for before, after in pairwise(numbers)]
     if min(steps) <= 0:
         return None
-    return [(number - numbers[0]) / median_low(steps) for number in numbers]
+    usual = sorted(steps)[(len(steps) - 1) // 2]
+    return [(number - numbers[0]) / usual for number in numbers]
 
 
 def _natural(path: Path) -> list[tuple[int, str]]:
