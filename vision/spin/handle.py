@@ -278,6 +278,8 @@ def _despite_light(
     if share > TURNS and known.mean() > 1 - GAPS:
         return matched
     other, share_of_course = course(times, pictures)
+    if share > share_of_course and not _mostly_told(matched, turning):
+        other, share_of_course = angles, share  # where gaps would leave no angle at all
     if share_of_course < max(LEAST, share):
         return matched
     if share_of_course > TURNS:  # what goes over a cap turns once angles may give way to it
