@@ -60,14 +60,18 @@ def measure_hits(
         Pooled over the hits that tell it.
     """
     count = len(joint.meetings)
-    values, cov = joint.propagate(range(count), _restitutions)
-    more = _scatter(joint, values, cov)
-    cov = cov + np.diag(more**2)
-    each = [Estimate(values[k], float(np.sqrt(cov[k, k]))) for k in range(count)]
     mass = [
         np.array([masses.get(stone, 1.0) for stone in meeting.stones]) for meeting in joint.meetings
     ]
     changes = [_momentum(apart, k, mass[k]) for k in range(count)]
+    values, cov = joint.propagate(range(count), _restitutions)
+    # Paths that are further off than they state do not keep momentum: what shows on its two axes
+    # is so in the restitution as well.
+    larger = np.array([_birge(_square(change), 2) for change in changes])
+    cov *= np.sqrt(np.outer(larger, larger))
+    more = _scatter(joint, values, cov)
+    cov = cov + np.diag(more**2)
+    each = [Estimate(values[k], float(np.sqrt(cov[k, k]))) for k in range(count)]
     notes = [_why_not(joint, k, known, each[k], changes[k], more[k]) for k in range(count)]
     noise = noises(joint, known)
     collisions = tuple(
@@ -201,8 +205,9 @@ def _why_not(
             f"restitution unknown: {value:.3f} ± {stderr:.3f} is more than 1, which no hit gives:"
             " times or tracks are off, or something pushed a stone"
         )
-    if stderr < WORST:
-        return _lost(momentum)
+    lost = _lost(momentum)
+    if lost or stderr < WORST:
+        return lost
     for stone in fit.meetings[k].stones:
         for rank, when in zip(fit.sides[k, stone], ("before", "after"), strict=True):
             seen = len(fit.pieces[rank].samples)
@@ -234,17 +239,27 @@ def _momentum(fit: ShotFit, k: int, mass: Floats) -> Estimate:
     return Estimate(float(np.hypot(*value)) / total, float(np.sqrt(np.trace(cov))) / total)
 
 
+def _square(value: Estimate) -> float:
+    """Square of a value in its standard errors; 0 where it is not known."""
+    return (value.value / value.stderr) ** 2 if value.value and value.stderr else 0.0
+
+
+def _birge(ratio: float, free: int) -> float:
+    """Factor on variances by the mean square of so many misses in their errors; 1 if it is chance.
+
+    See Birge, 1932, Phys. Rev. 40, 207.
+    """
+    return ratio if ratio > 1 + np.sqrt(2 / free) else 1.0
+
+
 def pooled(values: Floats, cov: Floats) -> Estimate:
-    """Weighted mean of correlated values; its error grows with their scatter (Birge ratio)."""
+    """Weighted mean of correlated values; its error grows with their scatter."""
     if not len(values):
         return Estimate()
     weights = np.linalg.solve(cov, np.ones(len(values)))
     mean = float(weights @ values / weights.sum())
     variance = 1 / float(weights.sum())
     if len(values) > 1:
-        off = values - mean
-        free = len(values) - 1
-        ratio = float(off @ np.linalg.solve(cov, off)) / free
-        if ratio > 1 + np.sqrt(2 / free):  # some scatter is chance
-            variance *= ratio
+        off, free = values - mean, len(values) - 1
+        variance *= _birge(float(off @ np.linalg.solve(cov, off)) / free, free)
     return Estimate(mean, float(np.sqrt(variance)))

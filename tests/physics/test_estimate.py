@@ -363,7 +363,8 @@ def test_a_cap_beside_the_centre_is_not_taken_for_velocity(spin: float, way: flo
     seen[["sd_place_x", "sd_place_y"]] = 0.004
     found = measure(seen)
     beside = found.local.restitution
-    assert abs(float(beside.value or 0) - 0.83) > 3 * float(beside.stderr or 0)
+    # Momentum is off there, too, so that the error is known.
+    assert 0.02 < abs(float(beside.value or 0) - 0.83) < 2 * float(beside.stderr or 0)
     assert found.whole is not None
     assert found.restitution == found.whole["restitution"]
     assert found.restitution.value == pytest.approx(0.83, abs=0.005)

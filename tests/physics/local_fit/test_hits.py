@@ -35,6 +35,22 @@ def test_a_pool_takes_chance_for_chance() -> None:
     assert pooled(np.empty(0), np.empty((0, 0))) == Estimate()
 
 
+def test_what_momentum_is_off_by_beyond_its_error_is_in_that_of_the_restitution() -> None:
+    """A map that is stretched on one side of the hit alone: both are off by more than is stated."""
+    motion = hit_motion(1.5, 0.03, restitution=0.83)
+    even = watch(motion, np.random.default_rng(3), sd=0.0005)
+    contacts = find_contacts(even, RADIUS)
+    bent = even.copy()
+    bent.loc[bent["t"] < contacts[0].t, "y"] *= 1.02
+    (kept,), (off,) = (
+        estimate_locally(seen, contacts, radius=RADIUS).collisions for seen in (even, bent)
+    )
+    assert kept.restitution == pytest.approx(0.83, abs=2 * (kept.stderr or 0.0))
+    assert (off.momentum_residual or 0.0) > 3 * (off.stderr_momentum or 0.0)
+    assert abs((off.restitution or 0.0) - 0.83) > 3 * (kept.stderr or 0.0)
+    assert off.restitution == pytest.approx(0.83, abs=2 * (off.stderr or 0.0))
+
+
 @pytest.mark.parametrize(
     ("whole", "agrees"),
     [(Estimate(0.84, 0.003), True), (Estimate(0.86, 0.003), False), (Estimate(), True)],
