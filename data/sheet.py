@@ -43,12 +43,14 @@ class Sheet:
 class Stone:
     """The stone: outer radius, visible cap and its height above the ice, m; mass, kg.
 
+    ``rim_height`` is where it is widest, m above the ice: there its outline is seen.
     ``inertia`` is k in I = k m R² about the vertical (0.5 for a cylinder).
     """
 
     radius: float = 0.1455
     cap_radius: float = 0.1045
     cap_height: float = 0.12
+    rim_height: float = 0.06
     mass: float = 19.1
     inertia: float = 0.5
 

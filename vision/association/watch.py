@@ -183,7 +183,11 @@ class Watch:
         # Too much on the ice answers faintly to any colour.
         search = replace(self._search, least_score=SEARCH.least_score, radius_px=radius_px)
         looks = [Look(view.frame.picture, view.camera, view.places) for view in views]
-        return [stone for found in strangers(looks, self.disc, search) for stone in found.stones]
+        found, disc = strangers(looks, self.disc, search, bool(self._lessons))
+        stones = [stone for one in found for stone in one.stones]
+        if convincing(stones):
+            self.disc = disc
+        return stones
 
     def _see(self, views: Sequence[StoneView]) -> None:
         """Follow what is known through views, and search the last of them if it is time."""

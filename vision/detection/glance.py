@@ -43,7 +43,8 @@ def glance(pictures: Sequence[tuple[Image, Camera]], disc: Stone = STONE) -> lis
     nothing = np.empty((0, 2))
     if not is_plain(disc):
         pictures = [(_lit(image, camera), camera) for image, camera in pictures]
-    first = strangers([Look(image, camera, nothing) for image, camera in pictures], disc, SEARCH)
+    looks = [Look(image, camera, nothing) for image, camera in pictures]
+    first, disc = strangers(looks, disc, SEARCH)
     appearance = learn(convincing(stone for found in first for stone in found.stones))
     if appearance is None:
         return first

@@ -20,9 +20,12 @@ from vision.detection.contrast import by_hue, by_lightness, mean_colours, own_wo
 from vision.detection.patch import (
     CAP_END,
     EFFORT,
+    INNER_RING,
+    OUTER_RING,
     RING_BEGIN,
     RING_END,
     Effort,
+    in_granite,
     is_plain,
     profile_of,
     unrolled,
@@ -176,7 +179,10 @@ def measure_discs(
 
 def well_within(radius: Array, disc: Stone) -> tuple[slice, slice]:
     """Tell which of the radii lie on a stone's cap, and which on its granite, not near an edge."""
-    ends = [0.88 * disc.cap_radius, 1.10 * disc.cap_radius, 0.97 * disc.radius]
+    ends = [
+        0.88 * disc.cap_radius,
+        *(in_granite(disc, share) for share in (INNER_RING, OUTER_RING)),
+    ]
     cap, first, last = np.searchsorted(radius, ends).tolist()
     return slice(0, cap), slice(first, last)
 
@@ -186,7 +192,7 @@ def _template(disc: Stone, effort: Effort) -> Array:
     """Weights of the radii in the mean over the cap less the mean over the granite."""
     radius = profile_of(disc, effort).radius[: effort.radii]
     cap = radius * (radius < CAP_END * disc.cap_radius)
-    first, last = RING_BEGIN * disc.cap_radius, RING_END * disc.radius
+    first, last = (in_granite(disc, share) for share in (RING_BEGIN, RING_END))
     ring = radius * ((radius > first) & (radius < last))
     return np.asarray(cap / cap.sum() - ring / ring.sum())
 
@@ -248,7 +254,8 @@ def _stones(
     )  # fmt: skip
     edges = np.sqrt((falls * falls) @ np.ones(3, np.float32))
     # Seen aslant, the granite's outline is not a circle of one height.
-    trust = 1 / (1 + (slant**2).sum(1) / effort.most_tilt**2)
+    falling_off = 2 * (1 - disc.rim_height / disc.cap_height)
+    trust = 1 / (1 + falling_off**2 * (slant**2).sum(1) / effort.most_tilt**2)
     granite_rim = Rim(edges, greyed, at_rim, rim_radius, 0.05 * rim_radius, 12.0, trust, GRANITE)
     pixel = 1 / scale
     visible = (stony & at_cap).mean(1)
@@ -271,7 +278,7 @@ def _stones(
     # All around, a stone's granite is of one lightness, and its cap is as large as any other's;
     # caps and shoulders of people are neither. Behind a shoulder that falls off ice may shine.
     odd = light - level
-    odd = np.where(behind > effort.most_tilt, np.minimum(odd, 0), odd)
+    odd = np.where(falling_off * behind > effort.most_tilt, np.minimum(odd, 0), odd)
     uneven = np.sqrt((odd**2 * stony).sum(1) / np.maximum(stony.sum(1), 1)) / 40
     of_hue = 1 - ((cap - granite) * apart)[:, 0]
     usual = 0.06 + appearance.slack

@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import Stone
+from data.sheet import STONE, Stone
 from vision.detection.rays import Look, Profile, Rays, chained, sample_rays, straight
 from vision.optics.cameras import Cameras
 
@@ -73,9 +73,24 @@ class Effort:
 EFFORT = Effort()
 
 
-CAP_END, RING_BEGIN, RING_END = 0.94, 1.05, 0.96
+_GRANITE = STONE.radius - STONE.cap_radius
+
+CAP_END = 0.94
+RING_BEGIN, RING_END = 0.05 * STONE.cap_radius / _GRANITE, 1 - 0.04 * STONE.radius / _GRANITE
 """Up to where the template of a stone counts as cap, a share of the cap's radius, and between
-which its ring of granite, shares of the cap's and of the stone's: edges are left out."""
+which its ring of granite, shares of the way from the cap's edge to the stone's: edges are left
+out."""
+
+INNER_RING, OUTER_RING = 0.10 * STONE.cap_radius / _GRANITE, 1 - 0.03 * STONE.radius / _GRANITE
+"""Between which granite is that nothing beside it blurs, the same shares."""
+
+SHOULDER = 0.15 * STONE.cap_radius / _GRANITE
+"""From where on the granite falls off, the same share."""
+
+
+def in_granite(disc: Stone, share: float) -> float:
+    """Radius at a share of the way from the edge of a stone's cap to its own, m."""
+    return disc.cap_radius + share * (disc.radius - disc.cap_radius)
 
 
 def is_plain(disc: Stone) -> bool:
@@ -95,11 +110,16 @@ def profile_of(disc: Stone, effort: Effort) -> Profile:
         top, grip = [(inner, 0.0), (outer, 0.0)], 0.0
     else:
         inner, outer = effort.inner * disc.radius, effort.stone_outer * disc.radius
-        size, edge, height = disc.cap_radius, 1.15 * disc.cap_radius, disc.cap_height
+        size, edge, height = disc.cap_radius, in_granite(disc, SHOULDER), disc.cap_height
         # The visible surface falls off towards the striking band, but not at the cap's edge:
         # away from a slanting view the rays would draw that edge out, and the circle fitted
         # to it would lie too near the camera.
-        top = [(inner, height), (edge, height), (disc.radius, 0.5 * height), (outer, 0.5 * height)]
+        top = [
+            (inner, height),
+            (edge, height),
+            (disc.radius, disc.rim_height),
+            (outer, disc.rim_height),
+        ]
         grip = HANDLE_HEIGHT
     low, high = effort.handle_inner * size, effort.handle_outer * size
     rings = straight([(low, grip), (high, grip)], np.linspace(low, high, 2 * effort.handle_rings))

@@ -11,7 +11,7 @@ that points along the radius (a structure tensor summed over the circles), of ei
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 
 import cv2
@@ -21,7 +21,8 @@ from numpy.typing import NDArray
 from data.sheet import Stone
 from vision.detection.appearance import Appearance, any_stone, membership
 from vision.detection.ice_map import IceMap, rectify
-from vision.detection.patch import CAP_END, RING_BEGIN, RING_END, is_plain
+from vision.detection.patch import CAP_END, RING_BEGIN, RING_END, in_granite, is_plain
+from vision.detection.shape import NO_BALLOT, ballot
 from vision.film.lab import lab_of
 from vision.film.picture import Picture, colours_at
 from vision.optics.camera import Camera
@@ -50,10 +51,13 @@ class Candidates:
         m, strongest first.
     appearance : Appearance or None
         By what they were sought; None for plain discs.
+    say : ndarray, shape (sizes,)
+        What they say of how large caps are (`vision.detection.shape`), where no colour is known.
     """
 
     places: Array
     appearance: Appearance | None
+    say: Array = field(default_factory=lambda: NO_BALLOT)
 
 
 def seek(
@@ -95,7 +99,10 @@ def seek(
     responses = _responses(ice, known, disc)
     # Nearer than stones can be: paint of the cap's colour beside a stone may answer more strongly.
     peaks = np.concatenate([_peaks(one, least, 1.1 * radius_px) for one in responses])
-    return Candidates(ice.place(peaks[:, 1], peaks[:, 0]), known)
+    places = ice.place(peaks[:, 1], peaks[:, 0])
+    if known is None or known.caps:
+        return Candidates(places, known)
+    return Candidates(places, known, ballot(ice, known, peaks[:, ::-1], disc))
 
 
 def seek_about(
@@ -179,7 +186,8 @@ def _stone_response(ice: IceMap, table: Floats, disc: Stone) -> Floats:
     unit = ice.scale
     size = int(np.ceil(disc.radius * unit))
     cap = _annulus(0.0, CAP_END * disc.cap_radius * unit, size)
-    ring = _annulus(RING_BEGIN * disc.cap_radius * unit, RING_END * disc.radius * unit, size)
+    begin, end = (in_granite(disc, share) * unit for share in (RING_BEGIN, RING_END))
+    ring = _annulus(begin, max(end, begin + 0.5), size)
     if ice.valid.all():
         return _filtered(worth, cap - ring)
     valid = ice.valid.astype(np.float32)

@@ -19,7 +19,7 @@ from vision.detection.measure import CLEARLY, Measures, measure_discs, well_with
 from vision.detection.patch import EFFORT, is_plain
 from vision.detection.placing import placed_by, sightings
 from vision.detection.rays import Look
-from vision.detection.seek import Bounds, seek
+from vision.detection.seek import Bounds, Candidates, seek
 from vision.detection.sighting import Refusal, Sighting
 from vision.film.picture import Picture
 from vision.optics.camera import Camera
@@ -118,13 +118,34 @@ def search_picture(
     Findings
         The stones no nearer to each other than discs can be.
     """
+    return measured(
+        Look(image, camera, np.empty((0, 2)) if known is None else known),
+        sought_in(image, camera, appearance, disc, search, bounds),
+        disc,
+        search,
+    )
+
+
+def sought_in(
+    image: Picture,
+    camera: Camera,
+    appearance: Appearance | None,
+    disc: Stone,
+    search: Search,
+    bounds: Bounds | None = None,
+) -> Candidates:
+    """Look in a picture for places of stones; see `search_picture`."""
     area = whole_ice(camera, disc, search) if bounds is None else bounds
-    sought = seek(
+    return seek(
         image, camera, appearance, disc, area,
         radius_px=search.radius_px, least=search.least_score,
     )  # fmt: skip
-    places = sought.places
-    if known is not None and len(known) and len(places):
+
+
+def measured(look: Look, sought: Candidates, disc: Stone, search: Search) -> Findings:
+    """Measure what was sought in a picture; at the places of the look nothing need be found."""
+    places, known = sought.places, look.places
+    if len(known) and len(places):
         new = np.hypot(*(places[:, None] - known).transpose(2, 0, 1)).min(1) > NEAREST * disc.radius
         places = places[new]
     refused: list[Refusal] = []
@@ -136,7 +157,7 @@ def search_picture(
     for least, effort in (rough, (search, EFFORT)):
         if not len(places):
             return Findings((), tuple(refused))
-        looks = [Look(image, camera, places)]
+        looks = [replace(look, places=places)]
         seen = measure_discs(looks, sought.appearance, disc, effort)
         faults = judge(seen, disc, least)
         refused += [
@@ -151,7 +172,7 @@ def search_picture(
         with_samples(sighting, seen, i, disc)
         for i, sighting in zip(chosen.tolist(), found, strict=True)
     ]
-    (placed,) = placed_by([camera], [apart(stones, disc)], disc)
+    (placed,) = placed_by([look.camera], [apart(stones, disc)], disc)
     return Findings(tuple(placed), tuple(refused))
 
 

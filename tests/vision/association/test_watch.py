@@ -146,9 +146,11 @@ def test_two_teams_that_a_coarse_map_shows_are_not_sought_on_a_fine_one(
     image, camera = picture(AT_REST), camera_of(CAMERA, scene_of(AT_REST))
     maps: list[float] = []
 
-    def noted(looks: Sequence[Look], disc: Stone, search: Search) -> list[Findings]:
+    def noted(
+        looks: Sequence[Look], disc: Stone, search: Search, made: bool
+    ) -> tuple[list[Findings], Stone]:
         maps.append(search.radius_px)
-        return strangers(looks, disc, search)
+        return strangers(looks, disc, search, made)
 
     monkeypatch.setattr("vision.association.watch.strangers", noted)
     watch = Watch()

@@ -40,7 +40,7 @@ def seen_twice(
         evidence = np.array([again.get(x, np.nan) for x in looks[0].places[:, 0].tolist()])
         return SimpleNamespace(ok=np.isfinite(evidence), evidence=evidence)
 
-    monkeypatch.setattr(module, "strangers", lambda views, disc, search: [Findings(first)])
+    monkeypatch.setattr(module, "strangers", lambda views, disc, search: ([Findings(first)], disc))
     monkeypatch.setattr(module, "search_picture", lambda image, camera, appearance, disc: known)
     monkeypatch.setattr(module, "by_shape", lambda look, taken, disc, search: shapes)
     monkeypatch.setattr(module, "measure_discs", measure)

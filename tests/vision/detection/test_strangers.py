@@ -22,6 +22,7 @@ from tests.vision.detection.test_stones import (
 from vision.detection.appearance import BY_SHAPE, CONVINCING
 from vision.detection.appearance import Colour as Granite
 from vision.detection.rays import Look
+from vision.detection.seek import Candidates
 from vision.detection.sighting import Sighting
 from vision.detection.stones import FOLLOWING, Findings, plain_disc
 from vision.detection.strangers import strangers, weighed
@@ -42,7 +43,7 @@ def seen(
         np.uint8
     )
     places = np.array(known or []).reshape(-1, 2)
-    (found,) = strangers([Look(image, camera_of(CAMERA, scene), places)], STONE, FOLLOWING)
+    (found,), _ = strangers([Look(image, camera_of(CAMERA, scene), places)], STONE, FOLLOWING)
     return found.stones
 
 
@@ -90,7 +91,7 @@ def test_granite_that_others_have_makes_a_doubtful_stone_one() -> None:
     """Evidence by shape that convinces beside stones of such granite, and not alone."""
     scene = painted(BLUE, DULL, BLUE, DULL)
     image, camera = render_still(scene, CAMERA), camera_of(CAMERA, scene)
-    (found,) = strangers([Look(image, camera, np.empty((0, 2)))], STONE, FOLLOWING)
+    (found,), _ = strangers([Look(image, camera, np.empty((0, 2)))], STONE, FOLLOWING)
     granite = Granite(np.array([118.0, 128.0, 128.0]), np.eye(3))
     doubtful = found.stones[0]._replace(score=1.5, granite_samples=np.tile(granite.mean, (9, 1)))
     assert weighed(doubtful, granite).score > CONVINCING > weighed(doubtful, None).score
@@ -108,10 +109,10 @@ def test_stones_told_by_their_shape_tell_of_what_granite_others_are(
     doubtful = sure._replace(x=sure.x + 1.0, score=1.5, granite_samples=sure.granite_samples + off)
     by_colour = sure._replace(score=1.2)  # does not convince
 
-    def search(*inputs: object) -> Findings:
-        return Findings((sure, doubtful) if inputs[2] is BY_SHAPE else (by_colour,), ())
+    def measured(look: Look, sought: Candidates, *_: object) -> Findings:
+        return Findings((sure, doubtful) if sought.appearance is BY_SHAPE else (by_colour,), ())
 
-    monkeypatch.setattr("vision.detection.strangers.search_picture", search)
+    monkeypatch.setattr("vision.detection.strangers.measured", measured)
     found = seen(scene_of([]))
     assert len(found) == count
     assert found[0].score > by_colour.score
@@ -175,6 +176,6 @@ def test_a_disc_without_a_cap_is_sought_by_its_rim() -> None:
     image = without_colours(scene)
     none = np.empty((0, 2))
     disc = plain_disc(STONE.radius)
-    (found,) = strangers([Look(image, camera_of(CAMERA, scene), none)], disc, FOLLOWING)
+    (found,), _ = strangers([Look(image, camera_of(CAMERA, scene), none)], disc, FOLLOWING)
     assert len(found.stones) == len(scene.stones)
     assert all(not stone.cap_samples.size for stone in found.stones)
