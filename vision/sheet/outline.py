@@ -14,6 +14,8 @@ from math import erfc, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from vision.sheet.edges import crossings
+
 Array = NDArray[np.float64]
 
 WIDTH, WIDTH_SPREAD = 1.4, 0.7
@@ -49,8 +51,8 @@ LEAST_SIDE = 4
 """Samples of a profile on either side without which no line is looked for: what paint and ice are
 like there is not known."""
 
-ROUNDS = 15
-"""Steps of the fit (Levenberg, 1944)."""
+ROUNDS, DONE = 60, 1e-3
+"""Most steps of the fit (Levenberg, 1944), and the gain of a step after which it is done."""
 
 
 @dataclass(frozen=True)
@@ -122,7 +124,9 @@ def find_edge(profile: Array, step: float) -> PaintEdge:
         return HALF_WAY
     ice, paint = float(y[:3].mean()), float(y[-3:].mean())
     alone = y.max() - paint > 2 * (paint - ice)  # an outline, and ice behind it as well
-    outlined = x[y > 0.5 * (y.max() + ice)] if alone else np.zeros(1)
+    outlined = x[y > 0.5 * (y.max() + ice)] if alone else _half_way(x, y)
+    if not len(outlined):
+        return HALF_WAY
     depth = y.max() - paint if alone else 0.0
     mean: Array = np.array([outlined[0], np.log(WIDTH), np.log(BLUR), paint, depth, ice])
     weight = np.array([1.0, WIDTH_SPREAD, BLUR_SPREAD, 0.3, DEPTH_SD, 0.3]) ** -2.0
@@ -140,8 +144,11 @@ def find_edge(profile: Array, step: float) -> PaintEdge:
         tried = np.asarray(now + change, np.float64)
         ahead, ahead_slope = _model(x, tried)
         new = _cost(y - ahead, tried - mean, weight)
-        if new < cost:
+        gain = cost - new
+        if gain > 0:
             now, value, slope, cost, damping = tried, ahead, ahead_slope, new, damping / 5
+            if gain < DONE:
+                break
         else:
             damping *= 10
     covariance = np.linalg.inv(normal)
@@ -149,9 +156,19 @@ def find_edge(profile: Array, step: float) -> PaintEdge:
         half = 0.5 * float(np.exp(now[1]))
         sd = half * np.hypot(np.sqrt(covariance[1, 1]), HALF_IN_DOUBT)
         return PaintEdge(0.0, float(np.hypot(sd, BARE)), within=half)
-    moved = now[0] - np.interp(0.0, y, x)
+    moved = now[0] - mean[0]
     sd = np.sqrt(covariance[0, 0] + (DOUBT * moved) ** 2 + BARE**2)
     return PaintEdge(float(np.interp(now[0], x, y)), float(sd), float(now[4] * np.exp(now[1])))
+
+
+def _half_way(x: Array, y: Array) -> Array:
+    """Where a profile rises from ice to paint, shape (1,), or (0,) if it does not.
+
+    What is expected of a line is beside that place, wherever the profile was expected to rise: else
+    what was found by the profiles of one measurement would be found beside it by the next, and on.
+    """
+    sample, _, found = crossings(y[:, None].astype(np.float32))
+    return np.asarray(np.interp(sample[found], np.arange(len(x)), x))
 
 
 def _cost(residual: Array, off: Array, weight: Array) -> float:

@@ -24,7 +24,7 @@ def test_a_bare_edge_is_crossed_half_way(edge: float, blur: float) -> None:
     assert found.sd < 0.3
 
 
-@pytest.mark.parametrize(("width", "depth"), [(1.0, 0.6), (2.0, 0.3), (2.5, 0.8)])
+@pytest.mark.parametrize(("width", "depth"), [(1.0, 0.6), (2.0, 0.3), (2.5, 0.8), (2.4, -0.36)])
 def test_an_outline_belongs_to_the_paint(width: float, depth: float) -> None:
     rng = np.random.default_rng(3)
     edge = 0.4
@@ -33,6 +33,16 @@ def test_an_outline_belongs_to_the_paint(width: float, depth: float) -> None:
     found = np.interp(find_edge(noisy, STEP).level, noisy[12:19], X[12:19])
     assert abs(found - edge) < 0.15
     assert abs(found - edge) < 0.5 * abs(half_way - edge)
+
+
+@pytest.mark.parametrize("off", [-1.2, 0.9, 1.6])
+def test_where_a_profile_was_expected_to_rise_tells_nothing_of_its_line(off: float) -> None:
+    # Paint, a line of middle grey and ice, and colours that are coded at half the resolution.
+    grey = 0.7 * profile(off, 2.4, -0.36, 0.75) + 0.3 * profile(off - 1.0, 2.4, -0.6, 1.6)
+    found = float(np.interp(find_edge(grey, STEP).level, grey, X))
+    centred = 0.7 * profile(0.0, 2.4, -0.36, 0.75) + 0.3 * profile(-1.0, 2.4, -0.6, 1.6)
+    usual = float(np.interp(find_edge(centred, STEP).level, centred, X))
+    assert found - off == pytest.approx(usual, abs=0.15)
 
 
 @pytest.mark.parametrize(("left", "told"), [(3, False), (5, True)])
