@@ -48,16 +48,20 @@ NO_BALLOT: Array = np.zeros(len(CAPS))
 
 
 def elected(say: Array, disc: Stone) -> list[Stone]:
-    """Give the usual stone the caps for which much is said, most first: see `ballot`."""
+    """Give the usual stone, and it with caps for which more is said, most first: see `ballot`.
+
+    What hides a part of a cap, if only the picture's edge, has a say for a smaller one.
+    """
     best = float(say.max())
     if np.interp(disc.cap_radius / disc.radius, CAPS, say) >= USUAL * best:
         return [disc]
     order = np.argsort(-say)
-    return [
+    others = [
         replace(disc, cap_radius=float(CAPS[k] * disc.radius))
         for k in order
         if say[k] > MUCH * best
-    ][:3]
+    ]
+    return [disc, *others[:3]]
 
 
 def ballot(ice: IceMap, appearance: Appearance, places: Array, disc: Stone) -> Array:
