@@ -25,7 +25,7 @@ def _offsets(reach: float) -> tuple[Array, NDArray[np.complex128]]:
     return offset, np.exp(1j * HARMONICS[:, None] * offset)
 
 
-def _crossed(reference: Complex, spectra: Complex) -> tuple[Complex, Array]:
+def crossed(reference: Complex, spectra: Complex) -> tuple[Complex, Array]:
     """Products of a reference and pictures (n, harmonics), and the most that they come to (n,)."""
     count, harmonics = len(spectra), len(HARMONICS)
     model, seen = reference[1:-1], spectra[:, 1:-1]
@@ -79,7 +79,7 @@ def angles_between(
     angle, likeness : ndarray, shape (n,)
         Angles nearest to what was expected, rad; correlations of the two pictures, 0 to 1.
     """
-    cross, energy = _crossed(reference, spectra)
+    cross, energy = crossed(reference, spectra)
     blank = energy <= 0
     angle, _ = _nearest(cross, expected, reach)
     for _ in range(4):  # Newton's method on a sum of cosines

@@ -262,7 +262,8 @@ def _turning_more(
 
 def _matched(times: Array, pictures: Complex, turning: Turning) -> _Matched:
     """Turn pictures of one height onto their mean, from one to the next."""
-    return _onto_mean(times, pictures, _followed(times, pictures, turning), turning)
+    angles = unfolded(times, pictures, _followed(times, pictures, turning))
+    return _onto_mean(times, pictures, angles, turning)
 
 
 def _despite_light(
@@ -308,9 +309,8 @@ def _mostly_told(matched: _Matched, turning: Turning) -> bool:
 
 
 def _onto_mean(times: Array, pictures: Complex, angles: Array, turning: Turning) -> _Matched:
-    """Turn pictures onto their mean, angles being about known but for half turns."""
-    angles, likeness = unfolded(times, angles), np.zeros(len(angles))
-    known = np.isfinite(angles)
+    """Turn pictures onto their mean, angles being about known."""
+    likeness, known = np.zeros(len(angles)), np.isfinite(angles)
     shown = rings_seen(pictures)[:, None, :, None]
     own = pictures
     for _ in range(turning.rounds):
