@@ -183,7 +183,8 @@ class Watch:
         # Too much on the ice answers faintly to any colour.
         search = replace(self._search, least_score=SEARCH.least_score, radius_px=radius_px)
         looks = [Look(view.frame.picture, view.camera, view.places) for view in views]
-        found, disc = strangers(looks, self.disc, search, bool(self._lessons))
+        rough = radius_px < SEARCH.radius_px
+        found, disc = strangers(looks, self.disc, search, bool(self._lessons), rough)
         stones = [stone for one in found for stone in one.stones]
         if convincing(stones):
             self.disc = disc

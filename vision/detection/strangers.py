@@ -60,7 +60,11 @@ answers up to there."""
 
 
 def strangers(
-    looks: Sequence[Look], disc: Stone, search: Search, made: bool = False
+    looks: Sequence[Look],
+    disc: Stone,
+    search: Search,
+    made: bool = False,
+    rough: bool = False,
 ) -> tuple[list[Findings], Stone]:
     """Search a few pictures of one clip for stones of any colour.
 
@@ -74,6 +78,9 @@ def strangers(
         Where stones are sought and what they must show.
     made : bool
         Whether it is known that stones here are made like that; else it is what they usually are.
+    rough : bool
+        Whether a finer search follows where this one finds little: how stones that no colour tells
+        are made, and caps larger than what is sought, are left to it.
 
     Returns
     -------
@@ -82,11 +89,11 @@ def strangers(
     disc : Stone
         How they are made.
     """
-    found, likely = _found(looks, None, disc, search, made or is_plain(disc))
+    found, likely = _found(looks, None, disc, search, made or is_plain(disc), rough)
     sure = _sure(found)
     if is_plain(disc) or len(by_colour(sure)) >= MOST_COLOURS:
         return found, likely
-    made, usual = made or bool(sure), likely if sure else disc
+    made, usual = made or rough or bool(sure), likely if sure else disc
     beside = [_beside(look, one.stones) for look, one in zip(looks, found, strict=True)]
     others, like = _found(beside, BY_SHAPE, usual, search, made)
     unknown = UNKNOWN if like == usual else ODD
@@ -107,14 +114,19 @@ def strangers(
 
 
 def _found(
-    looks: Sequence[Look], like: Appearance | None, disc: Stone, search: Search, made: bool
+    looks: Sequence[Look],
+    like: Appearance | None,
+    disc: Stone,
+    search: Search,
+    made: bool,
+    rough: bool = False,
 ) -> tuple[list[Findings], Stone]:
     """Search pictures for what looks like that, made as most of the places there say."""
     sought = _sought(looks, like, disc, search)
     if made:
         return _measured(looks, sought, disc, search), disc
     usual = _best(looks, sought, like, elected(_say(sought), disc), search)
-    if _sure(usual[0]):
+    if rough or _sure(usual[0]):
         return usual
     sought = _sought(looks, like, replace(disc, cap_radius=LARGE * disc.cap_radius), search)
     large = [one for one in elected(_say(sought), disc) if one.cap_radius > disc.cap_radius]

@@ -15,11 +15,15 @@ from tests.vision.detection.test_stones import BLUE, CAMERA, RED, YELLOW, camera
 from vision.association.follower import StoneView
 from vision.association.lead import Lead
 from vision.association.watch import Watch, pictures_kept
+from vision.detection.appearance import Appearance
 from vision.detection.placing import placed_by
 from vision.detection.rays import Look
-from vision.detection.stones import FOLLOWING, Findings, Search
-from vision.detection.strangers import strangers
+from vision.detection.seek import Candidates
+from vision.detection.stones import FOLLOWING, SEARCH, Findings, Search, sought_in
+from vision.detection.strangers import LARGE, strangers
 from vision.film.clip import Frame, Image
+from vision.film.picture import Picture
+from vision.optics.camera import Camera
 
 AT_REST = [(0.3, 0.2, RED), (-0.8, 1.0, YELLOW), (0.9, -0.6, RED)]
 LATE = (-0.2, -0.5)
@@ -147,10 +151,10 @@ def test_two_teams_that_a_coarse_map_shows_are_not_sought_on_a_fine_one(
     maps: list[float] = []
 
     def noted(
-        looks: Sequence[Look], disc: Stone, search: Search, made: bool
+        looks: Sequence[Look], disc: Stone, search: Search, made: bool, rough: bool
     ) -> tuple[list[Findings], Stone]:
         maps.append(search.radius_px)
-        return strangers(looks, disc, search, made)
+        return strangers(looks, disc, search, made, rough)
 
     monkeypatch.setattr("vision.association.watch.strangers", noted)
     watch = Watch()
@@ -158,6 +162,30 @@ def test_two_teams_that_a_coarse_map_shows_are_not_sought_on_a_fine_one(
         watch.look(Frame(index, index / 25, image), camera)
     assert [len(sightings) for _, _, sightings in watch.finish()] == [3] * 24
     assert maps == [FOLLOWING.radius_px]
+
+
+def test_how_stones_are_made_that_are_not_there_is_asked_on_the_fine_map_alone(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    image, camera = picture([]), camera_of(CAMERA, scene_of([]))
+    sought: list[tuple[float, float]] = []
+
+    def noted(
+        picture: Picture, camera: Camera, like: Appearance | None, disc: Stone, search: Search
+    ) -> Candidates:
+        sought.append((search.radius_px, disc.cap_radius))
+        return sought_in(picture, camera, like, disc, search)
+
+    monkeypatch.setattr("vision.detection.strangers.sought_in", noted)
+    watch = Watch()
+    watch.look(Frame(0, 0.0, image), camera)
+    assert [len(sightings) for _, _, sightings in watch.finish()] == [0]
+    large = LARGE * STONE.cap_radius
+    fine, coarse = SEARCH.radius_px, FOLLOWING.radius_px
+    assert sought == [
+        *[(coarse, STONE.cap_radius)] * 2,
+        *[(fine, STONE.cap_radius), (fine, large)] * 2,
+    ]
 
 
 def test_a_stone_that_is_hit_under_cover_is_found_in_the_moment_that_shows_it() -> None:
