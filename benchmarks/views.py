@@ -227,6 +227,8 @@ def clips() -> tuple[Clip, ...]:
                                   line_width=0.008), camera(replace(still, k1=-0.02))),
         Clip("outline-astride", scene(24, painted("blue-red", outline=0.007, outline_at=0.0)),
              camera(still)),
+        Clip("outline-light", scene(31, replace(painted("navy-orange", outline=0.015),
+                                                outline=(170, 165, 160))), camera(*pan[:2])),
         Clip("neighbours", scene(25, painted("green-blue", 1.211, 0.612), pitch=4.8,
                                  half_width=(2.2, 2.2)),
              camera(Key(0.0, 0.1, 0.2, 96, 0.03, -0.05, 0.02))),

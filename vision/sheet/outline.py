@@ -51,6 +51,21 @@ LEAST_SIDE = 4
 """Samples of a profile on either side without which no line is looked for: what paint and ice are
 like there is not known."""
 
+LIGHT = np.array([-1.5, 0.4, 0.0, 0.0, -0.5, 0.0])
+"""Where the fit starts a second time, beside what is usual: with a line nearer to the ice in colour
+than to the paint half way from ice to paint is on its inner side, and the way to its outer one
+leads through worse fits."""
+
+RARE = 4.0
+"""How much rarer such lines are than others, as a logarithm."""
+
+FROM_ICE = 0.15
+"""Least that such a line differs from the ice, in steps from paint to ice: what differs less has no
+edge that single profiles show."""
+
+STEEP = 1.5
+"""How much steeper than single profiles, which are noisy, their mean may be where nothing moves."""
+
 ROUNDS, DONE = 60, 1e-3
 """Most steps of the fit (Levenberg, 1944), and the gain of a step after which it is done."""
 
@@ -67,7 +82,8 @@ class PaintEdge:
         Standard deviation of the edge's place, px, alike all along it.
     line : float
         How far the line moves the place half way between ice and paint off the edge, px, if the
-        edge is blurred by much more than the line is wide: its depth times its width.
+        edge is blurred by much more than the line is wide: its depth times its width. At least as
+        far as the level is from half way where nothing blurs the edge.
     within : float
         How far within the edge the middle of an outline lies that is drawn alone, px; alike for
         all circles, each of which is measured to its outer side.
@@ -129,11 +145,34 @@ def find_edge(profile: Array, step: float) -> PaintEdge:
         return HALF_WAY
     depth = y.max() - paint if alone else 0.0
     mean: Array = np.array([outlined[0], np.log(WIDTH), np.log(BLUR), paint, depth, ice])
-    weight = np.array([1.0, WIDTH_SPREAD, BLUR_SPREAD, 0.3, DEPTH_SD, 0.3]) ** -2.0
-    now: Array = mean.copy()
     if alone:
-        now[1] = np.log(np.ptp(outlined) + abs(step))
-    damping = 1e-3
+        start = mean.copy()
+        start[1] = np.log(np.ptp(outlined) + abs(step))
+        _, now, covariance = _fitted(x, y, mean, start)
+        half = 0.5 * float(np.exp(now[1]))
+        sd = half * np.hypot(np.sqrt(covariance[1, 1]), HALF_IN_DOUBT)
+        return PaintEdge(0.0, float(np.hypot(sd, BARE)), within=half)
+    cost, now, covariance = _fitted(x, y, mean, mean)
+    light_cost, light, light_covariance = _fitted(x, y, mean, mean + LIGHT)
+    other = 0.0
+    if 1 + light[4] > FROM_ICE:
+        taken = 0.5 + 0.5 * np.tanh(0.25 * (cost - light_cost) - 0.5 * RARE)
+        other = (light[0] - now[0]) * np.sqrt(min(taken, 1 - taken))
+        if taken > 0.5:
+            now, covariance = light, light_covariance
+    moved = now[0] - mean[0]
+    sd = np.sqrt(covariance[0, 0] + (DOUBT * moved) ** 2 + BARE**2 + other**2)
+    level = float(np.interp(now[0], x, y))
+    _, slope = _model(now[:1], now)
+    flat = STEEP * level / max(-float(slope[0, 0]), 1e-3)
+    line = float(now[4] * np.exp(now[1]))
+    return PaintEdge(level, float(sd), max(line, flat, key=abs))
+
+
+def _fitted(x: Array, y: Array, mean: Array, start: Array) -> tuple[float, Array, Array]:
+    """Fit the model of a profile from a start: cost, unknowns as `_model`'s, and covariance."""
+    weight = np.array([1.0, WIDTH_SPREAD, BLUR_SPREAD, 0.3, DEPTH_SD, 0.3]) ** -2.0
+    now, damping = start.copy(), 1e-3
     value, slope = _model(x, now)
     cost = _cost(y - value, now - mean, weight)
     normal = np.diag(weight)
@@ -151,14 +190,7 @@ def find_edge(profile: Array, step: float) -> PaintEdge:
                 break
         else:
             damping *= 10
-    covariance = np.linalg.inv(normal)
-    if alone:
-        half = 0.5 * float(np.exp(now[1]))
-        sd = half * np.hypot(np.sqrt(covariance[1, 1]), HALF_IN_DOUBT)
-        return PaintEdge(0.0, float(np.hypot(sd, BARE)), within=half)
-    moved = now[0] - mean[0]
-    sd = np.sqrt(covariance[0, 0] + (DOUBT * moved) ** 2 + BARE**2)
-    return PaintEdge(float(np.interp(now[0], x, y)), float(sd), float(now[4] * np.exp(now[1])))
+    return cost, now, np.asarray(np.linalg.inv(normal), np.float64)
 
 
 def _half_way(x: Array, y: Array) -> Array:

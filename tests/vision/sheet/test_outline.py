@@ -24,7 +24,9 @@ def test_a_bare_edge_is_crossed_half_way(edge: float, blur: float) -> None:
     assert found.sd < 0.3
 
 
-@pytest.mark.parametrize(("width", "depth"), [(1.0, 0.6), (2.0, 0.3), (2.5, 0.8), (2.4, -0.36)])
+@pytest.mark.parametrize(
+    ("width", "depth"), [(1.0, 0.6), (2.0, 0.3), (2.5, 0.8), (2.4, -0.36), (2.0, -0.5), (2.4, -0.7)]
+)
 def test_an_outline_belongs_to_the_paint(width: float, depth: float) -> None:
     rng = np.random.default_rng(3)
     edge = 0.4
@@ -73,6 +75,20 @@ def test_the_edge_of_an_outline_alone_is_its_outer_side(width: float, blur: floa
     assert found.level == 0.0
     assert found.within == pytest.approx(width / 2, abs=0.3)
     assert abs(found.within - width / 2) < 2 * found.sd
+
+
+def test_a_line_that_may_be_of_the_ice_makes_the_edge_less_sure() -> None:
+    found = find_edge(profile(0.0, 2.0, -0.7, 1.1), STEP)
+    assert found.sd > 0.3
+    assert found.sd > 3 * find_edge(profile(0.0, 2.0, 0.0, 1.1), STEP).sd
+
+
+@pytest.mark.parametrize("depth", [-0.7, -0.5, 0.6])
+def test_single_profiles_that_are_less_steep_lie_where_their_mean_does(depth: float) -> None:
+    line = profile(0.0, 2.4, depth, 0.6)
+    found = find_edge(line, STEP)
+    slope = np.interp(0.0, X, np.gradient(line, X))
+    assert found.beyond(0.8 * slope) == pytest.approx(0.0, abs=0.05)
 
 
 def test_too_little_of_a_profile_tells_nothing() -> None:
