@@ -54,6 +54,13 @@ FULLY, SHORT, GAPS = 0.95, 1.0, 0.1
 """Share of pictures that their mean explains from which on nothing is amiss, time over which light
 can hardly be told from what turns, s, and share of pictures without an angle that are many."""
 
+LITTLE, HARDLY, RIM = 0.3, 0.6, 2
+"""Share of pictures that their mean explains below which less than `LEAST` that turns is none, and
+below which what turns is sought without the rim of the cap, and how many rings that is. A rim is
+blurred into granite and light lies on it: handles in a cap's own colour are fainter. Where no more
+than a tenth turned within the rim spins of drawn caps were told to half a radian a second at best;
+two stones without anything that turned were told at rest, 2 rad/s off."""
+
 LEAST, TURNS, CLEARLY = 0.05, 0.2, 3.0
 """Share of what no light explains that turns: where angles that follow spins may be the better
 ones, if it is no less than where angles follow the light; where what turns is told by them, before
@@ -177,20 +184,20 @@ def handle_angles(
     if len(seen) < 2:  # an angle is against another picture of the same stone
         return theta, sd
     pictures = np.array([spectra[index] for index in seen])
-    heights = np.split(pictures, pictures.shape[2] // len(radii), axis=2)
-    tried = [_matched(times[seen], part, turning) for part in heights]
-    which = int(np.argmax([_alike(each) for each in tried]))
-    apart = _apart(tried)
-    if which and _doubtful(*tried):
-        best = _turning_more(times[seen], heights, tried, turning)
-        del pictures, heights, tried  # they take as much again each
-    else:
-        own, matched = heights[which].copy(), tried[which]
-        del pictures, heights, tried
-        best = _despite_light(times[seen], own, matched, turning)
+    best, apart = _of_heights(times[seen], pictures, len(radii), turning)
+    if _hardly_told(best, turning):
+        within = len(radii) - RIM
+        rings = np.resize(np.arange(len(radii)) < within, pictures.shape[2])
+        inner, between = _of_heights(times[seen], pictures[:, :, rings], within, turning)
+        if max(best.share, 2 * LEAST) < inner.share and _mostly_told(inner, turning):
+            best, apart, radii = inner, between, radii[:within]
+    del pictures
     good = best.likeness > turning.least_likeness
     if good.sum() < max(0.5 * len(seen), 2):
         # Most frames do not look like the mean: there is nothing on the cap to go by.
+        return theta, sd
+    if best.share < LEAST and _alike(best) < LITTLE * len(seen):
+        # What hardly any picture has in common, and what does not turn: light, not the cap.
         return theta, sd
     rows = seen[good]
     aside = np.hypot(turning.shift, sd_centre[rows])
@@ -207,6 +214,21 @@ def handle_angles(
     return theta - theta[rows[0]], sd
 
 
+def _of_heights(
+    times: Array, pictures: Complex, rings: int, turning: Turning
+) -> tuple[_Matched, Array]:
+    """Turn pictures onto their mean at the height that tells more, and tell how far both differ."""
+    heights = np.split(pictures, pictures.shape[2] // rings, axis=2)
+    tried = [_matched(times, part, turning) for part in heights]
+    which = int(np.argmax([_alike(each) for each in tried]))
+    apart = _apart(tried)
+    if which and _doubtful(*tried):
+        return _turning_more(times, heights, tried, turning), apart
+    own, matched = heights[which].copy(), tried[which]
+    del pictures, heights, tried
+    return _despite_light(times, own, matched, turning), apart
+
+
 @dataclass(frozen=True)
 class _Matched:
     """Pictures of one height, their angles against their mean, and how like it they are.
@@ -218,6 +240,12 @@ class _Matched:
     angles: Array
     likeness: Array
     share: float = 1.0
+
+
+def _hardly_told(matched: _Matched, turning: Turning) -> bool:
+    """Whether pictures are little alike, and few tell an angle or hardly anything turns."""
+    little = _alike(matched) < HARDLY * len(matched.angles)
+    return little and (matched.share < LEAST or not _mostly_told(matched, turning))
 
 
 def _alike(matched: _Matched) -> float:

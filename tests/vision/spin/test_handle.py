@@ -344,3 +344,39 @@ def test_where_grip_and_cap_tell_different_angles_errors_say_so() -> None:
     # 0.03 rad/s apart, and so up to 0.06 rad about the middle.
     assert told(0.93)[[0, -1]].min() > 0.05
     assert told(0.93)[50] < told(0.90)[50] + 0.01
+
+
+def faint_within_a_rim(
+    spin: float, narrow: float, bright: float, rim: float, lasting: float
+) -> tuple[NDArray[np.float64], list[NDArray[np.complex64]]]:
+    """Pictures of a turning cap whose rim shows now this and now that of what is beside it."""
+    rng, times = np.random.default_rng(4), np.arange(90) / 25
+    angle = np.arange(RAYS)[:, None] * (2 * np.pi / RAYS)
+    beside = cv2.GaussianBlur(rng.normal(0, 1, (len(times), RAYS)), (0, 0), 4.0)
+    stays = cv2.GaussianBlur(rng.normal(0, 1, (1, RAYS)), (0, 0), 4.0)
+    rims = rim * (beside / beside.std() + lasting * stays / stays.std())
+    pictures: list[NDArray[np.complex64]] = []
+    for time, edge in zip(times, rims, strict=True):
+        dot = np.exp(-narrow * (1 - np.cos(angle - spin * time))) * (RADII > 0.03) * (RADII < 0.06)
+        grain = cv2.GaussianBlur(rng.normal(0, 1, dot.shape), (0, 0), 1.5)
+        value = 120 + bright * dot + edge[:, None] * (RADII > 0.07) + 3 * grain / grain.std()
+        pictures.append(cap_spectrum(np.repeat(value[..., None], 3, -1).astype(np.uint8), RADII))
+    return times, pictures
+
+
+@pytest.mark.parametrize(
+    ("spin", "narrow", "bright", "rim"), [(2.0, 6, 50, 25), (2.5, 10, 25, 25), (2.0, 10, 50, 40)]
+)
+def test_a_faint_handle_is_told_beside_a_rim_that_does_not_turn(
+    spin: float, narrow: float, bright: float, rim: float
+) -> None:
+    times, pictures = faint_within_a_rim(spin, narrow, bright, rim, 0.3)
+    theta, _ = handle_angles(times, pictures, RADII)
+    told = np.isfinite(theta)
+    assert told.mean() > 0.9
+    assert np.polyfit(times[told], theta[told], 1)[0] == pytest.approx(spin, abs=0.05)
+
+
+def test_what_hardly_any_pictures_share_and_does_not_turn_tells_no_angle() -> None:
+    times, pictures = faint_within_a_rim(1.5, 4, 22, 8, 0.45)
+    assert np.isnan(handle_angles(times, pictures, RADII)[0]).all()
