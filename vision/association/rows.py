@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vision.detection.sighting import Sighting
-from vision.film.shelf import Kept, Shelf
+from vision.film.shelf import Kept
 
 Array = NDArray[np.float64]
 
@@ -39,14 +39,14 @@ class Rows(Sequence[Sighting]):
     __slots__ = ("_numbers", "_spectra")
 
     def __init__(self, sightings: Iterable[Sighting] = ()) -> None:
-        self._numbers = Kept(array("d"))
+        self._numbers = array("d")
         self._spectra: list[Kept[NDArray[np.complex64]] | None] = []
         for sighting in sightings:
             self.append(sighting)
 
     def append(self, seen: Sighting) -> None:
         """Add a sighting."""
-        self._numbers.get().extend(
+        self._numbers.extend(
             (
                 seen.x, seen.y, seen.sd_x, seen.sd_y, seen.visible, seen.score, seen.pixel_size,
                 seen.measured, seen.swept, *seen.sd_place, *seen.colour, *seen.bends, *seen.pixel,
@@ -57,12 +57,8 @@ class Rows(Sequence[Sighting]):
 
     def extend(self, other: Rows) -> None:
         """Add all of others."""
-        self._numbers.get().extend(other._numbers.get())
+        self._numbers.extend(other._numbers)
         self._spectra.extend(other._spectra)
-
-    def put_aside(self, shelf: Shelf) -> None:
-        """Keep the numbers on a shelf from now on: nothing can be added any more."""
-        self._numbers.put_aside(shelf)
 
     @property
     def spectra(self) -> Sequence[Kept[NDArray[np.complex64]] | None]:
@@ -83,18 +79,17 @@ class Rows(Sequence[Sighting]):
             return Rows(self[k] for k in range(*index.indices(len(self))))
         spectrum = self._spectra[index]
         begin = range(len(self))[index] * WIDTH
-        return _unpacked(self._numbers.get()[begin : begin + WIDTH].tolist(), spectrum)
+        return _unpacked(self._numbers[begin : begin + WIDTH].tolist(), spectrum)
 
     def __iter__(self) -> Iterator[Sighting]:
-        numbers = self._numbers.get()
         for begin in range(0, len(self), AT_ONCE):
-            some = numbers[begin * WIDTH : (begin + AT_ONCE) * WIDTH]
+            some = self._numbers[begin * WIDTH : (begin + AT_ONCE) * WIDTH]
             rows = np.array(some).reshape(-1, WIDTH).tolist()
             yield from map(_unpacked, rows, self._spectra[begin : begin + AT_ONCE])
 
     def columns(self, *names: str) -> Array:
         """Numbers of all of them by some of the names in `SINGLE`, shape (names, n)."""
-        rows = np.array(self._numbers.get()).reshape(-1, WIDTH)
+        rows = np.array(self._numbers).reshape(-1, WIDTH)
         return rows[:, [SINGLE.index(name) for name in names]].T
 
 

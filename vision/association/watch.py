@@ -36,7 +36,7 @@ from vision.detection.stones import FOLLOWING, SEARCH, Search
 from vision.detection.strangers import strangers
 from vision.film.clip import Frame
 from vision.film.picture import brightened
-from vision.film.shelf import ROOM, Shelf
+from vision.film.shelf import ROOM, Kept, Shelf
 from vision.optics.camera import Camera
 
 AT_ONCE = 64
@@ -90,7 +90,7 @@ class Watch:
         self._before: Camera | None = None
         self._leads: list[Lead] = []
         self._since = self._most = MEMORY
-        self._seen: dict[int, tuple[float, Sequence[Sighting]]] = {}
+        self._seen: dict[int, tuple[float, Kept[Sequence[Sighting]]]] = {}
 
     def look(self, frame: Frame, camera: Camera) -> None:
         """Take in a frame; it waits for some more, the first ones until the stones are learned."""
@@ -108,7 +108,7 @@ class Watch:
         # The next search goes back no farther: no more pictures than that are held at all.
         while self._recent and len(self._recent) + len(self._waiting) > self._most:
             self._put_aside(self._recent.popleft())
-        self._seen[frame.index] = frame.t, view.sightings
+        self._seen[frame.index] = frame.t, Kept(view.sightings)
         if len(self._waiting) >= (BLOCK if self._knows else self._most):
             self._catch_up()
 
@@ -117,30 +117,24 @@ class Watch:
         """Whether a frame has been looked at."""
         return bool(self._seen)
 
-    def finish(
-        self, cameras: Sequence[Camera] | None = None
-    ) -> Iterator[tuple[int, float, Sequence[Sighting]]]:
+    def finish(self, cameras: Sequence[Camera]) -> Iterator[tuple[int, float, Sequence[Sighting]]]:
         """Give the number, the time and the sightings of each frame, once.
 
         Parameters
         ----------
-        cameras : sequence of Camera, optional
-            What is known of the cameras by now: it places the stones, and tells the errors that
-            their sightings share; frames without one are left out. Else the places stand at which
-            they were seen.
+        cameras : sequence of Camera
+            As they are known by now: they place the stones, and tell the errors that their
+            sightings share; frames without one are left out.
         """
         self._catch_up()
         if self._since and self._recent:
             self._search_for_new(self._recent[-1])
-        if cameras is None:
-            for frame in [*self._seen]:
-                yield frame, *self._seen.pop(frame)
-            return
+        self._recent.clear()  # no picture is looked at any more: they take a quarter of all memory
         known = [camera for camera in cameras if camera.frame in self._seen]
         for begin in range(0, len(known), AT_ONCE):
             some = known[begin : begin + AT_ONCE]
             times, seen = zip(*(self._seen.pop(camera.frame) for camera in some), strict=True)
-            placed = placed_by(some, seen, self.disc)
+            placed = placed_by(some, [one.get() for one in seen], self.disc)
             yield from zip([camera.frame for camera in some], times, placed, strict=True)
         self._seen.clear()
 
@@ -202,7 +196,7 @@ class Watch:
     def _put_aside(self, view: StoneView) -> None:
         """Keep of a view that is done what takes little memory."""
         view.put_aside(self._shelf)
-        rows = Rows(view.sightings)
+        rows: Kept[Sequence[Sighting]] = Kept(Rows(view.sightings))
         rows.put_aside(self._shelf)
         self._seen[view.frame.index] = view.frame.t, rows
 

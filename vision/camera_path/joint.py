@@ -77,7 +77,7 @@ class HouseTrack:
     warnings: tuple[str, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Seen:
     """One followed frame.
 

@@ -80,7 +80,7 @@ class Piece:
     edges : EdgeTracker
         Refines the views.
     shelf : Shelf
-        Where the marks of the frames are put aside; the pieces of a clip share one.
+        Where marks and glimpses of the frames are put aside; the pieces of a clip share one.
     seen : list of Seen
         The frames so far.
     glimpses : list of Glimpse
@@ -243,7 +243,9 @@ class Piece:
         return glimpse(self._picture, last.view, self.rig, last.t)
 
     def keep(self, look: Glimpse) -> None:
-        """Keep what the house looks like in the last frame."""
+        """Keep what the house looks like in the last frame; only it is asked for often."""
+        for before in self.glimpses[-1:]:
+            before.kept.put_aside(self.shelf)
         self.glimpses.append(look)
         self._fresh = []
 

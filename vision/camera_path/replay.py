@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from data.sheet import HOUSE
 from vision.film.picture import Picture, lightness_at
+from vision.film.shelf import Kept
 from vision.optics.pose import View, project
 
 Array = NDArray[np.float64]
@@ -49,12 +50,17 @@ class Glimpse:
     ----------
     t : float
         When, s.
-    grey : ndarray, shape (48, 48)
-        Lightness, to .06; NaN where the picture ends. All of a clip are kept: in half precision.
+    kept : Kept of ndarray
+        See `grey`; all of a clip are kept.
     """
 
     t: float
-    grey: Halves
+    kept: Kept[Halves]
+
+    @property
+    def grey(self) -> Halves:
+        """Lightness, to .06, shape (48, 48); NaN where the picture ends."""
+        return self.kept.get()
 
 
 def glimpse(picture: Picture, view: View, rig: Array, t: float) -> Glimpse:
@@ -68,7 +74,7 @@ def glimpse(picture: Picture, view: View, rig: Array, t: float) -> Glimpse:
     grey = lightness_at(picture, across, down).astype(np.float64)
     grey[~seen.reshape(side)] = np.nan
     small = cv2.resize(grey, (CELLS, CELLS), interpolation=cv2.INTER_AREA)
-    return Glimpse(t, np.asarray(small, np.float16))
+    return Glimpse(t, Kept(np.asarray(small, np.float16)))
 
 
 def is_replay(now: Glimpse, before: Sequence[Glimpse]) -> bool:

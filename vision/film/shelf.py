@@ -5,18 +5,20 @@ from __future__ import annotations
 import pickle
 import tempfile
 import weakref
-from collections.abc import Callable
 from contextlib import suppress
 from errno import ENOSPC
-from functools import partial
+from io import BytesIO
 from os import SEEK_END
 from typing import IO, Any, Generic, TypeVar
 
 T = TypeVar("T")
 
-ROOM = 1000
-"""Things of a clip that may stay in memory: of a frame some 30 kB, of a cap 7 kB, of a sighting
-.2 kB, which lie there picture by picture."""
+Place = tuple[int, int]
+"""Where on a shelf a thing begins and how long it is, bytes."""
+
+ROOM = 400
+"""Things of a clip that may stay in memory: of a frame some 30 kB, of a cap 7 kB, of what is seen
+in a picture 2 kB. All frames of most shots do: to write them takes time."""
 
 
 class Shelf:
@@ -32,8 +34,10 @@ class Shelf:
         self._room = room
         self._file: IO[bytes] | None = None
 
-    def put(self, thing: T) -> Callable[[], T]:
-        """Write a thing to the file; what is given back reads it.
+    def put(self, thing: Any) -> Place | None:
+        """Write a thing to the file and say where it lies; None for the first, which stay.
+
+        Of things in it that lie on this shelf themselves, only where they lie is written.
 
         Raises
         ------
@@ -42,31 +46,69 @@ class Shelf:
         """
         if self._room > 0:
             self._room -= 1
-            return lambda: thing
+            return None
         if self._file is None:
             self._file = tempfile.TemporaryFile(buffering=0)  # noqa: SIM115
             weakref.finalize(self, self._file.close)
-        data = pickle.dumps(thing, pickle.HIGHEST_PROTOCOL)
-        begin = self._file.seek(0, SEEK_END)
-        if self._file.write(data) < len(data):
+        data = BytesIO()
+        _Packer(data, self).dump(thing)
+        begin, size = self._file.seek(0, SEEK_END), data.tell()
+        if self._file.write(data.getbuffer()) < size:
             raise OSError(ENOSPC, "no room to put something aside")
-        return partial(self._read, begin, len(data))
+        return begin, size
 
-    def _read(self, begin: int, size: int) -> Any:
+    def read(self, place: Place) -> Any:
+        """Read the thing that lies at a place."""
         assert self._file is not None
+        begin, size = place
         self._file.seek(begin)
-        return pickle.loads(self._file.read(size))
+        return _Unpacker(BytesIO(self._file.read(size)), self).load()
 
 
 class Kept(Generic[T]):
     """A thing in memory that can be put aside, and had all the same."""
 
-    __slots__ = ("get",)
+    __slots__ = ("_place", "_thing")
 
-    def __init__(self, thing: T) -> None:
-        self.get: Callable[[], T] = lambda: thing
+    def __init__(self, thing: T | Shelf, place: Place | None = None) -> None:
+        self._thing, self._place = thing, place
+
+    def get(self) -> T:
+        """Give the thing; one that was put aside is read anew each time."""
+        if self._place is None:
+            return self._thing  # type: ignore[return-value]
+        return self._thing.read(self._place)  # type: ignore[union-attr, no-any-return]
 
     def put_aside(self, shelf: Shelf) -> None:
         """Keep it on a shelf from now on; where there is no room for it, in memory as before."""
+        if self._place is not None:
+            return
         with suppress(OSError):
-            self.get = shelf.put(self.get())
+            place = shelf.put(self._thing)
+            if place is not None:
+                self._thing, self._place = shelf, place
+
+    def place_on(self, shelf: Shelf) -> Place | None:
+        """Where it lies on a shelf; None where it does not."""
+        return self._place if self._thing is shelf else None
+
+    def __reduce__(self) -> tuple[type[Kept[T]], tuple[T]]:
+        return Kept, (self.get(),)
+
+
+class _Packer(pickle.Pickler):
+    def __init__(self, data: BytesIO, shelf: Shelf) -> None:
+        super().__init__(data, pickle.HIGHEST_PROTOCOL)
+        self._shelf = shelf
+
+    def persistent_id(self, thing: Any) -> Place | None:
+        return thing.place_on(self._shelf) if isinstance(thing, Kept) else None
+
+
+class _Unpacker(pickle.Unpickler):
+    def __init__(self, data: BytesIO, shelf: Shelf) -> None:
+        super().__init__(data)
+        self._shelf = shelf
+
+    def persistent_load(self, place: Place) -> Kept[Any]:
+        return Kept(self._shelf, place)

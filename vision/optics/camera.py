@@ -23,7 +23,7 @@ CAMERA_COLUMNS: tuple[str, ...] = (
 )  # fmt: skip
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class CameraError:
     """How well a camera is known.
 
@@ -44,7 +44,7 @@ class CameraError:
     drift: float = 0.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Camera:
     """One frame's camera.
 

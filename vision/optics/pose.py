@@ -27,7 +27,7 @@ ROLL = 2
 """Where in a view's vector the turn about the camera's own axis lies, for one that looks down."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class View:
     """One frame's own part: rotation vector (rad, from straight down and upright), log f_px."""
 

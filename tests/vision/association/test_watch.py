@@ -34,6 +34,11 @@ def picture(places: list[tuple[float, float, tuple[int, int, int]]]) -> Image:
     return np.asarray(render_still(scene_of(places), CAMERA), np.uint8)
 
 
+def lasting(camera: Camera) -> list[Camera]:
+    """The camera of more frames than are looked at."""
+    return [replace(camera, frame=frame) for frame in range(200)]
+
+
 @pytest.mark.parametrize("cap", [YELLOW, BLUE])
 def test_a_stone_found_late_is_followed_back_also_one_of_a_new_colour(
     cap: tuple[int, int, int],
@@ -44,7 +49,7 @@ def test_a_stone_found_late_is_followed_back_also_one_of_a_new_colour(
     watch = Watch()
     for index in range(50):
         watch.look(Frame(index, index / 25, after if index >= since else before), camera)
-    counts = [len(sightings) for _, _, sightings in watch.finish()]
+    counts = [len(sightings) for _, _, sightings in watch.finish(lasting(camera))]
     assert counts == [3] * since + [4] * (50 - since)
 
 
@@ -71,7 +76,7 @@ def test_with_fewer_pictures_kept_a_late_stone_is_followed_back_as_well(
     watch = Watch()
     for frame in range(50):
         watch.look(Frame(frame, frame / 25, after if frame >= since else before), camera)
-    counts = [len(sightings) for _, _, sightings in watch.finish()]
+    counts = [len(sightings) for _, _, sightings in watch.finish(lasting(camera))]
     assert counts == [3] * since + [4] * (50 - since)
     assert max(now - then for now, then in held) == 10
 
@@ -87,7 +92,7 @@ def test_in_the_end_stones_are_placed_by_the_cameras_that_are_known_by_then(
         for watch in watches:
             watch.look(Frame(index, index / 25, image), camera)
     known = [replace(camera, frame=index, k1=0.01 * index) for index in [*range(1, 12), 99]]
-    seen = {frame: sightings for frame, _, sightings in watches[0].finish()}
+    seen = {frame: sightings for frame, _, sightings in watches[0].finish(lasting(camera))}
     found = list(watches[1].finish(known))
     assert [(frame, t) for frame, t, _ in found] == [(k, k / 25) for k in range(1, 12)]
     for (frame, _, sightings), by in zip(found, known, strict=False):
@@ -107,7 +112,7 @@ def test_a_third_colour_does_not_take_the_place_of_one_on_the_ice() -> None:
         if watch.appearance is not None:
             learned.add(tuple(cap.name for cap in watch.appearance.caps))
     assert len(learned) == 1
-    assert [len(sightings) for _, _, sightings in watch.finish()] == [4] * 150
+    assert [len(sightings) for _, _, sightings in watch.finish(lasting(camera))] == [4] * 150
 
 
 def test_a_stone_that_convinces_in_some_pictures_only_is_learned_from_these() -> None:
@@ -120,7 +125,7 @@ def test_a_stone_that_convinces_in_some_pictures_only_is_learned_from_these() ->
     for index in range(24):
         # Of the pictures looked at first, every eighth, none is clear.
         watch.look(Frame(index, index / 25, clear if index in (2, 10, 20) else covered), camera)
-    assert [len(sightings) for _, _, sightings in watch.finish()] == [1] * 24
+    assert [len(sightings) for _, _, sightings in watch.finish(lasting(camera))] == [1] * 24
 
 
 def test_a_dull_cap_on_vivid_paint_is_learned_beside_a_vivid_one() -> None:
@@ -131,7 +136,7 @@ def test_a_dull_cap_on_vivid_paint_is_learned_beside_a_vivid_one() -> None:
     watch = Watch()
     for index in range(24):
         watch.look(Frame(index, index / 25, image), camera)
-    assert [len(sightings) for _, _, sightings in watch.finish()] == [2] * 24
+    assert [len(sightings) for _, _, sightings in watch.finish(lasting(camera))] == [2] * 24
 
 
 def test_a_cap_of_which_little_is_coloured_is_seen_from_the_first_picture_on() -> None:
@@ -141,7 +146,7 @@ def test_a_cap_of_which_little_is_coloured_is_seen_from_the_first_picture_on() -
     watch = Watch()
     for index in range(24):
         watch.look(Frame(index, index / 25, image), camera)
-    assert [len(sightings) for _, _, sightings in watch.finish()] == [3] * 24
+    assert [len(sightings) for _, _, sightings in watch.finish(lasting(camera))] == [3] * 24
 
 
 def test_two_teams_that_a_coarse_map_shows_are_not_sought_on_a_fine_one(
@@ -160,7 +165,7 @@ def test_two_teams_that_a_coarse_map_shows_are_not_sought_on_a_fine_one(
     watch = Watch()
     for index in range(24):
         watch.look(Frame(index, index / 25, image), camera)
-    assert [len(sightings) for _, _, sightings in watch.finish()] == [3] * 24
+    assert [len(sightings) for _, _, sightings in watch.finish(lasting(camera))] == [3] * 24
     assert maps == [FOLLOWING.radius_px]
 
 
@@ -179,7 +184,7 @@ def test_how_stones_are_made_that_are_not_there_is_asked_on_the_fine_map_alone(
     monkeypatch.setattr("vision.detection.strangers.sought_in", noted)
     watch = Watch()
     watch.look(Frame(0, 0.0, image), camera)
-    assert [len(sightings) for _, _, sightings in watch.finish()] == [0]
+    assert [len(sightings) for _, _, sightings in watch.finish(lasting(camera))] == [0]
     large = LARGE * STONE.cap_radius
     fine, coarse = SEARCH.radius_px, FOLLOWING.radius_px
     assert sought == [
@@ -198,7 +203,7 @@ def test_a_stone_that_is_hit_under_cover_is_found_in_the_moment_that_shows_it() 
             for x, y in camera.project(np.array([(0.3, 0.2), (0.3, -0.3)]), 0.12).astype(int):
                 image[y - 50 : y + 50, x - 50 : x + 50] = (60, 90, 60)
         watch.look(Frame(index, index / 25, image), camera)
-    counts = [len(sightings) for _, _, sightings in watch.finish()]
+    counts = [len(sightings) for _, _, sightings in watch.finish(lasting(camera))]
     assert counts == [3] * 26 + [2] * 7 + [3] * 9 + [2] * 24 + [3] * 4
 
 
@@ -220,7 +225,7 @@ def test_stones_that_show_briefly_after_a_bare_beginning_are_seen() -> None:
     for index in range(40):
         image = bare if index < 10 else shown if index < 27 else left
         watch.look(Frame(index, index / 25, image), camera)
-    counts = [len(sightings) for _, _, sightings in watch.finish()]
+    counts = [len(sightings) for _, _, sightings in watch.finish(lasting(camera))]
     assert counts == [0] * 10 + [3] * 17 + [2] * 13
 
 
@@ -232,7 +237,7 @@ def test_a_stone_hidden_soon_after_it_was_found_is_looked_for_where_it_went() ->
     watch, camera = Watch(), camera_of(CAMERA, scene_of(AT_REST))
     for index, image in enumerate(images):
         watch.look(Frame(index, index / 25, image), camera)
-    counts = [len(sightings) for _, _, sightings in watch.finish()]
+    counts = [len(sightings) for _, _, sightings in watch.finish(lasting(camera))]
     assert counts == [2] * 8 + [3] * 25 + [2] * 11 + [3] * 10 + [2] * 26
 
 
@@ -242,7 +247,7 @@ def test_a_stone_that_jumps_is_found_again_at_once(jump: float) -> None:
     watch, camera = Watch(), camera_of(CAMERA, scene_of(AT_REST))
     for index in range(12):
         watch.look(Frame(index, index / 25, there if index >= 7 else here), camera)
-    for index, _, sightings in watch.finish():
+    for index, _, sightings in watch.finish(lasting(camera)):
         places = np.array([(s.x, s.y) for s in sightings])
         assert len(places) == 3
         true = (0.3, 0.2 - jump if index >= 7 else 0.2)
@@ -259,7 +264,7 @@ def test_a_stone_that_spins_on_the_spot_is_measured_all_the_time() -> None:
         image = render_still(replace(scene, stones=(turned, *scene.stones[1:])), CAMERA)
         watch.look(Frame(index, index / 25, np.asarray(image, np.uint8)), camera)
     told = {True: 0, False: 0}
-    for _, _, sightings in watch.finish():
+    for _, _, sightings in watch.finish(lasting(camera)):
         for sighting in sightings:
             spins = np.hypot(sighting.x - AT_REST[0][0], sighting.y - AT_REST[0][1]) < 0.05
             told[bool(spins)] += sighting.spectrum is not None
@@ -276,5 +281,5 @@ def test_caps_are_known_in_a_light_that_has_wandered_and_after_a_fade() -> None:
         yellow = np.array([1 - 0.004 * index, 1.0, 1 + 0.001 * index])
         lit = (image * (faded * yellow)).clip(0, 255).astype(np.uint8)
         watch.look(Frame(index, index / 25, lit), camera)
-    counts = [len(sightings) for _, _, sightings in watch.finish()]
+    counts = [len(sightings) for _, _, sightings in watch.finish(lasting(camera))]
     assert counts[16:] == [3] * 84

@@ -18,6 +18,7 @@ from vision.camera_path.replay import (
     shows_again,
 )
 from vision.film.clip import Frame, open_clip
+from vision.film.shelf import Kept
 
 RATE = 25
 
@@ -50,9 +51,9 @@ def test_only_what_shows_the_same_ice_is_compared() -> None:
     house = np.random.default_rng(4).uniform(0, 255, (CELLS, CELLS))
     low, high = house.copy(), house + 6.0
     low[: CELLS * 3 // 4], high[CELLS // 2 :] = np.nan, np.nan
-    first, last = Glimpse(0.0, high), Glimpse(2.0, low)
-    assert not is_replay(Glimpse(2.2, high + 1.0), [first, last])
-    assert is_replay(Glimpse(2.2, high + 1.0), [first, Glimpse(2.0, house)])
+    first, last = Glimpse(0.0, Kept(high)), Glimpse(2.0, Kept(low))
+    assert not is_replay(Glimpse(2.2, Kept(high + 1.0)), [first, last])
+    assert is_replay(Glimpse(2.2, Kept(high + 1.0)), [first, Glimpse(2.0, Kept(house))])
 
 
 def house(*things: tuple[int, int], t: float = 0.0) -> Glimpse:
@@ -60,7 +61,7 @@ def house(*things: tuple[int, int], t: float = 0.0) -> Glimpse:
     grey = np.full((CELLS, CELLS), 200.0)
     for row, column in things:
         grey[row : row + 3, column : column + 3] = 60.0
-    return Glimpse(t, grey)
+    return Glimpse(t, Kept(grey))
 
 
 A, B, C, D = (5, 8), (30, 12), (14, 40), (40, 33)

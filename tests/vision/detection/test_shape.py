@@ -49,7 +49,7 @@ def found_in(image: NDArray[np.uint8], scene: Scene, path: CameraPath) -> tuple[
     """Largest error of the places of a clip of one picture, m, and how stones are made there."""
     watch, camera = Watch(), camera_of(path, scene)
     watch.look(Frame(0, 0.0, image), camera)
-    ((_, _, seen),) = watch.finish()
+    ((_, _, seen),) = watch.finish([camera])
     assert len(seen) == len(scene.stones)
     return float(misses(tuple(seen), scene).max()), watch.disc
 

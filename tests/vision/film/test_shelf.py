@@ -42,8 +42,10 @@ def test_memory_holds_no_more_than_where_things_lie() -> None:
 def test_the_first_things_stay_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tempfile, "TemporaryFile", no_file)
     shelf, things = Shelf(room=2), [np.full(3, float(number)) for number in range(3)]
-    held = [shelf.put(thing) for thing in things[:2]]
-    assert all(get() is thing for get, thing in zip(held, things, strict=False))
+    held = [Kept(thing) for thing in things[:2]]
+    for one in held:
+        one.put_aside(shelf)
+    assert all(one.get() is thing for one, thing in zip(held, things, strict=False))
     with pytest.raises(OSError, match="nowhere to write"):
         shelf.put(things[2])
 
@@ -68,6 +70,27 @@ def test_what_finds_no_room_stays_in_memory(
     for each in kept:
         each.put_aside(shelf)
     assert [each.get()[0] for each in kept] == [0, 1, 2]
+
+
+def test_of_things_on_a_shelf_what_lies_there_too_is_not_written_again() -> None:
+    shelf, other, large = Shelf(), Shelf(), np.arange(10_000.0)
+    kept, elsewhere = Kept(large), Kept(np.ones(2))
+    kept.put_aside(shelf)
+    elsewhere.put_aside(other)
+    place = shelf.put([kept, elsewhere, Kept("in memory")])
+    assert place is not None and place[1] < 1_000
+    again = [one.get() for one in shelf.read(place)]
+    np.testing.assert_array_equal(again[0], large)
+    np.testing.assert_array_equal(again[1], 1.0)
+    assert again[2] == "in memory"
+
+
+def test_what_lies_on_a_shelf_stays_where_it_lies() -> None:
+    kept, shelf = Kept("as it was"), Shelf()
+    kept.put_aside(shelf)
+    first = kept.place_on(shelf)
+    kept.put_aside(Shelf())
+    assert kept.place_on(shelf) == first
 
 
 def test_a_thing_outlives_whoever_put_it_aside() -> None:
