@@ -6,7 +6,12 @@ import runpy
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+from benchmarks.kinds import as_made
+from tests.synthetic import random_scene
+from tests.synthetic.stones import HEIGHT
 
 ROOT = Path(__file__).resolve().parent.parent
 RUN_BY_HAND = sorted(
@@ -25,3 +30,21 @@ def test_help_is_help(
         runpy.run_path(str(ROOT / "benchmarks" / f"{name}.py"), run_name="__main__")
     assert done.value.code == 0
     assert len(capsys.readouterr().out.splitlines()) > 5
+
+
+def test_kinds_differ_from_what_is_nominal_as_houses_and_stones_do() -> None:
+    nominal = random_scene(np.random.default_rng(1))
+    drawn = [as_made(nominal, np.random.default_rng(seed)) for seed in range(60)]
+    for scene in drawn:
+        assert [s.start for s in scene.stones] == [s.start for s in nominal.stones]
+        assert len({(s.cap_height, s.cap_radius) for s in scene.stones}) == 1
+        cap = scene.stones[0]
+        assert min(cap.side) == pytest.approx(HEIGHT)  # nothing is between cap and granite
+        assert scene.paint.radii[0] == 1.829  # the yardstick
+    heights = np.array([scene.stones[0].cap_height for scene in drawn])
+    assert 0.114 < heights.min() < 0.118 < 0.122 < heights.max() < 0.125
+    inner = np.array([scene.paint.radii[1:3] for scene in drawn])
+    assert np.allclose(inner.min(0), (1.207, 0.606), atol=0.002)
+    assert np.allclose(inner.max(0), (1.224, 0.628), atol=0.002)
+    assert {scene.light.power for scene in drawn} == {1.0, 2.2}
+    assert {scene.paint.outline is None for scene in drawn} == {True, False}

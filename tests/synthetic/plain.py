@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from tests.synthetic.camera import CameraPath, Lens, View
 from tests.synthetic.ice import BACK_LINE, HOG_LINE, HOG_WIDTH
+from tests.synthetic.mixing import coded, lit
 from tests.synthetic.render import motion_of
 from tests.synthetic.scene import Colour, Mark, Paint, Person, Scene, Sheet
 
@@ -79,7 +80,8 @@ def plain_pictures(
         ends = t - shutter / 4, t + shutter / 4
         sharp = [_instant(scene, camera.at(s), motion.at(s), s, supersample) for s in ends]
         noise = rng.normal(0, scene.light.noise, sharp[0].shape).astype(np.float32)
-        yield t, np.clip((sharp[0] + sharp[1]) / 2 + noise + 0.5, 0, 255).astype(np.uint8)
+        mixed = coded((sharp[0] + sharp[1]) / 2, scene.light.power) * _fall_off(scene, camera)
+        yield t, np.clip(mixed + noise + 0.5, 0, 255).astype(np.uint8)
 
 
 def _instant(scene: Scene, view: View, states: NDArray[np.float64], t: float, cells: int) -> Field:
@@ -90,16 +92,20 @@ def _instant(scene: Scene, view: View, states: NDArray[np.float64], t: float, ce
         _sheet(labels, x - np.float32(n * scene.sheet.pitch), y, scene.sheet, scene.paint)
     for stone, state in zip(scene.stones, states, strict=True):
         _disc(labels, view, rays, state[:2], GRANITE_HEIGHT, stone.radius, stone.granite)
-        _disc(labels, view, rays, state[:2], stone.cap_height, stone.cap_radius, stone.cap)
+        for height in (*stone.side, stone.cap_height):
+            _disc(labels, view, rays, state[:2], height, stone.cap_radius, stone.cap)
     for person in scene.people:
         for place, height, radius, colour in _body(person, t):
             _disc(labels, view, rays, place, height, radius, colour)
-    colours = np.array(labels.palette, np.float32)
-    picture = np.sum([colours[layer] for layer in labels.label], axis=0) / np.float32(
-        len(labels.label)
-    )
-    slope = np.linspace(1, 1 - scene.light.vignette, picture.shape[1], dtype=np.float32)
-    return np.asarray(picture * slope[None, :, None] * np.float32(scene.light.gain), np.float32)
+    colours = lit(np.array(labels.palette, np.uint8), scene.light.power)
+    picture = np.sum([colours[layer] for layer in labels.label], axis=0)
+    return np.asarray(picture / np.float32(len(labels.label)), np.float32)
+
+
+def _fall_off(scene: Scene, camera: CameraPath) -> Field:
+    """Light falls off to one side, shape (1, w, 1)."""
+    slope = np.linspace(1, 1 - scene.light.vignette, camera.size[0], dtype=np.float32)
+    return np.asarray(slope[None, :, None] * np.float32(scene.light.gain), np.float32)
 
 
 def _rays(view: View, cells: int) -> _Rays:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from tests.synthetic.camera import CameraPath, View
 from tests.synthetic.ice import Extent, Picture, Plate, paint_plate, warp
+from tests.synthetic.mixing import coded, lit
 from tests.synthetic.people import draw_people
 from tests.synthetic.physics import Motion, simulate
 from tests.synthetic.scene import Cut, Graphic, Scene
@@ -81,6 +82,7 @@ def expose(
             clean = np.asarray(weight * clean + (1 - weight) * here, np.float32)
     if light.softness > 0:
         cv2.GaussianBlur(clean, (0, 0), light.softness, dst=clean)
+    clean = coded(clean, light.power)
     clean *= _fall_off(camera.size, light.vignette, light.gain)
     picture = _with_grain(studio, clean, light.noise, rng)
     for graphic in scene.graphics:
@@ -109,7 +111,7 @@ def _integrate(studio: Studio, camera: CameraPath, t: float, shutter: float) -> 
     people_move = bool(studio.scene.people) and steps == 1
     if people_move:
         steps = 2
-    total = None
+    total: NDArray[np.float32] | None = None
     ice = warp(studio.plate(camera), _enlarged(view, studio.supersample)) if sway < STILL else None
     for k in range(steps):
         moment = t + shutter * ((k + 0.5) / steps - 0.5)
@@ -122,10 +124,8 @@ def _integrate(studio: Studio, camera: CameraPath, t: float, shutter: float) -> 
             picture = np.asarray(
                 cv2.resize(picture, camera.size, interpolation=cv2.INTER_AREA), np.uint8
             )
-        if total is None:
-            total = picture.astype(np.float32)
-        else:
-            cv2.accumulate(picture, total)
+        mixed = lit(picture, studio.scene.light.power)
+        total = mixed if total is None else total + mixed
     assert total is not None
     return np.asarray(total / np.float32(steps), np.float32)
 

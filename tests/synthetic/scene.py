@@ -5,6 +5,7 @@ Lengths in metres, angles in radians, colours as (blue, green, red) in 0..255.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 from tests.synthetic.camera import CameraPath
@@ -84,7 +85,8 @@ class Sheet:
 class Stone:
     """One stone: its name, where it starts, and its looks.
 
-    `theta` of the start points from the cap's centre to the handle's free end.
+    `theta` of the start points from the cap's centre to the handle's free end. The cap ends
+    `cap_height` above the ice, and below that it has a side `wall` high, m.
     """
 
     name: str
@@ -94,7 +96,14 @@ class Stone:
     radius: float = RADIUS
     cap_radius: float = 0.1045
     cap_height: float = 0.12
+    wall: float = 0.0
     granite: Colour = (112, 120, 122)
+
+    @property
+    def side(self) -> tuple[float, ...]:
+        """Heights above the ice of discs, 2 mm apart, that make the side of the cap, m."""
+        count = math.ceil(self.wall / 0.002)
+        return tuple(self.cap_height - self.wall * (1 - k / count) for k in range(count))
 
 
 @dataclass(frozen=True)
@@ -151,6 +160,9 @@ class Light:
         Standard deviation of the optics' blur, px.
     noise : float
         Standard deviation of the sensor's noise, grey levels.
+    power : float
+        Power of the codes that lens and shutter mix: 1 where a computer blurs codes, 2.2 where
+        light is blurred before it is coded.
     """
 
     gain: float = 1.0
@@ -161,6 +173,7 @@ class Light:
     vignette: float = 0.12
     softness: float = 0.55
     noise: float = 2.2
+    power: float = 1.0
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 SLICES = np.deg2rad([-35.0, -5.0, 15.0, 35.0, 50.0, 63.0, 76.0, 90.0])
 HEIGHT, EDGE = 0.114, 0.040
 HANDLE_HEIGHT = 0.148
+SIDE_LIGHT = 0.7  # of the side of a cap, beside its top: lamps are above
 NECK, FREE_END, HALF_WIDTH, NECK_WIDTH = -0.056, 0.074, 0.0125, 0.0195
 
 
@@ -121,9 +122,14 @@ def _paint_stone(
     def at(z: float) -> Array:
         return np.asarray(ground + towards_eye * (z / eye[2]) - centre)
 
+    def covered(distance: Array) -> Array:
+        return np.asarray(np.clip(0.5 - distance * scale, 0, 1))
+
+    def lay(cover: Array, colour: Array) -> None:
+        part[:] += (cover[..., None] * (colour - part)).astype(np.float32)
+
     def blend(distance: Array, colour: Array, strength: float = 1.0) -> None:
-        cover = np.clip(0.5 - distance * scale, 0, 1)[..., None] * strength
-        part[:] += (cover * (colour - part)).astype(np.float32)
+        lay(strength * covered(distance), colour)
 
     granite = np.array(stone.granite, float)
     bulge = HEIGHT / 2
@@ -141,10 +147,15 @@ def _paint_stone(
             tone = tone + shine * 55
         blend(r - outline, tone)
 
-    p = at(stone.cap_height)
-    r = np.hypot(p[..., 0], p[..., 1])
     cap = np.array(stone.cap, float)
     rim = stone.cap_radius
+    p = at(stone.cap_height)
+    r = np.hypot(p[..., 0], p[..., 1])
+    if stone.side:
+        # Only beside the top: what both cover in part would lie too far out.
+        below = np.min([np.hypot(*np.moveaxis(at(z), -1, 0)) for z in stone.side], axis=0)
+        top, whole = covered(r - rim), covered(np.minimum(r, below) - rim)
+        lay((whole - top) / np.maximum(1 - top, 1e-6), cap * SIDE_LIGHT)
     blend(r - rim, cap * 0.80 + shine * 45)
     sheen = 1 + 0.09 * np.sin(azimuth - 1.1) * (r / rim)
     groove = 0.10 * np.exp(-(((r - 0.72 * rim) / (0.06 * rim)) ** 2))

@@ -192,3 +192,62 @@ def test_lines_lie_where_the_camera_says(t: float) -> None:
             weight[weight < 20] = 0
             errors.append((weight * s).sum() / weight.sum())
         assert abs(np.mean(errors)) < 0.03
+
+
+@pytest.mark.parametrize("renderer", [pictures, plain_pictures])
+def test_the_side_of_a_cap_shows_aslant_alone(renderer) -> None:
+    scene = lone_stone(Start(0.0, 0.0))
+    bare = scene.stones[0]
+    walled = replace(scene, stones=(replace(bare, wall=0.02),))
+    aslant = tilted_camera(np.deg2rad(45), size=(320, 320), px_per_m=400)
+    towards = aslant.position[:2] / np.hypot(*aslant.position[:2])
+    on_side = [*(0.99 * bare.cap_radius * towards), bare.cap_height - 0.5 * 0.02]
+    x, y = np.round(aslant.at(0).project(on_side)).astype(int)
+    redness = []
+    for each in (scene, walled):
+        ((_, picture),) = renderer(each, aslant, [0.0], shutter=1e-4)
+        redness.append(int(picture[y, x, 2]) - int(picture[y, x, 0]))
+    assert redness[0] < 30
+    assert redness[1] > 60
+    plumb = still_camera(target=(0, 0), size=(320, 320), px_per_m=300, position=(0, 0, 9))
+    ((_, without),), ((_, with_side),) = (
+        renderer(each, plumb, [0.0], shutter=1e-4) for each in (scene, walled)
+    )
+    assert np.abs(without.astype(int) - with_side).max() <= 2
+
+
+BLACK_ON_WHITE = replace(
+    BARE,
+    paint=Paint(*((0, 0, 0),) * 4, outline=None, logo=""),
+    sheet=Sheet(ice=(255, 255, 255), line=(0, 0, 0), marks=()),
+)
+
+
+@pytest.mark.parametrize("power", [1.0, 2.2])
+def test_what_is_half_covered_has_the_code_of_half_its_light(power: float) -> None:
+    scene = replace(BLACK_ON_WHITE, light=replace(CLEAN, softness=3.0, power=power))
+    camera = still_camera(target=(0, 0), size=(640, 640), px_per_m=150)
+    picture = render_still(scene, camera, shutter=1e-4).astype(np.float32)[..., 0]
+    angle = np.deg2rad(np.arange(20, 70, 2.0))
+    rim = 1.829 * np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=-1)
+    at = camera.at(0).project(rim).astype(np.float32)
+    codes = cv2.remap(picture, at[:, 0].copy(), at[:, 1].copy(), cv2.INTER_LINEAR)
+    # Pixels mix codes before that, which counts for a tenth here; half of the codes would be 127.
+    assert abs(codes.mean() - 255 * 0.5 ** (1 / power)) < 10
+
+
+def test_the_second_renderer_mixes_light() -> None:
+    camera = still_camera(target=(0, 0), size=(64, 64), px_per_m=15)
+    codes, light = (
+        next(
+            plain_pictures(
+                replace(BLACK_ON_WHITE, light=replace(CLEAN, power=power)), camera, [0.0],
+                shutter=1e-4, supersample=4,
+            )
+        )[1]
+        for power in (1.0, 2.2)
+    )  # fmt: skip
+    share = codes / 255
+    mixed = (share > 0.2) & (share < 0.8)
+    assert mixed.sum() > 100
+    assert np.abs(light - 255 * share ** (1 / 2.2))[mixed].max() < 2
