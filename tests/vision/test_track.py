@@ -196,12 +196,12 @@ def test_caps_seen_aslant_may_have_been_unrolled_aside(disc: Stone, more: float)
 
 @pytest.mark.parametrize(
     ("along", "score", "graphic"),
-    [(1.0, 1.2, True), (0.0, 1.2, False), (0.8, 1.2, False), (1.0, 2.2, False)],
+    [(1.0, 1.2, True), (0.0, 1.2, False), (0.8, 1.2, False), (1.0, 2.2, True), (0.0, 2.2, False)],
 )
 def test_what_stays_in_the_picture_while_the_ice_moves_is_a_graphic(
     along: float, score: float, graphic: bool
 ) -> None:
-    """Unless it shows more of a stone than graphics do: a camera may go along with a stone."""
+    """However much of a stone it shows: no stone goes to and fro as the camera does."""
     rng = np.random.default_rng(2)
     track, cameras = Track(), []
     for frame in range(30):
@@ -211,6 +211,35 @@ def test_what_stays_in_the_picture_while_the_ice_moves_is_a_graphic(
         place = (1.0 + along * x + rng.normal(0, 0.003), rng.normal(0, 0.003))
         track.add(frame, frame / 25, sighting(place, score=score), STONE.radius)
     assert is_graphic(track, cameras, STONE) == graphic
+
+
+@pytest.mark.parametrize(
+    ("swing", "score", "graphic"),
+    [(0.3, 2.2, True), (0.3, 1.2, True), (0.0, 2.2, False), (0.0, 1.2, True)],
+)
+def test_a_graphic_that_shows_all_of_a_stone_does_not_glide(
+    swing: float, score: float, graphic: bool
+) -> None:
+    """Under a camera that goes to and fro; one that glides may go along with a stone."""
+    rng = np.random.default_rng(3)
+    track, cameras = Track(), []
+    for frame in range(75):
+        t = frame / 25
+        x = 0.5 * t - 0.05 * t**2 + swing * np.sin(2.5 * t)
+        view = np.array([[100.0, 0.0, 320 - 100 * x], [0.0, -100.0, 240.0], [0.0, 0.0, 1.0]])
+        cameras.append(Camera(frame, t, view, (640, 480)))
+        track.add(frame, t, sighting((x, rng.normal(0, 0.003)), score=score), STONE.radius)
+    assert is_graphic(track, cameras, STONE) == graphic
+
+
+def test_a_stone_that_was_at_rest_before_a_hit_is_no_graphic() -> None:
+    """Though it lies still in the picture of a still camera, and no glide is all of its path."""
+    track, view = Track(), np.array([[100.0, 0.0, 320.0], [0.0, -100.0, 240.0], [0.0, 0.0, 1.0]])
+    cameras = [Camera(frame, frame / 25, view, (640, 480)) for frame in range(75)]
+    for camera in cameras:
+        x = 1.2 * max(camera.t - 1.8, 0)
+        track.add(camera.frame, camera.t, sighting((x, 0.0), score=2.2), STONE.radius)
+    assert not is_graphic(track, cameras, STONE)
 
 
 def test_angles_are_told_with_the_slants_of_the_view(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -166,6 +166,20 @@ def test_what_looks_a_little_like_a_stone_for_a_moment_is_none() -> None:
     assert seen(1.2, 0.9, 10, of=12) == 1  # in a clip so short everything is brief
 
 
+@pytest.mark.parametrize(
+    ("share", "visible", "kept"), [(0.3, 1.0, 0), (0.7, 1.0, 1), (0.3, 0.5, 1)]
+)
+def test_in_the_open_a_stone_looks_like_one_most_of_the_time(
+    share: float, visible: float, kept: int
+) -> None:
+    """Paint does for some time, in a shadow; a stone that is half covered, now and then."""
+    better = sighting((1.0, 0.0), score=1.5)._replace(visible=visible)
+    seen = [
+        (i, i / 25, [better if i < 60 * share else better._replace(score=0.9)]) for i in range(60)
+    ]
+    assert len(follow(seen, R, 1.15, 1.5)) == kept
+
+
 def test_what_looks_unchanged_is_no_more_evidence() -> None:
     def kept(measured: float, then: float) -> int:
         seen = [sighting((1.0, 0.0), score=measured)] * 10 + [
