@@ -36,7 +36,7 @@ from vision.detection.stones import FOLLOWING, SEARCH, Search
 from vision.detection.strangers import strangers
 from vision.film.clip import Frame
 from vision.film.picture import brightened
-from vision.film.shelf import ROOM, Kept, Shelf
+from vision.film.shelf import Kept, Shelf
 from vision.optics.camera import Camera
 
 AT_ONCE = 64
@@ -59,6 +59,10 @@ where these show a stone, but none that convinces."""
 
 MOST_LESSONS = 200
 """After so many sightings that taught, none of another colour is learned from."""
+
+
+ROOM = 1000
+"""Pictures of caps, 7 kB each, and pictures' sightings, 2 kB, that need not be put aside."""
 
 
 def pictures_kept(size: tuple[int, int]) -> int:

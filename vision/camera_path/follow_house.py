@@ -23,7 +23,7 @@ from vision.camera_path.piece import Piece
 from vision.camera_path.replay import Glimpse, glimpse, has_jumped, is_nearer, is_replay
 from vision.film.clip import Clip, Frame
 from vision.film.picture import image_of
-from vision.film.shelf import ROOM, Shelf
+from vision.film.shelf import Shelf
 from vision.optics.camera import Camera
 from vision.optics.placed import Placed, nobody
 from vision.optics.pose import View
@@ -45,6 +45,10 @@ MOST_SPANS = 5
 
 PATIENCE = 12
 """Frames in a row that may fail before following gives up and only finding is left."""
+
+
+ROOM = 400
+"""Frames whose marks, some 30 kB each, need not be put aside: as many as most shots have."""
 
 
 class HouseFollower:

@@ -31,7 +31,7 @@ from vision.detection.rays import Look
 from vision.detection.seek import Candidates
 from vision.detection.shape import NO_BALLOT, elected
 from vision.detection.sighting import Sighting
-from vision.detection.stones import Findings, Search, apart, measured, sought_in
+from vision.detection.stones import Findings, Search, apart, measured, search_picture, sought_in
 from vision.film.lab import chroma
 from vision.optics.cameras import Cameras
 
@@ -188,8 +188,8 @@ def by_shape(
     look: Look, found: Sequence[Sighting], disc: Stone, search: Search
 ) -> tuple[Sighting, ...]:
     """Seek what has a stone's shape beside those found that convince; see `weighed`."""
-    (beside,), _ = _found([_beside(look, found)], BY_SHAPE, disc, search, made=True)
-    return beside.stones
+    known = _beside(look, found).places
+    return search_picture(look.picture, look.camera, BY_SHAPE, disc, search, known=known).stones
 
 
 def weighed(stone: Sighting, granite: Colour | None, unknown: float = UNKNOWN) -> Sighting:

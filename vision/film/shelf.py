@@ -7,18 +7,17 @@ import tempfile
 import weakref
 from contextlib import suppress
 from errno import ENOSPC
+from functools import partial
 from io import BytesIO
 from os import SEEK_END
 from typing import IO, Any, Generic, TypeVar
+
+import numpy as np
 
 T = TypeVar("T")
 
 Place = tuple[int, int]
 """Where on a shelf a thing begins and how long it is, bytes."""
-
-ROOM = 400
-"""Things of a clip that may stay in memory: of a frame some 30 kB, of a cap 7 kB, of what is seen
-in a picture 2 kB. All frames of most shots do: to write them takes time."""
 
 
 class Shelf:
@@ -51,7 +50,10 @@ class Shelf:
             self._file = tempfile.TemporaryFile(buffering=0)  # noqa: SIM115
             weakref.finalize(self, self._file.close)
         data = BytesIO()
-        _Packer(data, self).dump(thing)
+        packer = pickle.Pickler(data, pickle.HIGHEST_PROTOCOL)
+        if not isinstance(thing, np.ndarray):  # in arrays nothing lies; to ask takes as long again
+            packer.persistent_id = self._place_of  # type: ignore[method-assign]
+        packer.dump(thing)
         begin, size = self._file.seek(0, SEEK_END), data.tell()
         if self._file.write(data.getbuffer()) < size:
             raise OSError(ENOSPC, "no room to put something aside")
@@ -62,7 +64,12 @@ class Shelf:
         assert self._file is not None
         begin, size = place
         self._file.seek(begin)
-        return _Unpacker(BytesIO(self._file.read(size)), self).load()
+        unpacker = pickle.Unpickler(BytesIO(self._file.read(size)))
+        unpacker.persistent_load = partial(Kept, self)  # type: ignore[method-assign]
+        return unpacker.load()
+
+    def _place_of(self, thing: Any) -> Place | None:
+        return thing.place_on(self) if isinstance(thing, Kept) else None
 
 
 class Kept(Generic[T]):
@@ -94,21 +101,3 @@ class Kept(Generic[T]):
 
     def __reduce__(self) -> tuple[type[Kept[T]], tuple[T]]:
         return Kept, (self.get(),)
-
-
-class _Packer(pickle.Pickler):
-    def __init__(self, data: BytesIO, shelf: Shelf) -> None:
-        super().__init__(data, pickle.HIGHEST_PROTOCOL)
-        self._shelf = shelf
-
-    def persistent_id(self, thing: Any) -> Place | None:
-        return thing.place_on(self._shelf) if isinstance(thing, Kept) else None
-
-
-class _Unpacker(pickle.Unpickler):
-    def __init__(self, data: BytesIO, shelf: Shelf) -> None:
-        super().__init__(data)
-        self._shelf = shelf
-
-    def persistent_load(self, place: Place) -> Kept[Any]:
-        return Kept(self._shelf, place)
