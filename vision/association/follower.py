@@ -52,6 +52,11 @@ TRUST = 0.5
 """Time from one measurement of a stone that looks unchanged to the next, s; it is due when a block
 begins."""
 
+FRESH, FRESH_TRUST = 2.0, 0.25
+"""How long a stone counts as come to rest of late, s, and that time for it: until it is measured
+anew a stone is as far aside as it was seen then, by 0.5 mm in films, and is often hit a second
+after it was first seen. Three pictures tell where it is too few."""
+
 REACH = 1.5
 """How far, in radii, a stone may be from where it is expected or from where it was."""
 
@@ -191,7 +196,8 @@ class Follower:
         ]
         # Now and then even what looks unchanged is measured.
         for i, portrait in known.items():
-            if abs(views[0].frame.t - portrait.t) >= TRUST:
+            trust = FRESH_TRUST if leads[i].steady * step < FRESH else TRUST
+            if abs(views[0].frame.t - portrait.t) >= trust:
                 alike[0].pop(i, None)
         out: list[list[Foreseen]] = []
         looks = []

@@ -141,6 +141,20 @@ def test_stones_at_rest_are_portrayed_where_they_will_not_be_measured_next(
     assert [sum(s.measured for s in shown.sightings) for shown in views] == [*[3] * 8, *[0] * 6]
 
 
+def test_a_stone_that_came_to_rest_of_late_is_measured_twice_as_often(
+    follower: Follower, first: StoneView
+) -> None:
+    still = [
+        StoneView(Frame(k, k / 25, first.frame.picture), first.camera) for k in range(1, 1 + 12 * 8)
+    ]
+    follower.follow(still, [Lead.to(s, 0.0) for s in follower.sought(view(START, 0))])
+    measured = [sum(s.measured for s in shown.sightings) / 3 for shown in still]
+    assert all(len(shown.sightings) == 3 for shown in still)
+    # Blocks of eight begin every 0.32 s.
+    assert sum(measured[16:48]) == pytest.approx(4)
+    assert sum(measured[64:96]) == pytest.approx(2)
+
+
 def test_what_shows_clearly_less_than_a_moment_ago_is_looked_for_beside_too(
     follower: Follower, monkeypatch: pytest.MonkeyPatch
 ) -> None:
