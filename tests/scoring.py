@@ -81,7 +81,7 @@ def score_tracks(
     """
     rows = tracks[tracks["seen"] == 1] if seen_only else tracks
     by_frame = {frame: group for frame, group in rows.groupby("frame")}  # noqa: C416
-    known = truth["sd"] if "sd" in truth else pd.Series(0.0, truth.index)
+    truth = truth.assign(sd=truth.get("sd", 0.0))
     pairs: list[tuple[str, str, float, float, bool, bool]] = []
     wanted = found = false = 0
     false_by_name: dict[str, int] = {}
@@ -98,7 +98,7 @@ def score_tracks(
         for i, j in zip(first[good], second[good], strict=True):
             if must[j]:
                 found += 1
-                sd = np.hypot(here[["sd_x", "sd_y"]].iloc[i], known[there.index[j]])
+                sd = np.hypot(here[["sd_x", "sd_y"]].iloc[i], there["sd"].iloc[j])
                 inside = np.abs(apart[i, j]) < 2 * sd.to_numpy(float)
                 pairs.append((there["stone"].iloc[j], here["stone"].iloc[i], *apart[i, j], *inside))
         for i in set(range(len(here))) - set(first[good].tolist()):
