@@ -154,7 +154,6 @@ def handle_angles(
     radii: Array,
     sd_centre: Array,
     slants: Array | None = None,
-    turning: Turning = TURNING,
 ) -> tuple[Array, Array]:
     """Angle of one stone in every frame, continuous, its zero in the first frame seen.
 
@@ -171,8 +170,6 @@ def handle_angles(
         Standard error per axis of the centres about which the cap was unrolled, m.
     slants : ndarray, shape (n, 2), optional
         Of the view of each place; from above if not given.
-    turning : Turning
-        How angles are followed.
 
     Returns
     -------
@@ -184,15 +181,15 @@ def handle_angles(
     if len(seen) < 2:  # an angle is against another picture of the same stone
         return theta, sd
     pictures = np.array([spectra[index] for index in seen])
-    best, apart = _of_heights(times[seen], pictures, len(radii), turning)
-    if _hardly_told(best, turning):
+    best, apart = _of_heights(times[seen], pictures, len(radii))
+    if _hardly_told(best):
         within = len(radii) - RIM
         rings = np.resize(np.arange(len(radii)) < within, pictures.shape[2])
-        inner, between = _of_heights(times[seen], pictures[:, :, rings], within, turning)
-        if max(best.share, 2 * LEAST) < inner.share and _mostly_told(inner, turning):
+        inner, between = _of_heights(times[seen], pictures[:, :, rings], within)
+        if max(best.share, 2 * LEAST) < inner.share and _mostly_told(inner):
             best, apart, radii = inner, between, radii[:within]
     del pictures
-    good = best.likeness > turning.least_likeness
+    good = best.likeness > TURNING.least_likeness
     if good.sum() < max(0.5 * len(seen), 2):
         # Most frames do not look like the mean: there is nothing on the cap to go by.
         return theta, sd
@@ -200,7 +197,7 @@ def handle_angles(
         # What hardly any picture has in common, and what does not turn: light, not the cap.
         return theta, sd
     rows = seen[good]
-    aside = np.hypot(turning.shift, sd_centre[rows])
+    aside = np.hypot(TURNING.shift, sd_centre[rows])
     fit = align(best.pictures[good], best.angles[good], radii, aside)
     unlike = np.maximum(1 - best.likeness[good] ** 2, ALIKE)
     covered = np.clip((unlike / (BEFORE * np.median(unlike))) ** 2, 1.0, WORST)
@@ -214,19 +211,17 @@ def handle_angles(
     return theta - theta[rows[0]], sd
 
 
-def _of_heights(
-    times: Array, pictures: Complex, rings: int, turning: Turning
-) -> tuple[_Matched, Array]:
+def _of_heights(times: Array, pictures: Complex, rings: int) -> tuple[_Matched, Array]:
     """Turn pictures onto their mean at the height that tells more, and tell how far both differ."""
     heights = np.split(pictures, pictures.shape[2] // rings, axis=2)
-    tried = [_matched(times, part, turning) for part in heights]
+    tried = [_matched(times, part) for part in heights]
     which = int(np.argmax([_alike(each) for each in tried]))
     apart = _apart(tried)
     if which and _doubtful(*tried):
-        return _turning_more(times, heights, tried, turning), apart
+        return _turning_more(times, heights, tried), apart
     own, matched = heights[which].copy(), tried[which]
     del pictures, heights, tried
-    return _despite_light(times, own, matched, turning), apart
+    return _despite_light(times, own, matched), apart
 
 
 @dataclass(frozen=True)
@@ -242,10 +237,10 @@ class _Matched:
     share: float = 1.0
 
 
-def _hardly_told(matched: _Matched, turning: Turning) -> bool:
+def _hardly_told(matched: _Matched) -> bool:
     """Whether pictures are little alike, and few tell an angle or hardly anything turns."""
     little = _alike(matched) < HARDLY * len(matched.angles)
-    return little and (matched.share < LEAST or not _mostly_told(matched, turning))
+    return little and (matched.share < LEAST or not _mostly_told(matched))
 
 
 def _alike(matched: _Matched) -> float:
@@ -272,31 +267,27 @@ def _apart(tried: Sequence[_Matched]) -> Array:
     return np.asarray(np.minimum(np.abs(each - np.median(off[told])), MOST_APART))
 
 
-def _turning_more(
-    times: Array, heights: Sequence[Complex], tried: Sequence[_Matched], turning: Turning
-) -> _Matched:
+def _turning_more(times: Array, heights: Sequence[Complex], tried: Sequence[_Matched]) -> _Matched:
     """Turn pictures of the height onto their mean at which more of what no light explains turns.
 
     Light and shade on the cap make pictures alike that do not turn.
     """
     both: list[_Matched] = []
     for pictures, matched in zip(heights, tried, strict=True):
-        best = _despite_light(times, pictures, matched, turning)
+        best = _despite_light(times, pictures, matched)
         told = np.isfinite(best.angles)
         angles = np.interp(times, times[told], best.angles[told]) if told.any() else 0 * times
         both.append(replace(best, share=unlit(times, pictures, angles).share))
     return max(both, key=lambda each: each.share)
 
 
-def _matched(times: Array, pictures: Complex, turning: Turning) -> _Matched:
+def _matched(times: Array, pictures: Complex) -> _Matched:
     """Turn pictures of one height onto their mean, from one to the next."""
-    angles = unfolded(times, pictures, _followed(times, pictures, turning))
-    return _onto_mean(times, pictures, angles, turning)
+    angles = unfolded(times, pictures, _followed(times, pictures))
+    return _onto_mean(times, pictures, angles)
 
 
-def _despite_light(
-    times: Array, pictures: Complex, matched: _Matched, turning: Turning
-) -> _Matched:
+def _despite_light(times: Array, pictures: Complex, matched: _Matched) -> _Matched:
     """Turn pictures onto the part of them that turns, where gaps or light led their angles."""
     known = np.isfinite(matched.angles)
     if times[-1] - times[0] < SHORT or _alike(matched) > FULLY * len(times) or not known.any():
@@ -307,15 +298,15 @@ def _despite_light(
     if share > TURNS and known.mean() > 1 - GAPS:
         return matched
     other, share_of_course = course(times, pictures)
-    if share > share_of_course and not _mostly_told(matched, turning):
+    if share > share_of_course and not _mostly_told(matched):
         other, share_of_course = angles, share  # where gaps would leave no angle at all
     if share_of_course < max(LEAST, share):
         return matched
     if share_of_course > TURNS:  # what goes over a cap turns once angles may give way to it
         dark = _onto_what_turns(times, pictures, other)
-        if dark.share > max(TURNS, CLEARLY * share) and _mostly_told(dark, turning):
+        if dark.share > max(TURNS, CLEARLY * share) and _mostly_told(dark):
             return dark
-    onto = replace(_onto_mean(times, pictures, other, turning), share=share_of_course)
+    onto = replace(_onto_mean(times, pictures, other), share=share_of_course)
     return max(matched, onto, key=_alike)
 
 
@@ -331,17 +322,17 @@ def _onto_what_turns(times: Array, pictures: Complex, angles: Array) -> _Matched
     return _Matched(dark.pictures * shown, angles, likeness, dark.share)
 
 
-def _mostly_told(matched: _Matched, turning: Turning) -> bool:
+def _mostly_told(matched: _Matched) -> bool:
     """Whether most pictures tell an angle."""
-    return bool(np.mean(matched.likeness > turning.least_likeness) >= 0.5)
+    return bool(np.mean(matched.likeness > TURNING.least_likeness) >= 0.5)
 
 
-def _onto_mean(times: Array, pictures: Complex, angles: Array, turning: Turning) -> _Matched:
+def _onto_mean(times: Array, pictures: Complex, angles: Array) -> _Matched:
     """Turn pictures onto their mean, angles being about known."""
     likeness, known = np.zeros(len(angles)), np.isfinite(angles)
     shown = rings_seen(pictures)[:, None, :, None]
     own = pictures
-    for _ in range(turning.rounds):
+    for _ in range(TURNING.rounds):
         reference = upright_mean(own, angles, shown)
         for part in parts(np.flatnonzero(known)):
             angles[part], likeness[part] = angles_between(reference, own[part], angles[part], 0.2)
@@ -351,23 +342,23 @@ def _onto_mean(times: Array, pictures: Complex, angles: Array, turning: Turning)
     return _Matched(own, angles, likeness)
 
 
-def _followed(times: Array, pictures: Complex, turning: Turning) -> Array:
+def _followed(times: Array, pictures: Complex) -> Array:
     """Angles from picture to picture; NaN where unlike those before.
 
     From the first of the pictures that show most; where that leaves many unlike it, as where a
     slanting view has the handle before the cap at first, from amidst those, and the better is kept.
     """
-    angles = _followed_from(int(rings_seen(pictures).sum(1).argmax()), times, pictures, turning)
+    angles = _followed_from(int(rings_seen(pictures).sum(1).argmax()), times, pictures)
     lost = np.flatnonzero(np.isnan(angles))
     if len(lost) > MANY * len(times):
         amidst = int(lost[len(lost) // 2])
-        again = _followed_from(amidst, times, pictures, turning)
+        again = _followed_from(amidst, times, pictures)
         if np.isnan(again).sum() < len(lost):
             return again
     return angles
 
 
-def _followed_from(begin: int, times: Array, pictures: Complex, turning: Turning) -> Array:
+def _followed_from(begin: int, times: Array, pictures: Complex) -> Array:
     """Angles from one picture onwards and then back, each against the running mean."""
     angles = np.full(len(times), np.nan)
     angles[begin] = 0.0
@@ -376,15 +367,15 @@ def _followed_from(begin: int, times: Array, pictures: Complex, turning: Turning
         before, told, spin = begin, begin, 0.0
         for index in way:
             wait = times[index] - times[before]
-            reach = min(turning.reach + turning.most_spin * abs(wait), 1.5)
-            if abs(times[index] - times[told]) > turning.lost:
+            reach = min(TURNING.reach + TURNING.most_spin * abs(wait), 1.5)
+            if abs(times[index] - times[told]) > TURNING.lost:
                 reach = np.pi
             expected = float(angles[before] + spin * wait)
             angle, likeness = angle_between(mean, pictures[index], expected, reach)
-            if not likeness > turning.least_likeness:
+            if not likeness > TURNING.least_likeness:
                 continue
             angles[index], told = angle, index
-            if likeness < turning.leading:
+            if likeness < TURNING.leading:
                 continue
             spin += 0.3 * ((angle - angles[before]) / wait - spin)
             before = index
