@@ -1,4 +1,9 @@
-"""Things put aside till the end of a clip: in a file without a name, but for the first of them."""
+"""Things put aside till the end of a clip: in a file without a name, but for the first of them.
+
+Whoever has a `Kept` has the thing by `Kept.get`, wherever it is. In memory at first, it goes to a
+`Shelf` by `Kept.put_aside` and is read from there anew each time; what is left of it in memory is
+where it lies. Things may hold others that are kept, as rows of sightings hold pictures of caps.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +12,6 @@ import tempfile
 import weakref
 from contextlib import suppress
 from errno import ENOSPC
-from functools import partial
 from io import BytesIO
 from os import SEEK_END
 from typing import IO, Any, Generic, TypeVar
@@ -50,10 +54,10 @@ class Shelf:
             self._file = tempfile.TemporaryFile(buffering=0)  # noqa: SIM115
             weakref.finalize(self, self._file.close)
         data = BytesIO()
-        packer = pickle.Pickler(data, pickle.HIGHEST_PROTOCOL)
-        if not isinstance(thing, np.ndarray):  # in arrays nothing lies; to ask takes as long again
-            packer.persistent_id = self._place_of  # type: ignore[method-assign]
-        packer.dump(thing)
+        if isinstance(thing, np.ndarray):  # holds nothing that is kept; to ask takes as long again
+            pickle.dump(thing, data, pickle.HIGHEST_PROTOCOL)
+        else:
+            _Packer(data, self).dump(thing)
         begin, size = self._file.seek(0, SEEK_END), data.tell()
         if self._file.write(data.getbuffer()) < size:
             raise OSError(ENOSPC, "no room to put something aside")
@@ -64,16 +68,18 @@ class Shelf:
         assert self._file is not None
         begin, size = place
         self._file.seek(begin)
-        unpacker = pickle.Unpickler(BytesIO(self._file.read(size)))
-        unpacker.persistent_load = partial(Kept, self)  # type: ignore[method-assign]
-        return unpacker.load()
-
-    def _place_of(self, thing: Any) -> Place | None:
-        return thing.place_on(self) if isinstance(thing, Kept) else None
+        return _Unpacker(BytesIO(self._file.read(size)), self).load()
 
 
 class Kept(Generic[T]):
-    """A thing in memory that can be put aside, and had all the same."""
+    """A thing in memory that can be put aside, and had all the same.
+
+    Parameters
+    ----------
+    thing : object or Shelf
+        Itself or, if a place is given, the shelf on which it lies there.
+    place : (int, int), optional
+    """
 
     __slots__ = ("_place", "_thing")
 
@@ -101,3 +107,25 @@ class Kept(Generic[T]):
 
     def __reduce__(self) -> tuple[type[Kept[T]], tuple[T]]:
         return Kept, (self.get(),)
+
+
+class _Packer(pickle.Pickler):
+    """Writes things for a shelf: where those lie that are on it, all others as they are."""
+
+    def __init__(self, file: IO[bytes], shelf: Shelf) -> None:
+        super().__init__(file, pickle.HIGHEST_PROTOCOL)
+        self._shelf = shelf
+
+    def persistent_id(self, thing: Any) -> Place | None:
+        return thing.place_on(self._shelf) if isinstance(thing, Kept) else None
+
+
+class _Unpacker(pickle.Unpickler):
+    """Reads what a `_Packer` wrote."""
+
+    def __init__(self, file: IO[bytes], shelf: Shelf) -> None:
+        super().__init__(file)
+        self._shelf = shelf
+
+    def persistent_load(self, place: Place) -> Kept[Any]:
+        return Kept(self._shelf, place)

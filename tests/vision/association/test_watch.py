@@ -23,6 +23,7 @@ from vision.detection.stones import FOLLOWING, SEARCH, Findings, Search, sought_
 from vision.detection.strangers import LARGE, strangers
 from vision.film.clip import Frame, Image
 from vision.film.picture import Picture
+from vision.film.shelf import Shelf
 from vision.optics.camera import Camera
 
 AT_REST = [(0.3, 0.2, RED), (-0.8, 1.0, YELLOW), (0.9, -0.6, RED)]
@@ -79,6 +80,20 @@ def test_with_fewer_pictures_kept_a_late_stone_is_followed_back_as_well(
     counts = [len(sightings) for _, _, sightings in watch.finish(lasting(camera))]
     assert counts == [3] * since + [4] * (50 - since)
     assert max(now - then for now, then in held) == 10
+
+
+def test_pictures_of_caps_are_left_where_they_were_put_aside(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    shelf = Shelf()
+    monkeypatch.setattr("vision.association.watch.Shelf", lambda _: shelf)
+    watch, camera, image = Watch(), camera_of(CAMERA, scene_of(AT_REST)), picture(AT_REST)
+    for index in range(50):
+        watch.look(Frame(index, index / 25, image), camera)
+    found = [*watch.finish(lasting(camera))]
+    caps = [seen.spectrum for _, _, sightings in found[:16] for seen in sightings if seen.spectrum]
+    assert len(caps) >= 3
+    assert all(cap.place_on(shelf) is not None for cap in caps)
 
 
 def test_in_the_end_stones_are_placed_by_the_cameras_that_are_known_by_then(
