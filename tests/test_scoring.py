@@ -27,6 +27,12 @@ def test_coverage_is_of_each_axis_and_knows_what_the_truth_is_good_for() -> None
     assert score_tracks(FOUND, TRUTH.assign(sd=[0.0, 0.003])).within_two_sd == 0.75
 
 
+def test_rows_are_told_by_where_they_lie_not_by_their_labels() -> None:
+    """Tables of single stones, one after another, have each label as often."""
+    alike = TRUTH.assign(sd=[0.001, 0.0]).set_index(pd.Index([0, 0]))
+    assert score_tracks(FOUND, alike) == score_tracks(FOUND, alike.reset_index(drop=True))
+
+
 def test_places_measured_by_hand_say_how_well(tmp_path: Path) -> None:
     TRUTH.to_csv(tmp_path / "clip.truth.csv", index=False)
     facts = {"e": 0.8, "mu": 0.01, "real_stones": {"B": 0.004}}
