@@ -90,7 +90,7 @@ def lengthened(clip: Path, frames: int, path: Path) -> None:
             film.add(image, index / FPS)
 
 
-def lengths(counts: Sequence[int] = (360, 1200, 3600)) -> pd.DataFrame:
+def lengths(counts: Sequence[int] = (360, 3600, 9000)) -> pd.DataFrame:
     """Tell the most memory, MB, and the time that clips of so many frames take."""
     clip, rows = long_clip(), []
     with tempfile.TemporaryDirectory() as folder:
