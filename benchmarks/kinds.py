@@ -144,8 +144,9 @@ def as_made(scene: Scene, rng: Rng) -> Scene:
 
     The inner circles as houses have them: 14 that were measured have 1.207 to 1.224 and 0.606 to
     0.628 m; no outlines, or of 4 to 10 mm. Granite is at least 0.1143 m high (rule C1), caps end
-    at about 0.12: a cap closes the gap to the granite as it is drawn with a side of 3 to 9 mm. A
-    lens blurs light; where a computer made the picture smaller, codes are blurred.
+    at about 0.12: a cap closes the gap to the granite as it is drawn with a side of 3 to 9 mm. Its
+    radius is 0.1045 m or 1.5 mm less or more. A lens blurs light; where a computer made the picture
+    smaller, codes are blurred.
     """
     _, *_, button = scene.paint.radii
     inner = float(rng.uniform(1.207, 1.224)), float(rng.uniform(0.606, 0.628))
@@ -177,4 +178,6 @@ def clip_of(kind: Kind, seed: int) -> tuple[Clip, Truth]:
         scene, camera, fps=kind.fps, times=times, supersample=kind.supersample,
         draw=plain_pictures if kind.plain else pictures,
     )  # fmt: skip
+    if kind.plain:  # flat discs: nothing shows how they turn
+        truth = replace(truth, tracks=truth.tracks.assign(theta=np.nan, omega=np.nan))
     return open_clip([path]), truth

@@ -3,7 +3,8 @@
 Each kind of shot that occurs (`benchmarks.kinds`), rendered with a known truth and followed from
 the picture to the filter. One row per kind, pooled over its clips: stone-frames found of those in
 view, switched stones, false tracks, errors of place, speed and spin, and how many true values lie
-within two stated standard errors. A star marks what misses its bar.
+within two stated standard errors. A star marks what misses its bar; a column is empty where the
+clips have nothing to tell, as spins of stones that are drawn without handles.
 """
 
 from __future__ import annotations
@@ -141,7 +142,7 @@ def marked(kind: Kind, row: dict[str, object]) -> dict[str, str]:
             out[name] = str(value)
             continue
         bar = bars.get(name, Bar())
-        text = str(value) if isinstance(value, int) else f"{value:.3f}"
+        text = str(value) if isinstance(value, int) else f"{value:.3f}".replace("nan", "")
         out[name] = text + ("*" if value < bar.low or value > bar.high else " ")
     return out
 

@@ -236,6 +236,15 @@ def test_what_is_half_covered_has_the_code_of_half_its_light(power: float) -> No
     assert abs(codes.mean() - 255 * 0.5 ** (1 / power)) < 10
 
 
+@pytest.mark.parametrize("renderer", [pictures, plain_pictures])
+def test_what_is_of_one_colour_has_its_code_however_light_mixes(renderer) -> None:
+    paint = Paint(*((60, 60, 60),) * 4, outline=None, logo="")
+    scene = replace(BLACK_ON_WHITE, paint=paint, light=replace(CLEAN, power=2.2))
+    beside_lines = still_camera(target=(0.6, 0.6), size=(64, 64), px_per_m=100)
+    ((_, picture),) = renderer(scene, beside_lines, [0.0], shutter=1e-4)
+    assert np.abs(picture.astype(int) - 60).max() <= 1
+
+
 def test_the_second_renderer_mixes_light() -> None:
     camera = still_camera(target=(0, 0), size=(64, 64), px_per_m=15)
     codes, light = (
