@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from data.sheet import STONE, Stone
 from data.tracks import SIGHTING_COLUMNS, Columns, no_rows
 from vision.association.follow import Track, follow
+from vision.association.graphic import is_graphic
 from vision.association.late import seen_late
 from vision.association.naming import named_by_motion
 from vision.association.rejoin import rejoined
@@ -42,13 +43,6 @@ PLAIN = 0.85, 0.85
 HARDLY_TOLD = 0.004
 """How far aside a stone lies, m per axis, whose cap is hardly told from granite: lamps mirrored on
 it move the edge that is found. Five filmed ones lay 2 to 7 mm off."""
-
-
-IN_PICTURE, ON_ICE, IN_THE_OPEN = 0.75, 2.0, 1.6
-"""How far a graphic laid over the picture is found to stray in it, px, where what rests on the ice
-strays so much, and evidence from which on it must stray so much from any glide as well, as that
-of a stone that a camera goes along with does not. The icons of a score stray by 0.2 to 0.5, stones
-of 160 clips by 3 or more or as far as the ice."""
 
 
 @dataclass(frozen=True)
@@ -140,30 +134,6 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
         {name: np.concatenate([part[name] for part in rows]) for name in SIGHTING_COLUMNS},
         (*late, *_without_colour(watch.appearance)),
     )
-
-
-def is_graphic(track: Track, cameras: Sequence[Camera], disc: Stone) -> bool:
-    """Whether what was taken for a stone stays where it is in the picture while the ice moves.
-
-    What shows as much as a stone may be one that a camera goes along with: if it glides on the ice.
-    """
-    x, y, score = track.sightings.columns("x", "y", "score")
-    by_frame = {camera.frame: camera for camera in cameras}
-    by = Cameras.of([by_frame[frame] for frame in track.frames], [1] * len(x))
-    places = np.column_stack([x, y])
-    powers = np.vander(np.array(track.times) - track.times[0], 3)
-    glide = powers @ np.linalg.lstsq(powers, places, rcond=None)[0]
-    rest = np.broadcast_to(np.median(places, 0), places.shape)
-    seen, rested, gliding = np.moveaxis(
-        by.project(np.stack([places, rest, glide], 1), disc.cap_height), 1, 0
-    )
-    own, *on_ice = (
-        float(np.hypot(*np.median(np.abs(seen - where), 0)))
-        for where in (np.median(seen, 0), rested, gliding)
-    )
-    if np.percentile(score, 75) <= IN_THE_OPEN:
-        on_ice = on_ice[:1]
-    return own < IN_PICTURE and min(on_ice) > max(ON_ICE, 5 * own)
 
 
 def slants_of(

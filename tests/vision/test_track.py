@@ -24,7 +24,7 @@ from vision.detection.stones import plain_disc
 from vision.film.clip import open_clip
 from vision.optics.camera import Camera
 from vision.optics.stick import stick_cameras
-from vision.track import _rows, is_graphic, off_axis, slants_of, track_stones
+from vision.track import _rows, off_axis, slants_of, track_stones
 
 Array = NDArray[np.float64]
 DATA = Path(__file__).resolve().parents[2] / "data"
@@ -192,54 +192,6 @@ def test_caps_seen_aslant_may_have_been_unrolled_aside(disc: Stone, more: float)
         cameras = [Camera(0, 0.0, np.eye(3), (160, 120), position=position)]
         off = off_axis(track, slants_of({"A": track}, cameras, disc)["A"])
         assert off == pytest.approx(np.hypot(0.5 * (seen.sd_x + seen.sd_y), aside))
-
-
-@pytest.mark.parametrize(
-    ("along", "score", "graphic"),
-    [(1.0, 1.2, True), (0.0, 1.2, False), (0.8, 1.2, False), (1.0, 2.2, True), (0.0, 2.2, False)],
-)
-def test_what_stays_in_the_picture_while_the_ice_moves_is_a_graphic(
-    along: float, score: float, graphic: bool
-) -> None:
-    """However much of a stone it shows: no stone goes to and fro as the camera does."""
-    rng = np.random.default_rng(2)
-    track, cameras = Track(), []
-    for frame in range(30):
-        x = 0.2 * np.sin(0.3 * frame)  # where the ice is that the camera looks at, at 100 px/m
-        view = np.array([[100.0, 0.0, 320 - 100 * x], [0.0, -100.0, 240.0], [0.0, 0.0, 1.0]])
-        cameras.append(Camera(frame, frame / 25, view, (640, 480)))
-        place = (1.0 + along * x + rng.normal(0, 0.003), rng.normal(0, 0.003))
-        track.add(frame, frame / 25, sighting(place, score=score), STONE.radius)
-    assert is_graphic(track, cameras, STONE) == graphic
-
-
-@pytest.mark.parametrize(
-    ("swing", "score", "graphic"),
-    [(0.3, 2.2, True), (0.3, 1.2, True), (0.0, 2.2, False), (0.0, 1.2, True)],
-)
-def test_a_graphic_that_shows_all_of_a_stone_does_not_glide(
-    swing: float, score: float, graphic: bool
-) -> None:
-    """Under a camera that goes to and fro; one that glides may go along with a stone."""
-    rng = np.random.default_rng(3)
-    track, cameras = Track(), []
-    for frame in range(75):
-        t = frame / 25
-        x = 0.5 * t - 0.05 * t**2 + swing * np.sin(2.5 * t)
-        view = np.array([[100.0, 0.0, 320 - 100 * x], [0.0, -100.0, 240.0], [0.0, 0.0, 1.0]])
-        cameras.append(Camera(frame, t, view, (640, 480)))
-        track.add(frame, t, sighting((x, rng.normal(0, 0.003)), score=score), STONE.radius)
-    assert is_graphic(track, cameras, STONE) == graphic
-
-
-def test_a_stone_that_was_at_rest_before_a_hit_is_no_graphic() -> None:
-    """Though it lies still in the picture of a still camera, and no glide is all of its path."""
-    track, view = Track(), np.array([[100.0, 0.0, 320.0], [0.0, -100.0, 240.0], [0.0, 0.0, 1.0]])
-    cameras = [Camera(frame, frame / 25, view, (640, 480)) for frame in range(75)]
-    for camera in cameras:
-        x = 1.2 * max(camera.t - 1.8, 0)
-        track.add(camera.frame, camera.t, sighting((x, 0.0), score=2.2), STONE.radius)
-    assert not is_graphic(track, cameras, STONE)
 
 
 def test_angles_are_told_with_the_slants_of_the_view(monkeypatch: pytest.MonkeyPatch) -> None:
