@@ -52,10 +52,10 @@ TRUST = 0.5
 """Time from one measurement of a stone that looks unchanged to the next, s; it is due when a block
 begins."""
 
-FRESH, FRESH_TRUST = 2.0, 0.25
-"""How long a stone counts as come to rest of late, s, and that time for it: until it is measured
-anew a stone is as far aside as it was seen then, by 0.5 mm in films, and is often hit a second
-after it was first seen. Three pictures tell where it is too few."""
+AT_STAKE = 3.0
+"""How near to a stone at rest, in radii, another one is to pass for it to be due in every block:
+they meet at two, and until it is measured anew a stone is as far aside as it was seen, by 0.5 mm
+in films, which makes much of how they part."""
 
 REACH = 1.5
 """How far, in radii, a stone may be from where it is expected or from where it was."""
@@ -194,10 +194,12 @@ class Follower:
             {i: sighting for i, sighting in zip(known, seen, strict=True) if sighting}
             for seen in unchanged(pictures, list(known.values()), self.disc)
         ]
-        # Now and then even what looks unchanged is measured.
+        # Now and then even what looks unchanged is measured, and oftener what may be hit.
+        t, near = views[0].frame.t, AT_STAKE * self.disc.radius
+        moving = [lead for lead in leads if not lead.rests]
         for i, portrait in known.items():
-            trust = FRESH_TRUST if leads[i].steady * step < FRESH else TRUST
-            if abs(views[0].frame.t - portrait.t) >= trust:
+            at_stake = any(lead.nears(leads[i].place, t, near) for lead in moving)
+            if at_stake or abs(t - portrait.t) >= TRUST:
                 alike[0].pop(i, None)
         out: list[list[Foreseen]] = []
         looks = []

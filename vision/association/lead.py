@@ -33,6 +33,9 @@ after a hit, and of what shows there, below which it is: on paint of its cap's c
 been pushed 25 mm aside still shows 0.6 to 0.75 of it where it was; drawn aside by as much along
 paint as light as granite, 0.6 to 0.8."""
 
+AHEAD = 1.5
+"""How far ahead it is looked whether a stone comes near a place, s: for a handful of blocks."""
+
 TURNED = 0.06
 """A cap that has turned by more spins on the spot, rad."""
 
@@ -99,6 +102,14 @@ class Lead:
     def drift(self, step: float) -> tuple[float, float]:
         """How far the stone moves in so long, s, m."""
         return self.velocity[0] * step, self.velocity[1] * step
+
+    def nears(self, place: tuple[float, float], t: float, within: float) -> bool:
+        """Whether the stone is expected to come so near to a place, m, `AHEAD` from then, s."""
+        (x, y), (end_x, end_y) = self.at(t), self.at(t + AHEAD)
+        way_x, way_y, to_x, to_y = end_x - x, end_y - y, place[0] - x, place[1] - y
+        square = way_x**2 + way_y**2
+        share = min(max((to_x * way_x + to_y * way_y) / square, 0.0), 1.0) if square else 0.0
+        return hypot(to_x - share * way_x, to_y - share * way_y) < within
 
     def _slowed(self, t: float) -> tuple[float, float]:
         """Tell what share of its velocity is left by then, and how long it moves till then, s."""

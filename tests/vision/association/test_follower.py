@@ -141,18 +141,20 @@ def test_stones_at_rest_are_portrayed_where_they_will_not_be_measured_next(
     assert [sum(s.measured for s in shown.sightings) for shown in views] == [*[3] * 8, *[0] * 6]
 
 
-def test_a_stone_that_came_to_rest_of_late_is_measured_twice_as_often(
+def test_a_stone_that_may_be_hit_is_measured_in_every_block(
     follower: Follower, first: StoneView
 ) -> None:
-    still = [
-        StoneView(Frame(k, k / 25, first.frame.picture), first.camera) for k in range(1, 1 + 12 * 8)
-    ]
-    follower.follow(still, [Lead.to(s, 0.0) for s in follower.sought(view(START, 0))])
-    measured = [sum(s.measured for s in shown.sightings) / 3 for shown in still]
+    still = [StoneView(Frame(k, k / 25, first.frame.picture), first.camera) for k in range(1, 25)]
+    leads = follower.follow(still[:16], [Lead.to(s, 0.0) for s in follower.sought(view(START, 0))])
+    # What comes is not in the picture yet, and passes two radii beside one, five beside the others.
+    x, y = START[0]
+    start = (x - 2 * STONE.radius, y - 3)
+    comes = Lead(start, (0.0, 2.0), still[15].frame.t, start, leads[0].score)
+    follower.follow(still[16:], [*leads, comes])
     assert all(len(shown.sightings) == 3 for shown in still)
-    # Blocks of eight begin every 0.32 s.
-    assert sum(measured[16:48]) == pytest.approx(4)
-    assert sum(measured[64:96]) == pytest.approx(2)
+    assert sum(s.measured for shown in still[8:16] for s in shown.sightings) == 0
+    measured = [s for shown in still[16:] for s in shown.sightings if s.measured]
+    assert [(s.x, s.y) for s in measured] == [pytest.approx(START[0], abs=0.01)]
 
 
 def test_what_shows_clearly_less_than_a_moment_ago_is_looked_for_beside_too(

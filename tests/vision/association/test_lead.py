@@ -106,3 +106,22 @@ def test_a_lead_expects_the_ice_to_slow_a_stone(t: float) -> None:
 def test_a_lead_expects_no_stone_to_turn_back() -> None:
     crawling = Lead((0.0, 0.0), (0.01, 0.0), 0.0, (0.0, 0.0), 2.0)
     assert crawling.at(5.0) == crawling.at(0.1) == pytest.approx((0.5 * 0.01**2 / DECELERATION, 0))
+
+
+@pytest.mark.parametrize(
+    ("place", "near"),
+    [
+        ((0.4, 1.0), True),  # beside its way
+        ((0.6, 1.0), False),
+        ((0.0, 3.2), True),  # beyond where it is 1.5 s later, 2.9 m on
+        ((0.0, 3.6), False),
+        ((0.3, -0.3), True),
+        ((0.0, -0.6), False),  # behind it
+    ],
+)
+def test_a_stone_nears_what_is_beside_its_way_ahead(place: tuple[float, float], near: bool) -> None:
+    comes = Lead((0.0, -2.0), (0.0, 2.0), 0.0, (0.0, -2.0), 2.0)
+    then = 1.0263  # it is at (0, 0) then
+    assert comes.nears(place, then, 0.5) is near
+    rests = Lead((0.0, 0.0), (0.0, 0.0), 0.0, (0.0, 0.0), 2.0)
+    assert rests.nears(place, 0.0, 0.5) is bool(np.hypot(*place) < 0.5)
