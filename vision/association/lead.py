@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from math import hypot
 
+from physics.simulator.approach import nearest
 from vision.association.still import Portrait
 from vision.detection.sighting import Sighting
 from vision.film.shelf import Kept
@@ -106,10 +107,7 @@ class Lead:
     def nears(self, place: tuple[float, float], t: float, within: float) -> bool:
         """Whether the stone is expected to come so near to a place, m, `AHEAD` from then, s."""
         (x, y), (end_x, end_y) = self.at(t), self.at(t + AHEAD)
-        way_x, way_y, to_x, to_y = end_x - x, end_y - y, place[0] - x, place[1] - y
-        square = way_x**2 + way_y**2
-        share = min(max((to_x * way_x + to_y * way_y) / square, 0.0), 1.0) if square else 0.0
-        return hypot(to_x - share * way_x, to_y - share * way_y) < within
+        return nearest(x - place[0], y - place[1], end_x - place[0], end_y - place[1]) < within
 
     def _slowed(self, t: float) -> tuple[float, float]:
         """Tell what share of its velocity is left by then, and how long it moves till then, s."""
