@@ -219,9 +219,7 @@ def _of_heights(times: Array, pictures: Complex, rings: int) -> tuple[_Matched, 
     apart = _apart(tried)
     if which and _doubtful(*tried):
         return _turning_more(times, heights, tried), apart
-    own, matched = heights[which].copy(), tried[which]
-    del pictures, heights, tried
-    return _despite_light(times, own, matched), apart
+    return _despite_light(times, heights[which], tried[which]), apart
 
 
 @dataclass(frozen=True)
