@@ -51,15 +51,11 @@ def test_what_stays_in_the_picture_while_the_ice_moves_is_a_graphic(
     along: float, score: float, graphic: bool
 ) -> None:
     """However much of a stone it shows: no stone goes to and fro as the camera does."""
-    rng = np.random.default_rng(2)
-    track, cameras = Track(), []
-    for frame in range(30):
-        x = 0.2 * np.sin(0.3 * frame)  # where the ice is that the camera looks at, at 100 px/m
-        view = np.array([[100.0, 0.0, 320 - 100 * x], [0.0, -100.0, 240.0], [0.0, 0.0, 1.0]])
-        cameras.append(Camera(frame, frame / 25, view, (640, 480)))
-        place = (1.0 + along * x + rng.normal(0, 0.003), rng.normal(0, 0.003))
-        track.add(frame, frame / 25, sighting(place, score=score), STONE.radius)
-    assert is_graphic(track, cameras, STONE) == graphic
+    times = np.arange(30) / 25
+    x = 0.2 * np.sin(7.5 * times)
+    noise = np.random.default_rng(2).normal(0, 0.003, (30, 2))
+    places = np.column_stack([1.0 + along * x, 0 * x]) + noise
+    assert is_graphic(track_of(times, places, score), cameras_of(times, x), STONE) == graphic
 
 
 @pytest.mark.parametrize(
@@ -70,25 +66,18 @@ def test_a_graphic_that_shows_all_of_a_stone_does_not_glide(
     swing: float, score: float, graphic: bool
 ) -> None:
     """Under a camera that goes to and fro; one that glides may go along with a stone."""
-    rng = np.random.default_rng(3)
-    track, cameras = Track(), []
-    for frame in range(75):
-        t = frame / 25
-        x = 0.5 * t - 0.05 * t**2 + swing * np.sin(2.5 * t)
-        view = np.array([[100.0, 0.0, 320 - 100 * x], [0.0, -100.0, 240.0], [0.0, 0.0, 1.0]])
-        cameras.append(Camera(frame, t, view, (640, 480)))
-        track.add(frame, t, sighting((x, rng.normal(0, 0.003)), score=score), STONE.radius)
-    assert is_graphic(track, cameras, STONE) == graphic
+    times = np.arange(75) / 25
+    x = 0.5 * times - 0.05 * times**2 + swing * np.sin(2.5 * times)
+    places = np.column_stack([x, np.random.default_rng(3).normal(0, 0.003, 75)])
+    assert is_graphic(track_of(times, places, score), cameras_of(times, x), STONE) == graphic
 
 
 def test_a_stone_that_was_at_rest_before_a_hit_is_no_graphic() -> None:
     """Though it lies still in the picture of a still camera, and no glide is all of its path."""
-    track, view = Track(), np.array([[100.0, 0.0, 320.0], [0.0, -100.0, 240.0], [0.0, 0.0, 1.0]])
-    cameras = [Camera(frame, frame / 25, view, (640, 480)) for frame in range(75)]
-    for camera in cameras:
-        x = 1.2 * max(camera.t - 1.8, 0)
-        track.add(camera.frame, camera.t, sighting((x, 0.0), score=2.2), STONE.radius)
-    assert not is_graphic(track, cameras, STONE)
+    times = np.arange(75) / 25
+    x = 1.2 * np.maximum(times - 1.8, 0)
+    track = track_of(times, np.column_stack([x, 0 * x]))
+    assert not is_graphic(track, cameras_of(times, 0 * x), STONE)
 
 
 @pytest.mark.parametrize(
