@@ -22,7 +22,7 @@ from vision.detection.appearance import Appearance
 from vision.detection.patch import HANDLE_HEIGHT_SD, handle_radii, is_plain
 from vision.detection.roundness import edge_errors
 from vision.detection.smeared import widened
-from vision.detection.steady import steadied
+from vision.detection.steady import Lightness, common_share, lightness_of, steadied
 from vision.film.clip import Clip
 from vision.optics.camera import Camera
 from vision.optics.cameras import Cameras
@@ -124,10 +124,23 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
     edge = dict(zip(named, errors, strict=True))
     team = _teams(named, watch.appearance)
     slants = slants_of(named, cameras, disc)
+    light = {name: lightness_of(track.times, track.sightings) for name, track in named.items()}
+    share = {
+        cap: common_share(light[name] for name in named if team[name] == cap)
+        for cap in set(team.values())
+    }
     late = seen_late({name: named[name] for name in rest}, cameras, disc)
     del tracks  # each goes when its rows are made
     rows = [
-        _rows(name, named.pop(name), team[name], disc, edge[name], slants[name])
+        _rows(
+            name,
+            named.pop(name),
+            team[name],
+            disc,
+            edge[name],
+            slants[name],
+            (light[name], share[team[name]]),
+        )
         for name in sorted(named)
     ]
     return StoneTracks(
@@ -161,13 +174,21 @@ def off_axis(track: Track, slants: Array) -> Array:
     return np.asarray(np.hypot(sd, HANDLE_HEIGHT_SD * np.hypot(*slants.T)))
 
 
-def _rows(name: str, track: Track, team: str, disc: Stone, edge: Array, slants: Array) -> Columns:
+def _rows(
+    name: str,
+    track: Track,
+    team: str,
+    disc: Stone,
+    edge: Array,
+    slants: Array,
+    light: tuple[Lightness, float],
+) -> Columns:
     off, spectra = off_axis(track, slants), track.sightings.spectra
     theta, sd_theta = angles_in_parts(
         np.array(track.times), spectra, handle_radii(disc), off, slants=slants
     )
     # Made only now: the angles take much memory, and so do the sightings of a long clip.
-    seen = steadied(track.times, widened(track.times, [*track.sightings]))
+    seen = steadied(widened(track.times, [*track.sightings]), *light)
     x, y, sd_x, sd_y, sd_place_x, sd_place_y = np.array(
         [(item.x, item.y, item.sd_x, item.sd_y, *item.sd_place) for item in seen]
     ).T

@@ -20,6 +20,7 @@ from tests.synthetic.clip import render_still
 from tests.vision.association.test_follow import sighting
 from tests.vision.detection.test_stones import CAMERA, RED, camera_of, scene_of, without_colours
 from vision.association.follow import Track
+from vision.detection.steady import lightness_of
 from vision.detection.stones import plain_disc
 from vision.film.clip import open_clip
 from vision.optics.camera import Camera
@@ -203,5 +204,6 @@ def test_angles_are_told_with_the_slants_of_the_view(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr("vision.track.angles_in_parts", told)
     track, slants = Track(), np.array([[0.3, -0.2]])
     track.add(0, 0.0, sighting((0.5, -12.0)), STONE.radius)
-    _rows("A", track, "", STONE, np.zeros(2), slants)
+    light = lightness_of(track.times, track.sightings)
+    _rows("A", track, "", STONE, np.zeros(2), slants, (light, 0.0))
     np.testing.assert_array_equal(given, [slants])

@@ -9,7 +9,9 @@ where that is.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from math import sqrt
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,35 +34,96 @@ picture, else what draws it aside changes within a second, and it would lead the
 
 JERK = 5
 """Lags that a track must be long: three make one jerk. Of a track so short that not even half of
-`SLOWLY` is left for a lag, it is not known, and lightness has no say."""
+`SLOWLY` is left for a lag, it does not tell."""
+
+TINY = 1e-30
+"""In place of no power at all, m²."""
 
 WILD = 4.0
 """Jerks of the way, in root mean squares, beyond which they say nothing of the scatter: hits."""
 
 
-def steadied(times: Sequence[float], seen: Sequence[Sighting]) -> list[Sighting]:
-    """Steady the places of one stone, by as much as their scatter says.
+class Lightness(NamedTuple):
+    """What the lightness of its cap says of the way of one stone.
+
+    Attributes
+    ----------
+    told : ndarray of int, shape (n,)
+        Sightings that it says something of.
+    aside : ndarray, shape (n, 2)
+        The edge by lightness off their places, beyond what lasts, m.
+    jerks : tuple of (float, float, float)
+        Power of the jerks of the way, what they have in common with those of what is aside, and
+        power of the latter: from picture to picture and, if the way is long enough, over `SLOWLY`.
+    """
+
+    told: NDArray[np.int64]
+    aside: Array
+    jerks: tuple[tuple[float, float, float], ...]
+
+
+def lightness_of(times: Sequence[float], seen: Iterable[Sighting]) -> Lightness:
+    """Tell what the lightness of its cap says of the way of a stone.
 
     Parameters
     ----------
     times : sequence of float
         Ascending, s.
-    seen : sequence of Sighting
+    seen : iterable of Sighting
         The stone at these times.
     """
-    out = list(seen)
-    light = np.array([sighting.light for sighting in seen])
-    whole = np.array([sighting.visible > WHOLE for sighting in seen])
-    told = np.flatnonzero(whole & np.isfinite(light).all(1))
+    rows = np.array([(s.x, s.y, *s.light, s.visible) for s in seen]).reshape(-1, 5)
+    places, light, visible = rows[:, :2], rows[:, 2:4], rows[:, 4]
+    told = np.flatnonzero((visible > WHOLE) & np.isfinite(light).all(1))
     if len(told) < FEWEST:
-        return out
-    at, places = np.array(times)[told], np.array([(seen[i].x, seen[i].y) for i in told.tolist()])
+        return Lightness(told[:0], light[:0], ())
+    at = np.array(times)[told]
     aside = light[told] - _lasting(at, light[told])
-    share, gain = _share(at, places, aside)
-    steady = (places + share * aside).tolist()
-    for rank, (x, y) in zip(told.tolist(), steady, strict=True):
+    slow = SLOWLY / float(np.median(np.diff(at)))
+    lag = max(min(round(slow), len(told) // JERK), 1)
+    lags = (1, lag) if 2 * lag >= slow else (1,)
+    return Lightness(told, aside, tuple(_jerks(at, places[told], aside, each) for each in lags))
+
+
+def common_share(stones: Iterable[Lightness]) -> float:
+    """Share of what lightness says by which the ways of stones with like caps jerk least.
+
+    Lamps and coding treat like caps alike, and one stone alone tells little: shares of single
+    stones came out anywhere between a tenth and all.
+
+    Returns
+    -------
+    float
+        0 to 1; 0 where no way is long enough to tell.
+    """
+    long = np.array([stone.jerks for stone in stones if len(stone.jerks) > 1]).reshape(-1, 2, 3)
+    _, common, power = long.sum(0).T
+    return float(np.clip(-common / np.maximum(power, TINY), 0.0, 1.0).min())
+
+
+def steadied(seen: Sequence[Sighting], light: Lightness, share: float) -> list[Sighting]:
+    """Steady the places of one stone by a share of what lightness says.
+
+    Parameters
+    ----------
+    seen : sequence of Sighting
+        The stone.
+    light : Lightness
+        Of it.
+    share : float
+        See `common_share`. Stated errors become smaller by as much as the way jerks less.
+    """
+    out = list(seen)
+    if not share or not light.jerks:
+        return out
+    way, common, power = light.jerks[0]
+    left = way + share * (2 * common + share * power)
+    gain = sqrt(max(left, 0.0) / max(way, TINY))
+    for rank, (u, v) in zip(light.told.tolist(), (share * light.aside).tolist(), strict=True):
         one = out[rank]
-        out[rank] = one._replace(x=x, y=y, sd_x=gain * one.sd_x, sd_y=gain * one.sd_y)
+        out[rank] = one._replace(
+            x=one.x + u, y=one.y + v, sd_x=gain * one.sd_x, sd_y=gain * one.sd_y
+        )
     return out
 
 
@@ -72,29 +135,8 @@ def _lasting(times: Array, values: Array) -> Array:
     return np.asarray((total[end] - total[first]) / (end - first)[:, None])
 
 
-def _share(times: Array, places: Array, aside: Array) -> tuple[float, float]:
-    """Tell by what share of what lightness says a way is steadied, and what is left of its scatter.
-
-    Parameters
-    ----------
-    times : ndarray, shape (n,)
-    places, aside : ndarray, shape (n, 2)
-        The places, and what the edge by lightness lies off them beyond what lasts, m.
-    """
-    slow = SLOWLY / float(np.median(np.diff(times)))
-    lag = max(min(round(slow), len(times) // JERK), 1)
-    if 2 * lag < slow:
-        return 0.0, 1.0
-    jerks = [_jerks(times, places, aside, each) for each in (1, lag)]
-    share = min(_steadiest(*each) for each in jerks)
-    if not share:
-        return 0.0, 1.0
-    way, offer = jerks[0]
-    return share, float(np.sqrt(((way + share * offer) ** 2).sum() / (way**2).sum()))
-
-
-def _jerks(times: Array, places: Array, aside: Array, lag: int) -> tuple[Array, Array]:
-    """Third divided differences at a lag, of a unit weight each, but for those of hits.
+def _jerks(times: Array, places: Array, aside: Array, lag: int) -> tuple[float, float, float]:
+    """Powers of third divided differences at a lag, of a unit weight each, but for those of hits.
 
     A glide does not show in them, be the times even or not.
     """
@@ -105,10 +147,5 @@ def _jerks(times: Array, places: Array, aside: Array, lag: int) -> tuple[Array, 
     way, offer = (np.einsum("nk,nkc->nc", weight, z[four]) for z in (places, aside))
     size = np.hypot(*way.T)
     near = size <= WILD * np.sqrt(np.mean(np.minimum(size, 3 * np.median(size)) ** 2))
-    return way[near], offer[near]
-
-
-def _steadiest(way: Array, offer: Array) -> float:
-    """Share of what is offered at which a way jerks least, 0 to 1."""
-    power = float((offer**2).sum())
-    return float(np.clip(-(way * offer).sum() / power, 0.0, 1.0)) if power else 0.0
+    way, offer = way[near], offer[near]
+    return float((way**2).sum()), float((way * offer).sum()), float((offer**2).sum())

@@ -3,7 +3,7 @@ import pytest
 
 from tests.vision.association.test_follow import sighting
 from vision.detection.sighting import Sighting
-from vision.detection.steady import FEWEST, MEMORY, steadied
+from vision.detection.steady import FEWEST, MEMORY, common_share, lightness_of, steadied
 
 RATE = 25.0
 LAMPS = np.array([0.0012, -0.0007])
@@ -28,6 +28,12 @@ def seen_by(
     ]
 
 
+def alone(times: list[float], seen: list[Sighting]) -> list[Sighting]:
+    """A stone that no other has caps like, steadied."""
+    light = lightness_of(times, seen)
+    return steadied(seen, light, common_share([light]))
+
+
 def errors(seen: list[Sighting], way: np.ndarray) -> np.ndarray:
     return np.array([(s.x, s.y) for s in seen]) - way
 
@@ -46,10 +52,10 @@ def test_lightness_steadies_what_hue_lets_wander_and_lamps_draw_nothing_aside(
     hue = waves(rng, times, 6e-4) + rng.normal(0, 5e-4, way.shape)
     light = rng.normal(0, 2e-4, way.shape)
     seen = seen_by(hue, light, way)
-    before, after = errors(seen, way), errors(steadied(times.tolist(), seen), way)
+    before, after = errors(seen, way), errors(alone(times.tolist(), seen), way)
     assert after.std() < 0.5 * before.std()
     np.testing.assert_allclose(after.mean(0), before.mean(0), atol=1e-4)
-    stated = np.array([(s.sd_x, s.sd_y) for s in steadied(times.tolist(), seen)])
+    stated = np.array([(s.sd_x, s.sd_y) for s in alone(times.tolist(), seen)])
     np.testing.assert_allclose(stated[:, 1], 2 * stated[:, 0])
     assert 0.2e-3 < stated[0, 0] < 0.6e-3
 
@@ -59,7 +65,7 @@ def test_lightness_that_scatters_more_than_hue_has_no_say(
 ) -> None:
     times, way, rng = shot
     seen = seen_by(rng.normal(0, 2e-4, way.shape), rng.normal(0, 1e-3, way.shape), way)
-    before, after = errors(seen, way), errors(steadied(times.tolist(), seen), way)
+    before, after = errors(seen, way), errors(alone(times.tolist(), seen), way)
     assert after.std() <= before.std()
     assert np.abs(after - before).std() < 0.1 * 1e-3
 
@@ -70,7 +76,7 @@ def test_lightness_that_goes_astray_within_a_second_has_little_say() -> None:
     turning = 2e-3 * np.column_stack([np.cos(5 * times), np.sin(5 * times)])
     hue, light = rng.normal(0, 4e-4, way.shape), turning + rng.normal(0, 1e-4, way.shape)
     seen = seen_by(hue, light, way)
-    before, after = errors(seen, way), errors(steadied(times.tolist(), seen), way)
+    before, after = errors(seen, way), errors(alone(times.tolist(), seen), way)
     assert np.abs(after - before).max() < 0.5 * np.abs(turning).max()
     assert after.std() < before.std()
 
@@ -80,7 +86,7 @@ def test_a_track_too_short_to_show_that_lightness_goes_astray_stays() -> None:
     way, rng = np.zeros((30, 2)), np.random.default_rng(8)
     turning = 2e-3 * np.column_stack([np.cos(5 * times), np.sin(5 * times)])
     seen = seen_by(rng.normal(0, 4e-4, way.shape), turning, way)
-    assert steadied(times.tolist(), seen) == seen
+    assert alone(times.tolist(), seen) == seen
 
 
 @pytest.mark.parametrize("dropped", [0.1, 0.5])
@@ -89,7 +95,7 @@ def test_a_glide_is_steadied_where_pictures_are_dropped_too(dropped: float) -> N
     times = (np.arange(400) / RATE)[rng.random(400) > dropped]
     way = np.column_stack([0.1 * times, 3 - 1.4 * times + 0.04 * times**2])
     hue, light = rng.normal(0, 7e-4, way.shape), rng.normal(0, 2e-4, way.shape)
-    after = steadied(times.tolist(), seen_by(hue, light, way))
+    after = alone(times.tolist(), seen_by(hue, light, way))
     left = errors(after, way).std() / hue.std()
     assert left < 0.5
     assert after[0].sd_x == pytest.approx(1e-3 * left, rel=0.25)
@@ -101,7 +107,7 @@ def test_lamps_may_draw_aside_to_another_side_after_a_while() -> None:
     drift = np.column_stack([2e-4 * times, 0 * times])
     rng = np.random.default_rng(2)
     seen = seen_by(rng.normal(0, 5e-4, way.shape), drift + rng.normal(0, 1e-4, way.shape), way)
-    after = errors(steadied(times.tolist(), seen), way)
+    after = errors(alone(times.tolist(), seen), way)
     inner = after[(times > MEMORY) & (times < times[-1] - MEMORY)]
     assert np.abs(inner).max() < 6e-4
 
@@ -111,11 +117,41 @@ def test_what_is_half_covered_few_or_dark_all_over_stays() -> None:
     way, rng = np.zeros((60, 2)), np.random.default_rng(3)
     hue, light = rng.normal(0, 1e-3, (2, 60, 2))
     covered = seen_by(hue, 0 * light, way, visible=0.6)
-    assert steadied(times.tolist(), covered) == covered
+    assert alone(times.tolist(), covered) == covered
     seen = seen_by(hue, 0 * light, way)
     few = seen[: FEWEST - 1]
-    assert steadied(times[: len(few)].tolist(), few) == few
+    assert alone(times[: len(few)].tolist(), few) == few
     blank = [s._replace(light=(np.nan, np.nan)) for s in seen]
-    assert steadied(times.tolist(), blank) == blank
+    assert alone(times.tolist(), blank) == blank
     alike = [s._replace(light=(0.0, 0.0), x=0.0, y=0.0) for s in seen]
-    assert steadied(times.tolist(), alike) == alike
+    assert alone(times.tolist(), alike) == alike
+
+
+def test_like_caps_tell_together_by_how_much_lightness_steadies() -> None:
+    rng = np.random.default_rng(6)
+
+    def drawn(count: int) -> tuple[list[float], list[Sighting], np.ndarray]:
+        times = np.arange(count) / RATE
+        way = np.column_stack([0.1 * times, 3 - 1.4 * times + 0.05 * times**2])
+        hue = waves(rng, times, 4e-4) + rng.normal(0, 3e-4, way.shape)
+        light = waves(rng, times, 2.5e-4) + rng.normal(0, 2e-4, way.shape)
+        return times.tolist(), seen_by(hue, light, way), way
+
+    stones = [drawn(count) for count in (100, 100, 100, 100, 100, 100, 30)]
+    lights = [lightness_of(times, seen) for times, seen, _ in stones]
+    together = common_share(lights)
+    # By the powers above, (4² + 3²) / (4² + 3² + 2.5² + 2²) of it.
+    assert together == pytest.approx(0.71, abs=0.15)
+    shares = [common_share([light]) for light in lights[:-1]]
+    assert min(shares) < together < max(shares)
+
+    # One that is too short to tell is steadied as the others say.
+    _, seen, way = stones[-1]
+    assert common_share([lights[-1]]) == 0
+    before, after = errors(seen, way), errors(steadied(seen, lights[-1], together), way)
+    assert after.std() < 0.85 * before.std()
+    assert steadied(seen, lights[-1], together)[0].sd_x < seen[0].sd_x
+
+
+def test_no_stone_at_all_has_no_share() -> None:
+    assert common_share([]) == 0
