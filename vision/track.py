@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from data.sheet import STONE, Stone
 from data.tracks import SIGHTING_COLUMNS, Columns, no_rows
-from vision.association.follow import Track, follow
+from vision.association.bare import with_handles
+from vision.association.follow import OTHER, Track, follow
 from vision.association.graphic import is_graphic
 from vision.association.late import seen_late
 from vision.association.naming import named_by_motion
@@ -111,8 +112,11 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
     """
     disc = watch.disc
     least = PLAIN if is_plain(disc) else TOLD
-    tracks = rejoined(follow(watch.finish(cameras), disc.radius, *least), disc.radius)
+    seen = watch.finish(cameras)
+    other = OTHER if watch.appearance is None else min(OTHER, watch.appearance.other_team)
+    tracks = rejoined(follow(seen, disc.radius, *least, other), disc.radius, other)
     tracks = [track for track in tracks if not is_graphic(track, cameras, disc)]
+    tracks = with_handles(tracks, watch.appearance, disc)
     named, rest = named_by_motion(tracks, disc.radius)
     if not named:
         return StoneTracks(no_rows(SIGHTING_COLUMNS), ("no stones were found on the ice",))

@@ -39,7 +39,7 @@ REACH, GROWTH, MOST_REACH = 1.25, 2.0, 3.5
 second out of sight, and what it grows to at most, all in radii."""
 
 OTHER = 45.0
-"""Difference of cap colours, L*a*b* units, that says: another stone."""
+"""Difference of cap colours, L*a*b* units, that says: another stone, where no teams are known."""
 
 PATIENCE = 3.0
 """Seconds for which a moving stone is waited for."""
@@ -142,6 +142,7 @@ def follow(
     radius: float,
     least_score: float = 0.0,
     least_open: float = 0.0,
+    other: float = OTHER,
 ) -> list[Track]:
     """Join the sightings of a clip to tracks.
 
@@ -155,6 +156,8 @@ def follow(
         Evidence that the better part of a track's sightings must show.
     least_open : float
         The same for a track no longer than `BRIEF` of what nothing covers.
+    other : float
+        Difference of cap colours, L*a*b* units, that says: another stone.
 
     Returns
     -------
@@ -170,7 +173,7 @@ def follow(
         lost = [i for i, track in enumerate(tracks) if _given_up(track, t, step)]
         for index in reversed(lost):
             closed.append(tracks.pop(index))
-        taken = _assign(tracks, t, sightings, radius)
+        taken = _assign(tracks, t, sightings, radius, other)
         for column, sighting in enumerate(sightings):
             if column in taken:
                 taken[column].add(frame, t, sighting, radius)
@@ -228,7 +231,11 @@ def _given_up(track: Track, t: float, step: float) -> bool:
 
 
 def _assign(
-    tracks: Sequence[Track], t: float, sightings: Sequence[Sighting], radius: float
+    tracks: Sequence[Track],
+    t: float,
+    sightings: Sequence[Sighting],
+    radius: float,
+    other: float,
 ) -> dict[int, Track]:
     """Sighting index to the track that it continues."""
     if not tracks or not sightings:
@@ -251,8 +258,8 @@ def _assign(
     )
     # Young tracks yield to old ones.
     youth = np.array([0.5 if len(track.frames) < BIRTHS else 0.0 for track in tracks])
-    value = distance**2 + (0.5 * unlike / OTHER) ** 2 + youth[:, None]
-    cost = np.where((distance < 1) & (unlike < OTHER), value, _FORBIDDEN)
+    value = distance**2 + (0.5 * unlike / other) ** 2 + youth[:, None]
+    cost = np.where((distance < 1) & (unlike < other), value, _FORBIDDEN)
     return {column: tracks[row] for row, column in _paired(cost)}
 
 

@@ -26,7 +26,7 @@ STRAY = 0.5
 """How much farther from the end of the first track the way may lead per second unseen, radii."""
 
 
-def rejoined(tracks: Sequence[Track], radius: float) -> list[Track]:
+def rejoined(tracks: Sequence[Track], radius: float, other: float = OTHER) -> list[Track]:
     """Join each track that begins in motion to the one whose stone it goes on with.
 
     Parameters
@@ -35,6 +35,8 @@ def rejoined(tracks: Sequence[Track], radius: float) -> list[Track]:
         In order of birth; those that go on are made longer.
     radius : float
         Of the discs, m.
+    other : float
+        Difference of cap colours, L*a*b* units, that says: another stone.
 
     Returns
     -------
@@ -43,7 +45,7 @@ def rejoined(tracks: Sequence[Track], radius: float) -> list[Track]:
     """
     out: list[Track] = []
     for track in tracks:
-        before = [other for other in out if _goes_on(other, track, radius)]
+        before = [first for first in out if _goes_on(first, track, radius, other)]
         if len(before) == 1:
             before[0].go_on(track)
         else:
@@ -51,12 +53,12 @@ def rejoined(tracks: Sequence[Track], radius: float) -> list[Track]:
     return out
 
 
-def _goes_on(first: Track, second: Track, radius: float) -> bool:
+def _goes_on(first: Track, second: Track, radius: float, other: float) -> bool:
     """Whether a track may be that of a stone that has gone out of sight."""
     unseen = second.times[0] - first.times[-1]
     if not 0 < unseen < PATIENCE:
         return False
-    if colour_difference(first.colour, second.colour) > OTHER:
+    if colour_difference(first.colour, second.colour) > other:
         return False
     begun = [k for k, t in enumerate(second.times) if t - second.times[0] <= BEGINNING]
     here, there = second.sightings[0], second.sightings[begun[-1]]

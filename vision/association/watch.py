@@ -134,7 +134,9 @@ class Watch:
         if self._since and self._recent:
             self._search_for_new(self._recent[-1])
         self._recent.clear()  # no picture is looked at any more: they take a quarter of all memory
-        known = [camera for camera in cameras if camera.frame in self._seen]
+        return self._placed([camera for camera in cameras if camera.frame in self._seen])
+
+    def _placed(self, known: Sequence[Camera]) -> Iterator[tuple[int, float, Sequence[Sighting]]]:
         for begin in range(0, len(known), AT_ONCE):
             some = known[begin : begin + AT_ONCE]
             times, seen = zip(*(self._seen.pop(camera.frame) for camera in some), strict=True)
@@ -151,7 +153,8 @@ class Watch:
         return Follower(self.appearance, self.disc, self._search)
 
     def _catch_up(self) -> None:
-        if self._waiting and not self._knows:
+        new = not self._knows
+        if self._waiting and new:
             self._recent.clear()
             self._learn(self._waiting)
             if self._knows:
@@ -159,6 +162,8 @@ class Watch:
         for begin in range(0, len(self._waiting), BLOCK):
             self._see(self._waiting[begin : begin + BLOCK])
         self._waiting = []
+        if new and self._knows and self._recent:
+            self._search_first()
 
     def _learn(self, views: Iterable[StoneView]) -> None:
         views = list(views)[::-1]
@@ -225,6 +230,12 @@ class Watch:
         self._leads += leads
         if self.appearance is not None:
             measure_again(not_searched, self.appearance, self.disc, self._search)
+
+    def _search_first(self) -> None:
+        """Search the first picture too: what lies there may be hidden in the next one searched."""
+        first, *others = self._recent
+        leads = [Lead.to(sighting, first.frame.t) for sighting in self._find(first)]
+        self._leads += self._follower.follow(others, leads)
 
     def _find(self, view: StoneView) -> list[Sighting]:
         """Add to a view the stones of known colours that were not seen in it so far.

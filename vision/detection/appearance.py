@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vision.detection.circles import WALL
 from vision.detection.contrast import worth_of
+from vision.detection.relief import BARE, contrast
 from vision.detection.sighting import Sighting
 from vision.film.clip import Image
 from vision.film.lab import bgr_of, chroma, lab_of
@@ -32,6 +34,9 @@ hair on red jerseys is 0.16, 73 and 25 off."""
 
 UNLIKE = 30.0
 """Difference of cap colours (L*a*b* units) from which they are two."""
+
+MOSTLY = 0.75
+"""Share of the difference of two teams' colours by which no stone's changes on its way."""
 
 PURE = 55.0
 """How far from grey a colour without any red counts for at least, L*a*b* units."""
@@ -122,6 +127,17 @@ class Appearance:
         rank = int(differences.argmin())
         return rank, float(differences[rank])
 
+    @property
+    def other_team(self) -> float:
+        """Difference from a stone's colour, L*a*b* units, that says: of the other team.
+
+        Infinite where but one is known.
+        """
+        if len(self.caps) < 2:
+            return inf
+        first, second = self.caps[:2]
+        return MOSTLY * colour_difference(first.mean, second.mean)
+
 
 BY_SHAPE = Appearance(None, own=True)
 """Stones of which no colour is known."""
@@ -178,7 +194,7 @@ def by_colour(sightings: Iterable[Sighting]) -> list[list[Sighting]]:
     """Group sightings by the colour of their caps, the largest group first.
 
     All stones of a clip are of one size and one granite: what is not like the most convincing
-    ones is left out.
+    ones is left out. A sighting without a handle, as of paint, counts less.
     """
     groups: list[list[Sighting]] = []
     for sighting in sorted(sightings, key=lambda item: -item.score):
@@ -188,7 +204,15 @@ def by_colour(sightings: Iterable[Sighting]) -> list[list[Sighting]]:
                 break
         else:
             groups.append([sighting])
-    return _of_one_set(sorted(groups, key=len, reverse=True))
+    return _of_one_set(sorted(groups, key=lambda group: sum(map(_handled, group)), reverse=True))
+
+
+def _handled(sighting: Sighting) -> float:
+    """How much of a handle a sighting shows, 0 to 1; 1 where it is not told."""
+    if sighting.spectrum is None:
+        return 1.0
+    spectrum = sighting.spectrum.get()
+    return min(contrast(spectrum, spectrum) / BARE, 1.0)
 
 
 def _of_one_set(groups: list[list[Sighting]]) -> list[list[Sighting]]:

@@ -7,6 +7,7 @@ import pytest
 
 from vision.association.follow import Track, follow
 from vision.association.naming import named_by_motion
+from vision.association.rejoin import rejoined
 from vision.detection.sighting import Sighting
 
 R = 0.1455
@@ -151,6 +152,20 @@ def test_colours_part_stones_that_swap_places_unseen() -> None:
     tracks = follow(clip([first, second], 3.0, colours=[RED, YELLOW]), R)
     for track in tracks:
         assert np.ptp([s.colour[2] for s in track.sightings]) < 1
+
+
+@pytest.mark.parametrize(("other", "count"), [(45.0, 1), (30.0, 2)])
+def test_a_stone_of_another_team_comes_out_beside_where_one_went_out_of_sight(
+    other: float, count: int
+) -> None:
+    """Red and orange caps are 40 apart, and so are their teams where no other is known."""
+    orange = RED + np.array([69.0, -21.0, 26.0])
+    paths = [
+        lambda t: (0.0, 0.0) if t < 1 else None,
+        lambda t: (0.27, 0.0) if t > 2 else None,
+    ]  # fmt: skip
+    frames = clip(paths, 3.0, colours=[RED, orange])
+    assert len(rejoined(follow(frames, R, other=other), R, other)) == count
 
 
 def test_what_looks_a_little_like_a_stone_for_a_moment_is_none() -> None:

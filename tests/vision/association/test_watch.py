@@ -143,6 +143,19 @@ def test_a_stone_that_convinces_in_some_pictures_only_is_learned_from_these() ->
     assert [len(sightings) for _, _, sightings in watch.finish(lasting(camera))] == [1] * 24
 
 
+def test_a_stone_seen_before_somebody_stands_over_it_is_seen_from_the_first_picture_on() -> None:
+    clear = picture(AT_REST)
+    camera = camera_of(CAMERA, scene_of(AT_REST))
+    x, y = camera.project(np.array([AT_REST[0][:2]]), 0.12)[0].astype(int)
+    covered = clear.copy()
+    covered[y - 60 : y + 60, x - 60 : x + 60] = (60, 90, 60)
+    watch = Watch()
+    for index in range(50):
+        watch.look(Frame(index, index / 25, clear if index < 6 else covered), camera)
+    counts = [len(sightings) for _, _, sightings in watch.finish(lasting(camera))]
+    assert counts == [3] * 6 + [2] * 44
+
+
 def test_a_dull_cap_on_vivid_paint_is_learned_beside_a_vivid_one() -> None:
     path = still_camera(px_per_m=140.0, target=(0.0, 0.6), position=(0.3, -5.2, 8.0))
     dull = (66, 62, 110)

@@ -1,11 +1,16 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
 
 from tests.vision.association.test_follow import sighting
+from tests.vision.detection.test_relief import bar
+from tests.vision.detection.test_relief import cap as picture_of
 from vision.detection.appearance import (
+    BY_SHAPE,
     UNLIKE,
     Appearance,
     Colour,
@@ -16,6 +21,7 @@ from vision.detection.appearance import (
     membership,
 )
 from vision.detection.sighting import Sighting
+from vision.film.shelf import Kept
 
 RED, YELLOW, BLUE, GREY = (30, 24, 150), (20, 190, 220), (170, 80, 30), (105, 105, 100)
 
@@ -89,6 +95,16 @@ def test_of_more_than_two_colours_the_rarest_is_left_out_and_so_is_one_seen_by_c
     chance = learn([seen(RED)] * 40 + [seen(BLUE, 3.0)] * 2)
     assert chance is not None and len(chance.caps) == 1
     assert learn([]) is None
+
+
+def test_of_more_than_two_colours_paint_is_left_out_that_shows_no_handle() -> None:
+    flat, handled = (Kept(picture_of(bar(height), 1.0)) for height in (0.0, 30.0))
+    stones = [seen(RED)._replace(spectrum=handled)] * 9 + [seen(YELLOW)._replace(spectrum=handled)]
+    look = learn([*stones, *[seen(BLUE, 3.0)._replace(spectrum=flat)] * 2])
+    assert look is not None
+    assert worth_of([RED, YELLOW, BLUE], look) == pytest.approx([1, 1, 0], abs=0.1)
+    two = learn([*stones[:9], *[seen(BLUE, 3.0)._replace(spectrum=flat)] * 2])
+    assert two is not None and len(two.caps) == 2  # it may be a handle of the cap's own colour
 
 
 @pytest.mark.parametrize(
@@ -179,6 +195,13 @@ def test_the_nearest_cap_and_how_far_it_is() -> None:
         away = cap.mean + np.array([0.0, 6.0, 8.0])
         assert look.nearest(away) == (rank, pytest.approx(10.0))
     assert look.nearest(lab(BLUE))[1] > UNLIKE
+
+
+def test_stones_of_other_teams_differ_by_most_of_what_the_teams_do() -> None:
+    spread = np.eye(3)
+    red, orange = Colour(lab(RED), spread), Colour(lab(RED) + np.array([0, 0, 40]), spread)
+    assert replace(BY_SHAPE, caps=(red, orange)).other_team == pytest.approx(30)
+    assert replace(BY_SHAPE, caps=(red,)).other_team == BY_SHAPE.other_team == np.inf
 
 
 def test_distances_of_colours_are_in_standard_deviations() -> None:

@@ -1,0 +1,77 @@
+"""Stones have handles, and a team's are alike: what has none among them is no stone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from math import nan
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from data.sheet import STONE
+from tests.vision.association.test_follow import RED, YELLOW, sighting
+from tests.vision.detection.test_relief import bar, cap
+from vision.association.bare import bare, contrast_of, with_handles
+from vision.association.follow import Track
+from vision.detection.appearance import BY_SHAPE, Colour
+from vision.detection.stones import plain_disc
+from vision.film.shelf import Kept
+
+TEAMS = replace(BY_SHAPE, caps=(Colour(RED, np.eye(3)), Colour(YELLOW, np.eye(3))))
+
+
+def track_of(
+    caps: Sequence[NDArray[np.complex64] | None], colour: NDArray[np.float64] = RED
+) -> Track:
+    track = Track()
+    for frame, spectrum in enumerate(caps):
+        shown = None if spectrum is None else Kept(spectrum)
+        seen = sighting((1.0, 0.0), colour)._replace(spectrum=shown)
+        track.add(frame, frame / 25, seen, STONE.radius)
+    return track
+
+
+@pytest.mark.parametrize(
+    ("shown", "team", "without"),
+    [
+        ([20, 18, 1], [0, 0, 0], [False, False, True]),  # paint of a team's colour
+        ([20, 18, 3.5], [0, 0, 0], [False, False, True]),  # with a ring within it
+        ([20, 18, 6], [0, 0, 0], [False, False, False]),  # that is seen, however faintly
+        ([8, 7, 3.5], [0, 0, 0], [False, False, False]),  # as far off as real stones are
+        ([3, 3.5, 1], [0, 0, 0], [False, False, False]),  # in the caps' colour: what is faint?
+        ([30, 28, 1], [0, 0, 1], [False, False, True]),  # alone in its colour
+        ([30, 28, 3.5], [0, 0, 1], [False, False, False]),  # whose handles may be faint
+        ([1, 0.5], [0, 1], [False, False]),  # drawn without handles
+        ([20, nan], [0, 0], [False, False]),  # not seen
+        ([20, -1], [0, 0], [False, True]),
+        ([20, 18, 19, 40, 2], [0, 0, 0, 0, 1], [False] * 5),
+        ([], [], []),
+    ],
+)
+def test_what_shows_far_less_than_a_handle_has_none(
+    shown: list[float], team: list[int], without: list[bool]
+) -> None:
+    assert bare(shown, team).tolist() == without
+
+
+def test_a_disc_of_paint_among_stones_is_left_out() -> None:
+    stones = [track_of([cap(bar(30, 0.1 * k), 3.0, k) for k in range(20)]) for _ in range(2)]
+    paint = track_of([cap(bar(0), 3.0, k) for k in range(20)])
+    alone = track_of([cap(bar(0), 3.0, k) for k in range(20)], YELLOW)
+    assert with_handles([*stones, paint, alone], TEAMS, STONE) == stones
+    assert with_handles([paint, alone], TEAMS, STONE) == [paint, alone]
+    assert with_handles([*stones, paint], TEAMS, plain_disc(0.05)) == [*stones, paint]
+    assert with_handles([*stones, paint], None, STONE) == [*stones, paint]
+
+
+def test_what_goes_over_a_disc_for_some_time_is_no_handle() -> None:
+    covered = [cap(60 * bar(1, 0.3, 0.05)) for _ in range(15)]
+    disc = [cap(bar(0), 3.0, k) for k in range(45)]
+    assert contrast_of(track_of([*disc[:20], *covered, *disc[20:]])) < 1
+
+
+def test_of_hardly_seen_caps_nothing_is_told() -> None:
+    assert np.isnan(contrast_of(track_of([None, cap(bar(30)), None, cap(bar(30)), None])))
+    assert contrast_of(track_of([None, *[cap(bar(30))] * 3])) > 5

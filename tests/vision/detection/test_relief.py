@@ -1,0 +1,61 @@
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from data.sheet import STONE
+from vision.detection.patch import handle_radii
+from vision.detection.relief import contrast
+from vision.spin.handle import cap_spectrum
+
+RADII = handle_radii(STONE)
+RAYS = 48
+ANGLE = np.arange(RAYS)[:, None] * (2 * np.pi / RAYS)
+
+
+def cap(light: NDArray[np.float64], noise: float = 0.0, seed: int = 0) -> NDArray[np.complex64]:
+    """Spectrum of a cap of L* 120 and this more, shape (rays, rings): the same at both heights."""
+    rng = np.random.default_rng(seed)
+    lab = np.full((RAYS, 2 * len(RADII), 3), (120.0, 160.0, 150.0))
+    lab[..., 0] += np.tile(np.broadcast_to(light, (RAYS, len(RADII))), 2)
+    return cap_spectrum(np.round(lab + rng.normal(0, noise, lab.shape)).astype(np.uint8), RADII)
+
+
+def bar(height: float, turn: float = 0.0, wide: float = 0.014) -> NDArray[np.float64]:
+    """A handle along one diameter, so much lighter than the cap."""
+    return np.where(np.abs(RADII * np.sin(ANGLE - turn)) < wide, height, 0.0)
+
+
+@pytest.mark.parametrize("order", [2, 3, 4, 5])
+def test_a_wave_around_the_centre_has_its_root_mean_square(order: int) -> None:
+    wave = cap(40 * np.cos(order * ANGLE))
+    assert contrast(wave, wave) == pytest.approx(40 / np.sqrt(2), rel=0.01)
+
+
+@pytest.mark.parametrize("order", [1, 7, 12])
+def test_light_from_one_side_and_grain_are_no_handle(order: int) -> None:
+    wave = cap(40 * np.cos(order * ANGLE))
+    assert contrast(wave, wave) < 0.5
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.05, 1.0])
+def test_a_handle_shows_however_it_lies_and_a_rim_does_not(turn: float) -> None:
+    one, other = cap(bar(30, turn)), cap(bar(30, turn + 0.1))
+    assert contrast(one, other) == pytest.approx(contrast(one, one), rel=0.1)
+    assert contrast(one, one) > 5
+    rim = cap(np.where(RADII / STONE.cap_radius > 0.75, 40 * np.cos(2 * ANGLE), 0.0))
+    assert contrast(rim, rim) < 0.5
+
+
+def test_noise_that_is_anew_in_each_picture_is_not_shared() -> None:
+    noisy = [cap(bar(0), 8.0, seed) for seed in range(41)]
+    assert np.median([contrast(a, a) for a in noisy]) > 2
+    assert abs(np.median([contrast(*pair) for pair in pairwise(noisy)])) < 1
+
+
+def test_opposites_share_less_than_nothing() -> None:
+    wave = 40 * np.cos(2 * ANGLE)
+    assert contrast(cap(wave), cap(-wave)) == pytest.approx(-40 / np.sqrt(2), rel=0.01)

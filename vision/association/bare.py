@@ -1,0 +1,83 @@
+"""Discs without a handle: paint or a graphic, though their edges are those of a stone.
+
+By its edges, what is round, of a cap's size and with something as light as granite around it passes
+for a stone, and nothing but that tells it under a camera that stands still. But each stone has a
+handle, and a team's are alike.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf, nan
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.sheet import Stone
+from vision.association.follow import Track
+from vision.detection.appearance import Appearance
+from vision.detection.patch import is_plain
+from vision.detection.relief import BARE, contrast
+
+Flags = NDArray[np.bool_]
+
+MOST_PAIRS = 40
+"""Pictures that are compared with the next one, spread over a track: more say the same."""
+
+ALIKE, OTHER = 0.4, 0.1
+"""Share of what a team's handles show usually, and of what each of another team's does, below which
+there is none. Such real stones show 0.66 of the one at least and 0.37 of the other, drawn ones 0.6
+and, with handles in their caps' colour, 0.13; paint and icons 0.37 of the one, most 0.1."""
+
+
+def with_handles(
+    tracks: Sequence[Track], appearance: Appearance | None, disc: Stone
+) -> list[Track]:
+    """Leave out discs without a handle among stones; plain discs are not known to have any."""
+    if appearance is None or is_plain(disc):
+        return [*tracks]
+    team = [appearance.nearest(track.colour)[0] for track in tracks]
+    without = bare([contrast_of(track) for track in tracks], team)
+    return [track for track, out in zip(tracks, without, strict=True) if not out]
+
+
+def contrast_of(track: Track) -> float:
+    """Contrast around the centre that pictures of a cap share with the next ones, L*a*b* units.
+
+    NaN where fewer than three pictures show the cap.
+    """
+    shown = [kept for kept in track.sightings.spectra if kept is not None]
+    if len(shown) < 3:
+        return nan
+    some = np.unique(np.linspace(0, len(shown) - 2, MOST_PAIRS).astype(int)).tolist()
+    # What covers a cap for some time has contrast of its own.
+    return float(np.median([contrast(shown[k].get(), shown[k + 1].get()) for k in some]))
+
+
+def bare(shown: Sequence[float], team: Sequence[int]) -> Flags:
+    """Tell which discs have no handle, as stones beside them have.
+
+    Parameters
+    ----------
+    shown : sequence of float
+        Contrast of each, from `contrast_of`.
+    team : sequence of int
+        Rank of the cap's colour of each.
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+        False where it cannot be told, or where no stone shows a handle.
+    """
+    values, of = np.asarray(shown, float), np.asarray(team)
+    handled = values >= BARE
+    out = np.zeros(len(values), bool)
+    for rank in set(team):
+        own = of == rank
+        alike, others = values[handled & own], values[handled & ~own]
+        if len(alike):
+            least = ALIKE * float(np.median(alike))
+        else:
+            least = OTHER * float(others.min(initial=inf)) if len(others) else 0.0
+        out |= own & (values < min(BARE, least))
+    return out
