@@ -9,7 +9,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.local_fit.breaks import breaks
+from physics.local_fit.breaks import FEWEST, breaks
 from physics.local_fit.shot_fit import Meeting
 from physics.local_fit.traces import Trace
 
@@ -169,7 +169,7 @@ def _approaches(
         low, high = t[run[0]], t[run[-1]]
         one, other = ([x for x in turns.get(p.stone, ()) if low <= x <= high] for p in (a, b))
         times = _meeting_times(t, distance, run, noise, (one, other))
-        times = _at_turns_if_hidden(_at_turns_if_hidden(times, one, b), other, a)
+        times = _at_turns_if_untold(_at_turns_if_untold(times, one, b), other, a)
         for time in times:
             if moves(a, time, radius) or moves(b, time, radius):
                 gap = max(a.gap(time), b.gap(time))
@@ -177,16 +177,23 @@ def _approaches(
     return out
 
 
-def _at_turns_if_hidden(times: list[float], turns: Sequence[float], hidden: Trace) -> list[float]:
-    """Replace times while one stone is long out of sight by those at which the other turned.
+def _at_turns_if_untold(times: list[float], turns: Sequence[float], untold: Trace) -> list[float]:
+    """Replace times while one stone's path is not known by those at which the other turned.
 
-    The path of a stone out of sight is unknown: when two seem closest then is chance.
+    When two seem closest then is chance. So it is while a stone is long out of sight, and where it
+    is seen too few times before or after to show a turn of its own.
     """
+    n = len(untold.t)
     for turn in turns:
-        k = int(np.searchsorted(hidden.t, turn))
-        if 0 < k < len(hidden.t) and hidden.t[k] - hidden.t[k - 1] > OUT_OF_SIGHT:
-            low, high = hidden.t[k - 1], hidden.t[k] + 3 * hidden.step
-            times = [t for t in times if t in turns or not low < t < high] + [turn]
+        k = int(np.searchsorted(untold.t, turn))
+        if not 0 < k < n:
+            continue
+        low, high = untold.t[k - 1], untold.t[k] + 3 * untold.step
+        if untold.t[k] - untold.t[k - 1] <= OUT_OF_SIGHT:
+            if FEWEST <= k <= n - FEWEST:
+                continue
+            low, high = untold.t[max(k - FEWEST, 0)] - untold.step, high
+        times = [t for t in times if t in turns or not low < t < high] + [turn]
     return sorted({*times})
 
 

@@ -144,7 +144,8 @@ def _piece(
 ) -> Piece:
     motion = _motion(path, samples)
     slow = _speed(motion.velocity) < SLOW * radius + 2 * motion.stderr
-    rest = slow and opens is None  # who was hit moves
+    untold = len(samples) < 2 and closes is not None
+    rest = slow and opens is None and not untold  # who was hit moves, and who hits it may
     return Piece(path.stone, start, end, samples, rest, False, opens, closes)
 
 

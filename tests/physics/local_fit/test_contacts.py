@@ -219,6 +219,24 @@ def test_hit_of_a_stone_long_out_of_sight_is_where_the_other_starts(until: float
     assert hit.t == pytest.approx(t, abs=0.01)
 
 
+@pytest.mark.parametrize("count", [1, 2, 3])
+@pytest.mark.parametrize("speed", [0.8, 2.0])
+@pytest.mark.parametrize("after", [False, True])
+def test_a_stone_hardly_seen_on_one_side_of_its_hit_does_not_hide_it(
+    count: int, speed: float, after: bool
+) -> None:
+    """It comes into view just before, or goes out of it: the other tells when they met."""
+    motion = hit_motion(speed, before=2.2)
+    seen, t = watch(motion, np.random.default_rng(9), sd=0.001), motion.hits[0].t
+    times = np.unique(seen["t"])
+    beside = times[times > t][:count] if after else times[times < t][-count:]
+    hidden = (seen["t"] > beside[-1]) if after else (seen["t"] < beside[0])
+    hidden &= seen["stone"] == ("B" if after else "A")
+    (hit,) = find_contacts(seen[~hidden].reset_index(drop=True), RADIUS)
+    assert hit.stones == ("A", "B")
+    assert hit.t == pytest.approx(t, abs=0.01)
+
+
 def test_real_tracks_have_one_hit_each(shared: Path) -> None:
     (hit,) = find_contacts(airtable(shared), 0.035)
     assert hit.t == pytest.approx(0.178, abs=0.01)
