@@ -91,6 +91,23 @@ class StoneResult:
 
 
 @dataclass(frozen=True)
+class Misfit:
+    """How far a stone's track is from its path in the fit of the whole shot, between two hits.
+
+    ``size`` is the root mean square of what is off smoothly, from ``t0`` to ``t1`` (s), over what
+    errors make of that: 1, or less, where the stone moves as stones do on ice. ``certain`` tells
+    that it is larger than by chance, ``left_out`` that the fit hardly heeds the stretch for it.
+    """
+
+    stone: str
+    t0: float
+    t1: float
+    size: float
+    certain: bool
+    left_out: bool
+
+
+@dataclass(frozen=True)
 class Posterior:
     """Summary of a posterior sample of restitution and frictions.
 
@@ -258,6 +275,7 @@ class Results:
     law_choice: tuple[Law, ...] = ()
     curl: Told = field(default_factory=Told)
     stones: Mapping[str, StoneResult] = field(default_factory=dict)
+    misfits: tuple[Misfit, ...] = ()
     posterior: Posterior | None = None
     masses: Mapping[str, float] = field(default_factory=dict)
     teams: Mapping[str, str] = field(default_factory=dict)

@@ -21,6 +21,7 @@ from data.results import (
     Law,
     MeasuredState,
     Method,
+    Misfit,
     Posterior,
     Prediction,
     Results,
@@ -81,6 +82,7 @@ def read_results(path: Path) -> Results:
                 name: _made(StoneResult, _with_estimates(item, "friction", "turn", "spin"))
                 for name, item in raw.get("stones", {}).items()
             },
+            misfits=tuple(_made(Misfit, item) for item in raw.get("misfits", ())),
             posterior=(_made(Posterior, raw["posterior"]) if raw.get("posterior") else None),
             masses={str(name): _length(mass) for name, mass in raw.get("masses", {}).items()},
             teams={str(name): str(team) for name, team in raw.get("teams", {}).items()},

@@ -7,20 +7,31 @@ simulator can follow the shot. The first is what the second is checked against.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pandas as pd
 
 from data.errors import InputError
-from data.results import Collision, Estimate, Friction, Glide, Joint, Method, StoneResult, Told
+from data.results import (
+    Collision,
+    Estimate,
+    Friction,
+    Glide,
+    Joint,
+    Method,
+    Misfit,
+    StoneResult,
+    Told,
+)
 from physics.local_fit.contacts import Contact
 from physics.local_fit.finite_differences import by_finite_differences
 from physics.local_fit.local import Local, estimate_locally
 from physics.statistics.by_stone import results_by_stone
 from physics.statistics.random_effects import random_effects
 from physics.whole_shot.followed import fit_followed, followed
+from physics.whole_shot.misfit import misfits
 from physics.whole_shot.off_centre import centred_sightings
 from physics.whole_shot.shot_model import ice
 from physics.whole_shot.watched import loose_priors, watch
@@ -75,6 +86,8 @@ class Estimates:
         What that fit says, even where it is not used, and then why.
     curl : Told
         Turn of the paths at 1 m/s for a stone that spins counter-clockwise, rad/s.
+    misfits : tuple of Misfit
+        How far each track is from its path in a fit that follows the shot, between its hits.
     """
 
     restitution: Estimate = field(default_factory=Estimate)
@@ -86,6 +99,7 @@ class Estimates:
     whole: GlobalFit | None = field(default=None, compare=False)
     by_whole: Method = field(default_factory=Method)
     curl: Told = field(default_factory=Told)
+    misfits: tuple[Misfit, ...] = ()
 
     @property
     def methods(self) -> dict[str, Method]:
@@ -143,7 +157,7 @@ def estimate(
 
     local = beside_hits(sightings)
     restitution, friction, unsure = local.restitution, local.friction, local.friction_doubt
-    fitted, doubt, end = _whole(local, radius, masses or {}, centred)
+    fitted, off, doubt, end = _whole(local, radius, masses or {}, centred)
     whole = fitted if doubt is None else None
     if fitted is not None and doubt is not None and _fits(fitted):
         restitution = _of_two(restitution, fitted["restitution"])
@@ -153,7 +167,7 @@ def estimate(
         restitution = whole["restitution"]
     if whole is not None and friction.value is not None and whole.told("friction"):
         friction, unsure = _friction(whole), None
-    warnings = (unsure, *local.warnings, doubt or end)
+    warnings = (unsure, *local.warnings, doubt or end, *_astray(off))
     return Estimates(
         restitution,
         friction,
@@ -164,6 +178,7 @@ def estimate(
         whole,
         _global(fitted, doubt),
         _curl(whole, doubt),
+        off,
     )
 
 
@@ -219,27 +234,29 @@ def _whole(
     radius: float,
     masses: Mapping[str, float],
     centred: Callable[[GlobalFit], Estimate],
-) -> tuple[GlobalFit | None, str | None, str | None]:
+) -> tuple[GlobalFit | None, tuple[Misfit, ...], str | None, str | None]:
     """Fit the whole shot through the simulator.
 
-    Say, second, why what it gives is not to be used, or else, third, how far it goes. It must agree
+    Say, second, how far each track is from it, where it is followed; third, why what it gives is
+    not to be used, or else, fourth, how far it goes. It must agree
     with the restitution beside the hits as sighted, or as `centred` has it, with what the fit has
     caps beside the centres by taken out of the sightings.
     """
     hits = local.fit is not None and bool(local.fit.meetings)
     if local.fit is None or not (hits or local.friction.value):
-        return None, None, None
+        return None, (), None, None
     watched = watch(
         local.known, local.fit, radius,
         priors=loose_priors(radius), masses=masses,
         bystanders=() if hits else _beside(local, radius),
     )  # fmt: skip
     if watched is None or (hits and not watched.hits):
-        return None, LED_ASTRAY if hits else None, None
+        return None, (), LED_ASTRAY if hits else None, None
     try:
         fit, end = fit_followed(watched)
     except InputError as error:
-        return None, f"whole shot: cannot be simulated ({error}); {INSTEAD}", None
+        return None, (), f"whole shot: cannot be simulated ({error}); {INSTEAD}", None
+    off = misfits(watched, fit) if followed(fit) else ()
     doubt = _doubt(fit, local.restitution)
     if doubt is not None and _fits(fit):
         # Caps beside the centres turn with the stones; paths beside a hit take that for velocity.
@@ -248,7 +265,18 @@ def _whole(
     part = end if hits else "until something else moves a stone"
     if doubt is None and part is not None and _blunt(fit["friction"], local.friction):
         doubt = f"whole shot: the simulator follows it {part}, too short; {INSTEAD}"
-    return fit, doubt, None if end is None else f"whole shot: the simulator follows it {end}"
+    return fit, off, doubt, None if end is None else f"whole shot: the simulator follows it {end}"
+
+
+def _astray(off: Sequence[Misfit]) -> Iterator[str]:
+    """Name the tracks that are not as in the simulated shot."""
+    for one in off:
+        if one.certain:
+            so = "hardly counted there" if one.left_out else "nothing tells which stone is wrong"
+            yield (
+                f"whole shot: from {one.t0:.2f} to {one.t1:.2f} s the track of {one.stone} is"
+                f" {one.size:.1f} times its errors off a path on this ice; {so}"
+            )
 
 
 def _beside(local: Local, radius: float) -> list[str]:

@@ -109,9 +109,10 @@ def pictures(
             "residuals",
             "Sighted less smoothed places of all stones, the band twice the median standard"
             " deviation, carets for what lies beyond the edge; right, in standard deviations,"
-            " against the normal distribution.",
+            " against the normal distribution. Bars along the top: tracks that the fit of the"
+            " whole shot hardly counts, for they are not of a stone on this ice.",
             "Residuals of x and y against time, and their histograms.",
-            partial(figures.residuals_figure, residuals, collisions),
+            partial(figures.residuals_figure, residuals, collisions, results.misfits),
         )
 
 

@@ -124,6 +124,7 @@ def analyse(
         law_choice=() if estimates.whole is None else estimates.whole.laws,
         curl=estimates.curl,
         stones=estimates.by_stone,
+        misfits=estimates.misfits,
         posterior=None if drawn is None else summarise(drawn),
         teams={stone: team for stone, team in of_team.items() if team},
         masses=masses or {},

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from physics.whole_shot.law_choice import BEFORE, fit_with_chosen_laws
+from physics.whole_shot.misfit import fit_without_bent_tracks
 from physics.whole_shot.shot_model import Watched
 from physics.whole_shot.whole_fit import GlobalFit
 
@@ -29,7 +30,7 @@ def fit_followed(shot: Watched) -> tuple[GlobalFit, str | None]:
     end : str or None
         When and why it ends sooner than the shot.
     """
-    whole = fit = fit_with_chosen_laws(shot)
+    whole = fit = fit_without_bent_tracks(shot)
     end = None
     while shot.hits and not followed(fit):
         time, why = _obstacle(fit)

@@ -10,7 +10,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from data.results import Collision
+from data.results import Collision, Misfit
 from report.figures.parts import WIDTH, Array, legend_below, line, short, time_axis, title
 from report.style import BLACK, GREY, PALE, new_figure, stone_colours, styled
 
@@ -26,11 +26,18 @@ _MANY = 500
 _BAND = 0.6
 """Opacity of the band of the stated errors."""
 
+_TOP = 0.97
+"""Height, of the axes, of bars over what the fit of the whole shot left out."""
+
 _MOST_NAMED = 12
 """Stones that the legend names at most."""
 
 
-def residuals_figure(residuals: pd.DataFrame, collisions: Sequence[Collision] = ()) -> Figure:
+def residuals_figure(
+    residuals: pd.DataFrame,
+    collisions: Sequence[Collision] = (),
+    misfits: Sequence[Misfit] = (),
+) -> Figure:
     """Sighted less smoothed places against time, and how they are distributed.
 
     Left, in mm, with a band of twice the median standard deviation that was claimed, and carets
@@ -43,15 +50,23 @@ def residuals_figure(residuals: pd.DataFrame, collisions: Sequence[Collision] = 
         ``stone, t, dx, dy, sd_x, sd_y``, m and s, as `report.tables.residual_table` makes it.
     collisions : sequence of Collision
         All hits of the shot, in order.
+    misfits : sequence of Misfit
+        Of the fit of the whole shot; bars along the top show what it left out.
     """
     stones = sorted(str(name) for name in residuals["stone"].unique())
     colours = stone_colours(stones)
+    left_out = [one for one in misfits if one.left_out and one.stone in colours]
     with styled():
         figure = new_figure(WIDTH, 4.2)
         grid = figure.subplots(2, 2, sharex="col", width_ratios=[3, 1])
         for row, axis in zip(grid, "xy", strict=True):
             off, sd = residuals[[f"d{axis}", f"sd_{axis}"]].to_numpy(float).T
             _draw_times(row[0], residuals, 1000 * off, 1000 * float(np.median(sd)), colours)
+            for one in left_out:
+                row[0].plot(
+                    [one.t0, one.t1], [_TOP, _TOP], color=colours[one.stone], lw=4,
+                    solid_capstyle="butt", transform=row[0].get_xaxis_transform(),
+                )  # fmt: skip
             row[0].set_ylabel(f"Δ${axis}$ (mm)")
             _draw_histogram(row[1], off / sd)
         grid[1, 1].set_xlabel("in sd")
@@ -71,6 +86,8 @@ def residuals_figure(residuals: pd.DataFrame, collisions: Sequence[Collision] = 
             line("beyond the edge", color=BLACK, marker=6, ms=4, ls="none"),
             line("normal distribution", color=BLACK),
         ]
+        if left_out:
+            handles.append(line("left out of the whole shot", color=PALE, lw=4))
         legend_below(figure, handles)
     return figure
 

@@ -21,6 +21,7 @@ from data.results import (
     Law,
     MeasuredState,
     Method,
+    Misfit,
     Posterior,
     Results,
     SimulationScore,
@@ -67,6 +68,7 @@ RESULTS = Results(
     stones={
         "A": StoneResult(Estimate(0.01, 1e-3), Estimate(0.002, 0.001), 1.2, Estimate(0.6, 0.1))
     },
+    misfits=(Misfit("A", 0.0, 1.2, 0.8, False, False), Misfit("A", 1.2, 5.5, 6.1, True, True)),
     posterior=Posterior(100, {"restitution": {"0.5": 0.83}}, {"restitution": {"restitution": 1.0}}),
     teams={"A": "#d8c020"},
     shared_error=0.0013,
@@ -93,7 +95,7 @@ def test_the_form_of_the_file() -> None:
     assert set(raw) == {
         *("schema", "input", "restitution", "friction", "collisions", "glides"),
         *("simulations", "warnings", "radius", "predictions", "laws", "methods", "law_choice"),
-        *("curl", "stones", "posterior", "masses", "teams", "shared_error"),
+        *("curl", "stones", "misfits", "posterior", "masses", "teams", "shared_error"),
     }
     assert raw["input"] == {
         "files": ["clip Ä.mp4"],

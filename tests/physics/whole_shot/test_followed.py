@@ -72,7 +72,8 @@ def test_a_fit_that_does_not_settle_is_left_before_its_last_hit(
     def fit(part: Watched) -> GlobalFit:
         return replace(whole, shots=(part,), settled=part is not shot)
 
-    monkeypatch.setattr("physics.whole_shot.followed.fit_with_chosen_laws", fit)
+    for name in ("fit_with_chosen_laws", "fit_without_bent_tracks"):
+        monkeypatch.setattr(f"physics.whole_shot.followed.{name}", fit)
     found, end = fit_followed(shot)
     assert found.shots[0].hits == shot.hits[:1]
     assert (
@@ -122,7 +123,8 @@ def test_what_comes_after_a_gap_is_left_if_it_makes_all_much_noisier(
     def fit(part: Watched) -> GlobalFit:
         return replace(whole, shots=(part,), inflation=noisier if part is shot else 1.0)
 
-    monkeypatch.setattr("physics.whole_shot.followed.fit_with_chosen_laws", fit)
+    for name in ("fit_with_chosen_laws", "fit_without_bent_tracks"):
+        monkeypatch.setattr(f"physics.whole_shot.followed.{name}", fit)
     monkeypatch.setattr("physics.whole_shot.followed.followed", lambda _: True)
     found, end = fit_followed(shot)
     assert (end is not None) == (found.shots[0] is not shot) == left

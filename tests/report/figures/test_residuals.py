@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import pytest
 
+from data.results import Misfit
 from report import figures
 from tests.report.figures.drawn import check_layout, residuals
 
@@ -31,3 +32,15 @@ def test_wild_sightings_are_marks_at_the_edge(shot):
         assert mark.get_ydata()[0] == (high if sign > 0 else low)
     said = [entry.get_text() for entry in figure.legends[0].get_texts()]
     assert {"± 2 sd as stated", "beyond the edge"} <= set(said)
+
+
+def test_what_the_whole_shot_leaves_out_has_a_bar_in_the_colour_of_its_stone(shot):
+    misfits = (Misfit("A", 0.2, 0.9, 6.1, True, True), Misfit("B", 0.2, 0.9, 0.8, False, False))
+    figure = figures.residuals_figure(residuals(shot), shot.results.collisions, misfits)
+    check_layout(figure)
+    bars = [
+        list(line.get_xdata()) for ax in figure.axes[::2] for line in ax.lines if line.get_lw() == 4
+    ]
+    assert bars == [[0.2, 0.9], [0.2, 0.9]]
+    said = [entry.get_text() for entry in figure.legends[0].get_texts()]
+    assert "left out of the whole shot" in said
