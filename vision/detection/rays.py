@@ -80,6 +80,12 @@ class Rays:
         """Take those about some of the places."""
         return Rays(self.bgr[index], self.lab[index], self.inside[index], self.radius, self.angle)
 
+    def replaced(self, index: NDArray[np.intp], by: Rays) -> Rays:
+        """Take others about some of the places."""
+        bgr, lab = self.bgr.copy(), self.lab.copy()
+        bgr[index], lab[index] = by.bgr, by.lab
+        return Rays(bgr, lab, self.inside, self.radius, self.angle)
+
 
 @lru_cache(maxsize=8)
 def directions(rays: int) -> tuple[Array, Array]:
