@@ -29,12 +29,13 @@ from vision.detection.patch import (
     Effort,
     in_granite,
     is_plain,
+    over_caps,
     profile_of,
     unrolled,
 )
 from vision.detection.rays import Look, Rays, cameras_of, directions
 from vision.detection.rims import Rim, falls_along, summed
-from vision.detection.shoulder import against_beyond
+from vision.detection.shoulder import HIDDEN, against_beyond
 from vision.detection.smeared import middles, swept_share
 
 Array = NDArray[np.float64]
@@ -55,6 +56,10 @@ FLANK = 0.37
 where the edge of the cap lies: a mark beside the rim, a wall below it and lamps mirrored in the
 granite are colours beyond that, and draw the middle of the whole step aside by up to 5 mm. Of a
 narrower middle the level half-way says more, which is aside where granite is lit from one side."""
+
+FAR_FLANK = 0.25
+"""The same at the far edge of a cap that hides its granite. Pixels of colour are up to 4 cm long
+there, and where so wide a step falls most is chance: by up to 16 mm inside the level half-way."""
 
 OPEN, NEAR = 0.75, 0.02
 """Share of a stone to be seen for that, and how near to where it is looked for, m: of one half
@@ -186,19 +191,21 @@ def measure_discs(
         np.zeros((len(look.places), 2)) if look.drift is None else look.drift for look in looks
     ]
     slant, drift = by.slants(places), np.concatenate(still)
+    steep = np.hypot(*slant.T).max(initial=0.0) > HIDDEN[0]
+    over = over_caps(looks, by, rays, disc) if steep else rays
 
-    def stones(rays: Rays, rows: slice | NDArray[np.intp]) -> Measures:
+    def stones(rays: Rays, over: Rays, rows: slice | NDArray[np.intp]) -> Measures:
         return _stones(
-            rays, handle[rows], places[rows], scale[rows], slant[rows], drift[rows], appearance,
-            disc, effort,
+            rays, over, handle[rows], places[rows], scale[rows], slant[rows], drift[rows],
+            appearance, disc, effort,
         )  # fmt: skip
 
-    seen = stones(rays, slice(None))
+    seen = stones(rays, over, slice(None))
     doubtful = (seen.evidence > DOUBTFUL) & (seen.evidence < ENOUGH)
     again = np.flatnonzero(doubtful & _on_paint(rays, appearance))
     if not len(again):
         return seen
-    sharp = stones(sharpened(rays.at_places(again), scale[again]), again)
+    sharp = stones(sharpened(rays.at_places(again), scale[again]), over.at_places(again), again)
     return _better(seen, sharp, again)
 
 
@@ -262,6 +269,7 @@ def _worth(rays: Rays, appearance: Appearance, cap: slice, ring: slice, template
 
 def _stones(
     rays: Rays,
+    over: Rays,
     handle: Bytes,
     places: Array,
     scale: Array,
@@ -313,8 +321,14 @@ def _stones(
     leaning = np.clip((np.hypot(*slant.T) - ASLANT[0]) / (ASLANT[1] - ASLANT[0]), 0.0, 1.0)
     clear = np.flatnonzero((visible > OPEN) & (leaning > 0) & bool(appearance.caps))
     twice = np.concatenate([np.arange(len(places)), clear])
-    steps = against_beyond(signal[clear], rays.at_places(clear), behind[clear], of_cap[clear], disc)
-    middle = falls_along(np.clip(steps, -FLANK, FLANK)[..., None])[..., 0] / (2 * FLANK)
+    steep = clear[(behind[clear] > HIDDEN[0]).any(1)]
+    if len(steep):
+        signal[steep] = against_beyond(
+            signal[steep], over.at_places(steep), behind[steep], of_cap[steep], disc, pixel[steep]
+        )
+    flank = np.where(behind[clear] > HIDDEN[0], FAR_FLANK, FLANK).astype(np.float32)[..., None]
+    steps = np.clip(signal[clear], -flank, flank) / (2 * flank)
+    middle = falls_along(steps[..., None])[..., 0]
     falling = np.concatenate([cap_rim.fall, middle])
     walls = np.where(np.arange(len(twice)) < len(places), appearance.wall[1], WALL[1])
     both = fit_circles(

@@ -126,6 +126,33 @@ def profile_of(disc: Stone, effort: Effort) -> Profile:
     return chained(straight(top, np.linspace(inner, outer, effort.radii)), rings)
 
 
+def over_caps(looks: Sequence[Look], by: Cameras, rays: Rays, disc: Stone) -> Rays:
+    """Give the same rays, but such as go on at the height of the cap and do not fall off.
+
+    Parameters
+    ----------
+    looks : sequence of Look
+        Pictures of one size and n places in all.
+    by : Cameras
+        Theirs (`vision.detection.rays.cameras_of`).
+    rays : Rays
+        About these places, which fall off as the granite does (`profile_of`).
+    disc : Stone
+        Size of the discs.
+    """
+    first = int(np.searchsorted(rays.radius, in_granite(disc, SHOULDER)))
+    past = rays.radius[first:]
+    nodes = [(float(radius), disc.cap_height) for radius in past[[0, -1]]]
+    level = sample_rays(looks, by, straight(nodes, past), len(rays.angle))
+    bgr, lab, inside = (
+        np.concatenate([falling[:, :, :first], flat], axis=2)
+        for falling, flat in (
+            (rays.bgr, level.bgr), (rays.lab, level.lab), (rays.inside, level.inside),
+        )
+    )  # fmt: skip
+    return Rays(bgr, lab, inside, rays.radius, rays.angle)
+
+
 @lru_cache(maxsize=8)
 def handle_radii(disc: Stone, effort: Effort = EFFORT) -> Array:
     """Radii of the rings of the handle's picture, m, shape (rings,)."""

@@ -198,6 +198,24 @@ def test_hues_coded_in_blocks_hide_no_stone(block: int) -> None:
     assert seen.evidence.min() < FOLLOWING.least_again < (seen.evidence + seen.excused).min()
 
 
+def test_steeply_aslant_coarse_hues_draw_no_cap_on_paint_towards_the_camera() -> None:
+    places = np.array([[x, y] for x in (-0.9, -0.3, 0.3, 0.9) for y in (-0.6, 0.3, 1.1)])
+    scene = scene_of([(x, y, (44, 26, 178)) for x, y in places.tolist()])
+    paint = (180, 80, 20)
+    rings = replace(
+        scene.paint, twelve=paint, eight=paint, four=paint, button=paint, outline=None, logo=""
+    )
+    path = tilted_camera(np.radians(52), px_per_m=80.0)
+    picture = render_still(replace(scene, paint=rings), path, supersample=2)
+    camera, off = camera_of(path, scene), []
+    for aside in (0, 1):
+        coded = coarsely_coloured(np.asarray(picture, np.uint8), 2, aside)
+        learned = learn(search_picture(coded, camera).stones)
+        off.append(measure_discs([Look(coded, camera, places)], learned, STONE).centre - places)
+    assert np.abs(np.mean(off, axis=(0, 1))).max() < 0.0015
+    assert np.sqrt(np.square(off).mean(axis=(0, 1))).max() < 0.0027
+
+
 def test_a_cap_of_another_size_speaks_against_a_stone_also_by_colours_that_are_known() -> None:
     right, large = (teal_on_magenta(size * STONE.cap_radius) for size in (1.0, 1.2))
     learned = learn(search_picture(right, VIEW).stones)

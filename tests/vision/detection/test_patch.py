@@ -3,9 +3,17 @@ from __future__ import annotations
 import numpy as np
 
 from data.sheet import STONE
-from vision.detection.patch import EFFORT, handle_radii, is_plain, profile_of, unrolled
+from vision.detection.patch import (
+    EFFORT,
+    handle_radii,
+    is_plain,
+    over_caps,
+    profile_of,
+    unrolled,
+)
 from vision.detection.rays import Look, cameras_of
 from vision.detection.stones import plain_disc
+from vision.film.picture import colours_at
 from vision.optics.pose import View, camera
 from vision.optics.rig import OVERHEAD, start_rig
 
@@ -49,3 +57,22 @@ def test_rings_are_shown_that_lie_in_the_picture_and_on_the_cap_alone() -> None:
     np.testing.assert_array_equal(handle[0, 0, -1], rays.lab[0, 0, 20] & 254)
     disc = plain_disc(0.03)
     assert unrolled([look], by, disc, EFFORT)[1].shape == (3, EFFORT.rays, count, 3)
+
+
+def test_rays_over_a_cap_go_on_at_its_height() -> None:
+    picture = np.random.default_rng(0).integers(0, 255, (720, 1280, 3), np.uint8)
+    looks = [Look(picture, DOWN, PLACES[:2]), Look(255 - picture, DOWN, PLACES[1:])]
+    by = cameras_of(looks)
+    rays, _ = unrolled(looks, by, STONE, EFFORT)
+    over = over_caps(looks, by, rays, STONE)
+    falls = int(np.searchsorted(rays.radius, 0.1201))
+    for name in ("bgr", "lab", "inside"):
+        before, after = getattr(rays, name), getattr(over, name)
+        np.testing.assert_array_equal(after[:, :, :falls], before[:, :, :falls])
+    assert (over.bgr[:, :, -4:] != rays.bgr[:, :, -4:]).any()
+    radius = float(rays.radius[-3])
+    place = DOWN.project(PLACES[1] + [[0.0, radius]], STONE.cap_height)[0]
+    for k, image in ((1, picture), (2, 255 - picture)):
+        x, y = (np.full((1, 1), z, np.float32) for z in place)
+        seen = colours_at(image, x, y)[0, 0].astype(int)
+        assert np.abs(over.bgr[k, EFFORT.rays // 4, -3] - seen).max() < 12
