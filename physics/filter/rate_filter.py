@@ -100,7 +100,7 @@ def filtered(stretch: Stretch) -> Smoothed:
 def forward(stretch: Stretch) -> Forward:
     """Run the forward pass through one stretch."""
     along, turning = steps(stretch)
-    known = drift(stretch, along)
+    known = drift(stretch, along, turning)
     moves, turns = _listed(along), _listed(turning)
     places, rates = stretch.start
     anywhere = (ANYWHERE_SD[0], ANYWHERE_SD[0], ANYWHERE_SD[1])

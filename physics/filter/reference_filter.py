@@ -36,7 +36,7 @@ def filtered(stretch: Stretch) -> Smoothed:
     along, turning = steps(stretch)
     slow = np.maximum(stretch.slow, 1e-9)  # its covariances are inverted
     moves, noises = _matrices((along, along, turning), slow)
-    known = drift(stretch, along)
+    known = drift(stretch, along, turning)
     values = stretch.z - known[:, [0, 1, 4]]
     places, rates = stretch.start
     filter_ = KalmanFilter(dim_x=9, dim_z=3)

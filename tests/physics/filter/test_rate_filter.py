@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from physics.filter import rate_filter, reference_filter
-from physics.filter.stretch import Model, Stretch
+from physics.filter.stretch import LOST, Model, Stretch
 from physics.kalman import smooth
 from physics.local_fit.contacts import find_contacts
 from tests.physics.watch import RADIUS, hit_motion, watch
@@ -58,7 +58,8 @@ def test_tracks_are_the_same_by_either_filter() -> None:
 
 def test_a_steady_motion_is_found_exactly() -> None:
     t = np.arange(40) / 25
-    z = np.column_stack([1 + 0.5 * t, 2 - 0.3 * t, 0.7 * t])
+    loss = LOST / np.hypot(0.5, 0.3)
+    z = np.column_stack([1 + 0.5 * t, 2 - 0.3 * t, 0.7 * t - 0.5 * loss * t**2])
     n = len(t)
     stretch = Stretch(
         t, z, np.full((n, 3), 1e-3), np.zeros((n, 3)), np.zeros(n, int), *np.zeros((2, n), bool),
@@ -66,7 +67,8 @@ def test_a_steady_motion_is_found_exactly() -> None:
     )  # fmt: skip
     mean, spread, seen = rate_filter.filtered(stretch)
     np.testing.assert_allclose(mean[:, :2], z[:, :2], atol=1e-5)
-    np.testing.assert_allclose(mean[:, [2, 3, 5]], [[0.5, -0.3, 0.7]] * n, atol=1e-4)
+    np.testing.assert_allclose(mean[:, 2:4], [[0.5, -0.3]] * n, atol=1e-4)
+    np.testing.assert_allclose(mean[:, 5], 0.7 - loss * t, atol=1e-4)
     assert seen.all()
     assert spread[20, 0] < 0.6 * spread[0, 0] < 1e-3
     assert spread[0, 2] == pytest.approx(spread[-1, 2], rel=0.05)

@@ -25,8 +25,8 @@ def stretch(rng: np.random.Generator) -> Stretch:
 
 def whole(own: Stretch) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Places and rates of x given all sightings at once: a Gaussian conditioned on them."""
-    along, _ = steps(own)
-    known = drift(own, along)
+    along, turning = steps(own)
+    known = drift(own, along, turning)
     start, rates = own.start
     slow = own.slow[0, 0]
     mean, cov = np.zeros(3 * N), np.zeros((3 * N, 3 * N))

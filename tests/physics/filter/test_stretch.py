@@ -1,9 +1,19 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from physics.filter.stretch import ANGLE_MEMORY, PLACE_MEMORY, Model, Stretch, drift, steps
+from physics.filter.stretch import (
+    ANGLE_MEMORY,
+    LOST,
+    PLACE_MEMORY,
+    Model,
+    Stretch,
+    drift,
+    steps,
+)
 
 N = 21
 
@@ -21,11 +31,34 @@ def stretch(*, a: float = 0.1, speed: float = 1.0, stops: int = N, breaks: int =
 
 def test_the_ice_slows_a_stone_as_it_is_known_to() -> None:
     moved = stretch()
-    known = drift(moved, steps(moved)[0])
+    known = drift(moved, *steps(moved))
     t = moved.t
     assert known[:, 1] == pytest.approx(-0.5 * 0.1 * t**2, abs=1e-12)
     assert known[:, 3] == pytest.approx(-0.1 * t, abs=1e-12)
     assert np.all(known[:, [0, 2, 4, 5]] == 0)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_ice_takes_spin_and_more_of_a_slow_stone(sign: int) -> None:
+    moved = stretch(a=0.9)
+    turning = replace(moved, z=moved.z + sign * np.outer(1.5 * moved.t, [0, 0, 1]))
+    known = drift(turning, *steps(turning))
+    t = moved.t
+    # What is lost at 1 - 0.9 t, m/s, put together in closed form.
+    lost = LOST * np.log(1 / (1 - 0.9 * t)) / 0.9
+    assert known[:17, 5] == pytest.approx(-sign * lost[:17], rel=0.1)
+    angle = np.concatenate([[0], np.cumsum(0.5 * np.diff(t) * (known[1:, 5] + known[:-1, 5]))])
+    assert known[:, 4] == pytest.approx(angle, abs=1e-12)
+
+
+def test_no_more_spin_is_lost_than_there_is_and_none_at_rest() -> None:
+    slow = stretch(speed=0.02, a=0.0, stops=15)
+    slow = replace(slow, z=slow.z + np.outer(0.01 * slow.t, [0, 0, 1]))
+    known = drift(slow, *steps(slow))
+    assert known[10, 5] == pytest.approx(-0.01, rel=1e-6)
+    assert np.all(known[15:, 5] == 0)
+    unseen = replace(slow, z=np.full_like(slow.z, np.nan))
+    assert np.all(drift(unseen, *steps(unseen))[:, 4:] == 0)
 
 
 def test_a_stone_at_rest_goes_nowhere() -> None:
