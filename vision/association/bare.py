@@ -7,18 +7,20 @@ handle, and a team's are alike.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from math import inf, nan
+from collections.abc import Callable, Sequence
+from math import nan
 
 import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import Stone
 from vision.association.follow import Track
+from vision.association.naming import first_motion
 from vision.detection.appearance import Appearance
 from vision.detection.patch import is_plain
-from vision.detection.relief import BARE, contrast
+from vision.detection.relief import BARE, contrast, contrast_turned
 
+Complex = NDArray[np.complex64]
 Flags = NDArray[np.bool_]
 
 MOST_PAIRS = 40
@@ -37,24 +39,39 @@ def with_handles(
     if appearance is None or is_plain(disc):
         return [*tracks]
     team = [appearance.nearest(track.colour)[0] for track in tracks]
-    without = bare([contrast_of(track) for track in tracks], team)
+    moved = [first_motion(track, disc.radius) is not None for track in tracks]
+    # What moves may turn, by a radian and more from one picture to the next.
+    shown = [
+        contrast_of(track, contrast_turned if moves else contrast)
+        for track, moves in zip(tracks, moved, strict=True)
+    ]
+    without = bare(shown, team, moved)
     return [track for track, out in zip(tracks, without, strict=True) if not out]
 
 
-def contrast_of(track: Track) -> float:
+def contrast_of(track: Track, shared: Callable[[Complex, Complex], float]) -> float:
     """Contrast around the centre that pictures of a cap share with the next ones, L*a*b* units.
 
-    NaN where fewer than three pictures show the cap.
+    Parameters
+    ----------
+    track : Track
+    shared : callable
+        Tells it of two pictures.
+
+    Returns
+    -------
+    float
+        NaN where fewer than three pictures show the cap.
     """
     shown = [kept for kept in track.sightings.spectra if kept is not None]
     if len(shown) < 3:
         return nan
     some = np.unique(np.linspace(0, len(shown) - 2, MOST_PAIRS).astype(int)).tolist()
     # What covers a cap for some time has contrast of its own.
-    return float(np.median([contrast(shown[k].get(), shown[k + 1].get()) for k in some]))
+    return float(np.median([shared(shown[k].get(), shown[k + 1].get()) for k in some]))
 
 
-def bare(shown: Sequence[float], team: Sequence[int]) -> Flags:
+def bare(shown: Sequence[float], team: Sequence[int], moved: Sequence[bool]) -> Flags:
     """Tell which discs have no handle, as stones beside them have.
 
     Parameters
@@ -63,13 +80,16 @@ def bare(shown: Sequence[float], team: Sequence[int]) -> Flags:
         Contrast of each, from `contrast_of`.
     team : sequence of int
         Rank of the cap's colour of each.
+    moved : sequence of bool
+        Which of them moved on the ice. No paint does: a team of which one does, but of which no
+        handle is seen, has such as do not show.
 
     Returns
     -------
     ndarray of bool, shape (n,)
         False where it cannot be told, or where no stone shows a handle.
     """
-    values, of = np.asarray(shown, float), np.asarray(team)
+    values, of, moves = np.asarray(shown, float), np.asarray(team), np.asarray(moved, bool)
     handled = values >= BARE
     out = np.zeros(len(values), bool)
     for rank in set(team):
@@ -77,7 +97,9 @@ def bare(shown: Sequence[float], team: Sequence[int]) -> Flags:
         alike, others = values[handled & own], values[handled & ~own]
         if len(alike):
             least = ALIKE * float(np.median(alike))
+        elif len(others) and not (moves & own).any():
+            least = OTHER * float(others.min())
         else:
-            least = OTHER * float(others.min(initial=inf)) if len(others) else 0.0
+            least = 0.0
         out |= own & (values < min(BARE, least))
     return out

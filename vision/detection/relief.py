@@ -44,13 +44,26 @@ def contrast(here: Complex, there: Complex) -> float:
     Parameters
     ----------
     here, there : ndarray, shape (orders, rings, channels)
-        From `vision.spin.handle.cap_spectrum`, of pictures so near in time that a stone hardly
-        turns between them.
+        From `vision.spin.handle.cap_spectrum`, of a stone that hardly turned between them.
 
     Returns
     -------
     float
         Root mean square, negative where they are rather opposites.
     """
-    power = 2 * float(np.vdot(*(one[COARSE][:, _RINGS] for one in (here, there))).real) / _WEIGHT
+    power = 2 * float(_shared(here, there).sum().real) / _WEIGHT
     return sqrt(power) if power > 0 else -sqrt(-power)
+
+
+def contrast_turned(here: Complex, there: Complex) -> float:
+    """Give the same of pictures between which a stone may have turned, be it by half a turn.
+
+    Half as much of the noise of each picture adds to it as if they were the same one.
+    """
+    return sqrt(2 * float(np.abs(_shared(here, there)).sum()) / _WEIGHT)
+
+
+def _shared(here: Complex, there: Complex) -> Complex:
+    """Products of two pictures, summed for each of the coarse harmonics, shape (4,)."""
+    first, second = (one[COARSE][:, _RINGS] for one in (here, there))
+    return np.asarray((first.conj() * second).sum((1, 2)))

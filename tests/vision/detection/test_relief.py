@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from data.sheet import STONE
 from vision.detection.patch import handle_radii
-from vision.detection.relief import contrast
+from vision.detection.relief import contrast, contrast_turned
 from vision.spin.handle import cap_spectrum
 
 RADII = handle_radii(STONE)
@@ -59,3 +59,15 @@ def test_noise_that_is_anew_in_each_picture_is_not_shared() -> None:
 def test_opposites_share_less_than_nothing() -> None:
     wave = 40 * np.cos(2 * ANGLE)
     assert contrast(cap(wave), cap(-wave)) == pytest.approx(-40 / np.sqrt(2), rel=0.01)
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.7, 1.6, 3.1])
+def test_a_turn_between_two_pictures_may_leave_their_contrast(turn: float) -> None:
+    one, other = cap(bar(30)), cap(bar(30, turn))
+    assert contrast_turned(one, other) == pytest.approx(contrast(one, one), rel=0.05)
+
+
+def test_noise_adds_half_as_much_to_turned_pictures_as_to_one() -> None:
+    noisy = [cap(bar(0), 8.0, seed) for seed in range(41)]
+    own = np.median([contrast(a, a) for a in noisy])
+    assert np.median([contrast_turned(*pair) for pair in pairwise(noisy)]) < 0.55 * own
