@@ -228,4 +228,4 @@ def _spin_lost(stretch: Stretch, speed: Floats, turning: Steps) -> Floats:
         after = max(keep * omega - step * less, -abs(spin))
         theta, omega = theta + 0.5 * reach * (omega + after), after
         out[k] = theta, omega
-    return np.copysign(1.0, spin) * out
+    return np.asarray(np.copysign(1.0, spin) * out)
