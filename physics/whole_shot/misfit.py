@@ -76,8 +76,8 @@ def misfits(shot: Watched, fit: GlobalFit, level: float | None = None) -> tuple[
     """How far each stretch of each stone's track is from the path that a fit has it on.
 
     Paths are smooth, and so is what draws a track aside: what residuals have of low degree in time
-    is set against what noise as large and as lasting as that of the other stones would have, and
-    against the error that places share.
+    is set against what noise as large and as lasting as that of the other stones would have, where
+    the fit counts them, and against the error that places share.
 
     Parameters
     ----------
@@ -96,14 +96,17 @@ def misfits(shot: Watched, fit: GlobalFit, level: float | None = None) -> tuple[
         name: centred(trace, run, fit.inflation, shot.off_centre)[0]
         for (name, trace), run in zip(traces.items(), given, strict=True)
     }
+    larger = {
+        name: fit.shots[0].traces[name].sd[:, 0] > trace.sd[:, 0] for name, trace in traces.items()
+    }
+    counted = {name: run[~larger[name]] for name, run in runs.items()}
     out = []
     for name, trace in traces.items():
-        noise = _noise_of_others(name, runs) if level is None else level
-        larger = fit.shots[0].traces[name].sd[:, 0] > trace.sd[:, 0]
+        noise = _noise_of_others(name, counted) if level is None else level
         hits = [path.start + shot.start for path in simulation.paths[name][1:]]
         for rows in np.split(np.arange(len(trace.t)), np.searchsorted(trace.t, hits)):
             if len(rows) >= 2 * EACH:
-                out.append(_misfit(trace, runs[name], rows, noise, bool(larger[rows].any())))
+                out.append(_misfit(trace, runs[name], rows, noise, bool(larger[name][rows].any())))
     return tuple(out)
 
 
@@ -127,8 +130,8 @@ def _misfit(
 
 
 def _noise_of_others(stone: str, runs: Mapping[str, Floats]) -> float:
-    """Factor on the variances of places that the residuals of the other stones ask for."""
-    others = [(run, 3) for name, run in runs.items() if name != stone]
+    """Factor on the variances of places that residuals of the other stones, (n, 2), ask for."""
+    others = [(run, 3) for name, run in runs.items() if name != stone and len(run) > 3]
     return inflation(others, sum(2 * (len(run) - 3) for run, _ in others)) if others else 1.0
 
 

@@ -22,7 +22,7 @@ def seen(glides: int) -> pd.DataFrame:
     for rank in range(glides):
         start = Start(1.5 - 3 * rank, -2.0, 0.0, 1.3 + 0.3 * rank, 0.0, 1.0)
         alone = simulate([start], 3.0, ice=Ice(b=SLOW), step=5e-4, keep_every=4)
-        tables.append(watch(alone, rng, sd=NOISE).assign(stone="XY"[rank]))
+        tables.append(watch(alone, rng, sd=NOISE).assign(stone="XYZ"[rank]))
     return pd.concat(tables, ignore_index=True)
 
 
@@ -51,8 +51,12 @@ def test_tracks_that_are_as_they_state_stay_as_they_are(glides: int) -> None:
     assert not any(one.certain or one.left_out for one in found.misfits)
 
 
-@pytest.mark.parametrize(("stone", "aside"), [("A", 0.1), ("B", 0.02), ("X", 0.05)])
-def test_a_bent_track_is_named_and_leads_no_estimate_astray(stone: str, aside: float) -> None:
+@pytest.mark.parametrize(
+    ("stone", "aside", "apart"), [("A", 0.1, 0.4), ("B", 0.02, 1.0), ("X", 0.05, 0.2)]
+)
+def test_a_bent_track_is_named_and_leads_no_estimate_astray(
+    stone: str, aside: float, apart: float
+) -> None:
     found = measure(bent(seen(2), stone, aside))
     assert {one.stone for one in found.misfits if one.left_out} == {stone}
     assert any(one.certain for one in found.misfits if one.left_out)
@@ -63,6 +67,8 @@ def test_a_bent_track_is_named_and_leads_no_estimate_astray(stone: str, aside: f
         assert abs((told.value or 0.0) - truth) < 3 * (told.stderr or 0.0)
         # it is the others' tracks that tell them, about as well as before
         assert before is not None
+        off = (told.value or 0.0) - (before[name].value or 0.0)
+        assert abs(off) < apart * (told.stderr or 0.0)
         assert (told.stderr or 1.0) < 4 * (before[name].stderr or 0.0)
 
 
@@ -72,6 +78,23 @@ def test_the_worse_bent_it_is_the_larger_its_misfit() -> None:
         for aside in (0.02, 0.06)
     ]
     assert sizes[1] / sizes[0] == pytest.approx(3, rel=0.2)
+
+
+@pytest.mark.parametrize(("aside", "certain"), [(0.0075, False), (0.01, True)])
+def test_a_bend_counts_from_twice_its_error_on(aside: float, certain: bool) -> None:
+    own = [one for one in measure(bent(seen(2), "X", aside)).misfits if one.stone == "X"]
+    assert [one.certain for one in own] == [certain]
+
+
+def test_two_bent_tracks_of_five_are_left_out_both() -> None:
+    found = measure(bent(bent(seen(3), "X", 0.06), "Y", -0.06, 1.5))
+    assert {one.stone for one in found.misfits if one.left_out} == {"X", "Y"}
+
+
+def test_a_second_bent_track_is_named_beside_one_that_is_left_out() -> None:
+    found = measure(bent(bent(seen(2), "X", 0.06), "Y", -0.06, 1.5))
+    assert {one.stone for one in found.misfits if one.left_out} == {"X"}
+    assert {one.stone for one in found.misfits if one.certain} == {"X", "Y"}
 
 
 def test_of_two_stones_that_contradict_each_other_neither_is_left_out() -> None:
