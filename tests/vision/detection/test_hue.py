@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -9,7 +11,7 @@ from tests.synthetic.scenes import PAINTS
 from tests.vision.detection.test_stones import RED, YELLOW, camera_of, scene_of
 from vision.detection.appearance import Appearance, learn
 from vision.detection.hue import sharpened
-from vision.detection.measure import Measures, measure_discs
+from vision.detection.measure import Measures, _better, _on_paint, measure_discs
 from vision.detection.rays import Look, Rays
 from vision.detection.stones import SEARCH, search_picture
 
@@ -66,6 +68,40 @@ def test_what_is_clear_is_measured_once(monkeypatch: pytest.MonkeyPatch) -> None
     picture = np.asarray(render_still(SCENE, CAMERA), np.uint8)
     assert measures(picture, np.array([place[:2] for place in ON_ICE])).evidence.min() > 1.6
     assert measures(picture, ON_PAINT).evidence.min() > 1.6
+
+
+@pytest.mark.parametrize(("around", "vivid"), [(0.15, False), (0.4, True)])
+def test_paint_tinges_granite_where_it_is_vivid_around_a_good_part(
+    around: float, vivid: bool
+) -> None:
+    picture = np.asarray(render_still(SCENE, CAMERA), np.uint8)
+    rays, known = measures(picture, ON_PAINT[:1]).rays, learned(picture)
+    assert known.granite is not None
+    lab = rays.lab.copy()
+    lab[:, :, -1] = known.granite.mean
+    lab[:, : round(around * lab.shape[1]), -1, 1] += 50
+    assert _on_paint(replace(rays, lab=lab), known).tolist() == [vivid]
+
+
+@pytest.mark.parametrize(
+    ("uncovered", "evidence", "taken"), [(0.1, 0.3, True), (0.02, 0.3, False), (0.1, -0.1, False)]
+)
+def test_sharper_hue_counts_where_it_shows_more_of_a_stone(
+    uncovered: float, evidence: float, taken: bool
+) -> None:
+    picture = np.asarray(render_still(SCENE, CAMERA), np.uint8)
+    first = measures(picture, ON_PAINT)
+    part = first.rays.at_places(np.array([1]))
+    second = replace(
+        measures(picture, ON_PAINT[1:2]),
+        visible=first.visible[1:2] + uncovered,
+        evidence=first.evidence[1:2] + evidence,
+        rays=replace(part, bgr=255 - part.bgr),
+    )
+    best = _better(first, second, np.array([1]))
+    np.testing.assert_allclose(best.evidence - first.evidence, [0, evidence * taken, 0], atol=1e-9)
+    changed = (best.rays.bgr != first.rays.bgr).any((1, 2, 3))
+    assert changed.tolist() == [False, taken, False]
 
 
 def test_paint_alone_becomes_no_stone() -> None:

@@ -96,3 +96,11 @@ def test_a_cap_before_its_own_colour_is_left_as_it_is() -> None:
     of_cap = np.ones((1, RAYS, WITHIN), bool)
     new = against_beyond(signal, rays, BEHIND[None], of_cap, STONE, np.array([0.012]))
     np.testing.assert_array_equal(new, signal)
+
+
+@pytest.mark.parametrize(("apart", "told"), [(25.0, False), (60.0, True)])
+def test_what_is_much_like_the_cap_tells_no_edge(apart: float, told: bool) -> None:
+    signal, rays = seen(GREEN, 0.0, GREEN + apart / 3**0.5)
+    of_cap = np.ones((1, RAYS, WITHIN), bool)
+    new = against_beyond(signal, rays, BEHIND[None], of_cap, STONE, np.array([0.012]))
+    assert (new != signal).any() == told
