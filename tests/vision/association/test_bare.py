@@ -27,11 +27,12 @@ def track_of(
     caps: Sequence[NDArray[np.complex64] | None],
     colour: NDArray[np.float64] = RED,
     step: float = 0.0,
+    pixel: float = 0.01,
 ) -> Track:
     track = Track()
     for frame, spectrum in enumerate(caps):
         shown = None if spectrum is None else Kept(spectrum)
-        seen = sighting((1.0, step * frame), colour)._replace(spectrum=shown)
+        seen = sighting((1.0, step * frame), colour)._replace(spectrum=shown, pixel_size=pixel)
         track.add(frame, frame / 25, seen, STONE.radius)
     return track
 
@@ -98,7 +99,10 @@ def test_what_goes_over_a_disc_for_some_time_is_no_handle() -> None:
     assert contrast_of(track_of([*disc[:20], *covered, *disc[20:30], *covered[:5]]), contrast) < 1
 
 
-def test_of_hardly_seen_caps_nothing_is_told() -> None:
+def test_of_hardly_seen_and_of_tiny_caps_nothing_is_told() -> None:
     twice = track_of([None, cap(bar(30)), None, cap(bar(30)), None])
     assert np.isnan(contrast_of(twice, contrast))
+    for pixel, told in ((0.02, True), (0.03, False)):
+        small = track_of([cap(bar(30))] * 20, pixel=pixel)
+        assert np.isfinite(contrast_of(small, contrast)) == told
     assert contrast_of(track_of([None, *[cap(bar(30))] * 3]), contrast) > 5
