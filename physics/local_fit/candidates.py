@@ -53,7 +53,7 @@ def _transmitted(
 ) -> list[Meeting]:
     """Add candidates of stones that touch one that is hit, where there are none yet.
 
-    An impulse is transmitted through a row of touching stones, each of which may hardly move.
+    An impulse is transmitted through a row of touching stones, all of which but the last may stay.
     """
     out: list[Meeting] = []
     for meeting in (every := list(meetings)):
@@ -68,9 +68,7 @@ def _transmitted(
                 before = np.array([t - gap])
                 apart = float(np.hypot(*(_at(b, before) - _at(a, before))[0]))
                 noise = 3 * np.sqrt(np.mean(a.sd**2) + np.mean(b.sd**2))
-                if apart < TOUCHING * 2 * radius + noise and (
-                    moves(a, t, radius, LONG) and moves(b, t, radius, LONG)
-                ):
+                if apart < TOUCHING * 2 * radius + noise:
                     every.append(Meeting(t + 0.01 * gap, (first, second), gap))
                     out.append(every[-1])
     return out

@@ -13,8 +13,9 @@ from data.tracks import Table
 from physics.local_fit.candidate_pruning import prune_candidates
 from physics.local_fit.candidates import LONG, REACH, candidates, in_causal_order, moves
 from physics.local_fit.fit import fit_shot
+from physics.local_fit.glides import free
 from physics.local_fit.segments import Piece, cut
-from physics.local_fit.shot_fit import ContactState, Deceleration, Meeting, ShotFit
+from physics.local_fit.shot_fit import ContactState, Meeting, ShotFit
 from physics.local_fit.traces import Trace, traces
 
 Floats = NDArray[np.float64]
@@ -63,7 +64,8 @@ def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
 
     Every approach of two stones to about 2R is a candidate. All are fitted at once as hits,
     and the one whose impulse is least significant is struck off until all that are left
-    changed the motion of both their stones. Where several show no hit (of those between two
+    changed the motion of both their stones, or passed on an impulse that can have come no other
+    way. Where several show no hit (of those between two
     sightings none is seen by itself), one that pushes nothing goes first, and of these the pair
     that lies farthest from touching. A pair hits again only after something else came between.
 
@@ -83,14 +85,16 @@ def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
     meetings = prune_candidates(candidates(known, radius), known)
     cuts: dict[str, list[Piece]] = {}
     ordered, restarts = False, MOST_RESTARTS
+    law = replace(free(radius), along=0.5, across=0.5)
     while meetings:
         pieces, cuts = cut_all(known, meetings, radius, cuts)
-        fit = fit_shot(known, pieces, meetings, radius, deceleration=Deceleration(0.0, 0.5, 0.5))
+        fit = fit_shot(known, pieces, meetings, radius, deceleration=law)
         other = None if ordered else _reordered(fit, known)
         if other is not None:
             meetings, cuts, ordered = other, {}, True
             continue
-        evidence = _once([_evidence(fit, k, known, radius) for k in range(len(meetings))], fit)
+        evidence = [_evidence(fit, k, known, radius) for k in range(len(meetings))]
+        evidence = _needed(_once(evidence, fit), fit)
         weakest = min(range(len(meetings)), key=evidence.__getitem__)
         significant = evidence[weakest].hit >= SIGNIFICANT
         if significant:
@@ -242,6 +246,25 @@ def _once(evidence: Sequence[_Evidence], fit: ShotFit) -> list[_Evidence]:
         if before is not None and not since:
             weaker = min(before, k, key=evidence.__getitem__)
             out[weaker] = evidence[weaker]._replace(hit=0.0)
+    return out
+
+
+def _needed(evidence: Sequence[_Evidence], fit: ShotFit) -> list[_Evidence]:
+    """Let a meeting that set off a stone at rest count as much as the hit of it that follows.
+
+    If that stone meets another one at rest, something drove it. What did is hardly seen by itself
+    where the stone passes the impulse on at once and stays, as in a row of touching stones.
+    """
+    out = list(evidence)
+    for k in reversed(range(len(fit.meetings))):
+        for stone in fit.meetings[k].stones:
+            before, after = fit.sides[k, stone]
+            caused = fit.pieces[after].closes
+            if not fit.pieces[before].rest or caused is None or -out[k].near > REACH - 1:
+                continue
+            (other,) = {*fit.meetings[caused].stones} - {stone}
+            if fit.pieces[fit.sides[caused, other][0]].rest:
+                out[k] = out[k]._replace(hit=max(out[k].hit, out[caused].hit))
     return out
 
 

@@ -155,6 +155,25 @@ def test_a_slow_stone_that_moves_a_touching_pair_by_millimetres_hits_both(
     assert [hit.stones for hit in hits] == [("A", "B"), ("B", "C")]
 
 
+@pytest.mark.parametrize(
+    ("speed", "row", "pairs"),
+    [(0.52, 2, ["AB", "BC"]), (0.5, 3, ["AB", "BC", "CD"]), (0.48, 2, [])],
+)
+@pytest.mark.parametrize("seed", [1, 2])
+def test_touching_stones_pass_on_what_a_slow_one_brings(
+    speed: float, row: int, pairs: list[str], seed: int
+) -> None:
+    # On ice as FCV1 has it the first comes at 0.2 and 0.13 m/s and stops there, as do all of the
+    # row but the last, which goes on for centimetres; the slowest stops before it.
+    still = [Start(0.0, k * (2 * RADIUS + 4e-4)) for k in range(row)]
+    ice = Ice(b=0.00626286, a=0.00200985, v_c=0.06385782)
+    come = Start(0.01, -1.0 - 2 * RADIUS, 0.0, speed)
+    motion = simulate([come, *still], 6.0, ice=ice, step=5e-4, keep_every=4)
+    assert len({(hit.first, hit.second) for hit in motion.hits}) == len(pairs)
+    seen = watch(motion, np.random.default_rng(seed), sd=0.001)
+    assert ["".join(hit.stones) for hit in find_contacts(seen, RADIUS)] == pairs
+
+
 def test_a_push_and_a_wall_are_no_hits() -> None:
     rng = np.random.default_rng(5)
     t = np.arange(0, 3, 1 / 30)
