@@ -7,6 +7,7 @@ from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from physics.local_fit.breaks import FEWEST, breaks
@@ -137,9 +138,13 @@ def _closing(meeting: Meeting, known: Mapping[str, Trace], time: float) -> float
 
 
 def _extent(path: Trace) -> float:
-    """Size of the region that the middle 96 % of a path's places lie in, m."""
-    low, high = np.quantile(path.xy, [0.02, 0.98], axis=0)
-    return float(np.hypot(*(high - low)))
+    """Size of the region that a path's places lie in, m, but for fewer in a row than a segment has.
+
+    However long a stone rests before and after: what it goes is no share of its places.
+    """
+    wide = min(2 * FEWEST - 1, (len(path.xy) + 1) // 2)
+    usual = np.median(sliding_window_view(path.xy, wide, axis=0), axis=-1)
+    return float(np.hypot(*np.ptp(usual, axis=0)))
 
 
 def _approaches(

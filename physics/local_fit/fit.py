@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physics.filter.slowing import LEAST, MOST, course, stop_after
+from physics.local_fit.breaks import FEWEST
 from physics.local_fit.constraints import acceleration_prior, contact_constraints
 from physics.local_fit.segments import Piece
 from physics.local_fit.shot_fit import Deceleration, Meeting, ShotFit, unknowns_of
@@ -112,8 +113,8 @@ class _Solver:
         for k, meeting in enumerate(self.meetings):
             self.theta[6 * len(self.pieces) + k] = meeting.t
         for i, piece in enumerate(self.pieces):
-            states = self.theta[6 * i : 6 * i + 6].reshape(2, 3)
-            states[:, 0], states[:, 1] = _first_guess(piece, traces[piece.stone], self.origins[i])
+            guess = _first_guess(piece, traces[piece.stone], self.origins[i])
+            self.theta[6 * i : 6 * i + 6] = guess.ravel()
 
     def _blocks(self) -> list[NDArray[np.int64]]:
         """Unknowns that depend on each other: pieces are tied to others by meetings alone."""
@@ -302,7 +303,13 @@ class _Solver:
 
 
 def _origin(piece: Piece, trace: Trace, meetings: Sequence[Meeting]) -> float:
-    """Time at which a piece's state is given, s: of the hit that opens it, else its first."""
+    """Time at which a piece's state is given, s: of the hit that opens it, else its first.
+
+    Of a stone at rest it is that of the hit which ends it: there its state is asked for, and how
+    still it lies would move it within a minute.
+    """
+    if piece.rest and piece.closes is not None:
+        return meetings[piece.closes].t
     if piece.opens is not None:
         return meetings[piece.opens].t
     if len(piece.samples):
@@ -310,10 +317,12 @@ def _origin(piece: Piece, trace: Trace, meetings: Sequence[Meeting]) -> float:
     return piece.start if np.isfinite(piece.start) else piece.end
 
 
-def _first_guess(piece: Piece, trace: Trace, start: float) -> tuple[Floats, Floats]:
-    """Place and velocity of a piece at a time, by a straight line; the velocity is 0 at rest.
+def _first_guess(piece: Piece, trace: Trace, start: float) -> Floats:
+    """Place, velocity and acceleration of a piece at a time, shape (2, 3).
 
-    The shortest pieces use the sightings beside them too.
+    By a straight line, without an acceleration; one that stops by the first half of its way, as if
+    it was slowed evenly: how long it then rests tells nothing of its motion. At rest all but the
+    place is 0. The shortest pieces use the sightings beside them too.
     """
     samples = piece.samples
     if len(samples) < 3:
@@ -321,9 +330,19 @@ def _first_guess(piece: Piece, trace: Trace, start: float) -> tuple[Floats, Floa
         high = min(int(np.searchsorted(trace.t, piece.end)) + 1, len(trace.t))
         samples = np.arange(low, high)
     t, places = trace.t[samples], trace.xy[samples]
-    middle = places.mean(0)
     if piece.rest or len(samples) < 2:
-        return middle, np.zeros(2)
+        return np.column_stack([places.mean(0), np.zeros((2, 2))])
+    way = 0.0
+    if piece.stops:
+        left = np.hypot(*(places - np.median(places[len(places) // 2 :], axis=0)).T)
+        way = max(float(left[0]), 1e-6)
+        half = max(int(np.argmax(left < 0.5 * way)), FEWEST)
+        t, places = t[:half], places[:half]
     late = t - t.mean()
     speed = late @ places / (late @ late)
-    return middle + (start - t.mean()) * speed, speed
+    place = places.mean(0) + (start - t.mean()) * speed
+    if not way:
+        return np.column_stack([place, speed, np.zeros(2)])
+    # Evenly slowed, a stone goes the first half of its way at so much of its first speed.
+    speed = speed / (0.5 + np.sqrt(0.125))
+    return np.column_stack([place, speed, -speed * np.hypot(*speed) / (2 * way)])

@@ -25,6 +25,10 @@ SLOW_END = 0.12
 """How much faster a stone may be at the end of a glide that ends at rest, m/s: a second's glide on
 ice, of which the last frames may be missing."""
 
+SHORTLY = 2.0
+"""Time at either end of a stretch, s, within which it shows whether a stone moves there: no share
+of it, for a rest that follows may be a hundred times as long as the glide that ends in it."""
+
 CURVED = 6
 """Sightings from which the speed at the end of a stretch is told by a parabola, not a line."""
 
@@ -142,11 +146,19 @@ def _piece(
     closes: int | None,
     radius: float,
 ) -> Piece:
-    motion = _motion(path, samples)
-    slow = _speed(motion.velocity) < SLOW * radius + 2 * motion.stderr
+    t = path.t[samples]
+    early, late = samples[t <= t[:1] + SHORTLY], samples[t >= t[-1:] - SHORTLY]
     untold = len(samples) < 2 and closes is not None
-    rest = slow and opens is None and not untold  # who was hit moves, and who hits it may
-    return Piece(path.stone, start, end, samples, rest, False, opens, closes)
+    # Who was hit moves, and who hits it may.
+    rest = opens is None and not untold and _slow(path, early, radius)
+    stops = not rest and len(early) + len(late) <= len(samples) and _slow(path, late, radius)
+    return Piece(path.stone, start, end, samples, rest, stops, opens, closes)
+
+
+def _slow(path: Trace, samples: NDArray[Any], radius: float) -> bool:
+    """Whether a stretch is as slow as one at rest, as far as noise tells."""
+    motion = _motion(path, samples)
+    return _speed(motion.velocity) < SLOW * radius + 2 * motion.stderr
 
 
 def _with_stops(path: Trace, run: list[Piece], radius: float) -> list[Piece]:

@@ -203,8 +203,14 @@ def curl(values: Mapping[str, float], loss: float = FCV1Curl.loss) -> Curl:
 
 
 def places(paths: Sequence[Path], times: Floats) -> Floats:
-    """Places at times (s, increasing) on a stone's paths from hit to hit, shape (n, 2)."""
+    """Places at times (s, increasing) on a stone's paths from hit to hit, shape (n, 2).
+
+    A stone that is seen before its first path begins rests until then.
+    """
     edges = np.searchsorted(times, [path.start for path in paths[1:]])
-    runs = zip(paths, np.split(times, edges), strict=True)
-    rows = [path.point(t)[:2] for path, run in runs for t in run.tolist()]
-    return np.array(rows, float).reshape(-1, 2)
+    out = np.empty((len(times), 2))
+    for path, rows in zip(paths, np.split(np.arange(len(times)), edges), strict=True):
+        out[rows] = path.end[:2]
+        for k in rows[times[rows] < path.stop].tolist():
+            out[k] = path.point(max(float(times[k]), path.start))[:2]
+    return out

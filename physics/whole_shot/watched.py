@@ -47,6 +47,10 @@ SLOPE, KNEE, TURN = Estimate(0.002, 0.001), Estimate(V_C, 0.04), Estimate(0.0, 0
 FCV1, some 0.0035 in Penner's law; no ice is known whose friction hardly falls), and of the turn of
 a path at 1 m/s, rad/s (0.0082 in FCV1)."""
 
+RESTED = 2.0
+"""Time for which a stone at rest says where it is, before the shot and after its way, s. What it
+says for longer is how its errors last: a minute of it would outweigh all that moves."""
+
 NEAR_HIT = 1.0
 """Time beside a hit in whose middle a spin is told, s: far enough from where it changes."""
 
@@ -168,13 +172,16 @@ def watch(
     traces = {}
     for name, run in runs.items():
         if name in hit or not fit.pieces[run[0]].rest:
-            shown = known[name].until(ends[name])
+            shown = known[name].until(min(ends[name], _rested(fit, run, known[name])))
             if len(shown.t):
                 traces[name] = shown
     if not traces:
         return None
     traces |= {name: known[name] for name in bystanders if len(known[name].t)}
-    start = min(float(trace.t[0]) for trace in traces.values())
+    # Back from there stones at rest stay, however long they are seen; others would not.
+    come = [name for name in traces if name in runs and not fit.pieces[runs[name][0]].rest]
+    start = min(float(traces[name].t[0]) for name in come or traces)
+    traces = {name: trace.since(start - RESTED) for name, trace in traces.items()}
     least = SLIPPERIEST if curling_size(radius) else 1e-5
     laws = (
         Unknown("restitution", _mean(priors.restitution), 0.0, 1.5, priors.restitution),
@@ -257,6 +264,14 @@ def _ends(fit: ShotFit, runs: Mapping[str, Sequence[int]]) -> dict[str, float]:
             for stone in stones:
                 ends[stone] = min(ends[stone], fit.time(k))
     return ends
+
+
+def _rested(fit: ShotFit, run: Sequence[int], trace: Trace) -> float:
+    """Time, s, by which a stone has been at rest for `RESTED` after its last motion."""
+    last = fit.pieces[run[-1]]
+    if last.rest:
+        return (last.start if np.isfinite(last.start) else float(trace.t[-1])) + RESTED
+    return fit.stop(run[-1]) + RESTED
 
 
 def _jumps(fit: ShotFit, one: int, two: int) -> bool:

@@ -12,7 +12,7 @@ from data.tracks import check_sightings
 from physics.estimate import Estimates, _of_two, estimate
 from physics.local_fit.contacts import find_contacts
 from physics.local_fit.local import estimate_locally
-from tests.physics.watch import RADIUS, airtable, discs, hit_motion, semireal, watch
+from tests.physics.watch import RADIUS, airtable, discs, hit_motion, semireal, uncut, watch
 from tests.synthetic.physics import Ice, Impact, Start, simulate
 
 MASSES = {"a": 28.73, "b": 28.19}
@@ -389,3 +389,30 @@ def test_whole_shot_is_followed_where_no_spin_is_seen_before_the_hit(
     assert told.whole is not None
     assert stderr < 0.002
     assert value == pytest.approx(0.83, abs=3 * stderr)
+
+
+@pytest.mark.parametrize(
+    ("sd", "at_rest", "given"), [(0.002, 0.002, True), (0.01, 0.01, True), (0.003, 5e-4, False)]
+)
+def test_however_long_stones_rest_the_estimates_are_the_same(
+    sd: float, at_rest: float, given: bool
+) -> None:
+    motion = hit_motion(0.8, 0.05, after=9.0)
+    cut, *long = [
+        estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+        for rests in ((3.0, 3.0), (40.0, 3.0), (3.0, 200.0), (160.0, 40.0))
+        for seen in [uncut(motion, rests, sd=sd, at_rest=at_rest, given=given)]
+    ]
+    assert cut.whole is not None
+    assert cut.restitution.value == pytest.approx(0.83, abs=2.5 * (cut.restitution.stderr or 0))
+    for one in long:
+        assert len(one.collisions) == 1
+        assert one.whole is not None
+        for told, known in (
+            (one.restitution, cut.restitution),
+            (one.local.restitution, cut.local.restitution),
+            (one.friction, cut.friction),
+            (one.local.friction, cut.local.friction),
+        ):
+            assert told.value == pytest.approx(known.value, abs=0.6 * (known.stderr or 0))
+            assert told.stderr == pytest.approx(known.stderr, rel=0.25)

@@ -68,6 +68,39 @@ def watch(
     return check_sightings(pd.concat(tables))
 
 
+def uncut(
+    motion: Motion,
+    rests: tuple[float, float],
+    *,
+    sd: float,
+    at_rest: float,
+    given: bool = True,
+    fps: float = 25.0,
+) -> pd.DataFrame:
+    """What a camera sees of two stones, and so long, s, before and after, when they rest.
+
+    The first comes with the motion. What is seen is the same however long stones rest, but
+    for more of it.
+    """
+    count = int(motion.times[-1] * fps)
+    before, after = (round(rest * fps) for rest in rests)
+    frames = np.arange(-before, count + after)
+    states = motion.at(np.clip(frames / fps, 0.0, motion.times[-1]))
+    each = zip((before, count + after), (3, 4), strict=True)
+    back, on = (np.random.default_rng(seed).normal(0, 1, (n, 2, 2)) for n, seed in each)
+    noise = np.concatenate([back[::-1], on])
+    tables = []
+    for i in range(2):
+        size = np.where(np.hypot(*states[:, i, 3:5].T) > 0.01, sd, at_rest)
+        table = pd.DataFrame({"stone": NAMES[i], "frame": frames, "t": frames / fps})
+        table[["x", "y"]] = states[:, i, :2] + size[:, None] * noise[:, i]
+        table[["theta", "sd_x", "sd_y"]] = np.nan
+        if given:
+            table["sd_x"] = table["sd_y"] = size
+        tables.append(table[(frames >= 0) | (i > 0)])
+    return check_sightings(pd.concat(tables))
+
+
 def lasting(rng: np.random.Generator, t: Floats, sd: float, memory: float) -> Floats:
     """Errors of one size that last for a while."""
     out = [rng.normal(0, sd)]

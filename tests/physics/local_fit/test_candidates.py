@@ -1,11 +1,12 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
-from physics.local_fit.candidates import _through_gaps, candidates
+from physics.local_fit.candidates import _extent, _through_gaps, candidates
 from physics.local_fit.traces import Trace, traces
 from tests.physics.watch import RADIUS, hit_motion, watch
 from tests.synthetic.physics import Start
@@ -108,3 +109,17 @@ def test_a_hit_is_passed_on_among_stones_that_touch() -> None:
     found = [m for m in candidates(paths, RADIUS) if abs(m.t - 1.0) < 0.06]
     first = [m.stones for m in found]
     assert first.index(("A", "B")) < first.index(("B", "C")) < first.index(("C", "D"))
+
+
+@pytest.mark.parametrize("wild", [0, 3])
+def test_a_stone_moves_however_long_it_rests_and_not_by_a_few_wild_places(wild: int) -> None:
+    rng = np.random.default_rng(5)
+    t = np.arange(9000) / 25
+    way = np.clip(t - 60.0, 0.0, 0.5) * 0.6
+    xy = rng.normal(0, 0.002, (len(t), 2))
+    xy[100 : 100 + wild] += 0.5
+    none = np.full(len(t), np.nan)
+    rests = Trace("A", t, xy, np.full((len(t), 2), 2e-3), none, none, np.zeros((len(t), 2)))
+    assert _extent(rests) < 0.1 * RADIUS
+    moved = replace(rests, xy=xy + np.column_stack([way, 0 * way]))
+    assert _extent(moved) == pytest.approx(0.3, abs=0.02)

@@ -85,14 +85,32 @@ def test_a_piece_without_sightings_begins_or_ends_when_it_is_known_to() -> None:
     assert _origin(piece(none, start=-np.inf), trace(), MEETINGS) == 3.0
 
 
+def test_a_rest_is_told_at_the_hit_that_ends_it() -> None:
+    assert _origin(piece(np.arange(9, 21), rest=True, closes=0), trace(), MEETINGS) == 2.4
+
+
+@pytest.mark.parametrize("rests", [2.0, 200.0])
+def test_a_glide_is_guessed_alike_however_long_its_stone_rests_in_the_end(rests: float) -> None:
+    t = np.arange(0, 5 + rests, 0.04)
+    tau = np.minimum(t, 5.0)
+    xy = np.outer(0.5 * tau - 0.05 * tau**2, [0.6, 0.8])
+    none = np.full(len(t), np.nan)
+    one = Trace("A", t, xy, np.full(xy.shape, 1e-3), none, none, 0 * xy)
+    state = _first_guess(Piece("A", 0.0, np.inf, np.arange(len(t)), stops=True), one, 0.0)
+    assert state[:, 0] == pytest.approx([0.0, 0.0], abs=0.05)
+    assert state[:, 1] == pytest.approx([0.3, 0.4], rel=0.02)
+    assert state[:, 2] == pytest.approx([-0.06, -0.08], rel=0.04)
+
+
 @pytest.mark.parametrize("samples", [np.arange(9, 21), np.arange(9, 10), np.arange(0)])
 def test_a_line_is_found_by_however_few_sightings(samples: np.ndarray) -> None:
-    place, velocity = _first_guess(piece(samples), trace(), 2.4)
+    place, velocity, acceleration = _first_guess(piece(samples), trace(), 2.4).T
     assert place == pytest.approx([1.12, 1.52])
     assert velocity == pytest.approx([0.3, -1.2])
+    assert not acceleration.any()
 
 
 def test_a_stone_at_rest_has_no_velocity() -> None:
-    place, velocity = _first_guess(piece(np.arange(9, 12), rest=True), trace(), 2.4)
-    assert place == pytest.approx([1.15, 1.4])
-    assert not velocity.any()
+    state = _first_guess(piece(np.arange(9, 12), rest=True), trace(), 2.4)
+    assert state[:, 0] == pytest.approx([1.15, 1.4])
+    assert not state[:, 1:].any()

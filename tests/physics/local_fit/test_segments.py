@@ -36,3 +36,14 @@ def test_a_glide_and_the_rest_that_it_ends_in_are_one_piece() -> None:
     assert len(pieces) == 1
     assert pieces[0].stops or len(pieces[0].samples) == len(T)
     assert not pieces[0].rest
+
+
+def test_a_glide_stays_one_however_long_its_stone_rests_in_the_end() -> None:
+    t = np.arange(0, 300, 1 / 25)
+    tau = np.minimum(t, 6.0)
+    one = trace(t, 0.6 * tau - 0.05 * tau**2, 0.002)
+    for hits in ([], [(0, 0.0)]):
+        piece = cut(one, hits, 0.1455)[-1]
+        assert len(piece.samples) == len(t)
+        assert piece.stops
+        assert not piece.rest

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from physics.local_fit.traces import CORRELATION_LENGTH, local_residuals, shared_correlation, traces
-from tests.physics.watch import hit_motion, watch
+from tests.physics.watch import hit_motion, uncut, watch
 
 
 def test_noise_is_estimated_where_it_is_not_given() -> None:
@@ -14,6 +14,13 @@ def test_noise_is_estimated_where_it_is_not_given() -> None:
         for trace in traces(seen).values():
             assert np.allclose(trace.sd, sd, rtol=0.35)
             assert np.allclose(trace.sd_theta, 0.05, rtol=0.35)
+
+
+def test_a_stone_that_rests_long_says_nothing_of_the_noise_of_one_that_goes_on() -> None:
+    seen = uncut(hit_motion(), (100.0, 0.0), sd=0.004, at_rest=0.0005, given=False)
+    trace = traces(seen)["B"]
+    assert np.allclose(trace.sd[trace.t < 0], 0.0005, rtol=0.2)
+    assert np.allclose(trace.sd[trace.t > 1.5], 0.004, rtol=0.35)
 
 
 def test_given_errors_are_believed_unless_too_small() -> None:
