@@ -202,6 +202,7 @@ def measure_discs(
 
     seen = stones(rays, over, slice(None))
     doubtful = (seen.evidence > DOUBTFUL) & (seen.evidence < ENOUGH)
+    doubtful &= seen.uncovered - seen.visible > UNCOVERED  # else there is nothing to uncover
     again = np.flatnonzero(doubtful & _on_paint(rays, appearance))
     if not len(again):
         return seen
