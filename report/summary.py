@@ -102,6 +102,11 @@ def season_text(shots: pd.DataFrame, pooled: Mapping[str, Pooled]) -> list[str]:
     return lines
 
 
+def _law(name: str) -> str:
+    """Name a law of ice, and the speed of its μ where that depends on speed."""
+    return name if name == "constant" else f"{name}, at 1 m/s"
+
+
 def _watched(results: Results, used: int) -> str:
     """How much was read, and of how much of it the stones are known."""
     read, lasts = results.input.frames, f"{results.input.duration:.2f} s"
@@ -131,7 +136,7 @@ def summary(
             f"hit         {hit.stones[0]} on {hit.stones[1]} at {hit.t:.3f} s: "
             f"e = {plus_minus(hit.restitution, hit.stderr)}"
         )
-    law = "" if results.friction.value is None else f" ({results.friction.law})"
+    law = "" if results.friction.value is None else f" ({_law(results.friction.law)})"
     lines += [
         f"restitution e = {plus_minus(results.restitution.value, results.restitution.stderr)}",
         f"friction    μ = {plus_minus(results.friction.value, results.friction.stderr)}{law}",

@@ -16,7 +16,7 @@ from tests.report.glides import glide
 def test_the_law_is_named_beside_a_friction_that_is_known(shot):
     friction = replace(shot.results.friction, value=0.0107, stderr=0.0002, law="fit")
     text = summary(replace(shot.results, friction=friction), shot.tracks)
-    assert "friction    μ = 0.01070 ± 0.00020 (fit)\n" in text
+    assert "friction    μ = 0.01070 ± 0.00020 (fit, at 1 m/s)\n" in text
     none = replace(friction, value=None, stderr=None)
     assert "friction    μ = —\n" in summary(replace(shot.results, friction=none), shot.tracks)
 
