@@ -163,7 +163,7 @@ def _filled(
 ) -> Floats:
     """Fill in or scale up standard deviations from the scatter about local parabolas.
 
-    Of a stone that rests it says nothing of one that goes on.
+    Where none is stated, that of a stone at rest says nothing of one that goes on.
     """
     given = np.where(np.isfinite(sd) & (sd > 0), sd, np.nan)
     scatter = local_residuals(t, values)
@@ -172,13 +172,13 @@ def _filled(
         return np.full_like(values, default)
     given = np.where(np.isfinite(given), given, np.nanmedian(given) if told else 1.0)
     inner = goes[2:-2]
-    few = min(inner.sum(), (~inner).sum()) < APART
-    for rows in (np.ones(len(t), bool),) if few else (goes, ~goes):
+    apart = not told and min(inner.sum(), (~inner).sum()) >= APART
+    for rows in (goes, ~goes) if apart else (np.ones(len(t), bool),):
         own = scatter[rows[2:-2]] / given[2:-2][rows[2:-2]]
         if len(own) >= 5:
             off = level(own)
             # Some of it is chance: a median of that many has an error of some 0.8 / √n.
-            given[rows] *= off if not told or off > 1 + 2 / np.sqrt(len(own)) else 1.0
+            given[rows] *= off if not told or off > 1 + 1.6 / np.sqrt(len(own)) else 1.0
     return np.maximum(given, least)
 
 
