@@ -19,6 +19,7 @@ from physics.filter.stretch import (
     Smoothed,
     Steps,
     Stretch,
+    drift,
     steps,
 )  # fmt: skip
 from physics.kalman import smooth
@@ -46,17 +47,18 @@ def path(rng: np.random.Generator, way: Steps, place: float, rate: float) -> Flo
 def drawn(rng: np.random.Generator, n: int = 30) -> tuple[Stretch, Floats]:
     """A stretch whose truth (n, 6) moves and is seen by the filter's own laws."""
     t = np.cumsum(rng.uniform(0.02, 0.06, n))
-    nowhere = np.zeros((n, 2))
+    gliding = np.tile([1.0, 0.0], (n, 1))
     sd = rng.uniform([0.001, 0.001, 0.005], [0.01, 0.01, 0.05], (n, 3))
     slow = np.tile(rng.uniform(0, [0.01, 0.01, 0.05]), (n, 1))
     calm = np.zeros(n, bool)
     stretch = Stretch(
-        t, np.zeros((n, 3)), sd, slow, np.zeros(n, int), calm, calm, nowhere, Model(0.0, 0.05)
+        t, np.zeros((n, 3)), sd, slow, np.zeros(n, int), calm, calm, gliding, Model(0.0, 0.05)
     )
     along, turning = steps(stretch)
     x, y = (path(rng, along, *rng.normal(0, [3.0, 1.0])) for _ in range(2))
     theta = path(rng, turning, *rng.normal(0, [3.0, 2.0]))
     truth = np.column_stack([x[:, 0], y[:, 0], x[:, 1], y[:, 1], theta])
+    truth += drift(replace(stretch, z=truth[:, SEEN]), along, turning)
     memories = (PLACE_MEMORY, PLACE_MEMORY, ANGLE_MEMORY)
     errors = [lasting(rng, t, slow[0, k], memory) for k, memory in enumerate(memories)]
     z = truth[:, SEEN] + np.column_stack(errors) + rng.normal(0, sd)

@@ -70,7 +70,7 @@ def test_draws_of_stones_that_stick_go_where_these_were_seen() -> None:
     motion = hit_motion(
         1.6, 0.03, before=1.2, after=3.0, stone_friction=0.2, others=[Start(0.02, 0.9)]
     )
-    found = seen(3, motion)[1]
+    found = seen(1, motion)[1]
     assert found.whole is not None
     sliding = next(fit for _, fit in found.whole.choices if "stone_friction" in fit.names)
     assert not sliding.told("stone_friction")
