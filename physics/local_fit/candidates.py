@@ -195,7 +195,7 @@ def _at_turns_if_untold(times: list[float], turns: Sequence[float], untold: Trac
         if untold.t[k] - untold.t[k - 1] <= OUT_OF_SIGHT:
             if FEWEST <= k <= n - FEWEST:
                 continue
-            low, high = untold.t[max(k - FEWEST, 0)] - untold.step, high
+            low = untold.t[max(k - FEWEST, 0)] - untold.step
         times = [t for t in times if t in turns or not low < t < high] + [turn]
     return sorted({*times})
 

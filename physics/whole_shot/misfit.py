@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from operator import attrgetter
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -57,7 +58,8 @@ def fit_without_bent_tracks(shot: Watched) -> GlobalFit:
     for _ in range(ROUNDS):
         known = fit.shots[0]
         off = [one for one in misfits(known, fit, level=1.0) if one.certain]
-        worst = max((one for one in off if one.stone not in suspects), key=_size, default=None)
+        new = [one for one in off if one.stone not in suspects]
+        worst = max(new, key=attrgetter("size"), default=None)
         if worst is None or 2 * (bent + 1) >= len(_moving(shot)):
             break
         suspects.add(worst.stone)
@@ -133,10 +135,6 @@ def _noise_of_others(stone: str, runs: Mapping[str, Floats]) -> float:
     """Factor on the variances of places that residuals of the other stones, (n, 2), ask for."""
     others = [(run, 3) for name, run in runs.items() if name != stone and len(run) > 3]
     return inflation(others, sum(2 * (len(run) - 3) for run, _ in others)) if others else 1.0
-
-
-def _size(misfit: Misfit) -> float:
-    return misfit.size
 
 
 def _moving(shot: Watched) -> set[str]:

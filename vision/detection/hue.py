@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from vision.detection.rays import Rays
 from vision.film.lab import lab_of
+from vision.film.picture import TO_CHROMA
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
@@ -24,9 +25,6 @@ coded by H.264 as usual, is told less well."""
 
 NOISE = 0.025
 """Power of what is not hue, a share of that of hue: less sharpens more, and noise too."""
-
-LUMA = np.array([0.114, 0.587, 0.299], np.float32)
-"""Lightness of blue, green and red (ITU-R BT.601)."""
 
 STEPS = 20
 """Scales of a picture that are told apart, per e-fold."""
@@ -43,7 +41,7 @@ def sharpened(rays: Rays, scale: Array) -> Rays:
         Of the picture there, px/m.
     """
     bgr = rays.bgr.astype(np.float32)
-    luma = (bgr @ LUMA)[..., None]
+    luma = (bgr @ TO_CHROMA[0].astype(np.float32))[..., None]
     radii = len(rays.radius)
     step = float(rays.radius[1] - rays.radius[0])
     blur = np.exp(np.rint(STEPS * np.log(BLUR / scale / step)) / STEPS).tolist()

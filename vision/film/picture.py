@@ -19,6 +19,9 @@ from numpy.typing import NDArray
 Image = NDArray[np.uint8]
 Floats = NDArray[np.float32]
 
+TO_CHROMA = np.array([[0.114, 0.587, 0.299], [0.5, -0.331, -0.169], [-0.081, -0.419, 0.5]])
+"""Luma and the two chromas of blue, green and red (ITU-R BT.601)."""
+
 _WEIGHTS = {
     int(Colorspace.ITU709): (0.2126, 0.0722),
     int(Colorspace.BT2020): (0.2627, 0.0593),

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from vision.film.picture import TO_CHROMA
 from vision.optics.paint import CIRCLES
 from vision.sheet.normals import SAMPLES, Normals, Profiles
 from vision.sheet.stations import THIN
@@ -29,9 +30,6 @@ TELL_LIGHT = 60
 
 MIN_CONTRAST = 10.0
 """Least difference of the two sides of an edge, grey levels."""
-
-TO_CHROMA = np.array([[0.114, 0.587, 0.299], [0.5, -0.331, -0.169], [-0.081, -0.419, 0.5]])
-"""Luma and the two chromas of blue, green and red (ITU-R BT.601)."""
 
 _WORTH = np.array([1.0, 0.25, 0.25])
 

@@ -16,11 +16,11 @@ from math import erf, inf, pi, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.film.picture import Picture
+from vision.film.picture import TO_CHROMA, Picture
 from vision.optics.paint import CIRCLES, EIGHT, TWELVE
 from vision.optics.pose import View
 from vision.optics.robust import regress
-from vision.sheet.edges import SHARPNESS, TO_CHROMA
+from vision.sheet.edges import SHARPNESS
 from vision.sheet.marks import Evidence, profiles
 from vision.sheet.normals import SAMPLES, lay_out
 from vision.sheet.outline import PaintEdge
