@@ -214,9 +214,9 @@ def all_crossings(
         low, high = np.where(distance > reach, t, low), np.where(distance > reach, high, t)
         rate = ((velocity(pb) - velocity(pa)) * offset).sum(axis=1) / distance
         new = np.where(rate < 0, t - (distance - reach) / np.where(rate < 0, rate, 1.0), low)
-        new = np.where((low < new) & (new < high), new, (low + high) / 2)
-        done = np.abs(new - t) <= 1e-14 * np.maximum(1.0, t)
-        t = new
+        # A step as short as this leaves no more than rounding; it may end on the bracket.
+        done = np.abs(new - t) <= 1e-11 * np.maximum(1.0, t)
+        t = np.where(done | ((low < new) & (new < high)), new, (low + high) / 2)
         if done.all():
             break
     return t

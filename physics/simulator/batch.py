@@ -164,9 +164,8 @@ class Batch:
         self, shots: Index, now: Array, moving: Mask, s: Index, i: Index, step: Array
     ) -> tuple[Index, Index, Index]:
         """Pairs (variant, stone, other stone), the first moving, that might meet in a step."""
-        dx = now[s, :, 0] - now[s, i, 0, None]
-        dy = now[s, :, 1] - now[s, i, 1, None]
-        speed = now[..., 2]
+        x, y, speed = np.moveaxis(now[..., :3], -1, 0).copy()
+        dx, dy = x[s] - x[s, i, None], y[s] - y[s, i, None]
         far = self.reach[shots[s], i] + step[s, None] * (speed[s] + speed[s, i, None])
         near = dx * dx + dy * dy <= np.maximum(far, 0.0) ** 2
         # Of two that move one is enough.

@@ -102,7 +102,8 @@ def _solve(c: Array, value: Array, width: Array) -> Array:
         slope = c[:, 1] + s * (2 * c[:, 2] + 3 * s * c[:, 3])
         new = s - f / np.where(slope > 0, slope, 1.0)
         new = np.where((slope > 0) & (low <= new) & (new <= high), new, (low + high) / 2)
-        done = np.abs(new - s) <= 1e-15 * width
+        # A step of Newton's as short as this leaves no more than rounding.
+        done = np.abs(new - s) <= 1e-10 * width
         s = new
         if done.all():
             break
