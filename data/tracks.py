@@ -202,9 +202,10 @@ def _disorder(stones: NDArray[np.object_], t: Array) -> list[str]:
 
 
 def teams(table: Table) -> dict[str, str]:
-    """Team of each stone of a table with the columns ``stone`` and ``team``; "" where unknown."""
+    """Team of each stone of a table, by its column ``team`` if it has one; "" where unknown."""
     found: dict[str, str] = {}
-    for stone, team in zip(table["stone"], table["team"], strict=True):
+    told = table["team"] if "team" in table else [""] * len(table["stone"])
+    for stone, team in zip(table["stone"], told, strict=True):
         found[str(stone)] = found.get(str(stone)) or team
     return found
 

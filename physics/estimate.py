@@ -58,6 +58,11 @@ LED_ASTRAY = (
 )
 """Why a shot with hits is not fitted as a whole."""
 
+TOO_FEW = (
+    "it counts all the same, for too few stones move to tell whether this track is bent or another"
+)
+"""What is said of a bent track that may be the others' fault."""
+
 LAWS = ("restitution", "friction", "stone_friction")
 """Unknowns of a shot that are not of one stone alone."""
 
@@ -272,7 +277,7 @@ def _astray(off: Sequence[Misfit]) -> Iterator[str]:
     """Name the tracks that are not as in the simulated shot."""
     for one in off:
         if one.certain:
-            so = "hardly counted there" if one.left_out else "nothing tells which stone is wrong"
+            so = "hardly counted there" if one.left_out else TOO_FEW
             yield (
                 f"whole shot: from {one.t0:.2f} to {one.t1:.2f} s the track of {one.stone} is"
                 f" {one.size:.1f} times its errors off a path on this ice; {so}"

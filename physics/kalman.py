@@ -79,7 +79,8 @@ def smoothed(
     Parameters
     ----------
     sightings : Table
-        `data.tracks.SIGHTING_COLUMNS`; standard deviations are estimated where missing.
+        Of `data.tracks.SIGHTING_COLUMNS` at least ``stone, t, x, y``; standard deviations are
+        estimated where missing, frames without a number are counted.
     contacts : sequence of Contact
         The hits; nothing on one side of a hit has a say on its other side.
     radius : float
@@ -104,9 +105,10 @@ def smoothed(
     known = traces(sightings)
     if not known:
         return no_rows(TRACK_COLUMNS)
-    all_times = np.concatenate([np.asarray(sightings["t"], float), [*unseen.values()]])
-    times, first = np.unique(all_times, return_index=True)
-    frames = np.concatenate([np.asarray(sightings["frame"], int), np.array([*unseen], int)])[first]
+    t = np.asarray(sightings["t"], float)
+    rank = sightings["frame"] if "frame" in sightings else np.unique(t, return_inverse=True)[1]
+    times, first = np.unique(np.append(t, [*unseen.values()]), return_index=True)
+    frames = np.append(np.asarray(rank, int), np.array([*unseen], int))[first]
     fit, model, noise = _fit_pieces(known, contacts, radius)
     each = {}
     for name, trace in known.items():

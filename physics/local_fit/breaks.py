@@ -106,7 +106,8 @@ def _starts(t: Floats, xy: Floats, variance: Floats, may: NDArray[np.bool_]) -> 
         beyond = (now * powers[:, None]).sum(0)
         beyond[:2] -= xy[j, :, None]
         away, gain = beyond[:2], beyond[2:]
-        total = (gain * powers).sum(0) + noise
+        # Over minutes without a row what is known of a path may round to less than nothing.
+        total = np.maximum((gain * powers).sum(0), 0.0) + noise
         distance = (away * away).sum(0) / total
         ok = distance < OUTLIER
         cost[:count] += np.where(ok, distance + 2 * np.log(total / noise), OUTLIER)

@@ -72,7 +72,7 @@ def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
     Parameters
     ----------
     sightings : Table
-        `data.tracks.SIGHTING_COLUMNS`.
+        Of `data.tracks.SIGHTING_COLUMNS` at least ``stone, t, x, y``.
     radius : float
         Of the discs, m.
 

@@ -113,15 +113,15 @@ def traces(sightings: Table) -> dict[str, Trace]:
     Parameters
     ----------
     sightings : Table
-        `data.tracks.SIGHTING_COLUMNS`.
+        Of `data.tracks.SIGHTING_COLUMNS` at least ``stone, t, x, y``, each stone's rows in order
+        of time; of the others what is not there is not known.
     """
     out: dict[str, Trace] = {}
     stones = np.asarray(sightings["stone"])
-    columns = {
-        name: np.asarray(sightings[name], float)
-        for name in ("t", "x", "y", "theta", "sd_x", "sd_y", "sd_theta", *SHARED)
-        if name in sightings
-    }
+    columns = {name: np.asarray(sightings[name], float) for name in ("t", "x", "y")}
+    for name in ("theta", "sd_x", "sd_y", "sd_theta", *SHARED):
+        told = name in sightings
+        columns[name] = np.asarray(sightings[name] if told else np.full(len(stones), np.nan), float)
     for name in np.unique(stones).tolist():
         own = {key: values[stones == name] for key, values in columns.items()}
         t, xy = own["t"], np.column_stack([own["x"], own["y"]])
@@ -137,7 +137,7 @@ def traces(sightings: Table) -> dict[str, Trace]:
             sd=_filled(t, xy, sd, SMALLEST_SD, 0.005, goes),
             theta=theta,
             sd_theta=_filled_angles(t[known], turned, own["sd_theta"], known, goes[known]),
-            sd_place=np.column_stack([np.nan_to_num(own.get(axis, 0 * t)) for axis in SHARED]),
+            sd_place=np.column_stack([np.nan_to_num(own[axis]) for axis in SHARED]),
             lasting=LASTING if np.isfinite(sd).any() else 0.0,
         )
     return out

@@ -10,6 +10,7 @@ import pytest
 from data.results import Estimate, Friction
 from data.tracks import check_sightings
 from physics.estimate import Estimates, _of_two, estimate
+from physics.kalman import smooth
 from physics.local_fit.contacts import find_contacts
 from physics.local_fit.local import estimate_locally
 from tests.physics.watch import RADIUS, airtable, discs, hit_motion, semireal, uncut, watch
@@ -231,6 +232,17 @@ def test_no_sightings_at_all() -> None:
     seen = watch(hit_motion(), np.random.default_rng(21)).iloc[:0]
     assert measure(seen).collisions == ()
     assert measure(seen).warnings
+
+
+def test_columns_that_a_table_lacks_are_as_good_as_empty_ones() -> None:
+    bare = watch(hit_motion(), np.random.default_rng(23))[["stone", "t", "x", "y"]]
+    full = check_sightings(bare)
+    hits = find_contacts(bare, RADIUS)
+    assert len(hits) == 1
+    assert hits == find_contacts(full, RADIUS)
+    assert estimate(bare, hits, radius=RADIUS) == estimate(full, hits, radius=RADIUS)
+    tracks = [smooth(table, hits, radius=RADIUS) for table in (bare, full)]
+    pd.testing.assert_frame_equal(*tracks)
 
 
 def test_result_is_the_same_each_time_and_for_any_name() -> None:

@@ -49,6 +49,12 @@ def test_errors_that_last_for_a_while_are_no_breaks_and_a_push_among_them_is_one
         assert breaks(T, xy, stated) == pytest.approx([2], abs=0.2)
 
 
+def test_rows_minutes_apart_are_looked_at_without_complaint() -> None:
+    sd = np.full((len(T), 2), 0.001)
+    for pace in (100.0, 3000.0):  # milliseconds taken for seconds, and worse
+        breaks(pace * T, seen(1.5 * T - 0.05 * T**2, 0.001), sd)
+
+
 def test_single_outliers_are_no_breaks() -> None:
     xy = seen(1.2 * T, 0.004)
     xy[[20, 55, 90]] += 0.3
