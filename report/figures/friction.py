@@ -32,13 +32,18 @@ _SLOWEST = 0.05
 """Speed from which on a law is drawn, m/s: some have a pole at rest."""
 
 
+FAINT = 0.35
+"""How opaque glides are drawn that tell next to nothing."""
+
+
 def friction_figure(
     glides: Sequence[Glide], friction: Friction, tracks: pd.DataFrame, *, curling: bool = True
 ) -> Figure:
     """Friction of each glide over the speeds that it spans, and the law fitted to the shot.
 
     A bar across is the span of speeds, the one upright two standard errors either side; the
-    band about the law is two of its value's.
+    band about the law is two of its value's. Glides that tell next to nothing are pale and leave
+    the axis as it is: an arrow at its end stands for those beyond.
 
     Parameters
     ----------
@@ -68,10 +73,16 @@ def friction_figure(
             for label, law, dash in _LAWS:
                 ax.plot(v, _friction(law, v), color=GREY, lw=1.1, linestyle=dash, zorder=2)
                 handles.append(line(label, color=GREY, lw=1.1, linestyle=dash))
+        limits = _limits(
+            [glide for glide, _ in known if _tells(glide, friction)], friction, curling
+        )
         for glide, (slow, fast) in known:
-            _draw_glide(ax, glide, slow, fast, colours[glide.stone])
+            pale = 1.0 if _tells(glide, friction) else FAINT
+            _draw_glide(ax, glide, slow, fast, colours[glide.stone], pale, limits)
         for name in sorted({glide.stone for glide, _ in known}):
             handles.append(line(f"stone {short(name)}", color=colours[name], lw=2.2))
+        if not all(_tells(glide, friction) for glide, _ in known):
+            handles.append(line("poorly known (▴▾ beyond)", color=GREY, alpha=FAINT, lw=2.2))
         if friction.value is not None:
             mu = _friction(_law(friction), v)
             error = 2 * (friction.stderr or 0.0)
@@ -81,11 +92,11 @@ def friction_figure(
             where = " at 1 m/s" if friction.law == "fit" else ""
             handles.insert(0, line(f"this shot: μ = {text}{where}", color=BLACK))
         ax.set(xlabel="speed (m/s)", ylabel="μ", xlim=(0, fastest))
-        ax.set_ylim(*_limits(known, friction, curling))
+        ax.set_ylim(*limits)
         what = "Friction of the ice" if curling else "Friction"
         title(figure, f"{what} against speed")
         if handles:
-            legend_below(figure, handles)
+            figure.set_figheight(2.6 + 0.2 * legend_below(figure, handles))
     return figure
 
 
@@ -98,11 +109,30 @@ def _span(glide: Glide, tracks: pd.DataFrame) -> tuple[float, float] | None:
     return (float(speed.min()), float(speed.max())) if len(speed) else None
 
 
-def _draw_glide(ax: Axes, glide: Glide, slow: float, fast: float, colour: str) -> None:
+def _tells(glide: Glide, friction: Friction) -> bool:
+    """Whether a glide tells its friction to within as much as that of the shot, or its error."""
+    most = max(abs(friction.value or 0.0), 2 * (friction.stderr or 0.0))
+    return not most or 2 * (glide.stderr or 0.0) <= most
+
+
+def _draw_glide(
+    ax: Axes,
+    glide: Glide,
+    slow: float,
+    fast: float,
+    colour: str,
+    alpha: float,
+    limits: tuple[float, float],
+) -> None:
     mu, stderr = float(glide.friction or 0.0), glide.stderr or 0.0
-    ax.plot([slow, fast], [mu, mu], color=colour, lw=2.2, zorder=4)
+    look: dict[str, Any] = {"color": colour, "alpha": alpha, "zorder": 4}
     middle = (slow + fast) / 2
-    ax.errorbar(middle, mu, 2 * stderr, color=colour, fmt="none", capsize=3, lw=1.2, zorder=4)
+    if limits[0] < mu < limits[1]:
+        ax.plot([slow, fast], [mu, mu], lw=2.2, **look)
+        ax.errorbar(middle, mu, 2 * stderr, fmt="none", capsize=3, lw=1.2, **look)
+    else:
+        edge, sign = (limits[0], "v") if mu <= limits[0] else (limits[1], "^")
+        ax.plot(middle, edge, sign, ms=7, mew=0, clip_on=False, **look)
 
 
 def _law(friction: Friction) -> IceLaw:
@@ -115,14 +145,12 @@ def _friction(law: IceLaw, speed: Array) -> Array:
     return np.asarray(law.deceleration(speed)) / GRAVITY
 
 
-def _limits(
-    known: Sequence[tuple[Glide, object]], friction: Friction, curling: bool
-) -> tuple[float, float]:
-    """Limits that show the law and all glides, the errors of poor ones cut."""
+def _limits(glides: Sequence[Glide], friction: Friction, curling: bool) -> tuple[float, float]:
+    """Limits that show the law and some glides, large errors cut."""
     values = [friction.value or 0.0, *(MEASURED if curling else ())]
-    values += [float(g.friction or 0.0) for g, _ in known]
+    values += [float(glide.friction or 0.0) for glide in glides]
     span = max(max(values) - min(values), 0.3 * max(map(abs, values)), 1e-4)
-    for glide, _ in known:
+    for glide in glides:
         reach = min(2 * (glide.stderr or 0.0), 0.7 * span)
         values += [float(glide.friction or 0.0) + sign * reach for sign in (-1, 1)]
     return min(values) - 0.1 * span, max(values) + 0.1 * span

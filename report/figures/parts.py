@@ -178,17 +178,14 @@ def line(label: str, **style: Any) -> Line2D:
     return Line2D([], [], label=label, **style)
 
 
-def legend_below(figure: Figure, handles: Sequence[Artist]) -> None:
-    """Put a legend under the figure in as many columns as its width has room for."""
+def legend_below(figure: Figure, handles: Sequence[Artist]) -> int:
+    """Put a legend under the figure in as many columns as it has room for; return its rows."""
     widths = [0.5 + 0.066 * len(str(handle.get_label())) for handle in handles]
     room = float(figure.get_figwidth()) - 0.2
     columns = len(handles) if sum(widths) < room else int(room / max(widths))
-    figure.legend(
-        handles=handles,
-        loc="outside lower center",
-        ncols=max(1, min(len(handles), columns)),
-        columnspacing=1.2,
-    )
+    columns = max(1, min(len(handles), columns))
+    figure.legend(handles=handles, loc="outside lower center", ncols=columns, columnspacing=1.2)
+    return -(-len(handles) // columns)
 
 
 def legend_beside(ax: Axes, handles: Sequence[Artist], head: str) -> None:

@@ -25,7 +25,7 @@ from report.style import (
     stone_colours,
     styled,
 )
-from report.tables import moving_stones
+from report.tables import last_speed, moving_stones
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -51,14 +51,16 @@ def plan_figure(
     """Draw the sheet from above: house, measured and simulated paths, hits, last places.
 
     The shaded ellipses at the last places are two standard deviations, enlarged by a factor
-    that the legend gives, for they would be no more than a dot.
+    that the legend gives, for they would be no more than a dot. An arrow shows where a stone goes
+    on that was last seen under way; its simulations end at that time too.
 
     Parameters
     ----------
     tracks : DataFrame
         With `data.tracks.TRACK_COLUMNS`.
     simulations : mapping of str to DataFrame, optional
-        Sampled simulation of each model; their last places are drawn as empty circles.
+        Sampled simulation of each model; their last places are drawn as empty circles, of stones
+        that were last seen under way those at that time.
     collisions : sequence of Collision
         The hits, a cross where the stones touched.
     house : House or None
@@ -66,13 +68,18 @@ def plan_figure(
     radius : float
         Radius of the stones, m.
     """
-    simulations = simulations or {}
     stones = sorted(str(name) for name in tracks["stone"].unique())
+    under_way = [name for name in stones if last_speed(rows_of(tracks, name))]
+    ends = tracks[tracks["stone"].isin(under_way)].groupby("stone")["t"].max()
+    simulations = {
+        model: table[table["t"] <= table["stone"].map(ends).fillna(np.inf)]
+        for model, table in (simulations or {}).items()
+    }
     moved = moving_stones(tracks, collisions, radius)
     colours, lines = stone_colours(stones), model_lines(simulations)
     last = {name: _last_place(rows_of(tracks, name)) for name in stones}
     low, high = _extent(tracks, simulations, moved, last, house, radius)
-    rows_below = 1 + (3 + len(lines)) // 3
+    rows_below = 1 + (4 + len(lines)) // 3
     scale = min((WIDTH - 0.75) / (high[0] - low[0]), _TALLEST / (high[1] - low[1]))
     with styled():
         figure = new_figure(WIDTH, scale * (high[1] - low[1]) + 0.85 + 0.2 * rows_below)
@@ -91,6 +98,8 @@ def plan_figure(
             ax.add_patch(
                 Circle(_pair(last[stone]), radius, fc="white", ec=colours[stone], lw=1.6, zorder=4)
             )
+        for stone in under_way:
+            _draw_arrow(ax, rows_of(tracks, stone), colours[stone], radius)
         factor = _draw_ellipses(ax, tracks, last, colours, radius)
         for collision in collisions:
             ax.plot(*_contact(collision, radius), "x", color=BLACK, ms=6, mew=1.6, zorder=6)
@@ -106,6 +115,9 @@ def plan_figure(
         ]
         if collisions:
             handles.append(line("hit", color=BLACK, marker="x", ls="none", mew=1.6))
+        if under_way:
+            shaft: dict[str, Any] = {"marker": r"$\rightarrow$", "ls": "none", "ms": 11, "mew": 0}
+            handles.append(line("last seen under way", color=GREY, **shaft))
         if factor:
             by = "" if factor == 1 else f", {factor} × enlarged"
             shade: dict[str, Any] = {"color": GREY, "marker": "o", "ls": "none", "alpha": 0.5}
@@ -133,6 +145,16 @@ def _draw_simulated(ax: Axes, path: pd.DataFrame, colour: str, dash: Any, radius
     end = Circle(_pair(_last_place(path)), radius, fill=False, ec=colour, lw=0.9)
     end.set_linestyle(dash)
     ax.add_patch(end)
+
+
+def _draw_arrow(ax: Axes, track: pd.DataFrame, colour: str, radius: float) -> None:
+    """Draw where a stone goes on from its last place, out of its rim."""
+    velocities = track[["vx", "vy"]].to_numpy(float)
+    velocity = velocities[np.hypot(*velocities.T) > 0][-1]
+    along = velocity / np.hypot(*velocity)
+    tail = _last_place(track) + 1.1 * radius * along
+    arrow = {"arrowstyle": "->", "color": colour, "lw": 1.6, "shrinkA": 0, "shrinkB": 0}
+    ax.annotate("", _pair(tail + 0.8 * radius * along), _pair(tail), arrowprops=arrow, zorder=4)
 
 
 def _draw_ellipses(

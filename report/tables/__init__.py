@@ -2,7 +2,7 @@
 
 from report.tables.coach import speed_table, takeout_table
 from report.tables.laws import choice_table, ice_table, law_table, method_table
-from report.tables.rest import distance_table, rest_table, shot_stone
+from report.tables.rest import distance_table, last_speed, rest_table, shot_stone
 from report.tables.shot import (
     glide_table,
     hit_table,
@@ -20,6 +20,7 @@ __all__ = [
     "hit_table",
     "ice_table",
     "in_axes",
+    "last_speed",
     "law_table",
     "magnitude",
     "measured_table",

@@ -181,11 +181,17 @@ def _curl(track: pd.DataFrame, notes: list[str]) -> dict[str, object]:
     return {"curl": float(ux * dy - uy * dx), "sd_curl": error}
 
 
-def _moving(track: pd.DataFrame, end: float) -> str | None:
-    """Why it is not known where a stone stopped; None where it is."""
+def last_speed(track: pd.DataFrame) -> float:
+    """Speed at which a stone goes on where its track ends, m/s; 0 where it has stopped."""
     late = track[track["t"] >= track["t"].iloc[-1] - LAST]
     speed = float(np.hypot(late["vx"], late["vy"]).median())
-    if not speed > STILL:
+    return speed if speed > STILL else 0.0
+
+
+def _moving(track: pd.DataFrame, end: float) -> str | None:
+    """Why it is not known where a stone stopped; None where it is."""
+    speed = last_speed(track)
+    if not speed:
         return None
     when = float(track["t"].iloc[-1])
     if end - when > UNSEEN:

@@ -3,9 +3,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from matplotlib.patches import Circle, Ellipse
+from matplotlib.text import Annotation
 
 from data.sheet import HOUSE
 from report import figures
+from report.figures.parts import rows_of
 from tests.report.figures.drawn import check_layout
 
 
@@ -58,3 +60,34 @@ def test_without_a_house_the_whole_way_is_in_view(shot):
     low, high = figure.axes[0].get_ylim()
     assert low < 0.5
     assert high > 30
+
+
+def test_a_stone_last_seen_under_way_is_shown_with_its_simulations_at_that_time(shot):
+    tracks, gone = shot.tracks, 2.0
+    left = tracks[(tracks["stone"] != "C") | (tracks["t"] <= gone)]
+    stopped = tracks.assign(vx=tracks["vx"].where(tracks["t"] < 6, 0.0))
+    stopped["vy"] = tracks["vy"].where(tracks["t"] < 6, 0.0)
+    for table, arrows in ((stopped, 0), (left, 1)):
+        figure = figures.plan_figure(table, shot.simulations, house=HOUSE)
+        check_layout(figure)
+        (ax,) = figure.axes
+        drawn = [item for item in ax.texts if isinstance(item, Annotation)]
+        assert len(drawn) == arrows
+        said = [text.get_text() for text in figure.legends[0].get_texts()]
+        assert ("last seen under way" in said) == bool(arrows)
+    low, high = np.array([ax.get_xlim(), ax.get_ylim()]).T
+    (arrow,) = drawn
+    assert (low < arrow.xy).all() and (arrow.xy < high).all()  # else it would not be drawn
+    velocity = rows_of(left, "C")[["vx", "vy"]].to_numpy(float)[-1]
+    way = np.subtract(arrow.xy, arrow.xyann)
+    assert way[0] * velocity[1] - way[1] * velocity[0] == pytest.approx(0, abs=1e-9)
+    circles = [p.center for p in ax.patches if isinstance(p, Circle)]
+    for simulated in shot.simulations.values():
+        rows = rows_of(simulated, "C")
+        then = rows.loc[rows["t"] <= gone, ["x", "y"]].to_numpy(float)[-1]
+        at_last = rows[["x", "y"]].to_numpy(float)[-1]
+        apart = (
+            np.hypot(*(np.array(circles) - then).T).min(),
+            np.hypot(*(np.array(circles) - at_last).T).min(),
+        )
+        assert apart[0] < 1e-9 < 0.1 < apart[1]
