@@ -40,7 +40,8 @@ _RIM = circle(49)
 _APART = 0.1  # radii between the points of a trail
 _RESTS = 0.05  # m/s below which a stone's speed is not worth a label
 _TURNS = 0.1  # rad/s, the same for its spin
-_FLASH = 0.4  # s
+_FLASH = 0.4  # s that a ring grows from a hit
+_SAID = 2.0  # s that its name stays, time to look there and read three words
 _LEAST_UNIT = 0.75  # of the usual size, below which letters cannot be read
 _LINE_COLOUR = (255, 255, 120)
 
@@ -114,7 +115,7 @@ def write_overlay(
     tracks : DataFrame
         With `data.tracks.TRACK_COLUMNS`, `frame` counting as the clip does.
     collisions : sequence of Collision
-        Flashed for a moment after each hit.
+        Each flashed for a moment, and named for two seconds.
     path : Path
         Ends in .mp4.
     rings : sequence of float or None
@@ -279,13 +280,14 @@ def _cost(image: Image, place: Box, taken: Sequence[Box]) -> float:
 def _flash(
     image: Image, camera: Camera, t: float, scene: Scene, unit: float, thickness: int
 ) -> None:
-    """Write the time; for a moment after a hit, a ring that grows from it and its name."""
+    """Write the time; after a hit its name and, for a moment, a ring that grows from it."""
     lines = [f"t = {t:.2f} s"]
     for when, place, text in scene.hits:
         if 0 <= t - when < _FLASH:
             growth = 0.5 + 2.5 * (t - when) / _FLASH
             ring = place + growth * scene.radius * _RIM
             draw_lines(image, camera, [ring], WHITE, thickness, scene.height)
+        if 0 <= t - when < _SAID:
             lines.append(text)
     for row, text in enumerate(lines):
         write(image, text, (10 * unit, (10 + 25 * row) * unit), unit)

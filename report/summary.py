@@ -8,7 +8,7 @@ from typing import Any
 
 import pandas as pd
 
-from data.results import Prediction, Results, SimulationScore
+from data.results import Results
 from data.sheet import House
 from physics.prediction.forecast import AFTER
 from physics.simulator.simulation import Simulation
@@ -17,6 +17,9 @@ from physics.statistics.season import POSSIBLE
 from report.numbers import count, plus_minus, warned
 from report.tables import moving_stones, rest_table, shot_stone
 from report.units import METRES, Unit
+
+ABREAST = 3
+"""Stones on a line, which then has some hundred letters."""
 
 
 def odds_text(odds: Mapping[str, Any], written: Sequence[Path]) -> list[str]:
@@ -144,16 +147,19 @@ def summary(
     for model, score in results.simulations.items():
         off = f"— ({score.note or 'nothing to compare'})"
         if score.rmse is not None:
-            off = f"{unit.little(score.rmse)} RMS off{_last(score, unit)}"
+            off = f"{unit.little(score.rmse)} RMS off"
         # Only a shot that was fitted as a whole begins with what fits it.
         how = "" if results.laws is None else ", as fitted"
         lines.append(f"simulated   {model}{how}: {off}")
+        lines += _each("at the end", score.rest_error, score.rest_sd, unit)
     for model, guess in results.predictions.items():
         if guess.rmse is not None:
             lines.append(
                 f"predicted   {model}, from before the first hit, e assumed:"
-                f" {unit.little(guess.rmse)} RMS off{_soon(guess, unit)}{_last(guess, unit)}"
+                f" {unit.little(guess.rmse)} RMS off"
             )
+            lines += _each(f"{AFTER} s after it", guess.error_after, guess.sd_after, unit)
+            lines += _each("at the end", guess.rest_error, guess.rest_sd, unit)
     if house is not None:
         lines.append(f"shot stone  {_shot_stone(results, tracks, house, unit)}")
     lines += warned(results.warnings)
@@ -163,27 +169,20 @@ def summary(
     return "\n".join(lines)
 
 
-def _last(score: SimulationScore | Prediction, unit: Unit) -> str:
-    """How far the last places were off, and by how much errors of start and laws let them be."""
-    off = _each(score.rest_error, score.rest_sd, unit)
-    return f"; at the end {off}" if off else ""
-
-
-def _soon(guess: Prediction, unit: Unit) -> str:
-    """How far stones were off a while after the first hit, where they were seen."""
-    off = _each(guess.error_after, guess.sd_after, unit)
-    return f"; {AFTER} s after it {off}" if off else ""
-
-
 def _each(
-    errors: Mapping[str, float | None], stated: Mapping[str, float | None], unit: Unit
-) -> str:
-    """By how much each stone's place was off, and by how much it may be."""
-    return ", ".join(
+    when: str, errors: Mapping[str, float | None], stated: Mapping[str, float | None], unit: Unit
+) -> list[str]:
+    """By how much each stone's place was off, and by how much it may be, a few stones a line."""
+    texts = [
         f"{stone} {unit.little(error, sd)} (± {unit.little(sd, error)})"
         for stone, error in errors.items()
         if error is not None and (sd := stated.get(stone)) is not None
-    )
+    ]
+    rows = [", ".join(texts[k : k + ABREAST]) for k in range(0, len(texts), ABREAST)]
+    return [
+        f"{'':12s}{'' if k else when:15s} {row}{',' if k < len(rows) - 1 else ''}"
+        for k, row in enumerate(rows)
+    ]
 
 
 def _shot_stone(results: Results, tracks: pd.DataFrame, house: House, unit: Unit) -> str:

@@ -44,7 +44,7 @@ def write_odds(folder: Path, start: Start, outcomes: pd.DataFrame, odds: Mapping
     start : Start
         The shot.
     outcomes : DataFrame
-        ``sample, stone, x, y, hits``, as `physics.prediction.what_if.sample` gives them.
+        As `physics.prediction.what_if.sample` gives them.
     odds : mapping
         The same in sum.
     """
@@ -69,10 +69,12 @@ def spread_figure(
 ) -> Figure:
     """Draw where the stones come to rest, the thrown one as a heat map, others as dots.
 
+    Those that leave the sheet come to rest nowhere on it: they are counted beside the names.
+
     Parameters
     ----------
     outcomes : DataFrame
-        ``sample, stone, x, y, hits`` as `physics.prediction.what_if.sample` gives them.
+        ``sample, stone, x, y, hits, in_play`` as `physics.prediction.what_if.sample` gives them.
     before : mapping of str to (float, float)
         Places of the stones before, m.
     thrown : str
@@ -82,35 +84,35 @@ def spread_figure(
     radius : float
         Radius of the stones, m.
     """
-    by_stone = {
-        str(name): group[["x", "y"]].to_numpy(float)
-        for name, group in outcomes.groupby("stone", sort=True)
+    own = outcomes["stone"] == thrown
+    # A stone that nothing touched lies where it lay.
+    shown = outcomes[own | (outcomes["hits"] > 0)]
+    off = 1 - shown.groupby("stone")["in_play"].mean()
+    places = {
+        str(name): group.loc[group["in_play"] == 1, ["x", "y"]].to_numpy(float)
+        for name, group in shown.groupby("stone", sort=True)
     }
-    hit = outcomes[outcomes["hits"] > 0].groupby("stone").size()
-    struck = [name for name in by_stone if name != thrown and hit.get(name, 0) > 0]
-    low, high = _corners([by_stone[name] for name in (thrown, *struck)], before, thrown, radius)
-    colours = stone_colours(by_stone)
+    struck = [name for name in places if name != thrown]
+    low, high = _corners([places[name] for name in (thrown, *struck)], before, thrown, radius)
+    colours = stone_colours(outcomes["stone"].unique())
     wide, tall = high - low
     width = 7.0
     with styled():
         figure = new_figure(width, min((width - 1.6) * tall / wide + 1.3, 10.0))
         ax = figure.subplots()
         draw_house(ax, HOUSE, low, high)
-        ends = by_stone[thrown]
-        share, across, along = _density(ends, low, high)
-        heat = ax.pcolormesh(
-            across, along, np.ma.masked_less(share, 0.01 * share.max()), cmap="viridis_r",
-            alpha=0.75, lw=0, rasterized=True, zorder=2,
-        )  # fmt: skip
-        bar = figure.colorbar(heat, ax=ax, shrink=0.6, pad=0.01)
-        bar.set_label(f"where {plain_text(thrown)} ends, % of throws on 10 cm × 10 cm")
-        rolled = {
-            name: outcomes[(outcomes["stone"] == name) & (outcomes["hits"] > 0)][["x", "y"]]
-            .to_numpy(float)[:MOST_DOTS]
-            for name in struck
-        }  # fmt: skip
-        for name, places in rolled.items():
-            ax.plot(*places.T, ".", color=colours[name], ms=2.5, alpha=0.6, mew=0, zorder=3)
+        ends = places[thrown]
+        if len(ends):
+            share, across, along = _density(ends, low, high, int(own.sum()))
+            heat = ax.pcolormesh(
+                across, along, np.ma.masked_less(share, 0.01 * share.max()), cmap="viridis_r",
+                alpha=0.75, lw=0, rasterized=True, zorder=2,
+            )  # fmt: skip
+            bar = figure.colorbar(heat, ax=ax, shrink=0.6, pad=0.01)
+            bar.set_label(f"where {plain_text(thrown)} ends, % of throws on 10 cm × 10 cm")
+        for name in struck:
+            dots = places[name][:MOST_DOTS]
+            ax.plot(*dots.T, ".", color=colours[name], ms=2.5, alpha=0.6, mew=0, zorder=3)
         for name, place in before.items():
             if name != thrown:
                 ax.add_patch(Circle(place, radius, fc="white", ec=colours[name], lw=1.4, zorder=4))
@@ -118,29 +120,42 @@ def spread_figure(
                     *place, plain_text(name), color=colours[name], weight="bold", fontsize=8,
                     ha="center", va="center", zorder=5, clip_on=True,
                 )  # fmt: skip
-        middle = np.median(ends, axis=0)
-        ax.add_patch(Circle((middle[0], middle[1]), radius, fill=False, ec=BLACK, lw=1.4, zorder=6))
+        if len(ends):
+            middle = np.median(ends, axis=0)
+            ring = Circle((middle[0], middle[1]), radius, fill=False, ec=BLACK, lw=1.4, zorder=6)
+            ax.add_patch(ring)
         ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
         ax.set(xlabel="$x$ (m)", ylabel="$y$ (m)")
         ax.grid(False)
         figure.suptitle(plain_text(title), x=0.01, ha="left", fontsize=10, fontweight="bold")
-        ring = {"marker": "o", "ls": "none", "mfc": "none"}
+        circle: dict[str, Any] = {"marker": "o", "ls": "none", "mfc": "none"}
         handles: list[Artist] = [
-            Line2D([], [], mec=BLACK, label=f"median of {plain_text(thrown)}", **ring)  # type: ignore[arg-type]
+            Line2D(
+                [],
+                [],
+                mec=BLACK,
+                label=f"median of {plain_text(thrown)}{_gone(off[thrown])}",
+                **circle,
+            )
         ]
         lying = [place for name, place in before.items() if name != thrown]
         if _shows(low, high, np.array(lying).reshape(-1, 2)):
-            handles.append(Line2D([], [], mec=GREY, label="as it lay before", **ring))  # type: ignore[arg-type]
+            handles.append(Line2D([], [], mec=GREY, label="as it lay before", **circle))
         handles += [
             Line2D(
                 [], [], color=colours[name], marker=".", ls="none",
-                label=f"{plain_text(name)} where hit",
+                label=f"{plain_text(name)} where hit{_gone(off[name])}",
             )
-            for name, places in rolled.items()
-            if _shows(low, high, places)
+            for name in struck
+            if off[name] > 0 or _shows(low, high, places[name])
         ]  # fmt: skip
-        figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 4))
+        figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 3))
     return figure
+
+
+def _gone(share: float) -> str:
+    """Say how often a stone leaves the sheet, if it does."""
+    return f" ({share:.0%} off the sheet)" if share else ""
 
 
 def _corners(
@@ -150,13 +165,13 @@ def _corners(
 
     Where the thrown stone ends far from the house, what is about its end instead.
     """
-    middle = np.median(ends[0], axis=0)
+    middle = np.median(ends[0], axis=0) if len(ends[0]) else np.zeros(2)
     at_home = bool((np.abs(middle) < FARTHEST).all())
     centre = np.zeros(2) if at_home else middle
     rim = HOUSE.twelve_foot + radius
     lying = [place for name, place in before.items() if name != thrown]
     parts = [np.array([[-rim, -rim], [rim, rim]]) + centre, np.array(lying).reshape(-1, 2)]
-    parts += [np.quantile(places, [1 - SHARE, SHARE], axis=0) for places in ends]
+    parts += [np.quantile(places, [1 - SHARE, SHARE], axis=0) for places in ends if len(places)]
     shown = np.clip(np.concatenate(parts), centre - FARTHEST, centre + FARTHEST)
     return shown.min(axis=0) - 2 * radius, shown.max(axis=0) + 2 * radius
 
@@ -166,12 +181,12 @@ def _shows(low: Array, high: Array, places: Array) -> bool:
     return bool(((places > low) & (places < high)).all(axis=1).any())
 
 
-def _density(ends: Array, low: Array, high: Array) -> tuple[Array, Array, Array]:
-    """Percentage of the places on 0.1 m × 0.1 m, smoothed, and the edges of its cells."""
+def _density(ends: Array, low: Array, high: Array, throws: int) -> tuple[Array, Array, Array]:
+    """Percentage of the throws on 0.1 m × 0.1 m, smoothed, and the edges of its cells."""
     from scipy.ndimage import gaussian_filter
 
     across, along = (np.arange(low[k], high[k] + CELL, CELL) for k in range(2))
     count = np.histogram2d(ends[:, 1], ends[:, 0], bins=(along, across))[0]
     sharpness = np.clip(4 * len(ends) ** (-1 / 3), 0.5, 4)  # fewer samples, a smoother map
-    share = gaussian_filter(count, sharpness, mode="constant") / len(ends)
+    share = gaussian_filter(count, sharpness, mode="constant") / throws
     return np.asarray(100 * share * (0.1 / CELL) ** 2), across, along

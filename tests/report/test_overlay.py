@@ -8,9 +8,9 @@ import cv2
 import numpy as np
 import pytest
 
-from report.overlay import write_overlay
+from report.overlay import _scene, draw, write_overlay
 from tests.report.browser import needs_chromium
-from vision.film.clip import open_clip
+from vision.film.clip import Frame, open_clip
 from vision.optics.camera import Camera
 
 SIZE = (321, 241)  # odd both ways
@@ -208,3 +208,19 @@ def test_labels_show_the_spin_and_the_colour_of_the_team(tmp_path, shot):
 
     assert green(shown["both"]) > 10 > green(shown["unknown"])
     assert dark(shown["both"]) > 1.15 * dark(shown["slow"])
+
+
+def test_the_name_of_a_hit_stays_until_it_can_be_read(shot):
+    hit = shot.results.collisions[0]
+    scene = _scene(shot.tracks, [hit], None, 0.1455)
+    blank = np.full((240, 320, 3), GREY, np.uint8)
+
+    def changed(since: float, rows: slice) -> bool:
+        frame = Frame(-1, hit.t + since, blank)  # of which no stone is known
+        plain = Frame(-1, hit.t - 0.5, blank)
+        images = [draw(f, camera(-1), scene)[rows].astype(int) for f in (frame, plain)]
+        return bool(np.abs(images[0] - images[1]).any())
+
+    name, ice = slice(30, 50), slice(60, 240)
+    assert [changed(s, name) for s in (0.0, 0.3, 1.0, 1.9, 2.1)] == [True] * 4 + [False]
+    assert [changed(s, ice) for s in (0.0, 0.3, 1.0)] == [True, True, False]

@@ -6,6 +6,7 @@ import pandas as pd
 import pytest
 
 import pipeline
+from data.results import Prediction
 from data.sheet import HOUSE
 from report import tables
 from report.summary import summary
@@ -25,16 +26,29 @@ def test_the_summary_says_how_far_the_last_places_may_be_off(shot):
     score = replace(
         shot.results.simulations["frictional"],
         rmse=0.02,
-        rest_error={"A": 0.031},
-        rest_sd={"A": 0.05},
+        rest_error={"A": 0.031, "B": 0.0012, "C": 1.0, "D": 0.2},
+        rest_sd={"A": 0.05, "B": 0.002, "C": None, "D": 0.1},
     )
     text = summary(replace(shot.results, simulations={"frictional": score}), shot.tracks)
     how = "frictional, as fitted" if shot.results.laws is not None else "frictional"
-    assert f"{how}: 2.0 cm RMS off; at the end A 3.1 cm (± 5.0 cm)" in text
+    lines = text.splitlines()
+    said = lines.index(f"simulated   {how}: 2.0 cm RMS off")
+    off = "at the end      A 3.1 cm (± 5.0 cm), B 1.2 mm (± 2.0 mm), D 20.0 cm (± 10.0 cm)"
+    assert lines[said + 1] == f"            {off}"
     apart = summary(replace(shot.results, laws=None), shot.tracks)
     assert "simulated   frictional: " in apart and "as fitted" not in apart
     unknown = replace(shot.results, simulations={"frictional": replace(score, rest_sd={})})
     assert "at the end" not in summary(unknown, shot.tracks)
+
+
+def test_the_summary_of_many_stones_keeps_to_the_width_of_a_terminal(shot):
+    off = dict.fromkeys("ABCDEFG", 0.1234)
+    guess = Prediction(0.1, off, off, error_after=off, sd_after=off)
+    text = summary(replace(shot.results, predictions={"frictional": guess}), shot.tracks)
+    lines = [line for line in text.splitlines() if "(±" in line or "RMS" in line]
+    assert sum(line.count("(±") for line in lines) == 14
+    assert max(map(len, lines)) <= 100
+    assert [line.endswith(",") for line in lines[-3:]] == [True, True, False]
 
 
 def test_the_summary_says_of_how_much_of_a_clip_the_stones_are_known(shot):

@@ -17,7 +17,7 @@ def outcomes(centre: tuple[float, float], count: int = 300) -> pd.DataFrame:
     a, b, c = (
         table.assign(sample=np.arange(count), hits=hits) for table, hits in ((a, 1), (b, 0), (c, 1))
     )
-    return pd.concat([a, b, c], ignore_index=True)
+    return pd.concat([a, b, c], ignore_index=True).assign(in_play=1)
 
 
 @pytest.mark.parametrize("centre", [(0.0, 0.5), (1.0, 30.0)])
@@ -45,3 +45,22 @@ def test_one_sample_is_enough() -> None:
     render(
         spread_figure(outcomes((0, 0), 1), {"A": (0, -5), "B": (0.5, 0.5), "$C": (0, 1)}, "A", "t")
     )
+
+
+@pytest.mark.parametrize("off", [0.4, 1.0])
+def test_stones_that_leave_the_sheet_are_counted_not_drawn_where_they_leave_it(off: float) -> None:
+    table, before = outcomes((0.0, 0.5)), {"A": (0.0, -5.0), "B": (0.5, 0.5), "$C": (0.0, 1.0)}
+    gone = (table["stone"] == "A") & (table["sample"] < 300 * off)
+    table.loc[gone, ["x", "y", "in_play"]] = [2.2, 0.1, 0]
+    figure = spread_figure(table, before, "A", "A thrown 300 times")
+    render(figure)
+    ax, labels = figure.axes[0], [text.get_text() for text in figure.legends[0].get_texts()]
+    assert f"({off:.0%} off the sheet)" in labels[0]
+    if off == 1.0:
+        assert not ax.collections
+        return
+    heat = ax.collections[0].get_array()
+    assert heat is not None
+    assert float(heat.sum()) / 4 == pytest.approx(100 * (1 - off), abs=10)
+    across = ax.collections[0].get_coordinates()[0, :-1, 0]
+    assert not heat[:, across > 1.5].any()
