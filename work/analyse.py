@@ -70,6 +70,7 @@ def analyse(
     from physics.posterior import sample_posterior, summarise
     from physics.prediction.forecast import assumed, predict
     from physics.prediction.hindcast import simulate_measured
+    from physics.prediction.throws import later_throws
     from vision.optics.camera import camera_table
 
     sightings, radius = measured.sightings, settings.radius
@@ -103,6 +104,7 @@ def analyse(
         notes = (*notes, "no samples: the shot tells neither restitution nor friction")
     if measured.house is not None:
         notes = (*notes, *_pace(estimates.friction))
+    notes = (*notes, *_throws(later_throws(tracks)))
     times = sightings["t"]
     results = Results(
         input=Input(
@@ -170,6 +172,18 @@ def _pace(friction: Estimate) -> tuple[str, ...]:
         f"friction: {value:.2g} ± {stderr:.1g} is not that of curling ice; a clip in {pace} motion"
         f" (about {times:.2g} times) or tracks in another length unit would look so: then speeds"
         " are not real ones, e is",
+    )
+
+
+def _throws(later: Mapping[str, float]) -> tuple[str, ...]:
+    """Say so where more than one stone is thrown."""
+    if not later:
+        return ()
+    each = ", ".join(f"{name} at {when:.2f} s" for name, when in later.items())
+    return (
+        f"more than one throw: {each}, when all others have stopped; e and μ are of all,"
+        " predictions of the first; to measure one alone cut the table, or name its frames"
+        " (--frames)",
     )
 
 

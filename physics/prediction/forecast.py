@@ -20,6 +20,7 @@ from physics.local_fit.fit import fit_shot
 from physics.local_fit.glides import free
 from physics.local_fit.traces import traces
 from physics.prediction.hindcast import explained_until, score
+from physics.prediction.throws import foreseen_until
 from physics.simulator.simulate import simulate
 from physics.whole_shot.law_choice import fit_with_chosen_laws
 from physics.whole_shot.shot_model import penner
@@ -157,19 +158,25 @@ def _scored(
     clock = clock[clock >= first]
     if clock.empty:
         return Prediction(None, note="nothing is seen after the first hit")
-    times, ends = clock.to_numpy(float), (first + AFTER, float(clock.iloc[-1]))
+    times = clock.to_numpy(float)
+    seen = tracks[(tracks["seen"] != 0) & (tracks["t"] >= first)]
+    at = {str(stone): float(t) for stone, t in seen.groupby("stone")["t"].max().items()}
+    ends = sorted({first + AFTER, *at.values()})
     every = np.union1d(times, ends)
     likely = _likely(fit, laws, model, first, every)
     places = [_places(likely, rank) for rank in np.searchsorted(every, ends).tolist()]
-    soon, last = _spreads(fit, laws, model, first, ends, places)
+    spread = dict(zip(ends, _spreads(fit, laws, model, first, ends, places), strict=True))
     frames = pd.Series(clock.index, index=np.searchsorted(every, times))
     table = likely.assign(frame=likely["frame"].map(frames)).dropna(subset="frame")
-    found = score(tracks, table, first, explained_until(tracks, estimates, first), None)
+    until = explained_until(tracks, estimates, first)
+    until = foreseen_until(until, estimates.collisions, set(table["stone"]))
+    found = score(tracks, table, first, until, None)
     after = _errors_at(tracks, table, first + AFTER, found.rest_error)
+    soon = spread[first + AFTER]
     return Prediction(
         found.rmse,
         found.rest_error,
-        {name: last[name] for name in found.rest_error if name in last},
+        {name: spread[at[name]][name] for name in found.rest_error if name in spread[at[name]]},
         laws.restitution,
         laws.friction,
         found.note,

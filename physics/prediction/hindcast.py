@@ -22,6 +22,7 @@ from physics.local_fit.traces import Trace
 from physics.prediction.as_fitted import AsFitted, as_fitted, by_itself
 from physics.prediction.laws import Laws, measured_laws
 from physics.prediction.spread import Doubt, path_spread, simulated, simulated_hits
+from physics.prediction.throws import come_in, foreseen_until
 from physics.simulator.simulate import simulate
 from physics.simulator.simulation import Shot, StoneStart
 from physics.whole_shot.shot_model import STATE
@@ -83,11 +84,15 @@ def simulate_measured(
     start = _start_time(tracks, estimates)
     if not estimates.collisions:
         warnings.append("simulation: no hit, the stones only glide")
-    stones = _states(tracks, start, estimates, masses or {})
+    fit = estimates.whole
+    told = {*fit.shots[0].traces} if fit is not None else set()
+    # A stone that comes in under way, and that nothing brings back in time, can't begin with them.
+    late = come_in(tracks, start).keys() - told
+    stones = _states(tracks[~tracks["stone"].isin(late)], start, estimates, masses or {})
     laws = measured_laws(estimates, radius)
     models, notes = _models(laws, estimates, stones)
-    told = ("restitution", "friction") if estimates.collisions else ("friction",)
-    warnings += [f"simulation: {laws.assumed[name]}" for name in told if name in laws.assumed]
+    laws_used = ("restitution", "friction") if estimates.collisions else ("friction",)
+    warnings += [f"simulation: {laws.assumed[name]}" for name in laws_used if name in laws.assumed]
     clock = tracks.groupby("frame", sort=True)["t"].first()
     clock = clock[clock >= start]
     doubt = _doubt(tracks, start, estimates, laws)
@@ -101,6 +106,7 @@ def simulate_measured(
         for name, end in ends.items()
         if np.isfinite(end)
     ]
+    ends = foreseen_until(ends, estimates.collisions, {stone.name for stone in stones})
     samples: dict[str, pd.DataFrame] = {}
     scores: dict[str, SimulationScore] = {}
     for name, impact in models.items():

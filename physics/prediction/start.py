@@ -17,6 +17,7 @@ from physics.ice import IceLaw
 from physics.impact import Frictional
 from physics.local_fit.traces import shared_correlation
 from physics.prediction.laws import measured_laws
+from physics.prediction.throws import come_in
 from physics.simulator.bounds import Bounds
 from physics.simulator.curve import Curve, curve_for
 from physics.simulator.motion import Motion, Path
@@ -100,6 +101,8 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     """
     laws = measured_laws(results, results.radius)
     time = _time(tracks, results)
+    late = come_in(tracks, time)
+    tracks = tracks[~tracks["stone"].isin(late.keys())]
     rows = [_row(group, time, laws.ice) for _, group in tracks.groupby("stone", sort=True)]
     table = pd.DataFrame(rows).reset_index(drop=True)
     stones = tuple(
@@ -145,8 +148,12 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
         laws.sd_turn,
         laws.size.stderr or 0.0,
         release,
-        tuple(laws.assumed.values()),
+        (*laws.assumed.values(), *(_left_out(name, when) for name, when in late.items())),
     )
+
+
+def _left_out(stone: str, when: float) -> str:
+    return f"{stone} comes in under way at {when:.2f} s, after the first hit; left out"
 
 
 def speed_before(speed: Array, way: float, ice: IceLaw) -> Array:

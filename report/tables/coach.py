@@ -12,7 +12,7 @@ import pandas as pd
 
 from data.results import Collision, MeasuredState
 from data.sheet import SHEET, STONE
-from report.tables.rest import STILL, thrown
+from physics.prediction.throws import STILL, thrown
 from report.tables.shot import moving_stones
 from report.tables.states import magnitude
 

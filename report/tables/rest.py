@@ -12,12 +12,10 @@ import pandas as pd
 
 from data.results import Collision
 from data.sheet import HOUSE, STONE, House
+from physics.prediction.throws import STILL, thrown
 from report.tables.shot import moving_stones
 from report.tables.states import magnitude
 from report.tables.teams import team_names
-
-STILL = 0.03
-"""Speed below which a stone has stopped, m/s: ice of μ = 0.008 stops it within 6 mm."""
 
 LAST = 0.25
 """The last seconds of a track that tell whether its stone has stopped."""
@@ -138,12 +136,6 @@ def shot_stone(rest: pd.DataFrame) -> tuple[str | None, str]:
     others = (inside["team"] != best["team"]).to_numpy()
     count = int(np.argmax(others)) if others.any() else len(others)
     return str(best["stone"]), f"{best['team']} lies {count}"
-
-
-def thrown(track: pd.DataFrame) -> bool:
-    """Tell whether a stone moves as it comes into view."""
-    early = track[track["t"] < track["t"].iloc[0] + LAST]
-    return bool(np.hypot(early["vx"], early["vy"]).median() > 3 * STILL)
 
 
 def _rivals(one: object, two: object) -> bool:

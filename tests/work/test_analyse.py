@@ -8,7 +8,7 @@ import pytest
 
 from data.errors import SceneError
 from data.sheet import HOUSE
-from data.tracks import SIGHTING_COLUMNS
+from data.tracks import SIGHTING_COLUMNS, check_sightings
 from work.analyse import analyse
 from work.measure import Measured
 from work.settings import Settings
@@ -75,3 +75,20 @@ def test_what_to_do_where_no_stone_was_found_goes_by_how_the_camera_was_known(
     nothing = pd.DataFrame(columns=list(SIGHTING_COLUMNS))
     with pytest.raises(SceneError, match=rf"a\.mp4: no stone was found; curlshot check .*{said}$"):
         analyse(Measured((Path("a.mp4"),), nothing, 25.0, 20, ()), settings)
+
+
+def test_a_second_throw_is_told() -> None:
+    glides = []
+    for stone, aside, begins in (("A", 0.0, 0.0), ("B", 0.8, 5.0)):
+        t = begins + np.arange(100) / 25
+        speed = np.maximum(0.3 - 0.0109 * 9.81 * (t - begins), 0.0)
+        glides.append(
+            pd.DataFrame({"stone": stone, "t": t, "x": aside, "y": np.cumsum(-speed / 25)})
+        )
+    table = check_sightings(pd.concat(glides))
+    table[["x", "y"]] += np.random.default_rng(0).normal(0, 0.001, (len(table), 2))
+    seen = Measured((Path("two.csv"),), table, 25.0, 200, ())
+    (said,) = [text for text in analyse(seen).results.warnings if "more than one throw" in text]
+    assert "B at 5.00 s" in said
+    one = Measured((Path("one.csv"),), table[table["stone"] == "A"], 25.0, 100, ())
+    assert not any("throw" in text for text in analyse(one).results.warnings)

@@ -49,6 +49,14 @@ def test_last_places_are_predicted_from_before_the_hit() -> None:
     assert "spins" in (made["rigid-body"].note or "")
 
 
+def test_the_error_stated_is_of_where_a_stone_was_last_seen() -> None:
+    seen = watch(hit_motion(1.2, 0.08, before=2.0), np.random.default_rng(3), sd=0.003)
+    whole = forecast(seen)["frictional"].rest_sd
+    left = forecast(seen[(seen["stone"] != "B") | (seen["t"] < 2.5)])["frictional"].rest_sd
+    assert (left["B"] or 1.0) < 0.4 * (whole["B"] or 0.0)  # 0.5 s after the hit, not 2
+    assert left["A"] == pytest.approx(whole["A"])
+
+
 def test_what_comes_after_the_hit_is_not_used() -> None:
     seen = watch(hit_motion(1.2, 0.08, before=2.0, restitution=0.5), np.random.default_rng(2))
     wrong, right = (

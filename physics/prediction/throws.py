@@ -1,0 +1,68 @@
+"""Stones that come into view under way, and throws that follow one another in one clip."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+
+import numpy as np
+import pandas as pd
+
+from data.results import Collision
+
+STILL = 0.03
+"""Speed below which a stone has stopped, m/s: ice of μ = 0.008 stops it within 6 mm."""
+
+FIRST = 0.25
+"""The first seconds of a track that tell whether its stone comes into view under way."""
+
+LOST = 5.0
+"""Time, s, after which a stone that went out of sight under way is not the next one that comes in:
+people cover stones for seconds."""
+
+
+def thrown(track: pd.DataFrame) -> bool:
+    """Tell whether a stone moves as it comes into view."""
+    early = track[track["t"] < track["t"].iloc[0] + FIRST]
+    return bool(np.hypot(early["vx"], early["vy"]).median() > 3 * STILL)
+
+
+def come_in(tracks: pd.DataFrame, time: float) -> dict[str, float]:
+    """Stones that come into view under way after a time, s, and when."""
+    return {
+        str(name): float(track["t"].iloc[0])
+        for name, track in tracks.sort_values("t").groupby("stone", sort=True)
+        if track["t"].iloc[0] > time and thrown(track)
+    }
+
+
+def later_throws(tracks: pd.DataFrame) -> dict[str, float]:
+    """Stones that come into view under way when all others have stopped, and when, s.
+
+    One stone at least has moved before, and none that went out of sight just before may be the
+    one that comes in.
+    """
+    speed = np.hypot(tracks["vx"], tracks["vy"])
+    out = {}
+    for name, when in come_in(tracks, float(tracks["t"].min())).items():
+        before = (tracks["t"] < when) & (tracks["stone"] != name)
+        last = tracks[before].assign(speed=speed[before]).sort_values("t").groupby("stone").last()
+        goes = (last["speed"] > STILL) & (when - last["t"] < LOST)
+        if speed[before].max() > 3 * STILL and not goes.any():
+            out[name] = when
+    return out
+
+
+def foreseen_until(
+    ends: Mapping[str, float], collisions: Sequence[Collision], known: Collection[str]
+) -> dict[str, float]:
+    """Tell until when, s, stones go as they would without those that are not `known`.
+
+    Until `ends`, and until one that is not known hits them, or one that it has hit.
+    """
+    out = dict(ends)
+    moved: set[str] = set()
+    for hit in sorted(collisions, key=lambda hit: hit.t):
+        if any(stone in moved or stone not in known for stone in hit.stones):
+            moved.update(hit.stones)
+            out |= {stone: min(out.get(stone, np.inf), hit.t) for stone in hit.stones}
+    return out
