@@ -33,7 +33,13 @@ WIDTH = 0.025
 ALIKE, OTHER = 0.4, 0.1
 """Share of what a team's handles show usually, and of what each of another team's does, below which
 there is none. Such real stones show 0.66 of the one at least and 0.37 of the other, drawn ones 0.6
-and, with handles in their caps' colour, 0.13; paint and icons 0.37 of the one, most 0.1."""
+and, with handles in their caps' colour, 0.13; paint and icons 0.37 of the one, most 0.1. One
+drawn stone with its handle in the cap's colour showed 0.39 of what another at rest did."""
+
+MOVING = 0.5
+"""What counts of the first for what moved on the ice: no paint does, though an icon may seem to
+where a camera pans. One has 1.3 where that leaves 4; what moved with a faint handle has 2.9 and
+more where that leaves 1.5."""
 
 
 def with_handles(
@@ -85,8 +91,9 @@ def bare(shown: Sequence[float], team: Sequence[int], moved: Sequence[bool]) -> 
     team : sequence of int
         Rank of the cap's colour of each.
     moved : sequence of bool
-        Which of them moved on the ice. No paint does: a team of which one does, but of which no
-        handle is seen, has such as do not show.
+        Which of them moved on the ice. No paint does: what they show says how faint a team's
+        handles may be, and a team of which one does, but of which no handle is seen, has such as
+        do not show.
 
     Returns
     -------
@@ -100,10 +107,10 @@ def bare(shown: Sequence[float], team: Sequence[int], moved: Sequence[bool]) -> 
         own = of == rank
         alike, others = values[handled & own], values[handled & ~own]
         if len(alike):
-            least = ALIKE * float(np.median(alike))
+            least = ALIKE * float(np.nanmedian(values[(handled | moves) & own]))
         elif len(others) and not (moves & own).any():
             least = OTHER * float(others.min())
         else:
             least = 0.0
-        out |= own & (values < min(BARE, least))
+        out |= own & (values < np.minimum(np.where(moves, MOVING, 1.0) * least, BARE))
     return out

@@ -73,6 +73,16 @@ def test_of_a_team_that_moves_but_shows_no_handle_none_is_paint() -> None:
         assert bare(shown, team, moved).tolist() == [False, False, True, True]
 
 
+def test_what_moves_says_how_faint_handles_of_its_team_may_be() -> None:
+    # Those of the caps' own colour show by their shades, and at some places hardly.
+    still, goes = [False] * 4, [False, False, True, False]
+    assert bare([8, 3, 2.9, 1.1], [0] * 4, still).tolist() == [False, True, True, True]
+    assert bare([8, 3, 2.9, 1.1], [0] * 4, goes).tolist() == [False, False, False, True]
+    assert not bare([8, 8, 2.9, 8], [0] * 4, goes).any()  # a stone that was thrown
+    assert bare([8, 8, 1.3, 8], [0] * 4, goes).tolist() == goes  # an icon
+    assert bare([8, 3.5, nan, 3], [0] * 4, goes).tolist() == [False] * 3 + [True]
+
+
 def test_a_disc_of_paint_among_stones_is_left_out() -> None:
     stones = [track_of([cap(bar(30, 0.1 * k), 3.0, k) for k in range(20)]) for _ in range(2)]
     paint = track_of([cap(bar(0), 3.0, k) for k in range(20)])
