@@ -140,13 +140,19 @@ class Watch:
         for begin in range(0, len(known), AT_ONCE):
             some = known[begin : begin + AT_ONCE]
             times, seen = zip(*(self._seen.pop(camera.frame) for camera in some), strict=True)
-            placed = placed_by(some, [one.get() for one in seen], self.disc)
+            placed = placed_by(some, [one.get() for one in seen], self._shown)
             yield from zip([camera.frame for camera in some], times, placed, strict=True)
         self._seen.clear()
 
     @property
     def _knows(self) -> bool:
         return self.appearance is not None or is_plain(self.disc)
+
+    @property
+    def _shown(self) -> Stone:
+        """Size of the discs, their caps as large as they show."""
+        share = 1.0 if self.appearance is None else self.appearance.outline[0]
+        return replace(self.disc, cap_radius=share * self.disc.cap_radius)
 
     @property
     def _follower(self) -> Follower:

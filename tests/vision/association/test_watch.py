@@ -25,6 +25,7 @@ from vision.film.clip import Frame, Image
 from vision.film.picture import Picture
 from vision.film.shelf import Shelf
 from vision.optics.camera import Camera
+from vision.optics.cameras import Cameras
 
 AT_REST = [(0.3, 0.2, RED), (-0.8, 1.0, YELLOW), (0.9, -0.6, RED)]
 LATE = (-0.2, -0.5)
@@ -115,6 +116,24 @@ def test_in_the_end_stones_are_placed_by_the_cameras_that_are_known_by_then(
         assert len(sightings) == len(AT_REST)
         told, places = ([(s.x, s.y) for s in each] for each in (sightings, expected))
         np.testing.assert_allclose(told, places)
+
+
+def test_places_of_caps_that_show_large_are_less_sure_along_the_view() -> None:
+    image, camera = picture(AT_REST), camera_of(CAMERA, scene_of(AT_REST))
+    watches, stated = (Watch(), Watch()), []
+    for watch, share in zip(watches, (1.0, 1.15), strict=True):
+        for index in range(24):
+            watch.look(Frame(index, index / 25, image), camera)
+        assert watch.appearance is not None
+        # How large they show does not move them, it says how sure they are.
+        watch.appearance = replace(watch.appearance, outline=(share, watch.appearance.outline[1]))
+        *_, (_, _, seen) = watch.finish(lasting(camera))
+        stated.append([(s.x, s.y, *s.sd_place) for s in seen])
+    (*usual, sd_x, sd_y), (*large, more_x, more_y) = np.transpose(stated, (0, 2, 1))
+    np.testing.assert_array_equal(usual, large)
+    slant = np.abs(Cameras.of([camera], [len(AT_REST)]).slants(np.transpose(usual)))
+    added = np.sqrt(np.transpose([more_x, more_y]) ** 2 - np.transpose([sd_x, sd_y]) ** 2)
+    np.testing.assert_allclose(added, 0.15 * STONE.cap_radius * slant, rtol=0.01)
 
 
 def test_a_third_colour_does_not_take_the_place_of_one_on_the_ice() -> None:
