@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from data.errors import InputError
+from data.text import printable
 
 FILES = (".csv", ".json", ".html", ".mp4", ".png", ".txt", ".trk", ".trz", ".parquet")
 """Endings by which a person means a file, not a folder that is to be made."""
@@ -55,9 +56,9 @@ def whole_file(path: Path) -> Iterator[Path]:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write UTF-8 text whole or not at all, with Unix line ends."""
+    """Write UTF-8 text whole or not at all, with Unix line ends, `printable`."""
     with whole_file(path) as part:
-        part.write_text(text, encoding="utf-8", newline="\n")
+        part.write_text(printable(text), encoding="utf-8", newline="\n")
 
 
 def relative_path(path: Path, folder: Path) -> str:

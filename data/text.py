@@ -29,6 +29,11 @@ _BIDI_MARKS = dict.fromkeys(map(ord, "\u200e\u200f\u061c\u2066\u2067\u2068\u2069
 _MINUS = dict.fromkeys(map(ord, "\u2212\u2010\u2011\u2012\u2013\ufe63\uff0d"), "-")
 
 
+def printable(text: str) -> str:
+    """Put a question mark for what is no text, as in names of files in an encoding of old."""
+    return text.encode("utf-8", "replace").decode("utf-8")
+
+
 def read_text(path: Path) -> str:
     """Return the text of a file with Unix line ends.
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from data.errors import InputError
 from data.files import whole_file
+from data.text import printable
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -129,7 +130,7 @@ def check_sightings(table: pd.DataFrame, source: str = "tracks") -> pd.DataFrame
     faults += _nonsense(numbers)
     if table["stone"].isna().any():
         faults.append("a stone without a name")
-    stones = table["stone"].astype(str).to_numpy()
+    stones = table["stone"].astype(str).map(printable, na_action="ignore").to_numpy()
     teams = table["team"] if "team" in table.columns else pd.Series("", index=table.index)
     out = pd.DataFrame({"stone": stones, **numbers})
     out["team"] = teams.astype(object).fillna("").astype(str).str.strip().to_numpy()

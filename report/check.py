@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from data.sheet import STONE
 from report.drawing import circle, draw_lines, ice_lines
 from report.looks import COLUMNS, Look, numbered
-from report.style import BLUE, GREY, ORANGE, SKY, VERMILLION, new_figure, styled
+from report.style import BLUE, GREY, ORANGE, SKY, VERMILLION, new_figure, plain_text, styled
 from vision.detection.ice_map import rectify
 from vision.film.clip import Image
 
@@ -89,7 +89,7 @@ def check_figure(
                 axes = right.subplots(len(courses), 1, sharex=True, squeeze=False)[:, 0]
                 _residuals(axes, cameras, courses)
             _average(foot.subplots(), looks, rings)
-        figure.suptitle(title, x=0.01, ha="left", weight="bold", fontsize=12)
+        figure.suptitle(plain_text(title), x=0.01, ha="left", weight="bold", fontsize=12)
     return figure
 
 

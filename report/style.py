@@ -18,6 +18,8 @@ from matplotlib.colors import is_color_like, to_hex
 from matplotlib.figure import Figure
 from PIL import Image
 
+from data.text import printable
+
 BLACK = "#1a1a1a"
 GREY = "#7a7a7a"
 PALE = "#d9d9d9"
@@ -118,7 +120,7 @@ def model_lines(models: Iterable[str]) -> dict[str, tuple[str, Any]]:
 
 def plain_text(name: str) -> str:
     """Return a name that matplotlib prints as it is, without reading formulas into it."""
-    return name.replace("$", r"\$")
+    return printable(name).replace("$", r"\$")
 
 
 def render(figure: Figure) -> tuple[bytes, bytes]:
