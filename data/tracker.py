@@ -209,7 +209,7 @@ def _to_si(path: Path, file: TrackFile, length_unit: str, angle_unit: str | None
     if "theta" in tracks:
         chosen = angle_unit or file.angle_unit
         if chosen is None:
-            chosen = "deg" if _spins_too_fast(tracks) else "rad"
+            chosen = "deg" if _spins_too_fast(tracks, file.continuous) else "rad"
             if chosen == "deg":
                 warnings.append(
                     f"{path}: angles taken in degrees, they change too fast for radians"
@@ -232,14 +232,17 @@ def _unwrapped(theta: pd.Series[float]) -> pd.Series[float]:
     return pd.Series(np.unwrap(known), known.index).reindex(theta.index)
 
 
-def _spins_too_fast(tracks: pd.DataFrame) -> bool:
-    """Tell whether angles, read as radians, begin or change as only degrees would."""
+def _spins_too_fast(tracks: pd.DataFrame, continuous: bool) -> bool:
+    """Tell whether angles, read as radians, begin or change as only degrees would.
+
+    Those that are continuous may begin anywhere.
+    """
     for _, rows in tracks.groupby("stone", sort=False):
         theta, t = rows["theta"].to_numpy(float), rows["t"].to_numpy(float)
         known = np.isfinite(theta)
         theta, t = theta[known], t[known]
         with np.errstate(all="ignore"):
-            if len(theta) and abs(theta[0]) > 2 * np.pi + 0.01:
+            if not continuous and len(theta) and abs(theta[0]) > 2 * np.pi + 0.01:
                 return True
         if spin_rate(t, theta) > FASTEST_SPIN:
             return True

@@ -58,10 +58,11 @@ LED_ASTRAY = (
 )
 """Why a shot with hits is not fitted as a whole."""
 
+ALONE = "it counts all the same: something else moves the stone, or the track is bent"
 TOO_FEW = (
     "it counts all the same, for too few stones move to tell whether this track is bent or another"
 )
-"""What is said of a bent track that may be the others' fault."""
+"""What is said of a bent track of a stone by itself, and of one that may be the others' fault."""
 
 LAWS = ("restitution", "friction", "stone_friction")
 """Unknowns of a shot that are not of one stone alone."""
@@ -277,7 +278,8 @@ def _astray(off: Sequence[Misfit]) -> Iterator[str]:
     """Name the tracks that are not as in the simulated shot."""
     for one in off:
         if one.certain:
-            so = "hardly counted there" if one.left_out else TOO_FEW
+            alone = all(other.stone == one.stone for other in off)
+            so = "hardly counted there" if one.left_out else ALONE if alone else TOO_FEW
             yield (
                 f"whole shot: from {one.t0:.2f} to {one.t1:.2f} s the track of {one.stone} is"
                 f" {one.size:.1f} times its errors off a path on this ice; {so}"

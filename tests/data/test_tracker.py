@@ -202,6 +202,10 @@ def test_degrees_by_evidence_or_by_word(tmp_path: Path) -> None:
         found = read(tmp_path, source.to_csv(index=False))
         np.testing.assert_allclose(found.sightings["theta"], np.radians(90 + 70 * t))
         assert "degrees" in found.warnings[0]
+    rows = table.assign(stone="A", theta=table["theta"] - 90)  # that begin at 0 say nothing
+    found = read(tmp_path, rows.to_csv(index=False))
+    np.testing.assert_allclose(found.sightings["theta"], np.radians(70 * t))
+    assert "degrees" in found.warnings[0]
     slow = table.assign(theta=2 * t)
     text = slow.to_csv(index=False)
     np.testing.assert_allclose(read(tmp_path, text).sightings["theta"], 2 * t)

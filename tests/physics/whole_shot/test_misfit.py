@@ -114,3 +114,9 @@ def test_an_error_that_places_share_is_no_misfit() -> None:
     table = bent(seen(2), "X", 0.02)
     shared = measure(table.assign(sd_place_x=0.02, sd_place_y=0.02))
     assert not any(one.certain for one in shared.misfits)
+
+
+def test_a_bent_track_of_a_stone_by_itself_is_not_laid_to_another() -> None:
+    table = bent(seen(1), "X", 0.06)
+    (text,) = [w for w in measure(table[table["stone"] == "X"]).warnings if "track of X" in w]
+    assert "something else moves the stone" in text and "another" not in text
