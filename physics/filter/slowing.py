@@ -25,9 +25,10 @@ TINY = 1e-12
 SLOWEST = 0.06
 """Speed below which a stone is slowed as there, m/s: as by FCV1 (Uehara and Ito, 2021)."""
 
-FALL = Estimate(0.25, 0.2)
-"""What is known of p beforehand for curling stones: 0 on even ice, 1/2 in Penner's law, between in
-FCV1's."""
+FALL = Estimate(0.15, 0.3)
+"""What is known of p beforehand for curling stones: 0 on even ice, 1/2 in Penner's law, in FCV1's
+0.15 from 1 to 3 m/s and 0.3 to 0.4 below. One mean for all draws each of them aside: fast stones of
+even ice and slow ones of FCV1's, the less the wider it is."""
 
 BEND = 0.5
 """Power of the speed that the heading goes with: as it turns by v^(-0.8) a second (FCV1; Uehara and

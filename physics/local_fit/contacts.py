@@ -32,6 +32,10 @@ MOST_PUSH = 3.0
 SHARE = 0.15
 """Smallest part of the other's change of velocity that a stone must show in a hit."""
 
+MOST_RUB = 1.0
+"""Most that two stones rub on each other in a hit, in what pushes them apart: curling stones 0.2 at
+most. A stone that was at rest goes on along the line of the centres, but for that."""
+
 MOST_PASSED = 3
 """Sightings past which the time of a hit may go where no gap lets it go farther."""
 
@@ -66,8 +70,9 @@ def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
     and the one whose impulse is least significant is struck off until all that are left
     changed the motion of both their stones, or passed on an impulse that can have come no other
     way. Where several show no hit (of those between two
-    sightings none is seen by itself), one that pushes nothing goes first, and of these the pair
-    that lies farthest from touching. A pair hits again only after something else came between.
+    sightings none is seen by itself), one that pushes nothing goes first, of these one
+    of two stones that others set off in the same gap, and then the pair that lies farthest from
+    touching. A pair hits again only after something else came between.
 
     Parameters
     ----------
@@ -198,12 +203,16 @@ class _Evidence(NamedTuple):
         How many standard errors its impulse is away from none; 0 if it can be no hit as it is.
     pushed : bool
         Whether anything drove its stones apart.
+    seen : int
+        How many of its stones were seen between it and what set them off. Where none was, other
+        hits in the same gap have set off both, and there need not have been this one.
     near : float
         Minus how far they are from touching, in units of 2R.
     """
 
     hit: float
     pushed: bool
+    seen: int
     near: float
 
 
@@ -216,7 +225,9 @@ def _evidence(fit: ShotFit, k: int, known: Mapping[str, Trace], radius: float) -
         first, second = change @ state.normal
         closing = float((state.before[0] - state.before[1]) @ state.normal)
         impulse = 0.5 * (change[1] - change[0])
-        return np.array([*impulse, second - first, -first, second, closing])
+        nx, ny = state.normal
+        rub = 2 * float(impulse @ [-ny, nx])
+        return np.array([*impulse, second - first, -first, second, closing, rub])
 
     value, cov = fit.propagate([k], told)
     impulse, push = value[:2], value[2:]
@@ -228,9 +239,13 @@ def _evidence(fit: ShotFit, k: int, known: Mapping[str, Trace], radius: float) -
     possible = pushed and away <= REACH - 1 and push[0] >= 0.2 * radius
     possible &= bool(push[3] + 2 * error[3] >= push[0] / MOST_PUSH)
     possible &= bool(np.min(push[1:3] + 2 * error[1:3]) >= SHARE * np.max(push[1:3]))
+    possible &= bool(abs(push[4]) - 2 * error[4] <= MOST_RUB * push[0])
     if possible and _displaced(fit, k, known, radius):
         both *= DISPLACED
-    return _Evidence(both if possible else 0.0, pushed, -away)
+    seen = sum(
+        len(fit.pieces[fit.sides[k, stone][0]].samples) > 0 for stone in fit.meetings[k].stones
+    )
+    return _Evidence(both if possible else 0.0, pushed, seen, -away)
 
 
 def _once(evidence: Sequence[_Evidence], fit: ShotFit) -> list[_Evidence]:

@@ -25,6 +25,10 @@ Lubricants 10, 265) and of anything that glides, m/s²: only used where the glid
 LEAST_SPREAD = 0.01
 """Least spread of decelerations from glide to glide, m/s²: no ice law is exactly constant."""
 
+TURNING = 0.01
+"""Acceleration across the motion, m/s², by which ice turns a curling stone to either side: 0.0082
+times the power 0.2 of the speed (FCV1; Uehara and Ito, 2021)."""
+
 EVEN = Estimate(0.0, 0.0)
 """Power of the speed with which the deceleration of anything that glides falls."""
 
@@ -75,10 +79,11 @@ def measure_glides(
         share = sd**2 / (sd**2 + error**2)
         mean, sd = mean + share * (measured - mean), sd * error / float(np.hypot(sd, error))
     spread = float(np.sqrt(max(spread, LEAST_SPREAD) ** 2 + sd**2))
+    across = float(np.hypot(spread, TURNING)) if curling_size(radius) else spread
     return (
         tuple(one.glide for one in each),
         friction,
-        replace(law, mean=mean, along=spread, across=spread, fall=power),
+        replace(law, mean=mean, along=spread, across=across, fall=power),
     )
 
 

@@ -9,12 +9,13 @@ from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 import physics.local_fit.contacts
+import tests.physics.watch
 from physics.local_fit.contacts import _Evidence, _once, cut_all, find_contacts
 from physics.local_fit.fit import fit_shot
 from physics.local_fit.shot_fit import Meeting
 from physics.local_fit.traces import traces
 from tests.physics.watch import RADIUS, airtable, discs, hit_motion, semireal, watch
-from tests.synthetic.physics import Ice, Impact, Start, simulate
+from tests.synthetic.physics import Ice, Impact, Motion, Start, simulate
 
 QUICK = (Phase.explicit, Phase.reuse, Phase.generate)  # shrinking repeats slow fits
 
@@ -91,7 +92,7 @@ def test_a_pair_hits_again_only_after_something_else(
     if other:
         meetings.insert(1, Meeting(t + 0.1, other, 1 / 30))
     fit = fit_shot(known, cut_all(known, meetings, RADIUS)[0], meetings, RADIUS)
-    evidence = [_Evidence(9.0 - k, True, 0.0) for k in range(len(meetings))]
+    evidence = [_Evidence(9.0 - k, True, 1, 0.0) for k in range(len(meetings))]
     found = [told.hit for told in _once(evidence, fit)]
     assert found == ([9.0, 0.0] if not early and not other else [e.hit for e in evidence])
 
@@ -172,6 +173,33 @@ def test_touching_stones_pass_on_what_a_slow_one_brings(
     assert len({(hit.first, hit.second) for hit in motion.hits}) == len(pairs)
     seen = watch(motion, np.random.default_rng(seed), sd=0.001)
     assert ["".join(hit.stones) for hit in find_contacts(seen, RADIUS)] == pairs
+
+
+def packed(rows: int, come: Start, duration: float) -> Motion:
+    """A stone that runs from below into a triangle of stones less than a millimetre apart."""
+    wide, deep = 2 * RADIUS + 6e-4, (2 * RADIUS + 8e-4) * np.sqrt(0.75)
+    pack = [Start((j - i / 2) * wide, i * deep) for i in range(rows) for j in range(i + 1)]
+    return simulate([come, *pack], duration, impact=Impact(0.83, 0.2), step=5e-4, keep_every=4)
+
+
+@pytest.mark.parametrize("seed", [1, 3, 7])
+def test_of_three_packed_stones_the_front_one_drives_both_others(seed: int) -> None:
+    # All of it is between two sightings: that the other two, which touch, met is not needed.
+    rng = np.random.default_rng(seed)
+    motion = packed(2, Start(rng.uniform(0.03, 0.05), -1.5, 0.0, 2.0, 0.0, 1.0), 2.0)
+    hits = find_contacts(watch(motion, rng, sd=0.001), RADIUS)
+    assert sorted("".join(hit.stones) for hit in hits) == ["AB", "BC", "BD"]
+
+
+def test_a_stone_goes_off_along_the_line_of_centres(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tests.physics.watch, "NAMES", "ABCDEFG")
+    rng = np.random.default_rng(5)
+    motion = packed(3, Start(rng.uniform(0.03, 0.06), -1.0, 0.0, 1.8, 0.0, 1.0), 1.2)
+    assert not any({hit.first, hit.second} == {5, 6} for hit in motion.hits)
+    pairs = ["".join(hit.stones) for hit in find_contacts(watch(motion, rng, sd=0.001), RADIUS)]
+    # The last stone is driven by D; F, which touches it too, lies 60 degrees aside of its way.
+    assert pairs[:2] == ["AB", "BC"]
+    assert "FG" not in pairs
 
 
 def test_a_push_and_a_wall_are_no_hits() -> None:

@@ -103,3 +103,26 @@ def test_hits_beside_one_that_is_not_told_tell_no_restitution(turn: float) -> No
         else:
             assert hit.restitution == pytest.approx(0.83, abs=2 * (hit.stderr or 0.0))
     assert (found.restitution.value is None) == bool(turn)
+
+
+@pytest.mark.parametrize(
+    ("ice", "span"),
+    [(Ice(b=0.0109), 1.0), (Ice(b=0.0084, a=0.0027, v_c=0.0639, curl=0.0082), 1.6)],
+)
+def test_no_ice_draws_the_restitution_of_a_fast_hit_aside(ice: Ice, span: float) -> None:
+    """What is known beforehand of the ice is in the error; noise and its mirror image cancel."""
+    pulls = []
+    for seed, (offset, spin) in enumerate(((-0.1, 1.0), (-0.06, -1.0), (0.06, 1.0), (0.1, -1.0))):
+        rng = np.random.default_rng(seed)
+        ahead = float(np.sqrt(4 * RADIUS**2 - offset**2))
+        come = Start(offset, -ahead - 2.5 * span, 0.0, 2.5 + 0.05 * span, 0.0, spin)
+        motion = simulate([come, Start(0, 0)], 2 * span, ice=ice, step=5e-4, keep_every=4)
+        truth = watch(motion, rng, sd=1e-9).assign(sd_x=0.01, sd_y=0.01)
+        noise = rng.normal(0, 0.01, (len(truth), 2))
+        for sign in (1, -1):
+            seen = truth.assign(**{k: truth[k] + sign * noise[:, i] for i, k in enumerate("xy")})
+            e = estimate_locally(seen, find_contacts(seen, RADIUS), radius=RADIUS).restitution
+            assert e.value is not None
+            assert e.stderr is not None
+            pulls.append((e.value - Impact().restitution) / e.stderr)
+    assert abs(np.mean(pulls)) < 0.35, pulls
