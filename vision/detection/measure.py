@@ -43,6 +43,10 @@ Floats = NDArray[np.float32]
 Bytes = NDArray[np.uint8]
 Flags = NDArray[np.bool_]
 
+PALER = 3.0
+"""Standard deviations of the granite's lightness by which the ring around a cap is lighter at most.
+Under lamps thrown stones have 2.3; ice that letters of a cap's colour enclose 4 to 5."""
+
 CLEARLY = 0.3
 """Worth from which a sample counts as one of the cap; of the granite, less than its negative."""
 
@@ -358,7 +362,7 @@ def _stones(
         enlarged = np.where(evidence < ENOUGH, np.minimum(evidence + more, ENOUGH), evidence)
         return np.asarray(enlarged if appearance.caps else evidence)
 
-    evidence = told(usual)
+    evidence, pale = told(usual), _paler(level[:, 0], appearance)
     near = exact.ok & (np.hypot(fit.shift[clear, 0], fit.shift[clear, 1]) < NEAR)
     rows, share = clear[near], leaning[clear[near], None]
     shift, covariance, bends = fit.shift.copy(), fit.covariance.copy(), fit.bends.copy()
@@ -391,7 +395,7 @@ def _stones(
         colour=cap,
         visible=visible,
         uncovered=(capped & at_cap).mean(1),
-        evidence=evidence,
+        evidence=evidence - pale,
         excused=told(coarser) - evidence,
         light=lightness,
         swept=swept,
@@ -402,6 +406,27 @@ def _stones(
         worth=worth,
         rays=rays,
     )
+
+
+def _paler(level: Array, appearance: Appearance) -> Array:
+    """Say what it counts against a stone that the ring around its cap is too light for granite.
+
+    Parameters
+    ----------
+    level : ndarray, shape (n,)
+        Lightness of the rings, L*.
+    appearance : Appearance
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        To be taken off the evidence; 0 where no granite is known.
+    """
+    if appearance.granite is None:
+        return np.zeros(len(level))
+    away = level - appearance.granite.mean[0]
+    sd = np.sqrt(appearance.granite.covariance[0, 0])
+    return np.asarray(np.maximum(away / sd - PALER, 0.0))
 
 
 def _plain(

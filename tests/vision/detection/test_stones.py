@@ -166,6 +166,27 @@ def test_learned_colours_are_those_of_the_caps() -> None:
     assert colour_difference(learned.caps[0].mean, learned.caps[1].mean) > 60
 
 
+def test_ice_between_letters_is_no_granite() -> None:
+    places = [(0.4, 0.2, RED), (-0.5, 0.4, YELLOW), (1.4, 0.6, RED), (-1.2, -0.9, YELLOW)]
+    scene, middle = scene_of(places), np.array([[0.1, 2.6]])
+    picture, camera = np.array(render_still(scene, CAMERA), np.uint8), camera_of(CAMERA, scene)
+    learned = learn(look(scene))
+    row, column = np.indices(picture.shape[:2])
+    ((u, v),) = camera.project(middle, STONE.cap_height)
+    away = np.hypot(column - u, row - v) / camera.scale_at(middle)
+
+    def found(lightness: int) -> int:
+        """How many are seen with a letter, others around it, and so light a ring between."""
+        drawn = picture.copy()
+        drawn[away < 1.5 * STONE.radius] = RED
+        drawn[(away > STONE.cap_radius) & (away < STONE.radius)] = lightness
+        blurred = cv2.GaussianBlur(drawn, (0, 0), 0.7)
+        return len(search_picture(blurred, camera, learned).stones)
+
+    assert found(170) == len(places) + 1  # a stone in bright light
+    assert found(205) == found(220) == len(places)
+
+
 def test_discs_of_which_only_the_radius_is_known() -> None:
     image = np.full((240, 320, 3), 25, np.uint8)
     true = [(80.3, 60.7), (114.6, 60.7), (250.2, 180.4)]
