@@ -28,7 +28,8 @@ def shot(seed: int = 0, stones: str = "ABC", even: bool = True) -> pd.DataFrame:
                 "t": t,
                 "x": np.sin(t) + rng.normal(0, 0.001, len(t)),
                 "y": 2 * t,
-                "theta": 31.0 + t if stone != "B" else np.nan,
+                # The air moves pucks that turn six times a second.
+                "theta": 31.0 + (40 * t if stone == "C" else t) if stone != "B" else np.nan,
                 "sd_x": 0.002 if stone != "C" else np.nan,
                 "sd_y": 0.003 if stone != "C" else np.nan,
                 "sd_theta": 0.02 if stone == "A" else np.nan,
