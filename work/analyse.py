@@ -182,7 +182,7 @@ def _throws(later: Mapping[str, float]) -> tuple[str, ...]:
     each = ", ".join(f"{name} at {when:.2f} s" for name, when in later.items())
     return (
         f"more than one throw: {each}, when all others have stopped; e and μ are of all,"
-        " predictions of the first; to measure one alone cut the table, or name its frames"
+        " predictions of the first hit; to measure one alone cut the table, or name its frames"
         " (--frames)",
     )
 

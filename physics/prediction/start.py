@@ -153,7 +153,7 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
 
 
 def _left_out(stone: str, when: float) -> str:
-    return f"{stone} comes in under way at {when:.2f} s, after the first hit; left out"
+    return f"{stone} comes in under way at {when:.2f} s, after this shot begins; left out"
 
 
 def speed_before(speed: Array, way: float, ice: IceLaw) -> Array:

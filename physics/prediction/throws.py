@@ -38,16 +38,17 @@ def come_in(tracks: pd.DataFrame, time: float) -> dict[str, float]:
 def later_throws(tracks: pd.DataFrame) -> dict[str, float]:
     """Stones that come into view under way when all others have stopped, and when, s.
 
-    One stone at least has moved before, and none that went out of sight just before may be the
-    one that comes in.
+    One stone at least has moved before for certain, and none that went out of sight just before
+    may be the one that comes in.
     """
     speed = np.hypot(tracks["vx"], tracks["vy"])
+    least = speed - 2 * np.hypot(tracks["sd_vx"], tracks["sd_vy"])
     out = {}
     for name, when in come_in(tracks, float(tracks["t"].min())).items():
         before = (tracks["t"] < when) & (tracks["stone"] != name)
         last = tracks[before].assign(speed=speed[before]).sort_values("t").groupby("stone").last()
         goes = (last["speed"] > STILL) & (when - last["t"] < LOST)
-        if speed[before].max() > 3 * STILL and not goes.any():
+        if least[before].max() > 3 * STILL and not goes.any():
             out[name] = when
     return out
 

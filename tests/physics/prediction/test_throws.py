@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -62,6 +63,38 @@ def test_a_stone_that_comes_in_when_all_have_stopped_is_another_throw(both) -> N
     assert later_throws(lost) == {}
     after = lost.assign(t=lost["t"].where(lost["stone"] != "C", lost["t"] + 5.0))
     assert later_throws(after).keys() == {"C"}
+
+
+def rows(stone: str, begins: float, speeds: Sequence[float], sd: float = 0.01) -> pd.DataFrame:
+    """Rows of a track, 25 a second, with these speeds."""
+    t = begins + np.arange(len(speeds)) / 25
+    return pd.DataFrame({"stone": stone, "t": t, "vx": 0.0, "vy": speeds, "sd_vx": sd, "sd_vy": sd})
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "later"),
+    [
+        ([0.5] * 25 + [0.02] * 75, [0.13] * 30, True),
+        ([0.5] * 25 + [0.045] * 75, [0.13] * 30, False),  # it still goes
+        ([0.5] * 25 + [0.02] * 75, [0.065] * 30, False),  # as a stone at rest may seem to
+        ([0.5] * 25 + [0.02] * 75, [0.0] * 5 + [0.5] * 30, False),  # set off by something in view
+        ([0.5] * 25 + [0.02] * 75, [0.5] * 2 + [0.0] * 30, False),  # first seen in part
+        ([0.12] * 25 + [0.02] * 75, [0.5] * 30, True),
+        ([0.06] * 25 + [0.02] * 75, [0.5] * 30, False),  # nothing was thrown before
+    ],
+)
+def test_how_fast_a_stone_is_that_was_thrown(
+    first: list[float], second: list[float], later: bool
+) -> None:
+    told = later_throws(pd.concat([rows("A", 0, first), rows("B", 5, second)], ignore_index=True))
+    assert told == ({"B": 5.0} if later else {})
+
+
+def test_speeds_that_are_hardly_known_are_no_throw() -> None:
+    thrown = rows("A", 5, [1.5] * 50)
+    assert later_throws(pd.concat([rows("B", 0, [0.3] * 9 + [0.0] * 9), thrown], ignore_index=True))
+    unsure = rows("B", 0, [0.3] * 9 + [0.0] * 9, sd=0.2)
+    assert not later_throws(pd.concat([unsure, thrown], ignore_index=True))
 
 
 def test_a_first_throw_alone_is_no_second_one(both) -> None:
