@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from physics.curl import FCV1Curl, NoCurl
 from physics.ice import FCV1, Constant, Penner
-from physics.simulator.approach import first_contact
+from physics.simulator.approach import all_crossings, first_contact
 from physics.simulator.motion import Motion, Path
 
 REACH = 0.291
@@ -45,6 +45,25 @@ def test_no_contact_is_missed_and_none_made_up(
     assert min(apart) > REACH - 1e-9
     if found < math.inf:
         assert math.dist(a.point(found)[:2], b.point(found)[:2]) == pytest.approx(REACH, abs=1e-9)
+
+
+def test_grazes_are_timed_to_a_billionth_of_a_second() -> None:
+    """Newton's method goes there slowly: the rate at which stones come nearer is next to none."""
+    deep = 10.0 ** -np.arange(2.0, 11.0)
+    count, nearest = len(deep), 20.0
+
+    def points(which: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """The first ones pass, 1 m/s fast, the others rest."""
+        goes, zero = which < count, np.zeros(len(which))
+        x, y = np.where(goes, [t - nearest, (REACH - deep)[which % count]], 0.0)
+        return np.column_stack([x, y, goes, zero])
+
+    pairs, full = np.arange(count), np.ones(count)
+    found = all_crossings(
+        points, pairs, pairs + count, (nearest - 0.5) * full, nearest * full, REACH * full
+    )
+    before = np.sqrt(deep * (2 * REACH - deep))
+    np.testing.assert_allclose(found, nearest - before, rtol=0, atol=1e-9)
 
 
 def test_the_faster_stone_in_front_is_left_alone_at_once() -> None:
