@@ -22,7 +22,7 @@ from physics.local_fit.traces import Trace
 from physics.prediction.as_fitted import AsFitted, as_fitted, by_itself
 from physics.prediction.laws import Laws, measured_laws
 from physics.prediction.spread import Doubt, path_spread, simulated, simulated_hits
-from physics.prediction.throws import come_in, foreseen_until
+from physics.prediction.throws import foreseen_until, newcomers
 from physics.simulator.simulate import simulate
 from physics.simulator.simulation import Shot, StoneStart
 from physics.whole_shot.shot_model import STATE
@@ -86,8 +86,8 @@ def simulate_measured(
         warnings.append("simulation: no hit, the stones only glide")
     fit = estimates.whole
     told = {*fit.shots[0].traces} if fit is not None else set()
-    # A stone that comes in under way, and that nothing brings back in time, can't begin with them.
-    late = come_in(tracks, start).keys() - told
+    # What may not have lain there, and nothing brings back in time, can't begin with the others.
+    late = newcomers(tracks, start).keys() - told
     stones = _states(tracks[~tracks["stone"].isin(late)], start, estimates, masses or {})
     laws = measured_laws(estimates, radius)
     models, notes = _models(laws, estimates, stones)

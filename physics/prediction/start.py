@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,7 +18,7 @@ from physics.ice import IceLaw
 from physics.impact import Frictional
 from physics.local_fit.traces import shared_correlation
 from physics.prediction.laws import measured_laws
-from physics.prediction.throws import come_in
+from physics.prediction.throws import newcomers
 from physics.simulator.bounds import Bounds
 from physics.simulator.curve import Curve, curve_for
 from physics.simulator.motion import Motion, Path
@@ -101,7 +102,7 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     """
     laws = measured_laws(results, results.radius)
     time = _time(tracks, results)
-    late = come_in(tracks, time)
+    late = newcomers(tracks, time)
     tracks = tracks[~tracks["stone"].isin(late.keys())]
     rows = [_row(group, time, laws.ice) for _, group in tracks.groupby("stone", sort=True)]
     table = pd.DataFrame(rows).reset_index(drop=True)
@@ -148,12 +149,16 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
         laws.sd_turn,
         laws.size.stderr or 0.0,
         release,
-        (*laws.assumed.values(), *(_left_out(name, when) for name, when in late.items())),
+        (*laws.assumed.values(), *_left_out(late)),
     )
 
 
-def _left_out(stone: str, when: float) -> str:
-    return f"{stone} comes in under way at {when:.2f} s, after this shot begins; left out"
+def _left_out(late: Mapping[str, float]) -> tuple[str, ...]:
+    """Say so where stones do not lie there from the beginning."""
+    if not late:
+        return ()
+    each = ", ".join(f"{name} at {when:.2f} s" for name, when in late.items())
+    return (f"first seen after this shot begins and left out, for where from is not known: {each}",)
 
 
 def speed_before(speed: Array, way: float, ice: IceLaw) -> Array:

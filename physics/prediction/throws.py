@@ -53,6 +53,25 @@ def later_throws(tracks: pd.DataFrame) -> dict[str, float]:
     return out
 
 
+def newcomers(tracks: pd.DataFrame, time: float) -> dict[str, float]:
+    """Stones that may not have lain there at a time, s, and when they are first seen.
+
+    They come into view under way, or lie there when all has stopped and another is thrown then:
+    between two throws people move stones, and a clip may be cut.
+    """
+    under_way, stop = come_in(tracks, time), np.inf
+    later = [when for when in later_throws(tracks).values() if when > time]
+    if later:
+        goes = (np.hypot(tracks["vx"], tracks["vy"]) > STILL) & (tracks["t"] < min(later))
+        stop = max(float(tracks["t"][goes].max()), time)
+    first = tracks.groupby("stone", sort=True)["t"].min()
+    return {
+        str(name): float(when)
+        for name, when in first.items()
+        if str(name) in under_way or when > stop
+    }
+
+
 def foreseen_until(
     ends: Mapping[str, float], collisions: Sequence[Collision], known: Collection[str]
 ) -> dict[str, float]:

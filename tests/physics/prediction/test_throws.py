@@ -128,7 +128,24 @@ def test_a_stone_that_comes_in_later_does_not_lie_in_the_way_of_a_what_if() -> N
     tracks = pd.concat([tracks, thrown.assign(stone="D", t=thrown["t"] + 6.0)])
     start = measured_start(tracks, results)
     assert [stone.name for stone in start.shot.stones] == ["A", "B", "C"]
-    assert any(text.startswith("D comes in under way at 6.00 s") for text in start.assumed)
+    assert any(text.endswith("D at 6.00 s") for text in start.assumed)
+
+
+@pytest.mark.parametrize(
+    ("begins", "another", "known"), [(2.0, 12, True), (8.0, 12, False), (8.0, 0, True)]
+)
+def test_stones_first_seen_at_rest_were_hidden_unless_another_is_thrown_then(
+    begins: float, another: float, known: bool
+) -> None:
+    tracks, results = measured()
+    thrown = tracks[(tracks["stone"] == "A") & (tracks["t"] < 2)]
+    lies = thrown.assign(stone="D", t=thrown["t"] + begins, x=0.1, y=-0.5, vx=0.0, vy=0.0)
+    tracks = pd.concat([tracks, lies, thrown.assign(stone="E", t=thrown["t"] + another)])
+    if not another:
+        tracks = tracks[tracks["stone"] != "E"]
+    start = measured_start(tracks, results)
+    assert ("D" in [stone.name for stone in start.shot.stones]) == known
+    assert any("D at 8.00 s, E at 12.00 s" in text for text in start.assumed) != known
 
 
 def test_what_an_unknown_stone_sets_going_is_not_foreseen(both) -> None:
