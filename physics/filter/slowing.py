@@ -25,10 +25,11 @@ TINY = 1e-12
 SLOWEST = 0.06
 """Speed below which a stone is slowed as there, m/s: as by FCV1 (Uehara and Ito, 2021)."""
 
-FALL = Estimate(0.15, 0.3)
+FALL = Estimate(0.2, 0.25)
 """What is known of p beforehand for curling stones: 0 on even ice, 1/2 in Penner's law, in FCV1's
 0.15 from 1 to 3 m/s and 0.3 to 0.4 below. One mean for all draws each of them aside: fast stones of
-even ice and slow ones of FCV1's, the less the wider it is."""
+even ice and slow ones of FCV1's, the less the wider it is; too wide it tells nothing of how fast a
+stone was that was pushed on by a centimetre."""
 
 BEND = 0.5
 """Power of the speed that the heading goes with: as it turns by v^(-0.8) a second (FCV1; Uehara and
