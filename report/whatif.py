@@ -20,6 +20,7 @@ from data.sheet import HOUSE, STONE
 from data.tracks import write_table
 from physics.prediction.start import Start
 from report.figures import draw_house
+from report.figures.parts import legend_below
 from report.style import BLACK, GREY, PNG_DPI, new_figure, plain_text, stone_colours, styled
 
 Array = NDArray[np.float64]
@@ -129,15 +130,8 @@ def spread_figure(
         ax.grid(False)
         figure.suptitle(plain_text(title), x=0.01, ha="left", fontsize=10, fontweight="bold")
         circle: dict[str, Any] = {"marker": "o", "ls": "none", "mfc": "none"}
-        handles: list[Artist] = [
-            Line2D(
-                [],
-                [],
-                mec=BLACK,
-                label=f"median of {plain_text(thrown)}{_gone(off[thrown])}",
-                **circle,
-            )
-        ]
+        median = f"median of {plain_text(thrown)}{_gone(off[thrown])}"
+        handles: list[Artist] = [Line2D([], [], mec=BLACK, label=median, **circle)]
         lying = [place for name, place in before.items() if name != thrown]
         if _shows(low, high, np.array(lying).reshape(-1, 2)):
             handles.append(Line2D([], [], mec=GREY, label="as it lay before", **circle))
@@ -149,7 +143,7 @@ def spread_figure(
             for name in struck
             if off[name] > 0 or _shows(low, high, places[name])
         ]  # fmt: skip
-        figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 3))
+        legend_below(figure, handles)
     return figure
 
 

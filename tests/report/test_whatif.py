@@ -7,6 +7,7 @@ from matplotlib.patches import Circle
 
 from report.style import render
 from report.whatif import spread_figure
+from tests.report.figures.drawn import check_layout
 
 
 def outcomes(centre: tuple[float, float], count: int = 300) -> pd.DataFrame:
@@ -64,3 +65,18 @@ def test_stones_that_leave_the_sheet_are_counted_not_drawn_where_they_leave_it(o
     assert float(heat.sum()) / 4 == pytest.approx(100 * (1 - off), abs=10)
     across = ax.collections[0].get_coordinates()[0, :-1, 0]
     assert not heat[:, across > 1.5].any()
+
+
+def test_the_names_of_all_that_leave_the_sheet_are_in_the_picture() -> None:
+    rng = np.random.default_rng(1)
+    each, before = [], {}
+    for k in range(6):
+        stone = f"mass {k}"
+        before[stone] = (0.8 * k - 2.0, 0.5)
+        xy = rng.normal(before[stone], 0.2, (50, 2))
+        each.append(pd.DataFrame(xy, columns=["x", "y"]).assign(stone=stone, sample=range(50)))
+    table = pd.concat(each, ignore_index=True).assign(hits=1)
+    table["in_play"] = (table["sample"] >= 20).astype(int)
+    figure = spread_figure(table, before, "mass 0", "thrown 50 times")
+    check_layout(figure)
+    assert sum("40% off the sheet" in text.get_text() for text in figure.legends[0].texts) == 6

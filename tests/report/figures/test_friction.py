@@ -59,3 +59,12 @@ def test_many_stones_leave_the_panel_its_height(shot):
     figure = figures.friction_figure(glides, law, shot.tracks)
     check_layout(figure)
     assert figure.axes[0].get_window_extent().height / figure.dpi > 1.7
+
+
+def test_where_the_shot_tells_little_glides_that_tell_no_less_are_not_pale(shot):
+    law = Friction(1e-3, 4e-3)
+    for stderr, poor in ((3e-3, False), (6e-3, True)):
+        glides = [Glide("A", 0.0, 6.0, 2e-3, stderr)]
+        figure = figures.friction_figure(glides, law, shot.tracks)
+        said = [text.get_text() for text in figure.legends[0].get_texts()]
+        assert any("poorly" in text for text in said) == poor
