@@ -42,6 +42,16 @@ def test_the_heat_map_shows_where_the_thrown_stone_ends(centre: tuple[float, flo
     assert (0.5, 0.5) in drawn and (0.0, -5.0) not in drawn
 
 
+def test_a_stone_that_hits_nothing_and_one_that_always_leaves_are_told_of() -> None:
+    table = outcomes((0.0, 0.5))
+    table.loc[table["stone"] == "A", "hits"] = 0
+    table.loc[table["stone"] == "$C", "in_play"] = 0
+    figure = spread_figure(table, {"A": (0, -5), "B": (0.5, 0.5), "$C": (0, 1)}, "A", "t")
+    assert figure.axes[0].collections
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert {"median of A", r"\$C where hit (100% off the sheet)"} < {*labels}
+
+
 def test_one_sample_is_enough() -> None:
     render(
         spread_figure(outcomes((0, 0), 1), {"A": (0, -5), "B": (0.5, 0.5), "$C": (0, 1)}, "A", "t")

@@ -75,3 +75,12 @@ def test_distances_are_symmetric_and_of_known_stones_only():
     np.testing.assert_allclose(apart[0, 1:], [1.2, 0.9])
     np.testing.assert_array_equal(apart, apart.T)
     assert tables.distance_table(lying({"A": 0.3}).iloc[:0]).empty
+
+
+@pytest.mark.parametrize(
+    ("speed", "last"), [(0.0, 0.0), (0.02, 0.0), (0.045, 0.045), (np.nan, 0.0)]
+)
+def test_a_stone_that_creeps_has_stopped(speed: float, last: float):
+    t = np.arange(50) / 25
+    track = pd.DataFrame({"t": t, "vx": np.where(t < 1.5, 0.5, speed), "vy": 0.0})
+    assert tables.last_speed(track) == pytest.approx(last)
