@@ -47,6 +47,6 @@ def test_such_tracks_are_converted(table: Path, tmp_path: Path, ending: str) -> 
 def test_such_names_are_drawn_and_formulas_are_not() -> None:
     assert plain_text(os.fsdecode(b"a\xdf$b$")) == r"a?\$b\$"
     look = Look(Frame(5, 0.2, np.full((SIZE[1], SIZE[0], 3), 230, np.uint8)), camera(5), ())
-    check_figure(
-        [look], looking.table(1, 0), (), title=os.fsdecode(b"a\xdf$b$.mp4")
-    ).draw_without_rendering()
+    figure = check_figure([look], looking.table(1, 0), (), title=os.fsdecode(b"a\xdf$b$.mp4"))
+    figure.draw_without_rendering()
+    assert figure.get_suptitle() == r"a?\$b\$.mp4"

@@ -206,6 +206,9 @@ def test_degrees_by_evidence_or_by_word(tmp_path: Path) -> None:
     found = read(tmp_path, rows.to_csv(index=False))
     np.testing.assert_allclose(found.sightings["theta"], np.radians(70 * t))
     assert "degrees" in found.warnings[0]
+    far = table.assign(stone="A", theta=90 + 2 * t)  # continuous: after many turns
+    found = read(tmp_path, far.to_csv(index=False))
+    np.testing.assert_allclose(found.sightings["theta"], 90 + 2 * t)
     slow = table.assign(theta=2 * t)
     text = slow.to_csv(index=False)
     np.testing.assert_allclose(read(tmp_path, text).sightings["theta"], 2 * t)
