@@ -75,7 +75,7 @@ def test_a_bent_track_is_named_and_leads_no_estimate_astray(
 def test_the_worse_bent_it_is_the_larger_its_misfit() -> None:
     sizes = [
         max(one.size for one in measure(bent(seen(2), "X", aside)).misfits)
-        for aside in (0.02, 0.06)
+        for aside in (0.015, 0.045)
     ]
     assert sizes[1] / sizes[0] == pytest.approx(3, rel=0.2)
 
