@@ -43,7 +43,7 @@ PLAIN = 0.85, 0.85
 
 HARDLY_TOLD = 0.004
 """How far aside a stone lies, m per axis, whose cap is hardly told from granite: lamps mirrored on
-it move the edge that is found. Five filmed ones lay 2 to 7 mm off."""
+it move the edge that is found. Five filmed ones lay 2 to 7 mm off. `TOGETHER` of it is stated."""
 
 TOGETHER = 0.87
 """Share of what parts of the error that places share (camera, slant, edges) come to that is stated.

@@ -73,15 +73,14 @@ def friction_figure(
             for label, law, dash in _LAWS:
                 ax.plot(v, _friction(law, v), color=GREY, lw=1.1, linestyle=dash, zorder=2)
                 handles.append(line(label, color=GREY, lw=1.1, linestyle=dash))
-        limits = _limits(
-            [glide for glide, _ in known if _tells(glide, friction)], friction, curling
-        )
+        telling = [glide for glide, _ in known if _tells(glide, friction)]
+        limits = _limits(telling, friction, curling)
         for glide, (slow, fast) in known:
-            pale = 1.0 if _tells(glide, friction) else FAINT
-            _draw_glide(ax, glide, slow, fast, colours[glide.stone], pale, limits)
+            alpha = 1.0 if glide in telling else FAINT
+            _draw_glide(ax, glide, slow, fast, colours[glide.stone], alpha, limits)
         for name in sorted({glide.stone for glide, _ in known}):
             handles.append(line(f"stone {short(name)}", color=colours[name], lw=2.2))
-        if not all(_tells(glide, friction) for glide, _ in known):
+        if len(telling) < len(known):
             handles.append(line("poorly known (▴▾ beyond)", color=GREY, alpha=FAINT, lw=2.2))
         if friction.value is not None:
             mu = _friction(_law(friction), v)
