@@ -109,9 +109,6 @@ def measure_marks(
     *,
     reach: float,
     spacing: float = 6.0,
-    most: int = 360,
-    least_sd: float = EDGE_SD,
-    palette: Array | None = None,
     lines: bool = True,
     edge: PaintEdge = HALF_WAY,
 ) -> Evidence:
@@ -124,22 +121,16 @@ def measure_marks(
         Camera as in `vision.optics.pose` and `vision.optics.rig`.
     reach : float
         Half length of the normals, px.
-    spacing, most : float, int
-        Distance of neighbouring normals on a circle, px, and how many of them at most.
-    least_sd : float
-        Least standard deviation of a mark, px.
-    palette : ndarray, shape (9, 2, 3), optional
-        Colours of the edges in the frames before; NaN where not known.
+    spacing : float
+        Distance of neighbouring normals on a circle, px.
     lines : bool
         Whether lines are measured.
     edge : PaintEdge
         Where the circles are in the profiles across them.
     """
     h, w = picture.shape[:2]
-    normals = lay_out(view, rig, (w, h), reach=reach, spacing=spacing, most=most, lines=lines)
-    return measure_along(
-        [picture], normals, normals.standing[None], least_sd=least_sd, palette=palette, edge=edge
-    )[0]
+    normals = lay_out(view, rig, (w, h), reach=reach, spacing=spacing, lines=lines)
+    return measure_along([picture], normals, normals.standing[None], edge=edge)[0]
 
 
 def measure_along(
@@ -152,7 +143,7 @@ def measure_along(
     edge: PaintEdge = HALF_WAY,
     levels: Array | None = None,
 ) -> list[Evidence]:
-    """Measure circles and lines in pictures along the same normals; see `measure_marks`.
+    """Measure circles and lines in several pictures along the same normals.
 
     Parameters
     ----------
@@ -160,24 +151,79 @@ def measure_along(
     normals : Normals
     standing : ndarray, shape (pictures, 2, 2, n)
         As `Normals.standing`, in each picture.
+    least_sd : float
+        Least standard deviation of a mark, px.
+    palette : ndarray, shape (9, 2, 3), optional
+        Colours on either side of each kind of edge in the frames before; NaN where not known.
+    edge : PaintEdge
+        Where the circles are in the profiles across them.
     levels : ndarray, shape (n,), optional
-        At which levels the wide edges are crossed beside that, for a pan smears them.
+        Levels to be added to those of `edge` at which profiles are crossed: motion blur.
     """
     points = standing[:, 0]
     places, wide = _places(normals), normals.wide
     colours = profiles(pictures, normals, points)
     if palette is None:
         palette = np.full((FIXED, 2, colours.shape[1]), np.nan)
-    value, good, found = steps(colours[..., :wide], normals, palette)
-    rim = places.kinds.get(TWELVE, slice(0))
+    edges = _edges(colours[..., :wide], normals, palette, edge, levels)
+    within = points[:, 0, wide::BLOCK] > OUTSIDE
+    stripes, shown = find_stripes(colours[..., wide:], places.blocks, within)
+    offset, good = np.append(edges.offset, stripes, -1), np.append(edges.good, shown, -1)
+    good, sd = _inlying(places, offset, good, least_sd)
+    covered = np.zeros((len(good), CIRCLES))
+    for kind in range(CIRCLES):
+        if kind in places.kinds:
+            covered[:, kind] = normals.visible[kind] * good[:, places.kinds[kind]].mean(1)
+    middles = standing[..., wide:].reshape(*standing.shape[:3], -1, BLOCK).mean(4)
+    place, normal = np.moveaxis(np.append(standing[..., :wide], middles, axis=3), 1, 0)
+    pixel = place + places.normal * offset[:, None]
+    return [
+        Evidence(
+            Marks(places.line, places.along, pixel[k].T, normal[k].T, sd[k]).pick(good[k]),
+            normals.visible, covered[k], edges.palette[k], edges.rim[k], edges.crossing[k],
+            edges.slope[k], edges.step,
+        )
+        for k in range(len(pictures))
+    ]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Edges:
+    """Edges of circles and wide lines in some pictures, n normals across them.
+
+    Attributes
+    ----------
+    offset, good : ndarray, shape (pictures, n)
+        How far along its normal each lies, px, and whether the profile shows it.
+    palette, rim, crossing, slope, step
+        As in `Evidence`, of each picture.
+    """
+
+    offset: Array
+    good: Flags
+    palette: Array
+    rim: Profiles
+    crossing: Array
+    slope: Array
+    step: float
+
+
+def _edges(
+    colours: Profiles, normals: Normals, palette: Array, edge: PaintEdge, levels: Array | None
+) -> _Edges:
+    """Find edges in profiles across them, (pictures, 3, SAMPLES, n); see `measure_along`."""
+    count = colours.shape[-1]
+    kinds = {kind: part for kind, part in normals.kinds.items() if kind not in THIN}
+    rim = kinds.get(TWELVE, slice(0))
+    value, good, found = steps(colours, normals, palette)
     value[..., rim] -= np.float32(edge.level)
     for kind in range(CIRCLES):
-        value[..., places.kinds.get(kind, slice(0))] -= np.float32(edge.light[kind])
+        value[..., kinds.get(kind, slice(0))] -= np.float32(edge.light[kind])
     if levels is not None:
-        value -= levels[:wide].astype(np.float32)
+        value -= levels[:count].astype(np.float32)
     rising, inset = value.copy(), np.zeros(good.shape)
-    for k, one in enumerate(colours[..., :wide]):
-        for part in outlines(one, places.kinds, value[k], good[k], found[k]):
+    for k, one in enumerate(colours):
+        for part in outlines(one, kinds, value[k], good[k], found[k]):
             rising[k][:, part] = summed(value[k][:, part])
             inset[k, part] = edge.within * normals.magnified[part]
     sample, rise, crossed = crossings(rising)
@@ -186,40 +232,38 @@ def measure_along(
     sample -= inset / step
     sample[..., rim] -= edge.beyond(slope) / step
     off = sample / (SAMPLES // 2) - 1
-    shorter = normals.reach[:wide] < normals.wanted
-    good &= crossed & ~(shorter & (np.abs(off) > CLEAR))
-    offset = off * normals.reach[:wide]
-    within = points[:, 0, wide::BLOCK] > OUTSIDE
-    stripes, shown = find_stripes(colours[..., wide:], places.blocks, within)
-    offset, good = np.append(offset, stripes, axis=-1), np.append(good, shown, axis=-1)
-    covered = np.zeros((len(good), CIRCLES))
-    sd = np.full(good.shape, least_sd)
+    reach = normals.reach[:count]
+    good &= crossed & ~((reach < normals.wanted) & (np.abs(off) > CLEAR))
+    crossing, slope = (np.where(good[:, rim], v, np.nan) for v in (sample[:, rim], slope))
+    profile = value[..., rim] + np.float32(edge.level + edge.light[TWELVE])
+    return _Edges(off * reach, good, found, profile, crossing, slope, step)
+
+
+def _inlying(places: _Places, offset: Array, shown: Flags, least_sd: float) -> tuple[Flags, Array]:
+    """Leave out outliers on straight lines; the standard deviation of each mark by its scatter.
+
+    Parameters
+    ----------
+    offset, shown : ndarray, shape (pictures, n)
+        How far along its normal each place has its edge, px, and whether there is one.
+
+    Returns
+    -------
+    good, sd : ndarray, shape (pictures, n)
+    """
+    good, sd = shown.copy(), np.full(shown.shape, least_sd)
     for kind in range(CIRCLES):
         if kind in places.kinds:
             part = places.kinds[kind]
-            shown = good[:, part]
-            covered[:, kind] = normals.visible[kind] * shown.mean(1)
-            sd[:, part] = np.maximum(_scatter(offset[:, part], shown), least_sd)[:, None]
+            sd[:, part] = np.maximum(_scatter(offset[:, part], shown[:, part]), least_sd)[:, None]
     if len(places.least):
         index, real = places.runs.index, places.runs.real
-        shown = good[:, index] & real
-        shown &= (shown.sum(2) >= places.least)[..., None]
-        left, spread = smooth(places.curves, offset[:, index], shown, least_sd)
+        on_line = shown[:, index] & real
+        on_line &= (on_line.sum(2) >= places.least)[..., None]
+        left, spread = smooth(places.curves, offset[:, index], on_line, least_sd)
         good[:, index[real]] = left[:, real]
         sd[:, index] = spread[..., None]
-    middles = standing[..., wide:].reshape(*standing.shape[:3], -1, BLOCK).mean(4)
-    place, normal = np.moveaxis(np.append(standing[..., :wide], middles, axis=3), 1, 0)
-    pixel = place + places.normal * offset[:, None]
-    crossing, slope = (np.where(good[:, rim], v, np.nan) for v in (sample[:, rim], slope))
-    profile = value[..., rim] + np.float32(edge.level + edge.light[TWELVE])
-    return [
-        Evidence(
-            Marks(places.line, places.along, pixel[k].T, normal[k].T, sd[k]).pick(good[k]),
-            normals.visible, covered[k], found[k], profile[k], crossing[k],
-            slope[k], step,
-        )
-        for k in range(len(pictures))
-    ]  # fmt: skip
+    return good, sd
 
 
 def profiles(pictures: Sequence[Picture], normals: Normals, points: Array) -> Profiles:

@@ -10,7 +10,7 @@ from tests.synthetic.scene import Scene
 from vision.optics.paint import CENTRE_LINE, LEFT, RIGHT, TEE_LINE, TWELVE
 from vision.optics.pose import View
 from vision.optics.rig import OVERHEAD, start_rig
-from vision.sheet.marks import measure_marks, profiles
+from vision.sheet.marks import measure_along, measure_marks, profiles
 from vision.sheet.normals import SAMPLES, lay_out
 
 SIZE = (960, 540)
@@ -97,7 +97,9 @@ def test_edges_are_unbiased_under_blur_and_noise(name: str, softness: float, noi
     image = render_still(
         replace(base, light=replace(base.light, softness=softness, noise=noise)), path
     )
-    marks = measure_marks(image, view.vector, rig, reach=7, most=60, least_sd=NOISE_SD).marks
+    normals = lay_out(view.vector, rig, SIZE, reach=7, most=60)
+    (seen,) = measure_along([image], normals, normals.standing[None], least_sd=NOISE_SD)
+    marks = seen.marks
     middle = (np.array(SIZE) - 1) / 2
     for kind, radius in enumerate((1.829, rig[6], rig[7])):
         on = marks.pick(marks.line == kind)
@@ -112,11 +114,12 @@ def test_known_colours_are_told_from_those_of_something_else() -> None:
     paint = PAINTS["navy-orange"]
     view, rig = truth(paint)
     seen = measure_marks(still(paint), view.vector, rig, reach=7)
-    again = measure_marks(still(paint), view.vector, rig, reach=7, palette=seen.palette)
-    assert (again.support > 0.85).all()
-    other = measure_marks(
-        still(PAINTS["gold-purple"]), view.vector, rig, reach=7, palette=seen.palette
+    normals = lay_out(view.vector, rig, SIZE, reach=7)
+    pictures = [still(paint), still(PAINTS["gold-purple"])]
+    again, other = measure_along(
+        pictures, normals, np.array([normals.standing] * 2), palette=seen.palette
     )
+    assert (again.support > 0.85).all()
     assert other.support[0] < 0.1
 
 
