@@ -227,6 +227,16 @@ class _Problem:
         value += 2 * float(loss(at.residual / noise[self.kind], WIDTH).sum())
         return value / 2
 
+    def weights(self, at: Linear, noise: Array) -> Array:
+        """Give each residual's weight under Cauchy's loss, shape (n,)."""
+        return np.asarray(1 / (noise[self.kind] ** 2 + (at.residual / WIDTH) ** 2))
+
+    def by_shared(self, state: _State, at: Linear) -> Array:
+        """Differentiate the residuals by the rig and the travel, shape (15 + 3 d, n)."""
+        found = by_rig(self.observed, at, state.views)
+        along = (self.basis.T[:, None] * found[POSITION]).reshape(-1, found.shape[1])
+        return np.concatenate([found, along])
+
     def normal(self, state: _State, at: Linear, paint: Array, noise: Array) -> tuple[Arrow, Array]:
         """Assemble the normal equations: matrix and right-hand side."""
         rig, cut = slice(0, self.shared), self.shared + state.views.size
@@ -245,10 +255,8 @@ class _Problem:
             state.offset,
         ]
         right = held * np.concatenate(away)
-        w = 1 / (noise[self.kind] ** 2 + (at.residual / WIDTH) ** 2)
-        by_shared, by_offset = by_rig(self.observed, at, state.views), by_measure(self.observed, at)
-        along = (self.basis.T[:, None] * by_shared[POSITION]).reshape(-1, len(w))
-        by_shared = np.concatenate([by_shared, along])
+        w = self.weights(at, noise)
+        by_shared, by_offset = self.by_shared(state, at), by_measure(self.observed, at)
         shared, own, pull = by_shared * w, at.by_view * w, w * at.residual
         dense, border = np.diag(held[:cut]), np.zeros((cut, len(self.pieces)))
         dense[rig, rig] += shared @ by_shared.T
@@ -299,14 +307,11 @@ class _Problem:
         at = self.see(state)
         matrix, right = self.normal(state, at, paint, noise)
         by_axis = self.observed.normal
-        weighted = by_axis / (noise[self.kind] ** 2 + (at.residual / WIDTH) ** 2)
-        by_shared, by_offset = by_rig(self.observed, at, state.views), by_measure(self.observed, at)
-        along = (self.basis.T[:, None] * by_shared[POSITION]).reshape(-1, len(at.residual))
+        weighted = by_axis * self.weights(at, noise)
+        by_shared, by_offset = self.by_shared(state, at), by_measure(self.observed, at)
         by_view = [at.by_view[:, part] @ weighted[:, part].T for part in self.observed.parts]
         by_piece = [np.bincount(self.piece, by_offset * w, len(self.pieces)) for w in weighted]
-        beside = np.concatenate(
-            [by_shared @ weighted.T, along @ weighted.T, *by_view, np.transpose(by_piece)]
-        )
+        beside = np.concatenate([by_shared @ weighted.T, *by_view, np.transpose(by_piece)])
         follows = np.array([matrix.solve(column) for column in beside.T])
         own = weighted @ by_axis.T + np.eye(2) / AXIS_SD**2 - follows @ beside
         pull = weighted @ at.residual - follows @ right
@@ -340,8 +345,7 @@ class _Problem:
         From overhead, height, focal length and tilt hardly tell themselves apart: a joint step
         along the tangent of that valley would leave it where it bends.
         """
-        w = 1 / (noise[self.kind] ** 2 + (at.residual / WIDTH) ** 2)
-        matrices, right = view_equations(self.observed, at, w)
+        matrices, right = view_equations(self.observed, at, self.weights(at, noise))
         right += self.hold * (state.views - self.start)
         held = np.diag(self.hold + BLIND)  # a step too far may end below the ice
         step = np.linalg.solve(matrices + held, right[..., None])[..., 0]
