@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import re
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -27,6 +28,15 @@ class _Parser(argparse.ArgumentParser):
         super().__init__(*arguments, **options)
         # Values may begin with a minus; of itself argparse knows numbers alone, not -1x or -5:9.
         self._negative_number_matcher = re.compile(r"^-\.?\d")
+
+    def parse_known_args(self, *arguments: Any, **options: Any) -> tuple[Any, list[str]]:
+        # A command would leave what it does not know to the whole line, whose help tells less.
+        known, rest = super().parse_known_args(*arguments, **options)
+        if rest:
+            near = get_close_matches(rest[0].partition("=")[0], self._option_string_actions, 1)
+            hint = f", did you mean {near[0]}?" if near else ""
+            self.error(f"unrecognized arguments: {' '.join(rest)}{hint}")
+        return known, rest
 
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog}: {message} (see {self.prog} --help)\n")

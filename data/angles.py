@@ -38,6 +38,13 @@ _DOUBTFUL_SPIN = 5.0
 _ROUNDED = 0.01
 """rad; what a printed angle may be beyond half a turn."""
 
+_NEARLY_ALL = (0.05, 0.95)
+"""Quantiles; a slipped mark or two do not count."""
+
+_WANDERS = 2.0
+"""How many times nearer and farther marks may be; those of an edge stay within tenths, a stone
+that goes across the house is many times nearer to the tee and farther from it."""
+
 _CONTINUOUS = ("θ", "theta", "angle", "ang")
 _WRAPPED = ("θr",)
 
@@ -100,7 +107,9 @@ def read_angles(path: Path, angle_unit: str | None = None, fps: float | None = N
         theta = values[columns["θr"]]
     direction = None
     if "x" in columns and "y" in columns:
-        direction = np.arctan2(values[columns["y"]], values[columns["x"]])
+        x, y = values[columns["x"]], values[columns["y"]]
+        _refuse_wandering(path, np.hypot(x, y))
+        direction = np.arctan2(y, x)
     if theta is None:
         if direction is None:
             raise InputError(f"{path}: no angle: needs t and θ, or t, x and y about the centre")
@@ -199,6 +208,18 @@ def _names(table: TextTable) -> list[str]:
     if table.width == 3:
         return ["t", "x", "y"]
     raise InputError(f"{table.path}: {table.width} columns without a header; needs t and θ")
+
+
+def _refuse_wandering(path: Path, distance: Array) -> None:
+    """Refuse a point that does not stay as far from the origin as one of a stone's edge."""
+    known = distance[np.isfinite(distance)]
+    near, far = np.quantile(known, _NEARLY_ALL) if len(known) else (0.0, 0.0)
+    if far > _WANDERS * near:
+        raise InputError(
+            f"{path}: the point is {near:.3g} to {far:.3g} from the origin, so it is none of a"
+            " stone's edge; put the origin into the stone's centre (Coordinate System > Reference"
+            " Frame)"
+        )
 
 
 def _unit(

@@ -25,7 +25,9 @@ UNIT_NOT_SAID = f"another length unit (--length-unit: {', '.join(LENGTH_UNITS)})
 ANGLE_UNITS = {"rad": 1.0, "deg": np.pi / 180}
 """Radians in one of each."""
 
-TIME_NAMES = {"t", "time"}
+TIME_NAMES = {"t", "time", "zeit", "temps", "tiempo", "tempo", "tid", "tijd", "czas"}
+"""What a column of times is called; spreadsheets are written by hand, in any language."""
+
 _TIME_UNITS = {"s": 1.0, "sec": 1.0, "ms": 0.001}
 
 
@@ -55,8 +57,10 @@ def clock_column(table: TextTable, names: Sequence[str], fps: float | None) -> i
         if name in TIME_NAMES:
             return k
     if fps is None:
+        there = ", ".join(name for name in names if name)[:80]
         raise InputError(
-            f"{table.path}: no time column (t); give the frame rate of the rows (--fps)"
+            f"{table.path}: no time column, t (there are {there}); rename it, or give the frame"
+            " rate of the rows (--fps)"
         )
     return names.index("frame") if "frame" in names else None
 
@@ -110,7 +114,7 @@ def refuse_disorder(table: TextTable, times: Array) -> None:
         how = "goes back" if steps[row] < 0 else "stands still"
         raise InputError(
             f"{table.path}: line {table.line_numbers[row + 1]}: time {how} (from {times[row]:g} s"
-            f" to {times[row + 1]:g} s); one row per time, please"
+            f" to {times[row + 1]:g} s); one row per time, please, or the names in a column stone"
         )
 
 

@@ -26,7 +26,7 @@ _SPREADSHEET = re.compile('"?sep=.?"?', re.IGNORECASE)
 """What spreadsheets take for the delimiter of what follows, and no name of a track."""
 
 _UNIT = re.compile(r"[(\[]?(m?s|sec|[cm]?m|in|ft|px|kg|rad|deg|°|(m|rad|deg|°)/s[²2]?)?[)\]]?")
-_MISSING = frozenset({"", "nan", "na", "n/a", "#n/a", "null", "none", "-"})
+_MISSING = frozenset({"", "nan", "na", "n/a", "#n/a", "#nv", "null", "none", "-"})
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import shutil
 import tempfile
@@ -14,6 +15,9 @@ from data.text import printable
 
 FILES = (".csv", ".json", ".html", ".mp4", ".png", ".txt", ".trk", ".trz", ".parquet")
 """Endings by which a person means a file, not a folder that is to be made."""
+
+
+_FULL = frozenset({errno.ENOSPC, errno.EDQUOT})
 
 
 @contextmanager
@@ -99,7 +103,12 @@ def staged(folder: Path, replaces: Sequence[str] = ()) -> Iterator[Path]:
     """
     with _hidden(folder) as hidden:
         stage = Path(hidden)
-        yield stage
+        try:
+            yield stage
+        except OSError as error:
+            if error.errno not in _FULL:
+                raise
+            raise InputError(f"{folder}: {error.strerror}; nothing was written") from None
         folder.mkdir(parents=True, exist_ok=True)
         new = {item.name for item in stage.iterdir()}
         for name in sorted(new.union(replaces)):

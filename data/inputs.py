@@ -16,6 +16,11 @@ PROJECT_SUFFIXES = frozenset({".trk", ".trz", ".zip"})
 
 TABLE_SUFFIXES = PROJECT_SUFFIXES | {".csv", ".txt", ".tsv", ".dat", ".parquet"}
 
+SPREADSHEETS = frozenset({".ods", ".xls", ".xlsx"})
+
+SPREADSHEET = "a spreadsheet; save it as CSV"
+"""What is said of them, and of archives that are one under another name."""
+
 
 def find_inputs(names: Sequence[str | Path]) -> tuple[Path, ...]:
     """Files behind what a person names: files, globs, folders of pictures in natural order.

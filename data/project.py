@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePath, PurePosixPath
 
 from data.archive import UNREADABLE, unpack
 from data.errors import InputError
+from data.inputs import SPREADSHEET, TABLE_SUFFIXES
 from data.osp_xml import LARGEST, Thing, parse
 from data.trk import Project
 from data.trk_read import project_of
@@ -152,7 +153,7 @@ def _archived(path: Path, archive: zipfile.ZipFile) -> dict[str, _Tab]:
         raise InputError(f"{path}: {len(entries)} files are too many for a Tracker project")
     found = [e for e in entries if e.filename.lower().endswith(".trk") and not _hidden(e.filename)]
     if not found:
-        raise InputError(f"{path}: an archive without a Tracker project (.trk)")
+        raise InputError(f"{path}: {_other_archive(entries)}")
     if len(found) > MOST_TABS:
         raise InputError(f"{path}: {len(found)} projects in one archive are too many")
     tabs: dict[str, _Tab] = {}
@@ -167,6 +168,17 @@ def _archived(path: Path, archive: zipfile.ZipFile) -> dict[str, _Tab]:
     if not tabs:
         raise InputError(f"{path}: an archive without a Tracker project (.trk)")
     return tabs
+
+
+def _other_archive(entries: Sequence[zipfile.ZipInfo]) -> str:
+    """Say what an archive is that holds no project, and what to do with it."""
+    names = [entry.filename for entry in entries]
+    if any(name.startswith("xl/") or name == "content.xml" for name in names):
+        return SPREADSHEET
+    inside = [name for name in names if PurePosixPath(name).suffix.lower() in TABLE_SUFFIXES]
+    if inside:
+        return f"an archive with {inside[0][-80:]} in it; unpack it first"
+    return "an archive without a Tracker project (.trk)"
 
 
 def _beside(path: Path, folder: Path, name: str) -> Path:

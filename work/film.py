@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from data.errors import InputError
-from data.inputs import PROJECT_SUFFIXES, TABLE_SUFFIXES
+from data.inputs import PROJECT_SUFFIXES, SPREADSHEET, SPREADSHEETS, TABLE_SUFFIXES
 from data.progress import Progress
 from data.sheet import HOUSE, STONE, House, Stone, curling_size
 from work.settings import Settings, refuse_table_options
@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from vision.film.clip import Clip
     from vision.optics.camera import Camera
     from vision.optics.placed import Placed
-
-SPREADSHEETS = frozenset({".ods", ".xls", ".xlsx"})
 
 STONE_RADII = (0.12, 0.18)
 """m; below it a cap leaves hardly any granite to see, above it are diameters."""
@@ -68,7 +66,7 @@ def _open_clip(files: tuple[Path, ...], settings: Settings) -> Clip:
 
     kinds = [path.suffix.lower() for path in files]
     if SPREADSHEETS.intersection(kinds):
-        raise InputError(f"{files[0]}: a spreadsheet; save it as CSV")
+        raise InputError(f"{files[0]}: {SPREADSHEET}")
     if not TABLE_SUFFIXES.intersection(kinds):
         return open_clip(files, settings.fps, settings.frames)
     if len(files) > 1 or kinds[0] not in PROJECT_SUFFIXES:

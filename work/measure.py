@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from data.errors import InputError
-from data.inputs import IMAGE_SUFFIXES, TABLE_SUFFIXES, find_inputs
+from data.inputs import IMAGE_SUFFIXES, SPREADSHEET, SPREADSHEETS, TABLE_SUFFIXES, find_inputs
 from data.progress import Progress, no_progress
 from data.sheet import HOUSE, House, curling_size
 from work.film import check_size, disc_of, film
@@ -82,7 +82,9 @@ def refuse_clips(files: Sequence[Path], command: str) -> None:
     """Refuse what is no table of tracks, and say which command takes it."""
     odd = [path for path in files if path.suffix.lower() not in TABLE_SUFFIXES]
     if odd:
-        raise InputError(f"{odd[0]}: not a table of tracks; try curlshot {command}")
+        what = f"not a table of tracks; try curlshot {command}"
+        what = SPREADSHEET if odd[0].suffix.lower() in SPREADSHEETS else what
+        raise InputError(f"{odd[0]}: {what}")
 
 
 def import_tables(files: tuple[Path, ...], settings: Settings) -> Measured:

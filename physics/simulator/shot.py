@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import Field, dataclass
@@ -104,13 +105,14 @@ def read_shot(path: Path) -> Shot:
         One line that lists everything that is wrong with it.
     """
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
+        text = path.read_text(encoding="utf-8-sig")  # editors of Windows begin it with a mark
+        content = tomllib.loads(text)
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}") from None
     except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         if path.suffix.lower() != ".toml":
             raise InputError(f"{path}: no shot; name a SHOT.toml or the folder of a run") from None
-        why = error if isinstance(error, tomllib.TOMLDecodeError) else "not a text file"
+        why = "not a text in UTF-8" if isinstance(error, UnicodeDecodeError) else _why(error, text)
         raise InputError(f"{path}: not TOML: {why}") from None
     faults: list[str] = []
     _Table("file", content, faults).only(("physics", "stone"))
@@ -119,6 +121,15 @@ def read_shot(path: Path) -> Shot:
         # Names and words from the file may hold line breaks.
         raise InputError(" ".join(f"{path}: {'; '.join(faults)}".split()))
     return shot
+
+
+def _why(error: tomllib.TOMLDecodeError, text: str) -> str:
+    """Say what is no TOML, with the line that it is in."""
+    place = re.search(r"at line (\d+)", str(error))
+    lines = text.splitlines()
+    if place is None or int(place[1]) > len(lines):
+        return str(error)
+    return f"{error}: “{lines[int(place[1]) - 1].strip()[:60]}”"
 
 
 def _shot(content: Mapping[str, Any], faults: list[str]) -> Shot:

@@ -28,6 +28,9 @@ def test_there_is_a_parser_for_every_work(capsys) -> None:
         (("run", "a.mp4", "--fps", "0"), "--fps: '0' is not a positive number"),
         (("run", "a.mp4", "--frames", "3"), "FIRST:LAST"),
         (("run", "a.mp4", "--frames", "-5:-1"), "'-5:-1' is not FIRST:LAST"),
+        (("run", "a.mp4", "--fiction", "1"), "run: unrecognized arguments: --fiction 1, did you"),
+        (("run", "a.mp4", "--fiction=1"), "did you mean --friction? (see curlshot run --help)"),
+        (("check", "a.mp4", "--zoom"), "unrecognized arguments: --zoom (see curlshot check"),
         (("simulate", "a.toml", "--speed", "-2x"), "'-2x' is not a speed above 0"),
     ],
 )

@@ -187,3 +187,13 @@ def test_the_road_of_the_paper_from_text_files_alone(tmp_path: Path) -> None:
 def test_a_track_named_stone_is_no_column_of_stones(tmp_path: Path) -> None:
     track = read_angles(put(tmp_path, "#multi:\n\tstone\t\nt\tθ\t\n0\t1\n0.1\t1.2\n"))
     assert track.theta == pytest.approx([1.0, 1.2])
+
+
+def test_a_point_that_is_none_of_the_edge_is_refused(tmp_path: Path) -> None:
+    across = table(T, 0.3 + 0 * T, 2.5 - 2 * T)  # a stone about the tee
+    with pytest.raises(InputError, match=r"the point is 0.\d+ to 2.\d+ from the origin.* Frame"):
+        read_angles(put(tmp_path, "edge\nt\tx\ty\n" + across))
+    badly = 0.14 * (1 + 0.3 * np.sin(9 * T))  # marks off by a third, one of them slipped
+    badly[7] = 3.0
+    path = put(tmp_path, "edge\nt\tx\ty\n" + table(T, badly * np.cos(THETA), badly * np.sin(THETA)))
+    np.testing.assert_allclose(np.diff(read_angles(path).theta), np.diff(THETA), atol=1e-6)

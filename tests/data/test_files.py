@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import errno
 import os
 import stat
 from pathlib import Path
@@ -104,3 +105,12 @@ def test_results_do_not_go_into_a_new_folder_named_like_a_file(tmp_path: Path) -
     for name in ("season.2026", "old.csv"):
         (tmp_path / "old.csv").mkdir(exist_ok=True)
         assert check_folder(tmp_path / name) == tmp_path / name
+
+
+def test_a_full_disc_is_told_with_the_folder_and_leaves_nothing(tmp_path: Path) -> None:
+    folder = tmp_path / "run"
+    with pytest.raises(InputError, match=rf"^{folder}: .+; nothing was written$"), staged(folder):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    assert not list(tmp_path.iterdir())
+    with pytest.raises(PermissionError), staged(folder):
+        raise PermissionError

@@ -91,7 +91,9 @@ def test_archives_do_no_harm(tmp_path: Path) -> None:
     bomb = archive({"a.trk": b"<object>" + b" " * 80_000_000})
     for raw, reason in [
         (bomb, "too large"),
-        (archive({"readme.txt": "no"}), "without a Tracker project"),
+        (archive({"readme.md": "no"}), "without a Tracker project"),
+        (archive({"a/shot.trz": "no"}), "an archive with a/shot.trz in it; unpack it first"),
+        (archive({"xl/workbook.xml": "no"}), "a spreadsheet; save it as CSV"),
         (archive({"a.trk": project()})[:-40], "damaged"),
         (archive({f"{k}.trk": "" for k in range(60)}), "too many"),
     ]:

@@ -94,6 +94,7 @@ def test_laws(tmp_path: Path, laws: str, field: str, value: object) -> None:
         ("[physics]\nradius = 0.1", "no stone: add a table"),
         ("x =", "not TOML"),
         ("x = 1\nx = 2", "not TOML"),
+        ("x = 1\nvy = -2,4\n", "at line 2, column 8): “vy = -2,4”"),
         ("[stone]\nname = 'A'", "must be tables, [[stone]]"),
         ("physics = 1\n" + ONE_STONE, "must be a table, [physics]"),
         ("[phisics]\n" + ONE_STONE, "unknown key phisics (did you mean physics?)"),
@@ -158,7 +159,7 @@ def test_files_that_are_none(tmp_path: Path) -> None:
     for name, message in (
         ("missing.toml", "No such file"),
         ("", "directory"),
-        ("binary.toml", "not a text file"),
+        ("binary.toml", "not a text in UTF-8"),
         ("binary", "no shot; name a SHOT.toml or the folder of a run"),
         ("tracks.csv", "no shot; name a SHOT.toml or the folder of a run"),
     ):
@@ -210,3 +211,9 @@ def test_the_sheet_is_chosen_by_its_way_of_play(tmp_path: Path) -> None:
     assert read(tmp_path, '[physics]\nsheet = "down"\n' + stone).bounds == Bounds(-1)
     with pytest.raises(InputError, match=r"no sheet 'upp' \(did you mean up\?\)"):
         read(tmp_path, '[physics]\nsheet = "upp"\n' + stone)
+
+
+def test_a_file_of_a_windows_editor_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "SHOT.toml"
+    path.write_bytes(b"\xef\xbb\xbf" + ONE_STONE.encode())
+    assert len(read_shot(path).stones) == 1
