@@ -447,6 +447,7 @@ def _do_simulate(arguments: argparse.Namespace, bars: Bars) -> str:
         throws = MEASURED_THROWS if measured_shot(shot) else 0
     outcome = simulation_json(simulation)
     lines = [simulation_text(simulation, folder / "simulation.csv")]
+    warnings = start.assumed
     with staged(folder, replaces=WHAT_IF) as stage:
         write_table(table, stage / "simulation.csv")
         if throws:
@@ -454,7 +455,8 @@ def _do_simulate(arguments: argparse.Namespace, bars: Bars) -> str:
             write_odds(stage, start, outcomes, odds)
             outcome = {"nominal": outcome, **odds}
             lines += odds_text(odds, [folder / name for name in WHAT_IF])
-    lines += warned(start.assumed)
+            warnings = odds["warnings"]
+    lines += warned(warnings)
     return json.dumps(outcome, indent=1) if arguments.json else "\n".join(lines)
 
 

@@ -42,6 +42,7 @@ _RESTS = 0.05  # m/s below which a stone's speed is not worth a label
 _TURNS = 0.1  # rad/s, the same for its spin
 _FLASH = 0.4  # s that a ring grows from a hit
 _SAID = 2.0  # s that its name stays, time to look there and read three words
+_MOST_SAID = 5  # names of hits at once, more nobody reads
 _LEAST_UNIT = 0.75  # of the usual size, below which letters cannot be read
 _LINE_COLOUR = (255, 255, 120)
 
@@ -281,7 +282,7 @@ def _flash(
     image: Image, camera: Camera, t: float, scene: Scene, unit: float, thickness: int
 ) -> None:
     """Write the time; after a hit its name and, for a moment, a ring that grows from it."""
-    lines = [f"t = {t:.2f} s"]
+    lines: list[str] = []
     for when, place, text in scene.hits:
         if 0 <= t - when < _FLASH:
             growth = 0.5 + 2.5 * (t - when) / _FLASH
@@ -289,5 +290,7 @@ def _flash(
             draw_lines(image, camera, [ring], WHITE, thickness, scene.height)
         if 0 <= t - when < _SAID:
             lines.append(text)
-    for row, text in enumerate(lines):
+    if len(lines) > _MOST_SAID:  # a broken rack
+        lines = [*lines[:_MOST_SAID], f"and {len(lines) - _MOST_SAID} more"]
+    for row, text in enumerate([f"t = {t:.2f} s", *lines]):
         write(image, text, (10 * unit, (10 + 25 * row) * unit), unit)

@@ -25,19 +25,28 @@ ABREAST = 3
 def odds_text(odds: Mapping[str, Any], written: Sequence[Path]) -> list[str]:
     """Where a shot thrown many times ends; `odds` as in ``whatif.json``."""
     lines = [
-        f"{odds['thrown']} thrown {count(odds['samples'], 'time')}, at rest (mean ± spread):",
+        f"{odds['thrown']} thrown {count(odds['samples'], 'time')}, at rest"
+        f"{' (mean ± spread)' if odds['samples'] > 1 else ''}:",
     ]
     for name, item in odds["stones"].items():
         if item["x"] is None:
             lines.append(f"  {name}  always leaves the sheet")
             continue
-        lines.append(
-            f"  {name}  x {item['x']:+7.2f} ± {item['sd_x']:.2f} m"
-            f"   y {item['y']:+7.2f} ± {item['sd_y']:.2f} m   moved {item['moved']:4.0%}"
-            f"   in play {item['in_play']:4.0%}   in the house {item['in_house']:4.0%}"
-            f"   shot stone {item['shot_stone']:4.0%}"
+        x, y = (f"{item[k]:+7.2f}{_spread(item[f'sd_{k}'])} m" for k in "xy")
+        line = (
+            f"  {name}  x {x}   y {y}   moved {item['moved']:4.0%}   in play {item['in_play']:4.0%}"
         )
+        if item["in_house"] is not None:
+            line += (
+                f"   in the house {item['in_house']:4.0%}   shot stone {item['shot_stone']:4.0%}"
+            )
+        lines.append(line)
     return [*lines, f"written: {', '.join(map(str, written))}"]
+
+
+def _spread(sd: float | None) -> str:
+    """Write a spread, m; nothing where there is none."""
+    return "" if sd is None else f" ± {sd:.2f}"
 
 
 def simulation_json(simulation: Simulation) -> dict[str, Any]:

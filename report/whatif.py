@@ -16,11 +16,12 @@ from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
 from data.files import write_text
-from data.sheet import HOUSE, STONE
+from data.sheet import HOUSE, STONE, curling_size
 from data.tracks import write_table
 from physics.prediction.start import Start
 from report.figures import draw_house
 from report.figures.parts import legend_below
+from report.numbers import count
 from report.style import BLACK, GREY, PNG_DPI, new_figure, plain_text, stone_colours, styled
 
 Array = NDArray[np.float64]
@@ -31,6 +32,8 @@ SHARE = 0.98
 """Share of the outcomes that the picture shows at least, per axis and end, unless far off."""
 FARTHEST = 6.4
 """Most that the picture shows along and across, m from its centre."""
+FEW = 50
+"""Throws; fewer are dots, for a map of them would show how it is smoothed."""
 MOST_DOTS = 1000
 """Dots of one stone."""
 
@@ -55,7 +58,7 @@ def write_odds(folder: Path, start: Start, outcomes: pd.DataFrame, odds: Mapping
         outcomes,
         {stone.name: (stone.x, stone.y) for stone in start.shot.stones},
         odds["thrown"],
-        f"{odds['thrown']} thrown {odds['samples']} times",
+        f"{odds['thrown']} thrown {count(odds['samples'], 'time')}",
         start.shot.radius,
     )
     figure.savefig(folder / "spread.png", dpi=PNG_DPI)
@@ -71,6 +74,7 @@ def spread_figure(
     """Draw where the stones come to rest, the thrown one as a heat map, others as dots.
 
     Those that leave the sheet come to rest nowhere on it: they are counted beside the names.
+    Few throws are dots, all of them, and discs that are no curling stones have no house.
 
     Parameters
     ----------
@@ -101,10 +105,14 @@ def spread_figure(
     with styled():
         figure = new_figure(width, min((width - 1.6) * tall / wide + 1.3, 10.0))
         ax = figure.subplots()
-        draw_house(ax, HOUSE, low, high)
+        if curling_size(radius):
+            draw_house(ax, HOUSE, low, high)
         ends = places[thrown]
-        if len(ends):
-            share, across, along = _density(ends, low, high, int(own.sum()))
+        throws = int(own.sum())
+        if throws < FEW:
+            ax.plot(*ends.T, ".", color=BLACK, ms=4, mew=0, zorder=7)
+        elif len(ends):
+            share, across, along = _density(ends, low, high, throws)
             heat = ax.pcolormesh(
                 across, along, np.ma.masked_less(share, 0.01 * share.max()), cmap="viridis_r",
                 alpha=0.75, lw=0, rasterized=True, zorder=2,
@@ -121,7 +129,7 @@ def spread_figure(
                     *place, plain_text(name), color=colours[name], weight="bold", fontsize=8,
                     ha="center", va="center", zorder=5, clip_on=True,
                 )  # fmt: skip
-        if len(ends):
+        if len(ends) > 1:
             middle = np.median(ends, axis=0)
             ring = Circle((middle[0], middle[1]), radius, fill=False, ec=BLACK, lw=1.4, zorder=6)
             ax.add_patch(ring)
@@ -130,8 +138,15 @@ def spread_figure(
         ax.grid(False)
         figure.suptitle(plain_text(title), x=0.01, ha="left", fontsize=10, fontweight="bold")
         circle: dict[str, Any] = {"marker": "o", "ls": "none", "mfc": "none"}
-        median = f"median of {plain_text(thrown)}{_gone(off[thrown])}"
-        handles: list[Artist] = [Line2D([], [], mec=BLACK, label=median, **circle)]
+        name, handles = plain_text(thrown), list[Artist]()
+        if not len(ends):
+            handles.append(Line2D([], [], ls="none", label=f"{name} always leaves the sheet"))
+        elif throws < FEW:
+            label = f"where {name} ends{_gone(off[thrown])}"
+            handles.append(Line2D([], [], color=BLACK, marker=".", ls="none", label=label))
+        if len(ends) > 1:
+            gone = _gone(off[thrown]) if throws >= FEW else ""
+            handles.append(Line2D([], [], mec=BLACK, label=f"median of {name}{gone}", **circle))
         lying = [place for name, place in before.items() if name != thrown]
         if _shows(low, high, np.array(lying).reshape(-1, 2)):
             handles.append(Line2D([], [], mec=GREY, label="as it lay before", **circle))
@@ -162,7 +177,7 @@ def _corners(
     middle = np.median(ends[0], axis=0) if len(ends[0]) else np.zeros(2)
     at_home = bool((np.abs(middle) < FARTHEST).all())
     centre = np.zeros(2) if at_home else middle
-    rim = HOUSE.twelve_foot + radius
+    rim = radius + (HOUSE.twelve_foot if curling_size(radius) else 0.0)
     lying = [place for name, place in before.items() if name != thrown]
     parts = [np.array([[-rim, -rim], [rim, rim]]) + centre, np.array(lying).reshape(-1, 2)]
     parts += [np.quantile(places, [1 - SHARE, SHARE], axis=0) for places in ends if len(places)]

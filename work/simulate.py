@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from data.errors import InputError
+from data.sheet import curling_size
 from work.analyse import as_tracks
 
 if TYPE_CHECKING:
@@ -123,5 +124,15 @@ def throw_often(
         "samples": count,
         "throw_sd": {"speed": speed, "direction": direction},
         "stones": {name: asdict(item) for name, item in odds(outcomes, start).items()},
-        "warnings": list(start.assumed),
+        "warnings": [*start.assumed, *_not_told(start.shot.radius, count)],
     }
+
+
+def _not_told(radius: float, count: int) -> list[str]:
+    """Say why some of what samples tell is null."""
+    notes = []
+    if not curling_size(radius):
+        notes.append(f"discs of radius {radius:g} m: no house, so none is in it or shot stone")
+    if count == 1:
+        notes.append("thrown once: no spread")
+    return notes

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from data.errors import InputError
-from data.sheet import GRAVITY, HOUSE
+from data.sheet import GRAVITY, HOUSE, curling_size
 from physics.curl import Curl, FCV1Curl
 from physics.ice import IceLaw
 from physics.prediction.laws import Scaled
@@ -67,7 +67,8 @@ class Changes:
 class Odds:
     """Where one stone comes to rest: mean and spread (m), and how often (0..1).
 
-    Mean and spread are those of the samples in which it stays ``in_play``; None if it never does.
+    Mean and spread are those of the samples in which it stays ``in_play``; None if it never does,
+    the spread also if it does once. Discs that are no curling stones have no house to be in.
     """
 
     x: float | None
@@ -76,8 +77,8 @@ class Odds:
     sd_y: float | None
     moved: float
     in_play: float
-    in_house: float
-    shot_stone: float
+    in_house: float | None
+    shot_stone: float | None
 
 
 def changed(start: Start, changes: Changes) -> Start:
@@ -202,6 +203,7 @@ def odds(outcomes: pd.DataFrame, start: Start) -> dict[str, Odds]:
     distance = np.where(in_play, np.hypot(x, y), np.inf)
     inside = distance < HOUSE.twelve_foot + start.shot.radius
     nearest = np.where(inside, distance, np.inf).argmin(axis=1)
+    house = curling_size(start.shot.radius)
     out = {}
     for k, stone in enumerate(start.shot.stones):
         moved = (hits[:, k] > 0) | (math.hypot(stone.vx, stone.vy) > 0)
@@ -209,8 +211,8 @@ def odds(outcomes: pd.DataFrame, start: Start) -> dict[str, Odds]:
             **_spread(x[in_play[:, k], k], y[in_play[:, k], k]),
             moved=float(moved.mean()),
             in_play=float(in_play[:, k].mean()),
-            in_house=float(inside[:, k].mean()),
-            shot_stone=float((inside[:, k] & (nearest == k)).mean()),
+            in_house=float(inside[:, k].mean()) if house else None,
+            shot_stone=float((inside[:, k] & (nearest == k)).mean()) if house else None,
         )
     return out
 
@@ -222,8 +224,8 @@ def _spread(x: Array, y: Array) -> dict[str, float | None]:
     return {
         "x": float(x.mean()),
         "y": float(y.mean()),
-        "sd_x": float(x.std()),
-        "sd_y": float(y.std()),
+        "sd_x": float(x.std()) if len(x) > 1 else None,
+        "sd_y": float(y.std()) if len(y) > 1 else None,
     }
 
 

@@ -75,9 +75,10 @@ def posterior_figure(laws: Joint | None, samples: pd.DataFrame | None = None) ->
                     ax.set_xlabel(NAMES[across])
                 if j == 0 and i > 0:
                     ax.set_ylabel(NAMES[below])
-                    ax.locator_params(axis="y", nbins=4)
                 elif i != j:
                     ax.tick_params(labelleft=False)
+                if j < i:  # the lines of a row are those of its numbers at the left
+                    ax.locator_params(axis="y", nbins=4)
         title(figure, "Restitution and friction: how well they are known")
         handles = []
         if laws is not None:

@@ -224,3 +224,15 @@ def test_the_name_of_a_hit_stays_until_it_can_be_read(shot):
     name, ice = slice(30, 50), slice(60, 240)
     assert [changed(s, name) for s in (0.0, 0.3, 1.0, 1.9, 2.1)] == [True] * 4 + [False]
     assert [changed(s, ice) for s in (0.0, 0.3, 1.0)] == [True, True, False]
+
+
+def test_of_a_broken_rack_a_few_names_are_written(shot):
+    hit = shot.results.collisions[0]
+    blank = np.full((480, 320, 3), GREY, np.uint8)
+    frame = Frame(-1, hit.t + 1.0, blank)
+    shown = {
+        count: draw(frame, camera(-1), _scene(shot.tracks, [hit] * count, None, 0.1455))
+        for count in (5, 6, 30)
+    }
+    written = {n: np.flatnonzero((image != GREY).any(axis=(1, 2))) for n, image in shown.items()}
+    assert written[5].max() < written[6].max() == pytest.approx(written[30].max(), abs=3)

@@ -52,10 +52,26 @@ def test_a_stone_that_hits_nothing_and_one_that_always_leaves_are_told_of() -> N
     assert {"median of A", r"\$C where hit (100% off the sheet)"} < {*labels}
 
 
-def test_one_sample_is_enough() -> None:
-    render(
-        spread_figure(outcomes((0, 0), 1), {"A": (0, -5), "B": (0.5, 0.5), "$C": (0, 1)}, "A", "t")
-    )
+@pytest.mark.parametrize(("throws", "words"), [(1, []), (20, ["median of A"])])
+def test_a_few_throws_are_dots(throws: int, words: list[str]) -> None:
+    before = {"A": (0, -5), "B": (0.5, 0.5), "$C": (0, 1)}
+    figure = spread_figure(outcomes((0, 0), throws), before, "A", "t")
+    render(figure)
+    assert not figure.axes[0].collections
+    assert throws in [len(line.get_xydata()) for line in figure.axes[0].lines]
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert labels[: len(words) + 1] == ["where A ends", *words]
+
+
+def test_pucks_have_no_house() -> None:
+    before = {"A": (0.0, -0.2), "B": (0.1, 0.1), "$C": (0.0, 0.3)}
+    circles = [
+        sum(isinstance(patch, Circle) for patch in spread_figure(
+            outcomes((0, 0)), before, "A", "t", radius
+        ).axes[0].patches)
+        for radius in (0.1455, 0.037)
+    ]  # fmt: skip
+    assert circles[0] - circles[1] == 4
 
 
 @pytest.mark.parametrize("off", [0.4, 1.0])
@@ -66,7 +82,7 @@ def test_stones_that_leave_the_sheet_are_counted_not_drawn_where_they_leave_it(o
     figure = spread_figure(table, before, "A", "A thrown 300 times")
     render(figure)
     ax, labels = figure.axes[0], [text.get_text() for text in figure.legends[0].get_texts()]
-    assert f"({off:.0%} off the sheet)" in labels[0]
+    assert labels[0] == ("median of A (40% off the sheet)", "A always leaves the sheet")[off == 1]
     if off == 1.0:
         assert not ax.collections
         return

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -42,3 +43,25 @@ def test_a_change_that_is_none_is_named_as_it_was_written(
     with pytest.raises(SystemExit, match="2"):
         pipeline.main(["simulate", "shot.toml", option, said])
     assert f"{said!r} is not" in capsys.readouterr().err
+
+
+def test_what_few_throws_and_pucks_do_not_tell_is_null_and_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shot = tmp_path / "SHOT.toml"
+    shot.write_text(
+        "[physics]\nradius = 0.037\n[[stone]]\nname = 'A'\nx = 0.0\ny = 1.0\nvy = -0.5\n"
+        "[[stone]]\nname = 'B'\nx = 0.01\ny = 0.5\n",
+        encoding="utf-8",
+    )
+    out = tmp_path / "out"
+    assert pipeline.main(["simulate", str(shot), "--samples", "1", "-o", str(out)]) == 0
+    said = capsys.readouterr().out
+    assert "A thrown 1 time, at rest:\n" in said and "±" not in said
+    assert "in the house" not in said and "shot stone" not in said.partition("warning")[0]
+    told = json.loads((out / "whatif.json").read_text(encoding="utf-8"))
+    assert {told["stones"]["A"][key] for key in ("sd_x", "in_house", "shot_stone")} == {None}
+    assert all(f"warning     {text}" in said for text in told["warnings"])
+    assert [text.partition(":")[0] for text in told["warnings"]] == [
+        "discs of radius 0.037 m", "thrown once",
+    ]  # fmt: skip

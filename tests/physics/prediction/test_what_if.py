@@ -153,6 +153,12 @@ def test_odds_count() -> None:
     told = odds(table, start)
     assert (told["B"].x, told["B"].sd_y, told["B"].in_play) == (None, None, 0.0)
     assert [told[name].shot_stone for name in "ABC"] == [0.0, 0.0, 1.0]
+    once = odds(table[table["sample"] == 0], start)["A"]
+    assert (once.x, once.sd_x, once.sd_y) == (5.0, None, None)
+    pucks = replace(start, shot=replace(start.shot, radius=0.037))
+    assert {(item.in_house, item.shot_stone) for item in odds(table, pucks).values()} == {
+        (None,) * 2
+    }
 
 
 def test_a_measured_shot_is_played_on_a_sheet() -> None:

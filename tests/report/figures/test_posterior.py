@@ -43,6 +43,12 @@ def test_marks_of_well_known_values_stand_apart(middle, sd):
         assert all(b.x0 - a.x1 > space for a, b in pairwise(boxes))
 
 
+def test_the_lines_across_a_row_are_those_of_its_numbers(shot):
+    grid = np.reshape(figures.posterior_figure(shot.results.laws).axes, (3, 3))
+    left, middle = (ax.yaxis.get_majorticklocs() for ax in grid[2, :2])
+    np.testing.assert_allclose(middle, left)
+
+
 def test_an_ellipse_lies_as_the_covariance_says():
     laws = Joint(("restitution", "friction"), (0.8, 0.01), ((4e-4, 8e-7), (8e-7, 1e-8)))
     figure = figures.posterior_figure(laws)
