@@ -16,8 +16,9 @@ from work.settings import Settings
 if TYPE_CHECKING:
     import pandas as pd
 
-    from data.results import Collision, Estimate, Results
+    from data.results import Collision, Estimate, Input, Results
     from physics.local_fit.contacts import Contact
+    from physics.whole_shot.watched import Priors
 
 
 ICE = (0.004, 0.03)
@@ -62,13 +63,13 @@ def analyse(
     import numpy as np
     import pandas as pd
 
-    from data.results import Input, Results
+    from data.results import Results
     from data.tracks import teams
     from physics.estimate import estimate
     from physics.kalman import smooth
     from physics.local_fit.contacts import find_contacts
     from physics.posterior import sample_posterior, summarise
-    from physics.prediction.forecast import assumed, predict
+    from physics.prediction.forecast import predict
     from physics.prediction.hindcast import simulate_measured
     from physics.prediction.throws import later_throws
     from vision.optics.camera import camera_table
@@ -85,19 +86,8 @@ def analyse(
     timed = _timed(contacts, estimates.collisions)
     tracks = smooth(sightings, timed, radius=radius, masses=masses, unseen=measured.repeats)
     sampled, scores, notes = simulate_measured(tracks, estimates, radius=radius, masses=masses)
-    usual = assumed(radius)
-    predictions = predict(
-        sightings,
-        tracks,
-        estimates,
-        radius=radius,
-        masses=masses,
-        laws=replace(
-            usual,
-            restitution=_assumed(settings.restitution, usual.restitution),
-            friction=_assumed(settings.friction, usual.friction),
-        ),
-    )
+    laws = _assumed_laws(settings)
+    predictions = predict(sightings, tracks, estimates, radius=radius, masses=masses, laws=laws)
     of_team = teams(tracks)
     drawn = sample_posterior(estimates, settings.samples, np.random.default_rng(0))
     if settings.samples and drawn is None:
@@ -105,14 +95,8 @@ def analyse(
     if measured.house is not None:
         notes = (*notes, *_pace(estimates.friction))
     notes = (*notes, *_throws(later_throws(tracks)))
-    times = sightings["t"]
     results = Results(
-        input=Input(
-            files=tuple(path.name for path in measured.files),
-            fps=measured.fps,
-            frames=measured.frames,
-            duration=float(times.max() - times.min()),
-        ),
+        input=_input(measured),
         restitution=estimates.restitution,
         friction=estimates.friction,
         collisions=estimates.collisions,
@@ -142,6 +126,19 @@ def analyse(
         pd.concat(simulations, ignore_index=True) if simulations else as_tracks(None, ""),
         house=measured.house,
         posterior=drawn,
+    )
+
+
+def _input(measured: Measured) -> Input:
+    """Say what was measured."""
+    from data.results import Input
+
+    times = measured.sightings["t"]
+    return Input(
+        files=tuple(path.name for path in measured.files),
+        fps=measured.fps,
+        frames=measured.frames,
+        duration=float(times.max() - times.min()),
     )
 
 
@@ -205,11 +202,14 @@ def _timed(contacts: Sequence[Contact], hits: Sequence[Collision]) -> list[Conta
     return out
 
 
-def _assumed(given: float | None, default: Estimate) -> Estimate:
-    """Return a law's number as given, then without doubt, or as the literature has it."""
+def _assumed_laws(settings: Settings) -> Priors:
+    """Laws that predictions assume: the literature's, or without doubt what is given."""
     from data.results import Estimate
+    from physics.prediction.forecast import assumed
 
-    return default if given is None else Estimate(given, 0.0)
+    said = {"restitution": settings.restitution, "friction": settings.friction}
+    given = {name: Estimate(value, 0.0) for name, value in said.items() if value is not None}
+    return replace(assumed(settings.radius), **given)
 
 
 def _check_masses(masses: Mapping[str, float], stones: Sequence[str]) -> Mapping[str, float]:
