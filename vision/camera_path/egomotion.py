@@ -1,4 +1,4 @@
-"""How a camera turns, rolls and zooms from picture to picture, by how corners in them move.
+"""Camera motion by optical flow: turn, roll and zoom from picture to picture, by tracked corners.
 
 A shaken camera cannot be predicted by how it moved before. Corners, followed in small pictures,
 tell to a few pixels where it looks now: near enough for edges to be measured there.
@@ -36,7 +36,7 @@ those that were followed must."""
 
 
 def foretold(before: Picture, view: View, pictures: Sequence[Picture]) -> list[View]:
-    """Tell the views of pictures that follow each other.
+    """Predict the views of consecutive pictures by optical flow from one to the next.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Views carried by what is fixed to the ice, where no rings are to be seen: corners and lines.
+"""Tracking where no rings are in view: by landmarks (corners in the ice) and straight lines.
 
 Frames that can be predicted are placed together, as those that show the rings are.
 """

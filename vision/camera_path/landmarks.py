@@ -1,4 +1,4 @@
-"""Points of the ice recognised again: what carries the camera where no rings are to be seen.
+"""Landmarks: corners of a keyframe found again in later pictures, where no rings are in view.
 
 A keyframe is warped to where the next camera is expected and compared with what is seen there,
 so that errors do not add up from frame to frame but only from keyframe to keyframe. People,

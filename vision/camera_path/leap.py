@@ -1,4 +1,4 @@
-"""How far a camera has turned from one picture to the next when that is too far to be followed."""
+"""Camera motion too fast to be tracked: the shift of the whole picture, by template matching."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ HELD = (np.inf, np.inf, 1e-3, 1e-3)
 
 
 def leapt(before: Picture, now: Picture, view: View, rig: Array) -> View | None:
-    """Turn a view as the whole picture has moved.
+    """Predict a view from the shift of the whole picture.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Whether a house after a cut is what was seen long before it: a replay, not the shot going on."""
+"""Replays: whether a house after a cut is what was seen long before it, not the shot going on."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether a shutter blurs light or codes, as edges tell that a pan smears.
+"""Motion blur by the shutter: whether it acted on linear light or on gamma-coded values.
 
 The shutter of a camera blurs light (see `vision.sheet.mixing`): of an edge that is smeared by 15 px
 half the light lies 3 px within dark paint. Where pictures are means of others, codes were blurred.

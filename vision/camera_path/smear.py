@@ -1,4 +1,4 @@
-"""How far a pan smears edges, how long pictures are exposed by that, and how to measure in them."""
+"""Motion blur of edges in a pan: its width, the exposure time that it tells, and how to measure."""
 
 from __future__ import annotations
 

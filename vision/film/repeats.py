@@ -1,4 +1,4 @@
-"""Pictures of a clip that show the one before once more: they tell nothing of their own time.
+"""Duplicate frames: pictures that show the one before once more tell nothing of their own time.
 
 A recording of 25 pictures a second that is told as one of 50 has each twice, one told as 30 every
 fifth; a stream that halts shows one for a while. Coded anew, the second differs from the first by

@@ -1,4 +1,4 @@
-"""Things put aside till the end of a clip: in a file without a name, but for the first of them.
+"""Storage on disk till the end of a clip: a temporary file without a name, the first things apart.
 
 Whoever has a `Kept` has the thing by `Kept.get`, wherever it is. In memory at first, it goes to a
 `Shelf` by `Kept.put_aside` and is read from there anew each time; what is left of it in memory is

@@ -1,7 +1,7 @@
-"""Cameras from marks, by robust least squares: what frames share together with their views.
+"""Cameras of a few frames by robust least squares: their views, and what the frames share.
 
-The frames are eliminated one by one (Schur complement), so that the cost grows only linearly with
-their number. Triggs et al., 2000, Bundle adjustment: a modern synthesis, LNCS 1883, section 6.
+Each frame's view is eliminated (Schur complement), so that the cost grows only linearly with the
+number of frames. Triggs et al., 2000, Bundle adjustment: a modern synthesis, LNCS 1883, section 6.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Arrowhead matrices: of many unknowns most have to do with none but a few others."""
+"""Arrowhead matrices: normal equations whose last block is diagonal, by its Schur complement."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
-"""How far a film puts whole pictures aside of where the camera saw them.
+"""Errors that video coding adds to the place of whole pictures.
 
-What has hardly moved from one picture to the next a film repeats, and what has moved it copies
-from aside to a fraction of a pixel. So all edges of a picture are aside together, and its own
-residuals do not tell; but they tell how coarsely the film is kept: clips with truth show that by
-these, and by the motion, the error follows.
+A codec repeats what has hardly moved since the picture before, and copies what has moved, to a
+fraction of a pixel. So all edges of a picture may be displaced together, which its own residuals
+do not show. But they show how coarsely the film was compressed: in clips with truth the error
+follows from them and from the motion between pictures.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ stands when a camera has hardly begun to move, and where it comes to rest it sta
 
 
 def motion(observed: Observations, at: Linear, views: Array, places: Array, index: Index) -> Array:
-    """Tell how far the edges of each frame move from one frame of the clip to the next, px.
+    """Estimate the image motion of each frame's edges per frame of the clip, r.m.s., px.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def motion(observed: Observations, at: Linear, views: Array, places: Array, inde
 
 
 def astray(moved: Array, rms: Array) -> Array:
-    """Give the standard deviation per axis of what pictures are aside, px.
+    """Estimate the standard deviation per axis of the displacement of whole pictures, px.
 
     Parameters
     ----------

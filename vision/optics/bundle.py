@@ -1,4 +1,4 @@
-"""What the frames of a clip share, fitted to many of them at once.
+"""Bundle adjustment: camera place, lens, paint and views fitted to many frames of a clip at once.
 
 The unknowns are the rig (place, lens, painted measures), each frame's view, and the paint: how
 far each piece of a painted line lies off its nominal course, some by much: a stone beside a line
@@ -288,7 +288,7 @@ class _Problem:
         return state, matrix.inverse(), paint, noise
 
     def gain(self, state: _State, paint: Array, noise: Array) -> float:
-        """By how much the cost falls to where linear residuals have its least."""
+        """Predict the fall of the cost by one undamped Gauss-Newton step."""
         matrix, right = self.normal(state, self.see(state), paint, noise)
         return 0.5 * float(right @ matrix.solve(right))
 
@@ -340,7 +340,7 @@ class _Problem:
         return state, at, matrix
 
     def settled(self, state: _State, at: Linear, noise: Array) -> _State:
-        """Let each view follow what it shares with the others, by a step of its own.
+        """Take one more Gauss-Newton step in each view alone, with what frames share held.
 
         From overhead, height, focal length and tilt hardly tell themselves apart: a joint step
         along the tangent of that valley would leave it where it bends.

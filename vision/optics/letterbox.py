@@ -1,4 +1,4 @@
-"""Black bars around a film: of an upright or squarer one shown in a wide picture, or a wide one.
+"""Letterboxes and pillarboxes: black bars around a picture, cut off before a house is sought.
 
 A house that they cut would be sought in them. So such a clip is looked at without them, as one
 that ends where they begin, and its cameras are told in pixels of the whole picture. Bars of the

@@ -1,4 +1,4 @@
-"""Who is told of each frame as soon as its camera is known: a clip need be read only once."""
+"""Callbacks for each frame as soon as its camera is known: a clip need be read only once."""
 
 from __future__ import annotations
 

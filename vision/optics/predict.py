@@ -1,4 +1,4 @@
-"""Where a view will be next: polynomials through the last ones, of the degree that did best."""
+"""Prediction of the next views: polynomials through the last ones, of the degree that did best."""
 
 from __future__ import annotations
 

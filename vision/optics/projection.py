@@ -1,4 +1,4 @@
-"""How points come into pictures and back: what `camera` says of one camera, and of many.
+"""Projection of points as plain functions: homography, lens distortion, height, Jacobians.
 
 All take one camera, or one for each point: what is said of a camera has as many axes as what is
 said of its points, but for the last one (two of them), or broadcasts to it.

@@ -1,4 +1,4 @@
-"""How far the cameras of a clip are to be trusted, and what a person is told of it."""
+"""Quality of each frame's camera, from 0 to 1, and warnings about the cameras of a clip."""
 
 from __future__ import annotations
 
@@ -34,11 +34,10 @@ _FOOT, _WAY = ice_frame(_ON_CIRCLE, np.tile(_ARCS, CIRCLES))
 
 
 def edges_off(residual: Array, paint: Array, sd: Array) -> float:
-    """How far the circles' edges in a picture are from where a house has them (r.m.s.), m.
+    """Weighted r.m.s. distance of the circles' edges from where a nominal house has them, m.
 
-    What all pictures show aside was taken for paint, and may be a lens that bends them. One circle
-    may be too ragged, or too faint, to place the camera: each edge counts for as much as in the
-    fit.
+    Offsets of the paint count, for what the fit took for paint may be lens distortion. Edges have
+    the weights of the fit: one circle may be too ragged, or too faint, to place the camera.
 
     Parameters
     ----------

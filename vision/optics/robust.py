@@ -1,4 +1,4 @@
-"""What the robust fits of cameras share: the Cauchy loss, what lies within reach, inverses."""
+"""Robust fits: Cauchy's loss, inliers, and regression by iteratively reweighted least squares."""
 
 from __future__ import annotations
 

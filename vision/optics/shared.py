@@ -1,7 +1,7 @@
-"""What the frames of a clip share: the camera's place and lens, and the paint, piece by piece.
+"""Result of the bundle adjustment: what the frames of a clip share, with its covariance.
 
-How far each piece of a painted line lies off its nominal course is the same in however many
-frames show it.
+Camera place and lens, and how far each piece of a painted line lies off its nominal course: that
+is the same in however many frames show it.
 """
 
 from __future__ import annotations

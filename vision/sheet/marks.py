@@ -43,7 +43,7 @@ LEAST_ON_LINE, LEAST_SHARE = 8, 0.3
 
 @dataclass(frozen=True)
 class Evidence:
-    """What a frame says about the circles.
+    """Marks measured in a frame, and how much of the circles they cover.
 
     Attributes
     ----------

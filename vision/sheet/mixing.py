@@ -1,4 +1,4 @@
-"""Where two colours meet if their light mixes before it is coded.
+"""Bias of edges where blur acted on linear light, before gamma coding.
 
 Lens, sensor and shutter blur light; the camera codes what they give by a curve close to a power of
 1 / 2.2 (ITU-R BT.709), and later steps (resizing, compression) blur codes. Where light was blurred,
@@ -76,7 +76,7 @@ _END = SAMPLES // 5
 
 
 def lit(edge: PaintEdge, picture: Picture, view: View, rig: Array, evidence: Evidence) -> PaintEdge:
-    """Give an edge with what light that was blurred does to it, as far as the picture tells.
+    """Correct an edge for blur of linear light, as far as the picture shows how much there was.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def half_light(palette: Array) -> Array:
 def share_of_light(
     picture: Picture, view: View, rig: Array, slope: float
 ) -> tuple[float, float] | None:
-    """Tell how much of the blur of edges is of light, by where its channels have them.
+    """Estimate the share of blur that acted on linear light, by how colour channels disagree.
 
     Parameters
     ----------

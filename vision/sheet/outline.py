@@ -1,4 +1,4 @@
-"""Where the paint ends if a thin dark line is drawn along its edge, or is all that is drawn.
+"""Outer edge of paint with a thin dark outline, or of an outline alone, by a model of its profile.
 
 The rules measure the 12-ft circle to its outer edge, and an outline is part of it. Half way from
 paint to ice lies beyond that edge, for the line draws the profile down. So the mean profile is

@@ -1,4 +1,4 @@
-"""Runs of measurements along lines, all lines at once: padded to a table, a row for each line."""
+"""Outliers along straight lines, by robust parabolas: all lines at once, a padded row for each."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ class Curves:
 
 
 def smooth(curves: Curves, offset: Array, good: Flags, least_sd: float) -> tuple[Flags, Array]:
-    """Leave out what lies off smooth curves through offsets; what is ragged counts less.
+    """Reject outliers from parabolas fitted robustly along each line, and estimate its noise.
 
     Parameters
     ----------

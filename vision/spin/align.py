@@ -1,4 +1,4 @@
-"""Pictures of one cap brought together: turned and shifted onto their mean.
+"""Registration of the pictures of one cap: turned and shifted onto their mean.
 
 What stands above the cap moves over it as the camera sees it from elsewhere, and a centre has
 its error. A bar that is seen on one side of the centre only looks turned where it is shifted,

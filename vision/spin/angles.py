@@ -1,4 +1,4 @@
-"""How a stone is turned through however long a clip: part by part, held together by their means.
+"""Angles of a stone in clips of any length: part by part, each registered to the first by its mean.
 
 The pictures of a cap take memory while its angle is told (`vision.spin.handle`). So no more than
 a thousand are looked at together: a stone that moves shows fewer as a rule, one at rest as many

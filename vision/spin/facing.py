@@ -1,4 +1,4 @@
-"""By what angle one picture of a cap is turned against another.
+"""Rotation of one picture of a cap against another, by circular cross-correlation.
 
 Both are angular harmonics on rings (`vision.spin.handle.cap_spectrum`): the angle that brings them
 together is the maximum of their circular cross-correlation.

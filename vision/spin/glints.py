@@ -1,4 +1,4 @@
-"""Turning caps under lamps: what of their pictures turns, where the light on them changes.
+"""Mirrored lamps: what of a cap's pictures turns with it, and what is light that changes slowly.
 
 A lamp mirrored on a domed cap stays on the side of the lamp while the cap turns, and wanders
 over it as the stone goes on. Where that is brighter than the handle, pictures brought onto their

@@ -1,4 +1,4 @@
-"""Half turns that no stone makes: a handle looks nearly the same half a turn on.
+"""Ambiguity by half a turn: a handle looks nearly the same half a turn on.
 
 Lit from one side it does so more than as it was turned before; so where it was hidden, or hardly
 seen, it may be found again the wrong way round. Of all ways to turn that is taken which explains

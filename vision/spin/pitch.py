@@ -1,4 +1,4 @@
-"""Handles that rise from the cap: how much of what turns in a slanting view is their height.
+"""Parallax of handles that rise from the cap: how much of what seems to turn is their height.
 
 A handle stands on the cap at one end, its foot, and its grip is some 4 cm higher. In a slanting
 view what is higher is seen farther from the camera: across the line of sight the handle looks

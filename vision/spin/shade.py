@@ -1,4 +1,4 @@
-"""Light and shade on a cap: the part of its pictures that stays while it turns."""
+"""Light and shade that stay while a cap turns, estimated from its pictures and taken out."""
 
 from __future__ import annotations
 
