@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from data.sheet import HOUSE
 from vision.camera_path.joint import Seen
 from vision.camera_path.shutter import ShutterLight, Smeared
-from vision.camera_path.smear import Shutter, reach_beyond, smear, weighed
+from vision.camera_path.smear import Shutter, reach_beyond, smear
 from vision.film.clip import Frame
 from vision.film.picture import Picture
 from vision.film.shelf import Kept
@@ -275,12 +275,11 @@ class EdgeTracker:
     def _measured(
         self, pictures: Sequence[Picture], normals: Normals, standing: Array
     ) -> list[Evidence]:
-        found = measure_along(
+        return measure_along(
             pictures[: len(standing)], normals, standing,
             least_sd=MARK_SD, palette=self.palette, edge=self.edge,
             levels=self._pan.levels(normals.line, normals.normal.T, self._light.share),
         )  # fmt: skip
-        return [replace(e, marks=weighed(e.marks, self.sweep, self.size[0])) for e in found]
 
     def _fitted(
         self, marks: Sequence[Marks], views: Sequence[View], rig: Array

@@ -1,14 +1,11 @@
-"""Motion blur of edges in a pan: its width, the exposure time that it tells, and how to measure."""
+"""Motion blur of edges in a pan: its width, the exposure time it tells, the reach of normals."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-
-from vision.optics.paint import Marks
-from vision.sheet.stations import THIN
 
 Array = NDArray[np.float64]
 
@@ -29,13 +26,6 @@ REACH, LEAST_REACH = 0.007, 6.0
 
 LONGER, MOST_REACH = 1.2, 0.04
 """Half length of the normals in what a pan blurs edges by; and the most, widths of the picture."""
-
-LEAST_BLUR = 0.02
-"""Blur from which on the scatter of edges no longer tells how far they are off, widths of the
-picture."""
-
-SMEARED, THIN_SMEARED = 0.05, 0.2
-"""How far edges and thin lines are off, in what they are smeared by, as clips with truth show."""
 
 LEARNING = 0.5
 """Share that one more picture counts: a pan is soon over, and a second tells most of it."""
@@ -106,14 +96,6 @@ def reach_beyond(blur: float, width: int) -> float:
     """
     least = max(REACH * width, LEAST_REACH)
     return min(max(LONGER * blur, least), max(MOST_REACH * width, least))
-
-
-def weighed(marks: Marks, sweep: Array, width: int) -> Marks:
-    """Let marks count the less, the farther a pan smears their edges along x and y, px."""
-    if np.linalg.norm(sweep) < LEAST_BLUR * width:
-        return marks
-    share = np.where(np.isin(marks.line, THIN), THIN_SMEARED, SMEARED)
-    return replace(marks, sd=np.hypot(marks.sd, share * np.abs(marks.normal @ sweep)))
 
 
 def _width(slope: Array | float) -> Array:

@@ -3,20 +3,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.vision.cameras import marks, true_rig, views
 from vision.camera_path.smear import (
     LEAST,
     MOST,
     SHARP,
-    SMEARED,
-    THIN_SMEARED,
     Shutter,
     exposure,
     reach_beyond,
     smear,
-    weighed,
 )
-from vision.optics.paint import CENTRE_LINE, TWELVE
 
 MOTION = np.linspace(-60, 60, 49)
 
@@ -67,14 +62,3 @@ def test_normals_reach_beyond_a_blur_but_not_across_the_picture() -> None:
     assert reach_beyond(0.0, 320) == 6.0
     assert reach_beyond(30.0, 1280) > 30
     assert reach_beyond(500.0, 1280) < 60
-
-
-def test_an_edge_counts_the_less_the_farther_it_is_smeared_across_itself() -> None:
-    seen = marks(np.random.default_rng(0), views(2)[0].vector, true_rig(), 0.0)
-    sweep = np.array([30.0, -40.0])
-    across = np.abs(seen.normal @ sweep)
-    added = np.sqrt(weighed(seen, sweep, 1280).sd ** 2 - seen.sd**2)
-    for kind, share in ((TWELVE, SMEARED), (CENTRE_LINE, THIN_SMEARED)):
-        on = seen.line == kind
-        np.testing.assert_allclose(added[on], share * across[on], atol=1e-6)
-    assert weighed(seen, 0.1 * sweep, 1280) is seen
