@@ -19,71 +19,92 @@ def coach_tables(
     """Give the tables for coaches: who lies shot and how stones got there, in m or feet."""
     hits, radius = results.collisions, results.radius
     rest = tables.rest_table(tracks, hits, house, radius)
+    return [
+        _stones(rest, unit),
+        _speeds(tables.speed_table(tracks, hits, radius), unit),
+        _hits(tables.takeout_table(hits), unit),
+        _distances(tables.distance_table(rest), unit),
+    ]
+
+
+def _stones(rest: pd.DataFrame, unit: Unit) -> Table:
     shot, why = tables.shot_stone(rest)
     lies = f"Shot stone: {shot} ({why})." if shot else f"Shot stone: not known, {why}."
-    by = unit.symbol
-    speed: dict[str, Any] = {"unit": f"{by}/s", "factor": unit.per_metre, "decimals": 3}
-    length: dict[str, Any] = {"unit": by, "factor": unit.per_metre, "decimals": unit.decimals + 1}
-    apart = tables.distance_table(rest)
-    return [
-        Table(
-            "coach_stones",
-            "Where the stones stopped",
-            f"{lies} Centres of the stones, from the tee; turns counter-clockwise; curl of the"
-            " thrown stone, to the left of where it was heading.",
-            (
-                Column("stone", "stone", kind="word"),
-                Column("team", "team", kind="note"),
-                Column("lies", "lies", decimals=0),
-                Column("from the tee", "to_tee", stderr="sd_to_tee", **length),
-                Column("x", "x", stderr="sd_x", **length),
-                Column("y", "y", stderr="sd_y", **length),
-                Column("turns", "turns", stderr="sd_turns", decimals=3),
-                Column("curl", "curl", stderr="sd_curl", **length),
-                Column("note", "note", kind="note"),
-            ),
-            rest,
+    length: dict[str, Any] = {
+        "unit": unit.symbol, "factor": unit.per_metre, "decimals": unit.decimals + 1
+    }  # fmt: skip
+    return Table(
+        "coach_stones",
+        "Where the stones stopped",
+        f"{lies} Centres of the stones, from the tee; turns counter-clockwise; curl of the"
+        " thrown stone, to the left of where it was heading.",
+        (
+            Column("stone", "stone", kind="word"),
+            Column("team", "team", kind="note"),
+            Column("lies", "lies", decimals=0),
+            Column("from the tee", "to_tee", stderr="sd_to_tee", **length),
+            Column("x", "x", stderr="sd_x", **length),
+            Column("y", "y", stderr="sd_y", **length),
+            Column("turns", "turns", stderr="sd_turns", decimals=3),
+            Column("curl", "curl", stderr="sd_curl", **length),
+            Column("note", "note", kind="note"),
         ),
-        Table(
-            "coach_speeds",
-            "Speeds on the way",
-            "",
-            (
-                Column("stone", "stone", kind="word"),
-                Column("at", "at", kind="word"),
-                Column("time", "t", "s", decimals=2),
-                Column("speed", "speed", stderr="sd", **speed),
-                Column("note", "note", kind="note"),
-            ),
-            tables.speed_table(tracks, hits, radius),
+        rest,
+    )
+
+
+def _speeds(speeds: pd.DataFrame, unit: Unit) -> Table:
+    return Table(
+        "coach_speeds",
+        "Speeds on the way",
+        "",
+        (
+            Column("stone", "stone", kind="word"),
+            Column("at", "at", kind="word"),
+            Column("time", "t", "s", decimals=2),
+            Column("speed", "speed", stderr="sd", **_speed(unit)),
+            Column("note", "note", kind="note"),
         ),
-        Table(
-            "coach_hits",
-            "What each hit took and gave",
-            "The first stone arrives and goes on, the second is struck.",
-            (
-                Column("hit", "hit", kind="word"),
-                Column("stones", "stones", kind="word"),
-                Column("arrives at", "arrived", stderr="sd_arrived", **speed),
-                Column("goes on at", "left", stderr="sd_left", **speed),
-                Column("loses", "lost", stderr="sd_lost", **speed),
-                Column("of its speed", "share", "%", decimals=0, factor=100),
-                Column("struck stone leaves at", "struck", stderr="sd_struck", **speed),
-            ),
-            tables.takeout_table(hits),
+        speeds,
+    )
+
+
+def _hits(takeouts: pd.DataFrame, unit: Unit) -> Table:
+    speed = _speed(unit)
+    return Table(
+        "coach_hits",
+        "What each hit took and gave",
+        "The first stone arrives and goes on, the second is struck.",
+        (
+            Column("hit", "hit", kind="word"),
+            Column("stones", "stones", kind="word"),
+            Column("arrives at", "arrived", stderr="sd_arrived", **speed),
+            Column("goes on at", "left", stderr="sd_left", **speed),
+            Column("loses", "lost", stderr="sd_lost", **speed),
+            Column("of its speed", "share", "%", decimals=0, factor=100),
+            Column("struck stone leaves at", "struck", stderr="sd_struck", **speed),
         ),
-        Table(
-            "coach_distances",
-            "Distances between stones",
-            "From centre to centre.",
-            (
-                Column("stone", "stone", kind="word"),
-                Column("to the tee", "tee", by, decimals=unit.decimals, factor=unit.per_metre),
-                *(
-                    Column(str(name), str(name), by, decimals=unit.decimals, factor=unit.per_metre)
-                    for name in apart.columns[2:]
-                ),
+        takeouts,
+    )
+
+
+def _distances(apart: pd.DataFrame, unit: Unit) -> Table:
+    names = {"tee": "to the tee"} | {str(name): str(name) for name in apart.columns[2:]}
+    return Table(
+        "coach_distances",
+        "Distances between stones",
+        "From centre to centre.",
+        (
+            Column("stone", "stone", kind="word"),
+            *(
+                Column(head, name, unit.symbol, decimals=unit.decimals, factor=unit.per_metre)
+                for name, head in names.items()
             ),
-            apart,
         ),
-    ]
+        apart,
+    )
+
+
+def _speed(unit: Unit) -> dict[str, Any]:
+    """How a column of speeds is written."""
+    return {"unit": f"{unit.symbol}/s", "factor": unit.per_metre, "decimals": 3}
