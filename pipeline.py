@@ -451,7 +451,9 @@ def _do_simulate(arguments: argparse.Namespace, bars: Bars) -> str:
     with staged(folder, replaces=WHAT_IF) as stage:
         write_table(table, stage / "simulation.csv")
         if throws:
-            outcomes, odds = throw_often(start, changes, throws, arguments.throw_sd, shot.name)
+            outcomes, odds = throw_often(
+                start, changes, throws, arguments.throw_sd, shot.name, bars
+            )
             write_odds(stage, start, outcomes, odds)
             outcome = {"nominal": outcome, **odds}
             lines += odds_text(odds, [folder / name for name in WHAT_IF])

@@ -114,6 +114,7 @@ class Estimates:
         alone = Method(
             local.restitution,
             Estimate(local.friction.value, local.friction.stderr),
+            Told(note="friction between the stones: each hit tells its own"),
             hits=tuple(Estimate(hit.restitution, hit.stderr) for hit in local.collisions),
             note="from the paths beside the hits",
         )

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from data.errors import InputError
+from data.progress import Progress, no_progress
 from data.sheet import curling_size
 from work.analyse import as_tracks
 
@@ -86,7 +87,12 @@ def sampled(simulation: Simulation, fps: float, model: str) -> pd.DataFrame:
 
 
 def throw_often(
-    start: Start, changes: Changes, count: int, throw_sd: tuple[float, float] | None, source: str
+    start: Start,
+    changes: Changes,
+    count: int,
+    throw_sd: tuple[float, float] | None,
+    source: str,
+    progress: Progress = no_progress,
 ) -> tuple[pd.DataFrame, dict[str, Any]]:
     """Throw a shot many times.
 
@@ -102,6 +108,8 @@ def throw_often(
         Scatter of speed, m/s, and direction, rad; `physics.prediction.what_if.THROW_SD` by default.
     source : str
         Name of the file that the shot is from.
+    progress : callable
+        Called as the work goes on.
 
     Returns
     -------
@@ -113,7 +121,7 @@ def throw_often(
     from physics.prediction.what_if import THROW_SD, Changes, odds, sample
 
     speed, direction = throw_sd or THROW_SD
-    outcomes = sample(start, count, (speed, direction))
+    outcomes = sample(start, count, (speed, direction), progress)
     return outcomes, {
         "schema": 1,
         "input": source,

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from data.errors import InputError
+from data.progress import Progress, no_progress
 from data.sheet import GRAVITY, HOUSE, curling_size
 from physics.curl import Curl, FCV1Curl
 from physics.ice import IceLaw
@@ -116,7 +117,12 @@ def changed(start: Start, changes: Changes) -> Start:
     return replace(start, shot=replace(shot, stones=tuple(stones)))
 
 
-def sample(start: Start, count: int, throw_sd: tuple[float, float] = THROW_SD) -> pd.DataFrame:
+def sample(
+    start: Start,
+    count: int,
+    throw_sd: tuple[float, float] = THROW_SD,
+    progress: Progress = no_progress,
+) -> pd.DataFrame:
     """Simulate a shot many times, each a little off.
 
     States, restitution, frictions, curl and the distance at which stones meet are drawn from their
@@ -131,6 +137,8 @@ def sample(start: Start, count: int, throw_sd: tuple[float, float] = THROW_SD) -
         Number of samples.
     throw_sd : (float, float)
         Standard deviations of speed (m/s) and direction (rad) of the stone as it is let go.
+    progress : callable
+        Called as the work goes on.
 
     Returns
     -------
@@ -161,7 +169,9 @@ def sample(start: Start, count: int, throw_sd: tuple[float, float] = THROW_SD) -
             vary[name] = np.clip(mean + sd * rng.standard_normal(count), 0.0, top)
     ice, curl = ([pair[k] for pair in (pairs[r] for r in rank)] for k in range(2))
     radius = shot.radius * (1 + start.sd_size * rng.standard_normal(count))
-    done = simulate_many(shot, places, ice=ice, curl=curl, radius=radius, vary=vary)
+    done = simulate_many(
+        shot, places, ice=ice, curl=curl, radius=radius, vary=vary, progress=progress
+    )
     names = [stone.name for stone in shot.stones]
     return pd.DataFrame(
         {

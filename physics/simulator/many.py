@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from data.errors import InputError
+from data.progress import Progress, no_progress
 from physics.curl import Curl
 from physics.ice import IceLaw
 from physics.simulator.batch import Batch
@@ -54,6 +55,7 @@ def simulate_many(
     curl: Sequence[Curl] = (),
     radius: ArrayLike | None = None,
     vary: Mapping[str, ArrayLike] | None = None,
+    progress: Progress = no_progress,
 ) -> Outcomes:
     """Simulate many variants of a shot; each ends as `simulate` ends it, to 1e-6 m.
 
@@ -69,6 +71,8 @@ def simulate_many(
         Half the distance of two stones' centres as they hit each other, m.
     vary : mapping, optional
         Parameter of the model of impact to its value in each variant.
+    progress : callable
+        Told how many are done.
 
     Returns
     -------
@@ -104,6 +108,7 @@ def simulate_many(
     out = Outcomes(
         np.zeros(size), np.zeros(size), np.zeros(size, np.int64), np.zeros(size, np.bool_)
     )
+    progress("throws", 0, variants)
     for first in range(0, variants, BATCH):
         part = slice(first, first + BATCH)
         batch = Batch(
@@ -117,4 +122,5 @@ def simulate_many(
         batch.run()
         out.x[part], out.y[part] = batch.now[..., 0], batch.now[..., 1]
         out.hits[part], out.in_play[part] = batch.hits, batch.in_play
+        progress("throws", min(part.stop, variants), variants)
     return out

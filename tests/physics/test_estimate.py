@@ -319,6 +319,8 @@ def test_a_stone_that_is_pushed_on_its_way_to_the_hit() -> None:
     (why,) = [text for text in found.warnings if "whole shot" in text]
     assert "something else than ice and hits moves a stone" in why
     assert found.methods["global"].note == why
+    for name in ("local", "finite-differences"):
+        assert "friction between the stones" in str(found.methods[name].stone_friction.note)
 
 
 def test_what_glides_alone_do_not_tell_is_no_doubt_where_the_whole_shot_does(

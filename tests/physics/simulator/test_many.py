@@ -10,6 +10,7 @@ from data.errors import InputError
 from physics.curl import FCV1Curl, NoCurl
 from physics.ice import FCV1, Constant, IceLaw
 from physics.impact import Frictional, Impact, PointMass, RigidBody
+from physics.simulator import many
 from physics.simulator.batch import FEW
 from physics.simulator.many import Outcomes, simulate_many
 from physics.simulator.simulate import simulate
@@ -147,3 +148,10 @@ def test_mistakes_are_told() -> None:
     states.vx[3, 0] = np.nan
     with pytest.raises(InputError, match="not finite"):
         simulate_many(shot, states)
+
+
+def test_it_says_how_many_are_done(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(many, "BATCH", 2 * COUNT // 3)
+    shot, told = Shot(FROZEN[:1]), list[tuple[str, int, int | None]]()
+    simulate_many(shot, States.of(shot, COUNT), progress=lambda *at: told.append(at))
+    assert told == [("throws", n, COUNT) for n in (0, 2 * COUNT // 3, COUNT)]
