@@ -10,6 +10,7 @@ from tests.synthetic.camera import CameraPath
 from tests.vision.places import RINGS
 from vision.optics.pose import ROLL, camera
 from vision.optics.rig import ANYWHERE, OVERHEAD
+from vision.sheet.house import find_house
 from vision.sheet.house_fit import RoughFit, fit_roughly, refine, start
 from vision.sheet.rings import Guess
 
@@ -57,6 +58,22 @@ def test_a_rough_fit_is_refined_to_millimetres(path: CameraPath) -> None:
     off = np.linalg.norm(fit.camera.ice(pixels) - RINGS, axis=1)
     assert np.sqrt((off**2).mean()) < 0.006
     assert fit.rms_px < 0.6
+
+
+@pytest.mark.parametrize("place", [(0.0, -2.5), (-0.9, -2.5), (0.9, -1.75), (0.0, -1.75)])
+def test_a_camera_10_to_15_degrees_aslant_is_told_where_the_tee_is_off_the_middle(
+    place: tuple[float, float],
+) -> None:
+    """From straight above the fit ended 10 cm and more off, where guards lie."""
+    position, target = (*place, 9.5), (0.55 * place[0], -1.5)
+    path = still_camera(size=(1280, 720), position=position, target=target, px_per_m=120)
+    image = render_still(SCENE, path)
+    found = find_house(image)
+    assert found is not None and not found.overhead
+    ice = np.array([[x, y] for x in (-1.5, 0.0, 1.5) for y in (-3.0, -1.5, 0.0, 1.0)])
+    pixels = path.at(0.0).project(np.c_[ice, np.zeros(len(ice))])
+    off = np.linalg.norm(found.camera.ice(pixels) - ice, axis=1)
+    assert off.max() < 0.02
 
 
 def test_circles_alone_do_not_roll_a_view() -> None:
