@@ -134,7 +134,7 @@ def _fit_pieces(
     _, friction, prior = measure_glides(loose, known, radius)
     fit = fit_shot(known, pieces, (), radius, deceleration=prior)
     a = prior.mean if friction.value is not None else 0.0
-    return fit, Model(max(a, 0.0), prior.along, prior.fall, prior.sd_fall), noises(fit, known)
+    return fit, Model(max(a, 0.0), prior.along, prior.share, prior.sd_share), noises(fit, known)
 
 
 def _track(

@@ -22,14 +22,24 @@ LONGEST = 1e3
 TINY = 1e-12
 """Share of a motion that counts as none left: its logarithm is still a number."""
 
-SLOWEST = 0.06
-"""Speed below which a stone is slowed as there, m/s: as by FCV1 (Uehara and Ito, 2021)."""
+V_C = 0.064
+"""v_c in FCV1's μ(v) = a / (v + v_c) + b, m/s (Uehara and Ito, 2021): what part of the friction
+fades with the speed does so as there."""
 
-FALL = Estimate(0.2, 0.25)
-"""What is known of p beforehand for curling stones: 0 on even ice, 1/2 in Penner's law, in FCV1's
-0.15 from 1 to 3 m/s and 0.3 to 0.4 below. One mean for all draws each of them aside: fast stones of
-even ice and slow ones of FCV1's, the less the wider it is; too wide it tells nothing of how fast a
-stone was that was pushed on by a centimetre."""
+SHARE = Estimate(0.2, 0.3)
+"""What is known beforehand of the share of the friction at 1 m/s that fades with the speed, of
+curling stones: 0 on even ice, 0.23 in FCV1, in Penner's law 0.45 to 0.6."""
+
+FORM_SD = 0.1
+"""How much p differs from what FCV1's form has: Penner's law has 1/2 at all speeds, that form with
+its share 0.3 at 2 m/s, 0.5 at 1 and 0.6 at 0.3."""
+
+FIXED = 1e-4
+"""How well a power that is not to be found is known."""
+
+LEAST_LEFT = 0.2
+"""Share of the friction at 1 m/s that is left at any speed, of ice that would slow slow stones
+less: no such ice is known, but errors may make it seem so."""
 
 BEND = 0.5
 """Power of the speed that the heading goes with: as it turns by v^(-0.8) a second (FCV1; Uehara and
@@ -42,8 +52,16 @@ LEAST, MOST = -0.5, 1.0
 """Bounds of p: past any law of ice."""
 
 
-def at_speed(speed: ArrayLike, mean: float, power: float, sd_power: float) -> tuple[Floats, Floats]:
-    """Deceleration at speeds, m/s², and its standard error by that of the power.
+def more(speed: ArrayLike) -> Floats:
+    """How much more than at 1 m/s the part of the friction is that fades with the speed.
+
+    By FCV1 (Uehara and Ito, 2021), relative to what it is there.
+    """
+    return np.asarray((1 + V_C) / (np.asarray(speed, float) + V_C) - 1)
+
+
+def at_speed(speed: ArrayLike, mean: float, share: float, sd_share: float) -> tuple[Floats, Floats]:
+    """Deceleration at speeds, m/s², and its standard error by that of the share.
 
     Parameters
     ----------
@@ -51,12 +69,25 @@ def at_speed(speed: ArrayLike, mean: float, power: float, sd_power: float) -> tu
         m/s.
     mean : float
         Deceleration at 1 m/s, m/s².
-    power, sd_power : float
-        p and its standard error.
+    share, sd_share : float
+        Share of it that fades with the speed, and its standard error.
     """
-    log = np.log(np.maximum(speed, SLOWEST))
-    value = np.asarray(mean * np.exp(-power * log))
-    return value, np.abs(sd_power * value * log)
+    rise = more(speed)
+    return mean * np.maximum(1 + share * rise, LEAST_LEFT), np.abs(mean * sd_share * rise)
+
+
+def power_at(speed: ArrayLike, share: ArrayLike) -> Floats:
+    """Power p with which a deceleration falls about a speed, m/s, if a share of it fades."""
+    speed, share = np.asarray(speed, float), np.asarray(share, float)
+    slope = (1 + V_C) * speed / (speed + V_C) ** 2
+    return share * slope / (1 + share * more(speed))
+
+
+def power_prior(speed: float, share: float, sd_share: float) -> tuple[float, float]:
+    """Power p about a speed, m/s, and its standard error, if so much of a deceleration fades."""
+    shares = np.clip([share, share - sd_share, share + sd_share], 0.0, 1.0)
+    power, low, high = power_at(speed, shares).tolist()
+    return power, float(np.hypot(0.5 * (high - low), FORM_SD)) if sd_share else FIXED
 
 
 def time_left(x: Floats) -> float:

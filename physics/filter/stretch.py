@@ -70,13 +70,13 @@ class Model:
     """How one stone's speed is expected to change.
 
     ``a`` is the deceleration at 1 m/s (m/s²), ``spread`` its deviation; at other speeds it goes
-    as their power -p, p being ``fall`` ± ``sd_fall``.
+    as FCV1 has it if a ``share`` ± ``sd_share`` of it fades.
     """
 
     a: float
     spread: float
-    fall: float = 0.0
-    sd_fall: float = 0.0
+    share: float = 0.0
+    sd_share: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -152,7 +152,7 @@ def steps(stretch: Stretch) -> tuple[Steps, Steps]:
     slower, turning = np.minimum(np.divide.outer(LOSS_SD, speed).T, MOST_LOSS_SD).T
     pivoting = np.where(rest[1:], MOST_LOSS_SD[1], turning)
     model = stretch.model
-    unsure = at_speed(speed, model.a, model.fall, model.sd_fall)[1]
+    unsure = at_speed(speed, model.a, model.share, model.sd_share)[1]
     deviation = np.sqrt(model.spread**2 + slower**2 + unsure**2)
     ends = spin_ends(stretch.t, stretch.z[:, 2], stretch.sd[:, 2], rest)
     still = np.zeros(len(ends))
@@ -193,7 +193,7 @@ def drift(stretch: Stretch, along: Steps, turning: Steps) -> Floats:
     speed = stretch.speed[:-1]
     size = np.hypot(speed[:, 0], speed[:, 1])[:, None]
     model = stretch.model
-    loss = np.minimum(at_speed(size, model.a, model.fall, model.sd_fall)[0], size / dt)
+    loss = np.minimum(at_speed(size, model.a, model.share, model.sd_share)[0], size / dt)
     slowing = np.where(size < 1e-6, 0.0, -loss * speed / np.maximum(size, 1e-6))
     slowing[stretch.rest[1:]] = 0.0
     out = np.zeros((len(stretch.t), 6))

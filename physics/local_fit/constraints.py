@@ -34,7 +34,7 @@ def acceleration_prior(speed: Floats, prior: Deceleration) -> tuple[Floats, Floa
     along = speed / size
     across = np.array([-along[1], along[0]])
     # The slower a stone the more it is slowed, by all ice laws but the constant one.
-    mean, unsure = at_speed(size, prior.mean, prior.fall, prior.sd_fall)
+    mean, unsure = at_speed(size, prior.mean, prior.share, prior.sd_share)
     width = np.hypot(prior.along, unsure)
     precision = np.outer(along, along) / width**2 + np.outer(across, across) / prior.across**2
     return precision, -mean * along

@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.filter.slowing import LEAST, MOST, course, stop_after
+from physics.filter.slowing import LEAST, MOST, course, power_prior, stop_after
 from physics.local_fit.breaks import FEWEST
 from physics.local_fit.constraints import acceleration_prior, contact_constraints
 from physics.local_fit.segments import Piece
@@ -31,9 +31,6 @@ moves its end goes to and fro from one whole step to the next, and half of them 
 
 FARTHEST = 100.0
 """Longest step of any state (SI units), so that a fit of nonsense ends."""
-
-FIXED = 1e-4
-"""How well a power that is not to be found is known."""
 
 STILL_SD = 1e-5
 """How still a stone at rest lies, m/s and m/s²."""
@@ -109,12 +106,12 @@ class _Solver:
         self.blocks = self._blocks()
         self.origins = np.array([_origin(p, traces[p.stone], meetings) for p in pieces])
         self.theta = np.zeros(self.size)
-        self.theta[len(self.theta) - len(self.pieces) :] = self.prior.fall
         for k, meeting in enumerate(self.meetings):
             self.theta[6 * len(self.pieces) + k] = meeting.t
         for i, piece in enumerate(self.pieces):
             guess = _first_guess(piece, traces[piece.stone], self.origins[i])
             self.theta[6 * i : 6 * i + 6] = guess.ravel()
+            self.theta[i - len(self.pieces)] = self._power_prior(guess[:, 1])[0]
 
     def _blocks(self) -> list[NDArray[np.int64]]:
         """Unknowns that depend on each other: pieces are tied to others by meetings alone."""
@@ -267,9 +264,9 @@ class _Solver:
         for i, piece in enumerate(self.pieces):
             place, speed, change = ([6 * i + k, 6 * i + 3 + k] for k in range(3))
             power = unknowns_of(i, len(self.pieces))[6]
-            known = max(self.prior.sd_fall, FIXED) ** -2
-            normal[power, power] += known
-            right[power] += known * self.prior.fall
+            usual, unsure = self._power_prior(self.theta[speed])
+            normal[power, power] += unsure**-2
+            right[power] += unsure**-2 * usual
             normal[place, place] += 1e-8
             if piece.rest:
                 normal[speed, speed] += STILL_SD**-2
@@ -291,6 +288,10 @@ class _Solver:
             normal += weighted.T @ rows
             right += weighted.T @ (rows @ self.theta - values)
         return normal, right
+
+    def _power_prior(self, speed: Floats) -> tuple[float, float]:
+        """Power of the speed that slows a stone of a velocity, m/s, and its standard error."""
+        return power_prior(float(np.hypot(*speed)), self.prior.share, self.prior.sd_share)
 
     def _inflation(self, parameters: float) -> float:
         """Factor for residuals larger than stated, and alike from frame to frame."""

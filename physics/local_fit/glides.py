@@ -10,8 +10,16 @@ from numpy.typing import NDArray
 
 from data.results import Estimate, Friction, Glide
 from data.sheet import GRAVITY, curling_size
-from physics.filter.slowing import FALL, change_by, speed_left
-from physics.ice import FCV1
+from physics.filter.slowing import (
+    FORM_SD,
+    SHARE,
+    V_C,
+    change_by,
+    more,
+    power_at,
+    power_prior,
+    speed_left,
+)
 from physics.local_fit.shot_fit import Deceleration, ShotFit
 from physics.local_fit.traces import PLACE_REACH, Trace
 from physics.statistics.random_effects import random_effects, weighted_mean
@@ -25,15 +33,16 @@ Lubricants 10, 265) and of anything that glides, m/s²: only used where the glid
 LEAST_SPREAD = 0.01
 """Least spread of decelerations from glide to glide, m/s²: no ice law is exactly constant."""
 
-TURNING = 0.01
-"""Acceleration across the motion, m/s², by which ice turns a curling stone to either side: 0.0082
-times the power 0.2 of the speed (FCV1; Uehara and Ito, 2021)."""
+TURNING = 0.02
+"""Acceleration across the motion, m/s², by which ice turns a curling stone to either side: twice
+FCV1's 0.0082 times the power 0.2 of the speed (Uehara and Ito, 2021), for a hit sets the spins, and
+with them the side, so that all hits of a kind would be drawn the same way."""
 
 EVEN = Estimate(0.0, 0.0)
-"""Power of the speed with which the deceleration of anything that glides falls."""
+"""Share of the deceleration of anything that glides that fades with the speed."""
 
-STEEPEST = 0.7
-"""Power of the speed beyond which FCV1's form, of two positive parts, follows no more."""
+SHARES = np.linspace(-0.2, 1.0, 61)
+"""Shares of the friction at 1 m/s that may fade with the speed."""
 
 TOLD = 3.0
 """How much more probable a power of the speed must make the glides to be told: what counts as
@@ -48,8 +57,8 @@ WORST = 0.02
 
 def free(radius: float) -> Deceleration:
     """Weak prior of the decelerations of discs, for when they are to be measured."""
-    fall = FALL if curling_size(radius) else EVEN
-    return Deceleration(0.0, 3.0, 3.0, float(fall.value or 0.0), float(fall.stderr or 0.0))
+    share = SHARE if curling_size(radius) else EVEN
+    return Deceleration(0.0, 3.0, 3.0, float(share.value or 0.0), float(share.stderr or 0.0))
 
 
 def measure_glides(
@@ -68,9 +77,9 @@ def measure_glides(
     """
     law = free(radius)
     each = list(_long_glides(fit, known, radius))
-    power, sd_power = _power(fit, [one.rank for one in each], law)
-    pooled = random_effects(*_at_1_m_per_s(fit, each, power, sd_power))
-    friction = _friction(fit, each, law, power, sd_power)
+    shape = _shape(fit, each, law)
+    pooled = random_effects(*_at_1_m_per_s(fit, each, shape.share, shape.sd))
+    friction = _friction(fit, each, law, shape)
     spread = pooled.spread if pooled.excess > CLEAR else 0.0
     usual = USUAL if curling_size(radius) else ANY
     mean, sd = float(usual.value or 0.0), float(usual.stderr or 0.0)
@@ -83,7 +92,7 @@ def measure_glides(
     return (
         tuple(one.glide for one in each),
         friction,
-        replace(law, mean=mean, along=spread, across=across, fall=power),
+        replace(law, mean=mean, along=spread, across=across, share=shape.share, sd_share=shape.sd),
     )
 
 
@@ -134,15 +143,15 @@ def _long_glides(
 
 
 def _at_1_m_per_s(
-    fit: ShotFit, each: Sequence[_MeasuredGlide], power: float, sd_power: float
+    fit: ShotFit, each: Sequence[_MeasuredGlide], share: float, sd_share: float
 ) -> tuple[Floats, Floats]:
-    """Decelerations at 1 m/s and their covariance, by one power of the speed for all."""
-    logs = np.log([one.speed for one in each])
-    scale = np.exp(power * logs)
+    """Decelerations at 1 m/s and their covariance, if one share of all of them fades."""
+    rise = more([one.speed for one in each])
+    scale = 1 / (1 + share * rise)
     values = scale * [one.value for one in each]
     rows = np.array([one.by_fit for one in each]).reshape(len(each), len(fit.theta))
     cov = rows @ fit.cov @ rows.T + np.diag([one.bent**2 for one in each])
-    unsure = sd_power * values * logs
+    unsure = sd_share * values * scale * rise
     return values, np.outer(scale, scale) * cov + np.outer(unsure, unsure)
 
 
@@ -158,16 +167,54 @@ def _acceleration(fit: ShotFit, rank: int, t: float, way: Floats) -> tuple[float
     return value, slope
 
 
-def _power(fit: ShotFit, ranks: Sequence[int], law: Deceleration) -> tuple[float, float]:
-    """Power of the speed that slows the stones of some pieces, and its standard error."""
-    if not law.sd_fall:
-        return law.fall, 0.0
-    # What is known beforehand is in the power of each piece, and counts but once.
-    known = law.sd_fall**-2
-    at = [fit.unknowns(rank)[6] for rank in ranks]
-    told = 1 / np.diag(fit.cov)[at]
-    every = known + float(np.sum(np.maximum(told - known, 0.0)))
-    return law.fall + float(told @ (fit.theta[at] - law.fall)) / every, every**-0.5
+@dataclass(frozen=True)
+class _Shape:
+    """Share of the friction at 1 m/s that fades with the speed, as glides tell it.
+
+    ``share`` ± ``sd``, and the Bayes factor of such a law against a friction that is the same at
+    all speeds.
+    """
+
+    share: float
+    sd: float
+    factor: float
+
+
+def _shape(fit: ShotFit, each: Sequence[_MeasuredGlide], law: Deceleration) -> _Shape:
+    """Tell how a friction falls, from each glide's course and from how glides differ.
+
+    The Bayes factor is the ratio of the prior to the posterior density at a share of 0 (Dickey,
+    1971, Annals of Mathematical Statistics 42, 204).
+    """
+    if not law.sd_share:
+        return _Shape(law.share, 0.0, 0.0)
+    misfit = ((SHARES - law.share) / law.sd_share) ** 2
+    before = _density(misfit)
+    for one in each:
+        # What is known beforehand is in the power of each piece, and counts but once.
+        at = fit.unknowns(one.rank)
+        start = float(np.hypot(*fit.theta[at[[1, 4]]]))
+        usual, sd = power_prior(start, law.share, law.sd_share)
+        told = 1 / fit.cov[at[6], at[6]] - sd**-2
+        if told > 0:
+            alone = usual + (fit.theta[at[6]] - usual) / (fit.cov[at[6], at[6]] * told)
+            misfit += (alone - power_at(one.speed, SHARES)) ** 2 / (1 / told + FORM_SD**2)
+    if each:
+        steep = [_at_1_m_per_s(fit, each, share, 0.0) for share in SHARES.tolist()]
+        # Where no share makes them agree, what is left is no evidence for any.
+        spread = min(random_effects(*steep[k]).spread for k in range(0, len(steep), 10))
+        least = max(LEAST_SPREAD, spread) ** 2
+        misfit += [weighted_mean(*values, least)[2] for values in steep]
+    after = _density(misfit)
+    share = float(SHARES @ after)
+    sd = float(np.sqrt((SHARES - share) ** 2 @ after))
+    even = int(np.argmin(np.abs(SHARES)))
+    return _Shape(share, sd, float(before[even] / max(after[even], 1e-30)))
+
+
+def _density(misfit: Floats) -> Floats:
+    weights = np.exp(-0.5 * (misfit - misfit.min()))
+    return np.asarray(weights / weights.sum())
 
 
 def _acceleration_error(sd_place: Floats, speed: float, duration: float) -> Floats:
@@ -182,67 +229,36 @@ def _acceleration_error(sd_place: Floats, speed: float, duration: float) -> Floa
 
 
 def _friction(
-    fit: ShotFit, each: Sequence[_MeasuredGlide], law: Deceleration, power: float, sd_power: float
+    fit: ShotFit, each: Sequence[_MeasuredGlide], law: Deceleration, shape: _Shape
 ) -> Friction:
     """Friction that the glides show: the same at all speeds unless they tell that it falls.
 
-    If it does it is that at 1 m/s, with a law of `physics.ice.Fit`'s form with FCV1's v_c: the
-    same there and at the mean of the speeds. If not, what it would be at 1 m/s is in the error.
+    If it does it is that at 1 m/s, with a law of `physics.ice.Fit`'s form with FCV1's v_c. If not,
+    what it would be at 1 m/s is in the error.
     """
     flat = _at_1_m_per_s(fit, each, 0.0, 0.0)
     even = random_effects(*flat).mean
     if even.value is None or even.stderr is None:
         return Friction()
-    if not law.sd_fall:
+    if not law.sd_share:
         return Friction(even.value / GRAVITY, even.stderr / GRAVITY)
-    speeds = np.array([one.speed for one in each])
-    values, cov = _at_1_m_per_s(fit, each, power, sd_power)
-    form = _law_difference(speeds, power)
-    steep = values * (1 + form), cov
-    pooled = random_effects(*steep)
+    values, cov = _at_1_m_per_s(fit, each, shape.share, shape.sd)
+    pooled = random_effects(values, cov)
     # How far the form leads astray is no error that glides tell of: it has no say in the weights.
-    lean = weighted_mean(values * form, cov, pooled.spread**2)[0]
+    lean = weighted_mean(values * _by_form(each, shape.share), cov, pooled.spread**2)[0]
     value = float(pooled.mean.value or 0.0) / GRAVITY
     stderr = float(np.hypot(pooled.mean.stderr or 0.0, lean)) / GRAVITY
-    if _bayes_factor(flat, steep, Estimate(power, sd_power), law) < TOLD:
+    if shape.factor < TOLD:
         usual = even.value / GRAVITY
         return Friction(usual, float(np.hypot(stderr, usual - value)))
-    if power <= 0 or value <= 0:
+    if shape.share <= 0 or value <= 0:
         return Friction(value, stderr)
-    v_c, mean = FCV1().v_c, float(np.exp(np.mean(np.log(speeds))))
-    fall = min(power, STEEPEST)
-    if abs(mean - 1) > 1e-3:
-        there = value / (1 + float(_law_difference(np.array([mean]), fall)[0])) * mean**-fall
-        a = (there - value) / (1 / (mean + v_c) - 1 / (1 + v_c))
-    else:
-        a = value * fall * (1 + v_c) ** 2
-    return Friction(value, stderr, "fit", a, v_c, value - a / (1 + v_c))
+    a = shape.share * value * (1 + V_C)
+    return Friction(value, stderr, "fit", a, V_C, value - a / (1 + V_C))
 
 
-def _bayes_factor(
-    even: tuple[Floats, Floats], bent: tuple[Floats, Floats], power: Estimate, law: Deceleration
-) -> float:
-    """Bayes factor of a deceleration that falls as a power of the speed against a constant one.
-
-    Within glides it is the ratio of the prior to the posterior density at the power 0 (Dickey,
-    1971, Annals of Mathematical Statistics 42, 204); between them it follows from how well the
-    decelerations agree without and with the power, `even` and `bent`.
-    """
-    value, error = float(power.value or 0.0), float(power.stderr or law.sd_fall)
-    each = (value / error) ** 2 - (law.fall / law.sd_fall) ** 2 + 2 * np.log(error / law.sd_fall)
-    # Where neither makes them agree, what both leave is no evidence for either.
-    spread = max(LEAST_SPREAD, min(random_effects(*values).spread for values in (even, bent)))
-    misfits = [weighted_mean(*values, spread**2)[2] for values in (even, bent)]
-    return float(np.exp(np.clip(0.5 * (each + misfits[0] - misfits[1]), -50.0, 50.0)))
-
-
-def _law_difference(speeds: Floats, power: float) -> Floats:
-    """Relative correction of a friction at 1 m/s that a power law gave, and its standard error.
-
-    FCV1's law and the power law with the same slope at a speed differ at 1 m/s; the truth is taken
-    to lie half-way, give or take that half.
-    """
-    v_c = FCV1().v_c
-    falling = np.minimum(power * (speeds + v_c) ** 2 / speeds, speeds + v_c)
-    by_fcv1 = 1 + falling * (1 / (1 + v_c) - 1 / (speeds + v_c))
-    return np.asarray(0.5 * (by_fcv1 / speeds**power - 1))
+def _by_form(each: Sequence[_MeasuredGlide], share: float) -> Floats:
+    """How much larger frictions at 1 m/s are if the law is as good a power of the speed."""
+    speeds = np.array([one.speed for one in each])
+    by_power = speeds ** power_at(speeds, share) * (1 + share * more(speeds))
+    return np.asarray(by_power - 1)

@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.filter.slowing import FALL, LEAST, MOST, course
+from physics.filter.slowing import LEAST, MOST, SHARE, course, power_prior
 
 Floats = NDArray[np.float64]
 
@@ -77,8 +77,10 @@ def glide_cost(t: Floats, xy: Floats, variance: Floats) -> float:
         return np.inf
     tau = t - t[0]
     c = np.polyfit(tau, xy, 2)[::-1]
-    theta = np.array([*c[:, 0], *c[:, 1], float(FALL.value or 0.0)]) * [1, 1, 2, 1, 1, 2, 1]
-    mean, power_sd = np.append(np.zeros(6), theta[6]), float(FALL.stderr or 0.0)
+    usual = float(SHARE.value or 0.0), float(SHARE.stderr or 0.0)
+    power, power_sd = power_prior(float(np.hypot(*c[1])), *usual)
+    theta = np.array([*c[:, 0], *c[:, 1], power]) * [1, 1, 2, 1, 1, 2, 1]
+    mean = np.append(np.zeros(6), power)
     known = np.array([0.0, SPEED_SD, ACCELERATION_SD, 0.0, SPEED_SD, ACCELERATION_SD, power_sd])
     known[known > 0] **= -2.0
     least, normal = np.inf, np.eye(7)

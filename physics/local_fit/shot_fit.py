@@ -20,14 +20,14 @@ class Deceleration:
     """Prior of the acceleration on one piece, m/s².
 
     ``mean`` against the motion at 1 m/s with standard deviation ``along``; ``across`` it zero
-    mean. At other speeds it goes as their power -p, p being ``fall`` ± ``sd_fall``.
+    mean. Of ``mean`` a ``share`` ± ``sd_share`` fades with the speed as by FCV1.
     """
 
     mean: float = 0.0
     along: float = 1.0
     across: float = 1.0
-    fall: float = 0.0
-    sd_fall: float = 0.0
+    share: float = 0.0
+    sd_share: float = 0.0
 
 
 @dataclass(frozen=True)

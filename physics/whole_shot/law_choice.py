@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.results import Estimate, Law
+from physics.filter.slowing import V_C
 from physics.whole_shot.global_fit import LOST, fit_shots
-from physics.whole_shot.shot_model import V_C, Watched, penner
+from physics.whole_shot.shot_model import Watched, penner
 from physics.whole_shot.watched import THROWN
 from physics.whole_shot.whole_fit import GlobalFit
 

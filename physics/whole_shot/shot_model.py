@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from data.results import Estimate
 from data.sheet import STONE, curling_size
 from physics.curl import Curl, FCV1Curl, NoCurl
+from physics.filter.slowing import V_C
 from physics.ice import Fit, IceLaw, Penner
 from physics.impact import Frictional
 from physics.local_fit.traces import Trace
@@ -19,9 +20,6 @@ from physics.simulator.simulate import simulate
 from physics.simulator.simulation import Shot, Simulation, StoneStart
 
 Floats = NDArray[np.float64]
-
-V_C = 0.064
-"""v_c in μ(v) = a / (v + v_c) + b, m/s, of FCV1 (Uehara and Ito, 2021)."""
 
 TOGETHER = 0.04
 """Time within which the order of hits is not told, s: a frame."""

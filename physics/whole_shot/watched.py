@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 from data.results import Estimate
 from data.sheet import curling_size
 from physics.curl import FCV1Curl
+from physics.filter.slowing import V_C
 from physics.local_fit.noise import Noise, noises
 from physics.local_fit.shot_fit import ShotFit
 from physics.local_fit.spins import spin_on
 from physics.local_fit.traces import Trace
-from physics.whole_shot.shot_model import V_C, SpinSeen, Unknown, Watched
+from physics.whole_shot.shot_model import SpinSeen, Unknown, Watched
 
 Floats = NDArray[np.float64]
 

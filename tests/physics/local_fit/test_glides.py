@@ -135,3 +135,19 @@ def test_slow_glides_tell_no_more_of_1_m_s_than_the_form_of_the_law_allows(
         assert friction.value is not None and friction.stderr is not None
         truth = ice.b + ice.a / (1 + ice.v_c)
         assert abs(friction.value - truth) < 4 * friction.stderr < 0.6 * truth
+
+
+@pytest.mark.parametrize("share", [0.0, 0.232])
+def test_glides_of_several_speeds_tell_how_much_of_the_friction_fades(share: float) -> None:
+    """Also at 1 m/s, where none of them is."""
+    ice = Ice(b=0.01 * (1 - share), a=0.01064 * share, v_c=0.064)
+    tables = []
+    for k, speed in enumerate((0.5, 0.7)):
+        motion = simulate([Start(2 * k, 3, 0, -speed)], 5.0, ice=ice, step=1e-3, keep_every=4)
+        t = np.arange(0, 4.8, 0.04)
+        xy = motion.at(t)[:, 0, :2] + np.random.default_rng(k).normal(0, 5e-4, (len(t), 2))
+        rows = {"stone": "AB"[k], "frame": range(len(t)), "t": t, "x": xy[:, 0], "y": xy[:, 1]}
+        tables.append(pd.DataFrame(rows))
+    friction = local(pd.concat(tables).assign(sd_x=5e-4, sd_y=5e-4)).friction
+    assert friction.law == ("fit" if share else "constant")
+    assert friction.value == pytest.approx(0.01, rel=0.02)

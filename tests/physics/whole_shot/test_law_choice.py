@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from physics.estimate import Estimates, estimate
+from physics.filter.slowing import V_C
 from physics.local_fit.contacts import find_contacts
 from physics.whole_shot.global_fit import fit_shots
 from physics.whole_shot.law_choice import STRAIGHT, USUAL, _against, _hit_by_hit
-from physics.whole_shot.shot_model import V_C
 from physics.whole_shot.watched import SLOPE, THROWN
 from physics.whole_shot.whole_fit import GlobalFit
 from tests.physics.watch import RADIUS, hit_motion, watch
