@@ -33,13 +33,16 @@ ALIKE = 0.5
 CHANGED, LEAST_CELLS, PLACES, NEW_PLACES = 25.0, 4, 3, 2
 """Grey levels by which a cell looks otherwise, cells that make a place of change, how many places
 must change between two glimpses if they belong to different shots, and how many must then show
-again what is not usual there: people who go, or a graphic, only uncover what was there before."""
+again what is not usual there, nor bare ice: people who go only uncover what was there before."""
 
 SUDDEN = 0.7
 """Share of a change that comes with one picture if there is a cut before it."""
 
 _COURSE = np.linspace(-HOUSE.twelve_foot, HOUSE.twelve_foot, CELLS * FINER)
 _PLACES = np.stack(np.meshgrid(_COURSE, _COURSE), axis=-1).reshape(-1, 2)
+
+_RING = np.hypot(*(np.indices((CELLS, CELLS)) - (CELLS - 1) / 2)).round().astype(int)
+"""How far each cell is from the tee, in cells."""
 
 
 @dataclass(frozen=True)
@@ -101,7 +104,7 @@ def shows_again(now: Glimpse, before: Sequence[Glimpse], like: Sequence[Glimpse]
         What may be seen again.
     """
     usual = np.median([look.grey for look in before], axis=0)
-    new = _differ(now.grey, before[-1].grey) & _differ(now.grey, usual)
+    new = _differ(now.grey, before[-1].grey) & _differ(now.grey, usual) & _things(now.grey)
     nearest = min(like, key=lambda look: _difference(now, look))
     again = new & ~_differ(now.grey, nearest.grey)
     return _places(new) >= NEW_PLACES and bool(again.sum() > 0.5 * new.sum())
@@ -113,6 +116,18 @@ def _away(one: Halves, other: Halves) -> NDArray[np.float32]:
 
 def _differ(one: Halves, other: Halves) -> NDArray[np.bool_]:
     return np.asarray(_away(one, other) > CHANGED)
+
+
+def _things(grey: Halves) -> NDArray[np.bool_]:
+    """Cells that look otherwise than most as far from the tee, but for thin lines."""
+    bare = np.full(grey.shape, np.nan)
+    for ring in range(int(_RING.max()) + 1):
+        there = ring == _RING
+        seen = grey[there][np.isfinite(grey[there])]
+        bare[there] = np.median(seen) if len(seen) else np.nan
+    things = _differ(grey, np.asarray(bare, np.float16)).astype(np.uint8)
+    wide = cv2.morphologyEx(things, cv2.MORPH_OPEN, np.ones((2, 2), np.uint8))
+    return np.asarray(wide > 0)
 
 
 def _places(cells: NDArray[np.bool_]) -> int:

@@ -87,6 +87,22 @@ def test_what_was_there_once_is_shown_again_but_not_what_is_usual() -> None:
     assert not shows_again(house(), covered, covered[:1])
 
 
+def test_what_is_shown_again_are_things_not_ice_that_was_covered_for_long() -> None:
+    radius = np.hypot(*(np.indices((CELLS, CELLS)) - (CELLS - 1) / 2))
+    paint = np.select([radius < 8, radius < 16, radius < 24], [120.0, 210.0, 90.0], 205.0)
+    paint[:, 12] = 150.0  # a line
+
+    def seen(*things: tuple[int, int]) -> Glimpse:
+        grey = paint.copy()
+        for row, column in things:
+            grey[row : row + 5, column : column + 5] = 60.0 if paint[row, column] > 100 else 200.0
+        return Glimpse(0.0, Kept(grey))
+
+    long_before, people = [seen(), seen(C)], [seen(A, B)] * 5
+    assert not shows_again(seen(), [*long_before, *people], long_before)
+    assert shows_again(seen(C, D), [*long_before, *people], [seen(C, D)])
+
+
 def test_the_nearer_is_the_one_that_differs_less() -> None:
     assert is_nearer(house(A, B), [house(C, D), house(A, B)], house(A, D))
     assert not is_nearer(house(A, B), [house(C, D)], house(A, B))
