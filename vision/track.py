@@ -22,6 +22,7 @@ from vision.association.watch import Watch
 from vision.detection.appearance import Appearance
 from vision.detection.patch import HANDLE_HEIGHT_SD, handle_radii, is_plain
 from vision.detection.roundness import edge_errors
+from vision.detection.sighting import Sighting
 from vision.detection.smeared import widened
 from vision.detection.steady import Lightness, common_share, lightness_of, steadied
 from vision.film.clip import Clip
@@ -43,7 +44,7 @@ PLAIN = 0.85, 0.85
 
 HARDLY_TOLD = 0.004
 """How far aside a stone lies, m per axis, whose cap is hardly told from granite: lamps mirrored on
-it move the edge that is found. Five filmed ones lay 2 to 7 mm off. `TOGETHER` of it is stated."""
+it move the edge that is found. Five filmed ones lay 2 to 7 mm off."""
 
 TOGETHER = 0.87
 """Share of what parts of the error that places share (camera, slant, edges) come to that is stated.
@@ -125,11 +126,8 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
     named, rest = named_by_motion(tracks, disc.radius)
     if not named:
         return StoneTracks(no_rows(SIGHTING_COLUMNS), ("no stones were found on the ice",))
-    errors = edge_errors(
-        [track.sightings for track in named.values()], disc.cap_radius or disc.radius
-    )
-    if watch.appearance is not None and watch.appearance.own:
-        errors = np.hypot(errors, HARDLY_TOLD)
+    hardly = watch.appearance is not None and watch.appearance.own
+    errors = _by_edges([track.sightings for track in named.values()], disc, hardly)
     edge = dict(zip(named, errors, strict=True))
     team = _teams(named, watch.appearance)
     slants = slants_of(named, cameras, disc)
@@ -211,10 +209,19 @@ def _rows(
         "sd_x": sd_x,
         "sd_y": sd_y,
         "sd_theta": sd_theta,
-        "sd_place_x": TOGETHER * np.hypot(sd_place_x, edge[0]),
-        "sd_place_y": TOGETHER * np.hypot(sd_place_y, edge[1]),
+        "sd_place_x": np.hypot(TOGETHER * sd_place_x, edge[0]),
+        "sd_place_y": np.hypot(TOGETHER * sd_place_y, edge[1]),
         "team": np.full(len(seen), team),
     }
+
+
+def _by_edges(stones: Sequence[Sequence[Sighting]], disc: Stone, hardly: bool) -> Array:
+    """State how far edges of stones may be aside, (stones, 2), m: see `edge_errors`.
+
+    `hardly` says that caps are hardly told from granite, of which the error was measured by itself.
+    """
+    errors = TOGETHER * edge_errors(stones, disc.cap_radius or disc.radius)
+    return np.asarray(np.hypot(errors, HARDLY_TOLD) if hardly else errors)
 
 
 def _without_colour(appearance: Appearance | None) -> tuple[str, ...]:

@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import STONE, Stone
+from vision.detection.appearance import GREY
 from vision.detection.measure import Measures
 from vision.detection.patch import handle_radii
 from vision.detection.rays import Look
 from vision.detection.sighting import Sighting
+from vision.film.lab import chroma
 from vision.film.shelf import Kept
 from vision.optics.camera import Camera
 from vision.optics.cameras import Cameras
@@ -31,6 +33,11 @@ taken for its edge; from where on the far shoulder hides behind the cap, other t
 Beyond what their cameras were, drawn stones of 44 clips of three makers were off along the view by
 as much as 6.4 mm of height make at slants below 0.12, 2.4 to 3.4 up to 0.95 and 5.2 from there on;
 of 12 clips with caps that end at 0.12 m, 1 mm and 2.7."""
+
+MIXED_SD = 0.003
+"""How much less well that is known of caps without hue, m: what pixels mix of cap, granite and ice
+at their far edges depends on how full the granite's shoulders are, and on where light was blurred
+(`vision.detection.mixture`). 27 drawn ones were off along the view by what 4 mm of height make."""
 
 HIDES = (STONE.radius - STONE.cap_radius) / (STONE.cap_height - STONE.rim_height)
 """Slant from which on a usual cap, too, has no granite left to be seen at its far edge."""
@@ -105,7 +112,8 @@ def placed_by(
     by = Cameras.of(cameras, [len(one) for one in each])
     places = by.ice(np.array([sighting.pixel for sighting in flat]), disc.cap_height)
     size = 1 / by.scale_at(places)
-    shared = _shared_errors(by, places, size, disc)
+    grey = chroma(np.array([sighting.colour for sighting in flat])) < GREY
+    shared = _shared_errors(by, places, size, disc, grey)
     told = zip(flat, places.tolist(), shared.tolist(), size.tolist(), strict=True)
     placed = iter(
         sighting._replace(x=x, y=y, sd_place=(sd_x, sd_y), pixel_size=pixel)
@@ -114,7 +122,9 @@ def placed_by(
     return [[next(placed) for _ in one] for one in each]
 
 
-def _shared_errors(by: Cameras, places: Array, pixel: Array, disc: Stone) -> Array:
+def _shared_errors(
+    by: Cameras, places: Array, pixel: Array, disc: Stone, grey: NDArray[np.bool_]
+) -> Array:
     """Give the standard errors that no filter averages out, (n, 2), m: by camera and slant.
 
     Less granite is left around a cap that is larger than usual, and pixels mix it with what lies
@@ -128,6 +138,7 @@ def _shared_errors(by: Cameras, places: Array, pixel: Array, disc: Stone) -> Arr
     tilt = np.hypot(*slant.T)
     larger = max(disc.cap_radius - STONE.cap_radius, 0.0) * HIDES / np.maximum(tilt, HIDES)
     height = np.hypot(np.interp(tilt, *CAP_END_SD), larger)
+    height = np.hypot(height, grey * MIXED_SD)
     aslant = height[:, None] * slant if disc.cap_height else 0 * slant
     astray = np.where(given > 0, GIVEN_ASTRAY, ASTRAY * np.hypot(*places.T))
     off = np.hypot(aslant, (pixel * astray * rms)[:, None])

@@ -7,7 +7,13 @@ import pytest
 
 from data.sheet import STONE, Stone
 from tests.vision.association.test_follow import sighting
-from vision.detection.placing import CAP_END_SD, GIVEN_ASTRAY, USUAL_RMS_PX, placed_by
+from vision.detection.placing import (
+    CAP_END_SD,
+    GIVEN_ASTRAY,
+    MIXED_SD,
+    USUAL_RMS_PX,
+    placed_by,
+)
 from vision.optics.camera import Camera, CameraError
 from vision.optics.pose import View, camera
 from vision.optics.projection import PARAMETERS
@@ -105,3 +111,13 @@ def test_a_camera_uncertain_on_one_axis_leaves_the_other_certain() -> None:
     added = np.sqrt(doubted**2 - stated(replace(DOWN, error=certain)) ** 2)
     np.testing.assert_allclose(added[:, 1], 0, atol=1e-5)
     assert (added[:, 0] > 0.005).all()
+
+
+def test_caps_without_hue_lie_less_surely_along_a_slanting_view() -> None:
+    pixels = DOWN.project(np.array(PLACES), STONE.cap_height).tolist()
+    black = np.array([60.0, 129.0, 127.0])
+    seen = [sighting((9.0, 9.0))._replace(pixel=(u, v), colour=black) for u, v in pixels]
+    sd = np.array([s.sd_place for s in placed_by([DOWN], [seen], STONE)[0]])
+    more = np.sqrt(np.maximum(sd**2 - stated(DOWN) ** 2, 0.0))
+    np.testing.assert_allclose(more, MIXED_SD * np.abs(PLACES) / HEIGHT, atol=1e-9)
+    assert 0.002 < MIXED_SD < 0.005

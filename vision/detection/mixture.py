@@ -1,0 +1,185 @@
+"""Where a black or grey cap ends: by a model of what its pixels mix (partial area effect).
+
+Ice is as grey as granite, but lighter by more than granite is lighter than such a cap. On the far
+side of a slanting view little granite is seen, or none, and pixels mix all three: half-way from cap
+to granite then lies up to half a pixel inside the cap, and what falls most may be the edge of the
+granite. (The hue of ice is that of granite, so that caps with a hue do not suffer.) Light is mixed
+before it is coded, which draws the edges of dark caps inwards by some tenths of a pixel more.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
+from scipy.special import ndtr
+
+from data.sheet import STONE, Stone
+from vision.detection.rays import Rays
+
+Array = NDArray[np.float64]
+Bytes = NDArray[np.uint8]
+Flags = NDArray[np.bool_]
+
+GAMMA = 1.6
+"""What is mixed is as this power of codes: between light, which a lens blurs (2.2), and the codes
+themselves, which a computer blurs that makes a picture smaller (1)."""
+
+SLANT = 0.2
+"""Slant along a ray from which on the ice beyond is looked at: nearer to the vertical the granite
+is several pixels wide."""
+
+SLIM = (0.2, 0.35, 0.5, 0.67, 0.8, 0.9), (0.030, 0.021, 0.015, 0.008, 0.003, 0.0)
+FULL = (0.2, 0.35, 0.5, 0.67, 0.8, 1.0, 1.3), (0.032, 0.027, 0.023, 0.020, 0.018, 0.015, 0.012)
+"""Slants along a ray, and how much granite is seen there beyond a usual cap, m as on the ice: of
+stones that are drawn with slim shoulders, and of real ones (a silhouette in a television picture).
+What others draw lies between."""
+
+FULLNESS = np.linspace(0.0, 1.0, 5)
+USUAL_FULLNESS = 0.75, 0.35
+"""Shares of the way from slim to full shoulders that are tried, and what is known beforehand: of
+real stones and of those of three makers who draw them."""
+
+SAMPLES = 10.0
+"""As how many samples those of a place count: neighbours err alike."""
+
+BLUR = 0.75
+"""Standard deviation of what blurs an edge, px: the area of a pixel, a lens, a codec."""
+
+ASIDE = 7
+"""How far from where it is looked for the edge may be, samples of a ray."""
+
+WITHIN, BEYOND = 0.025, 2.0
+"""From how far within the edge a ray is looked at, m, and how many pixels beyond the granite it is
+the ice alone."""
+
+INNER = 0.5, 0.75
+"""Where a ray shows the light of the cap on its side, in radii of the cap."""
+
+MISFIT = 0.12
+"""Root mean square of what is left, as a share of the largest step, beyond which a ray shows
+something else: another stone, a line, somebody's shadow."""
+
+
+def light_of(bgr: Bytes) -> Array:
+    """Light of colours, shape (..., 3), for which codes of all channels stand, 0 to 1."""
+    return np.asarray(_LIGHT[bgr].mean(-1))
+
+
+_LIGHT = (np.arange(256) / 255) ** GAMMA
+
+
+def _coded(light: Array) -> Array:
+    return np.asarray(np.maximum(light, 0.0) ** (1 / GAMMA))
+
+
+def by_light(
+    rays: Rays,
+    over: Rays,
+    behind: Array,
+    of_cap: Flags,
+    of_ring: tuple[slice, Flags],
+    disc: Stone,
+    radius: float,
+    pixel: Array,
+) -> Array:
+    """Say how much of a cap without hue is on rays about n places.
+
+    Parameters
+    ----------
+    rays, over : Rays
+        Such as fall off with the granite, and such as stay at the height of the cap
+        (`vision.detection.patch.over_caps`).
+    behind : ndarray, shape (n, rays)
+        Slant of the view along each ray, above 0 on the far side.
+    of_cap : ndarray of bool, shape (n, rays, well within the cap)
+        Samples that show the cap.
+    of_ring : slice, ndarray of bool, shape (n, rays, well within the granite)
+        Where those are that may be granite, and which of them are.
+    disc : Stone
+        Size of the stones.
+    radius : float
+        Where caps are seen to end, m.
+    pixel : ndarray, shape (n,)
+        How long a pixel is there, m.
+
+    Returns
+    -------
+    ndarray, shape (n, rays, radii)
+        0.5 on the cap, −0.5 on its granite, and on rays that look over the cap on whatever is
+        beyond its edge.
+    """
+    light = light_of(rays.bgr)
+    at_ring, of_ring_ = of_ring
+    cap, granite = (
+        (part * use).sum((1, 2)) / np.maximum(use.sum((1, 2)), 1)
+        for part, use in ((light[..., : of_cap.shape[-1]], of_cap), (light[..., at_ring], of_ring_))
+    )
+    step = np.where(granite - cap > 1e-3, granite - cap, 1e-3)
+    signal = np.asarray(0.5 - (light - cap[:, None, None]) / step[:, None, None])
+    place, ray = np.nonzero(behind > SLANT)
+    slant = behind[place, ray]
+    along = pixel[place] * (1 + slant**2) ** 0.25  # `pixel` is the mean of its two sides
+    narrower = (disc.radius - disc.cap_radius) / (STONE.radius - STONE.cap_radius)
+    strips = [narrower * np.interp(slant, *shape) for shape in (SLIM, FULL)]
+    at, told = _ends(
+        light_of(over.bgr[place, ray]), over.inside[place, ray], rays.radius, granite[place],
+        (strips[0], strips[1]), along, radius, place,
+    )  # fmt: skip
+    past = (rays.radius - at[told, None]) / (BLUR * along[told, None])
+    signal[place[told], ray[told]] = 0.5 - ndtr(past)
+    return signal
+
+
+def _ends(
+    light: Array, inside: Flags, radii: Array, granite: Array, strips: tuple[Array, Array],
+    along: Array, radius: float, place: NDArray[np.intp],
+) -> tuple[Array, Flags]:  # fmt: skip
+    """Find where the cap ends on each of m rays, m, and whether it does: by least squares.
+
+    Parameters
+    ----------
+    light, inside : ndarray, shape (m, radii)
+    radii : ndarray, shape (radii,)
+        m.
+    granite, along : ndarray, shape (m,)
+        Light of the granite, and how long a pixel is, m.
+    strips : tuple of ndarray, shape (m,)
+        How much of the granite is seen on slim and on full stones, m.
+    radius : float
+        Where the cap is expected to end, m.
+    place : ndarray of int, shape (m,)
+        Which rays are of one stone, ascending.
+    """
+    step, each = float(radii[1] - radii[0]), np.arange(len(light))
+    end = np.searchsorted(radii, radius + strips[1] + BEYOND * along).clip(max=len(radii) - 1)
+    beyond = light[each, end]
+    low, high = np.searchsorted(radii, np.array(INNER) * radius)
+    cap = np.median(light[:, low:high], axis=1)
+    steps = np.maximum(np.abs(_coded(np.stack([beyond, granite])) - _coded(cap)).max(0), 1e-3)
+    used = inside & (radii > radius - WITHIN) & (radii < (radius + strips[1] + along)[:, None])
+    count = np.maximum(used.sum(-1), 1)
+    seen = _coded(light)
+    past = radii[0] - radius + step * np.arange(-ASIDE, len(radii) + ASIDE)
+    c, g, b = (part[:, None] for part in (cap, granite, beyond))
+    blur = BLUR * along[:, None]
+    at, misfit = [], []
+    for full in FULLNESS:
+        strip = (strips[0] + full * (strips[1] - strips[0]))[:, None]
+        mixed = _coded(c + (g - c) * ndtr(past / blur) + (b - g) * ndtr((past - strip) / blur))
+        moved = sliding_window_view(mixed, len(radii), axis=1)[:, ::-1]  # by -ASIDE to ASIDE
+        left = (((moved - seen[:, None]) ** 2) * used[:, None]).sum(-1) / count[:, None]
+        best = left.argmin(1).clip(1, 2 * ASIDE - 1)
+        before, least, after = (left[each, best + k] for k in (-1, 0, 1))
+        curve = np.maximum(before - 2 * least + after, 1e-12)
+        vertex = np.clip(0.5 * (before - after) / curve, -1.0, 1.0)
+        at.append(radius + step * (best - ASIDE + vertex))
+        misfit.append(least / steps**2)
+    _, row = np.unique(place, return_inverse=True)
+    square = np.stack([np.bincount(row, one) / np.bincount(row) for one in misfit])
+    odds = SAMPLES * (square / np.maximum(square.min(0), 1e-6) - 1)
+    odds += (((FULLNESS - USUAL_FULLNESS[0]) / USUAL_FULLNESS[1]) ** 2)[:, None]
+    weight = np.exp(-0.5 * (odds - odds.min(0)))
+    weight = (weight / weight.sum(0))[:, row]
+    told = (weight * np.stack(misfit)).sum(0) < MISFIT**2
+    return (weight * np.stack(at)).sum(0), np.asarray(told & inside[each, end])
