@@ -9,6 +9,7 @@ from itertools import pairwise
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import binary_opening
 
 from data.sheet import HOUSE
 from vision.film.picture import Picture, lightness_at
@@ -125,9 +126,9 @@ def _things(grey: Halves) -> NDArray[np.bool_]:
         there = ring == _RING
         seen = grey[there][np.isfinite(grey[there])]
         bare[there] = np.median(seen) if len(seen) else np.nan
-    things = _differ(grey, np.asarray(bare, np.float16)).astype(np.uint8)
-    wide = cv2.morphologyEx(things, cv2.MORPH_OPEN, np.ones((2, 2), np.uint8))
-    return np.asarray(wide > 0)
+    # Not OpenCV's opening: by a square of even size it shifts what is left by a cell.
+    things = _differ(grey, np.asarray(bare, np.float16))
+    return np.asarray(binary_opening(things, np.ones((2, 2))))
 
 
 def _places(cells: NDArray[np.bool_]) -> int:

@@ -98,9 +98,22 @@ def test_what_is_shown_again_are_things_not_ice_that_was_covered_for_long() -> N
             grey[row : row + 5, column : column + 5] = 60.0 if paint[row, column] > 100 else 200.0
         return Glimpse(0.0, Kept(grey))
 
-    long_before, people = [seen(), seen(C)], [seen(A, B)] * 5
+    long_before, people = [seen(), seen(C)], [seen(A, B, (20, 28))] * 5
     assert not shows_again(seen(), [*long_before, *people], long_before)
     assert shows_again(seen(C, D), [*long_before, *people], [seen(C, D)])
+
+
+def test_things_are_known_where_they_are() -> None:
+    """An opening that shifts loses three of the four cells of each."""
+    small = [(5, 8), (30, 12)]
+
+    def seen(*things: tuple[int, int]) -> Glimpse:
+        grey = np.full((CELLS, CELLS), 200.0)
+        for row, column in things:
+            grey[row : row + 2, column : column + 2] = 60.0
+        return Glimpse(0.0, Kept(grey))
+
+    assert shows_again(seen(*small), [seen(), seen(), seen()], [seen(*small)])
 
 
 def test_the_nearer_is_the_one_that_differs_less() -> None:
