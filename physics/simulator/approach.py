@@ -26,9 +26,16 @@ SHORTEST = 1e-9
 
 
 def first_contact(
-    a: Path, b: Path, start: float, places: tuple[Point, Point], reach: float
+    a: Path,
+    b: Path,
+    start: float,
+    places: tuple[Point, Point],
+    reach: float,
+    until: float = math.inf,
 ) -> float:
-    """First time after `start` at which two paths are within `reach`, inf where never.
+    """First time after `start` at which two paths are within `reach`, inf where not by `until`.
+
+    A time before `until` is the same, to the last bit, whenever the search is to end.
 
     Parameters
     ----------
@@ -40,13 +47,15 @@ def first_contact(
         Where they are then.
     reach : float
         Distance of their centres, m.
+    until : float, optional
+        Time at which to end, s: on hardly any friction stones glide for an hour, in spirals.
     """
     end = max(a.stop, b.stop)
     if end <= start:
         return math.inf
     later = [(end, a.point(end), b.point(end))]
     t0, a0, b0 = start, *places
-    while later:
+    while later and t0 < until:
         t1, a1, b1 = later[-1]
         step = t1 - t0
         if _part(a0, a1, b0, b1):

@@ -43,6 +43,10 @@ class Cell(NamedTuple):
     node: float
 
 
+SPEED, ALONG, ASIDE, TURN, STRAIGHT, LOSS = range(6)
+"""Columns of `Curve.coefficients`, in the order of `Cell`."""
+
+
 def cubic(c: Cubic, s: float) -> float:
     """Value of a cubic."""
     return c[0] + s * (c[1] + s * (c[2] + s * c[3]))
@@ -104,6 +108,17 @@ class Curve:
         """Return the cell that holds `tau` and the time since its first node."""
         cell = self.cell_at(tau)
         return cell, tau - cell.node
+
+    def ways(self, tau: Array, *, spins: bool) -> tuple[Array, Array]:
+        """Distances to rest along the last direction and aside of it, m, at times >= 0 before."""
+        k = np.searchsorted(self.tau[1:-1], tau, side="right")
+        s = tau - self.tau[k]
+
+        def way(column: int) -> Array:
+            c = self.coefficients[k, column].T
+            return np.asarray(c[0] + s * (c[1] + s * (c[2] + s * c[3])))
+
+        return (way(ALONG), way(ASIDE)) if spins else (way(STRAIGHT), np.zeros(len(tau)))
 
     def tau_at_speed(self, speed: float) -> float:
         """Time until rest of a stone with that speed, s."""

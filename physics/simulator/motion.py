@@ -182,6 +182,21 @@ class Path:
         x, y = x - cos * way - sin * off, y - sin * way + cos * off
         return _new(Point, (x, y, speed, heading - sense * (e0 + s * (e1 + s * (e2 + s * e3)))))
 
+    def places(self, t: Array) -> Array:
+        """Places at times >= start, shape (n, 2), m: those of `point`."""
+        tau = np.maximum(self.stop - t, 0.0)
+        out = np.empty((len(t), 2))
+        out[:] = self.end[:2]
+        for arc, of in ((self._arc, tau > self._tau_spin), (self._straight, tau <= self._tau_spin)):
+            rows = np.flatnonzero(of & (tau > 0))
+            if not len(rows):
+                continue
+            along, aside = self._curve.ways(tau[rows], spins=arc.sense != 0)
+            off = arc.sense * aside
+            out[rows, 0] = arc.x - arc.cos * along - arc.sin * off
+            out[rows, 1] = arc.y - arc.sin * along + arc.cos * off
+        return out
+
     def _turned(self, tau: float) -> float:
         """Angle of the stone while it spins, `tau` before rest."""
         cell, s = self._curve.cell(tau)

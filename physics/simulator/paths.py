@@ -9,14 +9,11 @@ from numpy.typing import NDArray
 
 from physics.curl import Curl
 from physics.ice import IceLaw
-from physics.simulator.curve import curve_for
+from physics.simulator.curve import ALONG, ASIDE, LOSS, SPEED, STRAIGHT, TURN, curve_for
 from physics.simulator.motion import REST_SPEED
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
-
-SPEED, ALONG, ASIDE, TURN, STRAIGHT, LOSS = range(6)
-"""Columns of `physics.simulator.curve.Curve.coefficients`."""
 
 
 class CurveTable:

@@ -182,7 +182,7 @@ class _Run:
                 return min(pair for _, pair, _ in due)
             for _, pair, exact in due:
                 if not exact:
-                    self.events.expect(self._next_contact(*pair), pair, exact=True)
+                    self.events.expect(self._next_contact(*pair, until), pair, exact=True)
 
     def _take_away(self, k: int) -> None:
         """Take a stone that leaves the play off the sheet."""
@@ -197,8 +197,8 @@ class _Run:
         motion = path.at(t)
         return Rest(motion.x, motion.y, motion.theta, t, in_play=k not in self.gone)
 
-    def _next_contact(self, i: int, j: int) -> float:
-        """Time of the next contact of two stones, inf where there is none."""
+    def _next_contact(self, i: int, j: int, until: float) -> float:
+        """Time of the next contact of two stones, inf where there is none by then."""
         a, b = self.paths[i][-1], self.paths[j][-1]
         if a.stop <= self.t and b.stop <= self.t:
             return math.inf
@@ -211,7 +211,7 @@ class _Run:
             if _closing(a.at(self.t), b.at(self.t)) > SLOW:
                 return self.t
             reach = min(reach, distance) - PRESSED
-        return first_contact(a, b, self.t, (pa, pb), reach)
+        return first_contact(a, b, self.t, (pa, pb), reach, until)
 
     def _hit(self, i: int, j: int) -> None:
         """Resolve the contact of stones `i` and `j` at the present time."""

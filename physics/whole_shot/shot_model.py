@@ -208,7 +208,5 @@ def places(paths: Sequence[Path], times: Floats) -> Floats:
     edges = np.searchsorted(times, [path.start for path in paths[1:]])
     out = np.empty((len(times), 2))
     for path, rows in zip(paths, np.split(np.arange(len(times)), edges), strict=True):
-        out[rows] = path.end[:2]
-        for k in rows[times[rows] < path.stop].tolist():
-            out[k] = path.point(max(float(times[k]), path.start))[:2]
+        out[rows] = path.places(np.maximum(times[rows], path.start))
     return out

@@ -81,3 +81,27 @@ def test_the_faster_stone_in_front_is_left_alone_at_once() -> None:
     asked = 0
     assert first_contact(a, b, 0.0, here, REACH) == math.inf
     assert asked == 2
+
+
+def test_a_search_ends_with_its_time() -> None:
+    """On next to no friction stones go on for an hour, which a fit of two seconds need not know."""
+    asked = 0
+
+    class Counted(Path):
+        def point(self, t: float):  # type: ignore[no-untyped-def]
+            nonlocal asked
+            asked += 1
+            return super().point(t)
+
+    laws = Constant(1e-5), FCV1Curl()
+    goes = Counted(0.0, Motion(0, 1.8, 0, -0.1, -0.25, 1.0), *laws)
+    lies = Counted(0.0, Motion(0, 0, 0, 0, 0, 0), *laws)
+    here = goes.point(0.0), lies.point(0.0)
+    asked = 0
+    assert first_contact(goes, lies, 0.0, here, REACH, until=2.0) == math.inf
+    assert asked < 60
+    meeting = Path(0.0, Motion(0, 1.8, 0, 0, -0.25, 0.0), *laws)
+    here = meeting.point(0.0), lies.point(0.0)
+    met = first_contact(meeting, lies, 0.0, here, REACH)
+    assert first_contact(meeting, lies, 0.0, here, REACH, until=met + 0.1) == met
+    assert first_contact(meeting, lies, 0.0, here, REACH, until=met - 0.1) > met - 0.1

@@ -181,3 +181,14 @@ def test_numbers_of_numpy_are_numbers() -> None:
     same = Motion(*map(np.float64, start))
     paths = [Path(0.0, motion, FCV1(), FCV1Curl()) for motion in (start, same)]
     assert paths[0].at(2.0) == paths[1].at(2.0)
+
+
+@settings(deadline=None)
+@given(speeds, spins, st.sampled_from(LAWS), st.sampled_from(CURLS))
+def test_places_at_many_times_are_those_at_each(
+    v: float, omega: float, ice: IceLaw, curl: FCV1Curl | NoCurl
+) -> None:
+    path = Path(2.0, Motion(1.0, -3.0, 0.0, 0.6 * v, 0.8 * v, omega), ice, curl)
+    times = np.linspace(2.0, path.stop + 1.0, 40)
+    each = [path.point(t)[:2] for t in times.tolist()]
+    np.testing.assert_array_equal(path.places(times), each)
