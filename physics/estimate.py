@@ -283,8 +283,13 @@ def _astray(off: Sequence[Misfit]) -> Iterator[str]:
             so = "hardly counted there" if one.left_out else ALONE if alone else TOO_FEW
             yield (
                 f"whole shot: from {one.t0:.2f} to {one.t1:.2f} s the track of {one.stone} is"
-                f" {one.size:.1f} times its errors off a path on this ice; {so}"
+                f" {_times(one.size)} times its errors off a path on this ice; {so}"
             )
+
+
+def _times(size: float) -> str:
+    """Write how many times: to a tenth below ten, else to two digits."""
+    return f"{size:.1f}" if size < 9.95 else f"{float(f'{size:.2g}'):.0f}"
 
 
 def _beside(local: Local, radius: float) -> list[str]:

@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 ICE = (0.004, 0.03)
 """Frictions that stones have on curling ice, from the keenest to wet or frosted one."""
 
+SLIPPERIEST = 2e-4
+"""Friction below that of anything that glides: a twentieth of that of the keenest ice."""
+
 
 @dataclass(frozen=True)
 class Run:
@@ -92,8 +95,8 @@ def analyse(
     drawn = sample_posterior(estimates, settings.samples, np.random.default_rng(0))
     if settings.samples and drawn is None:
         notes = (*notes, "no samples: the shot tells neither restitution nor friction")
-    if measured.house is not None:
-        notes = (*notes, *_pace(estimates.friction))
+    pace = _pace if measured.house is not None else _pace_anywhere
+    notes = (*notes, *pace(estimates.friction))
     notes = (*notes, *_throws(later_throws(tracks)))
     results = Results(
         input=_input(measured),
@@ -168,6 +171,18 @@ def _pace(friction: Estimate) -> tuple[str, ...]:
     return (
         f"friction: {value:.2g} ± {stderr:.1g} is not that of curling ice; a clip in {pace} motion"
         f" (about {times:.2g} times) or tracks in another length unit would look so: then speeds"
+        " are not real ones, e is",
+    )
+
+
+def _pace_anywhere(friction: Estimate) -> tuple[str, ...]:
+    """Say so where discs slow as on no surface at all, of whatever they are made."""
+    value, stderr = friction.value, friction.stderr
+    if value is None or stderr is None or value <= 0 or value + 2 * stderr > SLIPPERIEST:
+        return ()
+    return (
+        f"friction: {value:.2g} ± {stderr:.1g} is below that of any surface; a wrong number of"
+        " frames a second (--fps), slow motion or another length unit would look so: then speeds"
         " are not real ones, e is",
     )
 

@@ -20,6 +20,9 @@ from physics.simulator.simulation import FARTHEST, FASTEST, Shot, StoneStart
 RADIUS = 0.145
 """Radius of a stone where the file gives none, m: that of published simulators with `FCV1`."""
 
+LARGEST = 1.0
+"""Radius of a disc that is none, m: 14.5 is one in centimetres."""
+
 LARGEST_OVERLAP = 0.2
 """How far two stones may overlap as placed, in radii: more is a mistake, less is measuring."""
 
@@ -65,7 +68,8 @@ class _Table:
             self.faults.append(f"{self.where}: {key} = {value!s:.12} is not finite")
         elif not low <= value <= high or (above and value == low):
             allowed = f"within {low:g}..{high:g}" if math.isfinite(high) else f"at least {low:g}"
-            allowed = f"above {low:g}" if above and not math.isfinite(high) else allowed
+            if above:
+                allowed = f"above {low:g}" + (f", {high:g} at most" if math.isfinite(high) else "")
             self.faults.append(f"{self.where}: {key} = {value:g} must be {allowed}")
         else:
             return float(value)
@@ -146,7 +150,7 @@ def _shot(content: Mapping[str, Any], faults: list[str]) -> Shot:
     physics = _Table("[physics]", laws, faults)
     known = {item.name for family, _ in _FAMILIES.values() for item in _parameters(family)}
     physics.only((*_FAMILIES, *sorted(known), "radius", "sheet"))
-    radius = physics.number("radius", RADIUS, 0.0, above=True)
+    radius = physics.number("radius", RADIUS, 0.0, LARGEST, above=True)
     bounds = _SHEETS[physics.choice("sheet", "none", tuple(_SHEETS))]
     impact, ice, curl = [_model(physics, key) for key in _FAMILIES]
     stones = tuple(_stone(k, item, faults) for k, item in enumerate(tables, start=1))

@@ -9,7 +9,7 @@ import pytest
 
 from data.results import Estimate, Friction
 from data.tracks import check_sightings
-from physics.estimate import Estimates, _of_two, estimate
+from physics.estimate import Estimates, _of_two, _times, estimate
 from physics.kalman import smooth
 from physics.local_fit.contacts import find_contacts
 from physics.local_fit.local import estimate_locally
@@ -430,3 +430,10 @@ def test_however_long_stones_rest_the_estimates_are_the_same(
         ):
             assert told.value == pytest.approx(known.value, abs=0.6 * (known.stderr or 0))
             assert told.stderr == pytest.approx(known.stderr, rel=0.25)
+
+
+@pytest.mark.parametrize(
+    ("size", "told"), [(2.16, "2.2"), (9.96, "10"), (14.4, "14"), (46705.4, "47000")]
+)
+def test_a_misfit_is_written_as_exactly_as_it_is_known(size: float, told: str) -> None:
+    assert _times(size) == told

@@ -7,9 +7,10 @@ import pandas as pd
 import pytest
 
 from data.errors import SceneError
+from data.results import Estimate
 from data.sheet import HOUSE
 from data.tracks import SIGHTING_COLUMNS, check_sightings
-from work.analyse import analyse
+from work.analyse import _pace_anywhere, analyse
 from work.measure import Measured
 from work.settings import Settings
 
@@ -44,6 +45,19 @@ def test_a_clip_in_slow_motion_is_told_by_its_friction(slower: float, said: str)
     seen = Measured((Path("glide.csv"),), glide, 25.0, 50, (), house=HOUSE)
     warnings = [w for w in analyse(seen).results.warnings if "motion" in w]
     assert [said in w for w in warnings] == [True] * bool(said)
+
+
+@pytest.mark.parametrize(
+    ("friction", "said"),
+    [
+        (Estimate(5e-5, 3e-6), True),
+        (Estimate(1.5e-4, 1e-4), False),
+        (Estimate(0.001, 1e-5), False),
+        (Estimate(), False),
+    ],
+)
+def test_a_friction_below_that_of_any_surface_is_told(friction: Estimate, said: bool) -> None:
+    assert any("--fps" in text for text in _pace_anywhere(friction)) == said
 
 
 def test_stones_of_which_it_is_not_said_have_no_say_in_what_places_share() -> None:

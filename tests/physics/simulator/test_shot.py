@@ -104,6 +104,7 @@ def test_laws(tmp_path: Path, laws: str, field: str, value: object) -> None:
         ("[physics]\nstone_friction = -1\n" + ONE_STONE, "stone_friction = -1 must be at least 0"),
         ("[physics]\ninertia = 0\n" + ONE_STONE, "inertia = 0 must be above 0"),
         ("[physics]\nradius = -0.1\n" + ONE_STONE, "radius = -0.1 must be above 0"),
+        ("[physics]\nradius = 14.5\n" + ONE_STONE, "radius = 14.5 must be above 0, 1 at most"),
         ("[physics]\nmodel = 'friction'\n" + ONE_STONE, "did you mean frictional?"),
         ("[physics]\nice = 'snow'\n" + ONE_STONE, "there are constant, fcv1, fit, penner"),
         ("[physics]\nice = 3\n" + ONE_STONE, "no ice 3"),
