@@ -32,6 +32,9 @@ GAP, SIDE = 2.5, 6
 """Usual times between sightings that make a gap, and how many sightings either side of it say how
 stones went on in it."""
 
+ONCE = 1.0
+"""Time out of sight, s, in which a stone hits another but once, unless they lie in a rack."""
+
 OUT_OF_SIGHT = 0.5
 """Time out of sight, s, after which the sightings at its ends do not tell the way between them."""
 
@@ -155,7 +158,7 @@ def _approaches(
     t = t[(t >= start) & (t <= end)]
     if len(t) < 3:
         return []
-    t, apart = _through_gaps(t, _at(b, t) - _at(a, t))
+    t, apart = _through_gaps(t, _at(b, t) - _at(a, t), _hidden(a, b, t))
     distance = np.hypot(apart[:, 0], apart[:, 1])
     # Between two sightings they may have come closer by what they move in that time.
     noise = 3 * np.sqrt(np.mean(a.sd**2) + np.mean(b.sd**2))
@@ -246,30 +249,52 @@ def _at(path: Trace, t: Floats) -> Floats:
     return np.column_stack([np.interp(t, path.t, path.xy[:, axis]) for axis in range(2)])
 
 
-def _through_gaps(t: Floats, apart: Floats) -> tuple[Floats, Floats]:
-    """Add to places relative to each other where ways before and after a gap in both cross.
+def _hidden(a: Trace, b: Trace, t: Floats) -> NDArray[np.bool_]:
+    """Whether it is not seen how two stones move in the intervals between some times.
+
+    Both are out of sight, or one is for so short a time that it is hit but once.
+    """
+    gaps = []
+    for path in (a, b):
+        k = np.clip(np.searchsorted(path.t, 0.5 * (t[1:] + t[:-1])), 1, len(path.t) - 1)
+        gaps.append((path.t[k] - path.t[k - 1], GAP * path.step))
+    (one, usual), (other, as_usual) = gaps
+    out, also = one > usual, other > as_usual
+    return (out & also) | (out & (one < ONCE)) | (also & (other < ONCE))
+
+
+def _through_gaps(t: Floats, apart: Floats, hidden: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+    """Put where ways before and after a gap cross for what lines over the gap have in it.
 
     A stone that hits another out of sight may be on the same side of it, and as far from it, at
     both ends of the gap.
+
+    Parameters
+    ----------
+    t, apart : (n,), (n, 2) arrays
+        Times, s, and places of one stone relative to the other, m.
+    hidden : (n - 1,) array
+        Whether the intervals between them lie in a gap.
     """
-    gaps = np.diff(t)
-    times, crossings, ranks = [], [], []
-    for k in np.flatnonzero(gaps > GAP * np.median(gaps)).tolist():
-        if not 0 < k < len(t) - 2:
+    keep, times, crossings = np.ones(len(t), bool), [], []
+    ends = np.flatnonzero(np.diff(np.concatenate([[False], hidden, [False]])))
+    for k, end in ends.reshape(-1, 2).tolist():
+        if not 0 < k < end < len(t) - 1:
             continue
-        first, last = max(k - SIDE, 0), min(k + 1 + SIDE, len(t) - 1)
+        first, last = max(k - SIDE, 0), min(end + SIDE, len(t) - 1)
         before = (apart[k] - apart[first]) / (t[k] - t[first])
-        after = (apart[last] - apart[k + 1]) / (t[last] - t[k + 1])
+        after = (apart[last] - apart[end]) / (t[last] - t[end])
         turn = after - before
-        since = (apart[k] - apart[k + 1] + gaps[k] * after) @ turn / max(turn @ turn, 1e-12)
-        time = t[k] + since
-        if t[k] < time < t[k + 1]:
+        since = (apart[k] - apart[end] + (t[end] - t[k]) * after) @ turn
+        time = t[k] + since / max(turn @ turn, 1e-12)
+        if t[k] < time < t[end]:
             times.append(time)
-            crossings.append(apart[k] + since * before)
-            ranks.append(k + 1)
-    if not ranks:
+            crossings.append(apart[k] + (time - t[k]) * before)
+            keep[k + 1 : end] = False
+    if not times:
         return t, apart
-    return np.insert(t, ranks, times), np.insert(apart, ranks, crossings, axis=0)
+    ranks = np.searchsorted(t[keep], times)
+    return np.insert(t[keep], ranks, times), np.insert(apart[keep], ranks, crossings, axis=0)
 
 
 def _over_gaps(a: Trace, b: Trace, t: Floats, step: Floats) -> Floats:

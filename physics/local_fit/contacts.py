@@ -69,10 +69,10 @@ def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
     Every approach of two stones to about 2R is a candidate. All are fitted at once as hits,
     and the one whose impulse is least significant is struck off until all that are left
     changed the motion of both their stones, or passed on an impulse that can have come no other
-    way. Where several show no hit (of those between two
-    sightings none is seen by itself), one that pushes nothing goes first, of these one
-    of two stones that others set off in the same gap, and then the pair that lies farthest from
-    touching. A pair hits again only after something else came between.
+    way. Where several show no hit (of those between two sightings none is seen by itself), one that
+    stays out of reach goes first, then one that pushes nothing, of these one of two stones that
+    others set off in the same gap, and then the pair that lies farthest from touching. A pair hits
+    again only after something else came between.
 
     Parameters
     ----------
@@ -201,6 +201,8 @@ class _Evidence(NamedTuple):
     ----------
     hit : float
         How many standard errors its impulse is away from none; 0 if it can be no hit as it is.
+    met : bool
+        Whether they came within reach of each other at all.
     pushed : bool
         Whether anything drove its stones apart.
     seen : int
@@ -211,6 +213,7 @@ class _Evidence(NamedTuple):
     """
 
     hit: float
+    met: bool
     pushed: bool
     seen: int
     near: float
@@ -236,7 +239,8 @@ def _evidence(fit: ShotFit, k: int, known: Mapping[str, Trace], radius: float) -
     state = fit.contact_state(k)
     away = abs(float(np.hypot(*(state.places[1] - state.places[0]))) / (2 * radius) - 1)
     pushed = bool(push[0] >= 3 * error[0])
-    possible = pushed and away <= REACH - 1 and push[0] >= 0.2 * radius
+    met = away <= REACH - 1
+    possible = met and pushed and push[0] >= 0.2 * radius
     possible &= bool(push[3] + 2 * error[3] >= push[0] / MOST_PUSH)
     possible &= bool(np.min(push[1:3] + 2 * error[1:3]) >= SHARE * np.max(push[1:3]))
     possible &= bool(abs(push[4]) - 2 * error[4] <= MOST_RUB * push[0])
@@ -245,7 +249,7 @@ def _evidence(fit: ShotFit, k: int, known: Mapping[str, Trace], radius: float) -
     seen = sum(
         len(fit.pieces[fit.sides[k, stone][0]].samples) > 0 for stone in fit.meetings[k].stones
     )
-    return _Evidence(both if possible else 0.0, pushed, seen, -away)
+    return _Evidence(both if possible else 0.0, met, pushed, seen, -away)
 
 
 def _once(evidence: Sequence[_Evidence], fit: ShotFit) -> list[_Evidence]:

@@ -71,25 +71,28 @@ def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None
         criteria.append(least - against)
         if against > 0:
             best, held, least = less, held | {name: fewer}, least - against
-    if "slope" in best.names and "v_c" not in (fixed or {}):
+    falls = "slope" in best.names and "v_c" not in (fixed or {})
+    if falls:
         # where friction falls there is a knee to be found
         free = {name: value for name, value in held.items() if name != "v_c"}
         bent = _refitted(best, shot, free)
         if bent.settled:
             tried[criteria.index(least)] = bent
             best, held = bent, free
-        even = {"slope": 0.0, "v_c": V_C, **held}
-        rooted = _refitted(best, replace(shot, ice=penner), even)
-        if rooted.settled:
-            tried.append(rooted)
-            criteria.append(least + _beside(rooted, best))
     if shot.hits:
         stuck = _refitted(best, shot, held | STICKING)
         if stuck.settled:
             tried.append(stuck)
             criteria.append(least + _beside(stuck, best))
             if criteria[-1] < least:
-                best = stuck
+                best, held, least = stuck, held | STICKING, criteria[-1]
+    if falls:
+        # Beside stones that do not slide as these do no other ice would fit either.
+        even = {"slope": 0.0, "v_c": V_C, **held}
+        rooted = _refitted(best, replace(shot, ice=penner), even)
+        if rooted.settled:
+            tried.append(rooted)
+            criteria.append(least + _beside(rooted, best))
     return _with_others(best, tried, np.array(criteria))
 
 

@@ -92,7 +92,7 @@ def test_a_pair_hits_again_only_after_something_else(
     if other:
         meetings.insert(1, Meeting(t + 0.1, other, 1 / 30))
     fit = fit_shot(known, cut_all(known, meetings, RADIUS)[0], meetings, RADIUS)
-    evidence = [_Evidence(9.0 - k, True, 1, 0.0) for k in range(len(meetings))]
+    evidence = [_Evidence(9.0 - k, True, True, 1, 0.0) for k in range(len(meetings))]
     found = [told.hit for told in _once(evidence, fit)]
     assert found == ([9.0, 0.0] if not early and not other else [e.hit for e in evidence])
 
@@ -245,6 +245,30 @@ def test_a_hit_while_both_stones_are_out_of_sight_is_where_their_ways_cross(
     since = seen["t"] - motion.hits[0].t + share * gap
     (hit,) = find_contacts(seen[(since < 0) | (since > gap)].reset_index(drop=True), RADIUS)
     assert abs(hit.t - motion.hits[0].t) < max(0.01, 3 * hit.stderr_t)
+
+
+@pytest.mark.parametrize("gap", [0.2, 0.5])
+@pytest.mark.parametrize(("speed", "beside", "share"), [(0.6, 0.05, 0.3), (2.8, 0.05, 0.6)])
+def test_a_hit_while_the_stone_that_comes_is_out_of_sight_is_where_its_ways_cross(
+    speed: float, beside: float, share: float, gap: float
+) -> None:
+    motion = hit_motion(speed, beside, before=1.5, after=1.5)
+    seen = watch(motion, np.random.default_rng(2), fps=25.0, sd=0.012)
+    since = seen["t"] - motion.hits[0].t + share * gap
+    hidden = (seen["stone"] == "A") & since.between(0, gap)
+    (hit,) = find_contacts(seen[~hidden].reset_index(drop=True), RADIUS)
+    assert abs(hit.t - motion.hits[0].t) < max(0.01, 3 * hit.stderr_t)
+
+
+def test_a_hit_that_goes_on_through_a_touching_stone_out_of_sight_is_both_hits() -> None:
+    """The stone that comes and the last one never come near each other."""
+    beyond = Start(0.08, 2 * RADIUS * 0.97)
+    motion = hit_motion(2.6, 0.08, before=0.9, after=1.4, others=[beyond])
+    assert [(hit.first, hit.second) for hit in motion.hits] == [(0, 1), (1, 2)]
+    seen = watch(motion, np.random.default_rng(7), fps=25.0, sd=0.004)
+    since = seen["t"] - motion.hits[0].t
+    hits = find_contacts(seen[(since < -0.1) | (since > 0.2)].reset_index(drop=True), RADIUS)
+    assert [set(hit.stones) for hit in hits] == [{"A", "B"}, {"B", "C"}]
 
 
 def test_a_near_miss_out_of_sight_is_no_hit() -> None:

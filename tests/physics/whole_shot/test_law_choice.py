@@ -183,6 +183,21 @@ def test_ice_of_another_law_is_recognised_and_counts_in_the_errors() -> None:
     assert found.friction.stderr < 0.05 * 0.008
 
 
+def test_ice_of_another_law_counts_where_stones_do_not_slide_on_each_other() -> None:
+    """It was compared with sliding stones alone, with which none fits."""
+    stones = [Start(0.1, -2.8, 0.0, 2.0, 0.0, 1.5), Start(0.0, 0.0), Start(-0.3, 0.7)]
+    motion = simulate(
+        stones, 6.0, ice=Rooted(b=0.008, curl=0.015), impact=Impact(0.83, 0.25),
+        step=5e-4, keep_every=4,
+    )  # fmt: skip
+    seen = watch(motion, np.random.default_rng(5), sd=0.001)
+    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    assert found.whole is not None
+    assert found.whole.laws[0].name == "ice penner, curl fcv1, stones stick"
+    assert found.friction.stderr is not None
+    assert abs(float(found.friction.value or 0) - 0.008) < 2.5 * found.friction.stderr
+
+
 def test_a_fit_that_has_come_to_rest_in_a_wrong_place_begins_anew() -> None:
     """Constant friction lets stones of three hits in a row miss each other by centimetres."""
     ice = Ice(b=0.00676, a=0.00217, v_c=0.0639, curl=0.0082)
