@@ -141,3 +141,8 @@ def test_what_is_known_of_a_power_beforehand_holds_all_laws_of_ice() -> None:
             assert abs(power - other) < (3.0 if speed > 1 else 1.5) * sd
         assert sd < 0.35  # of a stone that goes on by a centimetre it tells how fast it was
     assert power_prior(1.0, 0.0, 0.0)[1] < 1e-3  # what is known to be even stays so
+
+
+def test_ice_that_seems_to_slow_slow_stones_less_still_slows_them() -> None:
+    value, _ = at_speed([0.0, 0.02], 0.1, -0.2, 0.1)
+    assert ((value > 0.0) & (value < 0.1)).all()

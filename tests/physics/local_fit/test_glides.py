@@ -6,6 +6,7 @@ import pytest
 
 from data.sheet import GRAVITY
 from data.tracks import check_sightings
+from physics.local_fit.glides import measure_glides
 from physics.local_fit.local import Local, estimate_locally
 from tests.synthetic.physics import Ice, Start, simulate
 
@@ -151,3 +152,25 @@ def test_glides_of_several_speeds_tell_how_much_of_the_friction_fades(share: flo
     friction = local(pd.concat(tables).assign(sd_x=5e-4, sd_y=5e-4)).friction
     assert friction.law == ("fit" if share else "constant")
     assert friction.value == pytest.approx(0.01, rel=0.02)
+
+
+@pytest.mark.parametrize(("speed", "power"), [(3.0, 0.08), (0.4, 0.34)])
+def test_what_tells_too_little_slows_as_fcv1_has_it_at_its_speed(
+    speed: float, power: float
+) -> None:
+    t = np.arange(0, 0.6, 0.04)
+    y = speed * t - 0.05 * t**2
+    table = pd.DataFrame({"stone": "A", "frame": range(len(t)), "t": t, "x": 0.0, "y": y})
+    fit = local(table.assign(sd_x=0.001, sd_y=0.001)).fit
+    assert fit is not None
+    assert fit.power(0) == pytest.approx(power, abs=0.05)
+
+
+def test_ice_turns_curling_stones_alone() -> None:
+    told = local(slowed(0.25, 10.0))
+    assert told.fit is not None
+    stone, puck = (
+        measure_glides(told.fit, told.known, radius)[2].across for radius in (0.1455, 0.04)
+    )
+    assert 0.015 < stone < 0.04
+    assert puck < 0.015
