@@ -25,8 +25,9 @@ UNIT_NOT_SAID = f"another length unit (--length-unit: {', '.join(LENGTH_UNITS)})
 ANGLE_UNITS = {"rad": 1.0, "deg": np.pi / 180}
 """Radians in one of each."""
 
-TIME_NAMES = {"t", "time", "zeit", "temps", "tiempo", "tempo", "tid", "tijd", "czas"}
-"""What a column of times is called; spreadsheets are written by hand, in any language."""
+TIME_NAMES = {"t", "time", "zeit", "temps", "tiempo", "tempo", "tijd", "czas"}
+"""What a column of times is called; spreadsheets are written by hand, in any language.
+``tid`` (in Scandinavia) is none of them: it is a usual name for the number of a track, too."""
 
 _TIME_UNITS = {"s": 1.0, "sec": 1.0, "ms": 0.001}
 

@@ -75,6 +75,7 @@ def test_rows_without_a_time_need_a_rate(tmp_path: Path) -> None:
         assert clock_column(read, ["x", plain_name(written)], None) == 1
     assert clock_column(read, ["x", "y"], 25.0) is None
     assert clock_column(read, ["x", "frame"], 25.0) == 1
+    assert clock_column(read, ["tid", "frame"], 25.0) == 1, "tid may be a track's number"
     assert clock_column(read, ["x", "time"], None) == 1
 
 
