@@ -9,7 +9,6 @@ from itertools import pairwise
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import binary_opening
 
 from data.sheet import HOUSE
 from vision.film.picture import Picture, lightness_at
@@ -126,9 +125,11 @@ def _things(grey: Halves) -> NDArray[np.bool_]:
         there = ring == _RING
         seen = grey[there][np.isfinite(grey[there])]
         bare[there] = np.median(seen) if len(seen) else np.nan
-    # Not OpenCV's opening: by a square of even size it shifts what is left by a cell.
-    things = _differ(grey, np.asarray(bare, np.float16))
-    return np.asarray(binary_opening(things, np.ones((2, 2))))
+    things, square = _differ(grey, np.asarray(bare, np.float16)), np.ones((2, 2), np.uint8)
+    # Not `cv2.MORPH_OPEN`: by a square of even size it shifts what is left by a cell.
+    left = cv2.erode(things.astype(np.uint8), square, anchor=(0, 0),
+                     borderType=cv2.BORDER_CONSTANT, borderValue=0)  # fmt: skip
+    return np.asarray(cv2.dilate(left, square, anchor=(1, 1)) > 0)
 
 
 def _places(cells: NDArray[np.bool_]) -> int:

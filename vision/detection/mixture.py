@@ -12,7 +12,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
-from scipy.special import ndtr
 
 from data.sheet import STONE, Stone
 from vision.detection.rays import Rays
@@ -67,6 +66,13 @@ def light_of(bgr: Bytes) -> Array:
 
 
 _LIGHT = (np.arange(256) / 255) ** GAMMA
+
+
+def _past(edge: Array) -> Array:
+    """Share of a blurred place that lies beyond an edge, `edge` blurs behind its middle."""
+    from scipy.special import ndtr  # loads for .3 s, for clips with such caps alone
+
+    return np.asarray(ndtr(edge))
 
 
 def _coded(light: Array) -> Array:
@@ -127,7 +133,7 @@ def by_light(
         (strips[0], strips[1]), along, radius, place,
     )  # fmt: skip
     past = (rays.radius - at[told, None]) / (BLUR * along[told, None])
-    signal[place[told], ray[told]] = 0.5 - ndtr(past)
+    signal[place[told], ray[told]] = 0.5 - _past(past)
     return signal
 
 
@@ -166,7 +172,7 @@ def _ends(
     at, misfit = [], []
     for full in FULLNESS:
         strip = (strips[0] + full * (strips[1] - strips[0]))[:, None]
-        mixed = _coded(c + (g - c) * ndtr(past / blur) + (b - g) * ndtr((past - strip) / blur))
+        mixed = _coded(c + (g - c) * _past(past / blur) + (b - g) * _past((past - strip) / blur))
         moved = sliding_window_view(mixed, len(radii), axis=1)[:, ::-1]  # by -ASIDE to ASIDE
         left = (((moved - seen[:, None]) ** 2) * used[:, None]).sum(-1) / count[:, None]
         best = left.argmin(1).clip(1, 2 * ASIDE - 1)
