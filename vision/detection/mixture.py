@@ -68,11 +68,11 @@ def light_of(bgr: Bytes) -> Array:
 _LIGHT = (np.arange(256) / 255) ** GAMMA
 
 
-def _past(edge: Array) -> Array:
-    """Share of a blurred place that lies beyond an edge, `edge` blurs behind its middle."""
+def _past(blurs: Array) -> Array:
+    """Share of a blurred place past an edge, of which its middle is as many blurs past."""
     from scipy.special import ndtr  # loads for .3 s, for clips with such caps alone
 
-    return np.asarray(ndtr(edge))
+    return np.asarray(ndtr(blurs))
 
 
 def _coded(light: Array) -> Array:
