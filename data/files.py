@@ -18,6 +18,7 @@ FILES = (".csv", ".json", ".html", ".mp4", ".png", ".txt", ".trk", ".trz", ".par
 
 
 _FULL = frozenset({errno.ENOSPC, errno.EDQUOT})
+"""Of a disk, or of what a person may write to it."""
 
 
 @contextmanager

@@ -77,9 +77,10 @@ def measure_glides(
     """
     law = free(radius)
     each = list(_long_glides(fit, known, radius))
-    shape = _shape(fit, each, law)
-    pooled = random_effects(*_at_1_m_per_s(fit, each, shape.share, shape.sd))
-    friction = _friction(fit, each, law, shape)
+    slowed = _slowed(fit, each)
+    shape = _shape(fit, each, slowed, law)
+    pooled = random_effects(*slowed.at_1_m_per_s(shape.share, shape.sd))
+    friction = _friction(each, slowed, law, shape)
     spread = pooled.spread if pooled.excess > CLEAR else 0.0
     usual = USUAL if curling_size(radius) else ANY
     mean, sd = float(usual.value or 0.0), float(usual.stderr or 0.0)
@@ -142,17 +143,30 @@ def _long_glides(
         yield _MeasuredGlide(glide, i, speed, slowing, by_fit, bent)
 
 
-def _at_1_m_per_s(
-    fit: ShotFit, each: Sequence[_MeasuredGlide], share: float, sd_share: float
-) -> tuple[Floats, Floats]:
-    """Decelerations at 1 m/s and their covariance, if one share of all of them fades."""
-    rise = more([one.speed for one in each])
-    scale = 1 / (1 + share * rise)
-    values = scale * [one.value for one in each]
+@dataclass(frozen=True)
+class _Slowed:
+    """Decelerations of all glides half-way, m/s², and their covariance.
+
+    ``rise`` is how much more there is, at the speeds there, of the part that fades.
+    """
+
+    values: Floats
+    cov: Floats
+    rise: Floats
+
+    def at_1_m_per_s(self, share: float, sd_share: float) -> tuple[Floats, Floats]:
+        """Decelerations at 1 m/s and their covariance, if one share of all of them fades."""
+        scale = 1 / (1 + share * self.rise)
+        values = scale * self.values
+        unsure = sd_share * values * scale * self.rise
+        return values, np.outer(scale, scale) * self.cov + np.outer(unsure, unsure)
+
+
+def _slowed(fit: ShotFit, each: Sequence[_MeasuredGlide]) -> _Slowed:
+    """Put the decelerations of all glides together."""
     rows = np.array([one.by_fit for one in each]).reshape(len(each), len(fit.theta))
     cov = rows @ fit.cov @ rows.T + np.diag([one.bent**2 for one in each])
-    unsure = sd_share * values * scale * rise
-    return values, np.outer(scale, scale) * cov + np.outer(unsure, unsure)
+    return _Slowed(np.array([one.value for one in each]), cov, more([one.speed for one in each]))
 
 
 def _acceleration(fit: ShotFit, rank: int, t: float, way: Floats) -> tuple[float, Floats]:
@@ -180,7 +194,9 @@ class _Shape:
     factor: float
 
 
-def _shape(fit: ShotFit, each: Sequence[_MeasuredGlide], law: Deceleration) -> _Shape:
+def _shape(
+    fit: ShotFit, each: Sequence[_MeasuredGlide], slowed: _Slowed, law: Deceleration
+) -> _Shape:
     """Tell how a friction falls, from each glide's course and from how glides differ.
 
     The Bayes factor is the ratio of the prior to the posterior density at a share of 0 (Dickey,
@@ -200,7 +216,7 @@ def _shape(fit: ShotFit, each: Sequence[_MeasuredGlide], law: Deceleration) -> _
             alone = usual + (fit.theta[at[6]] - usual) / (fit.cov[at[6], at[6]] * told)
             misfit += (alone - power_at(one.speed, SHARES)) ** 2 / (1 / told + FORM_SD**2)
     if each:
-        steep = [_at_1_m_per_s(fit, each, share, 0.0) for share in SHARES.tolist()]
+        steep = [slowed.at_1_m_per_s(share, 0.0) for share in SHARES.tolist()]
         # Where no share makes them agree, what is left is no evidence for any.
         spread = min(random_effects(*steep[k]).spread for k in range(0, len(steep), 10))
         least = max(LEAST_SPREAD, spread) ** 2
@@ -229,20 +245,20 @@ def _acceleration_error(sd_place: Floats, speed: float, duration: float) -> Floa
 
 
 def _friction(
-    fit: ShotFit, each: Sequence[_MeasuredGlide], law: Deceleration, shape: _Shape
+    each: Sequence[_MeasuredGlide], slowed: _Slowed, law: Deceleration, shape: _Shape
 ) -> Friction:
     """Friction that the glides show: the same at all speeds unless they tell that it falls.
 
     If it does it is that at 1 m/s, with a law of `physics.ice.Fit`'s form with FCV1's v_c. If not,
     what it would be at 1 m/s is in the error.
     """
-    flat = _at_1_m_per_s(fit, each, 0.0, 0.0)
+    flat = slowed.at_1_m_per_s(0.0, 0.0)
     even = random_effects(*flat).mean
     if even.value is None or even.stderr is None:
         return Friction()
     if not law.sd_share:
         return Friction(even.value / GRAVITY, even.stderr / GRAVITY)
-    values, cov = _at_1_m_per_s(fit, each, shape.share, shape.sd)
+    values, cov = slowed.at_1_m_per_s(shape.share, shape.sd)
     pooled = random_effects(values, cov)
     # How far the form leads astray is no error that glides tell of: it has no say in the weights.
     lean = weighted_mean(values * _by_form(each, shape.share), cov, pooled.spread**2)[0]

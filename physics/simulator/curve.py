@@ -52,6 +52,11 @@ def cubic(c: Cubic, s: float) -> float:
     return c[0] + s * (c[1] + s * (c[2] + s * c[3]))
 
 
+def cubics(c: Array, s: Array) -> Array:
+    """Values of cubics, whose coefficients are the second axis, lowest power first."""
+    return np.asarray(c[:, 0] + s * (c[:, 1] + s * (c[:, 2] + s * c[:, 3])))
+
+
 @dataclass(frozen=True, repr=False, eq=False)
 class Curve:
     """The one curve of all glides, by the time τ that is left until rest.
@@ -113,12 +118,9 @@ class Curve:
         """Distances to rest along the last direction and aside of it, m, at times >= 0 before."""
         k = np.searchsorted(self.tau[1:-1], tau, side="right")
         s = tau - self.tau[k]
-
-        def way(column: int) -> Array:
-            c = self.coefficients[k, column].T
-            return np.asarray(c[0] + s * (c[1] + s * (c[2] + s * c[3])))
-
-        return (way(ALONG), way(ASIDE)) if spins else (way(STRAIGHT), np.zeros(len(tau)))
+        if not spins:
+            return cubics(self.coefficients[k, STRAIGHT], s), np.zeros(len(tau))
+        return cubics(self.coefficients[k, ALONG], s), cubics(self.coefficients[k, ASIDE], s)
 
     def tau_at_speed(self, speed: float) -> float:
         """Time until rest of a stone with that speed, s."""

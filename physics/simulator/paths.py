@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from physics.curl import Curl
 from physics.ice import IceLaw
-from physics.simulator.curve import ALONG, ASIDE, LOSS, SPEED, STRAIGHT, TURN, curve_for
+from physics.simulator.curve import ALONG, ASIDE, LOSS, SPEED, STRAIGHT, TURN, cubics, curve_for
 from physics.simulator.motion import REST_SPEED
 
 Array = NDArray[np.float64]
@@ -65,13 +65,12 @@ class CurveTable:
         """Speed, distance along and aside, turning to rest `tau` before rest, shape (n, 4)."""
         row = np.searchsorted(self._by_tau, law * self._tau_span + tau, side="right") - 1
         s = (tau - self._tau[row])[:, None]
-        c = self._glides[row + len(self._tau) * spins]
-        return np.asarray(c[:, 0] + s * (c[:, 1] + s * (c[:, 2] + s * c[:, 3])))
+        return cubics(self._glides[row + len(self._tau) * spins], s)
 
     def loss(self, law: Index, tau: Array) -> Array:
         """Spin lost from `tau` before rest on, rad/s, shape (n,)."""
         row = np.searchsorted(self._by_tau, law * self._tau_span + tau, side="right") - 1
-        return _cubic(self._losses[row], tau - self._tau[row])
+        return cubics(self._losses[row], tau - self._tau[row])
 
     def tau_at_speed(self, law: Index, speed: Array) -> Array:
         """Time until rest at a speed, s, shape (n,)."""
@@ -84,16 +83,12 @@ class CurveTable:
         return np.asarray(self._tau[row] + _solve(self._losses[row], loss, self._width[row]))
 
 
-def _cubic(c: Array, s: Array) -> Array:
-    return np.asarray(c[:, 0] + s * (c[:, 1] + s * (c[:, 2] + s * c[:, 3])))
-
-
 def _solve(c: Array, value: Array, width: Array) -> Array:
     """Where in 0..width the rising cubics have these values: Newton's method in a bracket."""
     low, high = np.zeros_like(width), width.copy()
     s = np.clip((value - c[:, 0]) / np.where(c[:, 1] > 0, c[:, 1], 1.0), low, high)
     for _ in range(60):
-        f = _cubic(c, s) - value
+        f = cubics(c, s) - value
         high = np.where(f > 0, s, high)
         low = np.where(f > 0, low, s)
         slope = c[:, 1] + s * (2 * c[:, 2] + 3 * s * c[:, 3])

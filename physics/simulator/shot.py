@@ -130,10 +130,10 @@ def read_shot(path: Path) -> Shot:
 def _why(error: tomllib.TOMLDecodeError, text: str) -> str:
     """Say what is no TOML, with the line that it is in."""
     place = re.search(r"at line (\d+)", str(error))
-    lines = text.splitlines()
-    if place is None or int(place[1]) > len(lines):
+    if place is None:
         return str(error)
-    return f"{error}: “{lines[int(place[1]) - 1].strip()[:60]}”"
+    line = text.split("\n")[int(place[1]) - 1]  # as tomllib counts them
+    return f"{error}: “{line.strip()[:60]}”"
 
 
 def _shot(content: Mapping[str, Any], faults: list[str]) -> Shot:

@@ -29,6 +29,16 @@ def path(stone: Stone, ice: int) -> Path:
     return Path(0.0, Motion(x, y, 0.0, *v, omega), *ICES[ice])
 
 
+class Counted(Path):
+    """A path that counts how often any of its kind is asked for a place."""
+
+    asked = 0
+
+    def point(self, t: float):  # type: ignore[no-untyped-def]
+        Counted.asked += 1
+        return super().point(t)
+
+
 @settings(deadline=None, max_examples=300)
 @given(stones, stones, st.integers(0, 2), st.floats(0.0, 2.0))
 def test_no_contact_is_missed_and_none_made_up(
@@ -67,39 +77,23 @@ def test_grazes_are_timed_to_a_billionth_of_a_second() -> None:
 
 
 def test_the_faster_stone_in_front_is_left_alone_at_once() -> None:
-    asked = 0
-
-    class Counted(Path):
-        def point(self, t: float):  # type: ignore[no-untyped-def]
-            nonlocal asked
-            asked += 1
-            return super().point(t)
-
     state = [Motion(0, y, 0, 0, speed, 1.0) for y, speed in ((0, 1.0), (0.3, 1.2))]
     a, b = (Counted(0.0, motion, *ICES[1]) for motion in state)
     here = a.point(0.0), b.point(0.0)
-    asked = 0
+    Counted.asked = 0
     assert first_contact(a, b, 0.0, here, REACH) == math.inf
-    assert asked == 2
+    assert Counted.asked == 2
 
 
 def test_a_search_ends_with_its_time() -> None:
     """On next to no friction stones go on for an hour, which a fit of two seconds need not know."""
-    asked = 0
-
-    class Counted(Path):
-        def point(self, t: float):  # type: ignore[no-untyped-def]
-            nonlocal asked
-            asked += 1
-            return super().point(t)
-
     laws = Constant(1e-5), FCV1Curl()
     goes = Counted(0.0, Motion(0, 1.8, 0, -0.1, -0.25, 1.0), *laws)
     lies = Counted(0.0, Motion(0, 0, 0, 0, 0, 0), *laws)
     here = goes.point(0.0), lies.point(0.0)
-    asked = 0
+    Counted.asked = 0
     assert first_contact(goes, lies, 0.0, here, REACH, until=2.0) == math.inf
-    assert asked < 60
+    assert Counted.asked < 60
     meeting = Path(0.0, Motion(0, 1.8, 0, 0, -0.25, 0.0), *laws)
     here = meeting.point(0.0), lies.point(0.0)
     met = first_contact(meeting, lies, 0.0, here, REACH)
