@@ -111,11 +111,12 @@ def test_of_more_than_two_colours_paint_is_left_out_that_shows_no_handle() -> No
     ("outline", "tint"),
     [
         ((1.08, 0.84), (-72, 18, -18)),
-        ((1.08, 0.84), (0, 0, 0)),
+        ((1.0, 0.89), (-36, 28, 9)),
+        ((1.0, 0.82), (0, 0, 0)),
         ((1.0, 0.98), (-72, 0, 0)),
-        ((1.0, 0.98), (0, 24, -24)),
+        ((1.0, 0.98), (0, 26, -26)),
     ],
-    ids=["all", "rim", "dark", "red"],
+    ids=["on red", "on teal", "rim", "dark", "red"],
 )
 @pytest.mark.parametrize(("often", "score"), [(8, 1.9), (12, 1.6)])
 def test_hair_on_jerseys_is_no_team_however_often_it_is_seen(
@@ -137,6 +138,14 @@ def test_a_team_whose_granite_differs_as_real_stones_do_is_kept() -> None:
     for team in other, hidden:
         look = learn([seen(BLUE)] * 9 + [team] * 5)
         assert look is not None and len(look.caps) == 2
+
+
+def test_a_team_whose_only_stone_in_view_lies_on_dark_paint_is_kept() -> None:
+    other = seen(YELLOW, 2.35)
+    granite = other.granite_samples + np.array([-8, -14, 3])
+    other = other._replace(granite_samples=granite, outline=(1.0, 0.857))
+    look = learn([seen(RED)] * 17 + [other] * 3)
+    assert look is not None and len(look.caps) == 2
 
 
 def test_the_size_of_caps_is_learned_from_three_sightings_on() -> None:
