@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.results import Estimate, Law
+from data.sheet import curling_size
 from physics.filter.slowing import V_C
 from physics.whole_shot.global_fit import LOST, fit_shots
 from physics.whole_shot.shot_model import Watched, penner
@@ -22,6 +23,9 @@ of the ice are without."""
 
 STICKING = {"stone_friction": 2.0}
 """Stones that stop sliding on each other before they part: any greater friction does the same."""
+
+ROUGH = 0.2
+"""Friction with which stones stick in most hits: the most that simulators take."""
 
 USUAL = {"slope": 0.002, "turn": 0.008}
 """Ice as in FCV1 (Uehara and Ito, 2021), from where the first fit sets out beside even ice: stones
@@ -53,8 +57,11 @@ def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None
     falls: the one that is reported follows any ice but not to the last per cent.
     """
     held = {"v_c": V_C, **(fixed or {})}
-    best = _hit_by_hit(shot, held)
+    best, *others = _either_sense(shot, held)
+    shot = best.shots[0]
     tried, criteria, least = [best], [0.0], 0.0
+    tried += others
+    criteria += [_beside(other, best) for other in others]
     asked = [name for name in ("slope", "turn") if name in best.names]
     while asked:
         name = max(asked, key=lambda each: _against(best, each))
@@ -101,6 +108,26 @@ def _refitted(best: GlobalFit, shot: Watched, held: Mapping[str, float]) -> Glob
     return fit_shots([shot], fixed=held, start=_values(best), noise=best.inflation)
 
 
+def _either_sense(shot: Watched, held: Mapping[str, float]) -> list[GlobalFit]:
+    """Fit a shot with spins that nobody saw of either sense, the better first.
+
+    A path curls to the side to which its stone spins, which after a hit may be the other, and no
+    slope leads across: what is known of a spin that does nothing else would draw it to none. The
+    worse fit counts too, if it came as far. Other discs than curling stones may not spin at all.
+    """
+    ways = [shot.spinning(Estimate(sense * THROWN, THROWN)) for sense in (1, -1)]
+    if not (shot.hits and curling_size(shot.radius)) or ways[0].unknowns == ways[1].unknowns:
+        return [_hit_by_hit(shot, held)]
+    fits = [_hit_by_hit(way, held) for way in ways]
+    best = _best_of(fits)
+    return [best, *(fit for fit in fits if fit is not best and _as_good(fit, best))]
+
+
+def _as_good(fit: GlobalFit, best: GlobalFit) -> bool:
+    """Whether a fit came as far as another: to its end, with the hits that were seen."""
+    return (fit.settled, fit.hits_as_seen) >= (best.settled, best.hits_as_seen)
+
+
 def _hit_by_hit(shot: Watched, held: Mapping[str, float]) -> GlobalFit:
     """Fit a shot up to its second hit, then up to the next, each from where the one before ended.
 
@@ -122,6 +149,9 @@ def _hit_by_hit(shot: Watched, held: Mapping[str, float]) -> GlobalFit:
         if none and part.hits:
             ways = [further | dict.fromkeys(none, omega) for omega in (-THROWN, THROWN)]
             best = _best(part, held, ways, best)
+        if "stone_friction" in best.names:
+            other = ROUGH if best.told("stone_friction") else 0.0
+            best = _best(part, held, [_values(best) | {"stone_friction": other}], best)
         start |= _values(best)
     assert best is not None
     return best
@@ -134,7 +164,11 @@ def _best(
     *others: GlobalFit,
 ) -> GlobalFit:
     """Fit a shot from where each of the ways sets out, and return the best, or another's."""
-    fits = [*others, *(fit_shots([shot], fixed=held, start=way) for way in ways)]
+    return _best_of([*others, *(fit_shots([shot], fixed=held, start=way) for way in ways)])
+
+
+def _best_of(fits: Sequence[GlobalFit]) -> GlobalFit:
+    """Return the fit that explains a shot best: of those that settle, with the hits as seen."""
     noise = min(fit.inflation for fit in fits)
     return min(fits, key=lambda fit: (not fit.settled, not fit.hits_as_seen, _cost(fit, noise)))
 

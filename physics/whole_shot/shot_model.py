@@ -125,6 +125,17 @@ class Watched:
         """Time of the last sighting, s."""
         return max(float(trace.t[-1]) for trace in self.traces.values())
 
+    def spinning(self, prior: Estimate) -> Watched:
+        """Expect a spin, rad/s, of the stones that come with one that nobody saw."""
+        seen = {spin.stone for spin in self.spins}
+        unknowns = tuple(
+            replace(unknown, guess=float(prior.value or 0.0), prior=prior)
+            if unknown.name.endswith(".omega") and unknown.stone not in seen
+            else unknown
+            for unknown in self.unknowns
+        )
+        return replace(self, unknowns=unknowns)
+
     def shot(self, values: Mapping[str, float]) -> Shot:
         """Return the shot with these values of the unknowns, from the time `start` on."""
         stones = tuple(

@@ -6,11 +6,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from data.tracks import check_sightings
 from physics.estimate import Estimates, estimate
 from physics.filter.slowing import V_C
 from physics.local_fit.contacts import find_contacts
 from physics.whole_shot.global_fit import fit_shots
-from physics.whole_shot.law_choice import STRAIGHT, USUAL, _against, _hit_by_hit
+from physics.whole_shot.law_choice import ROUGH, STRAIGHT, USUAL, _against, _hit_by_hit
 from physics.whole_shot.watched import SLOPE, THROWN
 from physics.whole_shot.whole_fit import GlobalFit
 from tests.physics.watch import RADIUS, hit_motion, watch
@@ -94,12 +95,13 @@ def test_the_first_fit_sets_out_from_even_ice_and_lost_spins_from_either_sense(
 
     monkeypatch.setattr("physics.whole_shot.law_choice.fit_shots", fit)
     best = _hit_by_hit(watched.shots[0], {"v_c": V_C})
-    even, usual, further, *turning = calls
+    even, usual, further, *turning, rubless = calls
     assert even == (STRAIGHT, {})
     assert usual[1] == USUAL
     assert further[0] == {"v_c": V_C}
     assert further[1]["A.omega"] == 0.0
     assert [start["A.omega"] for _, start in turning] == [-THROWN, THROWN]
+    assert rubless[1]["stone_friction"] == 0.0
     assert best["A.omega"].value == pytest.approx(1.0, abs=0.1)
 
 
@@ -265,3 +267,55 @@ def test_spins_of_slow_stones_are_less_sure_at_the_hit() -> None:
     after = {spin.stone: spin.stderr for spin in spins if spin.t > found.collisions[0].t}
     assert after["B"] < 0.05
     assert after["A"] > 2 * after["B"]
+
+
+@pytest.mark.parametrize(("stone_friction", "other"), [(0.02, ROUGH), (0.5, 0.0)])
+def test_a_last_fit_sets_out_from_stones_that_stick_if_they_slide_and_the_reverse(
+    monkeypatch: pytest.MonkeyPatch, stone_friction: float, other: float
+) -> None:
+    motion = hit_motion(1.5, 0.2, before=0.6, after=0.6, stone_friction=stone_friction)
+    seen = watch(motion, np.random.default_rng(5), fps=25, sd=0.001)
+    watched = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).whole
+    assert watched is not None
+    starts: list[dict[str, float]] = []
+
+    def fit(shots: Any, *, fixed: Any, start: Any = None) -> GlobalFit:
+        starts.append(dict(start or {}))
+        return fit_shots(shots, fixed=fixed, start=start)
+
+    monkeypatch.setattr("physics.whole_shot.law_choice.fit_shots", fit)
+    _hit_by_hit(watched.shots[0], {"v_c": V_C})
+    assert starts[-1]["stone_friction"] == other
+
+
+def test_stones_that_stick_from_the_least_friction_on_may_not_rub_at_all() -> None:
+    """With little to rub they stick in every fit that sets out from some friction."""
+    motion = simulate(
+        [Start(-0.09, -2.7, 0.0, 1.6, 0.0, -2.2), Start(0.0, 0.0)], 4.0,
+        ice=Ice(b=0.0073), impact=Impact(0.72, 0.0), step=5e-4, keep_every=4,
+    )  # fmt: skip
+    seen = watch(motion, np.random.default_rng(0), fps=60, sd=0.01)
+    fit = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).whole
+    assert fit is not None
+    assert fit["stone_friction"].value == pytest.approx(0.0, abs=0.01)
+    assert abs(float(fit["restitution"].value or 0) - 0.72) < 2 * float(
+        fit["restitution"].stderr or 0
+    )
+
+
+@pytest.mark.parametrize("seed", [0, 4])
+def test_a_spin_that_nobody_saw_may_be_of_either_sense(seed: int) -> None:
+    """One that was taken for the other, or for none, made the ice and the hit look otherwise."""
+    motion = simulate(
+        [Start(0.08, -8.0, 0.0, 2.71, 0.0, -1.73), Start(0.0, 0.0)], 4.0,
+        ice=Ice(b=0.00824, curl=0.0082), impact=Impact(0.65, 0.03), step=5e-4, keep_every=4,
+    )  # fmt: skip
+    seen = watch(motion, np.random.default_rng(seed), fps=60, sd=0.003).drop(
+        columns=["theta", "sd_theta"]
+    )
+    found = estimate(check_sightings(seen), find_contacts(seen, RADIUS), radius=RADIUS)
+    assert found.whole is not None
+    assert float(found.curl.value or 0) == pytest.approx(0.0082, abs=0.002)
+    assert float(found.whole["A.omega"].value or 0) < 0
+    for got, true in ((found.restitution, 0.65), (found.friction, 0.00824)):
+        assert abs(float(got.value or 0) - true) < 2.5 * float(got.stderr or 0)

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -76,3 +78,14 @@ def test_an_unknown_knows_its_stone() -> None:
     assert Unknown("A.vx", 0.0).stone == "A"
     assert Unknown("stone.one.x", 0.0).stone == "stone.one"
     assert Unknown("friction", 0.01, prior=Estimate(0.01, 0.003)).stone is None
+
+
+def test_a_spin_is_expected_of_stones_whose_spin_nobody_saw() -> None:
+    shot = watched()
+    blind = replace(shot, spins=()).spinning(Estimate(-1.5, 1.0))
+    spin = next(unknown for unknown in blind.unknowns if unknown.name == "A.omega")
+    assert (spin.guess, spin.prior) == (-1.5, Estimate(-1.5, 1.0))
+    assert [u for u in blind.unknowns if u != spin] == [
+        u for u in shot.unknowns if u.name != "A.omega"
+    ]
+    assert shot.spinning(Estimate(-1.5, 1.0)).unknowns == shot.unknowns
