@@ -185,14 +185,18 @@ def _of_changes(tau: Floats, c: float, q: float) -> tuple[Floats, Floats]:
 
 def _across(x: Floats) -> tuple[Floats, Floats]:
     """Part of the acceleration across the motion, and its derivatives by it all, shape (2, 6)."""
-    speed, change = x[:, 1], x[:, 2]
-    square, slopes = float(speed @ speed), np.zeros((2, 6))
+    # A few numbers: arrays of two would take four times as long, a tenth of the time to find hits.
+    (_, vx, ax), (_, vy, ay) = x.tolist()
+    square = vx * vx + vy * vy
     if square < NO_WAY**2:
-        return np.zeros(2), slopes
-    along = float(speed @ change) / square
-    slopes[:, [1, 4]] = -along * np.eye(2) - np.outer(speed, change - 2 * along * speed) / square
-    slopes[:, [2, 5]] = np.eye(2) - np.outer(speed, speed) / square
-    return change - along * speed, slopes
+        return np.zeros(2), np.zeros((2, 6))
+    ux, uy, along = vx / square, vy / square, (vx * ax + vy * ay) / square
+    bx, by = ax - 2 * along * vx, ay - 2 * along * vy
+    slopes = [
+        [0.0, -along - ux * bx, 1 - ux * vx, 0.0, -ux * by, -ux * vy],
+        [0.0, -uy * bx, -uy * vx, 0.0, -along - uy * by, 1 - uy * vy],
+    ]
+    return np.array([ax - along * vx, ay - along * vy]), np.array(slopes)
 
 
 def _bent(x: Floats, reach: Floats, c: float) -> tuple[Floats, Floats]:

@@ -64,9 +64,12 @@ def _motion(x: bytes, tau: float, power: float) -> tuple[Floats, Floats]:
     return place, speed
 
 
+@lru_cache(maxsize=256)
 def unknowns_of(rank: int, pieces: int) -> NDArray[np.int64]:
     """Where among the unknowns of a fit those of one of its pieces are: its state, its power."""
-    return np.append(np.arange(6 * rank, 6 * rank + 6), rank - pieces)
+    found = np.append(np.arange(6 * rank, 6 * rank + 6), rank - pieces)
+    found.flags.writeable = False  # all who ask share them
+    return found
 
 
 @dataclass(frozen=True)

@@ -38,19 +38,24 @@ def measure_again(
         What they must show.
     """
     places = [view.places for view in views]
+    doubtful: list[tuple[StoneView, int]] = []
+    looks = []
     for k, view in enumerate(views):
         before, after = (
             places[j] if 0 <= j < len(views) else places[k][:0] for j in (k - 1, k + 1)
         )
         drift = drifts(places[k], before, after, REACH * disc.radius)
         smeared = swept_share(view.drift_seen(places[k], drift)) > 0
-        fast = [i for i in np.flatnonzero(smeared) if not view.sightings[i].swept]
-        if not fast:
-            continue
-        look = view.look(places[k][fast].tolist(), drift[fast].tolist())
-        for i, found in zip(fast, look_on_course([look], appearance, disc, search), strict=True):
-            if found is not None and found.swept:
-                view.sightings[i] = found.without_samples()
+        fast = [i for i in np.flatnonzero(smeared).tolist() if not view.sightings[i].swept]
+        if fast:
+            doubtful += [(view, i) for i in fast]
+            looks.append(view.look(places[k][fast].tolist(), drift[fast].tolist()))
+    if not looks:
+        return
+    seen = look_on_course(looks, appearance, disc, search)
+    for (view, i), found in zip(doubtful, seen, strict=True):
+        if found is not None and found.swept:
+            view.sightings[i] = found.without_samples()
 
 
 def drifts(places: Array, before: Array, after: Array, reach: float) -> Array:

@@ -126,6 +126,16 @@ class Clip:
         """Yield all frames, repeats among them."""
         return self._read_video() if self.is_video else self._read_images()
 
+    def key_pictures(self) -> Iterator[Picture]:
+        """Yield, of a whole video, the pictures coded by themselves, soon read; of others all."""
+        if not self.is_video or self.first or self.last is not None:
+            yield from (frame.picture for frame in self.every())
+            return
+        container, pictures = _opened(self.files[0])
+        with container:
+            container.streams.video[0].codec_context.skip_frame = "NONINTRA"
+            yield from (picture for _, picture in pictures)
+
     def _warn(self, text: str) -> None:
         if text not in self.warnings:
             self.warnings.append(text)

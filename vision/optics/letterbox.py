@@ -7,7 +7,7 @@ same width on both sides leave the lens's axis in the middle; others are taken f
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -61,17 +61,19 @@ class LitClip(Clip):
 
 
 def lit_clip(clip: Clip, progress: Progress = no_progress) -> Clip:
-    """Give a clip without its black bars; itself where it has none that all its frames show."""
+    """Give a clip without its black bars; itself where it has none.
+
+    Pictures coded by themselves, at each cut and every few seconds, are asked, and all if those
+    are dark.
+    """
     first = clip.peek()
     if first is None:
         return clip
-    columns, rows = _shown(first)
-    for done, frame in enumerate(clip, 1) if _may(columns) or _may(rows) else ():
-        columns, rows = (a | b for a, b in zip((columns, rows), _shown(frame.picture), strict=True))
-        if not (_may(columns) or _may(rows)):
-            break
-        progress("black bars", done, clip.expected)
-    bars = _bar(columns), _bar(rows)
+    shown = _together(_shown(first), clip.key_pictures())
+    if not shown[0].any():
+        progress("black bars", 0, 1)
+        shown = _together(shown, (frame.picture for frame in clip.every()))
+    bars = _bar(shown[0]), _bar(shown[1])
     return LitClip(clip, bars) if any(bars) else clip
 
 
@@ -104,9 +106,13 @@ def _shown(picture: Picture) -> tuple[Flags, Flags]:
     return seen.mean(0) > SHARE, seen.mean(1) > SHARE
 
 
-def _may(shown: Flags) -> bool:
-    """Whether there may be bars at both ends."""
-    return not (shown[0] or shown[-1])
+def _together(shown: tuple[Flags, Flags], pictures: Iterable[Picture]) -> tuple[Flags, Flags]:
+    """Which columns and which rows any picture shows, till no bars are left at either end."""
+    left = iter(pictures)
+    while any(not (lit[0] or lit[-1]) for lit in shown) and (more := next(left, None)) is not None:
+        columns, rows = _shown(more)
+        shown = shown[0] | columns, shown[1] | rows
+    return shown
 
 
 def _bar(shown: Flags) -> int:

@@ -68,6 +68,20 @@ def test_bars_are_cut_off(tmp_path: Path, crf: int, traces: int) -> None:
     assert lit.read == 5
 
 
+def test_bars_are_told_by_few_pictures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    clip = video(tmp_path / "pillars.mp4", [barred(scene(0), 110, 110)] * 30)
+    assert len(list(clip.key_pictures())) < 3
+    monkeypatch.setattr(Clip, "every", None)
+    assert lit_clip(clip).size[0] < W
+
+
+def test_of_a_part_of_a_clip_all_pictures_are_asked(tmp_path: Path) -> None:
+    bars = [barred(scene(0), 110, 110)] * 30
+    whole = video(tmp_path / "clip.mp4", [*bars, *[scene(1)] * 20])
+    assert lit_clip(open_clip(whole.files, frames=(0, 29))).size[0] < W
+    assert len(list(open_clip(whole.files, frames=(25, 34)).key_pictures())) == 10
+
+
 def test_above_and_below_and_of_pictures(tmp_path: Path) -> None:
     paths = [tmp_path / f"{k}.png" for k in range(2)]
     for k, path in enumerate(paths):
@@ -83,7 +97,7 @@ def test_above_and_below_and_of_pictures(tmp_path: Path) -> None:
         [scene(k) for k in range(4)],
         [scene(0, light) for light in (0.0, 0.03, 0.3, 1.0)],  # fades in
         [scene(0, 0.05)] * 4,  # hardly to be seen
-        [barred(scene(0), 110, 110), scene(1)],  # a title, say
+        [*[barred(scene(0), 110, 110)] * 30, *[scene(1)] * 20],  # a title, say
         [barred(scene(k), 60, 160) for k in range(4)],  # the axis is who knows where
         [barred(scene(k), 110, 0) for k in range(4)],
         [barred(scene(k), 4, 4) for k in range(4)],
