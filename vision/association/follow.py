@@ -127,15 +127,6 @@ class Track:
         self.times.append(t)
         self.sightings.append(sighting)
 
-    def go_on(self, later: Track) -> None:
-        """Take in all of a track that begins after this one ends, and how it moves then."""
-        self.frames += later.frames
-        self.times += later.times
-        self.sightings.extend(later.sightings)
-        self.colour = later.colour
-        self._place, self._velocity = later._place, later._velocity
-        self._covariance = later._covariance
-
 
 def follow(
     frames: Iterable[tuple[int, float, Sequence[Sighting]]],

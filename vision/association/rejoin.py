@@ -1,38 +1,141 @@
-"""A stone that was hit where nobody saw it: its two tracks are one.
+"""Stones that come back into sight: which of those that went out of it each of them is.
 
-A moving stone that goes out of sight is expected to glide on, one at rest to stay
-(`vision.association.follow`). Where it is hit just then, behind a sweeper say, it comes back where
-it is not expected, as a new track. The way of that track, followed back, leads to where the first
-one ends: of a stone that moved, to when it was lost; of one that rested, to when it was hit at some
-time since.
+`vision.association.follow` takes what comes for the stone that is expected next to it. One that is
+hit while people hide it comes out elsewhere, and perhaps another one where it was expected. So all
+gaps are looked at once more when both of their ends are known. Up to a hit a stone goes as it was
+last seen, from then on as it is seen next: at the hit the two ways are at the same place at the
+same time, and without a hit they are one. Of the stones that went out of sight and those that came
+back, those are one that together do so best.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
 
-from vision.association.follow import OTHER, PATIENCE, REACH, Track
+import numpy as np
+from numpy.typing import NDArray
+
+from vision.association.assign import assign
+from vision.association.follow import BIRTHS, OTHER, PATIENCE, Track
 from vision.association.lead import DECELERATION
 from vision.detection.appearance import colour_difference
+from vision.detection.sighting import Sighting
 
-BEGINNING = 0.4
-"""Of a track, s: what its first velocity is told from."""
+Array = NDArray[np.float64]
 
-LEAST_WAY = 0.3
-"""Way in that time by which a track moves, radii."""
+GAP = 0.25
+"""Out of sight for longer than this, s, a stone may be another one than that expected there."""
 
-STRAY = 0.5
-"""How much farther from the end of the first track the way may lead per second unseen, radii."""
+AT_REST = 0.1
+"""How far from where it was a stone may come back and have stayed, radii."""
+
+WINDOW = 0.2
+"""Time from which it is told how a stone moves, s: a longer one may have a hit in it, just before
+the stone went out of sight."""
+
+SLOW = 0.02
+"""Speed, m/s, that sightings of one at rest may show."""
+
+PLACE_SD, SPEED_SD, SLOWING_SD = 0.2, 0.15, 0.2
+"""Of where a stone is expected in radii, of its speed and of what it loses of that, each per s:
+2 cm/s and 0.03 m/s², as much as ice differs."""
+
+MISSED = 12.0
+"""Two stones are not one whose ways miss each other by the root of this in standard deviations."""
+
+TAPPED = 0.9 * MISSED
+"""The same for one that rests here and then there, which tells no way: it was tapped, or pushed, if
+no other stone comes from where the one lay."""
+
+STEPS = 200
+"""Times in a gap at which it is looked how near the two ways are."""
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """How a stone moves at one end of a stretch in which it is seen.
+
+    Attributes
+    ----------
+    t : float
+        s.
+    place, velocity : ndarray, shape (2,)
+        m and m/s.
+    colour : ndarray, shape (3,)
+        Of its cap, L*a*b*.
+    """
+
+    t: float
+    place: Array
+    velocity: Array
+    colour: Array
+
+    @classmethod
+    def of(cls, times: Array, seen: Sequence[Sighting]) -> _Motion:
+        """From sightings on a straight way, the one at the end first."""
+        end = float(times[0])
+        places = np.array([(s.x, s.y) for s in seen])
+        colour = np.mean([s.colour for s in seen], axis=0)
+        basis = np.stack([np.ones(len(times)), times - end], axis=1)
+        (place, velocity), *_ = np.linalg.lstsq(basis, places, rcond=None)
+        speed = float(np.hypot(*velocity))
+        if speed > SLOW:  # a straight line has the speed of its middle
+            velocity = velocity * max(1 + DECELERATION * basis[:, 1].mean() / speed, 0.0)
+        return cls(end, place, velocity, colour)
+
+    @property
+    def speed(self) -> float:
+        """In m/s; 0 for one at rest."""
+        speed = float(np.hypot(*self.velocity))
+        return speed if speed > SLOW else 0.0
+
+    def at(self, t: Array) -> Array:
+        """Give its places (n, 2) at times, m: it comes to rest, and has been faster before."""
+        if not self.speed:
+            return np.tile(self.place, (len(t), 1))
+        step = np.minimum(t - self.t, self.speed / DECELERATION)
+        path = step - 0.5 * DECELERATION * step**2 / self.speed
+        return np.asarray(self.place + path[:, None] * self.velocity)
+
+    def variance(self, t: Array, radius: float) -> Array:
+        """Of its places at times, m² per axis."""
+        wait = np.abs(t - self.t) if self.speed else np.zeros(len(t))
+        sd = np.hypot(PLACE_SD, np.hypot(SPEED_SD * wait, 0.5 * SLOWING_SD * wait**2))
+        return np.asarray((sd * radius) ** 2)
+
+
+@dataclass(frozen=True)
+class _Stretch:
+    """A part of a track without a long gap: sightings from the one to before the other."""
+
+    track: Track
+    begin: int
+    end: int
+
+    @cached_property
+    def first(self) -> _Motion:
+        return self._motion(range(self.begin, self.end))
+
+    @cached_property
+    def last(self) -> _Motion:
+        return self._motion(range(self.end - 1, self.begin - 1, -1))
+
+    def _motion(self, order: Sequence[int]) -> _Motion:
+        times = np.array([self.track.times[k] for k in order])
+        count = max(int((np.abs(times - times[0]) <= WINDOW).sum()), BIRTHS)
+        return _Motion.of(times[:count], [self.track.sightings[k] for k in order[:count]])
 
 
 def rejoined(tracks: Sequence[Track], radius: float, other: float = OTHER) -> list[Track]:
-    """Join each track that begins in motion to the one whose stone it goes on with.
+    """Join the stretches in which stones are seen to the tracks of these stones.
 
     Parameters
     ----------
     tracks : sequence of Track
-        In order of birth; those that go on are made longer.
+        As they were followed, each of `BIRTHS` sightings or more.
     radius : float
         Of the discs, m.
     other : float
@@ -41,36 +144,65 @@ def rejoined(tracks: Sequence[Track], radius: float, other: float = OTHER) -> li
     Returns
     -------
     list of Track
-        In order of birth. Where several could be meant, none is.
+        In order of birth.
     """
-    out: list[Track] = []
-    for track in tracks:
-        before = [first for first in out if _goes_on(first, track, radius, other)]
-        if len(before) == 1:
-            before[0].go_on(track)
-        else:
-            out.append(track)
+    stretches = [stretch for track in tracks for stretch in _stretches(track, radius)]
+    count = len(stretches)
+    if count == len(tracks) < 2:
+        return [*tracks]
+    cost = np.full((count, 2 * count), MISSED)  # the second half: it does not come back
+    for i, before in enumerate(stretches):
+        for j, after in enumerate(stretches):
+            unseen = after.track.times[after.begin] - before.track.times[before.end - 1]
+            followed = before.track is after.track and before.end == after.begin
+            if followed or 0 < unseen < PATIENCE:
+                cost[i, j] = min(_miss(before.last, after.first, radius, other), MISSED)
+            if followed and not before.last.speed + after.first.speed:
+                cost[i, j] = min(cost[i, j], TAPPED)
+    goes_on = {i: j for i, j in assign(cost) if cost[i, j] < MISSED}
+    out = []
+    for first in sorted(set(range(count)) - set(goes_on.values())):
+        chain = [first]
+        while chain[-1] in goes_on:
+            chain.append(goes_on[chain[-1]])
+        out.append(_joined([stretches[k] for k in chain]))
+    return sorted(out, key=lambda track: (track.frames[0], track.sightings[0].x))
+
+
+def _stretches(track: Track, radius: float) -> list[_Stretch]:
+    """Part a track where its stone was out of sight; a glimpse stays with what it was taken for."""
+    places = track.sightings.columns("x", "y")
+    moved = np.hypot(*np.diff(places)) > AT_REST * radius
+    cuts = [0]
+    for k in (np.flatnonzero((np.diff(track.times) > GAP) & moved) + 1).tolist():
+        if min(k - cuts[-1], len(track.times) - k) >= BIRTHS:
+            cuts.append(k)
+    ends = pairwise([*cuts, len(track.times)])
+    return [_Stretch(track, begin, end) for begin, end in ends]
+
+
+def _miss(before: _Motion, after: _Motion, radius: float, other: float) -> float:
+    """How far two ways miss each other, in variances, and by how much the colours differ."""
+    unlike = colour_difference(before.colour, after.colour)
+    if unlike > other:
+        return np.inf
+    t = np.linspace(before.t, after.t, STEPS)
+    away = ((before.at(t) - after.at(t)) ** 2).sum(1)
+    variance = before.variance(t, radius) + after.variance(t, radius)
+    return float((away / variance).min()) + (0.5 * unlike / other) ** 2
+
+
+def _joined(stretches: Sequence[_Stretch]) -> Track:
+    """Make one track of stretches in a row."""
+    whole = stretches[0].track
+    if all(part.track is whole for part in stretches) and (
+        stretches[0].begin == 0 and stretches[-1].end == len(whole.times)
+    ):
+        return whole
+    out = Track()
+    for part in stretches:
+        out.frames += part.track.frames[part.begin : part.end]
+        out.times += part.track.times[part.begin : part.end]
+        out.sightings.extend(part.track.sightings[part.begin : part.end])
+    out.colour = np.mean([sighting.colour for sighting in out.sightings], axis=0)
     return out
-
-
-def _goes_on(first: Track, second: Track, radius: float, other: float) -> bool:
-    """Whether a track may be that of a stone that has gone out of sight."""
-    unseen = second.times[0] - first.times[-1]
-    if not 0 < unseen < PATIENCE:
-        return False
-    if colour_difference(first.colour, second.colour) > other:
-        return False
-    begun = [k for k, t in enumerate(second.times) if t - second.times[0] <= BEGINNING]
-    here, there = second.sightings[0], second.sightings[begun[-1]]
-    dx, dy = there.x - here.x, there.y - here.y
-    way = hypot(dx, dy)
-    if way < LEAST_WAY * radius:
-        return False
-    speed = way / (second.times[begun[-1]] - second.times[0])
-    back = (speed + 0.5 * DECELERATION * unseen) * unseen / way
-    end = first.sightings[-1]
-    if first.speed == 0:
-        nearest = ((here.x - end.x) * dx + (here.y - end.y) * dy) / way**2
-        back = min(max(nearest, 0.0), back)
-    off = hypot(here.x - back * dx - end.x, here.y - back * dy - end.y)
-    return off < (REACH + STRAY * unseen) * radius

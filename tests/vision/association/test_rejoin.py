@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from tests.vision.association.test_follow import RED, YELLOW, Place, R, clip
@@ -79,4 +80,68 @@ def test_a_stone_that_came_back_and_rests_does_not_glide_on() -> None:
     joined = rejoined(tracks, R)
     assert [track.times[0] for track in joined] == [0.0, new.times[0]]
     assert joined[0].times[-1] == rest.times[-1]
-    assert joined[0].speed == 0.0
+
+
+def glide(start: np.ndarray, velocity: np.ndarray, t: float) -> np.ndarray:
+    """Place of a stone that slows by 0.1 m/s² from the time 0 on, until it rests."""
+    speed = float(np.hypot(*velocity))
+    t = min(t, speed / 0.1)
+    return np.asarray(start + velocity * (t - 0.05 * t**2 / speed)) if t else start
+
+
+@pytest.mark.parametrize("aside", [0.0, 0.4, -1.2, 1.8], ids=lambda aside: f"{aside} R")
+@pytest.mark.parametrize("speed", [0.7, 1.8])
+@pytest.mark.parametrize("back", [2.2, 3.7])
+def test_two_equal_stones_that_meet_out_of_sight_keep_their_names(aside, speed, back) -> None:
+    """One rests, the other comes, and people hide both from before the hit to long after it."""
+    hit, e, down = 1.5, 0.82, np.array([0.0, -1.0])
+    normal = np.array([-aside / 2, -np.sqrt(1 - aside**2 / 4)])
+    push = 0.5 * (1 + e) * speed * float(normal @ down) * normal
+    met = -2 * R * normal
+
+    def thrown(t: float) -> Place | None:
+        before = met - down * ((speed + 0.05 * (hit - t)) * (hit - t))
+        place = before if t < hit else glide(met, speed * down - push, t - hit)
+        return None if LOST < t < back else tuple(place)
+
+    def struck(t: float) -> Place | None:
+        place = np.zeros(2) if t < hit else glide(np.zeros(2), push, t - hit)
+        return None if LOST < t < back else tuple(place)
+
+    tracks = rejoined(follow(clip([thrown, struck], seconds=5.0), R), R)
+    assert len(tracks) == 2
+    for track in tracks:
+        path = thrown if track.sightings[0].y > 0.1 else struck
+        off = [np.hypot(*np.subtract(path(t), (s.x, s.y))) for t, s in zip(
+            track.times, track.sightings, strict=True)]  # fmt: skip
+        assert max(off) < 0.05
+
+
+@pytest.mark.parametrize("aside", [0.3, -0.4])
+def test_a_stone_uncovered_beside_the_way_of_one_that_is_not_seen_again_is_another(aside) -> None:
+    def uncovered(t: float) -> Place | None:
+        return (0.2 + aside, 0.4) if t > 1.8 else None
+
+    tracks = follow(clip([thrown, uncovered]), R)
+    assert len(tracks) == 1  # it is expected about there
+    assert len(rejoined(tracks, R)) == 2
+
+
+def turning(hit: float, lost: float, velocity: tuple[float, float]) -> object:
+    """Way of a stone that comes down, is hit by another one, and is out of sight for long."""
+    came = np.array([0.0, -1.5])
+
+    def path(t: float) -> Place | None:
+        here = glide(np.array([0.2, 3.0]), came, min(t, hit))
+        if t > hit:
+            here = glide(here, np.array(velocity), t - hit)
+        return None if lost < t < 2.8 else tuple(here)
+
+    return path
+
+
+@pytest.mark.parametrize("velocity", [(0.9, -0.4), (-0.5, -0.3), (0.15, -0.1)])
+@pytest.mark.parametrize("hit", [1.1, 1.6, 2.2])
+def test_a_stone_may_be_hit_at_any_time_while_it_is_out_of_sight(velocity, hit) -> None:
+    tracks = follow(clip([turning(hit, LOST, velocity)]), R)  # type: ignore[list-item]
+    assert len(rejoined(tracks, R)) == 1
