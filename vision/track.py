@@ -18,6 +18,7 @@ from vision.association.graphic import is_graphic
 from vision.association.late import seen_late
 from vision.association.naming import named_by_motion
 from vision.association.rejoin import rejoined
+from vision.association.strays import without_strays
 from vision.association.watch import Watch
 from vision.detection.appearance import Appearance
 from vision.detection.patch import HANDLE_HEIGHT_SD, handle_radii, is_plain
@@ -121,6 +122,7 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
     seen = watch.finish(cameras)
     other = OTHER if watch.appearance is None else min(OTHER, watch.appearance.other_team)
     tracks = rejoined(follow(seen, disc.radius, *least, other), disc.radius, other)
+    tracks = without_strays(tracks, disc.radius)
     tracks = [track for track in tracks if not is_graphic(track, cameras, disc)]
     tracks = with_handles(tracks, watch.appearance, disc)
     named, rest = named_by_motion(tracks, disc.radius)
