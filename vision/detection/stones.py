@@ -15,10 +15,11 @@ from numpy.typing import NDArray
 
 from data.sheet import STONE, Stone
 from vision.detection.appearance import Appearance
-from vision.detection.measure import CLEARLY, Measures, measure_discs, well_within
+from vision.detection.measure import Measures, measure_discs
 from vision.detection.patch import EFFORT, is_plain
 from vision.detection.placing import placed_by, sightings
 from vision.detection.rays import Look
+from vision.detection.samples import CLEARLY, well_within
 from vision.detection.seek import Bounds, Candidates, seek
 from vision.detection.sighting import Refusal, Sighting
 from vision.film.picture import Picture

@@ -80,7 +80,7 @@ def test_half_a_stone_on_one_side_says_more_than_more_of_it_here_and_there() -> 
 def test_to_a_whole_stone_that_says_nothing_more(monkeypatch: pytest.MonkeyPatch) -> None:
     learned = learn(search_picture(PICTURE, VIEW).stones)
     seen = measure_discs([Look(PICTURE, VIEW, PLACES)], learned, STONE).evidence
-    monkeypatch.setattr("vision.detection.measure.ON_ONE_SIDE", (1.0, 1.0))
+    monkeypatch.setattr("vision.detection.evidence.ON_ONE_SIDE", (1.0, 1.0))
     without = measure_discs([Look(PICTURE, VIEW, PLACES)], learned, STONE).evidence
     np.testing.assert_array_equal(seen, without)
 
@@ -146,7 +146,7 @@ def test_seen_aslant_a_light_mark_beside_the_rim_hardly_draws_a_cap_aside(
         return np.hypot(*(centres[0] - centres[1]).T)
 
     middle = aside()
-    monkeypatch.setattr("vision.detection.measure.ASLANT", (8.0, 9.0))
+    monkeypatch.setattr("vision.detection.edges.ASLANT", (8.0, 9.0))
     whole = aside()
     assert middle[1] < 0.6 * whole[1]
     np.testing.assert_allclose(middle[[0, 2]], 0, atol=2e-5)
