@@ -60,7 +60,13 @@ def command_line(version: str) -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"curlshot {version}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
-    run_ = _command(
+    for add in (_run, _track, _check, _estimate, _season, _convert, _simulate):
+        add(commands)
+    return parser
+
+
+def _run(commands: Any) -> None:
+    parser = _command(
         commands,
         "run",
         "the whole road: clip or tracks to e, μ, simulation and report",
@@ -82,61 +88,69 @@ def command_line(version: str) -> argparse.ArgumentParser:
         "  curlshot run shot.trz --clip --camera shot.trz   the same, by its own calibration\n"
         "  curlshot run old/tracks.csv                      earlier tracks\n",
     )
-    run_.add_argument("inputs", nargs="*", metavar="INPUT", help="clip, pictures or tables")
-    clip_options(run_)
-    mass_option(run_)
-    table_options(run_)
-    tab_option(run_)
-    run_.add_argument(
+    parser.add_argument("inputs", nargs="*", metavar="INPUT", help="clip, pictures or tables")
+    clip_options(parser)
+    mass_option(parser)
+    table_options(parser)
+    tab_option(parser)
+    parser.add_argument(
         "--clip",
         action="store_true",
         help="measure the clip of a Tracker project, not what is marked in it",
     )
-    assumption_options(run_)
-    units_option(run_)
-    run_.add_argument(
+    assumption_options(parser)
+    units_option(parser)
+    parser.add_argument(
         "--no-overlay", action="store_true", help="do not write the annotated clip overlay.mp4"
     )
 
-    track_ = _command(
+
+def _track(commands: Any) -> None:
+    parser = _command(
         commands,
         "track",
         "clip to tracks.csv and camera.csv only",
         "  curlshot track shot.mp4 -o shot\n"
         "  curlshot track shot.mp4 --camera earlier/camera.csv\n",
     )
-    track_.add_argument("inputs", nargs="+", metavar="CLIP", help="a video or pictures")
-    clip_options(track_)
-    tab_option(track_)
+    parser.add_argument("inputs", nargs="+", metavar="CLIP", help="a video or pictures")
+    clip_options(parser)
+    tab_option(parser)
 
-    check_ = _command(
+
+def _check(commands: Any) -> None:
+    parser = _command(
         commands,
         "check",
         "a contact sheet: can the camera and the stones found in this clip be trusted?",
         "  curlshot check shot.mp4                  shot-curlshot/check.png\n"
         "  curlshot check shot.mp4 --house 640,360,460,360,640,180\n",
     )
-    check_.add_argument("inputs", nargs="+", metavar="CLIP", help="a video or pictures")
-    clip_options(check_)
-    tab_option(check_)
+    parser.add_argument("inputs", nargs="+", metavar="CLIP", help="a video or pictures")
+    clip_options(parser)
+    tab_option(parser)
 
-    estimate_ = _command(
+
+def _estimate(commands: Any) -> None:
+    parser = _command(
         commands,
         "estimate",
         "tracks to results.json",
         "  curlshot estimate shot/tracks.csv\n"
         "  curlshot estimate pucks.csv --length-unit cm --radius 0.035 --mass A=32 --mass B=30\n",
     )
-    estimate_.add_argument("inputs", nargs="+", metavar="TRACKS", help="tables of tracks")
-    radius_option(estimate_)
-    mass_option(estimate_)
-    table_options(estimate_)
-    tab_option(estimate_)
-    assumption_options(estimate_)
-    units_option(estimate_)
-    estimate_.add_argument("--fps", type=values.positive, help="rate of a table without times, 1/s")
+    parser.add_argument("inputs", nargs="+", metavar="TRACKS", help="tables of tracks")
+    radius_option(parser)
+    mass_option(parser)
+    table_options(parser)
+    tab_option(parser)
+    assumption_options(parser)
+    units_option(parser)
+    parser.add_argument("--fps", type=values.positive, help="rate of a table without times, 1/s")
 
-    season_ = _command(
+
+def _season(commands: Any) -> None:
+    parser = _command(
         commands,
         "season",
         "e and μ of many shots together, from the folders of their runs",
@@ -147,9 +161,11 @@ def command_line(version: str) -> argparse.ArgumentParser:
         "shots.csv, hits.csv, season.json and season.png.\n",
         usual="season",
     )
-    season_.add_argument("runs", nargs="+", metavar="RUN", help="folder of a run, or of runs")
+    parser.add_argument("runs", nargs="+", metavar="RUN", help="folder of a run, or of runs")
 
-    convert_ = _bare_command(
+
+def _convert(commands: Any) -> None:
+    parser = _bare_command(
         commands,
         "convert",
         "tracks into another form, by the ending of OUT",
@@ -163,19 +179,21 @@ def command_line(version: str) -> argparse.ArgumentParser:
         "  curlshot convert season/*.trk .csv               each to a table beside it\n"
         "  curlshot convert season/*.trz tables/.csv        or in another folder\n",
     )
-    convert_.add_argument("inputs", nargs="+", metavar="IN", help="tables of tracks, projects")
-    convert_.add_argument(
+    parser.add_argument("inputs", nargs="+", metavar="IN", help="tables of tracks, projects")
+    parser.add_argument(
         "out",
         metavar="OUT",
         help="a name that ends with .txt, .csv, .parquet, .trk or .trz; or only the ending, for a"
         " file of its own for each IN",
     )
-    convert_.add_argument("--over", metavar="CLIP", help="the clip that a project shows")
-    table_options(convert_)
-    tab_option(convert_)
-    convert_.add_argument("--fps", type=values.positive, help="rate of a table without times, 1/s")
+    parser.add_argument("--over", metavar="CLIP", help="the clip that a project shows")
+    table_options(parser)
+    tab_option(parser)
+    parser.add_argument("--fps", type=values.positive, help="rate of a table without times, 1/s")
 
-    simulate_ = _command(
+
+def _simulate(commands: Any) -> None:
+    parser = _command(
         commands,
         "simulate",
         "a shot of your own, or a measured one with something changed, and where it ends",
@@ -211,18 +229,15 @@ def command_line(version: str) -> argparse.ArgumentParser:
         "  omega = 1.5708             # rigid-body also needs omega_after\n",
         usual="NAME-curlshot; of a measured shot RUN-whatif",
     )
-    simulate_.add_argument(
+    parser.add_argument(
         "shot",
         metavar="SHOT",
         type=Path,
         help="SHOT.toml, or the folder of a run, or its results.json",
     )
-    simulate_.add_argument(
-        "--fps", type=values.positive, default=25.0, help="samples per second (25)"
-    )
-    simulate_.add_argument("--json", action="store_true", help="print the outcome as JSON")
-    what_if_options(simulate_)
-    return parser
+    parser.add_argument("--fps", type=values.positive, default=25.0, help="samples per second (25)")
+    parser.add_argument("--json", action="store_true", help="print the outcome as JSON")
+    what_if_options(parser)
 
 
 def _command(
