@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
@@ -92,13 +93,16 @@ def spread_figure(
     own = outcomes["stone"] == thrown
     # A stone that nothing touched lies where it lay.
     shown = outcomes[own | (outcomes["hits"] > 0)]
-    off = 1 - shown.groupby("stone")["in_play"].mean()
     places = {
         str(name): group.loc[group["in_play"] == 1, ["x", "y"]].to_numpy(float)
         for name, group in shown.groupby("stone", sort=True)
     }
-    struck = [name for name in places if name != thrown]
-    low, high = _corners([places[name] for name in (thrown, *struck)], before, thrown, radius)
+    gone = {
+        str(name): 1 - share for name, share in shown.groupby("stone")["in_play"].mean().items()
+    }
+    ends, throws = places.pop(thrown), int(own.sum())
+    lying = {name: place for name, place in before.items() if name != thrown}
+    low, high = _corners([ends, *places.values()], [*lying.values()], radius)
     colours = stone_colours(outcomes["stone"].unique())
     wide, tall = high - low
     width = 7.0
@@ -107,59 +111,71 @@ def spread_figure(
         ax = figure.subplots()
         if curling_size(radius):
             draw_house(ax, HOUSE, low, high)
-        ends = places[thrown]
-        throws = int(own.sum())
-        if throws < FEW:
-            ax.plot(*ends.T, ".", color=BLACK, ms=4, mew=0, zorder=7)
-        elif len(ends):
-            share, across, along = _density(ends, low, high, throws)
-            heat = ax.pcolormesh(
-                across, along, np.ma.masked_less(share, 0.01 * share.max()), cmap="viridis_r",
-                alpha=0.75, lw=0, rasterized=True, zorder=2,
-            )  # fmt: skip
-            bar = figure.colorbar(heat, ax=ax, shrink=0.6, pad=0.01)
-            bar.set_label(f"where {plain_text(thrown)} ends, % of throws on 10 cm × 10 cm")
-        for name in struck:
-            dots = places[name][:MOST_DOTS]
+        label = f"where {plain_text(thrown)} ends, % of throws on 10 cm × 10 cm"
+        _draw_ends(ax, ends, throws, (low, high), radius, label)
+        for name, struck in places.items():
+            dots = struck[:MOST_DOTS]
             ax.plot(*dots.T, ".", color=colours[name], ms=2.5, alpha=0.6, mew=0, zorder=3)
-        for name, place in before.items():
-            if name != thrown:
-                ax.add_patch(Circle(place, radius, fc="white", ec=colours[name], lw=1.4, zorder=4))
-                ax.text(
-                    *place, plain_text(name), color=colours[name], weight="bold", fontsize=8,
-                    ha="center", va="center", zorder=5, clip_on=True,
-                )  # fmt: skip
-        if len(ends) > 1:
-            middle = np.median(ends, axis=0)
-            ring = Circle((middle[0], middle[1]), radius, fill=False, ec=BLACK, lw=1.4, zorder=6)
-            ax.add_patch(ring)
+        for name, place in lying.items():
+            ax.add_patch(Circle(place, radius, fc="white", ec=colours[name], lw=1.4, zorder=4))
+            ax.text(
+                *place, plain_text(name), color=colours[name], weight="bold", fontsize=8,
+                ha="center", va="center", zorder=5, clip_on=True,
+            )  # fmt: skip
         ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
         ax.set(xlabel="$x$ (m)", ylabel="$y$ (m)")
         ax.grid(False)
         figure.suptitle(plain_text(title), x=0.01, ha="left", fontsize=10, fontweight="bold")
-        circle: dict[str, Any] = {"marker": "o", "ls": "none", "mfc": "none"}
-        name, handles = plain_text(thrown), list[Artist]()
-        if not len(ends):
-            handles.append(Line2D([], [], ls="none", label=f"{name} always leaves the sheet"))
-        elif throws < FEW:
-            label = f"where {name} ends{_gone(off[thrown])}"
-            handles.append(Line2D([], [], color=BLACK, marker=".", ls="none", label=label))
-        if len(ends) > 1:
-            gone = _gone(off[thrown]) if throws >= FEW else ""
-            handles.append(Line2D([], [], mec=BLACK, label=f"median of {name}{gone}", **circle))
-        lying = [place for name, place in before.items() if name != thrown]
-        if _shows(low, high, np.array(lying).reshape(-1, 2)):
-            handles.append(Line2D([], [], mec=GREY, label="as it lay before", **circle))
+        handles = _of_thrown(plain_text(thrown), len(ends), throws, gone[thrown])
+        if _shows(low, high, np.array([*lying.values()]).reshape(-1, 2)):
+            handles.append(_ring(GREY, "as it lay before"))
         handles += [
-            Line2D(
-                [], [], color=colours[name], marker=".", ls="none",
-                label=f"{plain_text(name)} where hit{_gone(off[name])}",
-            )
-            for name in struck
-            if off[name] > 0 or _shows(low, high, places[name])
-        ]  # fmt: skip
+            _dots(colours[name], f"{plain_text(name)} where hit{_gone(gone[name])}")
+            for name, struck in places.items()
+            if gone[name] > 0 or _shows(low, high, struck)
+        ]
         legend_below(figure, handles)
     return figure
+
+
+def _draw_ends(
+    ax: Axes, ends: Array, throws: int, corners: tuple[Array, Array], radius: float, label: str
+) -> None:
+    """Draw where a stone ends that was thrown so many times, and its usual place."""
+    if throws < FEW:
+        ax.plot(*ends.T, ".", color=BLACK, ms=4, mew=0, zorder=7)
+    elif len(ends):
+        share, across, along = _density(ends, *corners, throws)
+        heat = ax.pcolormesh(
+            across, along, np.ma.masked_less(share, 0.01 * share.max()), cmap="viridis_r",
+            alpha=0.75, lw=0, rasterized=True, zorder=2,
+        )  # fmt: skip
+        bar = ax.figure.colorbar(heat, ax=ax, shrink=0.6, pad=0.01)
+        bar.set_label(label)
+    if len(ends) > 1:
+        middle = np.median(ends, axis=0)
+        ring = Circle((middle[0], middle[1]), radius, fill=False, ec=BLACK, lw=1.4, zorder=6)
+        ax.add_patch(ring)
+
+
+def _of_thrown(name: str, ends: int, throws: int, gone: float) -> list[Artist]:
+    """Say what is drawn of the thrown stone, which came to rest on the sheet `ends` times."""
+    if not ends:
+        return [Line2D([], [], ls="none", label=f"{name} always leaves the sheet")]
+    handles: list[Artist] = []
+    if throws < FEW:
+        handles.append(_dots(BLACK, f"where {name} ends{_gone(gone)}"))
+    if ends > 1:
+        handles.append(_ring(BLACK, f"median of {name}{_gone(gone) if throws >= FEW else ''}"))
+    return handles
+
+
+def _dots(colour: str, label: str) -> Line2D:
+    return Line2D([], [], color=colour, marker=".", ls="none", label=label)
+
+
+def _ring(colour: str, label: str) -> Line2D:
+    return Line2D([], [], mec=colour, marker="o", ls="none", mfc="none", label=label)
 
 
 def _gone(share: float) -> str:
@@ -168,7 +184,7 @@ def _gone(share: float) -> str:
 
 
 def _corners(
-    ends: list[Array], before: Mapping[str, tuple[float, float]], thrown: str, radius: float
+    ends: list[Array], lying: list[tuple[float, float]], radius: float
 ) -> tuple[Array, Array]:
     """Corners of what is shown, m: the house, the stones and nearly all of the outcomes.
 
@@ -178,7 +194,6 @@ def _corners(
     at_home = bool((np.abs(middle) < FARTHEST).all())
     centre = np.zeros(2) if at_home else middle
     rim = radius + (HOUSE.twelve_foot if curling_size(radius) else 0.0)
-    lying = [place for name, place in before.items() if name != thrown]
     parts = [np.array([[-rim, -rim], [rim, rim]]) + centre, np.array(lying).reshape(-1, 2)]
     parts += [np.quantile(places, [1 - SHARE, SHARE], axis=0) for places in ends if len(places)]
     shown = np.clip(np.concatenate(parts), centre - FARTHEST, centre + FARTHEST)
