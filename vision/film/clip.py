@@ -134,7 +134,7 @@ class Clip:
         container, pictures = _opened(self.files[0])
         with container:
             container.streams.video[0].codec_context.skip_frame = "NONINTRA"
-            yield from (picture for _, picture in pictures)
+            yield from (one for _, one in pictures if one.shape[1::-1] == self.size)
 
     def _warn(self, text: str) -> None:
         if text not in self.warnings:

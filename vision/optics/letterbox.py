@@ -55,9 +55,22 @@ class LitClip(Clip):
 
     def __iter__(self) -> Iterator[Frame]:
         """Yield the frames in order, without the bars."""
+        hidden = False
         for frame in self.whole:
             self.read = self.whole.read
+            if not hidden and self._hides(frame.picture):
+                hidden = True
+                self._warn(
+                    f"{self.files[0]}: black bars are cut off, but frame {frame.index} shows"
+                    " something there; give the frames of the shot alone (--frames)"
+                )
             yield Frame(frame.index, frame.t, without_bars(frame.picture, self.bars))
+
+    def _hides(self, picture: Picture) -> bool:
+        """Whether a picture, which may not have been asked, shows something to its borders."""
+        values = _values(picture)
+        lit = _lit(values[:, [0, -1]]).mean(0), _lit(values[[0, -1]]).mean(1)
+        return any(bar and ends.max() > SHARE for bar, ends in zip(self.bars, lit, strict=True))
 
 
 def lit_clip(clip: Clip, progress: Progress = no_progress) -> Clip:
@@ -102,8 +115,18 @@ def _inner(values: Image, aside: int, above: int) -> Image:
 
 def _shown(picture: Picture) -> tuple[Flags, Flags]:
     """Which columns and which rows of a picture show something."""
-    seen = picture.luma > BLACK_LUMA if isinstance(picture, Planes) else picture.max(2) > BLACK
-    return seen.mean(0) > SHARE, seen.mean(1) > SHARE
+    lit = _lit(_values(picture))
+    return lit.mean(0) > SHARE, lit.mean(1) > SHARE
+
+
+def _values(picture: Picture) -> Image:
+    """Luma, or blue, green and red, of a picture."""
+    return picture.luma if isinstance(picture, Planes) else picture
+
+
+def _lit(values: Image) -> Flags:
+    """Which pixels are not black."""
+    return np.asarray(values > BLACK_LUMA if values.ndim == 2 else values.max(2) > BLACK)
 
 
 def _together(shown: tuple[Flags, Flags], pictures: Iterable[Picture]) -> tuple[Flags, Flags]:

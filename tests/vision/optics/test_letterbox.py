@@ -38,7 +38,8 @@ def barred(picture: Image, left: int, right: int, above: int = 0) -> Image:
 def video(path: Path, pictures: Sequence[Image], crf: int = 28) -> Clip:
     with av.open(str(path), "w") as container:
         stream = container.add_stream("libx264", rate=25)
-        stream.width, stream.height, stream.pix_fmt = W, H, "yuv420p"
+        stream.height, stream.width = pictures[0].shape[:2]
+        stream.pix_fmt = "yuv420p"
         stream.options = {"crf": str(crf)}
         for k, picture in enumerate(pictures):
             frame = av.VideoFrame.from_ndarray(picture, format="bgr24")
@@ -65,7 +66,7 @@ def test_bars_are_cut_off(tmp_path: Path, crf: int, traces: int) -> None:
         assert isinstance(whole.picture, Planes)
         same = replace(whole.picture, frame=None).image[:, aside : W - aside].astype(int)
         np.testing.assert_allclose(part.image[:, 2:-2], same[:, 2:-2], atol=1)
-    assert lit.read == 5
+    assert lit.read == 5 and not lit.warnings
 
 
 def test_bars_are_told_by_few_pictures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -80,6 +81,26 @@ def test_of_a_part_of_a_clip_all_pictures_are_asked(tmp_path: Path) -> None:
     whole = video(tmp_path / "clip.mp4", [*bars, *[scene(1)] * 20])
     assert lit_clip(open_clip(whole.files, frames=(0, 29))).size[0] < W
     assert len(list(open_clip(whole.files, frames=(25, 34)).key_pictures())) == 10
+
+
+def test_pictures_of_another_size_have_no_say(tmp_path: Path) -> None:
+    paths = [tmp_path / f"{size}.ts" for size in (1, 2)]
+    video(paths[0], [barred(scene(0), 110, 110)] * 3)
+    video(paths[1], [barred(scene(0), 110, 110)[: H // 2]] * 3)
+    paths[0].write_bytes(b"".join(path.read_bytes() for path in paths))
+    lit = lit_clip(open_clip(paths[:1]))
+    assert lit.size[0] < W and len(list(lit)) == 3
+
+
+def test_bars_that_give_way_between_the_pictures_that_are_asked_are_told_of(tmp_path: Path) -> None:
+    fading = [cv2.addWeighted(barred(scene(0), 110, 110), 1 - k, scene(0), k, 0.0)
+              for k in np.linspace(0, 1, 20)]  # fmt: skip
+    lit = lit_clip(video(tmp_path / "clip.mp4", fading))
+    assert isinstance(lit, LitClip) and not lit.warnings
+    assert len(list(lit)) == 20
+    (warning,) = lit.warnings
+    assert "bars" in warning and "--frames" in warning
+    assert lit_clip(open_clip(lit.files, frames=(0, 19))).size == (W, H)
 
 
 def test_above_and_below_and_of_pictures(tmp_path: Path) -> None:
