@@ -46,8 +46,8 @@ FAR_FLANK = 0.25
 there, and where so wide a step falls most is chance: by up to 16 mm inside the level half-way."""
 
 OPEN, NEAR = 0.75, 0.02
-"""Share of a stone to be seen for that, and how near to where it is looked for, m: of one half
-covered, or not yet come upon, whole steps tell more."""
+"""Share of a stone to be seen for that, but for the granite that hides behind its cap, and how near
+to where it is looked for, m: of one half covered, or not yet come upon, whole steps tell more."""
 
 ASLANT = 0.35, 0.6
 """Slants of the view from which on and up to which the middle of the step takes the place of the
@@ -150,7 +150,10 @@ def fit_edges(
     leaning = np.clip((np.hypot(*views.slant.T) - ASLANT[0]) / (ASLANT[1] - ASLANT[0]), 0.0, 1.0)
     dark = _without_hue(appearance) & (leaning > 0) & _dark(samples)
     leaning[dark] = 1.0
-    clear = np.flatnonzero((visible > OPEN) & (leaning > 0) & bool(appearance.caps))
+    # Of granite that hides behind its cap nothing can be seen.
+    hides = views.behind(effort.rays) > HIDDEN[0]
+    unhidden = (np.where(hides, samples.capped, samples.stony) & cap.inside).mean(1)
+    clear = np.flatnonzero((unhidden > OPEN) & (leaning > 0) & bool(appearance.caps))
     signal = _against_mixtures(samples, rays, over, views, clear, dark, cap.radius, disc)
     fit, exact = _fits(signal, rays, (cap, granite), views, clear, appearance, effort)
     near = exact.ok & (np.hypot(fit.shift[clear, 0], fit.shift[clear, 1]) < NEAR)
@@ -239,13 +242,14 @@ def _against_mixtures(
 ) -> Floats:
     """Say what steps between cap and what is beside it, where that is not granite alone.
 
-    Of caps that hide their granite it is what lies beyond; of dark ones, what their pixels mix.
+    Of caps that hide their granite, and of dark ones, it is what their pixels mix.
     """
     behind, signal = views.behind(rays.inside.shape[1]), samples.signal.copy()
     steep = clear[(behind[clear] > HIDDEN[0]).any(1) & ~dark[clear]]
     if len(steep):
         signal[steep] = against_beyond(
-            signal[steep], over.at_places(steep), behind[steep], samples.of_cap[steep], disc,
+            signal[steep], rays.at_places(steep), over.at_places(steep), behind[steep],
+            samples.of_cap[steep], (samples.in_ring, samples.of_ring[steep]), disc, cap_radius,
             views.pixel[steep],
         )  # fmt: skip
     mixed = clear[dark[clear]]

@@ -9,6 +9,8 @@ before it is coded, which draws the edges of dark caps inwards by some tenths of
 
 from __future__ import annotations
 
+from math import erf, sqrt
+
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
@@ -68,15 +70,58 @@ def light_of(bgr: Bytes) -> Array:
 _LIGHT = (np.arange(256) / 255) ** GAMMA
 
 
-def _past(blurs: Array) -> Array:
-    """Share of a blurred place past an edge, of which its middle is as many blurs past."""
-    from scipy.special import ndtr  # loads for .3 s, for clips with such caps alone
+_BLURS = np.linspace(-4, 4, 321)
+_PAST = np.array([0.5 + 0.5 * erf(blurs / sqrt(2)) for blurs in _BLURS])
 
-    return np.asarray(ndtr(blurs))
+
+def past(blurs: Array) -> Array:
+    """Share of a blurred place past an edge, of which its middle is as many blurs past."""
+    return np.asarray(np.interp(blurs, _BLURS, _PAST))
+
+
+def around(radii: Array, radius: float) -> Array:
+    """How far beyond an edge samples of a ray lie, m, and ASIDE more before and after them."""
+    step = float(radii[1] - radii[0])
+    return np.asarray(radii[0] - radius + step * np.arange(-ASIDE, len(radii) + ASIDE))
+
+
+def moved(model: Array, seen: Array, used: Flags) -> tuple[Array, Array]:
+    """Find how far models must be moved outwards to be what is seen on m rays: by least squares.
+
+    Parameters
+    ----------
+    model : ndarray, shape (m, channels, radii + 2 · ASIDE)
+        Of the samples, and of as many more on either side as it may be moved.
+    seen : ndarray, shape (m, channels, radii)
+    used : ndarray of bool, shape (m, radii)
+        Samples that count.
+
+    Returns
+    -------
+    samples, misfit : ndarray, shape (m,)
+        How far, by parts of samples, and the mean square of what is left, summed over channels.
+    """
+    each, some = np.arange(len(seen)), np.flatnonzero(used.any(0))
+    part = slice(some[0], some[-1] + 1) if len(some) else slice(0, 1)
+    seen, used = seen[:, :, part], used[:, part]
+    model = model[:, :, part.start : part.stop + 2 * ASIDE]
+    at = sliding_window_view(model, seen.shape[-1], axis=2)[:, :, ::-1]  # by -ASIDE to ASIDE
+    left = (((at - seen[:, :, None]) ** 2).sum(1) * used[:, None]).sum(-1)
+    left /= np.maximum(used.sum(-1), 1)[:, None]
+    best = left.argmin(1).clip(1, 2 * ASIDE - 1)
+    before, least, after = (left[each, best + k] for k in (-1, 0, 1))
+    curve = np.maximum(before - 2 * least + after, 1e-12)
+    return best - ASIDE + np.clip(0.5 * (before - after) / curve, -1.0, 1.0), least
 
 
 def _coded(light: Array) -> Array:
     return np.asarray(np.maximum(light, 0.0) ** (1 / GAMMA))
+
+
+def granite_seen(slant: Array, disc: Stone) -> tuple[Array, Array]:
+    """Say how much granite is seen beyond a cap, m: on slim shoulders and on full ones."""
+    narrower = (disc.radius - disc.cap_radius) / (STONE.radius - STONE.cap_radius)
+    return narrower * np.interp(slant, *SLIM), narrower * np.interp(slant, *FULL)
 
 
 def by_light(
@@ -126,14 +171,13 @@ def by_light(
     place, ray = np.nonzero(behind > SLANT)
     slant = behind[place, ray]
     along = pixel[place] * (1 + slant**2) ** 0.25  # `pixel` is the mean of its two sides
-    narrower = (disc.radius - disc.cap_radius) / (STONE.radius - STONE.cap_radius)
-    strips = [narrower * np.interp(slant, *shape) for shape in (SLIM, FULL)]
+    strips = granite_seen(slant, disc)
     at, told = _ends(
         light_of(over.bgr[place, ray]), over.inside[place, ray], rays.radius, granite[place],
-        (strips[0], strips[1]), along, radius, place,
+        strips, along, radius, place,
     )  # fmt: skip
-    past = (rays.radius - at[told, None]) / (BLUR * along[told, None])
-    signal[place[told], ray[told]] = 0.5 - _past(past)
+    blurs = (rays.radius - at[told, None]) / (BLUR * along[told, None])
+    signal[place[told], ray[told]] = 0.5 - past(blurs)
     return signal
 
 
@@ -164,22 +208,16 @@ def _ends(
     cap = np.median(light[:, low:high], axis=1)
     steps = np.maximum(np.abs(_coded(np.stack([beyond, granite])) - _coded(cap)).max(0), 1e-3)
     used = inside & (radii > radius - WITHIN) & (radii < (radius + strips[1] + along)[:, None])
-    count = np.maximum(used.sum(-1), 1)
-    seen = _coded(light)
-    past = radii[0] - radius + step * np.arange(-ASIDE, len(radii) + ASIDE)
+    seen = _coded(light)[:, None]
+    beside = around(radii, radius)
     c, g, b = (part[:, None] for part in (cap, granite, beyond))
     blur = BLUR * along[:, None]
     at, misfit = [], []
     for full in FULLNESS:
         strip = (strips[0] + full * (strips[1] - strips[0]))[:, None]
-        mixed = _coded(c + (g - c) * _past(past / blur) + (b - g) * _past((past - strip) / blur))
-        moved = sliding_window_view(mixed, len(radii), axis=1)[:, ::-1]  # by -ASIDE to ASIDE
-        left = (((moved - seen[:, None]) ** 2) * used[:, None]).sum(-1) / count[:, None]
-        best = left.argmin(1).clip(1, 2 * ASIDE - 1)
-        before, least, after = (left[each, best + k] for k in (-1, 0, 1))
-        curve = np.maximum(before - 2 * least + after, 1e-12)
-        vertex = np.clip(0.5 * (before - after) / curve, -1.0, 1.0)
-        at.append(radius + step * (best - ASIDE + vertex))
+        mixed = c + (g - c) * past(beside / blur) + (b - g) * past((beside - strip) / blur)
+        samples, least = moved(_coded(mixed)[:, None], seen, used)
+        at.append(radius + step * samples)
         misfit.append(least / steps**2)
     _, row = np.unique(place, return_inverse=True)
     square = np.stack([np.bincount(row, one) / np.bincount(row) for one in misfit])

@@ -1,9 +1,11 @@
-"""Where a cap ends whose far shoulder hides behind it: against what lies beyond, not its granite.
+"""Where a cap with a hue ends whose granite hides behind it: by a model of what its pixels mix.
 
-Steeply aslant no granite shows at the far edge of a cap: ice or paint follows at once. Half-way
+Steeply aslant hardly any granite shows at the far edge of a cap, and ice or paint follows. Half-way
 from the cap to its granite is no edge there: of a cap before dark paint that level lies inside it,
-by up to half a pixel, which aslant is 5 to 10 mm. Codes are compared, not the light that they stand
-for: colours are blurred most by being coded half as finely as lightness, and that mixes codes.
+by up to half a pixel, which aslant is 5 to 10 mm. Nor is half-way to what lies beyond: a pixel off
+a cap its hue still tinges that, and the granite between shows before paint, but not before ice,
+which is as grey. Codes are compared, not the light that they stand for: colours are blurred most by
+being coded half as finely as lightness, and that mixes codes.
 """
 
 from __future__ import annotations
@@ -13,75 +15,104 @@ from numpy.typing import NDArray
 
 from data.sheet import Stone
 from vision.detection.contrast import mean_colours
+from vision.detection.mixture import INNER, WITHIN, around, granite_seen, moved, past
 from vision.detection.rays import Rays
+from vision.film.picture import TO_CHROMA
 
 Array = NDArray[np.float64]
+Bytes = NDArray[np.uint8]
 Floats = NDArray[np.float32]
 Flags = NDArray[np.bool_]
 
 HIDDEN = 0.85, 1.0
 """Slants along a ray from which on, and from which on surely, granite hides behind the cap."""
 
-MIXED = 0.15, 0.25
-"""How far what lies between a cap and what is beyond may be from any mixture of both, in steps from
-one to the other, and from where on it is a colour of its own: granite that shows after all."""
+BLUR = np.array([0.75, 1.25, 1.25])
+"""Standard deviations of what blurs luma and both chromas, px: a pixel, a lens, a codec, and
+samples of chroma for two pixels. Beyond caps of drawn clips .11 of the cap's chroma is left at 1.2
+pixels, .05 at 1.8."""
 
-BEGIN, REACH = 0.9, 1.2
-"""Where that is looked at: from so many radii of the cap on, up to so many pixels beyond it. Colour
-is coded half as finely as lightness: nearer than that, what is beyond still looks like the cap."""
+FULL = 0.5
+"""How far from slim to full shoulders the granite is taken to show: between what is known of real
+stones and the slimmest that are drawn. What is not so moves a place by some mm, but everywhere
+alike; told anew at each place, it would change with what lies beyond."""
+
+BEYOND = 1.6
+"""How many pixels past such granite a ray shows what lies beyond it alone."""
+
+MISFIT = 0.15, 0.3
+"""Root mean square of what is left, as a share of the step, from which on and from which on surely
+a ray shows something else: a handle that stands up before the edge, a line, another stone."""
 
 LEAST = 36.0
-"""Difference of colours, codes, below which nothing tells a cap from what is there."""
+"""Difference of luma and chromas, codes, below which nothing tells a cap from what is there."""
 
 
 def against_beyond(
-    signal: Floats, rays: Rays, behind: Array, of_cap: Flags, disc: Stone, pixel: Array
-) -> Floats:
-    """Say how much of a cap is on rays about n places, where nothing of its granite is.
+    signal: Floats, rays: Rays, over: Rays, behind: Array, of_cap: Flags,
+    of_ring: tuple[slice, Flags], disc: Stone, radius: float, pixel: Array,
+) -> Floats:  # fmt: skip
+    """Say how much of a cap is on rays about n places, where it hides its granite.
 
     Parameters
     ----------
     signal : ndarray, shape (n, rays, radii)
         0.5 on the cap, −0.5 on its granite.
-    rays : Rays
-        That stay at the height of the cap (`vision.detection.patch.over_caps`).
+    rays, over : Rays
+        Such as fall off with the granite, and such as stay at the height of the cap
+        (`vision.detection.patch.over_caps`).
     behind : ndarray, shape (n, rays)
         Slant of the view along each ray, above 0 on the far side.
     of_cap : ndarray of bool, shape (n, rays, well within the cap)
         Samples that show the cap.
+    of_ring : slice, ndarray of bool, shape (n, rays, well within the granite)
+        Where those are that may be granite, and which of them are.
     disc : Stone
         Size of the stones.
+    radius : float
+        Where caps are seen to end, m.
     pixel : ndarray, shape (n,)
         How long a pixel is there, m.
 
     Returns
     -------
     ndarray, shape (n, rays, radii)
-        The same, but on rays that look over the cap −0.5 on what lies beyond.
+        The same, but on rays that look over the cap −0.5 on whatever is beyond its edge.
     """
     place, ray = np.nonzero(behind > HIDDEN[0])
     if not len(place):
         return signal
-    rows, row = np.unique(place, return_inverse=True)
-    inner = rays.bgr[rows][:, :, : of_cap.shape[-1]].astype(np.float32)
-    cap = mean_colours(inner, of_cap[rows].astype(np.float32))[row].astype(np.float32)
+    at_ring, of_ring_ = of_ring
+    cap = _mean(rays.bgr[:, :, : of_cap.shape[-1]], of_cap)[place]
+    granite = _mean(rays.bgr[:, :, at_ring], of_ring_)[place]
+    slant, radii = behind[place, ray], rays.radius
     # `pixel` is the mean of its two sides: along the slant it is so much longer.
-    along = pixel[place] * (1 + behind[place, ray] ** 2) ** 0.25
-    radius = rays.radius
-    end = np.searchsorted(radius, disc.cap_radius + REACH * along).clip(max=len(radius) - 1)
-    seen = rays.bgr[place, ray].astype(np.float32)
-    each = np.arange(len(place))
-    beyond = seen[each, end]
-    apart, over = cap - beyond, seen - beyond[:, None]
-    size = np.maximum((apart**2).sum(1), LEAST**2)[:, None]
-    share = (over @ apart[..., None])[..., 0] / size
-    odd = np.sqrt(((over - share[..., None] * apart[:, None]) ** 2).sum(-1) / size)
-    past = np.arange(len(radius)) >= end[:, None]
-    worst = np.where(past | (radius < BEGIN * disc.cap_radius), 0.0, odd).max(1)
-    odd_at = np.array([np.median(worst[row == k]) for k in range(len(rows))])[row]
-    share[past] = 0
-    trust = np.interp(behind[place, ray], HIDDEN, (0, 1)) * np.interp(odd_at, MIXED, (1, 0))
-    trust *= rays.inside[place, ray, end] & (size[:, 0] > LEAST**2)
+    along = pixel[place] * (1 + slant**2) ** 0.25
+    slim, full = granite_seen(slant, disc)
+    strip = slim + FULL * (full - slim)
+    end = np.searchsorted(radii, radius + full + BEYOND * along).clip(max=len(radii) - 1)
+    seen = np.swapaxes(over.bgr[place, ray] @ TO_CHROMA.T, 1, 2)
+    beyond = seen[np.arange(len(place)), :, end]
+    # Lamps and the handle lighten a cap here and there, but its hue is one.
+    low, high = np.searchsorted(radii, np.array(INNER) * radius)
+    cap[:, 0] = np.median(seen[:, 0, low:high], axis=1)
+    inside = over.inside[place, ray]
+    used = inside & (radii > radius - WITHIN) & (np.arange(len(radii)) <= end[:, None])
+    beside, blur = around(radii, radius), (along[:, None] * BLUR)[..., None]
+    ends = (granite - cap)[..., None] * past(beside / blur)
+    ends += (beyond - granite)[..., None] * past((beside - strip[:, None, None]) / blur)
+    samples, least = moved(cap[..., None] + ends, seen, used)
+    at = radius + float(radii[1] - radii[0]) * samples
+    apart = ((cap - beyond) ** 2).sum(1)
+    odd = np.sqrt(least / np.maximum(apart, LEAST**2))
+    trust = np.interp(slant, HIDDEN, (0, 1)) * np.interp(odd, MISFIT, (1, 0))
+    trust *= inside[np.arange(len(place)), end] & (apart > LEAST**2)
+    share = 0.5 - past((radii - at[:, None]) / (BLUR[0] * along[:, None]))
     out = signal.copy()
-    out[place, ray] += trust[:, None].astype(np.float32) * (share - 0.5 - signal[place, ray])
+    out[place, ray] += (trust[:, None] * (share - signal[place, ray])).astype(np.float32)
     return out
+
+
+def _mean(bgr: Bytes, use: Flags) -> Array:
+    """Mean luma and chromas of the samples chosen, shape (n, 3)."""
+    return np.asarray(mean_colours(bgr.astype(np.float32), use.astype(np.float32)) @ TO_CHROMA.T)

@@ -11,7 +11,8 @@ from tests.synthetic.camera import tilted_camera
 from tests.synthetic.clip import render_still
 from tests.vision.detection.test_stones import CAMERA, RED, YELLOW, camera_of, scene_of
 from vision.association.expected import FOLLOWED
-from vision.detection.appearance import BY_SHAPE, Appearance, any_stone, learn
+from vision.detection.appearance import BY_SHAPE, Appearance, Colour, any_stone, learn
+from vision.detection.edges import OPEN
 from vision.detection.measure import Measures, measure_discs
 from vision.detection.patch import EFFORT
 from vision.detection.rays import Look
@@ -109,6 +110,27 @@ def test_light_ice_behind_a_low_shoulder_hardly_counts_against_a_stone() -> None
         seen = measure_discs([Look(behind, camera, place)], any_stone(), STONE)
         evidence.append(seen.evidence[0])
     assert evidence[1] > evidence[0] - 0.4
+
+
+def test_granite_that_hides_behind_its_cap_does_not_count_as_covered() -> None:
+    """Two stones on yellow paint that are told alike, whichever shows a little less granite."""
+    path, places = tilted_camera(np.radians(57), px_per_m=95.0), np.array([[-1.2, 0.9], [1.2, 0.9]])
+    scene = scene_of([(x, y, RED) for x, y in places.tolist()])
+    scene = replace(scene, paint=replace(scene.paint, twelve=(20, 170, 220)))
+    picture, camera = np.asarray(render_still(scene, path), np.uint8), camera_of(path, scene)
+    coded = cv2.cvtColor(picture, cv2.COLOR_BGR2YCrCb)
+    half = cv2.resize(coded, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
+    chroma = cv2.resize(half, picture.shape[1::-1])
+    coded = np.concatenate([coded[..., :1], chroma[..., 1:]], axis=2)
+    picture = np.asarray(cv2.cvtColor(coded, cv2.COLOR_YCrCb2BGR), np.uint8)
+    cap = Colour(np.array([90.0, 180.0, 155.0]), 20 * np.eye(3))
+    learned = Appearance(None, caps=(cap,), own=True, wall=(0.006, 0.002))
+    seen = measure_discs(
+        [Look(picture, camera, places + np.array([0.003, -0.004]))], learned, STONE
+    )
+    assert seen.visible.min() < OPEN
+    off = (seen.centre - places)[:, 1]
+    assert abs(off[0] - off[1]) < 0.003 and np.abs(off).max() < 0.008
 
 
 def test_a_lamp_from_one_side_draws_the_edge_by_lightness_aside() -> None:
