@@ -3,9 +3,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.vision.association.test_follow import RED, YELLOW, Place, R, clip
+from tests.vision.association.test_follow import RED, YELLOW, Place, R, clip, sighting
 from vision.association.follow import follow
-from vision.association.rejoin import rejoined
+from vision.association.rejoin import _Motion, rejoined
 
 LOST, BACK = 1.0, 2.6
 """When the stone goes out of sight, and comes back, s."""
@@ -117,10 +117,14 @@ def test_two_equal_stones_that_meet_out_of_sight_keep_their_names(aside, speed, 
         assert max(off) < 0.05
 
 
-@pytest.mark.parametrize("aside", [0.3, -0.4])
-def test_a_stone_uncovered_beside_the_way_of_one_that_is_not_seen_again_is_another(aside) -> None:
+@pytest.mark.parametrize(
+    ("aside", "y", "back"), [(0.3, 0.4, 1.8), (-0.4, 0.4, 1.8), (0.25, 1.0, 1.5)]
+)
+def test_a_stone_uncovered_beside_the_way_of_one_that_is_not_seen_again_is_another(
+    aside, y, back
+) -> None:
     def uncovered(t: float) -> Place | None:
-        return (0.2 + aside, 0.4) if t > 1.8 else None
+        return (0.2 + aside, y) if t > back else None
 
     tracks = follow(clip([thrown, uncovered]), R)
     assert len(tracks) == 1  # it is expected about there
@@ -140,8 +144,52 @@ def turning(hit: float, lost: float, velocity: tuple[float, float]) -> object:
     return path
 
 
-@pytest.mark.parametrize("velocity", [(0.9, -0.4), (-0.5, -0.3), (0.15, -0.1)])
+@pytest.mark.parametrize("velocity", [(0.9, -0.4), (-0.5, -0.3), (0.15, -0.1), (0.27, 0.0)])
 @pytest.mark.parametrize("hit", [1.1, 1.6, 2.2])
 def test_a_stone_may_be_hit_at_any_time_while_it_is_out_of_sight(velocity, hit) -> None:
     tracks = follow(clip([turning(hit, LOST, velocity)]), R)  # type: ignore[list-item]
     assert len(rejoined(tracks, R)) == 1
+
+
+@pytest.mark.parametrize(("wait", "same", "other"), [(0.4, 0.12, 0.17), (2.0, 0.28, 0.34)])
+def test_a_stone_comes_back_as_near_to_its_way_as_speeds_and_ice_let_it(wait, same, other) -> None:
+    """By 2 cm, 2 cm/s and 0.03 m/s² it may be aside, three and a half times as much at most."""
+
+    def stones(aside: float) -> int:
+        def stopped(t: float) -> Place | None:
+            return (0.2 + aside, 3.0 - 1.4 - (1.4 - 0.05 * wait) * wait)
+
+        seen = [lambda t: thrown(t), lambda t: stopped(t) if t > LOST + wait + 0.3 else None]
+        return len(rejoined(follow(clip(seen, noise=0.0003), R), R))
+
+    assert [stones(aside) for aside in (same, other)] == [1, 2]
+
+
+def test_the_way_on_which_a_stone_is_lost_is_told_by_what_follows_a_hit() -> None:
+    hit, again = LOST - 0.24, LOST + 1.0
+
+    def twice(t: float) -> Place | None:
+        here = glide(np.array([0.2, 3.0]), np.array([0.0, -1.5]), min(t, hit))
+        if t > hit:
+            here = glide(here, np.array([0.9, -0.4]), min(t, again) - hit)
+        if t > again:
+            here = glide(here, np.array([-0.7, -0.3]), t - again)
+        return None if LOST < t < 2.8 else tuple(here)
+
+    assert len(rejoined(follow(clip([twice], noise=0.001), R), R)) == 1
+
+
+@pytest.mark.parametrize(("back", "stones"), [(3.9, 1), (4.2, 2)])
+def test_a_stone_is_waited_for_three_seconds(back, stones) -> None:
+    def guard(t: float) -> Place | None:
+        x = 0.2 + 1.2 * (t - 3.4)
+        return (0.2, 0.4) if t < LOST else (x, 0.4) if t > back else None
+
+    assert len(rejoined(follow(clip([guard], seconds=5.0), R), R)) == stones
+
+
+def test_a_stone_that_comes_to_rest_does_not_turn_round() -> None:
+    places = np.array([(0.1 * t - 0.05 * t**2, 0.0) for t in np.arange(0, 0.21, 0.04)])
+    way = _Motion.of(np.arange(0, 0.21, 0.04), [sighting(tuple(place)) for place in places])
+    assert way.at(np.array([1.0, 2.0, 3.0]))[:, 0] == pytest.approx(0.05, abs=0.01)
+    assert way.at(np.array([-1.0]))[0, 0] == pytest.approx(-0.15, abs=0.02)
