@@ -150,8 +150,8 @@ def _hit_by_hit(shot: Watched, held: Mapping[str, float]) -> GlobalFit:
             ways = [further | dict.fromkeys(none, omega) for omega in (-THROWN, THROWN)]
             best = _best(part, held, ways, best)
         if "stone_friction" in best.names:
-            other = ROUGH if best.told("stone_friction") else 0.0
-            best = _best(part, held, [_values(best) | {"stone_friction": other}], best)
+            ways = [_values(best) | {"stone_friction": other} for other in (0.0, ROUGH)]
+            best = _best(part, held, ways, best)
         start |= _values(best)
     assert best is not None
     return best

@@ -126,15 +126,19 @@ class Watched:
         return max(float(trace.t[-1]) for trace in self.traces.values())
 
     def spinning(self, prior: Estimate) -> Watched:
-        """Expect a spin, rad/s, of the stones that come with one that nobody saw."""
+        """Expect a spin, rad/s, of the stones that come with one that nobody saw.
+
+        Which way its path curls then tells its sense: it curls to the side to which it spins.
+        """
         seen = {spin.stone for spin in self.spins}
-        unknowns = tuple(
-            replace(unknown, guess=float(prior.value or 0.0), prior=prior)
-            if unknown.name.endswith(".omega") and unknown.stone not in seen
-            else unknown
+        expected = {
+            unknown: replace(unknown, guess=float(prior.value or 0.0), prior=prior)
             for unknown in self.unknowns
-        )
-        return replace(self, unknowns=unknowns)
+            if unknown.name.endswith(".omega") and unknown.stone not in seen
+        }
+        if expected:
+            expected |= {u: replace(u, low=0.0) for u in self.unknowns if u.name == "turn"}
+        return replace(self, unknowns=tuple(expected.get(u, u) for u in self.unknowns))
 
     def shot(self, values: Mapping[str, float]) -> Shot:
         """Return the shot with these values of the unknowns, from the time `start` on."""

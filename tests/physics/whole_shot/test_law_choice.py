@@ -11,7 +11,15 @@ from physics.estimate import Estimates, estimate
 from physics.filter.slowing import V_C
 from physics.local_fit.contacts import find_contacts
 from physics.whole_shot.global_fit import fit_shots
-from physics.whole_shot.law_choice import ROUGH, STRAIGHT, USUAL, _against, _hit_by_hit
+from physics.whole_shot.law_choice import (
+    ROUGH,
+    STRAIGHT,
+    USUAL,
+    _against,
+    _either_sense,
+    _hit_by_hit,
+)
+from physics.whole_shot.shot_model import Watched
 from physics.whole_shot.watched import SLOPE, THROWN
 from physics.whole_shot.whole_fit import GlobalFit
 from tests.physics.watch import RADIUS, hit_motion, watch
@@ -95,13 +103,14 @@ def test_the_first_fit_sets_out_from_even_ice_and_lost_spins_from_either_sense(
 
     monkeypatch.setattr("physics.whole_shot.law_choice.fit_shots", fit)
     best = _hit_by_hit(watched.shots[0], {"v_c": V_C})
-    even, usual, further, *turning, rubless = calls
+    even, usual, further, *turning, rubless, rough = calls
     assert even == (STRAIGHT, {})
     assert usual[1] == USUAL
     assert further[0] == {"v_c": V_C}
     assert further[1]["A.omega"] == 0.0
     assert [start["A.omega"] for _, start in turning] == [-THROWN, THROWN]
     assert rubless[1]["stone_friction"] == 0.0
+    assert rough[1]["stone_friction"] == ROUGH
     assert best["A.omega"].value == pytest.approx(1.0, abs=0.1)
 
 
@@ -269,9 +278,9 @@ def test_spins_of_slow_stones_are_less_sure_at_the_hit() -> None:
     assert after["A"] > 2 * after["B"]
 
 
-@pytest.mark.parametrize(("stone_friction", "other"), [(0.02, ROUGH), (0.5, 0.0)])
-def test_a_last_fit_sets_out_from_stones_that_stick_if_they_slide_and_the_reverse(
-    monkeypatch: pytest.MonkeyPatch, stone_friction: float, other: float
+@pytest.mark.parametrize("stone_friction", [0.02, 0.5])
+def test_the_last_fits_set_out_from_stones_that_do_not_rub_and_that_stick(
+    monkeypatch: pytest.MonkeyPatch, stone_friction: float
 ) -> None:
     motion = hit_motion(1.5, 0.2, before=0.6, after=0.6, stone_friction=stone_friction)
     seen = watch(motion, np.random.default_rng(5), fps=25, sd=0.001)
@@ -285,7 +294,7 @@ def test_a_last_fit_sets_out_from_stones_that_stick_if_they_slide_and_the_revers
 
     monkeypatch.setattr("physics.whole_shot.law_choice.fit_shots", fit)
     _hit_by_hit(watched.shots[0], {"v_c": V_C})
-    assert starts[-1]["stone_friction"] == other
+    assert [start["stone_friction"] for start in starts[-2:]] == [0.0, ROUGH]
 
 
 def test_stones_that_stick_from_the_least_friction_on_may_not_rub_at_all() -> None:
@@ -319,3 +328,44 @@ def test_a_spin_that_nobody_saw_may_be_of_either_sense(seed: int) -> None:
     assert float(found.whole["A.omega"].value or 0) < 0
     for got, true in ((found.restitution, 0.65), (found.friction, 0.00824)):
         assert abs(float(got.value or 0) - true) < 2.5 * float(got.stderr or 0)
+
+
+@pytest.mark.parametrize("spin", [-0.8, 1.5])
+def test_a_path_curls_to_the_side_of_a_spin_that_nobody_saw(spin: float) -> None:
+    """Without friction between stones no hit tells its sense: curl was told to the other side."""
+    motion = simulate(
+        [Start(0.14, -3.3, 0.0, 1.85, 0.0, spin), Start(0.0, 0.0)], 5.0,
+        ice=Ice(b=0.0078, curl=0.012), impact=Impact(0.78, 0.0), step=1e-3, keep_every=2,
+    )  # fmt: skip
+    seen = watch(motion, np.random.default_rng(23), fps=25, sd=0.002).drop(
+        columns=["theta", "sd_theta"]
+    )
+    found = estimate(check_sightings(seen), find_contacts(seen, RADIUS), radius=RADIUS)
+    assert found.whole is not None
+    assert found.curl.value == pytest.approx(0.012, abs=0.002)
+    assert abs(float(found.curl.value or 0) - 0.012) < 2.5 * float(found.curl.stderr or 0)
+
+
+def test_fits_of_either_sense_count_if_they_come_as_far(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen = watch(hit_motion(before=0.6, after=0.6), np.random.default_rng(5), fps=25)
+    whole = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).whole
+    assert whole is not None
+    shot = replace(whole.shots[0], spins=())
+    settled = {THROWN: True, -THROWN: True}
+
+    def fit(shot: Watched, held: object) -> GlobalFit:
+        sense = next(u.guess for u in shot.unknowns if u.name == "A.omega")
+        better = whole.deviance + (sense > 0)
+        return replace(whole, shots=(shot,), deviance=better, settled=settled.get(sense, True))
+
+    def senses(shot: Watched) -> list[float]:
+        fits = _either_sense(shot, {})
+        return [u.guess for f in fits for u in f.shots[0].unknowns if u.name == "A.omega"]
+
+    monkeypatch.setattr("physics.whole_shot.law_choice._hit_by_hit", fit)
+    assert senses(shot) == [-THROWN, THROWN]
+    assert len(senses(whole.shots[0])) == 1  # it was seen
+    assert len(senses(replace(shot, hits=()))) == 1
+    assert len(senses(replace(shot, radius=0.05))) == 1  # may not spin at all
+    settled[-THROWN] = False
+    assert senses(shot) == [THROWN]

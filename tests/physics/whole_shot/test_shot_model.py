@@ -80,12 +80,12 @@ def test_an_unknown_knows_its_stone() -> None:
     assert Unknown("friction", 0.01, prior=Estimate(0.01, 0.003)).stone is None
 
 
-def test_a_spin_is_expected_of_stones_whose_spin_nobody_saw() -> None:
+def test_a_spin_is_expected_of_stones_whose_spin_nobody_saw_and_curl_to_its_side() -> None:
     shot = watched()
-    blind = replace(shot, spins=()).spinning(Estimate(-1.5, 1.0))
-    spin = next(unknown for unknown in blind.unknowns if unknown.name == "A.omega")
+    shot = replace(shot, unknowns=(*shot.unknowns, Unknown("turn", 0.0, -0.1, 0.1)))
+    blind = {u.name: u for u in replace(shot, spins=()).spinning(Estimate(-1.5, 1.0)).unknowns}
+    spin, turn = blind.pop("A.omega"), blind.pop("turn")
     assert (spin.guess, spin.prior) == (-1.5, Estimate(-1.5, 1.0))
-    assert [u for u in blind.unknowns if u != spin] == [
-        u for u in shot.unknowns if u.name != "A.omega"
-    ]
+    assert (turn.low, turn.high) == (0.0, 0.1)
+    assert [*blind.values()] == [u for u in shot.unknowns if u.name not in ("A.omega", "turn")]
     assert shot.spinning(Estimate(-1.5, 1.0)).unknowns == shot.unknowns
