@@ -214,7 +214,7 @@ def _with_others(
     order = np.argsort(criteria, kind="stable").tolist()
     laws = tuple(
         Law(
-            _name(tried[k]),
+            _name(tried[k], best),
             float(criteria[k] - criteria.min()),
             float(weights[k]),
             tried[k]["friction"] if tried[k].told("friction") else Estimate(),
@@ -235,14 +235,15 @@ def _told_by(fit: GlobalFit, best: GlobalFit) -> tuple[NDArray[np.float64], NDAr
     return values, variance
 
 
-def _name(fit: GlobalFit) -> str:
-    """Return the laws of a fit in words."""
+def _name(fit: GlobalFit, best: GlobalFit) -> str:
+    """Return the laws of a fit in words, and whether it expects spins the other way round."""
     ice = "constant" if "slope" in fit.fixed else "fit"
     if fit.shots[0].ice is penner:
         ice = "penner"
     curl = "none" if "turn" in fit.fixed else "fcv1"
     hits = "stones stick" if "stone_friction" in fit.fixed else "stones slide"
-    return f"ice {ice}, curl {curl}, {hits}"
+    other = fit.shots[0].unknowns != best.shots[0].unknowns
+    return f"ice {ice}, curl {curl}, {hits}" + ", spins of the other sense" * other
 
 
 def _values(fit: GlobalFit) -> dict[str, float]:

@@ -326,6 +326,8 @@ def test_a_spin_that_nobody_saw_may_be_of_either_sense(seed: int) -> None:
     assert found.whole is not None
     assert float(found.curl.value or 0) == pytest.approx(0.0082, abs=0.002)
     assert float(found.whole["A.omega"].value or 0) < 0
+    others = [law.name for law in found.whole.laws if "other sense" in law.name]
+    assert len(others) == 1 and others[0] != found.whole.laws[0].name
     for got, true in ((found.restitution, 0.65), (found.friction, 0.00824)):
         assert abs(float(got.value or 0) - true) < 2.5 * float(got.stderr or 0)
 
