@@ -130,6 +130,14 @@ def test_hair_on_jerseys_is_no_team_however_often_it_is_seen(
     assert look.outline == pytest.approx((1.0, 0.98))
 
 
+@pytest.mark.parametrize(("rim", "teams"), [(0.86, 2), (0.81, 1)])
+def test_where_no_granite_is_seen_the_rim_tells_a_team(rim: float, teams: int) -> None:
+    other = seen(RED)
+    other = other._replace(granite_samples=other.granite_samples[:0], outline=(1.0, rim))
+    look = learn([seen(BLUE)] * 9 + [other] * 5)
+    assert look is not None and len(look.caps) == teams
+
+
 def test_a_team_whose_granite_differs_as_real_stones_do_is_kept() -> None:
     other = seen(RED)
     granite = other.granite_samples + np.array([17, 6, -12])
