@@ -21,6 +21,7 @@ from physics.local_fit.hits import measure_hits, pooled
 from physics.local_fit.segments import Piece
 from physics.local_fit.shot_fit import ContactState, Deceleration, Meeting, ShotFit
 from physics.local_fit.traces import Trace, traces
+from physics.local_fit.untold import untold_hits
 from physics.statistics.residuals import huber_weights
 
 Floats = NDArray[np.float64]
@@ -82,8 +83,9 @@ def estimate_locally(
     idle = [piece for piece in pieces if piece.rest and _alone(piece)]
     still = [_scatter(known[piece.stone], piece) for piece in idle]
     pieces = [piece for piece in pieces if not (piece.rest and _alone(piece))]
+    untold = untold_hits(known, meetings, radius)
     if not pieces:
-        return Local(warnings=("no stone moves: neither restitution nor friction",))
+        return Local(warnings=("no stone moves: neither restitution nor friction", *untold))
 
     def fit(pieces: list[Piece], slowing: Deceleration, momentum: bool = True) -> ShotFit:
         return fit_shot(
@@ -94,12 +96,13 @@ def estimate_locally(
     glides, friction, prior = measure_glides(fit(pieces, free(radius)), known, radius)
     friction, doubt = _checked(friction, glides, prior)
     if not meetings:
-        unseen = ("restitution: no hit seen",)
+        unseen = ("restitution: no hit seen", *untold)
         return Local(Estimate(), friction, (), glides, doubt, unseen, fit(pieces, prior), known)
     joint = fit(pieces, prior)
     apart = fit(pieces, prior, momentum=False)
     collisions, restitution = measure_hits(joint, apart, known, radius, masses or {})
-    warnings = [text for hit in collisions for text in _doubts(hit)] + _distances(joint, radius)
+    warnings = [text for hit in collisions for text in _doubts(hit)]
+    warnings += [*untold, *_distances(joint, radius)]
     return Local(restitution, friction, collisions, glides, doubt, tuple(warnings), joint, known)
 
 

@@ -19,6 +19,7 @@ from data.sheet import STONE
 from physics.estimate import Estimates
 from physics.impact import Frictional, Impact, PointMass, RigidBody
 from physics.local_fit.traces import Trace
+from physics.local_fit.untold import SUDDEN
 from physics.prediction.as_fitted import AsFitted, as_fitted, by_itself
 from physics.prediction.laws import Laws, measured_laws
 from physics.prediction.spread import Doubt, path_spread, simulated, simulated_hits
@@ -26,7 +27,6 @@ from physics.prediction.throws import foreseen_until, newcomers
 from physics.simulator.simulate import simulate
 from physics.simulator.simulation import Shot, StoneStart
 from physics.whole_shot.shot_model import STATE
-from physics.whole_shot.watched import SUDDEN
 from physics.whole_shot.whole_fit import GlobalFit
 
 MOVED = 0.05

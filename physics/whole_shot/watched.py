@@ -17,12 +17,10 @@ from physics.local_fit.noise import Noise, noises
 from physics.local_fit.shot_fit import ShotFit
 from physics.local_fit.spins import spin_on
 from physics.local_fit.traces import Trace
+from physics.local_fit.untold import SUDDEN
 from physics.whole_shot.shot_model import SpinSeen, Unknown, Watched
 
 Floats = NDArray[np.float64]
-
-SUDDEN = 0.1
-"""Change of velocity (m/s) beyond its error that neither ice nor air can give a stone."""
 
 STOPPING = 1.0
 """Deceleration that no ice gives a stone, m/s²."""

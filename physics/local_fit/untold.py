@@ -1,0 +1,315 @@
+"""Hits that must have been and are not told: stones whose motion changes, and none is found.
+
+Out of sight too little may be seen of a hit to tell it, and one in sight may be too soft. What is
+not told then is said: which stones, when, and why.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physics.local_fit.breaks import breaks
+from physics.local_fit.candidates import REACH, TOUCHING
+from physics.local_fit.shot_fit import Meeting
+from physics.local_fit.traces import Trace
+from physics.local_fit.ways import FEWEST, MISS, SLOWING, Gap, Way, first_way, gaps, last_way
+
+Floats = NDArray[np.float64]
+
+SUDDEN = 0.1
+"""Change of velocity (m/s) beyond its error that neither ice nor air can give a stone."""
+
+DISPLACED = 0.03
+"""How far from where it lay a stone has been moved, radii: 4 mm; light moves its edges by less."""
+
+OFTEN = 2.5
+"""How many times as much or as little as ice does something else slowed a stone."""
+
+LOST = 3.0
+"""Time out of sight, s, after which nobody knows where a moving stone is."""
+
+AT_ONCE = 0.2
+"""Time by which a hit that is told may be beside the change of motion that it made, s."""
+
+FEW = 7
+"""Sightings of which a median tells where a stone is."""
+
+STEPS = 40
+"""Times in a span at which it is looked how near two stones are."""
+
+
+@dataclass(frozen=True)
+class _Change:
+    """A change of a stone's motion that no hit explains, and between which times, s, it was."""
+
+    stone: str
+    start: float
+    end: float
+    goes: bool = True
+    """Whether it goes then, or was only moved a little, as light and paint may seem to move it."""
+
+    @property
+    def hidden(self) -> bool:
+        return self.end > self.start
+
+    @property
+    def when(self) -> str:
+        """As it is said."""
+        if self.hidden:
+            return f"out of sight between {self.start:.2f} and {self.end:.2f} s"
+        return f"at {self.end:.2f} s"
+
+
+def untold_hits(
+    known: Mapping[str, Trace], told: Sequence[Meeting], radius: float
+) -> tuple[str, ...]:
+    """Say where stones were hit, or may have been, and no hit is told.
+
+    Parameters
+    ----------
+    known : mapping
+        Stone to its sightings.
+    told : sequence of Meeting
+        The hits that are told.
+    radius : float
+        Of the discs, m.
+    """
+    paths = {name: path for name, path in known.items() if len(path.t) >= 2 * FEWEST}
+    out: dict[frozenset[str], tuple[float, str]] = {}
+    for change in sorted(_changes(paths, told, radius), key=lambda one: (one.end, one.stone)):
+        other = _other(paths, change, radius)
+        if not other and not change.goes:
+            continue
+        stones = frozenset({change.stone, other} if other else {change.stone})
+        seen = other is not None and _in_sight(paths[other], change.end)
+        out.setdefault(stones, (change.end, _said(change, other, seen)))
+    for pair, time, text in (*_lost_and_found(paths, radius), *_touching(paths, told, radius)):
+        out.setdefault(pair, (time, text))
+    return tuple(text for _, text in sorted(out.values()))
+
+
+def _said(change: _Change, other: str | None, seen: bool) -> str:
+    name = change.stone
+    if change.hidden:
+        if other:
+            first, second = sorted((name, other))
+            return (
+                f"{first} and {second} hit each other {change.when}, as it seems: too little is"
+                " seen to tell that hit and its e"
+            )
+        return f"something hit {name} {change.when}: neither that hit nor its e is told"
+    if other and seen:
+        return (
+            f"{name} moved as {other} came to it {change.when}: a hit too soft, or seen too little,"
+            " to tell"
+        )
+    if other:
+        return (
+            f"{other}, out of sight, hit {name} {change.when}, as it seems: too little is seen to"
+            " tell that hit and its e"
+        )
+    return f"the motion of {name} changes {change.when} and no stone is seen that hit it"
+
+
+def _changes(
+    paths: Mapping[str, Trace], told: Sequence[Meeting], radius: float
+) -> Iterator[_Change]:
+    """Find changes of motion that no hit explains."""
+    for name, path in paths.items():
+        hits = [meeting.t for meeting in told if name in meeting.stones]
+        hidden = list(gaps(path))
+        for gap in hidden:
+            known = any(gap.before.t - AT_ONCE < t < gap.after.t + AT_ONCE for t in hits)
+            if not known and _changed(gap, radius):
+                yield _Change(name, gap.before.t, gap.after.t)
+        left = _leaves(path, radius)
+        seen = [] if left is None or any(t < left[0] + AT_ONCE for t in hits) else [left]
+        seen += [(t, True) for t in _turns(path) if all(abs(t - hit) > AT_ONCE for hit in hits)]
+        for t, goes in seen:
+            if not any(gap.before.t <= t <= gap.after.t for gap in hidden):
+                yield _Change(name, t, t, goes)
+
+
+def _changed(gap: Gap, radius: float) -> bool:
+    """Whether something else than ice changed the motion of a stone while it was out of sight."""
+    before, after = gap.before, gap.after
+    shift = after.place - before.place
+    sd = float(np.hypot(before.sd_place, after.sd_place))
+    if not before.speed:
+        return float(np.hypot(*shift)) > DISPLACED * radius + MISS * sd
+    along = before.velocity / before.speed
+    went, aside = float(shift @ along), abs(float(shift[0] * along[1] - shift[1] * along[0]))
+    wait = after.t - before.t
+    off = MISS * float(np.hypot(sd, before.sd_speed * wait)) + 0.1 * abs(went) + DISPLACED * radius
+    if aside > off:
+        return True
+    if not after.speed:
+        # Between the shortest and the longest way that ice lets it go until it rests, or is seen.
+        ways = [before.speed**2 / (2 * slowing) for slowing in (SLOWING * OFTEN, SLOWING / OFTEN)]
+        return not ways[0] - off < went < ways[1] + off
+    slowed = (before.speed - float(after.velocity @ along)) / wait
+    sd_slowed = MISS * float(np.hypot(before.sd_speed, after.sd_speed)) / wait
+    turned = abs(float(after.velocity[0] * along[1] - after.velocity[1] * along[0]))
+    return bool(
+        turned > SUDDEN + MISS * float(np.hypot(before.sd_speed, after.sd_speed))
+        or abs(slowed - SLOWING) > OFTEN * SLOWING + sd_slowed
+    )
+
+
+def _turns(path: Trace) -> Iterator[float]:
+    """Give the times, s, at which the velocity of a stone that moves changes at once in sight."""
+    for t in breaks(path.t, path.xy, path.sd, path.lasting):
+        k = int(np.searchsorted(path.t, t))
+        if not FEWEST <= k <= len(path.t) - FEWEST:
+            continue
+        before, after = last_way(path, k - 1), first_way(path, k)
+        change = float(np.hypot(*(after.velocity - before.velocity)))
+        sd = float(np.hypot(before.sd_speed, after.sd_speed))
+        if before.speed and change > SUDDEN + MISS * sd:
+            yield t
+
+
+def _leaves(path: Trace, radius: float) -> tuple[float, bool] | None:
+    """Time, s, at which a stone that rested first leaves its place, and whether it goes then."""
+    start = first_way(path, 0)
+    if start.speed:
+        return None
+    off, least, t = _away(path, start.place, radius)
+    beyond = off > least
+    if not beyond[-1] or beyond.all():
+        return None
+    left = float(t[len(off) - int(np.argmin(beyond[::-1]))])
+    k = min(int(np.searchsorted(path.t, left)), len(path.t) - FEWEST)
+    return left, first_way(path, k).speed > 0
+
+
+def _away(path: Trace, place: Floats, radius: float) -> tuple[Floats, float, Floats]:
+    """How far a stone is from a place, m, by medians of a few sightings, more than what, and when.
+
+    Beyond the second of the three it is not there.
+    """
+    windows = np.lib.stride_tricks.sliding_window_view(path.xy, FEW, axis=0)
+    off = np.hypot(*(np.median(windows, axis=-1) - place).T)
+    # A median scatters 1.25 times as a mean does; the place itself is no better known.
+    sd = 1.25 * float(np.mean(path.sd)) * np.sqrt(1 / FEW + 1 / FEWEST)
+    return off, DISPLACED * radius + MISS * sd, path.t[FEW // 2 : len(path.t) - (FEW - 1) // 2]
+
+
+def _other(paths: Mapping[str, Trace], change: _Change, radius: float) -> str | None:
+    """Return the stone that comes nearest to one at a change of its motion, None if none does."""
+    margin = 0.0 if change.hidden else 2 * AT_ONCE
+    t = np.linspace(change.start - margin, change.end, STEPS)
+    own = [*_places(paths[change.stone], t)]
+    nearest: tuple[float, str] | None = None
+    for name, path in paths.items():
+        if name == change.stone or _stays(path, float(t[0]), float(t[-1]), radius):
+            continue
+        for place, sd in _places(path, t):
+            for here, sd_here in own:
+                noise = np.minimum(3 * np.hypot(sd, sd_here), radius)
+                near = float(np.nanmin(np.hypot(*(place - here).T) - noise, initial=np.inf))
+                if near < REACH * 2 * radius and (nearest is None or near < nearest[0]):
+                    nearest = near, name
+    return None if nearest is None else nearest[1]
+
+
+def _in_sight(path: Trace, time: float) -> bool:
+    """Whether a stone is seen about a time, s."""
+    return bool(path.t[0] < time < path.t[-1] and path.gap(time) < AT_ONCE)
+
+
+def _stays(path: Trace, start: float, end: float, radius: float) -> bool:
+    """Whether a stone lies where it lay after a span as before it."""
+    k = int(np.searchsorted(path.t, start)) - 1
+    j = int(np.searchsorted(path.t, end + AT_ONCE))
+    if k < FEWEST or j > len(path.t) - FEWEST:
+        return False
+    before, after = last_way(path, k), first_way(path, j)
+    shift = float(np.hypot(*(after.place - before.place)))
+    sd = float(np.hypot(before.sd_place, after.sd_place))
+    return not before.speed and shift < DISPLACED * radius + MISS * sd
+
+
+def _places(path: Trace, t: Floats) -> Iterator[tuple[Floats, Floats]]:
+    """Where a stone may be at times, (n, 2) m, and how sure that is; not a number if unknown."""
+    k = np.clip(np.searchsorted(path.t, t), 1, len(path.t) - 1)
+    seen = (t >= path.t[0]) & (t <= path.t[-1]) & (path.t[k] - path.t[k - 1] < AT_ONCE)
+    line = np.column_stack([np.interp(t, path.t, path.xy[:, axis]) for axis in range(2)])
+    yield np.where(seen[:, None], line, np.nan), np.full(len(t), float(np.mean(path.sd)))
+    ways: list[tuple[Way, NDArray[np.bool_]]] = []
+    for gap in gaps(path, AT_ONCE):
+        inside = (t >= gap.before.t) & (t <= gap.after.t)
+        ways += [(gap.before, inside), (gap.after, inside)]
+    ways.append((last_way(path, len(path.t) - 1), (t > path.t[-1]) & (t < path.t[-1] + LOST)))
+    first = first_way(path, 0)
+    if first.speed:
+        ways.append((first, (t < path.t[0]) & (t > path.t[0] - LOST)))
+    for way, inside in ways:
+        if inside.any():
+            yield np.where(inside[:, None], way.at(t), np.nan), way.sd(t)
+
+
+def _lost_and_found(
+    paths: Mapping[str, Trace], radius: float
+) -> Iterator[tuple[frozenset[str], float, str]]:
+    """Pairs of which one is lost and the other first seen, both moving, on ways that meet."""
+    for lost, path in paths.items():
+        last = last_way(path, len(path.t) - 1)
+        for found, other in paths.items():
+            first = first_way(other, 0)
+            if not (last.speed and first.speed and 0 < first.t - last.t < LOST):
+                continue
+            t = np.linspace(last.t, first.t, STEPS)
+            noise = np.minimum(3 * np.hypot(last.sd(t), first.sd(t)), radius)
+            apart = np.hypot(*(last.at(t) - first.at(t)).T) - noise
+            if apart.min() < REACH * 2 * radius:
+                yield (
+                    frozenset({lost, found}),
+                    first.t,
+                    f"{lost} is last seen at {last.t:.2f} s and {found} first at {first.t:.2f} s,"
+                    " where their ways meet: a hit of the two, and its e, are not told",
+                )
+
+
+def _touching(
+    paths: Mapping[str, Trace], told: Sequence[Meeting], radius: float
+) -> Iterator[tuple[frozenset[str], float, str]]:
+    """Stones that come to rest touching another one without a hit that is told."""
+    for name, path in paths.items():
+        stop = _stops(path, radius)
+        if stop is None:
+            continue
+        end = last_way(path, len(path.t) - 1)
+        for other, lying in paths.items():
+            there = last_way(lying, len(lying.t) - 1)
+            if other == name or there.speed or abs(there.t - end.t) > LOST:
+                continue
+            pair = frozenset({name, other})
+            if any(pair == {*meeting.stones} for meeting in told):
+                continue
+            later = _stops(lying, radius)
+            if later is not None and later > stop:
+                continue
+            apart = float(np.hypot(*(end.place - there.place)))
+            noise = 3 * float(np.hypot(end.sd_place, there.sd_place))
+            if apart < TOUCHING * 2 * radius + noise:
+                yield (
+                    pair,
+                    stop,
+                    f"{name} came to rest touching {other}, or nearly, at {stop:.2f} s:"
+                    " a hit, if it was one, is too soft to tell",
+                )
+
+
+def _stops(path: Trace, radius: float) -> float | None:
+    """Time, s, from which a stone that came to where it is seen last lies there, if it does."""
+    end = last_way(path, len(path.t) - 1)
+    if end.speed:
+        return None
+    off, least, t = _away(path, end.place, radius)
+    away = np.flatnonzero(off > least)
+    return float(t[away[-1]]) if len(away) else None
