@@ -429,7 +429,7 @@ def test_however_long_stones_rest_the_estimates_are_the_same(
             (one.local.friction, cut.local.friction),
         ):
             assert told.value == pytest.approx(known.value, abs=0.6 * (known.stderr or 0))
-            assert told.stderr == pytest.approx(known.stderr, rel=0.25)
+            assert told.stderr == pytest.approx(known.stderr, rel=0.3)
 
 
 @pytest.mark.parametrize(
