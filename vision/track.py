@@ -30,6 +30,8 @@ from vision.film.clip import Clip
 from vision.optics.camera import Camera
 from vision.optics.cameras import Cameras
 from vision.spin.angles import angles_in_parts
+from vision.spin.common_height import common_height, turned_widely
+from vision.spin.handle import HandleAngles
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -139,6 +141,7 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
         cap: common_share(light[name] for name in named if team[name] == cap)
         for cap in set(team.values())
     }
+    angles = _angles(named, disc, slants)
     late = seen_late({name: named[name] for name in rest}, cameras, disc)
     del tracks  # each goes when its rows are made
     rows = [
@@ -146,9 +149,8 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
             name,
             named.pop(name),
             team[name],
-            disc,
             edge[name],
-            slants[name],
+            angles[name],
             (light[name], share[team[name]]),
         )
         for name in sorted(named)
@@ -184,19 +186,35 @@ def off_axis(track: Track, slants: Array) -> Array:
     return np.asarray(np.hypot(sd, HANDLE_HEIGHT_SD * np.hypot(*slants.T)))
 
 
+def _angles(
+    tracks: Mapping[str, Track], disc: Stone, slants: Mapping[str, Array]
+) -> dict[str, HandleAngles]:
+    """Tell how stones are turned; such as hardly are, at the height at which others turn."""
+
+    def told(name: str, height: int | None = None) -> HandleAngles:
+        track, slant = tracks[name], slants[name]
+        off, spectra = off_axis(track, slant), track.sightings.spectra
+        times, radii = np.array(track.times), handle_radii(disc)
+        return angles_in_parts(times, spectra, radii, off, slants=slant, height=height)
+
+    angles = {name: told(name) for name in tracks}
+    height = common_height(angles.values())
+    if height is None:
+        return angles
+    doubtful = [
+        name for name, own in angles.items() if own.heights - {height} and not turned_widely(own)
+    ]
+    return angles | {name: told(name, height) for name in doubtful}
+
+
 def _rows(
     name: str,
     track: Track,
     team: str,
-    disc: Stone,
     edge: Array,
-    slants: Array,
+    angles: HandleAngles,
     light: tuple[Lightness, float],
 ) -> Columns:
-    off, spectra = off_axis(track, slants), track.sightings.spectra
-    theta, sd_theta = angles_in_parts(
-        np.array(track.times), spectra, handle_radii(disc), off, slants=slants
-    )
     # Made only now: the angles take much memory, and so do the sightings of a long clip.
     seen = steadied(widened(track.times, [*track.sightings]), *light)
     x, y, sd_x, sd_y, sd_place_x, sd_place_y = np.array(
@@ -208,10 +226,10 @@ def _rows(
         "t": np.array(track.times),
         "x": x,
         "y": y,
-        "theta": theta,
+        "theta": angles.theta,
         "sd_x": sd_x,
         "sd_y": sd_y,
-        "sd_theta": sd_theta,
+        "sd_theta": angles.sd,
         "sd_place_x": np.hypot(TOGETHER * sd_place_x, edge[0]),
         "sd_place_y": np.hypot(TOGETHER * sd_place_y, edge[1]),
         "team": np.full(len(seen), team),

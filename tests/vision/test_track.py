@@ -26,7 +26,8 @@ from vision.detection.stones import plain_disc
 from vision.film.clip import open_clip
 from vision.optics.camera import Camera
 from vision.optics.stick import stick_cameras
-from vision.track import HARDLY_TOLD, _by_edges, _rows, off_axis, slants_of, track_stones
+from vision.spin.handle import HandleAngles
+from vision.track import HARDLY_TOLD, _angles, _by_edges, _rows, off_axis, slants_of, track_stones
 
 Array = NDArray[np.float64]
 DATA = Path(__file__).resolve().parents[2] / "data"
@@ -196,18 +197,39 @@ def test_caps_seen_aslant_may_have_been_unrolled_aside(disc: Stone, more: float)
         assert off == pytest.approx(np.hypot(0.5 * (seen.sd_x + seen.sd_y), aside))
 
 
-def test_angles_are_told_with_the_slants_of_the_view(monkeypatch: pytest.MonkeyPatch) -> None:
-    def told(times: Array, *_: object, slants: Array) -> tuple[Array, Array]:
-        given.append(slants)
-        return np.full(len(times), np.nan), np.full(len(times), np.nan)
+def angles(theta: Array, unlike: tuple[float, float], height: int) -> HandleAngles:
+    return HandleAngles(theta, 0 * theta + 0.01, np.array(unlike), frozenset({height}))
 
-    given: list[Array] = []
+
+def test_stones_that_hardly_turn_are_seen_at_the_height_of_those_that_do(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    wide, little = np.linspace(0, 3, 20), np.linspace(0, 0.6, 20)
+    own = {
+        20.0: angles(wide, (2.0, 10.0), 0),
+        21.0: angles(little, (1.0, 0.7), 1),  # light makes it more alike at the other height
+        22.0: angles(little, (0.7, 1.0), 0),
+        23.0: angles(wide, (4.0, 2.0), 1),  # its handle may be another one
+    }
+    given = []
+
+    def told(times: Array, *_: object, slants: Array, height: int | None = None) -> HandleAngles:
+        given.append((float(times[0]), slants[0, 0], height))
+        return own[float(times[0])] if height is None else angles(little, (0.0, 0.0), height)
+
     monkeypatch.setattr("vision.track.angles_in_parts", told)
-    track, slants = Track(), np.array([[0.3, -0.2]])
-    track.add(0, 0.0, sighting((0.5, -12.0)), STONE.radius)
-    light = lightness_of(track.times, track.sightings)
-    _rows("A", track, "", STONE, np.zeros(2), slants, (light, 0.0))
-    np.testing.assert_array_equal(given, [slants])
+    tracks, slants = {}, {}
+    for time in own:
+        tracks[str(time)] = track = Track()
+        track.add(0, time, sighting((0.5, -12.0)), STONE.radius)
+        slants[str(time)] = np.array([[0.1 * time, 0.0]])
+    found = _angles(tracks, STONE, slants)
+    # Each with the slants of its view.
+    assert given == [(t, pytest.approx(0.1 * t), None) for t in own] + [
+        (21.0, pytest.approx(2.1), 0)
+    ]
+    assert found["21.0"].heights == {0}
+    assert all(found[str(time)] is own[time] for time in (20.0, 22.0, 23.0))
 
 
 def test_no_clip_has_all_of_what_places_may_share() -> None:
@@ -216,8 +238,9 @@ def test_no_clip_has_all_of_what_places_may_share() -> None:
     track.add(0, 0.0, sighting((0.5, 1.0))._replace(sd_place=(0.003, 0.0)), STONE.radius)
     light = lightness_of(track.times, track.sightings)
     seen = [track.sightings]
-    by_edges, slants = _by_edges(seen, STONE, False), np.zeros((1, 2))
-    row = _rows("A", track, "", STONE, by_edges[0], slants, (light, 0.0))
+    by_edges = _by_edges(seen, STONE, False)
+    untold = HandleAngles(np.full(1, np.nan), np.full(1, np.nan), np.zeros(2))
+    row = _rows("A", track, "", by_edges[0], untold, (light, 0.0))
     edge = edge_errors(seen, STONE.cap_radius)[0]
     stated = np.array([row["sd_place_x"][0], row["sd_place_y"][0]]) / np.hypot([0.003, 0], edge)
     assert stated[0] == pytest.approx(stated[1])

@@ -9,6 +9,7 @@ the first part's: errors do not add up from part to part.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import ceil, pi
 
 import numpy as np
@@ -16,7 +17,7 @@ import numpy as np
 from vision.film.shelf import Kept
 from vision.spin.align import TOGETHER, Array, Complex, turned
 from vision.spin.facing import angles_between
-from vision.spin.handle import handle_angles
+from vision.spin.handle import HandleAngles, handle_angles
 
 MOST = 1000
 """Pictures that are looked at together at most: some 20 MB. Parts that are seen in different slants
@@ -31,7 +32,8 @@ def angles_in_parts(
     sd_centre: Array,
     most: int = MOST,
     slants: Array | None = None,
-) -> tuple[Array, Array]:
+    height: int | None = None,
+) -> HandleAngles:
     """Angle of one stone in every frame; see `vision.spin.handle.handle_angles`.
 
     Parameters
@@ -46,54 +48,63 @@ def angles_in_parts(
         Pictures that are looked at together at most.
     slants : ndarray, shape (n, 2), optional
         As for `vision.spin.handle.handle_angles`.
+    height : int, optional
+        Which of those at which caps were unrolled to go by; what the stone itself tells if not
+        given.
 
     Returns
     -------
-    theta, sd : ndarray, shape (n,)
-        rad; NaN where it cannot be told.
+    HandleAngles
     """
     theta, sd = np.full(len(times), np.nan), np.full(len(times), np.nan)
     kept = {index: item for index, item in enumerate(spectra) if item is not None}
+    rings = slice(None) if height is None else slice(height * len(radii), (height + 1) * len(radii))
     if len(kept) <= most:
         rows = [*kept]
-        pictures = [item.get() for item in kept.values()]
+        pictures = [item.get()[:, rings] for item in kept.values()]
         of = None if slants is None else slants[rows]
-        theta[rows], sd[rows] = handle_angles(times[rows], pictures, radii, sd_centre[rows], of)
-        return theta, sd
+        told = handle_angles(times[rows], pictures, radii, sd_centre[rows], of)
+        theta[rows], sd[rows] = told.theta, told.sd
+        return replace(told, theta=theta, sd=sd)
     first: Complex | None = None
     last = -1
+    parts: list[HandleAngles] = []
     for part in np.array_split(np.array([*kept], np.intp), ceil(len(kept) / most)):
         each = [kept[index] for index in part.tolist()]
         of = None if slants is None else slants[part]
-        angle, sd[part], mean = _part(times[part], each, radii, sd_centre[part], of)
+        told, mean = _part(times[part], each, rings, radii, sd_centre[part], of)
+        parts.append(told)
         if mean is None:
             continue
-        told = np.flatnonzero(np.isfinite(angle))
+        sd[part], angle = told.sd, told.theta
+        seen = np.flatnonzero(np.isfinite(angle))
         if first is None:
             first = mean
         else:
             aside = float(angles_between(first, mean[None], np.zeros(1), pi)[0][0])
-            turns = (theta[last] - angle[told[0]] - aside) / (2 * pi)
-            angle += aside + 2 * pi * round(float(turns))
-        theta[part], last = angle, int(part[told[-1]])
-    return theta, sd
+            turns = (theta[last] - angle[seen[0]] - aside) / (2 * pi)
+            angle = angle + aside + 2 * pi * round(float(turns))
+        theta[part], last = angle, int(part[seen[-1]])
+    unlike = np.sum([told.unlike for told in parts], axis=0)
+    return HandleAngles(theta, sd, unlike, frozenset().union(*(told.heights for told in parts)))
 
 
 def _part(
     times: Array,
     kept: Sequence[Kept[Complex]],
+    rings: slice,
     radii: Array,
     sd_centre: Array,
     slants: Array | None,
-) -> tuple[Array, Array, Complex | None]:
-    """Angles of pictures, their errors, and the mean picture turned back; None if none is told."""
-    pictures = [item.get() for item in kept]
-    theta, sd = handle_angles(times, pictures, radii, sd_centre, slants)
-    told = np.flatnonzero(np.isfinite(theta)).tolist()
-    if not told:
-        return theta, sd, None
+) -> tuple[HandleAngles, Complex | None]:
+    """Angles of pictures, and the mean picture turned back; None if none is told."""
+    pictures = [item.get()[:, rings] for item in kept]
+    told = handle_angles(times, pictures, radii, sd_centre, slants)
+    seen = np.flatnonzero(np.isfinite(told.theta)).tolist()
+    if not seen:
+        return told, None
     total = np.zeros_like(pictures[0])
-    for begin in range(0, len(told), TOGETHER):
-        some = told[begin : begin + TOGETHER]
-        total += turned(np.array([pictures[k] for k in some]), -theta[some]).sum(0)
-    return theta, sd, np.asarray(total / np.float32(len(told)), np.complex64)
+    for begin in range(0, len(seen), TOGETHER):
+        some = seen[begin : begin + TOGETHER]
+        total += turned(np.array([pictures[k] for k in some]), -told.theta[some]).sum(0)
+    return told, np.asarray(total / np.float32(len(seen)), np.complex64)

@@ -101,6 +101,28 @@ errors; the spins of most were stated to .2 to .7 rad/s."""
 
 
 @dataclass(frozen=True)
+class HandleAngles:
+    """How a stone is turned, and at which height what turns on it is seen.
+
+    Attributes
+    ----------
+    theta, sd : ndarray, shape (n,)
+        Angle and its standard error, rad; NaN where it cannot be told.
+    unlike : ndarray, shape (heights,)
+        How many pictures' worth of what was seen their mean does not explain, by the height at
+        which caps were unrolled; 0 where nothing was seen.
+    heights : frozenset of int
+        Which of them were believed: one, several by parts of a long track, none where nothing was
+        seen.
+    """
+
+    theta: Array
+    sd: Array
+    unlike: Array
+    heights: frozenset[int] = frozenset()
+
+
+@dataclass(frozen=True)
 class Turning:
     """How angles are followed.
 
@@ -162,7 +184,7 @@ def handle_angles(
     radii: Array,
     sd_centre: Array,
     slants: Array | None = None,
-) -> tuple[Array, Array]:
+) -> HandleAngles:
     """Angle of one stone in every frame, continuous, its zero in the first frame seen.
 
     Parameters
@@ -181,59 +203,80 @@ def handle_angles(
 
     Returns
     -------
-    theta, sd : ndarray, shape (n,)
-        rad; NaN where it cannot be told.
+    HandleAngles
     """
     theta, sd = np.full(len(times), np.nan), np.full(len(times), np.nan)
     seen = np.array([index for index, item in enumerate(spectra) if item is not None], np.intp)
     if not len(seen):
-        return theta, sd
+        return HandleAngles(theta, sd, np.zeros(1))
     pictures = uncovered(np.array([spectra[index] for index in seen]))
+    nothing = HandleAngles(theta, sd, np.zeros(pictures.shape[2] // len(radii)))
     clear = rings_seen(pictures).any(1)
     seen, pictures = seen[clear], pictures[clear]
     if len(seen) < 2:  # an angle is against another picture of the same stone
-        return theta, sd
-    best, apart = _of_heights(times[seen], pictures, len(radii))
-    if _hardly_told(best):
+        return nothing
+    by = _of_heights(times[seen], pictures, len(radii))
+    if _hardly_told(by.best):
         within = len(radii) - RIM
         rings = np.resize(np.arange(len(radii)) < within, pictures.shape[2])
-        inner, between = _of_heights(times[seen], pictures[:, :, rings], within)
-        if max(best.share, 2 * LEAST) < inner.share and _mostly_told(inner):
-            best, apart, radii = inner, between, radii[:within]
+        inner = _of_heights(times[seen], pictures[:, :, rings], within)
+        if max(by.best.share, 2 * LEAST) < inner.best.share and _mostly_told(inner.best):
+            by, radii = inner, radii[:within]
     del pictures
+    best = by.best
     good = best.likeness > TURNING.least_likeness
     if good.sum() < max(0.5 * len(seen), 2):
         # Most frames do not look like the mean: there is nothing on the cap to go by.
-        return theta, sd
+        return nothing
     if best.share < LEAST and _alike(best) < LITTLE * len(seen):
         # What hardly any picture has in common, and what does not turn: light, not the cap.
-        return theta, sd
+        return nothing
     rows = seen[good]
     aside = np.hypot(TURNING.shift, sd_centre[rows])
     fit = align(best.pictures[good], best.angles[good], radii, aside)
     unlike = np.maximum(1 - best.likeness[good] ** 2, ALIKE)
     covered = np.clip((unlike / (BEFORE * np.median(unlike))) ** 2, 1.0, WORST)
-    theta[rows], steep = fit.angle, 0 * aside
+    angle, steep = fit.angle, 0.0
     if slants is not None:
-        theta[rows], steep = levelled(best.pictures[good], fit.angle, radii, slants[rows])
+        angle, steep = levelled(best.pictures[good], fit.angle, radii, slants[rows])
     odd = np.clip((1 - _alike(best) / len(seen)) / ODD, 1.0, ODDEST)
     dim = np.clip(TURNS / max(best.share, 1e-6) - 1, 0.0, DIM)
     odd += dim * max(odd - ODDER, 0.0)
-    sd[rows] = np.hypot(np.hypot(LASTING * odd * covered * fit.sd, apart[good]), steep)
-    if np.median(sd[rows]) > UNSURE:
-        return np.full(len(times), np.nan), np.full(len(times), np.nan)
-    return theta - theta[rows[0]], sd
+    error = np.hypot(np.hypot(LASTING * odd * covered * fit.sd, by.apart[good]), steep)
+    if np.median(error) > UNSURE:
+        return nothing
+    theta[rows], sd[rows] = angle - angle[0], error
+    return HandleAngles(theta, sd, by.unlike, frozenset({by.height}))
 
 
-def _of_heights(times: Array, pictures: Complex, rings: int) -> tuple[_Matched, Array]:
-    """Turn pictures onto their mean at the height that tells more, and tell how far both differ."""
+@dataclass(frozen=True)
+class _ByHeight:
+    """Pictures of the height that is believed, which one it is, and how they differ by height.
+
+    `apart` (n,) is how far apart their angles are, rad, and `unlike` (heights,) how many pictures'
+    worth of each height their mean does not explain.
+    """
+
+    best: _Matched
+    height: int
+    apart: Array
+    unlike: Array
+
+
+def _of_heights(times: Array, pictures: Complex, rings: int) -> _ByHeight:
+    """Turn pictures onto their mean at the height that tells more."""
     heights = np.split(pictures, pictures.shape[2] // rings, axis=2)
     tried = [_matched(times, part) for part in heights]
-    which = int(np.argmax([_alike(each) for each in tried]))
-    apart = _apart(tried)
-    if which and _doubtful(*tried):
-        return _turning_more(times, heights, tried), apart
-    return _despite_light(times, heights[which], tried[which]), apart
+    unlike = np.array([len(times) - _alike(each) for each in tried])
+    which = int(unlike.argmin())
+    if which and _doubtful(*unlike):
+        # Light and shade on the cap make pictures alike that do not turn.
+        both = [_by_what_turns(times, *each) for each in zip(heights, tried, strict=True)]
+        which = int(np.argmax([each.share for each in both]))
+        best = both[which]
+    else:
+        best = _despite_light(times, heights[which], tried[which])
+    return _ByHeight(best, which, _apart(tried, unlike), unlike)
 
 
 @dataclass(frozen=True)
@@ -260,16 +303,15 @@ def _alike(matched: _Matched) -> float:
     return float((matched.likeness**2).sum())
 
 
-def _doubtful(less: _Matched, more: _Matched) -> bool:
+def _doubtful(unlike: float, other: float) -> bool:
     """Whether pictures are hardly less alike at one height than at the other."""
-    count = len(less.angles)
-    return count - _alike(less) < DOUBT * (count - _alike(more))
+    return unlike < DOUBT * other
 
 
-def _apart(tried: Sequence[_Matched]) -> Array:
+def _apart(tried: Sequence[_Matched], unlike: Array) -> Array:
     """How far apart the angles of both heights are where neither is clearly better, (n,), rad."""
     count = len(tried[0].angles)
-    if len(tried) < 2 or not (_doubtful(*tried) and _doubtful(*tried[::-1])):
+    if len(tried) < 2 or not (_doubtful(*unlike) and _doubtful(*unlike[::-1])):
         return np.zeros(count)
     off = tried[1].angles - tried[0].angles
     told = np.flatnonzero(np.isfinite(off))
@@ -279,18 +321,12 @@ def _apart(tried: Sequence[_Matched]) -> Array:
     return np.asarray(np.minimum(np.abs(each - np.median(off[told])), MOST_APART))
 
 
-def _turning_more(times: Array, heights: Sequence[Complex], tried: Sequence[_Matched]) -> _Matched:
-    """Turn pictures of the height onto their mean at which more of what no light explains turns.
-
-    Light and shade on the cap make pictures alike that do not turn.
-    """
-    both: list[_Matched] = []
-    for pictures, matched in zip(heights, tried, strict=True):
-        best = _despite_light(times, pictures, matched)
-        told = np.isfinite(best.angles)
-        angles = np.interp(times, times[told], best.angles[told]) if told.any() else 0 * times
-        both.append(replace(best, share=unlit(times, pictures, angles).share))
-    return max(both, key=lambda each: each.share)
+def _by_what_turns(times: Array, pictures: Complex, matched: _Matched) -> _Matched:
+    """Turn pictures of one height onto their mean, and tell what share of them turns."""
+    best = _despite_light(times, pictures, matched)
+    told = np.isfinite(best.angles)
+    angles = np.interp(times, times[told], best.angles[told]) if told.any() else 0 * times
+    return replace(best, share=unlit(times, pictures, angles).share)
 
 
 def _matched(times: Array, pictures: Complex) -> _Matched:

@@ -18,7 +18,8 @@ def told(
     pictures: list[NDArray[np.complex64] | None], most: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     kept = [None if picture is None else Kept(picture) for picture in pictures]
-    return angles_in_parts(TIMES, kept, RADII, np.full(len(TIMES), SURE), most)
+    angles = angles_in_parts(TIMES, kept, RADII, np.full(len(TIMES), SURE), most)
+    return angles.theta, angles.sd
 
 
 def test_parts_of_a_long_track_are_one() -> None:

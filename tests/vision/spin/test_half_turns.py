@@ -104,5 +104,5 @@ def test_a_handle_found_again_the_wrong_way_round_is_put_right(
     true = 1.4 * times
     wrong = true + np.pi * (times > 0.9)
     monkeypatch.setattr(handle, "_followed", lambda *_: wrong)
-    theta, _ = handle.handle_angles(times, [*pictures(true, 0, 0)], radii, np.full(50, 0.0005))
+    theta = handle.handle_angles(times, [*pictures(true, 0, 0)], radii, np.full(50, 0.0005)).theta
     assert np.abs(theta - true).max() < 0.01

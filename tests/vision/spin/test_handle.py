@@ -41,7 +41,8 @@ def handle_angles(
     spectra: Sequence[NDArray[np.complex64] | None],
     radii: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    return angles_about(times, spectra, radii, np.full(len(times), SURE))
+    told = angles_about(times, spectra, radii, np.full(len(times), SURE))
+    return told.theta, told.sd
 
 
 def spectrum(turn: float, rng: np.random.Generator | None = None) -> NDArray[np.complex64]:
@@ -262,7 +263,7 @@ def test_a_handle_that_was_lost_is_turned_by_its_spins_if_enough_of_it_turns_so(
         "vision.spin.handle.unlit", lambda *given: replace(unlit(*given), share=0.01)
     )
     monkeypatch.setattr("vision.spin.handle.course", lambda *_: (true.copy(), share))
-    theta, _ = angles_about(times, spectra, radii, np.full(150, 0.0005))
+    theta = angles_about(times, spectra, radii, np.full(150, 0.0005)).theta
     assert np.isfinite(theta).all() == np.isfinite(theta).any() == told
     if told:
         assert np.abs(theta - true).max() < 0.01
@@ -274,7 +275,7 @@ def test_what_is_unrolled_about_an_unsure_centre_is_less_sure() -> None:
     pictures = [spectrum(a, rng) for a in 0.9 * times]
     unsure = np.where(times < 0.2, 0.004, SURE)
     _, before = handle_angles(times, pictures, RADII)
-    _, sd = angles_about(times, pictures, RADII, unsure)
+    sd = angles_about(times, pictures, RADII, unsure).sd
     assert (sd[:5] > before[:5]).all()
     assert sd[5:] == pytest.approx(before[5:], rel=0.02)
 
