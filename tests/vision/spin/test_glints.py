@@ -37,8 +37,8 @@ def pictures(spin: float, bright: float) -> NDArray[np.complex64]:
 @pytest.mark.parametrize("spin", [-1.6, 0.8])
 def test_a_lamp_mirrored_on_a_cap_does_not_hold_its_angle(spin: float) -> None:
     seen = pictures(spin, 150.0)
-    told = handle_angles(TIMES, list(seen), RADII, np.full(len(TIMES), 0.0005))
-    theta, sd = told.theta, told.sd
+    angles = handle_angles(TIMES, list(seen), RADII, np.full(len(TIMES), 0.0005))
+    theta, sd = angles.theta, angles.sd
     told = np.isfinite(theta)
     assert told.mean() > 0.8
     slope = np.polyfit(TIMES[told], theta[told], 1)[0]
@@ -51,8 +51,8 @@ def test_a_lamp_mirrored_on_a_cap_does_not_hold_its_angle(spin: float) -> None:
 def test_nor_does_it_where_pictures_are_missing(missing: range) -> None:
     """The angle that follows the lamp turns a little, too: two radians less than the cap."""
     seen = [None if k in missing else one for k, one in enumerate(pictures(0.8, 150.0))]
-    told = handle_angles(TIMES, seen, RADII, np.full(len(TIMES), 0.0005))
-    theta, sd = told.theta, told.sd
+    angles = handle_angles(TIMES, seen, RADII, np.full(len(TIMES), 0.0005))
+    theta, sd = angles.theta, angles.sd
     off = (theta - 0.8 * TIMES)[told := np.isfinite(theta)]
     assert told.mean() > 0.6
     assert (np.abs(off - np.median(off)) < 3 * sd[told]).mean() > 0.9
@@ -69,8 +69,8 @@ def test_spins_are_told_from_stretch_to_stretch_whatever_light_is_on_a_cap() -> 
 def test_a_cap_that_comes_to_rest_in_a_light_tells_no_angle_more() -> None:
     still = np.minimum(TIMES, 1.5)
     seen = [lit(1.4 * t, lamp(t), 150.0) for t in still]
-    told = handle_angles(TIMES, seen, RADII, np.full(len(TIMES), 0.0005))
-    theta, sd = told.theta, told.sd
+    angles = handle_angles(TIMES, seen, RADII, np.full(len(TIMES), 0.0005))
+    theta, sd = angles.theta, angles.sd
     off = (theta - 1.4 * still)[told := np.isfinite(theta)]
     assert 0.45 < told.mean() < 0.65
     assert (np.abs(off - np.median(off)) < 3 * sd[told]).all()
@@ -135,8 +135,8 @@ def faint(seed: int) -> list[NDArray[np.complex64]]:
 
 @pytest.mark.parametrize("seed", [0, 1, 2, 3])
 def test_a_faint_handle_that_noise_hides_in_each_picture_is_told_by_all_of_them(seed: int) -> None:
-    told = handle_angles(TIMES, faint(seed), RADII, np.full(len(TIMES), 0.0005))
-    theta, sd = told.theta, told.sd
+    angles = handle_angles(TIMES, faint(seed), RADII, np.full(len(TIMES), 0.0005))
+    theta, sd = angles.theta, angles.sd
     told = np.isfinite(theta)
     assert told.mean() > 0.5
     assert np.polyfit(TIMES[told], theta[told], 1)[0] == pytest.approx(-1.6, abs=0.06)
