@@ -88,6 +88,13 @@ def swept(rng: Rng) -> Scene:
     return replace(scene, people=sweepers(scene, SECONDS))
 
 
+def steep(rng: Rng) -> Scene:
+    """Give handles that rise by 0.3 from their necks on, as goose-necks do; others are level."""
+    scene = random_scene(rng)
+    stones = tuple(replace(stone, steepness=0.3) for stone in scene.stones)
+    return replace(scene, stones=stones)
+
+
 def three_hits(rng: Rng) -> Scene:
     """Give three hits in a row down the sheet."""
     scene = random_scene(rng, resting=2, speed=2.2)
@@ -133,6 +140,8 @@ KINDS: tuple[Kind, ...] = (
     Kind("variable rate", shot(), overhead, fps=30.0, uneven=True),
     Kind("30 deg", shot(), aslant(30), rmse=0.010),
     Kind("50 deg", shot(), aslant(50), rmse=0.020, supersample=2),
+    Kind("steep handles", steep, overhead),
+    Kind("30 deg, steep handles", steep, aslant(30), rmse=0.010),
     Kind("1080p", shot(), lambda rng: overhead(rng, (1920, 1080))),
     Kind("plain", shot(), overhead, plain=True),
     Kind("plain, 30 deg", shot(), aslant(30), rmse=0.010, plain=True),

@@ -168,8 +168,8 @@ def main() -> None:
     tables = []
     for index, (row, errors) in enumerate(rows(kinds, said.seeds, said.found)):
         if not index:
-            print(f"{'kind':15}", *(f"{name:>10}" for name in list(row)[1:]))
-        print(f"{row['kind']:15}", *(f"{text:>10}" for text in list(row.values())[1:]), flush=True)
+            print(f"{'kind':21}", *(f"{name:>10}" for name in list(row)[1:]))
+        print(f"{row['kind']:21}", *(f"{text:>10}" for text in list(row.values())[1:]), flush=True)
         tables.append(errors)
     everything = pd.concat(tables, ignore_index=True)
     moving, turning = everything[everything["moving"]], everything[everything["turning"]]

@@ -13,7 +13,7 @@ from data.errors import InputError
 from data.files import check_folder, whole_file
 from data.trk import TEXT_COLUMNS
 
-_WHERE_TOLD = ("sd_place_x", "sd_place_y", "team")
+_WHERE_TOLD = ("sd_place_x", "sd_place_y", "rise_a", "rise_b", "team")
 """Columns of a CSV only where there is something in them."""
 
 

@@ -215,7 +215,7 @@ def _to_si(path: Path, file: TrackFile, length_unit: str, angle_unit: str | None
                     f"{path}: angles taken in degrees, they change too fast for radians"
                     " (--angle-unit to say otherwise)"
                 )
-        for name in ("theta", "sd_theta"):
+        for name in ("theta", "sd_theta", "rise_a", "rise_b"):
             if name in tracks:
                 tracks[name] = tracks[name] * ANGLE_UNITS[chosen]
         if not file.continuous:

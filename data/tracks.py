@@ -52,19 +52,21 @@ tables what they say; empty where nothing is known.
 
 SIGHTING_COLUMNS: tuple[str, ...] = (
     "stone", "frame", "t", "x", "y", "theta", "sd_x", "sd_y", "sd_theta",
-    "sd_place_x", "sd_place_y", "team",
+    "sd_place_x", "sd_place_y", "rise_a", "rise_b", "team",
 )  # fmt: skip
 """Columns of a table of sightings: measured places, before any filter. sd may be NaN.
 
 ``sd_x`` and ``sd_y`` are of what differs from sighting to sighting, ``sd_place_x`` and
 ``sd_place_y`` (m) of what the sightings of a stone share and no filter averages out: the camera,
-the scale.
+the scale. ``rise_a`` and ``rise_b`` (rad) are what the angles of a stone are off by together, each
+times one number of standard deviation 1 that all its sightings share: by how much a handle rises
+above the cap otherwise than was taken out.
 """
 
 LENGTHS = ("x", "y", "sd_x", "sd_y", "sd_place_x", "sd_place_y")
 """Columns of sightings that are in a unit of length."""
 
-SEEN_AS = {f"seen_{name}": name for name in (*LENGTHS, "theta", "sd_theta")}
+SEEN_AS = {f"seen_{name}": name for name in (*LENGTHS, "theta", "sd_theta", "rise_a", "rise_b")}
 """Columns of ``tracks.csv`` beside `TRACK_COLUMNS`, and what of a sighting they hold: what was
 measured of the stone in that frame, before any filter; empty where nothing was. What is estimated
 from the table later rests on them."""

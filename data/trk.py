@@ -25,6 +25,7 @@ Frames = NDArray[np.int64]
 TEXT_COLUMNS: Mapping[str, str] = {
     "theta": "theta(rad)", "sd_x": "sd_x(m)", "sd_y": "sd_y(m)", "sd_theta": "sd_theta(rad)",
     "sd_place_x": "sd_place_x(m)", "sd_place_y": "sd_place_y(m)",
+    "rise_a": "rise_a(rad)", "rise_b": "rise_b(rad)",
 }  # fmt: skip
 """Columns of text in which this program gives Tracker what it has no columns for."""
 

@@ -22,8 +22,8 @@ Array = NDArray[np.float64]
 ANGLE_NAMES = {"ang", "angle", "theta"}
 """What a column of angles is called."""
 
-ERRORS = ("sd_x", "sd_y", "sd_theta", "sd_place_x", "sd_place_y")
-"""Standard deviations that a table may tell."""
+ERRORS = ("sd_x", "sd_y", "sd_theta", "sd_place_x", "sd_place_y", "rise_a", "rise_b")
+"""Errors that a table may tell."""
 
 COMPANIONS = ("theta", *ERRORS, "frame")
 """What else a table may tell of a place."""

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.tracks import TRACK_COLUMNS, Columns, Table, no_rows, teams
-from physics.filter.rate_filter import filtered
+from physics.filter.rate_filter import angle_response, filtered
 from physics.filter.stretch import START_SD, Filter, Model, Stretch
 from physics.local_fit.contacts import Contact, cut_all
 from physics.local_fit.fit import fit_shot
@@ -110,14 +110,15 @@ def smoothed(
     times, first = np.unique(np.append(t, [*unseen.values()]), return_index=True)
     frames = np.append(np.asarray(rank, int), np.array([*unseen], int))[first]
     fit, model, noise = _fit_pieces(known, contacts, radius)
-    each = {}
+    each: dict[str, Columns] = {}
+    rise: dict[str, Floats] = {}
     for name, trace in known.items():
         inside = (times >= trace.t[0]) & (times <= trace.t[-1])
         hits = sorted((c for c in contacts if name in c.stones), key=lambda c: c.t)
-        each[name] = _track(
+        each[name], rise[name] = _track(
             trace, times[inside], frames[inside], hits, fit, model, noise[name], run
         )
-    share_spins(each, contacts, radius, masses)
+    share_spins(each, contacts, radius, masses, rise)
     team, tables = teams(sightings), list(each.values())
     tracks = {name: np.concatenate([table[name] for table in tables]) for name in tables[0]}
     tracks["team"] = np.array([team[stone] for stone in tracks["stone"].tolist()])
@@ -146,8 +147,11 @@ def _track(
     model: Model,
     noise: Noise,
     run: Filter,
-) -> Columns:
-    """Run the filter over one stone, hit to hit."""
+) -> tuple[Columns, Floats]:
+    """Run the filter over one stone, hit to hit.
+
+    Also tells what its spins are off by together, (n, 2), for errors that its angles share.
+    """
     row = np.clip(np.searchsorted(trace.t, t), 0, len(trace.t) - 1)
     sighted = trace.t[row] == t
     place, rest, idle, speed = _modes(trace.stone, t, fit)
@@ -155,17 +159,17 @@ def _track(
     z[~sighted] = np.nan
     white, slow = noise.white[row], noise.slow[row]
     mean, spread = np.full((len(t), 6), np.nan), np.full((len(t), 6), np.nan)
-    seen = np.zeros(len(t), dtype=int)
+    seen, response = np.zeros(len(t), dtype=int), np.zeros((len(t), 2, 2))
     part = np.searchsorted(np.array([hit.t for hit in hits]), t, side="right")
     for k in np.unique(part):
         at = np.flatnonzero(part == k)
         if np.isfinite(z[at, 0]).any():
-            mean[at], spread[at], seen[at] = run(
-                Stretch(
-                    t[at], z[at], white[at], slow[at],
-                    place[at], rest[at], idle[at], speed[at], model,
-                )
-            )  # fmt: skip
+            stretch = Stretch(
+                t[at], z[at], white[at], slow[at], place[at], rest[at], idle[at], speed[at], model
+            )
+            mean[at], spread[at], seen[at] = run(stretch)
+            response[at] = angle_response(stretch, trace.rise[row[at]])
+    spread[:, 4:] = np.hypot(spread[:, 4:], np.linalg.norm(response, axis=2))
     for k in np.unique(part):
         at = np.flatnonzero(part == k)
         if 0 < k < len(hits) and np.isfinite(z[at, 0]).sum() < 2:
@@ -184,7 +188,8 @@ def _track(
     columns = ("x", "y", "vx", "vy", "theta", "omega")
     table = {"stone": np.full(len(t), trace.stone), "frame": frames, "t": t, "seen": seen}
     table |= {name: mean[:, i] for i, name in enumerate(columns)}
-    return table | {f"sd_{name}": spread[:, i] for i, name in enumerate(columns)}
+    table |= {f"sd_{name}": spread[:, i] for i, name in enumerate(columns)}
+    return table, response[:, 1]
 
 
 def _modes(

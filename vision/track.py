@@ -232,6 +232,8 @@ def _rows(
         "sd_theta": angles.sd,
         "sd_place_x": np.hypot(TOGETHER * sd_place_x, edge[0]),
         "sd_place_y": np.hypot(TOGETHER * sd_place_y, edge[1]),
+        "rise_a": angles.rise[:, 0],
+        "rise_b": angles.rise[:, 1],
         "team": np.full(len(seen), team),
     }
 

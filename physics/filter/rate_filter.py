@@ -142,6 +142,43 @@ def forward(stretch: Stretch) -> Forward:
     return out
 
 
+def angle_response(stretch: Stretch, shared: Floats) -> Floats:
+    """Tell what errors that angles share make of the smoothed angle and spin: (n, 2, k).
+
+    The filter is linear in the angles, so that it makes of them what it makes of such an error by
+    itself. It does not know of them, and gives angles no other weight: a Schmidt-Kalman smoother
+    (Schmidt, 1966, Advances in Control Systems 3, 293).
+
+    Parameters
+    ----------
+    stretch : Stretch
+        Of which the angles are smoothed.
+    shared : (n, k) array
+        What they are off by, rad, by k numbers of standard deviation 1.
+    """
+    out = np.zeros((len(stretch.t), 2, shared.shape[1]))
+    told = np.isfinite(stretch.z[:, 2])
+    if not (told.any() and shared[told].any()):
+        return out
+    turns = _listed(steps(stretch)[1])
+    rate = float(stretch.start[1][2])
+    errors, lasting = (stretch.sd[:, 2] ** 2).tolist(), (stretch.slow[:, 2] ** 2).tolist()
+    start: State = ((0.0, 0.0, 0.0), (ANYWHERE_SD[1] ** 2, 0.0, 0.0, rate**2, 0.0, lasting[0]))
+    for column, of_one in enumerate(shared.T.tolist()):
+        state, states, innovations = start, [], []
+        for k, (value, seen, error) in enumerate(zip(of_one, told.tolist(), errors, strict=True)):
+            if k:
+                state = _predicted(state, turns[k - 1], lasting[k])
+            innovation = _innovation(state, value, error) if seen else None
+            if innovation is not None:
+                state = _updated(state, innovation)
+            states.append(state)
+            innovations.append(innovation)
+        out[:, :, column] = _smoothed(states, innovations, turns)[0]
+    out[stretch.idle, 1] = 0.0
+    return out
+
+
 def _listed(way: Steps) -> list[Step]:
     columns = (way.reach, way.keep, way.q00, way.q01, way.q11, way.fade)
     return list(zip(*(column.tolist() for column in columns), strict=True))

@@ -5,13 +5,15 @@ stones change by the same amount (of others, as their masses have it), and that 
 velocities change along the line of the contact: an impulse that gives a disc Δv across the normal
 turns it by Δv / (k R) (Wang and Mason, 1992, J. Appl. Mech. 59, 635). The error of a spin is
 correlated all the way from one hit to the next (light on a turning cap, few pictures), so that what
-a hit tells of one end corrects all of that stretch, as far as the ice leaves a spin unchanged.
+a hit tells of one end corrects all of that stretch, as far as the ice leaves a spin unchanged. What
+angles of a stone are off by together (a handle that rises) goes on through its hits as well.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,11 +47,16 @@ End = tuple[str, int, bool]
 
 @dataclass(frozen=True)
 class _Stretch:
-    """A stone from one hit to the next: its table, its rows there, and those that tell its spin."""
+    """A stone from one hit to the next.
+
+    Its table, its rows there, those that tell its spin, and what all spins of the table are off by
+    together, (rows of the table, 2).
+    """
 
     table: Columns
     rows: NDArray[np.intp]
     told: NDArray[np.intp]
+    together: Floats
 
     def spin_row(self, time: float) -> int:
         """Row that tells the spin at a hit at either end."""
@@ -71,9 +78,11 @@ class _Stretch:
     def covariance(self, row: int) -> Floats:
         """Covariance of the spins of all rows with that of one of them.
 
-        Spins of two rows differ by what the ice may do between them at most.
+        But for what is off together, spins of two rows differ by what the ice may do between them
+        at most.
         """
-        t, variance = self.table["t"][self.told], self.table["sd_omega"][self.told] ** 2
+        whole = self.table["sd_omega"] ** 2 - (self.together**2).sum(1)
+        t, variance = self.table["t"][self.told], np.maximum(whole[self.told], 0.0)
         speed = np.hypot(self.table["vx"], self.table["vy"])[self.told]
         loss = np.minimum(LOSS_SD[1] / np.maximum(speed, 1e-6), MOST_LOSS_SD[1]) ** 2 * MEMORY
         so_far = np.concatenate([[0.0], np.cumsum(loss[:-1] * np.diff(t))])
@@ -106,6 +115,7 @@ def share_spins(
     contacts: Sequence[Contact],
     radius: float,
     masses: Mapping[str, float] | None = None,
+    together: Mapping[str, Floats] = MappingProxyType({}),
 ) -> None:
     """Improve spins by how hits change them, and their standard errors.
 
@@ -119,6 +129,9 @@ def share_spins(
         Of the discs, m.
     masses : mapping, optional
         Stone to mass in any unit; 1 where absent.
+    together : mapping
+        Stone to what its spins are off by together, (rows, 2), rad/s, each times one number of
+        standard deviation 1: a part of ``sd_omega``; nothing where absent.
     """
     masses = masses or {}
     hits = {
@@ -128,26 +141,21 @@ def share_spins(
     stretches = {
         (stone, k): stretch
         for stone, own in hits.items()
-        for k, stretch in enumerate(_stretches(tables[stone], [hit.t for hit in own]))
+        for k, stretch in enumerate(
+            _stretches(tables[stone], together.get(stone), [hit.t for hit in own])
+        )
     }
     # The unknowns: the spin of each stretch at either hit, told by a row of it.
-    ends: list[tuple[_Stretch, int]] = []
+    ends: list[tuple[str, int, int]] = []
     number: dict[End, int] = {}
     for (stone, k), stretch in stretches.items():
         for hit, late in ((k - 1, True), (k, False)):
             if 0 <= hit < len(hits[stone]) and len(stretch.told):
                 number[stone, hit, late] = len(ends)
-                ends.append((stretch, stretch.spin_row(hits[stone][hit].t)))
+                ends.append((stone, k, stretch.spin_row(hits[stone][hit].t)))
     if not ends:
         return
-    before = np.array([stretch.table["omega"][row] for stretch, row in ends])
-    cov = np.zeros((len(ends), len(ends)))
-    for i, (stretch, row) in enumerate(ends):
-        like = stretch.covariance(row)
-        for j, (other, there) in enumerate(ends):
-            if other is stretch:
-                cov[i, j] = like[np.searchsorted(stretch.told, there)]
-    mean, prior = before, np.diag(cov)
+    spins = _Spins.of(stretches, ends)
     for met in sorted(contacts, key=lambda met: met.t):
         sides = []
         for stone in (stone for stone in met.stones if stone in hits):
@@ -157,27 +165,103 @@ def share_spins(
             sides.append(
                 _Side(stretches[stone, k], stretches[stone, k + 1], rows[0], rows[1], mass)
             )
-        for seen, value, sd in _constraints(met, sides, mean, cov, radius):
-            off, spread = value - seen @ mean, float(seen @ cov @ seen) + sd**2
-            if off**2 < WILD**2 * spread:
-                gain = cov @ seen / spread
-                mean, cov = mean + gain * off, cov - np.outer(gain, seen @ cov)
-    _correct_rows(ends, mean - before, prior, prior - np.diag(cov))
+        for seen, value, sd in _constraints(met, sides, spins, radius):
+            spins.learn(seen, value, sd)
+    spins.write_back()
 
 
-def _stretches(table: Columns, times: Sequence[float]) -> list[_Stretch]:
+@dataclass
+class _Spins:
+    """Spins of all rows of all stretches, and their covariance with those at hits.
+
+    What a hit tells of these corrects all rows as far as they go together (Kalman's equations).
+
+    Attributes
+    ----------
+    stretches : sequence of _Stretch
+        Row after row.
+    omega, variance : (n,) array
+        rad/s and its square.
+    cov : (n, m) array
+        Covariance with the spins at hits.
+    ends : (m,) array of int
+        Which of the rows tell these.
+    """
+
+    stretches: Sequence[_Stretch]
+    omega: Floats
+    variance: Floats
+    cov: Floats
+    ends: NDArray[np.intp]
+
+    @classmethod
+    def of(
+        cls, stretches: Mapping[tuple[str, int], _Stretch], ends: Sequence[tuple[str, int, int]]
+    ) -> _Spins:
+        """Gather them from the tables; each end is a stone, the rank of its stretch, and a row."""
+        parts = list(stretches.values())
+        first = dict(zip(stretches, np.cumsum([0, *(len(p.told) for p in parts)]), strict=False))
+        omega = np.concatenate([part.table["omega"][part.told] for part in parts])
+        sd = np.concatenate([part.table["sd_omega"][part.told] for part in parts])
+        together = np.concatenate([part.together[part.told] for part in parts])
+        whose = np.array([stone for stone, k in stretches for _ in stretches[stone, k].told])
+        cov = np.zeros((len(omega), len(ends)))
+        at = []
+        for j, (stone, k, row) in enumerate(ends):
+            stretch, begin = stretches[stone, k], int(first[stone, k])
+            at.append(begin + int(np.searchsorted(stretch.told, row)))
+            cov[whose == stone, j] = together[whose == stone] @ together[at[j]]
+            cov[begin : begin + len(stretch.told), j] += stretch.covariance(row)
+        still = omega == 0  # at rest a stone has none, whatever its other spins are off by
+        cov[still] = 0.0
+        cov[:, still[at]] = 0.0
+        return cls(parts, omega, sd**2, cov, np.array(at))
+
+    @property
+    def at_hits(self) -> tuple[Floats, Floats]:
+        """Spins at hits, (m,), and their covariance."""
+        return self.omega[self.ends], self.cov[self.ends]
+
+    def learn(self, seen: Floats, value: float, sd: float) -> None:
+        """Take in that spins at hits, weighed by `seen`, come to a value; ignored if far off."""
+        mean, cov = self.at_hits
+        off, spread = value - seen @ mean, float(seen @ cov @ seen) + sd**2
+        if off**2 < WILD**2 * spread:
+            told = self.cov @ seen
+            self.omega = self.omega + told * off / spread
+            self.variance = self.variance - told**2 / spread
+            self.cov = self.cov - np.outer(told, seen @ cov) / spread
+
+    def write_back(self) -> None:
+        """Put spins and their standard errors back into the tables."""
+        begin = 0
+        for part in self.stretches:
+            rows = slice(begin, begin + len(part.told))
+            part.table["omega"][part.told] = self.omega[rows]
+            part.table["sd_omega"][part.told] = np.sqrt(np.maximum(self.variance[rows], 0.0))
+            begin = rows.stop
+
+
+def _stretches(table: Columns, together: Floats | None, times: Sequence[float]) -> list[_Stretch]:
     """Cut a stone's rows at its hits."""
+    if together is None:
+        together = np.zeros((len(table["t"]), 2))
     part = np.searchsorted(np.array(times), table["t"], side="right")
     moving = np.isfinite(table["sd_vx"])
     told = np.isfinite(table["sd_omega"])
     return [
-        _Stretch(table, np.flatnonzero((part == k) & moving), np.flatnonzero((part == k) & told))
+        _Stretch(
+            table,
+            np.flatnonzero((part == k) & moving),
+            np.flatnonzero((part == k) & told),
+            together,
+        )
         for k in range(len(times) + 1)
     ]
 
 
 def _constraints(
-    hit: Contact, sides: Sequence[_Side], mean: Floats, cov: Floats, radius: float
+    hit: Contact, sides: Sequence[_Side], spins: _Spins, radius: float
 ) -> Iterator[tuple[Floats, float, float]]:
     """Linear constraints on spins that a hit gives: weights, value and standard error of each.
 
@@ -186,6 +270,7 @@ def _constraints(
     """
     if len(sides) < 2:
         return
+    mean, cov = spins.at_hits
     mean_mass = float(np.mean([side.mass for side in sides]))
     unlike = UNLIKE_STONES if curling_size(radius) else UNLIKE
     changes = []
@@ -226,26 +311,3 @@ def _spin_change(hit: Contact, sides: Sequence[_Side], radius: float) -> tuple[f
     slant = float(np.linalg.norm(aside)) / (2 * radius) * push / lever
     error = float(np.hypot(np.sqrt(1 / weight.sum()), slant))
     return float(weight @ changes / weight.sum()), error
-
-
-def _correct_rows(
-    ends: Sequence[tuple[_Stretch, int]], change: Floats, prior: Floats, less: Floats
-) -> None:
-    """Correct the spins of all rows, each by the more correlated end of its stretch.
-
-    Parameters
-    ----------
-    ends : sequence of (_Stretch, int)
-    change, prior, less : ndarray, shape (n,)
-        By how much their spins changed, their variances before, and by how much these fell.
-    """
-    for stretch in {id(stretch): stretch for stretch, _ in ends}.values():
-        at = [i for i, (other, _) in enumerate(ends) if other is stretch]
-        like = np.array([stretch.covariance(ends[i][1]) for i in at])
-        best = (like / np.sqrt(prior[at])[:, None]).argmax(0)
-        rows = np.arange(len(stretch.told))
-        omega, sd = stretch.table["omega"][stretch.told], stretch.table["sd_omega"][stretch.told]
-        gain = np.where(omega == 0, 0.0, like[best, rows] / prior[at][best])  # at rest it has none
-        stretch.table["omega"][stretch.told] = omega + gain * change[at][best]
-        variance = sd**2 - gain**2 * less[at][best]
-        stretch.table["sd_omega"][stretch.told] = np.sqrt(np.maximum(variance, 0.0))

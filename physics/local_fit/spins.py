@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from data.results import Estimate
 from data.sheet import STONE
-from physics.filter.rate_filter import filtered
+from physics.filter.rate_filter import angle_response, filtered
 from physics.filter.stretch import Model, Stretch
 from physics.local_fit.noise import Noise
 from physics.local_fit.shot_fit import ContactState, ShotFit
@@ -113,13 +113,13 @@ def spin_on(
     z[trace.t[row] != t] = np.nan
     stop, speed = fit.stop(rank), fit.speeds(rank, t)
     one, spinning = np.zeros(len(t), dtype=int), np.zeros(len(t), dtype=bool)
-    mean, spread, _ = filtered(
-        Stretch(
-            t, z, errs.white[row], errs.slow[row], one, t > stop, spinning, speed, Model(0.0, 1.0)
-        )
+    stretch = Stretch(
+        t, z, errs.white[row], errs.slow[row], one, t > stop, spinning, speed, Model(0.0, 1.0)
     )
+    mean, spread, _ = filtered(stretch)
     at = int(np.searchsorted(t, time))
-    return Estimate(float(mean[at, 5]), float(spread[at, 5]))
+    together = angle_response(stretch, trace.rise[row])[at, 1]
+    return Estimate(float(mean[at, 5]), float(np.hypot(spread[at, 5], np.linalg.norm(together))))
 
 
 def stone_friction(

@@ -17,6 +17,9 @@ SMALLEST_SD = 1e-5
 SHARED = "sd_place_x", "sd_place_y"
 """Columns of the standard error that places near each other share."""
 
+RISE = "rise_a", "rise_b"
+"""Columns of what angles are off by together."""
+
 PLACE_REACH = 1.0
 """Distance, m, over which the error that places share makes one of the speed: it is independent at
 the two ends."""
@@ -54,6 +57,9 @@ class Trace:
         Angle and its standard deviation, rad; NaN where unknown.
     sd_place : (n, 2) array
         Standard deviation of the error that places share, m; 0 where unknown.
+    rise : (n, 2) array
+        What the angles are off by together, rad, each times one number of standard deviation 1; 0
+        where unknown.
     lasting : float
         Share of the variance of places that lasts for a while.
     """
@@ -65,6 +71,7 @@ class Trace:
     theta: Floats
     sd_theta: Floats
     sd_place: Floats
+    rise: Floats
     lasting: float = LASTING
 
     @property
@@ -96,7 +103,7 @@ class Trace:
         return self._only(self.t >= start)
 
     def _only(self, keep: NDArray[np.bool_]) -> Trace:
-        names = ("t", "xy", "sd", "theta", "sd_theta", "sd_place")
+        names = ("t", "xy", "sd", "theta", "sd_theta", "sd_place", "rise")
         return replace(self, **{name: getattr(self, name)[keep] for name in names})
 
     def between(self, start: float, end: float) -> NDArray[np.bool_]:
@@ -119,7 +126,7 @@ def traces(sightings: Table) -> dict[str, Trace]:
     out: dict[str, Trace] = {}
     stones = np.asarray(sightings["stone"])
     columns = {name: np.asarray(sightings[name], float) for name in ("t", "x", "y")}
-    for name in ("theta", "sd_x", "sd_y", "sd_theta", *SHARED):
+    for name in ("theta", "sd_x", "sd_y", "sd_theta", *SHARED, *RISE):
         told = name in sightings
         columns[name] = np.asarray(sightings[name] if told else np.full(len(stones), np.nan), float)
     for name in np.unique(stones).tolist():
@@ -138,6 +145,7 @@ def traces(sightings: Table) -> dict[str, Trace]:
             theta=theta,
             sd_theta=_filled_angles(t[known], turned, own["sd_theta"], known, goes[known]),
             sd_place=np.column_stack([np.nan_to_num(own[axis]) for axis in SHARED]),
+            rise=np.column_stack([np.nan_to_num(own[axis]) for axis in RISE]),
             lasting=LASTING if np.isfinite(sd).any() else 0.0,
         )
     return out

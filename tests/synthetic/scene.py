@@ -86,7 +86,8 @@ class Stone:
     """One stone: its name, where it starts, and its looks.
 
     `theta` of the start points from the cap's centre to the handle's free end. The cap ends
-    `cap_height` above the ice, and below that it has a side `wall` high, m.
+    `cap_height` above the ice, and below that it has a side `wall` high, m. A handle is level, or
+    rises by `steepness` along it; it is as high in the middle then.
     """
 
     name: str
@@ -97,6 +98,7 @@ class Stone:
     cap_radius: float = 0.1045
     cap_height: float = 0.12
     wall: float = 0.0
+    steepness: float = 0.0
     granite: Colour = (112, 120, 122)
 
     @property

@@ -6,6 +6,7 @@ disc at 0.12 m, the handle a bar above it with one thick end.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from functools import cache
 
 import numpy as np
@@ -22,6 +23,7 @@ HEIGHT, EDGE = 0.114, 0.040
 HANDLE_HEIGHT = 0.148
 SIDE_LIGHT = 0.7  # of the side of a cap, beside its top: lamps are above
 NECK, FREE_END, HALF_WIDTH, NECK_WIDTH = -0.056, 0.074, 0.0125, 0.0195
+PIECES = 12  # of a handle that rises
 
 
 def draw_stones(
@@ -164,21 +166,38 @@ def _paint_stone(
 
     shadow = at(stone.cap_height + 0.004) + np.array([0.006, 0.006])
     blend(_handle(shadow, float(state[2]), rim), cap * 0.45, 0.75)
-    p = at(HANDLE_HEIGHT)
     bar = np.array(stone.handle, float)
-    distance = _handle(p, float(state[2]), rim)
+    if not stone.steepness:
+        distance = _handle(at(HANDLE_HEIGHT), float(state[2]), rim)
+    else:
+        distance = np.min(
+            [
+                _handle(at(HANDLE_HEIGHT + stone.steepness * along), float(state[2]), rim, part)
+                for along, *part in _pieces(rim)
+            ],
+            axis=0,
+        )
     blend(distance, bar * (0.86 + 0.14 * np.clip(-distance / 0.008, 0, 1))[..., None])
 
 
-def _handle(p: Array, theta: float, rim: float) -> Array:
-    """Distance to the handle's outline: a bar along theta with its neck thicker, m."""
+def _handle(p: Array, theta: float, rim: float, part: Sequence[float] = (NECK, FREE_END)) -> Array:
+    """Distance to the outline of part of the handle, m: a bar along theta with its neck thicker."""
     size = rim / 0.1045
     along = p[..., 0] * np.cos(theta) + p[..., 1] * np.sin(theta)
     across = p[..., 1] * np.cos(theta) - p[..., 0] * np.sin(theta)
-    nearest = np.clip(along, NECK * size, FREE_END * size)
+    nearest = np.clip(along, part[0] * size, part[1] * size)
     bar = np.hypot(along - nearest, across) - HALF_WIDTH * size
+    if part[0] != NECK:
+        return np.asarray(bar)
     neck = np.hypot(along - NECK * size, across) - NECK_WIDTH * size
     return np.asarray(np.minimum(bar, neck))
+
+
+def _pieces(rim: float) -> Iterator[tuple[float, float, float]]:
+    """Middles of the pieces of which a handle that rises is made, m, and where they end."""
+    ends = np.linspace(NECK, FREE_END, PIECES + 1)
+    middles = (0.5 * (ends[1:] + ends[:-1]) - ends.mean()) * rim / 0.1045
+    return zip(middles.tolist(), ends[:-1].tolist(), ends[1:].tolist(), strict=True)
 
 
 def _glints(azimuth: Array, lamps: tuple[float, ...]) -> Array:

@@ -153,6 +153,20 @@ def test_handle_points_along_theta() -> None:
     assert brightness(0.095) < 120
 
 
+@pytest.mark.parametrize("steepness", [0.0, 0.3])
+def test_the_free_end_of_a_handle_that_rises_is_seen_at_its_height(steepness: float) -> None:
+    """From its middle on it goes up: 0.148 m above the ice there, and so much more at its end."""
+    scene = lone_stone(Start(0.0, 0.0, theta=0.0))
+    stone = replace(scene.stones[0], handle=(255, 40, 20), steepness=steepness)
+    camera = tilted_camera(np.deg2rad(40), px_per_m=400, size=(480, 480))
+    picture = render_still(replace(scene, stones=(stone,)), camera, supersample=2)
+    middle, end = 0.5 * (0.074 - 0.056), 0.074
+    seen = camera.at(0).project([[end - 0.005, 0.0, 0.148 + steepness * (end - 0.005 - middle)]])[0]
+    rows, columns = np.nonzero(picture[..., 0] > 100.0 + picture[..., 2])
+    beside = np.abs(columns - seen[0]) < 3
+    assert rows[beside].mean() == pytest.approx(seen[1], abs=1.0)
+
+
 def test_the_picture_is_a_function_of_the_scene() -> None:
     scene = random_scene(np.random.default_rng(3))
     first, second = (render_still(scene, broadcast_camera(), 1.0) for _ in range(2))

@@ -198,7 +198,9 @@ def test_caps_seen_aslant_may_have_been_unrolled_aside(disc: Stone, more: float)
 
 
 def angles(theta: Array, unlike: tuple[float, float], height: int) -> HandleAngles:
-    return HandleAngles(theta, 0 * theta + 0.01, np.array(unlike), frozenset({height}))
+    return HandleAngles(
+        theta, 0 * theta + 0.01, np.zeros((len(theta), 2)), np.array(unlike), frozenset({height})
+    )
 
 
 def test_stones_that_hardly_turn_are_seen_at_the_height_of_those_that_do(
@@ -239,7 +241,7 @@ def test_no_clip_has_all_of_what_places_may_share() -> None:
     light = lightness_of(track.times, track.sightings)
     seen = [track.sightings]
     by_edges = _by_edges(seen, STONE, False)
-    untold = HandleAngles(np.full(1, np.nan), np.full(1, np.nan), np.zeros(2))
+    untold = HandleAngles(np.full(1, np.nan), np.full(1, np.nan), np.zeros((1, 2)), np.zeros(2))
     row = _rows("A", track, "", by_edges[0], untold, (light, 0.0))
     edge = edge_errors(seen, STONE.cap_radius)[0]
     stated = np.array([row["sd_place_x"][0], row["sd_place_y"][0]]) / np.hypot([0.003, 0], edge)

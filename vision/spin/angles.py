@@ -57,6 +57,7 @@ def angles_in_parts(
     HandleAngles
     """
     theta, sd = np.full(len(times), np.nan), np.full(len(times), np.nan)
+    rise = np.zeros((len(times), 2))
     kept = {index: item for index, item in enumerate(spectra) if item is not None}
     rings = slice(None) if height is None else slice(height * len(radii), (height + 1) * len(radii))
     if len(kept) <= most:
@@ -64,8 +65,8 @@ def angles_in_parts(
         pictures = [item.get()[:, rings] for item in kept.values()]
         of = None if slants is None else slants[rows]
         told = handle_angles(times[rows], pictures, radii, sd_centre[rows], of)
-        theta[rows], sd[rows] = told.theta, told.sd
-        return replace(told, theta=theta, sd=sd)
+        theta[rows], sd[rows], rise[rows] = told.theta, told.sd, told.rise
+        return replace(told, theta=theta, sd=sd, rise=rise)
     first: Complex | None = None
     last = -1
     parts: list[HandleAngles] = []
@@ -76,7 +77,7 @@ def angles_in_parts(
         parts.append(told)
         if mean is None:
             continue
-        sd[part], angle = told.sd, told.theta
+        sd[part], rise[part], angle = told.sd, told.rise, told.theta
         seen = np.flatnonzero(np.isfinite(angle))
         if first is None:
             first = mean
@@ -86,7 +87,8 @@ def angles_in_parts(
             angle = angle + aside + 2 * pi * round(float(turns))
         theta[part], last = angle, int(part[seen[-1]])
     unlike = np.sum([told.unlike for told in parts], axis=0)
-    return HandleAngles(theta, sd, unlike, frozenset().union(*(told.heights for told in parts)))
+    heights = frozenset().union(*(told.heights for told in parts))
+    return HandleAngles(theta, sd, rise, unlike, heights)
 
 
 def _part(

@@ -108,6 +108,9 @@ class HandleAngles:
     ----------
     theta, sd : ndarray, shape (n,)
         Angle and its standard error, rad; NaN where it cannot be told.
+    rise : ndarray, shape (n, 2)
+        What angles are off by together, if the handle rises by one standard error more along either
+        axis of the cap, rad (`vision.spin.pitch`); it is no part of `sd`.
     unlike : ndarray, shape (heights,)
         How many pictures' worth of what was seen their mean does not explain, by the height at
         which caps were unrolled; 0 where nothing was seen.
@@ -118,6 +121,7 @@ class HandleAngles:
 
     theta: Array
     sd: Array
+    rise: Array
     unlike: Array
     heights: frozenset[int] = frozenset()
 
@@ -206,11 +210,12 @@ def handle_angles(
     HandleAngles
     """
     theta, sd = np.full(len(times), np.nan), np.full(len(times), np.nan)
+    rise = np.zeros((len(times), 2))
     seen = np.array([index for index, item in enumerate(spectra) if item is not None], np.intp)
     if not len(seen):
-        return HandleAngles(theta, sd, np.zeros(1))
+        return HandleAngles(theta, sd, rise, np.zeros(1))
     pictures = uncovered(np.array([spectra[index] for index in seen]))
-    nothing = HandleAngles(theta, sd, np.zeros(pictures.shape[2] // len(radii)))
+    nothing = HandleAngles(theta, sd, rise, np.zeros(pictures.shape[2] // len(radii)))
     clear = rings_seen(pictures).any(1)
     seen, pictures = seen[clear], pictures[clear]
     if len(seen) < 2:  # an angle is against another picture of the same stone
@@ -236,17 +241,17 @@ def handle_angles(
     fit = align(best.pictures[good], best.angles[good], radii, aside)
     unlike = np.maximum(1 - best.likeness[good] ** 2, ALIKE)
     covered = np.clip((unlike / (BEFORE * np.median(unlike))) ** 2, 1.0, WORST)
-    angle, steep = fit.angle, 0.0
+    angle, risen = fit.angle, rise[rows]
     if slants is not None:
-        angle, steep = levelled(best.pictures[good], fit.angle, radii, slants[rows])
+        angle, risen = levelled(best.pictures[good], fit.angle, radii, slants[rows])
     odd = np.clip((1 - _alike(best) / len(seen)) / ODD, 1.0, ODDEST)
     dim = np.clip(TURNS / max(best.share, 1e-6) - 1, 0.0, DIM)
     odd += dim * max(odd - ODDER, 0.0)
-    error = np.hypot(np.hypot(LASTING * odd * covered * fit.sd, by.apart[good]), steep)
-    if np.median(error) > UNSURE:
+    error = np.hypot(LASTING * odd * covered * fit.sd, by.apart[good])
+    if np.median(np.hypot(error, np.sqrt((risen**2).sum(1).mean()))) > UNSURE:
         return nothing
-    theta[rows], sd[rows] = angle - angle[0], error
-    return HandleAngles(theta, sd, by.unlike, frozenset({by.height}))
+    theta[rows], sd[rows], rise[rows] = angle - angle[0], error, risen
+    return HandleAngles(theta, sd, rise, by.unlike, frozenset({by.height}))
 
 
 @dataclass(frozen=True)

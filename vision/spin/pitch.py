@@ -37,7 +37,7 @@ NEAR = 0.5
 where others were, and how steep they are is told the worse by the square of the slant."""
 
 
-def levelled(pictures: Complex, angles: Array, radii: Array, slants: Array) -> tuple[Array, float]:
+def levelled(pictures: Complex, angles: Array, radii: Array, slants: Array) -> tuple[Array, Array]:
     """Take out of the angles of a cap what the steepness of its handle turns pictures by.
 
     Parameters
@@ -55,10 +55,10 @@ def levelled(pictures: Complex, angles: Array, radii: Array, slants: Array) -> t
     -------
     angle : ndarray, shape (n,)
         rad.
-    sd : float
-        Standard error of what was taken out, rad: the root mean square over the pictures. It is
-        alike for long, and smaller in those that are turned as most are; if each stated its own,
-        spins would be told by these few.
+    rise : ndarray, shape (n, 2)
+        What is left of it, rad: by how much each angle is off if what is seen is steeper by one
+        standard error than was taken out, along either axis of the cap. How steep it is, is one
+        number for all pictures, so that these errors go together.
     """
     seen = rings_seen(pictures)
     mean = upright_mean(pictures, angles, seen[:, None, :, None])
@@ -80,8 +80,9 @@ def levelled(pictures: Complex, angles: Array, radii: Array, slants: Array) -> t
     apart = np.linalg.inv(known) + bent**2 * np.eye(2)
     share = np.linalg.solve(STEEP**2 * np.eye(2) + apart, STEEP**2 * np.eye(2))
     turns -= np.median(turns, axis=0)
-    sd = float(np.sqrt(np.einsum("np,pq,nq", turns, share @ apart, turns) / len(turns)))
-    return angles - turns @ share @ np.linalg.solve(known, pull), sd
+    left, axes = np.linalg.eigh(share @ apart)
+    rise = turns @ (axes * np.sqrt(left)) @ axes.T
+    return angles - turns @ share @ np.linalg.solve(known, pull), rise
 
 
 def _normal_equations(

@@ -17,7 +17,9 @@ def straight(name: str, place: tuple[float, float], velocity: tuple[float, float
     t = np.arange(60) / 30
     xy = np.array(place) + t[:, None] * np.array(velocity)
     none = np.full(60, np.nan)
-    return Trace(name, t, xy, np.full((60, 2), 1e-3), none, none, np.zeros((60, 2)))
+    return Trace(
+        name, t, xy, np.full((60, 2), 1e-3), none, none, np.zeros((60, 2)), np.zeros((60, 2))
+    )
 
 
 @pytest.mark.parametrize(("beside", "count"), [(0.0, 1), (0.28, 1), (0.4, 0), (0.6, 0)])
@@ -102,7 +104,7 @@ def test_a_hit_is_passed_on_among_stones_that_touch() -> None:
     paths = {
         name: Trace(
             name, t, np.column_stack([0 * t, y]) + noise.normal(0, 1e-3, (len(t), 2)),
-            np.full((len(t), 2), 1e-3), none, none, np.zeros((len(t), 2)),
+            np.full((len(t), 2), 1e-3), none, none, np.zeros((len(t), 2)), np.zeros((len(t), 2)),
         )
         for name, y in up.items()
     }  # fmt: skip
@@ -119,7 +121,16 @@ def test_a_stone_moves_however_long_it_rests_and_not_by_a_few_wild_places(wild: 
     xy = rng.normal(0, 0.002, (len(t), 2))
     xy[100 : 100 + wild] += 0.5
     none = np.full(len(t), np.nan)
-    rests = Trace("A", t, xy, np.full((len(t), 2), 2e-3), none, none, np.zeros((len(t), 2)))
+    rests = Trace(
+        "A",
+        t,
+        xy,
+        np.full((len(t), 2), 2e-3),
+        none,
+        none,
+        np.zeros((len(t), 2)),
+        np.zeros((len(t), 2)),
+    )
     assert _extent(rests) < 0.1 * RADIUS
     moved = replace(rests, xy=xy + np.column_stack([way, 0 * way]))
     assert _extent(moved) == pytest.approx(0.3, abs=0.02)

@@ -63,7 +63,7 @@ def trace() -> Trace:
     """A stone that glides by (0.3, -1.2) m/s from (1, 2) m at 2 s."""
     xy = np.array([1.0, 2.0]) + (T - 2.0)[:, None] * np.array([0.3, -1.2])
     sd = np.full_like(xy, 0.003)
-    return Trace("A", T, xy, sd, np.full(21, np.nan), np.full(21, np.nan), 0 * xy)
+    return Trace("A", T, xy, sd, np.full(21, np.nan), np.full(21, np.nan), 0 * xy, 0 * xy)
 
 
 def piece(samples: np.ndarray, **bounds: float | int | bool | None) -> Piece:
@@ -95,7 +95,7 @@ def test_a_glide_is_guessed_alike_however_long_its_stone_rests_in_the_end(rests:
     tau = np.minimum(t, 5.0)
     xy = np.outer(0.5 * tau - 0.05 * tau**2, [0.6, 0.8])
     none = np.full(len(t), np.nan)
-    one = Trace("A", t, xy, np.full(xy.shape, 1e-3), none, none, 0 * xy)
+    one = Trace("A", t, xy, np.full(xy.shape, 1e-3), none, none, 0 * xy, 0 * xy)
     state = _first_guess(Piece("A", 0.0, np.inf, np.arange(len(t)), stops=True), one, 0.0)
     assert state[:, 0] == pytest.approx([0.0, 0.0], abs=0.05)
     assert state[:, 1] == pytest.approx([0.3, 0.4], rel=0.02)

@@ -33,7 +33,7 @@ def fitted(
     residuals = (off / SD).ravel() + slopes @ found
     trace = Trace(
         "A", t, path + off, np.full((COUNT, 2), SD), np.full(COUNT, np.nan),
-        np.full(COUNT, np.nan), np.full((COUNT, 2), stated),
+        np.full(COUNT, np.nan), np.full((COUNT, 2), stated), np.zeros((COUNT, 2)),
     )  # fmt: skip
     shared = shared_error({"A": trace}, residuals.reshape(-1, 2), slopes, cov, np.ones(2 * COUNT))
     return found, np.diag(cov + shared)

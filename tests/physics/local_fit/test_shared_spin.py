@@ -186,3 +186,31 @@ def test_a_hit_tells_but_once(told: tuple[float, float, float]) -> None:
             off.append(error / tables[name]["sd_omega"][k])
     each = np.sqrt(np.mean(np.square(off).reshape(-1, 3), axis=0))
     assert all(0.85 < pull < 1.15 for pull in each[np.isfinite(each)])
+
+
+def turned_by(seen: tuple[float, float], alike: tuple[float, float], other: float) -> Columns:
+    """A's rows whose spins are off together by so much before and after a hit, and turned B."""
+    (before, after), own = seen, 0.02
+    tables = {
+        "A": rows((0.0, before, np.hypot(own, alike[0])), (1.0, after, np.hypot(own, alike[1]))),
+        "B": rows((0.0, 0.0, 0.001), (1.0, other, 0.01)),
+    }
+    size = np.where(tables["A"]["t"] > 1.0, alike[1], alike[0])
+    together = {"A": np.column_stack([0 * size, size])}
+    share_spins(tables, [FIRST], STONE.radius, together=together)
+    return tables["A"]
+
+
+def test_a_hit_tells_what_spins_of_a_stone_are_off_by_together() -> None:
+    """Of 2 and 1 rad/s a tenth more is seen: the change, 0.1 too large, tells it to 0.06."""
+    told = turned_by((2.2, 1.1), (0.2, 0.1), -1.0)
+    share = 0.1**2 / (0.1**2 + 2 * 0.02**2 + 0.01**2 + 0.02**2 + (0.05 * 1.0) ** 2)
+    for k, off in ((10, 0.2), (40, 0.1)):
+        assert told["omega"][k] == pytest.approx((2.2, 1.1)[k > 25] - share * off, abs=0.004)
+        assert told["sd_omega"][k] == pytest.approx(off * np.sqrt(1 - share), abs=0.01)
+
+
+def test_a_hit_tells_nothing_of_what_is_the_same_on_either_side_of_it() -> None:
+    told = turned_by((2.2, 1.2), (0.2, 0.2), -0.9)
+    assert told["omega"][[10, 40]] == pytest.approx([2.2, 1.2], abs=0.015)
+    assert told["sd_omega"][[10, 40]] == pytest.approx(0.2, abs=0.005)

@@ -65,6 +65,7 @@ def test_spins_beside_a_hit_are_as_sure_as_they_say(slow: float) -> None:
 def test_spins_are_those_of_the_tracks_filter(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("physics.kalman.share_spins", lambda *_: None)
     seen = watch(hit_motion(), np.random.default_rng(5)).assign(sd_theta=0.05)
+    seen["rise_a"], seen["rise_b"] = 0.1 * np.sin(seen["theta"]), 0.1 * np.cos(seen["theta"])
     fit, known = fitted(seen)
     tracks = smooth(seen, find_contacts(seen, RADIUS), radius=RADIUS)
     noise = noises(fit, known)

@@ -19,7 +19,14 @@ def trace(turned: float, place: float = PLACE, known: bool = True) -> Trace:
     theta = 0.3 + turned * t / 4.0 if known else np.full(COUNT, np.nan)
     xy = np.zeros((COUNT, 2))
     return Trace(
-        "A", t, xy, np.full_like(xy, SD), theta, np.full(COUNT, 0.01), np.full_like(xy, place)
+        "A",
+        t,
+        xy,
+        np.full_like(xy, SD),
+        theta,
+        np.full(COUNT, 0.01),
+        np.full_like(xy, place),
+        0 * xy,
     )
 
 

@@ -17,7 +17,9 @@ ASIDE = (0.0, 0.035)
 
 def told(theta: float, *unlike: float) -> HandleAngles:
     angles = np.linspace(0.0, theta, 50)
-    return HandleAngles(angles, 0 * angles, np.array(unlike), frozenset({0}))
+    return HandleAngles(
+        angles, 0 * angles, np.zeros((len(angles), 2)), np.array(unlike), frozenset({0})
+    )
 
 
 def pictures(true: NDArray[np.float64], seed: int) -> list[Kept[NDArray[np.complex64]]]:
