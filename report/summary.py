@@ -169,6 +169,10 @@ def summary(
             )
             lines += _each(f"{AFTER} s after it", guess.error_after, guess.sd_after, unit)
             lines += _each("at the end", guess.rest_error, guess.rest_sd, unit)
+            lines += [f"            {guess.note}"] if guess.note else []
+    notes = [guess.note for guess in results.predictions.values()]
+    if all(guess.rmse is None for guess in results.predictions.values()) and any(notes):
+        lines.append(f"predicted   — ({next(filter(None, notes))})")
     if house is not None:
         lines.append(f"shot stone  {_shot_stone(results, tracks, house, unit)}")
     lines += warned(results.warnings)

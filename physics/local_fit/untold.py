@@ -78,41 +78,59 @@ def untold_hits(
     radius : float
         Of the discs, m.
     """
-    paths = {name: path for name, path in known.items() if len(path.t) >= 2 * FEWEST}
+    # Of paths marked once in a while nothing is told: what is beside a hit reaches across it.
+    paths = {
+        name: path
+        for name, path in known.items()
+        if len(path.t) >= 2 * FEWEST and path.step <= AT_ONCE
+    }
     out: dict[frozenset[str], tuple[float, str]] = {}
+    alone: dict[str, list[_Change]] = {}
     for change in sorted(_changes(paths, told, radius), key=lambda one: (one.end, one.stone)):
-        other = _other(paths, change, radius)
-        if not other and not change.goes:
-            continue
-        stones = frozenset({change.stone, other} if other else {change.stone})
-        seen = other is not None and _in_sight(paths[other], change.end)
-        out.setdefault(stones, (change.end, _said(change, other, seen)))
-    for pair, time, text in (*_lost_and_found(paths, radius), *_touching(paths, told, radius)):
+        other = _other(paths, change, told, radius)
+        if other:
+            pair, seen = frozenset({change.stone, other}), _in_sight(paths[other], change.end)
+            out.setdefault(pair, (change.end, _said(change, other, seen)))
+        elif change.goes:
+            own = alone.setdefault(change.stone, [])
+            if not own or change.end - own[-1].end > AT_ONCE:
+                own.append(change)
+    for pair, time, text in (
+        *_lost_and_found(paths, told, radius),
+        *_touching(paths, told, radius),
+    ):
         out.setdefault(pair, (time, text))
-    return tuple(text for _, text in sorted(out.values()))
+    lone = [(changes[0].end, _said_alone(name, changes)) for name, changes in alone.items()]
+    return tuple(text for _, text in sorted([*lone, *out.values()]))
 
 
-def _said(change: _Change, other: str | None, seen: bool) -> str:
+def _said(change: _Change, other: str, seen: bool) -> str:
     name = change.stone
     if change.hidden:
-        if other:
-            first, second = sorted((name, other))
-            return (
-                f"{first} and {second} hit each other {change.when}, as it seems: too little is"
-                " seen to tell that hit and its e"
-            )
-        return f"something hit {name} {change.when}: neither that hit nor its e is told"
-    if other and seen:
+        first, second = sorted((name, other))
+        return (
+            f"{first} and {second} hit each other {change.when}, as it seems: too little is"
+            " seen to tell that hit and its e"
+        )
+    if seen:
         return (
             f"{name} moved as {other} came to it {change.when}: a hit too soft, or seen too little,"
             " to tell"
         )
-    if other:
-        return (
-            f"{other}, out of sight, hit {name} {change.when}, as it seems: too little is seen to"
-            " tell that hit and its e"
-        )
-    return f"the motion of {name} changes {change.when} and no stone is seen that hit it"
+    return (
+        f"{other}, out of sight, hit {name} {change.when}, as it seems: too little is seen to"
+        " tell that hit and its e"
+    )
+
+
+def _said_alone(name: str, changes: Sequence[_Change]) -> str:
+    """Say where the motion of one stone changes, and nothing is seen that hit it."""
+    when = [change.when for change in changes]
+    times = " and ".join(filter(None, (", ".join(when[:-1]), when[-1])))
+    if all(change.hidden for change in changes):
+        what = "neither that hit nor its e" if len(when) == 1 else "none of these hits"
+        return f"something hit {name} {times}: {what} is told"
+    return f"the motion of {name} changes {times} and no stone is seen that hit it"
 
 
 def _changes(
@@ -156,7 +174,8 @@ def _changed(gap: Gap, radius: float) -> bool:
     turned = abs(float(after.velocity[0] * along[1] - after.velocity[1] * along[0]))
     return bool(
         turned > SUDDEN + MISS * float(np.hypot(before.sd_speed, after.sd_speed))
-        or abs(slowed - SLOWING) > OFTEN * SLOWING + sd_slowed
+        # Discs on air are hardly slowed at all, but none speeds up.
+        or not -sd_slowed < slowed < OFTEN * SLOWING + sd_slowed
     )
 
 
@@ -199,14 +218,25 @@ def _away(path: Trace, place: Floats, radius: float) -> tuple[Floats, float, Flo
     return off, DISPLACED * radius + MISS * sd, path.t[FEW // 2 : len(path.t) - (FEW - 1) // 2]
 
 
-def _other(paths: Mapping[str, Trace], change: _Change, radius: float) -> str | None:
-    """Return the stone that comes nearest to one at a change of its motion, None if none does."""
+def _other(
+    paths: Mapping[str, Trace], change: _Change, told: Sequence[Meeting], radius: float
+) -> str | None:
+    """Return the stone that comes nearest to one at a change of its motion, None if none does.
+
+    One that has just hit it, as is told, was near it for that.
+    """
     margin = 0.0 if change.hidden else 2 * AT_ONCE
     t = np.linspace(change.start - margin, change.end, STEPS)
+    met = {
+        stone
+        for hit in told
+        if change.stone in hit.stones and t[0] - AT_ONCE < hit.t < t[-1]
+        for stone in hit.stones
+    }
     own = [*_places(paths[change.stone], t)]
     nearest: tuple[float, str] | None = None
     for name, path in paths.items():
-        if name == change.stone or _stays(path, float(t[0]), float(t[-1]), radius):
+        if name in met | {change.stone} or _stays(path, float(t[0]), float(t[-1]), radius):
             continue
         for place, sd in _places(path, t):
             for here, sd_here in own:
@@ -254,19 +284,25 @@ def _places(path: Trace, t: Floats) -> Iterator[tuple[Floats, Floats]]:
 
 
 def _lost_and_found(
-    paths: Mapping[str, Trace], radius: float
+    paths: Mapping[str, Trace], told: Sequence[Meeting], radius: float
 ) -> Iterator[tuple[frozenset[str], float, str]]:
-    """Pairs of which one is lost and the other first seen, both moving, on ways that meet."""
+    """Pairs of which one is lost and the other first seen, both moving, on ways that meet.
+
+    If they lie in one place all the while, it is one stone under two names.
+    """
+    hits = [{*meeting.stones} for meeting in told]
     for lost, path in paths.items():
         last = last_way(path, len(path.t) - 1)
         for found, other in paths.items():
             first = first_way(other, 0)
             if not (last.speed and first.speed and 0 < first.t - last.t < LOST):
                 continue
+            if {lost, found} in hits:
+                continue
             t = np.linspace(last.t, first.t, STEPS)
             noise = np.minimum(3 * np.hypot(last.sd(t), first.sd(t)), radius)
-            apart = np.hypot(*(last.at(t) - first.at(t)).T) - noise
-            if apart.min() < REACH * 2 * radius:
+            apart = np.hypot(*(last.at(t) - first.at(t)).T)
+            if apart.max() > radius and (apart - noise).min() < REACH * 2 * radius:
                 yield (
                     frozenset({lost, found}),
                     first.t,
@@ -312,4 +348,4 @@ def _stops(path: Trace, radius: float) -> float | None:
         return None
     off, least, t = _away(path, end.place, radius)
     away = np.flatnonzero(off > least)
-    return float(t[away[-1]]) if len(away) else None
+    return float(t[away[-1]]) if off[0] > least else None

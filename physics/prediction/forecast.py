@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from data.errors import InputError
-from data.results import Estimate, Prediction
+from data.results import Collision, Estimate, Prediction
 from data.sheet import STONE
 from physics.estimate import Estimates
 from physics.impact import Frictional, Impact, PointMass
@@ -146,6 +146,19 @@ def _before(
     return fit_with_chosen_laws(replace(watched, off_centre=OFF_CENTRE), held)
 
 
+@dataclass(frozen=True)
+class _Foretold:
+    """A shot as foretold: its simulated table, and who hits whom when, s."""
+
+    table: pd.DataFrame
+    hits: tuple[tuple[frozenset[str], float], ...]
+
+    def pairs(self, lasts: Mapping[str, float]) -> set[frozenset[str]]:
+        """Give who hit each other, by when each stone is looked at last, s; never if absent."""
+        ends = {stones: min(lasts.get(name, 0.0) for name in stones) for stones, _ in self.hits}
+        return {stones for stones, t in self.hits if t < ends[stones]}
+
+
 def _scored(
     fit: GlobalFit,
     model: str,
@@ -164,10 +177,18 @@ def _scored(
     ends = sorted({first + AFTER, *at.values()})
     every = np.union1d(times, ends)
     likely = _likely(fit, laws, model, first, every)
-    places = [_places(likely, rank) for rank in np.searchsorted(every, ends).tolist()]
-    spread = dict(zip(ends, _spreads(fit, laws, model, first, ends, places), strict=True))
+    places = [_places(likely.table, rank) for rank in np.searchsorted(every, ends).tolist()]
+    drawn = _drawn(fit, laws, model, first, ends)
+    stones = min(estimates.collisions, key=lambda hit: hit.earliest).stones
+    soon_enough = dict.fromkeys(stones, first + AFTER)
+    if not any(frozenset(stones) in one.pairs(soon_enough) for one in (likely, *drawn)):
+        # None of the draws is of this shot: as where a hand moves a stone before the hit.
+        note = f"as foretold, {' and '.join(stones)} do not hit each other within {AFTER} s"
+        return Prediction(None, note=note)
+    spread = dict(zip(ends, _spreads(drawn, ends, places), strict=True))
     frames = pd.Series(clock.index, index=np.searchsorted(every, times))
-    table = likely.assign(frame=likely["frame"].map(frames)).dropna(subset="frame")
+    table = likely.table
+    table = table.assign(frame=table["frame"].map(frames)).dropna(subset="frame")
     until = explained_until(tracks, estimates, first)
     until = foreseen_until(until, estimates.collisions, set(table["stone"]))
     found = score(tracks, table, first, until, None)
@@ -179,10 +200,23 @@ def _scored(
         {name: spread[at[name]][name] for name in found.rest_error if name in spread[at[name]]},
         laws.restitution,
         laws.friction,
-        found.note,
+        _other_hits(likely.pairs(at), estimates.collisions, found.note),
         after,
         {name: soon[name] for name, off in after.items() if off is not None and name in soon},
     )
+
+
+def _other_hits(
+    pairs: set[frozenset[str]], collisions: Sequence[Collision], note: str | None
+) -> str | None:
+    """Add to a note who hit each other as foretold and did not, or the other way round."""
+    seen = {frozenset(hit.stones) for hit in collisions}
+    notes = [note] if note else []
+    for stones in sorted(map(sorted, pairs - seen)):
+        notes.append(f"as foretold, {' and '.join(stones)} hit each other, which they did not")
+    for stones in sorted(map(sorted, seen - pairs)):
+        notes.append(f"as foretold, {' and '.join(stones)} do not hit each other")
+    return "; ".join(notes) or None
 
 
 def _errors_at(
@@ -204,7 +238,7 @@ def _errors_at(
     return out
 
 
-def _likely(fit: GlobalFit, laws: Priors, model: str, first: float, times: Floats) -> pd.DataFrame:
+def _likely(fit: GlobalFit, laws: Priors, model: str, first: float, times: Floats) -> _Foretold:
     """Simulate the shot with what is assumed of hits, and the plainest laws of the ice that may be.
 
     Those are the ones of fewest unknowns that `UNSURE` allows; Penner's, which has as few as
@@ -224,7 +258,7 @@ def _sampled(
     model: str,
     first: float,
     times: Floats,
-) -> pd.DataFrame:
+) -> _Foretold:
     """Simulate a shot as fitted, its hits by given laws, at some times after the first."""
     seen = fit.shots[0]
     approach = seen.shot(values)
@@ -245,7 +279,8 @@ def _sampled(
     rest = simulate(replace(onward, stones=tuple(stones), impact=impact), until=float(since[-1]))
     table = rest.sample(since)
     table["t"] += seen.start + lasts
-    return table
+    hits = ((frozenset(hit.stones), seen.start + lasts + hit.t) for hit in rest.hits)
+    return _Foretold(table, tuple(hits))
 
 
 def _places(table: pd.DataFrame, rank: int) -> dict[str, Floats]:
@@ -254,31 +289,33 @@ def _places(table: pd.DataFrame, rank: int) -> dict[str, Floats]:
     return dict(zip(now["stone"], now[["x", "y"]].to_numpy(float), strict=True))
 
 
-def _spreads(
-    fit: GlobalFit,
-    laws: Priors,
-    model: str,
-    first: float,
-    times: Sequence[float],
-    likely: Sequence[Mapping[str, Floats]],
-) -> list[dict[str, float]]:
-    """Tell how far each stone's place may be off at some times, both axes together, m.
-
-    It is the root mean square distance from the likeliest places over draws of what is not known of
-    states and laws.
-    """
+def _drawn(
+    fit: GlobalFit, laws: Priors, model: str, first: float, times: Sequence[float]
+) -> list[_Foretold]:
+    """Simulate the shot by draws of what is not known of states and laws, at increasing times."""
     rng = np.random.default_rng(0)
-    squares: list[dict[str, list[float]]] = [{stone: [] for stone in places} for places in likely]
-    until = np.unique(times)
+    out = []
     for own, row in draw_choices(fit, DRAWS, rng):
         drawn = {}
         for name, most in MOST.items():
             law: Estimate = getattr(laws, name)
             value = rng.normal(law.value or 0.0, law.stderr or 0.0)
             drawn[name] = float(np.clip(value, 1e-5, most))
-        table = _sampled(own, own.state(values=row), drawn, model, first, until)
-        for found, usual, rank in zip(squares, likely, np.searchsorted(until, times), strict=True):
-            there = _places(table, int(rank))
+        out.append(_sampled(own, own.state(values=row), drawn, model, first, np.array(times)))
+    return out
+
+
+def _spreads(
+    drawn: Sequence[_Foretold], times: Sequence[float], likely: Sequence[Mapping[str, Floats]]
+) -> list[dict[str, float]]:
+    """Tell how far each stone's place may be off at some times, both axes together, m.
+
+    It is the root mean square distance from the likeliest places over the draws.
+    """
+    squares: list[dict[str, list[float]]] = [{stone: [] for stone in places} for places in likely]
+    for one in drawn:
+        for rank, (found, usual) in enumerate(zip(squares, likely, strict=True)):
+            there = _places(one.table, rank)
             for stone in there.keys() & usual.keys():
                 found[stone].append(float(np.sum((there[stone] - usual[stone]) ** 2)))
     return [

@@ -186,3 +186,60 @@ def test_who_is_lost_too_long_is_nobody_who_hit(wait: float, hits: int) -> None:
     places["B"] = glide(end - np.array([0.0, 2 * R]), np.array([0.05, -0.5]), t - 1.5 - 0.5 * wait)
     sightings = table(t, places, {"A": (1.5, 99.0), "B": (-1.0, 1.5 + wait)})
     assert len(said(sightings)) == hits
+
+
+@pytest.mark.parametrize("step", [0.4, 0.6, 1.0])
+def test_tables_marked_once_in_a_while_say_nothing_of_a_hit_that_is_told(step: float) -> None:
+    t, places = hit(1.0, at=4.0, end=14.0)
+    sightings = table(t, places, {})
+    few = sightings[sightings["frame"] % round(step * FPS) == 0].reset_index(drop=True)
+    assert len(find_contacts(few, R)) == 1
+    assert not any("motion of" in text or "hit" in text for text in said(few))
+
+
+@pytest.mark.parametrize(("before", "after"), [(0.3, 0.65), (0.6, 1.05)])
+def test_stone_that_comes_faster_out_of_sight_than_it_went_is_said(
+    before: float, after: float
+) -> None:
+    t = np.arange(0.0, 5.0, 1 / FPS)
+    way = glide(np.zeros(2), np.array([0.0, -before]), t)
+    hit_at = int(np.searchsorted(t, 2.0))
+    onward = glide(way[hit_at], np.array([0.0, -after]), t - 2.0)
+    (text,) = alone(np.where((t < 2.0)[:, None], way, onward), t, (1.0, 3.0))
+    assert text.startswith("something hit A out of sight between 0.97 and 3.0")
+
+
+def test_each_change_of_a_stone_s_motion_is_said() -> None:
+    t = np.arange(0.0, 5.0, 1 / FPS)
+    way = np.where((t > 1.0)[:, None], glide(np.zeros(2), np.array([0.0, -0.8]), t - 1.0), 0.0)
+    turned = glide(way[int(np.searchsorted(t, 3.0))], np.array([0.6, -0.2]), t - 3.0)
+    (text,) = alone(np.where((t > 3.0)[:, None], turned, way), t)
+    assert "the motion of A changes at 1.0" in text and " and at 3.0" in text
+
+
+def test_stone_that_goes_on_under_another_name_hits_nothing() -> None:
+    t = np.arange(0.0, 5.0, 1 / FPS)
+    way = glide(np.zeros(2), np.array([0.0, -1.5]), t)
+    places = {"A": way, "B": way.copy(), "C": np.tile([1.5, 1.0], (len(t), 1))}
+    assert said(table(t, places, {"A": (1.5, 99.0), "B": (-1.0, 3.0)})) == []
+
+
+def test_touching_stones_of_which_light_moves_one_for_a_while_have_not_come_to_rest() -> None:
+    t = np.arange(0.0, 5.0, 1 / FPS)
+    touching = np.tile([0.0, 2 * R + 0.0005], (len(t), 1))
+    touching[(t > 2.0) & (t < 2.5), 1] += 0.013
+    places = {
+        "A": touching,
+        "B": np.zeros((len(t), 2)),
+        "C": glide(np.array([1.5, 1.0]), np.array([0.0, -1.0]), t),
+    }
+    assert not any("came to rest" in text for text in said(table(t, places, {})))
+
+
+def test_stone_moved_after_a_hit_that_is_told_is_not_said_to_be_moved_by_it() -> None:
+    t, places = hit(1.0)
+    at = int(np.searchsorted(t, 1.8))  # a hand pushes B on its way, A still near it
+    pushed = glide(places["B"][at], np.array([0.9, -0.3]), t - t[at])
+    places["B"] = np.where((t < t[at])[:, None], places["B"], pushed)
+    texts = [text for text in said(table(t, places, {})) if "B" in text]
+    assert len(texts) == 1 and "and no stone is seen" in texts[0]

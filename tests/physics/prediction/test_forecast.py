@@ -246,3 +246,38 @@ def test_discs_that_are_no_stones_may_bounce_otherwise(restitution: float) -> No
     # With what is known of the e of curling stones, 0.5 is 2.1 of its errors off.
     made = small_discs(0.002, restitution, friction=Estimate(0.002, 0.0001))
     assert (made.rest_error["B"] or 1.0) < 1.5 * (made.rest_sd["B"] or 0.0)
+
+
+def misled(before: pd.DataFrame, seen: pd.DataFrame) -> dict[str, Prediction]:
+    """Predict what was seen from something else than was seen before the hit."""
+    contacts = find_contacts(seen, RADIUS)
+    tracks = smooth(seen, contacts, radius=RADIUS)
+    return predict(before, tracks, estimate(seen, contacts, radius=RADIUS), radius=RADIUS)
+
+
+def test_a_shot_whose_hit_is_not_foretold_is_not_predicted() -> None:
+    seen = watch(hit_motion(1.2, 0.08, before=2.0, after=2.0), np.random.default_rng(4), sd=0.003)
+    early = (seen["stone"] == "A") & (seen["t"] < 2.0)
+    # As if the thrown stone had crept to 20 cm before the hit, at a tenth of its speed.
+    slow, last = seen.copy(), seen[early].iloc[-1]
+    for axis in ("x", "y"):
+        slow.loc[early, axis] = last[axis] + 0.1 * (seen.loc[early, axis] - last[axis])
+        slow.loc[early, axis] -= 0.2 * (axis == "y")
+    made = misled(slow, seen)
+    for name in ("point-mass", "frictional"):
+        assert made[name].rmse is None
+        assert "A and B do not hit each other" in (made[name].note or "")
+
+
+def test_hits_that_are_foretold_and_did_not_happen_are_named() -> None:
+    aside = Start(-0.6, 0.5)
+    motion = hit_motion(1.2, 0.08, before=2.0, after=2.0, others=(aside,))
+    seen = watch(motion, np.random.default_rng(1), sd=0.003)
+    right = misled(seen, seen)["frictional"]
+    assert right.note is None
+    moved = seen.copy()
+    moved.loc[moved["stone"] == "C", "x"] -= aside.x  # into the way of the stone that is hit
+    moved.loc[moved["stone"] == "C", "y"] += 0.7 - aside.y
+    wrong = misled(moved, seen)["frictional"]
+    assert wrong.note == "as foretold, B and C hit each other, which they did not"
+    assert (wrong.rmse or 0.0) > 3 * (right.rmse or 1.0)
