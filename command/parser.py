@@ -77,7 +77,7 @@ def _run(commands: Any) -> None:
         "  curlshot run season/*.mp4 -o season              many clips, a folder for each, and\n"
         "                                                   e and μ of all of them together\n"
         "  curlshot run still.jpg                           one picture: positions only\n"
-        "  curlshot run pucks.mp4 --stick 20,10,20,38,0.1 --radius 0.045 --frames 2:31\n"
+        "  curlshot run pucks.mp4 --stick 20,36,20,220,0.5 --radius 0.0465\n"
         "                                                   no house: still camera, known length\n"
         "  curlshot run shot.mp4 --house 12:640,360,460,360,640,180\n"
         "                                                   the tee, two points of the 12-ft ring\n"

@@ -80,6 +80,9 @@ def read_wide(table: TextTable, names: Sequence[str], fps: float | None) -> Trac
             raise InputError(
                 f"{table.path}: only angles about the origin, no x and y; export x and y too"
             )
+        twice = [name for name, n in Counter(names).items() if n > 1 and name[:1] in ("x", "y")]
+        if twice:
+            raise InputError(f"{table.path}: two columns named {twice[0]}; rename one")
         raise InputError(
             f"{table.path}: no columns x and y (there are {', '.join(names)[:80]}); needs t, x, y"
         )

@@ -261,8 +261,8 @@ def _whole(
         return None, (), LED_ASTRAY if hits else None, None
     try:
         fit, end = fit_followed(watched)
-    except InputError as error:
-        return None, (), f"whole shot: cannot be simulated ({error}); {INSTEAD}", None
+    except InputError:
+        return None, (), f"whole shot: no stones that slide move so; {INSTEAD}", None
     off = misfits(watched, fit) if followed(fit) else ()
     doubt = _doubt(fit, local.restitution)
     if doubt is not None and _fits(fit):

@@ -21,6 +21,10 @@ if TYPE_CHECKING:
     from physics.whole_shot.watched import Priors
 
 
+FEWEST = 4
+"""Frames in which stones must be seen to tell how they move: in three one that is hit looks like
+an outlier."""
+
 ICE = (0.004, 0.03)
 """Frictions that stones have on curling ice, from the keenest to wet or frosted one."""
 
@@ -97,7 +101,7 @@ def analyse(
         notes = (*notes, "no samples: the shot tells neither restitution nor friction")
     pace = _pace if measured.house is not None else _pace_anywhere
     notes = (*notes, *pace(estimates.friction))
-    notes = (*notes, *_throws(later_throws(tracks)))
+    notes = (*notes, *_throws(later_throws(tracks)), *_few(sightings["frame"].nunique()))
     results = Results(
         input=_input(measured),
         restitution=estimates.restitution,
@@ -151,6 +155,16 @@ def _shared_error(sightings: pd.DataFrame) -> float | None:
 
     variance = (sightings.reindex(columns=list(SHARED)) ** 2).mean(axis=1)
     return None if variance.isna().all() else float(variance.median() ** 0.5)
+
+
+def _few(frames: int) -> tuple[str, ...]:
+    """Say so where too little is seen to tell a stone that moves from one that does not."""
+    if not 1 < frames < FEWEST:
+        return ()
+    return (
+        f"stones are seen in {frames} frames: too few to tell which of them move, what hits them"
+        f" and where they stop; it takes {FEWEST}",
+    )
 
 
 def _pace(friction: Estimate) -> tuple[str, ...]:

@@ -52,7 +52,7 @@ def with_oddities() -> pd.DataFrame:
     sightings = sightings.drop(index=[3, 4]).reset_index(drop=True)
     sightings.loc[20, "x"] += 0.5
     sightings.loc[[7, 8], ["theta", "sd_theta"]] = np.nan
-    return sightings.assign(sd_place_x=0.001, sd_place_y=0.002)
+    return sightings.assign(sd_place_x=0.001, sd_place_y=0.002, rise_a=0.01, rise_b=-0.02)
 
 
 def test_what_was_measured_is_read_again(tmp_path: Path) -> None:

@@ -34,6 +34,11 @@ def test_derived_columns_are_no_stones(tmp_path: Path, columns: str) -> None:
         read(tmp_path, f"t,{columns}\n0,1,2,3,4\n")
 
 
+def test_columns_of_one_name_are_told(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="two columns named x_a; rename one"):
+        read(tmp_path, "t,x_A,y_A,x_A,y_A\n0,1,2,3,4\n")
+
+
 def test_the_one_pair_of_centres_is_named_after_the_file(tmp_path: Path) -> None:
     assert stones(read(tmp_path, "t,xpos,ypos\n0,1,2\n", name="A.csv")) == ["A"]
 

@@ -106,3 +106,12 @@ def test_a_second_throw_is_told() -> None:
     assert "B at 5.00 s" in said
     one = Measured((Path("one.csv"),), table[table["stone"] == "A"], 25.0, 100, ())
     assert not any("throw" in text for text in analyse(one).results.warnings)
+
+
+@pytest.mark.parametrize(("frames", "warned"), [(1, False), (3, True), (4, False)])
+def test_too_few_frames_to_tell_motion_are_said(frames: int, warned: bool) -> None:
+    seen = pd.DataFrame({"stone": "A", "frame": range(frames), "t": np.arange(frames) / 25})
+    seen = seen.assign(x=0.1, y=2.0 - 0.04 * seen["frame"], team="", sd_x=0.002, sd_y=0.002)
+    seen = seen.reindex(columns=list(SIGHTING_COLUMNS))
+    said = analyse(Measured((Path("few.csv"),), seen, 25.0, frames, ())).results.warnings
+    assert any("too few to tell which of them move" in text for text in said) == warned
