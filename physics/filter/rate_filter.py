@@ -157,6 +157,9 @@ def angle_response(stretch: Stretch, shared: Floats) -> Floats:
         What they are off by, rad, by k numbers of standard deviation 1.
     """
     out = np.zeros((len(stretch.t), 2, shared.shape[1]))
+    if stretch.idle.all():
+        out[:, 0] = np.mean(shared, axis=0)  # one angle is told
+        return out
     told = np.isfinite(stretch.z[:, 2])
     if not (told.any() and shared[told].any()):
         return out
