@@ -42,10 +42,11 @@ def rest_table(
     -------
     DataFrame
         ``stone, team, turns, sd_turns, curl, sd_curl, x, y, sd_x, sd_y, to_tee, sd_to_tee,
-        in_house, lies, note``: whole turns, counter-clockwise positive; `curl` to the left of
-        where it was heading, until its first hit; places and distances of the centre from the
-        tee, m; `in_house` 1 or 0, NaN where unknown; `lies` 1 for shot stone, 2 for the next,
-        NaN outside of the house. ``team`` is None where the tracks do not have it.
+        in_house, lies, beyond, note``: whole turns, counter-clockwise positive; `curl` to the left
+        of where it was heading, until its first hit; places and distances of the centre from the
+        tee, m; `in_house` 1 or 0, NaN where unknown; `lies` 1 for shot stone, 2 for the next, NaN
+        outside of the house; `beyond` how far from the tee a stone was that still moved away from
+        it when it was last seen, m, else NaN. ``team`` is None where the tracks do not have it.
     """
     end, reach = float(tracks["t"].max()), house.twelve_foot + radius
     moved, team = moving_stones(tracks, collisions, radius), team_names(tracks)
@@ -67,12 +68,14 @@ def rest_table(
             row["in_house"] = float(np.hypot(*track[["x", "y"]].iloc[-1]) < reach)
         else:
             notes.append(why_not)
-            row["in_house"] = 0.0 if _leaves(track, reach) else np.nan
+            away = _away(track)
+            row["beyond"] = away
+            row["in_house"] = 0.0 if away > reach else np.nan
         row["note"] = "; ".join(notes) or None
         rows.append(row)
     columns = [
         *("stone", "team", "turns", "sd_turns", "curl", "sd_curl"),
-        *("x", "y", "sd_x", "sd_y", "to_tee", "sd_to_tee", "in_house", "lies", "note"),
+        *("x", "y", "sd_x", "sd_y", "to_tee", "sd_to_tee", "in_house", "lies", "beyond", "note"),
     ]
     table = pd.DataFrame(rows, columns=columns)
     inside = table.loc[table["in_house"] == 1, "to_tee"]
@@ -115,14 +118,17 @@ def shot_stone(rest: pd.DataFrame) -> tuple[str | None, str]:
     Returns
     -------
     name : str or None
-        The stone nearest to the tee, None where that cannot be told.
+        The stone nearest to the tee, None where that cannot be told. One that still moves away from
+        the tee, and is farther from it, does not matter.
     reason : str
         How many stones of its team count, where teams are known; else why it cannot be told.
     """
-    unknown = rest.loc[rest["in_house"].isna(), "stone"]
-    if len(unknown):
-        return None, f"where {', '.join(unknown)} stopped is not known"
     inside = rest[rest["lies"].notna()].sort_values("lies")
+    unknown = rest[rest["in_house"].isna()]
+    names = ", ".join(unknown["stone"])
+    nearest = inside["to_tee"].min() + 2 * inside["sd_to_tee"].max()
+    if len(unknown) and not (unknown["beyond"] > nearest).all():
+        return None, f"where {names} stopped is not known"
     if inside.empty:
         return None, "no stone is in the house"
     if len(inside) > 1:
@@ -131,6 +137,8 @@ def shot_stone(rest: pd.DataFrame) -> tuple[str | None, str]:
         if far["to_tee"] - near["to_tee"] < 2 * error and _rivals(near["team"], far["team"]):
             return None, f"{near['stone']} and {far['stone']} are too close to tell"
     best = inside.iloc[0]
+    if len(unknown):
+        return str(best["stone"]), f"{names} still moved, farther from the tee and away from it"
     if best["team"] is None:
         return str(best["stone"]), "teams are not known"
     others = (inside["team"] != best["team"]).to_numpy()
@@ -191,10 +199,10 @@ def _moving(track: pd.DataFrame, end: float) -> str | None:
     return f"still moves at {speed:.2f} m/s as the clip ends"
 
 
-def _leaves(track: pd.DataFrame, reach: float) -> bool:
-    """Whether a stone that moves is out of the house and on its way from it."""
+def _away(track: pd.DataFrame) -> float:
+    """How far from the tee a stone was last seen that moves away from it, m; NaN if it does not."""
     x, y, vx, vy = track[["x", "y", "vx", "vy"]].iloc[-1].to_numpy(float)
-    return bool(np.hypot(x, y) > reach and x * vx + y * vy > 0)
+    return float(np.hypot(x, y)) if x * vx + y * vy > 0 else float("nan")
 
 
 def _place(track: pd.DataFrame) -> dict[str, object]:

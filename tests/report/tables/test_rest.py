@@ -43,6 +43,16 @@ def test_a_stone_that_left_the_house_does_not_matter():
     assert tables.shot_stone(rest)[0] == "B"
 
 
+def test_a_stone_that_moves_away_from_the_tee_does_not_lie_shot():
+    away = glide("A", (0.0, -0.9), 1.0, end=0.5)  # still in the house, and on its way out
+    rest = tables.rest_table(pd.concat([away, glide("B", (0.3, 0.4), end=0.9)]))
+    assert np.isnan(rest["in_house"].iloc[0])
+    assert rest["beyond"].iloc[0] == pytest.approx(1.4, abs=0.05)
+    assert tables.shot_stone(rest) == ("B", "A still moved, farther from the tee and away from it")
+    far = tables.rest_table(pd.concat([away, glide("B", (0.9, 1.2), end=0.9)]))
+    assert tables.shot_stone(far) == (None, "where A stopped is not known")
+
+
 def lying(places: dict[str, float], teams: dict[str, str] | None = None) -> pd.DataFrame:
     rows = [glide(k, (0.0, y), end=1.0, team=(teams or {}).get(k, "")) for k, y in places.items()]
     return tables.rest_table(pd.concat(rows))
