@@ -76,7 +76,8 @@ def plan_figure(
         for model, table in (simulations or {}).items()
     }
     moved = moving_stones(tracks, collisions, radius)
-    colours, lines = stone_colours(stones), model_lines(simulations)
+    # Where nothing moves there is no path to simulate.
+    colours, lines = stone_colours(stones), model_lines(simulations if moved else {})
     last = {name: _last_place(rows_of(tracks, name)) for name in stones}
     low, high = _extent(tracks, simulations, moved, last, house, radius)
     rows_below = 1 + (4 + len(lines)) // 3
@@ -92,7 +93,7 @@ def plan_figure(
                 if not path.empty:
                     _draw_simulated(ax, path, colours[stone], lines[model][1], radius)
         for stone in moved:
-            x, y = rows_of(tracks, stone)[["x", "y"]].to_numpy(float).T
+            x, y = _way(rows_of(tracks, stone), stone, collisions)
             ax.plot(x, y, color=colours[stone], lw=2, alpha=0.85, zorder=3, solid_capstyle="round")
         for stone in stones:
             ax.add_patch(
@@ -179,6 +180,19 @@ def _draw_ellipses(
             Ellipse(_pair(last[name]), wide, tall, fc=colours[name], alpha=0.25, lw=0, zorder=5)
         )
     return factor
+
+
+def _way(track: pd.DataFrame, stone: str, collisions: Sequence[Collision]) -> Array:
+    """Path of a stone, x and y: where it was seen, and where it was as it hit another."""
+    hits = [(hit.t, hit.before[stone]) for hit in collisions if stone in hit.before]
+    t, x, y = track[["t", "x", "y"]].to_numpy(float).T
+    at = np.searchsorted(t, [when for when, _ in hits])
+    return np.array(
+        [
+            np.insert(x, at, [state.x for _, state in hits]),
+            np.insert(y, at, [state.y for _, state in hits]),
+        ]
+    )
 
 
 def _contact(collision: Collision, radius: float) -> Array:

@@ -91,3 +91,14 @@ def test_a_stone_last_seen_under_way_is_shown_with_its_simulations_at_that_time(
             np.hypot(*(np.array(circles) - at_last).T).min(),
         )
         assert apart[0] < 1e-9 < 0.1 < apart[1]
+
+
+def test_a_path_goes_through_where_its_stone_was_hit(shot):
+    hit = shot.results.collisions[0]
+    stone = hit.stones[0]
+    # Of few pictures the straight line between two of them cuts the corner.
+    few = shot.tracks[shot.tracks["frame"] % 10 == 0]
+    (ax,) = figures.plan_figure(few, collisions=[hit], house=None).axes
+    where = np.array([hit.before[stone].x, hit.before[stone].y])
+    apart = [np.hypot(*(np.array(line.get_data()) - where[:, None])).min() for line in ax.lines]
+    assert min(apart) < 1e-9
