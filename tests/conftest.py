@@ -5,6 +5,9 @@ from pathlib import Path
 import pytest
 
 import pipeline
+from command.threads import use_one_thread
+
+use_one_thread()  # the suite has a process for each core: more threads only wait for each other
 
 SHARED = Path(__file__).resolve().parents[2] / "shared"
 
