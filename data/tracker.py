@@ -26,7 +26,7 @@ from data.project import is_project, read_project
 from data.read_back import as_measured
 from data.stone_names import chosen, named_by_file, refuse_shared_names
 from data.track_file import TrackFile
-from data.tracks import LENGTHS, SEEN_AS, check_sightings
+from data.tracks import ANGLES, LENGTHS, SEEN_AS, check_sightings
 
 FASTEST = 20.0
 """m/s; a stone is thrown at 2 to 4."""
@@ -215,7 +215,7 @@ def _to_si(path: Path, file: TrackFile, length_unit: str, angle_unit: str | None
                     f"{path}: angles taken in degrees, they change too fast for radians"
                     " (--angle-unit to say otherwise)"
                 )
-        for name in ("theta", "sd_theta", "rise_a", "rise_b"):
+        for name in ANGLES:
             if name in tracks:
                 tracks[name] = tracks[name] * ANGLE_UNITS[chosen]
         if not file.continuous:

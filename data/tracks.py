@@ -66,7 +66,10 @@ above the cap otherwise than was taken out.
 LENGTHS = ("x", "y", "sd_x", "sd_y", "sd_place_x", "sd_place_y")
 """Columns of sightings that are in a unit of length."""
 
-SEEN_AS = {f"seen_{name}": name for name in (*LENGTHS, "theta", "sd_theta", "rise_a", "rise_b")}
+ANGLES = ("theta", "sd_theta", "rise_a", "rise_b")
+"""Columns of sightings that are in a unit of angle."""
+
+SEEN_AS = {f"seen_{name}": name for name in (*LENGTHS, *ANGLES)}
 """Columns of ``tracks.csv`` beside `TRACK_COLUMNS`, and what of a sighting they hold: what was
 measured of the stone in that frame, before any filter; empty where nothing was. What is estimated
 from the table later rests on them."""
