@@ -29,6 +29,7 @@ from physics.local_fit.contacts import Contact, cut_all
 from physics.local_fit.fit import fit_shot
 from physics.local_fit.glides import free, measure_glides
 from physics.local_fit.noise import Noise, noises
+from physics.local_fit.off_centre import centred
 from physics.local_fit.shared_spin import share_spins
 from physics.local_fit.shot_fit import ShotFit
 from physics.local_fit.traces import Trace, traces
@@ -102,7 +103,7 @@ def smoothed(
         velocities where it was seen once. The standard deviations of places include what the
         sightings share (``sd_place_x``, ``sd_place_y``).
     """
-    known = traces(sightings)
+    known = centred(traces(sightings), contacts, radius)
     if not known:
         return no_rows(TRACK_COLUMNS)
     t = np.asarray(sightings["t"], float)

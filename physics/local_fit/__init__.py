@@ -10,6 +10,7 @@ all pieces and the times of all meetings at once, held together by `constraints`
 
 From a fit with the hits known, `glides` measures the friction, `hits` the restitution, and `spins`
 the spins and the friction between stones, with the `noise` of the sightings as the shot shows it;
+`off_centre` takes out what caps are beside the centres of stones by, where their turning shows it;
 `local` puts them together. `shared_error` and `shared_spin` are of errors that sightings, and
 stones in a hit, have in common. `finite_differences` is the method of the study, for comparison.
 

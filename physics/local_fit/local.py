@@ -18,6 +18,7 @@ from physics.local_fit.contacts import Contact, cut_all
 from physics.local_fit.fit import fit_shot
 from physics.local_fit.glides import free, measure_glides
 from physics.local_fit.hits import measure_hits, pooled
+from physics.local_fit.off_centre import centred
 from physics.local_fit.segments import Piece
 from physics.local_fit.shot_fit import ContactState, Deceleration, Meeting, ShotFit
 from physics.local_fit.traces import Trace, traces
@@ -79,6 +80,7 @@ def estimate_locally(
     meetings = [
         Meeting(c.t, c.stones, max(known[stone].gap(c.t) for stone in c.stones)) for c in contacts
     ]
+    known = centred(known, meetings, radius)
     pieces, _ = cut_all(known, meetings, radius)
     idle = [piece for piece in pieces if piece.rest and _alone(piece)]
     still = [_scatter(known[piece.stone], piece) for piece in idle]

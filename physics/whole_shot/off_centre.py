@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from physics.local_fit.off_centre import turns
 from physics.local_fit.traces import Trace
 from physics.statistics.residuals import huber_weights
 from physics.whole_shot.whole_fit import GlobalFit
@@ -43,7 +44,7 @@ def centred(
     size = _sd_aside(trace, share)
     if not size or not np.isfinite(trace.theta).any():
         return residuals, np.zeros(2)
-    rows = size * _turns(trace, trace.t) / trace.sd[:, :, None]
+    rows = size * turns(trace, trace.t) / trace.sd[:, :, None]
     weighted = rows * huber_weights(residuals)[:, :, None] / noise
     normal = np.eye(2) + np.einsum("nai,naj->ij", weighted, rows)
     beside = np.linalg.solve(normal, np.einsum("nai,na->i", weighted, residuals))
@@ -61,18 +62,10 @@ def centred_sightings(sightings: pd.DataFrame, fit: GlobalFit) -> pd.DataFrame:
         own = out["stone"] == stone
         _, beside = centred(trace, run, fit.inflation, shot.off_centre)
         beside *= _sd_aside(trace, shot.off_centre)
-        out.loc[own, ["x", "y"]] -= _turns(trace, out.loc[own, "t"].to_numpy(float)) @ beside
+        out.loc[own, ["x", "y"]] -= turns(trace, out.loc[own, "t"].to_numpy(float)) @ beside
     return out
 
 
 def _sd_aside(trace: Trace, share: float) -> float:
     """By how much a cap may be beside its stone's centre on either axis, m; 0 if not known."""
     return share * float(np.median(trace.sd_place))
-
-
-def _turns(trace: Trace, t: Floats) -> Floats:
-    """Rotations from a stone's frame to the ice at times, (n, 2, 2), by its angles where told."""
-    told = np.isfinite(trace.theta)
-    theta = np.interp(t, trace.t[told], trace.theta[told])
-    cos, sin = np.cos(theta), np.sin(theta)
-    return np.stack([np.stack([cos, -sin], axis=1), np.stack([sin, cos], axis=1)], axis=1)

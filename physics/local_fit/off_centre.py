@@ -1,0 +1,157 @@
+"""Caps that sit beside the centres of their stones: a way of places that turns with the stone.
+
+What a stone is told by, its cap, is in the middle to a few millimetres. That it is not, is the same
+in the stone's frame at all times, so that on the ice it goes round as the stone turns. Taken for
+motion it makes one glide look like several, and wrong velocities.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import NDArray
+
+from physics.filter.stretch import PLACE_MEMORY
+from physics.local_fit.breaks import ALIKE
+from physics.local_fit.contacts import Contact
+from physics.local_fit.fit import fit_shot
+from physics.local_fit.glides import free
+from physics.local_fit.segments import Piece, cut
+from physics.local_fit.shot_fit import Meeting
+from physics.local_fit.traces import Trace
+from physics.statistics.residuals import huber_weights
+
+Floats = NDArray[np.float64]
+
+SHOWN = 9.0
+"""Squared normalised distance of a cap from the middle, two axes, from which it is taken out."""
+
+TURNED = 2.0
+"""Least turn of a stone, rad: by less, its cap goes round too little to tell it from a motion."""
+
+FEWEST = 12
+"""Sightings of a stretch from which it tells of its cap."""
+
+OTHER_SLOWING = 0.02
+"""By how much the deceleration of a glide changes along it, m/s²: a fifth of what it is on ice, so
+that what speed, sweepers and curl do to it is not taken for the cap."""
+
+ROUNDS = 2
+"""How often a path is cut and its cap told anew: once it is over its stone, breaks that the cap
+made are gone."""
+
+REWEIGHTED = 3
+"""Rounds of Huber's weights."""
+
+
+def centred(
+    known: Mapping[str, Trace], hits: Sequence[Meeting | Contact], radius: float
+) -> dict[str, Trace]:
+    """Put the sightings of each stone over its centre, where it shows that they are beside it.
+
+    A cubic on each axis of every stretch of motion between hits, and a place in the stone's frame
+    for all of them, are fitted to the sightings (linear least squares; the place is known before to
+    `Trace.sd_place`, the cubic's last term by `OTHER_SLOWING`). Other stones stay as they are:
+    without angles, without a stated error that their places share, or hardly turning.
+
+    Parameters
+    ----------
+    known : mapping
+        Stone to its sightings.
+    hits : sequence of Meeting or Contact
+        The hits.
+    radius : float
+        Of the discs, m.
+    """
+    out = dict(known)
+    for name, trace in known.items():
+        theta = trace.theta[np.isfinite(trace.theta)]
+        if theta.size and np.ptp(theta) > TURNED and np.median(trace.sd_place) > 0:
+            own = [(k, hit.t) for k, hit in enumerate(hits) if name in hit.stones]
+            out[name] = _centred(trace, sorted(own, key=lambda hit: hit[1]), radius)
+    return out
+
+
+def turns(trace: Trace, t: Floats) -> Floats:
+    """Rotations from a stone's frame to the ice at times, (n, 2, 2), by its angles where told."""
+    told = np.isfinite(trace.theta)
+    theta = np.interp(t, trace.t[told], trace.theta[told])
+    cos, sin = np.cos(theta), np.sin(theta)
+    return np.stack([np.stack([cos, -sin], axis=1), np.stack([sin, cos], axis=1)], axis=1)
+
+
+def _centred(trace: Trace, hits: Sequence[tuple[int, float]], radius: float) -> Trace:
+    rotations = turns(trace, trace.t)
+    pieces = _joined(cut(trace, hits, radius))
+    over = trace
+    for _ in range(1 + ROUNDS):
+        beside, normal = _beside(trace, rotations, _stretches(over, pieces, radius))
+        if beside @ normal @ beside < SHOWN:
+            return trace
+        over = replace(trace, xy=trace.xy - rotations @ beside)
+        pieces = cut(over, hits, radius)
+    return over
+
+
+def _joined(pieces: Sequence[Piece]) -> list[Piece]:
+    """Join the pieces of a motion that goes on from one to the next: their breaks may be none."""
+    out: list[Piece] = []
+    for piece in pieces:
+        if out and not out[-1].rest and not piece.rest and piece.opens is None:
+            samples = np.concatenate([out[-1].samples, piece.samples])
+            out[-1] = replace(
+                out[-1], end=piece.end, samples=samples, stops=piece.stops, closes=piece.closes
+            )
+        else:
+            out.append(piece)
+    return out
+
+
+def _stretches(trace: Trace, pieces: Sequence[Piece], radius: float) -> list[NDArray[np.int64]]:
+    """Sightings of each stretch in which a stone moves."""
+    alone = [replace(piece, opens=None, closes=None) for piece in pieces]
+    fit = fit_shot({trace.stone: trace}, alone, (), radius, deceleration=free(radius))
+    moving = (p.samples[trace.t[p.samples] < fit.stop(i)] for i, p in enumerate(fit.pieces))
+    return [
+        samples
+        for samples, piece in zip(moving, fit.pieces, strict=True)
+        if not piece.rest and len(samples) >= FEWEST
+    ]
+
+
+def _beside(
+    trace: Trace, rotations: Floats, stretches: Sequence[NDArray[np.int64]]
+) -> tuple[Floats, Floats]:
+    """By how much the cap is beside the centre, in the stone's frame, m; its normal matrix."""
+    normal = np.eye(2) / float(np.median(trace.sd_place)) ** 2
+    right = np.zeros(2)
+    # As often as sightings err alike they say the same once more.
+    alike = max(ALIKE, trace.lasting * 2 * PLACE_MEMORY / trace.step)
+    for samples in stretches:
+        sd = np.sqrt((1 + alike) * np.mean(trace.sd[samples] ** 2, axis=1))
+        t = trace.t[samples]
+        tau = (2 * t - t[0] - t[-1]) / (t[-1] - t[0])
+        curve = legendre.legvander(tau, 3)
+        # Twice integrated, a change of the deceleration by d in a time T is T² d / 120 of P3.
+        held = np.array([[0.0, 0.0, 0.0, 120 / ((t[-1] - t[0]) ** 2 * OTHER_SLOWING)]])
+        weight = np.ones(len(tau))
+        for _ in range(REWEIGHTED):
+            size = (np.sqrt(weight) / sd)[:, None]
+            basis = np.linalg.qr(np.concatenate([curve * size, held]))[0][:-1]
+            cap = rotations[samples] * size[:, :, None]
+            own = _without(basis, trace.xy[samples] * size)
+            rows = _without(basis, cap)
+            here = np.einsum("nai,naj->ij", cap, rows)
+            there = np.einsum("nai,na->i", cap, own)
+            left = own - rows @ np.linalg.solve(normal + here, right + there)
+            weight = huber_weights(left / np.sqrt(weight)[:, None])[:, 0]
+        normal, right = normal + here, right + there
+    return np.linalg.solve(normal, right), normal
+
+
+def _without(basis: Floats, rows: Floats) -> Floats:
+    """Take out of columns of rows, (n, …), what a basis (n, k) of curves follows."""
+    return np.asarray(rows - np.tensordot(basis, np.tensordot(basis.T, rows, 1), 1))

@@ -1,0 +1,115 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from physics.local_fit.breaks import breaks
+from physics.local_fit.off_centre import centred
+from physics.local_fit.shot_fit import Meeting
+from physics.local_fit.traces import Trace
+from tests.physics.watch import RADIUS, lasting
+
+Floats = NDArray[np.float64]
+
+SD, PLACE, FPS = 0.0004, 0.002, 30
+T = np.arange(0, 5, 1 / FPS)
+AHEAD, LEFT = 0.0045, -0.001
+
+
+def glide(t: Floats, speed: float = 1.0, slowing: float = 0.09) -> Floats:
+    """Places of a stone that goes up y and is slowed evenly until it stops."""
+    t = np.minimum(t, speed / slowing)
+    return np.column_stack([0.3 + 0.02 * t, speed * t - 0.5 * slowing * t**2])
+
+
+def wobble(theta: Floats) -> Floats:
+    """Where the cap is on the ice, seen from the centre."""
+    cos, sin = np.cos(theta), np.sin(theta)
+    return np.column_stack([cos * AHEAD - sin * LEFT, sin * AHEAD + cos * LEFT])
+
+
+def seen(xy: Floats, omega: float = 1.6, seed: int = 0, place: float = PLACE) -> Trace:
+    """Sightings of a stone's centre that err by little each and by more for a while."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(len(xy)) / FPS
+    slow = np.column_stack([lasting(rng, t, 0.5 * SD, 0.3) for _ in range(2)])
+    return Trace(
+        "A", t, xy + slow + rng.normal(0, SD, xy.shape), np.full_like(xy, 1.2 * SD),
+        0.4 + omega * t, np.full(len(t), 0.02), np.full_like(xy, place), np.zeros_like(xy),
+    )  # fmt: skip
+
+
+def beside(trace: Trace) -> Trace:
+    return replace(trace, xy=trace.xy + wobble(trace.theta))
+
+
+def cut_at(trace: Trace) -> list[float]:
+    return breaks(trace.t, trace.xy, trace.sd, trace.lasting)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_cap_that_goes_round_is_taken_out_and_no_break_of_the_glide(seed: int) -> None:
+    truth = glide(T)
+    trace = beside(seen(truth, seed=seed))
+    over = centred({"A": trace}, [], RADIUS)["A"]
+    assert len(cut_at(trace)) > 0
+    assert cut_at(over) == []
+    assert np.sqrt(np.mean((trace.xy - truth) ** 2)) > 0.003
+    assert np.sqrt(np.mean((over.xy - truth) ** 2)) < 0.0012
+
+
+def test_it_is_told_from_before_and_after_a_hit_together() -> None:
+    at = 2.5
+    after = np.maximum(T - at, 0)[:, None] * [0.5, -0.4]
+    truth = glide(T) + after
+    trace = beside(seen(truth, omega=2.5))
+    hit = Meeting(at, ("A", "B"), 1 / FPS)
+    over = centred({"A": trace}, [hit], RADIUS)["A"]
+    assert np.sqrt(np.mean((over.xy - truth) ** 2)) < 0.0012
+
+
+def test_a_stone_that_stops_is_told_by_its_way_until_then() -> None:
+    t = np.arange(0, 15, 1 / FPS)
+    truth, stop = glide(t, 0.5), 0.5 / 0.09
+    trace = seen(truth)
+    trace = beside(replace(trace, theta=1.6 * np.minimum(trace.t, stop)))
+    over = centred({"A": trace}, [], RADIUS)["A"]
+    assert np.sqrt(np.mean((over.xy - truth) ** 2)) < 0.0012
+
+
+def test_a_push_is_no_cap_beside_the_centre() -> None:
+    pushed = glide(T) + np.maximum(T - 2, 0)[:, None] * [0.0, 0.15]
+    trace = seen(pushed)
+    over = centred({"A": trace}, [], RADIUS)["A"]
+    assert over is trace
+    assert cut_at(over) == pytest.approx([2], abs=0.2)
+
+
+def test_a_push_of_a_stone_with_its_cap_beside_the_centre_stays_where_it_is() -> None:
+    pushed = glide(T) + np.maximum(T - 2.5, 0)[:, None] * [0.0, 0.25]
+    over = centred({"A": beside(seen(pushed))}, [], RADIUS)["A"]
+    assert cut_at(over) == pytest.approx([2.5], abs=0.2)
+
+
+@pytest.mark.parametrize("slowing", [0.0, 0.09, 0.2])
+def test_a_stone_whose_cap_is_in_the_middle_stays_as_it_is(slowing: float) -> None:
+    for seed in range(10):
+        trace = seen(glide(T, 1.1, slowing + 1e-9), seed=seed)
+        assert centred({"A": trace}, [], RADIUS)["A"] is trace
+
+
+@pytest.mark.parametrize(
+    "trace",
+    [
+        seen(glide(T), place=0.0),
+        seen(glide(T), omega=0.3),
+        replace(seen(glide(T)), theta=np.full(len(T), np.nan)),
+    ],
+    ids=["no error that is shared", "hardly turning", "no angles"],
+)
+def test_what_tells_nothing_of_its_cap_stays_as_it_is(trace: Trace) -> None:
+    moved = replace(trace, xy=trace.xy + wobble(0.4 + 1.6 * trace.t))
+    assert centred({"A": moved}, [], RADIUS)["A"] is moved
