@@ -149,7 +149,7 @@ def _beside(
             left = own - rows @ np.linalg.solve(normal + here, right + there)
             weight = huber_weights(left / np.sqrt(weight)[:, None])[:, 0]
         normal, right = normal + here, right + there
-    return np.linalg.solve(normal, right), normal
+    return np.asarray(np.linalg.solve(normal, right)), normal
 
 
 def _without(basis: Floats, rows: Floats) -> Floats:
