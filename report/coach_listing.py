@@ -30,9 +30,7 @@ def coach_tables(
 def _stones(rest: pd.DataFrame, unit: Unit) -> Table:
     shot, why = tables.shot_stone(rest)
     lies = f"Shot stone: {shot} ({why})." if shot else f"Shot stone: not known, {why}."
-    length: dict[str, Any] = {
-        "unit": unit.symbol, "factor": unit.per_metre, "decimals": unit.decimals + 1
-    }  # fmt: skip
+    length: dict[str, Any] = {"unit": unit.symbol, "factor": unit.per_metre, "decimals": 3}
     return Table(
         "coach_stones",
         "Where the stones stopped",

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 
 import pandas as pd
 
-from data.results import Results
+from data.results import Prediction, Results, SimulationScore
 from data.sheet import House
 from report import tables
 from report.coach_listing import coach_tables
@@ -217,7 +218,7 @@ def _scores(results: Results) -> Table:
         "models",
         "Simulated against measured",
         f"The shot again, {how}.",
-        tables.score_table(results.simulations),
+        results.simulations,
     )
 
 
@@ -227,28 +228,32 @@ def _foretold(results: Results) -> Table:
         "predictions",
         "Predicted against measured",
         "From what was seen before the first hit and is known of μ beforehand, with e assumed.",
-        tables.score_table(known),
+        known,
     )
 
 
-def _off(name: str, title: str, note: str, scores: pd.DataFrame) -> Table:
+def _off(
+    name: str,
+    title: str,
+    note: str,
+    scores: Mapping[str, SimulationScore] | Mapping[str, Prediction],
+) -> Table:
     last_places = [
-        Column(f"last place of {name}", str(name), "mm", factor=1000)
-        for name in scores.columns
-        if name not in ("model", "rmse", "note")
+        Column(f"last place of {stone}", stone, "mm", stderr=f"sd_{stone}", factor=1000)
+        for stone in tables.scored_stones(scores)
     ]
     return Table(
         name,
         title,
         f"{note} Root mean square distance over all stones and times after the first hit, and the"
-        " distance of the last places.",
+        " distance of the last places ± how far off they may be as far as is known.",
         (
             Column("model", "model", kind="word"),
             Column("rms", "rmse", "mm", factor=1000),
             *last_places,
             Column("note", "note", kind="note"),
         ),
-        scores,
+        tables.score_table(scores),
     )
 
 

@@ -13,7 +13,7 @@ from data.sheet import House
 from physics.prediction.forecast import AFTER
 from physics.simulator.simulation import Simulation
 from physics.statistics.pool import Pooled
-from physics.statistics.season import POSSIBLE
+from physics.statistics.season import POSSIBLE, SCATTER
 from report.numbers import count, plus_minus, warned
 from report.tables import moving_stones, rest_table, shot_stone
 from report.units import METRES, Unit
@@ -103,6 +103,8 @@ def season_text(shots: pd.DataFrame, pooled: Mapping[str, Pooled]) -> list[str]:
         text += f" of {count(mean.shots, 'shot')}"
         if mean.scatter is not None:
             text += f"; shot to shot {plus_minus(mean.scatter, mean.stderr_scatter)}"
+        elif mean.shots:
+            text += f"; from shot to shot it may scatter by {SCATTER[name]:g} or so, as assumed"
         lines.append(text)
         low, high = POSSIBLE[name]
         lines += warned(

@@ -69,7 +69,7 @@ def centred(
     out = dict(known)
     for name, trace in known.items():
         theta = trace.theta[np.isfinite(trace.theta)]
-        if theta.size and np.ptp(theta) > TURNED and np.median(trace.sd_place) > 0:
+        if theta.size and np.ptp(theta) > TURNED and trace.usual_sd_place > 0:
             own = [(k, hit.t) for k, hit in enumerate(hits) if name in hit.stones]
             out[name] = _centred(trace, sorted(own, key=lambda hit: hit[1]), radius)
     return out
@@ -126,7 +126,7 @@ def _beside(
     trace: Trace, rotations: Floats, stretches: Sequence[NDArray[np.int64]]
 ) -> tuple[Floats, Floats]:
     """By how much the cap is beside the centre, in the stone's frame, m; its normal matrix."""
-    normal = np.eye(2) / float(np.median(trace.sd_place)) ** 2
+    normal = np.eye(2) / trace.usual_sd_place**2
     right = np.zeros(2)
     # As often as sightings err alike they say the same once more.
     alike = max(ALIKE, trace.lasting * 2 * PLACE_MEMORY / trace.step)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,6 +87,11 @@ class Trace:
         The error that places share changes under way, as if the stone had moved faster or slower.
         """
         return self.sd_place / PLACE_REACH
+
+    @cached_property
+    def usual_sd_place(self) -> float:
+        """Usual standard deviation of the error that places share, m; 0 where unknown."""
+        return float(np.median(self.sd_place)) if len(self.t) else 0.0
 
     def gap(self, time: float) -> float:
         """Time between the sightings either side of a time, at least the usual step, s."""

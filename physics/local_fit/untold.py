@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +35,9 @@ LOST = 3.0
 
 AT_ONCE = 0.2
 """Time by which a hit that is told may be beside the change of motion that it made, s."""
+
+OVERLAP = 0.85
+"""Distance of two stones as one of them begins to move, in two radii, at which no discs hit."""
 
 FEW = 7
 """Sightings of which a median tells where a stone is."""
@@ -90,12 +94,17 @@ def untold_hits(
         other = _other(paths, change, told, radius)
         if other:
             pair, seen = frozenset({change.stone, other}), _in_sight(paths[other], change.end)
-            out.setdefault(pair, (change.end, _said(change, other, seen)))
+            text = _said(change, other, seen)
+            apart = _apart(paths, change.stone, other, change.end)
+            if seen and not change.hidden and apart < OVERLAP * 2 * radius:
+                text = _unfit(change.stone, other, change.when, apart, radius)
+            out.setdefault(pair, (change.end, text))
         elif change.goes:
             own = alone.setdefault(change.stone, [])
             if not own or change.end - own[-1].end > AT_ONCE:
                 own.append(change)
     for pair, time, text in (
+        *_out_of_reach(paths, alone, radius),
         *_lost_and_found(paths, told, radius),
         *_touching(paths, told, radius),
     ):
@@ -123,6 +132,15 @@ def _said(change: _Change, other: str, seen: bool) -> str:
     )
 
 
+def _unfit(first: str, second: str, when: str, apart: float, radius: float) -> str:
+    """Say that two stones hit each other where discs of this radius do not touch."""
+    return (
+        f"the motion of {first} and {second} changes {when} as if they hit each other,"
+        f" {apart:.2g} m apart where two radii are {2 * radius:.3g} m: are the scale, the unit and"
+        " the radius right?"
+    )
+
+
 def _said_alone(name: str, changes: Sequence[_Change]) -> str:
     """Say where the motion of one stone changes, and nothing is seen that hit it."""
     when = [change.when for change in changes]
@@ -131,6 +149,28 @@ def _said_alone(name: str, changes: Sequence[_Change]) -> str:
         what = "neither that hit nor its e" if len(when) == 1 else "none of these hits"
         return f"something hit {name} {times}: {what} is told"
     return f"the motion of {name} changes {times} and no stone is seen that hit it"
+
+
+def _out_of_reach(
+    paths: Mapping[str, Trace], alone: dict[str, list[_Change]], radius: float
+) -> Iterator[tuple[frozenset[str], float, str]]:
+    """Pairs whose motion changes at one time where discs of this radius do not touch.
+
+    They are no longer among the changes of single stones, `alone`.
+    """
+    for first, second in combinations(sorted(alone), 2):
+        for one in list(alone[first]):
+            same = [two for two in alone[second] if abs(two.end - one.end) < AT_ONCE]
+            if one.hidden or not same or same[0].hidden:
+                continue
+            apart = _apart(paths, first, second, 0.5 * (one.end + same[0].end))
+            if np.isfinite(apart):
+                alone[first].remove(one)
+                alone[second].remove(same[0])
+                text = _unfit(first, second, one.when, apart, radius)
+                yield frozenset({first, second}), one.end, text
+    for name in [name for name, changes in alone.items() if not changes]:
+        del alone[name]
 
 
 def _changes(
@@ -281,6 +321,13 @@ def _places(path: Trace, t: Floats) -> Iterator[tuple[Floats, Floats]]:
     for way, inside in ways:
         if inside.any():
             yield np.where(inside[:, None], way.at(t), np.nan), way.sd(t)
+
+
+def _apart(paths: Mapping[str, Trace], first: str, second: str, time: float) -> float:
+    """Distance of two stones at a time, m; not a number where one is not seen then."""
+    t = np.array([time])
+    one, other = (next(_places(paths[name], t))[0][0] for name in (first, second))
+    return float(np.hypot(*(other - one)))
 
 
 def _lost_and_found(

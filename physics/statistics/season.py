@@ -19,6 +19,9 @@ HIT_COLUMNS = (
     "momentum_residual", "stderr_momentum", "energy_lost", "note",
 )  # fmt: skip
 
+SCATTER = {"restitution": RESTITUTION_SCATTER, "friction": FRICTION_SCATTER}
+"""Scales of the priors of what shots differ by."""
+
 POSSIBLE = {"restitution": (0.0, 1.0), "friction": (0.0, np.inf)}
 """What e and μ of any shot lie between; a measured value may be off by its error."""
 
@@ -71,7 +74,7 @@ def closing_speed(hit: Collision) -> float:
 def pooled(shots: pd.DataFrame) -> dict[str, Pooled]:
     """Give the season's e and μ from the table of its shots; see `physics.statistics.pool`."""
     out = {}
-    for name, scatter in (("restitution", RESTITUTION_SCATTER), ("friction", FRICTION_SCATTER)):
+    for name, scatter in SCATTER.items():
         known = shots[[name, f"stderr_{name}"]].dropna()
         known = known[known[f"stderr_{name}"] > 0]
         out[name] = pool(known[name].tolist(), known[f"stderr_{name}"].tolist(), scatter)

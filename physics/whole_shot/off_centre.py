@@ -68,4 +68,4 @@ def centred_sightings(sightings: pd.DataFrame, fit: GlobalFit) -> pd.DataFrame:
 
 def _sd_aside(trace: Trace, share: float) -> float:
     """By how much a cap may be beside its stone's centre on either axis, m; 0 if not known."""
-    return share * float(np.median(trace.sd_place))
+    return share * trace.usual_sd_place

@@ -9,6 +9,7 @@ from report.tables.shot import (
     moving_stones,
     residual_table,
     score_table,
+    scored_stones,
     stone_table,
 )
 from report.tables.states import in_axes, magnitude, measured_table, simulated_table
@@ -29,6 +30,7 @@ __all__ = [
     "residual_table",
     "rest_table",
     "score_table",
+    "scored_stones",
     "shot_stone",
     "simulated_table",
     "speed_table",

@@ -99,13 +99,27 @@ def glide_table(glides: Sequence[Glide]) -> pd.DataFrame:
 
 
 def score_table(scores: Mapping[str, SimulationScore] | Mapping[str, Prediction]) -> pd.DataFrame:
-    """One row per model: root mean square distance, and per stone that of the last places, m."""
+    """One row per model: root mean square distance, and per stone that of the last places, m.
+
+    Returns
+    -------
+    DataFrame
+        ``model, rmse``, a column for each stone, for each one ``sd_`` and its name, by how much its
+        last place may be off as far as is known, and ``note``.
+    """
     rows = [
         {"model": model, "rmse": score.rmse, **score.rest_error, "note": score.note}
+        | {f"sd_{name}": sd for name, sd in score.rest_sd.items()}
         for model, score in scores.items()
     ]
-    stones = sorted({name for score in scores.values() for name in score.rest_error})
-    return pd.DataFrame(rows, columns=["model", "rmse", *stones, "note"])
+    stones = scored_stones(scores)
+    stated = [f"sd_{name}" for name in stones]
+    return pd.DataFrame(rows, columns=["model", "rmse", *stones, *stated, "note"])
+
+
+def scored_stones(scores: Mapping[str, SimulationScore] | Mapping[str, Prediction]) -> list[str]:
+    """Names of the stones whose last places are compared."""
+    return sorted({name for score in scores.values() for name in score.rest_error})
 
 
 def residual_table(sightings: pd.DataFrame, tracks: pd.DataFrame) -> pd.DataFrame:

@@ -32,7 +32,7 @@ def test_errors_mean_what_they_say(sd: float, fps: float, speed: float, given: b
     truth, slow = 0.8, 0.0109
     motion = hit_motion(speed, 0.06, before=1.0, after=2.0, restitution=truth, friction=slow)
     rows = []
-    for _ in range(40):
+    for _ in range(30):
         found = measure(watch(motion, rng, fps=fps, sd=sd, given=given))
         rows.append(
             (

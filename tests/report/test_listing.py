@@ -30,6 +30,8 @@ def test_predictions_stand_beside_what_was_fitted(shot):
     made = {t.name: t for t in page_tables(results, shot.tracks)}
     assert list(made["predictions"].frame["model"]) == ["frictional"]
     assert list(made["predictions"].frame["A"]) == [0.031]
+    (row,) = made["predictions"].frame.to_dict("records")
+    assert made["predictions"].columns[2].parts(row) == ("31", "50")
     assert "is known of μ beforehand, with e assumed." in made["predictions"].note
     assert "as fitted" in made["models"].note
     assert "fits the shot" in made["table_4_point-mass"].note

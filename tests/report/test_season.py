@@ -69,6 +69,17 @@ def test_command_reads_folders_of_runs(tmp_path: Path, capsys: pytest.CaptureFix
     assert (out / "season.png").stat().st_size > 10_000
 
 
+def test_one_shot_says_that_its_scatter_is_assumed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name in ("one", "two"):
+        (tmp_path / name).mkdir()
+        write_results(SHOT, tmp_path / name / "results.json")
+        assert main(["season", str(tmp_path), "-o", str(tmp_path / "out")]) == 0
+        said = capsys.readouterr().out.count("may scatter by 0.05 or so, as assumed")
+        assert said == (1 if name == "one" else 0)
+
+
 def test_friction_below_zero_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name, value in (("good", 0.011), ("bad-one", -0.004)):
         shot = replace(SHOT, friction=Friction(value, 0.001))

@@ -243,3 +243,16 @@ def test_stone_moved_after_a_hit_that_is_told_is_not_said_to_be_moved_by_it() ->
     places["B"] = np.where((t < t[at])[:, None], places["B"], pushed)
     texts = [text for text in said(table(t, places, {})) if "B" in text]
     assert len(texts) == 1 and "and no stone is seen" in texts[0]
+
+
+@pytest.mark.parametrize("times", [0.3, 3.0])
+def test_hit_that_discs_of_this_radius_cannot_make_asks_for_the_scale(times: float) -> None:
+    t, places = hit(1.0)
+    seen = table(t, places, {})
+    contacts = find_contacts(seen, R * times)
+    assert contacts == ()
+    warnings = estimate_locally(seen, contacts, radius=R * times).warnings
+    (text,) = [text for text in warnings if "motion" in text]
+    assert text.startswith(("the motion of A and B changes at 1.", "the motion of B and A"))
+    assert "as if they hit each other, 0.3" in text and "m apart where two radii are" in text
+    assert text.endswith("are the scale, the unit and the radius right?")

@@ -20,7 +20,8 @@ def test_stones_are_summed_up(shot):
 
 def test_scores_name_every_stone(shot):
     table = tables.score_table(shot.results.simulations)
-    assert list(table.columns) == ["model", "rmse", "A", "B", "C", "note"]
+    stated = ["sd_A", "sd_B", "sd_C"]
+    assert list(table.columns) == ["model", "rmse", "A", "B", "C", *stated, "note"]
     assert len(tables.glide_table(shot.results.glides)) == 3
     assert list(tables.hit_table(shot.results.collisions)["hit"]) == [1, 2]
 
