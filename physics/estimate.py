@@ -85,7 +85,8 @@ class Estimates:
     warnings : tuple of str
         What could not be told and why; what does not agree.
     local : Local
-        What the paths beside the hits say by themselves.
+        What the paths beside the hits say, with what the whole shot, where it is used, has caps
+        beside their centres by taken out.
     whole : GlobalFit or None
         The whole shot fitted through the simulator, where its stones move as it knows it.
     by_whole : Method
@@ -159,8 +160,9 @@ def estimate(
     def beside_hits(seen: pd.DataFrame) -> Local:
         return estimate_locally(seen, contacts, radius=radius, masses=masses)
 
-    def centred(fit: GlobalFit) -> Estimate:
-        return beside_hits(centred_sightings(sightings, fit)).restitution
+    def centred(fit: GlobalFit) -> Local:
+        over = centred_sightings(sightings, fit)
+        return local if over is sightings else beside_hits(over)
 
     local = beside_hits(sightings)
     restitution, friction, unsure = local.restitution, local.friction, local.friction_doubt
@@ -170,6 +172,9 @@ def estimate(
         restitution = _of_two(restitution, fitted["restitution"])
         wider = _of_two(Estimate(friction.value, friction.stderr), fitted["friction"])
         friction = replace(friction, stderr=wider.stderr)
+    if whole is not None:
+        local = centred(whole)
+        restitution, friction, unsure = local.restitution, local.friction, local.friction_doubt
     if whole is not None and restitution.value is not None and whole.told("restitution"):
         restitution = whole["restitution"]
     if whole is not None and friction.value is not None and whole.told("friction"):
@@ -240,7 +245,7 @@ def _whole(
     local: Local,
     radius: float,
     masses: Mapping[str, float],
-    centred: Callable[[GlobalFit], Estimate],
+    centred: Callable[[GlobalFit], Local],
 ) -> tuple[GlobalFit | None, tuple[Misfit, ...], str | None, str | None]:
     """Fit the whole shot through the simulator.
 
@@ -267,7 +272,7 @@ def _whole(
     doubt = _doubt(fit, local.restitution)
     if doubt is not None and _fits(fit):
         # Caps beside the centres turn with the stones; paths beside a hit take that for velocity.
-        doubt = doubt if _doubt(fit, centred(fit)) else None
+        doubt = doubt if _doubt(fit, centred(fit).restitution) else None
     doubt = doubt or _other_ice(local.friction, fit["friction"])
     part = end if hits else "until something else moves a stone"
     if doubt is None and part is not None and _blunt(fit["friction"], local.friction):

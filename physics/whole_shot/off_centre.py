@@ -52,15 +52,21 @@ def centred(
 
 
 def centred_sightings(sightings: pd.DataFrame, fit: GlobalFit) -> pd.DataFrame:
-    """Take out of sightings by what a fit of the whole shot has the caps beside the centres."""
-    out = sightings.copy()
-    shot = fit.shots[0]
+    """Take out of sightings by what a fit of the whole shot has the caps beside the centres.
+
+    Returns
+    -------
+    DataFrame
+        The table itself where no cap is told.
+    """
+    out, shot = sightings, fit.shots[0]
     runs = shot.residuals(fit.simulation())
     for (stone, trace), run in zip(shot.traces.items(), runs, strict=True):
-        if not np.isfinite(trace.theta).any():
-            continue
-        own = out["stone"] == stone
         _, beside = centred(trace, run, fit.inflation, shot.off_centre)
+        if not beside.any():
+            continue
+        out = sightings.copy() if out is sightings else out
+        own = out["stone"] == stone
         beside *= _sd_aside(trace, shot.off_centre)
         out.loc[own, ["x", "y"]] -= turns(trace, out.loc[own, "t"].to_numpy(float)) @ beside
     return out

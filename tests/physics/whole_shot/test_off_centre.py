@@ -97,3 +97,14 @@ def test_sightings_are_put_over_the_centre_by_as_much_as_the_fit_allows(share: f
         expected.to_numpy(), abs=1e-9
     )
     assert moved[moved["stone"] == "B"].equals(table[table["stone"] == "B"])
+
+
+def test_a_table_of_which_no_cap_is_told_is_the_same_table() -> None:
+    shot = SimpleNamespace(
+        traces={"A": trace(5.0, place=0.0)},
+        off_centre=1.0,
+        residuals=lambda _: [np.ones((COUNT, 2))],
+    )
+    fit = SimpleNamespace(shots=[shot], simulation=lambda: None, inflation=1.0)
+    table = pd.DataFrame({"stone": "A", "t": np.arange(3.0), "x": 1.0, "y": 2.0})
+    assert centred_sightings(table, fit) is table  # type: ignore[arg-type]
