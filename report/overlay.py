@@ -40,6 +40,7 @@ _RIM = circle(49)
 _APART = 0.1  # radii between the points of a trail
 _RESTS = 0.05  # m/s below which a stone's speed is not worth a label
 _TURNS = 0.1  # rad/s, the same for its spin
+_TURNED = 0.2  # rad; of a stone that turns less no angle is shown, for its zero is arbitrary
 _FLASH = 0.4  # s that a ring grows from a hit
 _SAID = 2.0  # s that its name stays, time to look there and read three words
 _MOST_SAID = 5  # names of hits at once, more nobody reads
@@ -187,6 +188,9 @@ def _scene(
         x, y, theta, vx, vy, omega, seen = rows[columns].to_numpy(float).T
         team = team_colour(rows["team"].iloc[0])
         places = np.stack([x, y], axis=1)
+        told = theta[np.isfinite(theta)]
+        if told.size and np.ptp(told) < _TURNED:
+            theta = np.full_like(theta, np.nan)
         for k, index in enumerate(frames):
             speed = float(np.hypot(vx[k], vy[k]))
             states.setdefault(int(index), []).append(

@@ -236,3 +236,12 @@ def test_of_a_broken_rack_a_few_names_are_written(shot):
     }
     written = {n: np.flatnonzero((image != GREY).any(axis=(1, 2))) for n, image in shown.items()}
     assert written[5].max() < written[6].max() == pytest.approx(written[30].max(), abs=3)
+
+
+def test_of_a_stone_that_does_not_turn_no_angle_is_shown(shot):
+    tracks = shot.tracks.copy()
+    tracks.loc[tracks["stone"] == "D", "theta"] = 0.0  # of an unknown zero
+    states = _scene(tracks, [], None, 0.1455).states
+    shown = {state.stone for row in states.values() for state in row if np.isfinite(state.theta)}
+    assert "D" not in shown
+    assert "A" in shown
