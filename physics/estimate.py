@@ -27,12 +27,12 @@ from data.results import (
 )
 from physics.local_fit.contacts import Contact
 from physics.local_fit.finite_differences import by_finite_differences
-from physics.local_fit.local import Local, estimate_locally
+from physics.local_fit.local import Local, estimate_from_traces, estimate_locally
 from physics.statistics.by_stone import results_by_stone
 from physics.statistics.random_effects import random_effects
 from physics.whole_shot.followed import fit_followed, followed
 from physics.whole_shot.misfit import misfits
-from physics.whole_shot.off_centre import centred_sightings
+from physics.whole_shot.off_centre import centred_traces
 from physics.whole_shot.shot_model import ice
 from physics.whole_shot.watched import loose_priors, watch
 from physics.whole_shot.whole_fit import GlobalFit
@@ -157,14 +157,13 @@ def estimate(
         Stone to mass in any unit; equal where absent.
     """
 
-    def beside_hits(seen: pd.DataFrame) -> Local:
-        return estimate_locally(seen, contacts, radius=radius, masses=masses)
-
     def centred(fit: GlobalFit) -> Local:
-        over = centred_sightings(sightings, fit)
-        return local if over is sightings else beside_hits(over)
+        over = centred_traces(local.known, fit)
+        if over is local.known:
+            return local
+        return estimate_from_traces(over, contacts, radius=radius, masses=masses)
 
-    local = beside_hits(sightings)
+    local = estimate_locally(sightings, contacts, radius=radius, masses=masses)
     restitution, friction, unsure = local.restitution, local.friction, local.friction_doubt
     fitted, off, doubt, end = _whole(local, radius, masses or {}, centred)
     whole = fitted if doubt is None else None
@@ -172,8 +171,9 @@ def estimate(
         restitution = _of_two(restitution, fitted["restitution"])
         wider = _of_two(Estimate(friction.value, friction.stderr), fitted["friction"])
         friction = replace(friction, stderr=wider.stderr)
-    if whole is not None:
-        local = centred(whole)
+    over = None if whole is None else centred(whole)
+    if whole is not None and over is not None and _agree(over, whole):
+        local = over
         restitution, friction, unsure = local.restitution, local.friction, local.friction_doubt
     if whole is not None and restitution.value is not None and whole.told("restitution"):
         restitution = whole["restitution"]
@@ -325,6 +325,12 @@ def _doubt(fit: GlobalFit, local: Estimate) -> str | None:
 def _fits(fit: GlobalFit) -> bool:
     """Whether a fit of the whole shot is as it was seen."""
     return followed(fit) and fit.misfit <= POOR_FIT and not fit.astray
+
+
+def _agree(local: Local, whole: GlobalFit) -> bool:
+    """Whether what paths beside hits and glides say goes with a fit of the whole shot."""
+    other = _other_ice(local.friction, whole["friction"])
+    return _doubt(whole, local.restitution) is None and other is None
 
 
 def _of_two(local: Estimate, whole: Estimate) -> Estimate:

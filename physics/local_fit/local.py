@@ -76,11 +76,21 @@ def estimate_locally(
 
     Parameters are those of `physics.estimate.estimate`.
     """
-    known = traces(sightings)
+    known = centred(traces(sightings), contacts, radius)
+    return estimate_from_traces(known, contacts, radius=radius, masses=masses)
+
+
+def estimate_from_traces(
+    known: Mapping[str, Trace],
+    contacts: Sequence[Contact],
+    *,
+    radius: float,
+    masses: Mapping[str, float] | None = None,
+) -> Local:
+    """As `estimate_locally`, of the sightings by stone, which are taken to be over the centres."""
     meetings = [
         Meeting(c.t, c.stones, max(known[stone].gap(c.t) for stone in c.stones)) for c in contacts
     ]
-    known = centred(known, meetings, radius)
     pieces, _ = cut_all(known, meetings, radius)
     idle = [piece for piece in pieces if piece.rest and _alone(piece)]
     still = [_scatter(known[piece.stone], piece) for piece in idle]

@@ -35,9 +35,21 @@ TURNED = 2.0
 FEWEST = 12
 """Sightings of a stretch from which it tells of its cap."""
 
-OTHER_SLOWING = 0.02
-"""By how much the deceleration of a glide changes along it, m/s²: a fifth of what it is on ice, so
-that what speed, sweepers and curl do to it is not taken for the cap."""
+OTHER_SLOWING = 0.01
+"""Standard deviation of each of the first three Legendre terms by which the acceleration of a glide
+changes along it, on either axis, m/s²: a tenth of what it is on ice, so that what speed, sweepers
+and curl do to it is not taken for the cap."""
+
+BENDS = np.array([60.0, 140.0, 252.0])
+"""Such terms a1 P1, a2 P2, a3 P3 over a time T, integrated twice, bend a path by a1 T² P3 / 60,
+a2 T² P4 / 140 and a3 T² P5 / 252, and by what a parabola takes up."""
+
+MOST = 3.0
+"""Farthest that a cap is beside its stone's centre, in `Trace.sd_place`."""
+
+NEAR = 0.5
+"""Time, s, within which an angle is to be told for what the cap is beside the centre by to be
+known: a third of a turn or less."""
 
 ROUNDS = 2
 """How often a path is cut and its cap told anew: once it is over its stone, breaks that the cap
@@ -52,10 +64,11 @@ def centred(
 ) -> dict[str, Trace]:
     """Put the sightings of each stone over its centre, where it shows that they are beside it.
 
-    A cubic on each axis of every stretch of motion between hits, and a place in the stone's frame
-    for all of them, are fitted to the sightings (linear least squares; the place is known before to
-    `Trace.sd_place`, the cubic's last term by `OTHER_SLOWING`). Other stones stay as they are:
-    without angles, without a stated error that their places share, or hardly turning.
+    On each axis of every stretch of motion between hits a polynomial of the fifth degree, and a
+    place in the stone's frame for all of them, are fitted to the sightings (linear least squares;
+    the place is known before to `Trace.sd_place`, what is more than a parabola by `OTHER_SLOWING`).
+    Other stones stay as they are: such without angles for a while, without a stated error that
+    their places share, or hardly turning.
 
     Parameters
     ----------
@@ -69,7 +82,8 @@ def centred(
     out = dict(known)
     for name, trace in known.items():
         theta = trace.theta[np.isfinite(trace.theta)]
-        if theta.size and np.ptp(theta) > TURNED and trace.usual_sd_place > 0:
+        turned = theta.size and np.ptp(theta) > TURNED
+        if turned and trace.usual_sd_place > 0 and _told_throughout(trace):
             own = [(k, hit.t) for k, hit in enumerate(hits) if name in hit.stones]
             out[name] = _centred(trace, sorted(own, key=lambda hit: hit[1]), radius)
     return out
@@ -89,11 +103,26 @@ def _centred(trace: Trace, hits: Sequence[tuple[int, float]], radius: float) -> 
     over = trace
     for _ in range(1 + ROUNDS):
         beside, normal = _beside(trace, rotations, _stretches(over, pieces, radius))
-        if beside @ normal @ beside < SHOWN:
+        size = float(np.hypot(*beside))
+        if beside @ normal @ beside < SHOWN or size > MOST * trace.usual_sd_place:
             return trace
-        over = replace(trace, xy=trace.xy - rotations @ beside)
+        over = moved(trace, rotations, beside)
         pieces = cut(over, hits, radius)
     return over
+
+
+def moved(trace: Trace, rotations: Floats, beside: Floats) -> Trace:
+    """Put sightings over the centre of a stone whose cap is so far beside it, m, in its frame."""
+    sd = np.nan_to_num(trace.sd_theta)[:, None] * np.hypot(*beside)
+    return replace(trace, xy=trace.xy - rotations @ beside, sd=np.hypot(trace.sd, sd))
+
+
+def _told_throughout(trace: Trace) -> bool:
+    """Whether an angle is told near each of the sightings."""
+    told = trace.t[np.isfinite(trace.theta)]
+    after = np.searchsorted(told, trace.t).clip(1, len(told) - 1)
+    near = np.minimum(np.abs(told[after] - trace.t), np.abs(trace.t - told[after - 1]))
+    return bool(near.max() < NEAR)
 
 
 def _joined(pieces: Sequence[Piece]) -> list[Piece]:
@@ -131,24 +160,25 @@ def _beside(
     # As often as sightings err alike they say the same once more.
     alike = max(ALIKE, trace.lasting * 2 * PLACE_MEMORY / trace.step)
     for samples in stretches:
-        sd = np.sqrt((1 + alike) * np.mean(trace.sd[samples] ** 2, axis=1))
+        sd = np.sqrt(np.mean(trace.sd[samples] ** 2, axis=1))
         t = trace.t[samples]
         tau = (2 * t - t[0] - t[-1]) / (t[-1] - t[0])
-        curve = legendre.legvander(tau, 3)
-        # Twice integrated, a change of the deceleration by d in a time T is T² d / 120 of P3.
-        held = np.array([[0.0, 0.0, 0.0, 120 / ((t[-1] - t[0]) ** 2 * OTHER_SLOWING)]])
+        curve = legendre.legvander(tau, 5)
+        bends = BENDS / ((t[-1] - t[0]) ** 2 * OTHER_SLOWING) * np.sqrt(1 + alike)
+        held = np.concatenate([np.zeros((3, 3)), np.diag(bends)], axis=1)
+        before = normal * (1 + alike), right * (1 + alike)
         weight = np.ones(len(tau))
         for _ in range(REWEIGHTED):
             size = (np.sqrt(weight) / sd)[:, None]
-            basis = np.linalg.qr(np.concatenate([curve * size, held]))[0][:-1]
+            basis = np.linalg.qr(np.concatenate([curve * size, held]))[0][: len(t)]
             cap = rotations[samples] * size[:, :, None]
             own = _without(basis, trace.xy[samples] * size)
             rows = _without(basis, cap)
             here = np.einsum("nai,naj->ij", cap, rows)
             there = np.einsum("nai,na->i", cap, own)
-            left = own - rows @ np.linalg.solve(normal + here, right + there)
+            left = own - rows @ np.linalg.solve(before[0] + here, before[1] + there)
             weight = huber_weights(left / np.sqrt(weight)[:, None])[:, 0]
-        normal, right = normal + here, right + there
+        normal, right = normal + here / (1 + alike), right + there / (1 + alike)
     return np.asarray(np.linalg.solve(normal, right)), normal
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
-from physics.local_fit.off_centre import turns
+from physics.local_fit.off_centre import moved, turns
 from physics.local_fit.traces import Trace
 from physics.statistics.residuals import huber_weights
 from physics.whole_shot.whole_fit import GlobalFit
@@ -51,25 +52,30 @@ def centred(
     return residuals - rows @ beside, beside
 
 
-def centred_sightings(sightings: pd.DataFrame, fit: GlobalFit) -> pd.DataFrame:
-    """Take out of sightings by what a fit of the whole shot has the caps beside the centres.
+def centred_traces(known: Mapping[str, Trace], fit: GlobalFit) -> Mapping[str, Trace]:
+    """Put sightings over the centres by what a fit of the whole shot has the caps beside them.
+
+    Parameters
+    ----------
+    known : mapping
+        Stone to its sightings, of which the shot that was fitted may hold only a part.
+    fit : GlobalFit
+        Of that shot.
 
     Returns
     -------
-    DataFrame
-        The table itself where no cap is told.
+    mapping
+        The same one where no cap is told.
     """
-    out, shot = sightings, fit.shots[0]
+    shot, out = fit.shots[0], dict(known)
     runs = shot.residuals(fit.simulation())
     for (stone, trace), run in zip(shot.traces.items(), runs, strict=True):
         _, beside = centred(trace, run, fit.inflation, shot.off_centre)
-        if not beside.any():
-            continue
-        out = sightings.copy() if out is sightings else out
-        own = out["stone"] == stone
-        beside *= _sd_aside(trace, shot.off_centre)
-        out.loc[own, ["x", "y"]] -= turns(trace, out.loc[own, "t"].to_numpy(float)) @ beside
-    return out
+        if beside.any():
+            whole = known[stone]
+            beside *= _sd_aside(trace, shot.off_centre)
+            out[stone] = moved(whole, turns(whole, whole.t), beside)
+    return known if all(out[stone] is known[stone] for stone in known) else out
 
 
 def _sd_aside(trace: Trace, share: float) -> float:

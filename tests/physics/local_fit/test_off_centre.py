@@ -101,6 +101,40 @@ def test_a_stone_whose_cap_is_in_the_middle_stays_as_it_is(slowing: float) -> No
         assert centred({"A": trace}, [], RADIUS)["A"] is trace
 
 
+@pytest.mark.parametrize(("end", "omega"), [(0.1, 0.3), (0.1, 0.5), (0.35, 0.7), (0.5, 0.5)])
+def test_a_long_way_that_curls_the_more_the_slower_is_no_cap(end: float, omega: float) -> None:
+    t = np.arange(0, 20, 1 / FPS)
+    speed, heading = 2 - 0.09 * t, end * (t / 20) ** 3
+    steps = speed[:, None] * np.column_stack([np.sin(heading), np.cos(heading)]) / FPS
+    way = np.cumsum(steps, axis=0)
+    for seed in range(3):
+        trace = seen(way, omega=omega, seed=seed)
+        assert centred({"A": trace}, [], RADIUS)["A"] is trace
+
+
+@pytest.mark.parametrize("half", [slice(0, 75), slice(75, None)])
+def test_where_the_angle_is_not_told_for_long_nothing_is_taken_out(half: slice) -> None:
+    trace = beside(seen(glide(T)))
+    trace.theta[half] = np.nan
+    assert centred({"A": trace}, [], RADIUS)["A"] is trace
+
+
+def test_places_far_off_do_not_tell_of_the_cap() -> None:
+    truth = glide(T)
+    trace = beside(seen(truth))
+    trace.xy[::9] += 0.03
+    over = centred({"A": trace}, [], RADIUS)["A"]
+    good = np.arange(len(T)) % 9 > 0
+    assert np.sqrt(np.mean((over.xy - truth)[good] ** 2)) < 0.0012
+
+
+def test_what_the_angle_is_off_by_is_in_the_errors() -> None:
+    trace = beside(seen(glide(T)))
+    over = centred({"A": trace}, [], RADIUS)["A"]
+    expected = np.hypot(trace.sd, 0.02 * np.hypot(AHEAD, LEFT))
+    assert over.sd == pytest.approx(expected, rel=0.05)
+
+
 @pytest.mark.parametrize(
     "trace",
     [

@@ -3,11 +3,10 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 import numpy as np
-import pandas as pd
 import pytest
 
 from physics.local_fit.traces import Trace
-from physics.whole_shot.off_centre import centred, centred_sightings
+from physics.whole_shot.off_centre import centred, centred_traces
 
 SD, PLACE = 0.0005, 0.002
 COUNT = 200
@@ -88,23 +87,30 @@ def test_sightings_are_put_over_the_centre_by_as_much_as_the_fit_allows(share: f
         residuals=lambda _: [residuals, residuals],
     )
     fit = SimpleNamespace(shots=[shot], simulation=lambda: None, inflation=noise)
-    both = [pd.DataFrame({"stone": name, "t": seen.t, "x": 1.0, "y": 2.0}) for name in "AB"]
-    table = pd.concat(both, ignore_index=True)
-    moved = centred_sightings(table, fit)  # type: ignore[arg-type]
+    known = shot.traces
+    moved = centred_traces(known, fit)  # type: ignore[arg-type]
     kept = share**2 / (1 + share**2)
-    expected = table.loc[table["stone"] == "A", ["x", "y"]] - kept * SD * residuals
-    assert moved.loc[moved["stone"] == "A", ["x", "y"]].to_numpy() == pytest.approx(
-        expected.to_numpy(), abs=1e-9
-    )
-    assert moved[moved["stone"] == "B"].equals(table[table["stone"] == "B"])
+    assert moved["A"].xy == pytest.approx(seen.xy - kept * SD * residuals, abs=1e-9)
+    # What angles are off by makes places err from now on.
+    away = kept * 0.003 / 10
+    assert moved["A"].sd == pytest.approx(np.hypot(SD, away * seen.sd_theta[:, None] + 0 * seen.sd))
+    assert moved["B"] is known["B"]
 
 
-def test_a_table_of_which_no_cap_is_told_is_the_same_table() -> None:
+def test_angles_beyond_what_was_fitted_are_those_that_were_seen() -> None:
+    seen = trace(5.0)
     shot = SimpleNamespace(
-        traces={"A": trace(5.0, place=0.0)},
+        traces={"A": seen.until(2.0)},
         off_centre=1.0,
-        residuals=lambda _: [np.ones((COUNT, 2))],
+        residuals=lambda _: [wobble(seen, 0.003, -0.001)[seen.t < 2.0]],
     )
     fit = SimpleNamespace(shots=[shot], simulation=lambda: None, inflation=1.0)
-    table = pd.DataFrame({"stone": "A", "t": np.arange(3.0), "x": 1.0, "y": 2.0})
-    assert centred_sightings(table, fit) is table  # type: ignore[arg-type]
+    moved = centred_traces({"A": seen}, fit)  # type: ignore[arg-type]
+    assert moved["A"].xy == pytest.approx(-SD * wobble(seen, 0.003, -0.001), abs=1e-4)
+
+
+def test_where_no_cap_is_told_all_stays_as_it_is() -> None:
+    known = {"A": trace(5.0, place=0.0)}
+    shot = SimpleNamespace(traces=known, off_centre=1.0, residuals=lambda _: [np.ones((COUNT, 2))])
+    fit = SimpleNamespace(shots=[shot], simulation=lambda: None, inflation=1.0)
+    assert centred_traces(known, fit) is known  # type: ignore[arg-type]
