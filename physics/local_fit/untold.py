@@ -39,6 +39,10 @@ AT_ONCE = 0.2
 OVERLAP = 0.85
 """Distance of two stones as one of them begins to move, in two radii, at which no discs hit."""
 
+BESIDE, OPPOSITE = 0.1, 0.9
+"""Time beside a change of motion, s, at which velocities are those before and after it; cosine from
+which two changes are opposite, and along a line."""
+
 FEW = 7
 """Sightings of which a median tells where a stone is."""
 
@@ -96,7 +100,8 @@ def untold_hits(
             pair, seen = frozenset({change.stone, other}), _in_sight(paths[other], change.end)
             text = _said(change, other, seen)
             apart = _apart(paths, change.stone, other, change.end)
-            if seen and not change.hidden and apart < OVERLAP * 2 * radius:
+            inside = seen and not change.hidden and apart < OVERLAP * 2 * radius
+            if inside and _collide(paths[change.stone], paths[other], change.end):
                 text = _unfit(change.stone, other, change.when, apart, radius)
             out.setdefault(pair, (change.end, text))
         elif change.goes:
@@ -154,19 +159,19 @@ def _said_alone(name: str, changes: Sequence[_Change]) -> str:
 def _out_of_reach(
     paths: Mapping[str, Trace], alone: dict[str, list[_Change]], radius: float
 ) -> Iterator[tuple[frozenset[str], float, str]]:
-    """Pairs whose motion changes at one time where discs of this radius do not touch.
+    """Pairs that collide, by their motion, where discs of this radius do not touch.
 
     They are no longer among the changes of single stones, `alone`.
     """
     for first, second in combinations(sorted(alone), 2):
         for one in list(alone[first]):
             same = [two for two in alone[second] if abs(two.end - one.end) < AT_ONCE]
-            if one.hidden or not same or same[0].hidden:
-                continue
-            apart = _apart(paths, first, second, 0.5 * (one.end + same[0].end))
-            if np.isfinite(apart):
+            same = [two for two in same if not (one.hidden or two.hidden)]
+            time = 0.5 * (one.end + same[0].end) if same else one.end
+            if same and _collide(paths[first], paths[second], time):
                 alone[first].remove(one)
                 alone[second].remove(same[0])
+                apart = _apart(paths, first, second, time)
                 text = _unfit(first, second, one.when, apart, radius)
                 yield frozenset({first, second}), one.end, text
     for name in [name for name, changes in alone.items() if not changes]:
@@ -328,6 +333,33 @@ def _apart(paths: Mapping[str, Trace], first: str, second: str, time: float) -> 
     t = np.array([time])
     one, other = (next(_places(paths[name], t))[0][0] for name in (first, second))
     return float(np.hypot(*(other - one)))
+
+
+def _collide(path: Trace, other: Trace, time: float) -> bool:
+    """Whether two stones come together at a time and are driven apart, in whatever unit.
+
+    Each gives the other what it loses, along the line of their centres.
+    """
+    ways = []
+    for one in (path, other):
+        k, j = np.searchsorted(one.t, [time - BESIDE, time + BESIDE])
+        if k < FEWEST or j > len(one.t) - FEWEST:
+            return False
+        ways.append((last_way(one, int(k) - 1), first_way(one, int(j))))
+    (before, after), (before_other, after_other) = ways
+    line = before_other.at(np.array([time]))[0] - before.at(np.array([time]))[0]
+    line = line / max(float(np.hypot(*line)), 1e-9)
+    closing = float((before.velocity - before_other.velocity) @ line)
+    change = after.velocity - before.velocity
+    given = after_other.velocity - before_other.velocity
+    sizes = [float(np.hypot(*each)) for each in (change, given)]
+    return bool(
+        closing > 0
+        and min(sizes) > 0
+        and change @ given < -OPPOSITE * sizes[0] * sizes[1]
+        and -change @ line > OPPOSITE * sizes[0]
+        and given @ line > OPPOSITE * sizes[1]
+    )
 
 
 def _lost_and_found(

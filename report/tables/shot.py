@@ -130,7 +130,8 @@ def residual_table(sightings: pd.DataFrame, tracks: pd.DataFrame) -> pd.DataFram
     sightings : DataFrame
         `data.tracks.SIGHTING_COLUMNS`.
     tracks : DataFrame
-        `data.tracks.TRACK_COLUMNS`, smoothed from them.
+        `data.tracks.TRACK_COLUMNS`, smoothed from them: of the centres of stones, also where caps
+        beside them were sighted (`physics.local_fit.off_centre`), which then shows.
 
     Returns
     -------

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -254,5 +256,36 @@ def test_hit_that_discs_of_this_radius_cannot_make_asks_for_the_scale(times: flo
     warnings = estimate_locally(seen, contacts, radius=R * times).warnings
     (text,) = [text for text in warnings if "motion" in text]
     assert text.startswith(("the motion of A and B changes at 1.", "the motion of B and A"))
-    assert "as if they hit each other, 0.3" in text and "m apart where two radii are" in text
+    assert re.search(r"as if they hit each other, 0\.(29|3|31) m apart where two radii are", text)
     assert text.endswith("are the scale, the unit and the radius right?")
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        ([0.0, -0.8], [0.0, -0.8]),
+        ([0.0, 0.8], [0.0, -0.8]),
+        ([0.5, 0.0], [-0.5, 0.0]),
+        ([0.5, 0.3], [0.2, -0.6]),
+    ],
+)
+def test_stones_that_hands_clear_at_one_time_ask_for_no_scale(
+    first: list[float], second: list[float]
+) -> None:
+    t = np.arange(0.0, 5.0, 1 / FPS)
+    places = {
+        name: np.where((t > 2.0)[:, None], glide(at, np.array(way), t - 2.0), at)
+        for name, at, way in (
+            ("A", np.array([0.0, 1.5]), first),
+            ("B", np.array([0.3, -1.5]), second),
+        )
+    }
+    texts = said(table(t, places, {}))
+    assert not any("scale" in text for text in texts)
+    assert sum("no stone is seen that hit it" in text for text in texts) == 2
+
+
+def test_one_stone_under_two_names_at_once_asks_for_no_scale() -> None:
+    t = np.arange(0.0, 5.0, 1 / FPS)
+    way = np.where((t > 2.0)[:, None], glide(np.zeros(2), np.array([0.1, -0.8]), t - 2.0), 0.0)
+    assert not any("scale" in text for text in said(table(t, {"A": way, "A2": way + 0.002}, {})))
