@@ -191,7 +191,9 @@ def _write_run(
         overlay=overlay,
         clip_start=clip_start,
         house=house,
-        residuals=residual_table(measured.sightings, done.tracks),
+        residuals=residual_table(
+            measured.sightings, done.tracks, done.results.collisions, done.results.radius
+        ),
         posterior=done.posterior,
         unit=UNITS[settings.units],
         provenance=Provenance(

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
+from data.results import Collision
 from physics.filter.stretch import PLACE_MEMORY
 from physics.local_fit.breaks import ALIKE
 from physics.local_fit.contacts import Contact
@@ -60,7 +61,7 @@ REWEIGHTED = 3
 
 
 def centred(
-    known: Mapping[str, Trace], hits: Sequence[Meeting | Contact], radius: float
+    known: Mapping[str, Trace], hits: Sequence[Meeting | Contact | Collision], radius: float
 ) -> dict[str, Trace]:
     """Put the sightings of each stone over its centre, where it shows that they are beside it.
 
@@ -74,7 +75,7 @@ def centred(
     ----------
     known : mapping
         Stone to its sightings.
-    hits : sequence of Meeting or Contact
+    hits : sequence of Meeting, Contact or Collision
         The hits.
     radius : float
         Of the discs, m.

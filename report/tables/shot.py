@@ -9,6 +9,7 @@ import pandas as pd
 
 from data.results import Collision, Glide, Prediction, SimulationScore
 from data.sheet import STONE
+from physics.local_fit.off_centre import centred
 from physics.local_fit.traces import traces
 
 
@@ -122,7 +123,12 @@ def scored_stones(scores: Mapping[str, SimulationScore] | Mapping[str, Predictio
     return sorted({name for score in scores.values() for name in score.rest_error})
 
 
-def residual_table(sightings: pd.DataFrame, tracks: pd.DataFrame) -> pd.DataFrame:
+def residual_table(
+    sightings: pd.DataFrame,
+    tracks: pd.DataFrame,
+    collisions: Sequence[Collision] = (),
+    radius: float = STONE.radius,
+) -> pd.DataFrame:
     """Sighted less smoothed places, one row per sighting.
 
     Parameters
@@ -130,20 +136,25 @@ def residual_table(sightings: pd.DataFrame, tracks: pd.DataFrame) -> pd.DataFram
     sightings : DataFrame
         `data.tracks.SIGHTING_COLUMNS`.
     tracks : DataFrame
-        `data.tracks.TRACK_COLUMNS`, smoothed from them: of the centres of stones, also where caps
-        beside them were sighted (`physics.local_fit.off_centre`), which then shows.
+        `data.tracks.TRACK_COLUMNS`, smoothed from them.
+    collisions : sequence of Collision
+        The hits.
+    radius : float
+        Of the discs, m.
 
     Returns
     -------
     DataFrame
         ``stone, frame, t, dx, dy, sd_x, sd_y``: m and s; the standard deviations are those of
-        the sightings, from their scatter where the table has none.
+        the sightings, from their scatter where the table has none. Where a cap shows to be beside
+        its stone's centre that is taken out, as for the filter.
     """
     keys, sd = ["stone", "frame"], ["sd_x", "sd_y"]
     table = sightings.sort_values(["stone", "t"]).reset_index(drop=True)
-    known = traces(table)
+    known = centred(traces(table), collisions, radius)
     if known:
         table[sd] = np.concatenate([known[str(name)].sd for name in sorted(known)])
+        table[["x", "y"]] = np.concatenate([known[str(name)].xy for name in sorted(known)])
     both = table.merge(tracks[[*keys, "x", "y"]], on=keys, suffixes=("", "_smooth"))
     both["dx"], both["dy"] = both["x"] - both["x_smooth"], both["y"] - both["y_smooth"]
     both = both[both[["dx", "dy"]].notna().all(axis=1)]

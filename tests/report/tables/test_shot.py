@@ -39,3 +39,17 @@ def test_a_stone_may_have_moved_in_a_few_rows(rows: int) -> None:
     glide = pd.DataFrame({"stone": "A", "x": 0.0, "y": np.linspace(0, 0.7, rows)})
     assert tables.moving_stones(glide) == ("A",)
     assert tables.moving_stones(glide.assign(y=0.02 * glide["y"])) == ()
+
+
+def test_a_cap_that_is_taken_out_for_the_tracks_is_no_residual():
+    t = np.arange(0.0, 5.0, 1 / 30)
+    centre = pd.DataFrame({"stone": "A", "frame": np.arange(len(t)), "t": t, "theta": 1.6 * t})
+    centre["x"], centre["y"] = 0.3, t - 0.045 * t**2
+    seen = centre.assign(sd_x=0.0005, sd_y=0.0005, sd_theta=0.01)
+    seen = seen.assign(sd_place_x=0.002, sd_place_y=0.002)
+    seen["x"] += 0.004 * np.cos(seen["theta"])
+    seen["y"] += 0.004 * np.sin(seen["theta"])
+    rest = tables.residual_table(seen, centre)
+    assert np.abs(rest[["dx", "dy"]]).to_numpy().max() < 0.001
+    shown = tables.residual_table(seen.assign(theta=np.nan), centre)
+    assert np.abs(shown[["dx", "dy"]]).to_numpy().max() > 0.003
