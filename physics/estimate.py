@@ -171,8 +171,7 @@ def estimate(
         restitution = _of_two(restitution, fitted["restitution"])
         wider = _of_two(Estimate(friction.value, friction.stderr), fitted["friction"])
         friction = replace(friction, stderr=wider.stderr)
-    over = None if whole is None else centred(whole)
-    if whole is not None and over is not None and _agree(over, whole):
+    if whole is not None and _agree(over := centred(whole), whole):
         local = over
         restitution, friction, unsure = local.restitution, local.friction, local.friction_doubt
     if whole is not None and restitution.value is not None and whole.told("restitution"):

@@ -90,16 +90,16 @@ def centred(
     return out
 
 
-def turns(trace: Trace, t: Floats) -> Floats:
-    """Rotations from a stone's frame to the ice at times, (n, 2, 2), by its angles where told."""
+def turns(trace: Trace) -> Floats:
+    """Rotations from a stone's frame to the ice, (n, 2, 2), by its angles where told."""
     told = np.isfinite(trace.theta)
-    theta = np.interp(t, trace.t[told], trace.theta[told])
+    theta = np.interp(trace.t, trace.t[told], trace.theta[told])
     cos, sin = np.cos(theta), np.sin(theta)
     return np.stack([np.stack([cos, -sin], axis=1), np.stack([sin, cos], axis=1)], axis=1)
 
 
 def _centred(trace: Trace, hits: Sequence[tuple[int, float]], radius: float) -> Trace:
-    rotations = turns(trace, trace.t)
+    rotations = turns(trace)
     pieces = _joined(cut(trace, hits, radius))
     over = trace
     for _ in range(1 + ROUNDS):

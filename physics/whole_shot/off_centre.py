@@ -45,7 +45,7 @@ def centred(
     size = _sd_aside(trace, share)
     if not size or not np.isfinite(trace.theta).any():
         return residuals, np.zeros(2)
-    rows = size * turns(trace, trace.t) / trace.sd[:, :, None]
+    rows = size * turns(trace) / trace.sd[:, :, None]
     weighted = rows * huber_weights(residuals)[:, :, None] / noise
     normal = np.eye(2) + np.einsum("nai,naj->ij", weighted, rows)
     beside = np.linalg.solve(normal, np.einsum("nai,na->i", weighted, residuals))
@@ -74,7 +74,7 @@ def centred_traces(known: Mapping[str, Trace], fit: GlobalFit) -> Mapping[str, T
         if beside.any():
             whole = known[stone]
             beside *= _sd_aside(trace, shot.off_centre)
-            out[stone] = moved(whole, turns(whole, whole.t), beside)
+            out[stone] = moved(whole, turns(whole), beside)
     return known if all(out[stone] is known[stone] for stone in known) else out
 
 
