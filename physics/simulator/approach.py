@@ -73,7 +73,8 @@ def first_contact(
             # They graze, closer than numbers can tell.
             t0, a0, b0 = later.pop()
             continue
-        if not t0 < split < middle:
+        # Stones abreast that come nearer by rounding alone do so for no time at all.
+        if not t0 + SHORTEST < split < middle:
             split = middle
         later.append((split, a.point(split), b.point(split)))
     return math.inf
@@ -140,10 +141,10 @@ def _ahead(a: Point, b: Point, reach: float) -> float:
     x, y = b.x - a.x, b.y - a.y
     vx = b.speed * math.cos(b.heading) - a.speed * math.cos(a.heading)
     vy = b.speed * math.sin(b.heading) - a.speed * math.sin(a.heading)
-    closing = -(x * vx + y * vy)
-    if closing <= 0:
+    closing, square = -(x * vx + y * vy), vx * vx + vy * vy
+    if closing <= 0 or square == 0:
         return math.inf
-    square, gap = vx * vx + vy * vy, x * x + y * y - reach * reach
+    gap = x * x + y * y - reach * reach
     within = closing * closing - square * gap
     return gap / (closing + math.sqrt(within)) if within > 0 else closing / square
 

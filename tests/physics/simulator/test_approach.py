@@ -85,6 +85,17 @@ def test_the_faster_stone_in_front_is_left_alone_at_once() -> None:
     assert Counted.asked == 2
 
 
+@pytest.mark.parametrize("speed", [0.3, 1.0])
+def test_stones_abreast_are_passed_over_in_a_few_steps(speed: float) -> None:
+    """They come nearer by next to nothing, of which the square is zero."""
+    state = [Motion(0, 0, 0, 1, 0, 1.0), Motion(0, -1, 0, speed, 1e-170, 1.0)]
+    a, b = (Counted(0.0, motion, *ICES[1]) for motion in state)
+    here = a.point(0.0), b.point(0.0)
+    Counted.asked = 0
+    assert first_contact(a, b, 0.0, here, REACH) == math.inf
+    assert Counted.asked < 100
+
+
 def test_a_search_ends_with_its_time() -> None:
     """On next to no friction stones go on for an hour, which a fit of two seconds need not know."""
     laws = Constant(1e-5), FCV1Curl()
