@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -158,22 +159,19 @@ def estimate(
     """
 
     def centred(fit: GlobalFit) -> Local:
-        over = centred_traces(local.known, fit)
-        if over is local.known:
-            return local
+        over = centred_traces(seen.known, fit)
+        if over is seen.known:
+            return seen
         return estimate_from_traces(over, contacts, radius=radius, masses=masses)
 
-    local = estimate_locally(sightings, contacts, radius=radius, masses=masses)
+    seen = estimate_locally(sightings, contacts, radius=radius, masses=masses)
+    fitted, local, off, doubt, end = _whole(seen, radius, masses or {}, centred)
     restitution, friction, unsure = local.restitution, local.friction, local.friction_doubt
-    fitted, off, doubt, end = _whole(local, radius, masses or {}, centred)
     whole = fitted if doubt is None else None
     if fitted is not None and doubt is not None and _fits(fitted):
         restitution = _of_two(restitution, fitted["restitution"])
         wider = _of_two(Estimate(friction.value, friction.stderr), fitted["friction"])
         friction = replace(friction, stderr=wider.stderr)
-    if whole is not None and _agree(over := centred(whole), whole):
-        local = over
-        restitution, friction, unsure = local.restitution, local.friction, local.friction_doubt
     if whole is not None and restitution.value is not None and whole.told("restitution"):
         restitution = whole["restitution"]
     if whole is not None and friction.value is not None and whole.told("friction"):
@@ -240,43 +238,61 @@ def _friction(whole: GlobalFit) -> Friction:
     return Friction(mu.value, mu.stderr, "fit", law.a, law.v_c, law.b)
 
 
+class _Whole(NamedTuple):
+    """The whole shot fitted through the simulator, and what comes of it.
+
+    Attributes
+    ----------
+    fit : GlobalFit or None
+    local : Local
+        What the paths beside the hits say: as sighted, or, where that goes with the fit, with what
+        the fit has caps beside the centres by taken out of the sightings.
+    off : tuple of Misfit
+        How far each track is from the fit, where that follows the shot.
+    doubt, end : str or None
+        Why what the fit gives is not to be used; how far it goes.
+    """
+
+    fit: GlobalFit | None
+    local: Local
+    off: tuple[Misfit, ...] = ()
+    doubt: str | None = None
+    end: str | None = None
+
+
 def _whole(
-    local: Local,
+    seen: Local,
     radius: float,
     masses: Mapping[str, float],
     centred: Callable[[GlobalFit], Local],
-) -> tuple[GlobalFit | None, tuple[Misfit, ...], str | None, str | None]:
-    """Fit the whole shot through the simulator.
-
-    Say, second, how far each track is from it, where it is followed; third, why what it gives is
-    not to be used, or else, fourth, how far it goes. It must agree
-    with the restitution beside the hits as sighted, or as `centred` has it, with what the fit has
-    caps beside the centres by taken out of the sightings.
-    """
-    hits = local.fit is not None and bool(local.fit.meetings)
-    if local.fit is None or not (hits or local.friction.value):
-        return None, (), None, None
+) -> _Whole:
+    """Fit the whole shot through the simulator, and hold it against the paths beside the hits."""
+    hits = seen.fit is not None and bool(seen.fit.meetings)
+    if seen.fit is None or not (hits or seen.friction.value):
+        return _Whole(None, seen)
     watched = watch(
-        local.known, local.fit, radius,
+        seen.known, seen.fit, radius,
         priors=loose_priors(radius), masses=masses,
-        bystanders=() if hits else _beside(local, radius),
+        bystanders=() if hits else _beside(seen, radius),
     )  # fmt: skip
     if watched is None or (hits and not watched.hits):
-        return None, (), LED_ASTRAY if hits else None, None
+        return _Whole(None, seen, doubt=LED_ASTRAY if hits else None)
     try:
-        fit, end = fit_followed(watched)
+        fit, part = fit_followed(watched)
     except InputError:
-        return None, (), f"whole shot: no stones that slide move so; {INSTEAD}", None
+        return _Whole(None, seen, doubt=f"whole shot: no stones that slide move so; {INSTEAD}")
     off = misfits(watched, fit) if followed(fit) else ()
-    doubt = _doubt(fit, local.restitution)
-    if doubt is not None and _fits(fit):
-        # Caps beside the centres turn with the stones; paths beside a hit take that for velocity.
-        doubt = doubt if _doubt(fit, centred(fit).restitution) else None
-    doubt = doubt or _other_ice(local.friction, fit["friction"])
-    part = end if hits else "until something else moves a stone"
-    if doubt is None and part is not None and _blunt(fit["friction"], local.friction):
-        doubt = f"whole shot: the simulator follows it {part}, too short; {INSTEAD}"
-    return fit, off, doubt, None if end is None else f"whole shot: the simulator follows it {end}"
+    # Caps beside the centres turn with the stones; paths beside a hit take that for velocity.
+    over = centred(fit) if _fits(fit) else seen
+    agrees = _doubt(fit, over.restitution) is None
+    doubt = None if agrees else _doubt(fit, seen.restitution)
+    doubt = doubt or _other_ice(seen.friction, fit["friction"])
+    so_far = part if hits else "until something else moves a stone"
+    if doubt is None and so_far is not None and _blunt(fit["friction"], seen.friction):
+        doubt = f"whole shot: the simulator follows it {so_far}, too short; {INSTEAD}"
+    end = None if part is None else f"whole shot: the simulator follows it {part}"
+    agrees = agrees and _other_ice(over.friction, fit["friction"]) is None
+    return _Whole(fit, over if agrees and doubt is None else seen, off, doubt, end)
 
 
 def _astray(off: Sequence[Misfit]) -> Iterator[str]:
@@ -324,12 +340,6 @@ def _doubt(fit: GlobalFit, local: Estimate) -> str | None:
 def _fits(fit: GlobalFit) -> bool:
     """Whether a fit of the whole shot is as it was seen."""
     return followed(fit) and fit.misfit <= POOR_FIT and not fit.astray
-
-
-def _agree(local: Local, whole: GlobalFit) -> bool:
-    """Whether what paths beside hits and glides say goes with a fit of the whole shot."""
-    other = _other_ice(local.friction, whole["friction"])
-    return _doubt(whole, local.restitution) is None and other is None
 
 
 def _of_two(local: Estimate, whole: Estimate) -> Estimate:

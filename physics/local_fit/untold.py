@@ -108,8 +108,9 @@ def untold_hits(
             own = alone.setdefault(change.stone, [])
             if not own or change.end - own[-1].end > AT_ONCE:
                 own.append(change)
+    beyond, alone = _out_of_reach(paths, alone, radius)
     for pair, time, text in (
-        *_out_of_reach(paths, alone, radius),
+        *beyond,
         *_lost_and_found(paths, told, radius),
         *_touching(paths, told, radius),
     ):
@@ -157,25 +158,27 @@ def _said_alone(name: str, changes: Sequence[_Change]) -> str:
 
 
 def _out_of_reach(
-    paths: Mapping[str, Trace], alone: dict[str, list[_Change]], radius: float
-) -> Iterator[tuple[frozenset[str], float, str]]:
+    paths: Mapping[str, Trace], alone: Mapping[str, Sequence[_Change]], radius: float
+) -> tuple[list[tuple[frozenset[str], float, str]], dict[str, list[_Change]]]:
     """Pairs that collide, by their motion, where discs of this radius do not touch.
 
-    They are no longer among the changes of single stones, `alone`.
+    Second the changes of single stones that are left.
     """
+    left = {name: list(changes) for name, changes in alone.items()}
+    pairs = []
     for first, second in combinations(sorted(alone), 2):
-        for one in list(alone[first]):
-            same = [two for two in alone[second] if abs(two.end - one.end) < AT_ONCE]
-            same = [two for two in same if not (one.hidden or two.hidden)]
+        for one in [change for change in left[first] if not change.hidden]:
+            same = [
+                two for two in left[second] if abs(two.end - one.end) < AT_ONCE and not two.hidden
+            ]
             time = 0.5 * (one.end + same[0].end) if same else one.end
             if same and _collide(paths[first], paths[second], time):
-                alone[first].remove(one)
-                alone[second].remove(same[0])
+                left[first].remove(one)
+                left[second].remove(same[0])
                 apart = _apart(paths, first, second, time)
                 text = _unfit(first, second, one.when, apart, radius)
-                yield frozenset({first, second}), one.end, text
-    for name in [name for name, changes in alone.items() if not changes]:
-        del alone[name]
+                pairs.append((frozenset({first, second}), one.end, text))
+    return pairs, {name: changes for name, changes in left.items() if changes}
 
 
 def _changes(

@@ -43,6 +43,14 @@ class Cell(NamedTuple):
     node: float
 
 
+GAUSS = (np.polynomial.legendre.leggauss(5)[0] + 1) / 2
+"""Where in a cell, as shares of it, Gauss and Legendre's rule takes what it integrates."""
+_POWERS = np.arange(1, len(GAUSS) + 1)
+_BASIS = np.linalg.inv(np.vander(GAUSS, increasing=True))
+TO_INNER = (GAUSS[:, None] ** _POWERS / _POWERS) @ _BASIS
+TO_END = (1 / _POWERS) @ _BASIS
+"""From the values there to integrals up to each of them, and over the cell, in its widths."""
+
 SPEED, ALONG, ASIDE, TURN, STRAIGHT, LOSS = range(6)
 """Columns of `Curve.coefficients`, in the order of `Cell`."""
 
@@ -154,6 +162,14 @@ def _solve(c: Cubic, value: float, width: float) -> float:
     return s
 
 
+@lru_cache(maxsize=16)
+def _grid(top: float, cells: int) -> tuple[float, Array, Array, Array]:
+    """Width of a cell in v^(1/5), speeds of nodes and within cells, and dv / d(v^(1/5)) there."""
+    u = np.linspace(0.0, top**0.2, cells + 1)
+    inner_u = u[:-1, None] + u[1] * GAUSS
+    return float(u[1]), u**5, inner_u**5, 5 * inner_u**4
+
+
 @lru_cache(maxsize=256)
 def curve(ice: IceLaw, curl: Curl, top: float = LOWEST_TOP, cells: int = CELLS) -> Curve:
     """Integrate the curve of all glides up to a speed.
@@ -170,22 +186,15 @@ def curve(ice: IceLaw, curl: Curl, top: float = LOWEST_TOP, cells: int = CELLS) 
     cells : int
         Number of cells; the error of a place falls with its fourth power.
     """
-    u = np.linspace(0.0, top**0.2, cells + 1)
-    width = u[1]
-    x = (np.polynomial.legendre.leggauss(5)[0] + 1) / 2
-    powers = np.arange(1, len(x) + 1)
-    basis = np.linalg.inv(np.vander(x, increasing=True))
-    to_inner = (x[:, None] ** powers / powers) @ basis
-    to_end = (1 / powers) @ basis
+    width, v, inner_v, per_speed = _grid(top, cells)
 
     def integral(rate: Array) -> tuple[Array, Array]:
-        inner = width * rate @ to_inner.T
-        nodes = np.concatenate([[0.0], np.cumsum(width * rate @ to_end)])
+        inner = width * rate @ TO_INNER.T
+        nodes = np.zeros(cells + 1)
+        np.cumsum(width * rate @ TO_END, out=nodes[1:])
         return nodes[:-1, None] + inner, nodes
 
-    inner_u = u[:-1, None] + width * x
-    inner_v = inner_u**5
-    dtau = 5 * inner_u**4 / ice.deceleration(inner_v)
+    dtau = per_speed / ice.deceleration(inner_v)
     _, tau = integral(dtau)
     _, straight = integral(inner_v * dtau)
     inner_turn, turn = integral(curl.turn_rate(inner_v) * dtau)
@@ -194,35 +203,37 @@ def curve(ice: IceLaw, curl: Curl, top: float = LOWEST_TOP, cells: int = CELLS) 
     inner_loss, loss = integral(curl.spin_loss(inner_v) * dtau)
     _, unwound = integral(inner_loss * dtau)
 
-    v = u**5
     moving = v[1:]
-    columns = (
-        (v, ice.deceleration(moving)),
-        (along, moving * np.cos(turn[1:])),
-        (aside, moving * np.sin(turn[1:])),
-        (turn, curl.turn_rate(moving)),
-        (straight, moving),
-        (loss, curl.spin_loss(moving)),
-        (unwound, loss[1:]),
+    slowing, turning = ice.deceleration(moving), curl.turn_rate(moving)
+    values = (v, along, aside, turn, straight, loss, unwound)
+    slopes = (
+        slowing,
+        moving * np.cos(turn[1:]),
+        moving * np.sin(turn[1:]),
+        turning,
+        moving,
+        curl.spin_loss(moving),
+        loss[1:],
     )
-    cubics = np.stack([_hermite(tau, *column) for column in columns], axis=1)
-    change = np.hypot(ice.deceleration(moving), moving * curl.turn_rate(moving))
+    cubics = _hermite(tau, np.stack(values), np.stack(slopes))
+    change = np.hypot(slowing, moving * turning)
     return Curve(tau, v, loss, cubics, float(curl.spin_loss(0.0)), float(change.max()))
 
 
 def _hermite(tau: Array, value: Array, slope: Array) -> Array:
-    """Coefficients of the cubics with those values and slopes, shape (cells, 4).
+    """Coefficients of the cubics with those values and slopes, shape (cells, quantities, 4).
 
     The slope at rest, where laws may have a pole, is taken as that of the chord.
     """
     h = np.diff(tau)
     chord = np.diff(value) / h
-    left = np.concatenate([chord[:1], slope[:-1]])
-    right = slope
-    return np.stack(
-        [value[:-1], left, (3 * chord - 2 * left - right) / h, (left + right - 2 * chord) / h**2],
-        axis=1,
-    )
+    left = np.concatenate([chord[:, :1], slope[:, :-1]], axis=1)
+    out = np.empty((len(h), len(value), 4))
+    out[..., 0] = value[:, :-1].T
+    out[..., 1] = left.T
+    out[..., 2] = ((3 * chord - 2 * left - slope) / h).T
+    out[..., 3] = ((left + slope - 2 * chord) / h**2).T
+    return out
 
 
 def curve_for(ice: IceLaw, curl: Curl, speed: float) -> Curve:

@@ -50,6 +50,9 @@ GOOD = 0.5
 SETTLED = 0.02
 """Change in standard errors below which a fit has come to its end."""
 
+SAME = 0.1
+"""Distance, in standard errors, from the end of another fit at which a fit goes to the same."""
+
 
 def fit_shots(
     shots: Sequence[Watched],
@@ -58,6 +61,7 @@ def fit_shots(
     shared: Sequence[str] = (),
     start: Mapping[str, float] | None = None,
     noise: float = 1.0,
+    ends: Sequence[GlobalFit] = (),
 ) -> GlobalFit:
     """Fit all unknowns of one or several shots to all their sightings at once.
 
@@ -73,13 +77,16 @@ def fit_shots(
         Where to set out from, where not from the shots' own guesses.
     noise : float
         Factor on the variances of the sightings to set out with.
+    ends : sequence of GlobalFit
+        Fits of the same unknowns that set out from elsewhere; one of them is returned where this
+        comes to the same end.
 
     Raises
     ------
     InputError
         Where there is no shot or a name is unknown.
     """
-    return _Problem(shots, fixed or {}, shared, start or {}, noise).solve()
+    return _Problem(shots, fixed or {}, shared, start or {}, noise, ends).solve()
 
 
 @dataclass
@@ -91,6 +98,7 @@ class _Problem:
     shared: Sequence[str]
     start: Mapping[str, float]
     noise: float = 1.0
+    ends: Sequence[GlobalFit] = ()
     unknowns: dict[str, Unknown] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -116,11 +124,15 @@ class _Problem:
         self.sd = np.array([_or(unknown.prior, "stderr", np.inf) for unknown in each])
         self.step = np.array([SPIN_STEP if n.endswith("omega") else STEP for n in self.names])
         self.sightings = sum(len(t.t) for shot in self.shots for t in shot.traces.values())
+        self.ended = [(fit, inverse(fit.cov)) for fit in self.ends if fit.settled]
 
     def solve(self) -> GlobalFit:
         guesses = [self.start.get(n, u.guess) for n, u in self.unknowns.items()]
         at = np.clip(np.array(guesses, float), self.low, self.high)
         at, settled = self._descend(at)
+        same = self._same_end(at)
+        if same is not None:
+            return same
         residuals = [self._residuals(rank, at) for rank in range(len(self.shots))]
         noise = self._noise(at, residuals)
         for _ in range(FINER):
@@ -188,7 +200,7 @@ class _Problem:
                 foreseen = float(step @ (2 * right - normal @ step))
                 damping = max(damping / 10, 1e-9) if cost - new_cost > GOOD * foreseen else damping
                 at, residuals, cost = new, there, new_cost
-                if small:
+                if small or self._same_end(at) is not None:
                     return at, True
                 slopes = self._slopes(at, residuals)
             elif small or damping > 1e8:
@@ -196,6 +208,14 @@ class _Problem:
             else:
                 damping = max(damping * 10, 1e-3)
         return at, False
+
+    def _same_end(self, at: Floats) -> GlobalFit | None:
+        """Return the fit that has ended so near that this one goes there too."""
+        for fit, normal in self.ended:
+            off = at - fit.values
+            if off @ normal @ off < SAME**2:
+                return fit
+        return None
 
     def _values(self, rank: int, at: Floats) -> dict[str, float]:
         shot = self.shots[rank]

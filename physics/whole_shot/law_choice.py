@@ -164,7 +164,10 @@ def _best(
     *others: GlobalFit,
 ) -> GlobalFit:
     """Fit a shot from where each of the ways sets out, and return the best, or another's."""
-    return _best_of([*others, *(fit_shots([shot], fixed=held, start=way) for way in ways)])
+    fits = [*others]
+    for way in ways:
+        fits.append(fit_shots([shot], fixed=held, start=way, ends=fits))
+    return _best_of(fits)
 
 
 def _best_of(fits: Sequence[GlobalFit]) -> GlobalFit:

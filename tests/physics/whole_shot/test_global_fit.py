@@ -1,5 +1,8 @@
 from __future__ import annotations
 
+from dataclasses import replace
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -13,6 +16,7 @@ from tests.physics.watch import RADIUS, hit_motion, watch
 from tests.synthetic.physics import Ice, Impact, Start, simulate
 
 
+@cache
 def whole(speed: float = 1.5, seed: int = 1, sd: float = 0.005) -> GlobalFit:
     motion = hit_motion(speed, 0.08, others=(Start(0.0, 0.8),))
     seen = watch(motion, np.random.default_rng(seed), sd=sd)
@@ -46,6 +50,18 @@ def test_held_unknowns_stay_and_shared_ones_are_one() -> None:
     assert float(fit["restitution"].stderr or 1) < float(alone["restitution"].stderr or 0)
     with pytest.raises(InputError, match="no unknown nonsense"):
         fit_shots(shots, fixed={"nonsense": 1.0})
+
+
+def test_a_fit_that_comes_to_where_another_ended_is_that_one() -> None:
+    shots, fixed = [whole().shots[0]], {"friction": 0.0109, **STRAIGHT}
+    first = fit_shots(shots, fixed=fixed)
+    aside = {"restitution": 0.7, "stone_friction": 0.1}
+    assert fit_shots(shots, fixed=fixed, start=aside, ends=[first]) is first
+    elsewhere = first.values + 0.2 * np.sqrt(np.diag(first.cov))
+    for other in (replace(first, values=elsewhere), replace(first, settled=False)):
+        again = fit_shots(shots, fixed=fixed, start=aside, ends=[other])
+        assert again is not other
+        assert np.abs((again.values - first.values) / np.sqrt(np.diag(first.cov))).max() < 0.1
 
 
 def test_friction_that_depends_on_the_speed_is_found() -> None:

@@ -91,7 +91,7 @@ def test_the_first_fit_sets_out_from_even_ice_and_lost_spins_from_either_sense(
     assert watched is not None
     calls: list[tuple[dict[str, float], dict[str, float]]] = []
 
-    def fit(shots: Any, *, fixed: Any, start: Any = None) -> GlobalFit:
+    def fit(shots: Any, *, fixed: Any, start: Any = None, ends: Any = ()) -> GlobalFit:
         calls.append((dict(fixed), dict(start or {})))
         found = fit_shots(shots, fixed=fixed, start=start)
         if abs(calls[-1][1].get("A.omega", 0.0)) == THROWN:
@@ -288,9 +288,9 @@ def test_the_last_fits_set_out_from_stones_that_do_not_rub_and_that_stick(
     assert watched is not None
     starts: list[dict[str, float]] = []
 
-    def fit(shots: Any, *, fixed: Any, start: Any = None) -> GlobalFit:
+    def fit(shots: Any, *, fixed: Any, start: Any = None, ends: Any = ()) -> GlobalFit:
         starts.append(dict(start or {}))
-        return fit_shots(shots, fixed=fixed, start=start)
+        return fit_shots(shots, fixed=fixed, start=start, ends=ends)
 
     monkeypatch.setattr("physics.whole_shot.law_choice.fit_shots", fit)
     _hit_by_hit(watched.shots[0], {"v_c": V_C})
