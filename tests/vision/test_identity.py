@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from tests.synthetic.physics import Impact, Motion, Start, simulate
 from tests.vision.association.test_follow import R, sighting
 from vision.association.follow import Track, follow
+from vision.association.rejoin import rejoined
 
 Hidden = Callable[[int, float, np.ndarray], bool]
 
@@ -37,7 +38,7 @@ def followed(
                 of_stone[x, y] = stone
         rng.shuffle(seen)
         frames.append((index, t, seen))
-    tracks = follow(frames, R)
+    tracks = rejoined(follow(frames, R), R)
     return (
         tracks,
         [{of_stone[s.x, s.y] for s in track.sightings} for track in tracks],
@@ -88,6 +89,7 @@ def test_three_stones_hit_within_a_fifth_of_a_second(
 @settings(max_examples=15, deadline=None)
 @given(speed=st.floats(0.7, 2.0), since=st.floats(0.3, 0.8), aside=st.floats(0.4, 0.8))
 @example(speed=1.25, since=0.5, aside=0.40625)
+@example(speed=1.5, since=0.75, aside=0.400390625)
 def test_two_seconds_out_of_sight(speed: float, since: float, aside: float) -> None:
     starts = [Start(0.0, 3.0, 0.1, -speed), Start(aside, 1.0), Start(-aside, 0.0)]
     motion = simulate(starts, 4.0, step=1e-3)

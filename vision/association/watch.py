@@ -94,6 +94,7 @@ class Watch:
         self._before: Camera | None = None
         self._leads: list[Lead] = []
         self._since = self._most = MEMORY
+        self._began = False
         self._seen: dict[int, tuple[float, Kept[Sequence[Sighting]]]] = {}
 
     def look(self, frame: Frame, camera: Camera) -> None:
@@ -159,8 +160,7 @@ class Watch:
         return Follower(self.appearance, self.disc, self._search)
 
     def _catch_up(self) -> None:
-        new = not self._knows
-        if self._waiting and new:
+        if self._waiting and not self._knows:
             self._recent.clear()
             self._learn(self._waiting)
             if self._knows:
@@ -168,7 +168,8 @@ class Watch:
         for begin in range(0, len(self._waiting), BLOCK):
             self._see(self._waiting[begin : begin + BLOCK])
         self._waiting = []
-        if new and self._knows and self._recent:
+        if self._knows and self._recent and not self._began:
+            self._began = True
             self._search_first()
 
     def _learn(self, views: Iterable[StoneView]) -> None:

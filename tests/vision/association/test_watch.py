@@ -19,7 +19,14 @@ from vision.detection.appearance import Appearance
 from vision.detection.placing import placed_by
 from vision.detection.rays import Look
 from vision.detection.seek import Candidates
-from vision.detection.stones import FOLLOWING, SEARCH, Findings, Search, sought_in
+from vision.detection.stones import (
+    FOLLOWING,
+    SEARCH,
+    Findings,
+    Search,
+    plain_disc,
+    sought_in,
+)
 from vision.detection.strangers import LARGE, strangers
 from vision.film.clip import Frame, Image
 from vision.film.picture import Picture
@@ -162,13 +169,16 @@ def test_a_stone_that_convinces_in_some_pictures_only_is_learned_from_these() ->
     assert [len(sightings) for _, _, sightings in watch.finish(lasting(camera))] == [1] * 24
 
 
-def test_a_stone_seen_before_somebody_stands_over_it_is_seen_from_the_first_picture_on() -> None:
+@pytest.mark.parametrize("disc", [STONE, plain_disc(STONE.radius)])
+def test_a_stone_seen_before_somebody_stands_over_it_is_seen_from_the_first_picture_on(
+    disc: Stone,
+) -> None:
     clear = picture(AT_REST)
     camera = camera_of(CAMERA, scene_of(AT_REST))
     x, y = camera.project(np.array([AT_REST[0][:2]]), 0.12)[0].astype(int)
     covered = clear.copy()
     covered[y - 60 : y + 60, x - 60 : x + 60] = (60, 90, 60)
-    watch = Watch()
+    watch = Watch(disc)
     for index in range(50):
         watch.look(Frame(index, index / 25, clear if index < 6 else covered), camera)
     counts = [len(sightings) for _, _, sightings in watch.finish(lasting(camera))]
