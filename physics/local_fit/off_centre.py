@@ -90,32 +90,23 @@ def centred(
     return out
 
 
-def turns(trace: Trace) -> Floats:
-    """Rotations from a stone's frame to the ice, (n, 2, 2), by its angles where told."""
-    told = np.isfinite(trace.theta)
-    theta = np.interp(trace.t, trace.t[told], trace.theta[told])
-    cos, sin = np.cos(theta), np.sin(theta)
-    return np.stack([np.stack([cos, -sin], axis=1), np.stack([sin, cos], axis=1)], axis=1)
-
-
 def _centred(trace: Trace, hits: Sequence[tuple[int, float]], radius: float) -> Trace:
-    rotations = turns(trace)
     pieces = _joined(cut(trace, hits, radius))
     over = trace
     for _ in range(1 + ROUNDS):
-        beside, normal = _beside(trace, rotations, _stretches(over, pieces, radius))
+        beside, normal = _beside(trace, _stretches(over, pieces, radius))
         size = float(np.hypot(*beside))
         if beside @ normal @ beside < SHOWN or size > MOST * trace.usual_sd_place:
             return trace
-        over = moved(trace, rotations, beside)
+        over = moved(trace, beside)
         pieces = cut(over, hits, radius)
     return over
 
 
-def moved(trace: Trace, rotations: Floats, beside: Floats) -> Trace:
+def moved(trace: Trace, beside: Floats) -> Trace:
     """Put sightings over the centre of a stone whose cap is so far beside it, m, in its frame."""
     sd = np.nan_to_num(trace.sd_theta)[:, None] * np.hypot(*beside)
-    return replace(trace, xy=trace.xy - rotations @ beside, sd=np.hypot(trace.sd, sd))
+    return replace(trace, xy=trace.xy - trace.rotations @ beside, sd=np.hypot(trace.sd, sd))
 
 
 def _told_throughout(trace: Trace) -> bool:
@@ -152,9 +143,7 @@ def _stretches(trace: Trace, pieces: Sequence[Piece], radius: float) -> list[NDA
     ]
 
 
-def _beside(
-    trace: Trace, rotations: Floats, stretches: Sequence[NDArray[np.int64]]
-) -> tuple[Floats, Floats]:
+def _beside(trace: Trace, stretches: Sequence[NDArray[np.int64]]) -> tuple[Floats, Floats]:
     """By how much the cap is beside the centre, in the stone's frame, m; its normal matrix."""
     normal = np.eye(2) / trace.usual_sd_place**2
     right = np.zeros(2)
@@ -172,7 +161,7 @@ def _beside(
         for _ in range(REWEIGHTED):
             size = (np.sqrt(weight) / sd)[:, None]
             basis = np.linalg.qr(np.concatenate([curve * size, held]))[0][: len(t)]
-            cap = rotations[samples] * size[:, :, None]
+            cap = trace.rotations[samples] * size[:, :, None]
             own = _without(basis, trace.xy[samples] * size)
             rows = _without(basis, cap)
             here = np.einsum("nai,naj->ij", cap, rows)

@@ -93,6 +93,14 @@ class Trace:
         """Usual standard deviation of the error that places share, m; 0 where unknown."""
         return float(np.median(self.sd_place)) if len(self.t) else 0.0
 
+    @cached_property
+    def rotations(self) -> Floats:
+        """Rotations from the stone's frame to the ice, (n, 2, 2), by its angles where told."""
+        told = np.isfinite(self.theta)
+        theta = np.interp(self.t, self.t[told], self.theta[told])
+        cos, sin = np.cos(theta), np.sin(theta)
+        return np.stack([np.stack([cos, -sin], axis=1), np.stack([sin, cos], axis=1)], axis=1)
+
     def gap(self, time: float) -> float:
         """Time between the sightings either side of a time, at least the usual step, s."""
         if len(self.t) < 2:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.local_fit.off_centre import moved, turns
+from physics.local_fit.off_centre import moved
 from physics.local_fit.traces import Trace
 from physics.statistics.residuals import huber_weights
 from physics.whole_shot.whole_fit import GlobalFit
@@ -45,11 +45,11 @@ def centred(
     size = _sd_aside(trace, share)
     if not size or not np.isfinite(trace.theta).any():
         return residuals, np.zeros(2)
-    rows = size * turns(trace) / trace.sd[:, :, None]
-    weighted = rows * huber_weights(residuals)[:, :, None] / noise
-    normal = np.eye(2) + np.einsum("nai,naj->ij", weighted, rows)
-    beside = np.linalg.solve(normal, np.einsum("nai,na->i", weighted, residuals))
-    return residuals - rows @ beside, beside
+    rows = (size * trace.rotations / trace.sd[:, :, None]).reshape(-1, 2)
+    weighted = rows * np.repeat(huber_weights(residuals), 2)[:, None] / noise
+    normal = np.eye(2) + weighted.T @ rows
+    beside = np.asarray(np.linalg.solve(normal, weighted.T @ residuals.ravel()), float)
+    return residuals - (rows @ beside).reshape(-1, 2), beside
 
 
 def centred_traces(known: Mapping[str, Trace], fit: GlobalFit) -> Mapping[str, Trace]:
@@ -74,7 +74,7 @@ def centred_traces(known: Mapping[str, Trace], fit: GlobalFit) -> Mapping[str, T
         if beside.any():
             whole = known[stone]
             beside *= _sd_aside(trace, shot.off_centre)
-            out[stone] = moved(whole, turns(whole), beside)
+            out[stone] = moved(whole, beside)
     return known if all(out[stone] is known[stone] for stone in known) else out
 
 
