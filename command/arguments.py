@@ -53,7 +53,7 @@ def out_folder(arguments: argparse.Namespace, first: str | Path) -> Path:
 
 
 def what_if_folder(arguments: argparse.Namespace, shot: Path) -> Path:
-    """Folder for the simulation of a shot; of a measured one by default RUN-whatif."""
+    """Folder for the simulation of a shot; of a measured one by default NAME-whatif."""
     if arguments.out is not None or not measured_shot(shot):
         return out_folder(arguments, shot)
     return check_folder(f"{shot.resolve().parent.name.removesuffix('-curlshot')}-whatif")

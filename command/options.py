@@ -32,10 +32,10 @@ def mass_option(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def clip_options(parser: argparse.ArgumentParser) -> None:
-    """Add what may be said of a clip."""
+def clip_options(parser: argparse.ArgumentParser, rate: str = "rate of pictures, 1/s (25)") -> None:
+    """Add what may be said of a clip; `rate` says of what that is."""
     radius_option(parser)
-    parser.add_argument("--fps", type=values.positive, help="rate of pictures, 1/s (25)")
+    parser.add_argument("--fps", type=values.positive, help=rate)
     parser.add_argument(
         "--frames",
         type=values.frame_range,

@@ -89,7 +89,7 @@ def _run(commands: Any) -> None:
         "  curlshot run old/tracks.csv                      earlier tracks\n",
     )
     parser.add_argument("inputs", nargs="*", metavar="INPUT", help="clip, pictures or tables")
-    clip_options(parser)
+    clip_options(parser, "rate of pictures (25), or of a table without times, 1/s")
     mass_option(parser)
     table_options(parser)
     tab_option(parser)
@@ -206,7 +206,7 @@ def _simulate(commands: Any) -> None:
         "  curlshot simulate shot/results.json --restitution 0.9 --friction 0.012 --spin -1.5\n"
         "\n"
         "A measured shot (the folder of a run, or its results.json) starts from the states before\n"
-        "its first hit, and is written into RUN-whatif. Samples are drawn from the measured\n"
+        "its first hit, and is written into NAME-whatif. Samples are drawn from the measured\n"
         "uncertainties and from what players are off by. They give outcomes.csv (where each stone\n"
         "ends in each sample), whatif.json and spread.png, a plan view.\n"
         "\n"
@@ -227,7 +227,7 @@ def _simulate(commands: Any) -> None:
         "  vx = 0.0\n"
         "  vy = 2.4\n"
         "  omega = 1.5708             # rigid-body also needs omega_after\n",
-        usual="NAME-curlshot; of a measured shot RUN-whatif",
+        usual="NAME-curlshot; of a measured shot NAME-whatif",
     )
     parser.add_argument(
         "shot",

@@ -1,4 +1,4 @@
-"""A shot of one's own, simulated with three models of the hit.
+"""A shot of one's own, simulated with three kinds of hit.
 
 Run it as ``python examples/simulate.py``.
 """

@@ -83,7 +83,9 @@ def smoothed(
         Of `data.tracks.SIGHTING_COLUMNS` at least ``stone, t, x, y``; standard deviations are
         estimated where missing, frames without a number are counted.
     contacts : sequence of Contact
-        The hits; nothing on one side of a hit has a say on its other side.
+        The hits. The filter never runs across one. What both sides share is put right besides:
+        their spins, by how hits change them; caps beside centres; and where a stone was seen once
+        at most between two hits, its way is told by its motion outside them.
     radius : float
         Of the discs, m.
     masses : mapping, optional

@@ -203,7 +203,7 @@ def _simulated(results: Results) -> list[Table]:
             f"table_{_PAPER.get(model, 5 + k - len(_PAPER))}_{_plain(model)}",
             f"Simulated before and after each hit: {model}",
             f"From the {start}. — where the simulation has no such hit; errors are those of the"
-            " start, of e and of μ.",
+            " start and of the laws.",
             _STATES,
             tables.simulated_table(results.simulations[model], results.collisions),
         )

@@ -43,7 +43,8 @@ and curl do to it is not taken for the cap."""
 
 BENDS = np.array([60.0, 140.0, 252.0])
 """Such terms a1 P1, a2 P2, a3 P3 over a time T, integrated twice, bend a path by a1 T² P3 / 60,
-a2 T² P4 / 140 and a3 T² P5 / 252, and by what a parabola takes up."""
+a2 T² P4 / 140 and a3 T² P5 / 252, by what a parabola takes up, and by -a3 T² P3 / 90, which is less
+than a1's and left out."""
 
 MOST = 3.0
 """Farthest that a cap is beside its stone's centre, in `Trace.sd_place`."""

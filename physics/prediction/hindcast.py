@@ -242,7 +242,7 @@ def _models(
     """Build the three models, None with a note where one cannot run."""
     notes: dict[str, str] = {}
     if estimates.collisions and "stone_friction" in laws.assumed:
-        notes["frictional"] = laws.assumed["stone_friction"]
+        notes["frictional"] = _as_it_fits(estimates.whole) or laws.assumed["stone_friction"]
     e, rubbing = laws.restitution.value or 0.0, laws.stone_friction.value or 0.0
     out: dict[str, Impact | None] = {
         "point-mass": PointMass(e),
@@ -255,6 +255,16 @@ def _models(
         out["rigid-body"] = None
         notes["rigid-body"] = f"needs the spin after the hit of {', '.join(blind)}"
     return out, notes
+
+
+def _as_it_fits(fit: GlobalFit | None) -> str | None:
+    """Say with which friction between the stones a shot that does not tell it goes on."""
+    if fit is None:
+        return None
+    if "stone_friction" in fit.fixed:
+        return "friction between the stones not told: they stick, as in the fit of the whole shot"
+    rub = fit.state()["stone_friction"]
+    return f"friction between the stones not told: {rub:.2g}, as in the fit of the whole shot"
 
 
 def explained_until(tracks: pd.DataFrame, estimates: Estimates, start: float) -> dict[str, float]:

@@ -152,6 +152,10 @@ def test_stones_that_grip_each_other_are_simulated_so() -> None:
     assert frictional is not None
     assert point_mass is not None
     assert frictional < min(0.02, 0.5 * point_mass)
+    assert "as in the fit" in (scores["frictional"].note or "")
+    local = replace(estimates, whole=None)
+    tracks = smooth(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    _, scores, _ = simulate_measured(tracks, local, radius=RADIUS)
     assert "at least" in (scores["frictional"].note or "")
 
 
