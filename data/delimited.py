@@ -152,7 +152,7 @@ def read_text_table(
             return _without_header(path, title, delimiter, lines[k:])
         title = line
     raise InputError(
-        f"{path}: not a table of {sought}, and no rows of numbers"
+        f"{path}: not a table of {sought}, and no rows of numbers alone"
         f" (line {lines[0][0]}: {quoted(lines[0][1])})"
     )
 

@@ -13,6 +13,9 @@ from data.tracks import read_tracks
 from report.tables import rest_table, shot_stone, speed_table, takeout_table
 from report.units import FEET
 
+if not sys.argv[1:]:
+    print("usage: python examples/coach.py RUN", file=sys.stderr)
+    sys.exit(2)
 run = Path(sys.argv[1])
 results, tracks = read_results(run / "results.json"), read_tracks(run / "tracks.csv")
 hits = results.collisions

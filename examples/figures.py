@@ -18,6 +18,9 @@ from data.tracks import read_tracks
 from report.figures import comparison_figure, hit_figure, motion_figure, plan_figure
 from report.tables import measured_table
 
+if not sys.argv[1:]:
+    print("usage: python examples/figures.py RUN [OUT]", file=sys.stderr)
+    sys.exit(2)
 run = Path(sys.argv[1])
 out = Path(sys.argv[2]) if sys.argv[2:] else run
 

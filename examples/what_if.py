@@ -13,6 +13,9 @@ from data.tracks import read_tracks
 from physics.prediction.start import measured_start
 from physics.prediction.what_if import Amount, Changes, changed, odds, sample
 
+if not sys.argv[1:]:
+    print("usage: python examples/what_if.py RUN", file=sys.stderr)
+    sys.exit(2)
 run = Path(sys.argv[1])
 start = measured_start(read_tracks(run / "tracks.csv"), read_results(run / "results.json"))
 

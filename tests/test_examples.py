@@ -33,6 +33,13 @@ def test_every_example_is_run() -> None:
     assert names == {*OF_A_RUN, "from_a_clip", "simulate"}
 
 
+@pytest.mark.parametrize("name", ["coach", "figures", "what_if"])
+def test_an_example_of_a_run_asks_for_one(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        said(name, capsys)
+    assert capsys.readouterr().err.startswith(f"usage: python examples/{name}.py RUN")
+
+
 def test_from_a_clip(capsys: pytest.CaptureFixture[str]) -> None:
     text = said("from_a_clip", capsys)
     assert "A hit B at 1.12" in text
