@@ -72,7 +72,7 @@ def _forest(axes: Axes, shots: pd.DataFrame, name: str, mean: Pooled, label: str
     rows = np.arange(len(shots))[::-1]
     axes.errorbar(
         shots[name], rows, xerr=shots[f"stderr_{name}"],
-        fmt="o", ms=4, color=BLUE, capsize=2, label="one shot",
+        fmt="o", ms=4, color=BLUE, capsize=2, label="one shot ± its standard error",
     )  # fmt: skip
     if mean.value is not None and mean.stderr is not None:
         axes.axvline(mean.value, color=BLACK, lw=1, label="mean of all shots")
@@ -99,7 +99,7 @@ def _against_speed(axes: Axes, hits: pd.DataFrame, mean: Pooled) -> None:
         axes.axhline(mean.value, color=BLACK, lw=1)
     axes.set_xlabel("closing speed along the normal (m/s)")
     axes.set_ylabel("restitution e of the hit")
-    axes.set_title("Each hit")
+    axes.set_title("Each hit ± its standard error")
 
 
 def _short(name: str) -> str:
