@@ -130,8 +130,7 @@ class _Problem:
         guesses = [self.start.get(n, u.guess) for n, u in self.unknowns.items()]
         at = np.clip(np.array(guesses, float), self.low, self.high)
         at, settled = self._descend(at)
-        same = self._same_end(at)
-        if same is not None:
+        if (same := self._same_end(at)) is not None:
             return same
         residuals = [self._residuals(rank, at) for rank in range(len(self.shots))]
         noise = self._noise(at, residuals)
@@ -139,6 +138,8 @@ class _Problem:
             self.noise = noise
             if noise > 1.0:  # what is known beforehand has the more of a say
                 at, settled = self._descend(at)
+                if (same := self._same_end(at)) is not None:
+                    return same
                 residuals = [self._residuals(rank, at) for rank in range(len(self.shots))]
                 noise = self._noise(at, residuals)
             if noise > self.noise / LESS:

@@ -94,7 +94,7 @@ class Watch:
         self._before: Camera | None = None
         self._leads: list[Lead] = []
         self._since = self._most = MEMORY
-        self._began = False
+        self._searched_first = False
         self._seen: dict[int, tuple[float, Kept[Sequence[Sighting]]]] = {}
 
     def look(self, frame: Frame, camera: Camera) -> None:
@@ -168,8 +168,8 @@ class Watch:
         for begin in range(0, len(self._waiting), BLOCK):
             self._see(self._waiting[begin : begin + BLOCK])
         self._waiting = []
-        if self._knows and self._recent and not self._began:
-            self._began = True
+        if self._knows and self._recent and not self._searched_first:
+            self._searched_first = True
             self._search_first()
 
     def _learn(self, views: Iterable[StoneView]) -> None:
