@@ -107,6 +107,8 @@ def _tidy(table: TextTable, names: Sequence[str], fps: float | None) -> TrackFil
         raise InputError(f"{table.path}: line {table.line_numbers[row]}: no name in column stone")
     if tracks.empty:
         raise InputError(f"{table.path}: no row with a place (x and y)")
+    for name in sorted({*stones} - {*tracks["stone"], ""}):
+        warnings.append(f"{table.path}: {name} has no place in any row; left out")
     # Tables that this program wrote are in radians, however fast a disc turns.
     unit = None if wanted.keys().isdisjoint(("seen", "sd_theta", *SEEN_AS)) else "rad"
     return TrackFile(tracks, decimals, angle_unit=unit, continuous=True, warnings=warnings)

@@ -109,8 +109,8 @@ def read_table(
 
     Notes
     -----
-    Layouts: Tracker's; ``stone, t, x, y`` with one row per stone and time, in any order;
-    wide tables with pairs such as ``x1, y1`` or ``red_x, red_y``; ``t x y`` or
+    Layouts: Tracker's; ``stone, t, x, y`` with one row per stone and time, columns in any
+    order; wide tables with pairs such as ``x1, y1`` or ``red_x, red_y``; ``t x y`` or
     ``t x1 y1 x2 y2`` without header. Tracker prints times to the millisecond; where
     equal steps explain the printed times, the equal steps are used.
     """

@@ -198,11 +198,12 @@ def _disorder(stones: NDArray[np.object_], t: Array) -> list[str]:
         if len(back):
             faults.append(
                 f"stone {stone}: time goes back after t = {own[back[0]]:g} s"
-                " (two stones of one name?)"
+                " (rows out of order, or two stones of one name?)"
             )
         elif len(still):
             faults.append(
-                f"stone {stone}: two rows at t = {own[still[0]]:g} s (two stones of one name?)"
+                f"stone {stone}: two rows at t = {own[still[0]]:g} s"
+                " (a row twice, or two stones of one name?)"
             )
     return faults
 

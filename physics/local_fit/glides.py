@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -54,6 +54,11 @@ CLEAR = 2.0
 WORST = 0.02
 """Standard error of a friction beyond which a glide is said to tell nothing."""
 
+PUSHED = 0.2
+"""Acceleration ahead or to a side, m/s², that neither ice nor a table that is not quite level gives
+(one degree gives 0.17): what has it is no glide, but pushed, carried or led.
+"""
+
 
 def free(radius: float) -> Deceleration:
     """Weak prior of the decelerations of discs, for when they are to be measured."""
@@ -62,9 +67,11 @@ def free(radius: float) -> Deceleration:
 
 
 def measure_glides(
-    fit: ShotFit, known: Mapping[str, Trace], radius: float
+    fit: ShotFit, known: Mapping[str, Trace], radius: float, led: Collection[str] = ()
 ) -> tuple[tuple[Glide, ...], Friction, Deceleration]:
     """Measure the friction of each glide of a fit that assumed `free` decelerations.
+
+    Stones that are `led` have none.
 
     Returns
     -------
@@ -76,7 +83,7 @@ def measure_glides(
         What to assume of a glide that is too short to tell.
     """
     law = free(radius)
-    each = list(_long_glides(fit, known, radius))
+    each = list(_long_glides(fit, known, radius, led))
     slowed = _slowed(fit, each)
     shape = _shape(fit, each, slowed, law)
     pooled = random_effects(*slowed.at_1_m_per_s(shape.share, shape.sd))
@@ -114,11 +121,11 @@ class _MeasuredGlide:
 
 
 def _long_glides(
-    fit: ShotFit, known: Mapping[str, Trace], radius: float
+    fit: ShotFit, known: Mapping[str, Trace], radius: float, led: Collection[str]
 ) -> Iterator[_MeasuredGlide]:
     """Measure each glide that is long enough."""
     for i, piece in enumerate(fit.pieces):
-        if piece.rest or len(piece.samples) < 5:
+        if piece.rest or len(piece.samples) < 5 or piece.stone in led:
             continue
         t = known[piece.stone].t[piece.samples]
         start, end = float(t[0]), min(float(t[-1]), fit.stop(i))
@@ -135,7 +142,8 @@ def _long_glides(
         bent, bent_aside = (float(np.hypot(*(bend * way))) for way in (along, to_left))
         sd = float(np.hypot(np.sqrt(by_fit @ fit.cov @ by_fit), bent)) / GRAVITY
         sd_aside = float(np.hypot(np.sqrt(aside_by_fit @ fit.cov @ aside_by_fit), bent_aside))
-        if sd > WORST:
+        pushed = max(-slowing - 3 * GRAVITY * sd, abs(aside) - 3 * sd_aside) > PUSHED
+        if pushed or sd > WORST:
             continue
         glide = Glide(
             piece.stone, start, end, slowing / GRAVITY, sd, aside / speed, sd_aside / speed, speed

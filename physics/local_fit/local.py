@@ -16,7 +16,7 @@ from data.results import Collision, Estimate, Friction, Glide
 from data.sheet import GRAVITY
 from physics.local_fit.contacts import Contact, cut_all
 from physics.local_fit.fit import fit_shot
-from physics.local_fit.glides import free, measure_glides
+from physics.local_fit.glides import WORST, free, measure_glides
 from physics.local_fit.hits import measure_hits, pooled
 from physics.local_fit.off_centre import centred
 from physics.local_fit.segments import Piece
@@ -97,7 +97,7 @@ def estimate_from_traces(
     pieces = [piece for piece in pieces if not (piece.rest and _alone(piece))]
     untold = untold_hits(known, meetings, radius)
     if not pieces:
-        return Local(warnings=("no stone moves: neither restitution nor friction", *untold))
+        return Local(warnings=("no stone moves: neither restitution nor friction", *untold.said))
 
     def fit(pieces: list[Piece], slowing: Deceleration, momentum: bool = True) -> ShotFit:
         return fit_shot(
@@ -105,16 +105,16 @@ def estimate_from_traces(
             masses=masses, still=still, deceleration=slowing, momentum=momentum,
         )  # fmt: skip
 
-    glides, friction, prior = measure_glides(fit(pieces, free(radius)), known, radius)
+    glides, friction, prior = measure_glides(fit(pieces, free(radius)), known, radius, untold.led)
     friction, doubt = _checked(friction, glides, prior)
     if not meetings:
-        unseen = ("restitution: no hit seen", *untold)
+        unseen = ("restitution: no hit seen", *untold.said)
         return Local(Estimate(), friction, (), glides, doubt, unseen, fit(pieces, prior), known)
     joint = fit(pieces, prior)
     apart = fit(pieces, prior, momentum=False)
     collisions, restitution = measure_hits(joint, apart, known, radius, masses or {})
     warnings = [text for hit in collisions for text in _doubts(hit)]
-    warnings += [*untold, *_distances(joint, radius)]
+    warnings += [*untold.said, *_distances(joint, radius)]
     return Local(restitution, friction, collisions, glides, doubt, tuple(warnings), joint, known)
 
 
@@ -130,11 +130,14 @@ def _checked(
             f"friction: the stones gain speed (μ = {value:.3f} ± {stderr:.3f}), so these are no"
             " free glides on level ice; not reported"
         )
+    each = [glide.friction for glide in glides if glide.friction is not None]
+    if stderr > WORST:
+        differ = f", for glides differ ({min(each):.3f} to {max(each):.3f})" * (len(each) > 1)
+        return Friction(), f"friction: {value:.3f} ± {stderr:.3f} tells nothing{differ}; left out"
     if value < 0:
         return friction, (
             f"friction: {value:.4f} ± {stderr:.4f}: too little is seen to tell it from none"
         )
-    each = [glide.friction for glide in glides if glide.friction is not None]
     uneven = max(UNEVEN, 0.3 * prior.mean)
     if prior.along > uneven and GRAVITY * (max(each) - min(each)) > uneven:
         return friction, (

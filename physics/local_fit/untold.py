@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +50,9 @@ FEW = 7
 STEPS = 40
 """Times in a span at which it is looked how near two stones are."""
 
+LED = 4
+"""Changes of a stone's motion that nothing seen explains; one with more does not glide freely."""
+
 
 @dataclass(frozen=True)
 class _Change:
@@ -72,10 +76,23 @@ class _Change:
         return f"at {self.end:.2f} s"
 
 
-def untold_hits(
-    known: Mapping[str, Trace], told: Sequence[Meeting], radius: float
-) -> tuple[str, ...]:
-    """Say where stones were hit, or may have been, and no hit is told.
+class Untold(NamedTuple):
+    """What hits do not explain.
+
+    Attributes
+    ----------
+    said : tuple of str
+        Where stones were hit, or may have been, and no hit is told.
+    led : frozenset of str
+        Stones whose motion changes so often that they do not glide freely.
+    """
+
+    said: tuple[str, ...]
+    led: frozenset[str]
+
+
+def untold_hits(known: Mapping[str, Trace], told: Sequence[Meeting], radius: float) -> Untold:
+    """Find where stones were hit, or may have been, and no hit is told.
 
     Parameters
     ----------
@@ -116,7 +133,8 @@ def untold_hits(
     ):
         out.setdefault(pair, (time, text))
     lone = [(changes[0].end, _said_alone(name, changes)) for name, changes in alone.items()]
-    return tuple(text for _, text in sorted([*lone, *out.values()]))
+    led = frozenset(name for name, changes in alone.items() if len(changes) > LED)
+    return Untold(tuple(text for _, text in sorted([*lone, *out.values()])), led)
 
 
 def _said(change: _Change, other: str, seen: bool) -> str:
@@ -150,6 +168,11 @@ def _unfit(first: str, second: str, when: str, apart: float, radius: float) -> s
 def _said_alone(name: str, changes: Sequence[_Change]) -> str:
     """Say where the motion of one stone changes, and nothing is seen that hit it."""
     when = [change.when for change in changes]
+    if len(when) > LED:
+        return (
+            f"the motion of {name} changes {len(when)} times between {changes[0].start:.2f} and"
+            f" {changes[-1].end:.2f} s and no stone is seen that hit it: it does not glide freely"
+        )
     times = " and ".join(filter(None, (", ".join(when[:-1]), when[-1])))
     if all(change.hidden for change in changes):
         what = "neither that hit nor its e" if len(when) == 1 else "none of these hits"

@@ -297,6 +297,13 @@ def test_missing_file_folder_and_bad_options(tmp_path: Path) -> None:
             read(tmp_path, text, **options)
 
 
+def test_a_stone_without_any_place_is_said_to_be_left_out(tmp_path: Path) -> None:
+    text = "stone,t,x,y\n" + "".join(f"A,{k / 10},0,{k / 10}\nB,{k / 10},,1\n" for k in range(9))
+    found = read(tmp_path, text)
+    assert {*found.sightings["stone"]} == {"A"}
+    assert any("B has no place in any row; left out" in text for text in found.warnings)
+
+
 def test_what_does_not_move_is_warned_about(tmp_path: Path) -> None:
     found = read(tmp_path, "t,x,y\n0.0,1,1\n0.1,1.0002,1\n")
     assert "within 0.2 mm" in found.warnings[0]

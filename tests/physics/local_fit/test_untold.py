@@ -219,6 +219,14 @@ def test_each_change_of_a_stone_s_motion_is_said() -> None:
     assert "the motion of A changes at 1.0" in text and " and at 3.0" in text
 
 
+def test_many_changes_of_a_motion_are_counted() -> None:
+    t = np.arange(0.0, 8.0, 1 / FPS)
+    zigzag = np.column_stack([0.3 * np.abs((t + 0.5) % 2 - 1), -0.5 * t])
+    (text,) = alone(zigzag, t)
+    assert "the motion of A changes 8 times between 0.4" in text
+    assert "does not glide freely" in text
+
+
 def test_stone_that_goes_on_under_another_name_hits_nothing() -> None:
     t = np.arange(0.0, 5.0, 1 / FPS)
     way = glide(np.zeros(2), np.array([0.0, -1.5]), t)
