@@ -18,7 +18,7 @@ from vision.detection.appearance import Appearance
 from vision.detection.measure import Measures, measure_discs
 from vision.detection.patch import EFFORT, is_plain
 from vision.detection.placing import placed_by, sightings
-from vision.detection.rays import Look
+from vision.detection.rays import Look, Rays
 from vision.detection.samples import CLEARLY, well_within
 from vision.detection.seek import Bounds, Candidates, seek
 from vision.detection.sighting import Refusal, Sighting
@@ -29,6 +29,17 @@ Array = NDArray[np.float64]
 
 NEAREST = 1.6
 """Nearer to each other than so many radii no two discs are seen: two, if places did not err."""
+
+ALIKE = 12.0
+"""Difference of colours, L*a*b* units, below which ground is seen within a rim: it is a ring, drawn
+or projected. What of its colour a clip spreads as it is coded makes 7 in the mean of one of 15 px,
+and less than this on all but a fifth of the rays."""
+
+WITHIN, BEYOND = 0.6, 1.15
+"""Radii up to which, and from which on, samples are not of a rim, as shares of a disc's."""
+
+UNLIKE = 0.25
+"""Share of the rays on which a disc is unlike what is around it: paint may be like it elsewhere."""
 
 
 @dataclass(frozen=True)
@@ -193,18 +204,32 @@ def judge(seen: Measures, disc: Stone, search: Search) -> list[str]:
     least = search.least_rim if plain else search.least_evidence
     size = disc.radius if plain else disc.cap_radius
     faults = np.full(len(seen.ok), "", dtype=object)
-    beside = np.zeros(len(seen.ok), bool)
-    if not plain:
+    beside = hollow = np.zeros(len(seen.ok), bool)
+    if plain:
+        hollow = _hollow(seen.rays, disc)
+    else:
         beside = np.abs(seen.centre[:, 0]) > search.x_max - 0.4 * disc.radius
     for wrong, why in (
         (beside, "beside the sheet"),
         (seen.evidence + seen.excused < least, "too little of a stone about it"),
         (seen.shift > search.most_shift * size, "its edges are those of something else"),
         (seen.visible < search.least_visible, "hardly any of it is seen"),
+        (hollow, "a ring with nothing in it"),
         (~seen.ok, "no cap with granite around it" if not plain else "no circle of that size"),
     ):
         faults[wrong] = why
     return [str(fault) for fault in faults]
+
+
+def _hollow(rays: Rays, disc: Stone) -> NDArray[np.bool_]:
+    """Whether there is the same within a rim as beyond it, shape (n,)."""
+    share = rays.radius / disc.radius
+    within, beyond = (
+        np.median(rays.lab[:, :, part].astype(float), axis=2)
+        for part in (share < WITHIN, share > BEYOND)
+    )
+    unlike = np.linalg.norm(within - beyond, axis=2) > ALIKE
+    return np.asarray(unlike.mean(1) < UNLIKE)
 
 
 def with_samples(found: Sighting, seen: Measures, index: int, disc: Stone) -> Sighting:

@@ -195,6 +195,9 @@ def test_discs_of_which_only_the_radius_is_known() -> None:
         centre = (round(x * fine), round(y * fine))
         cv2.circle(image, centre, 17 * fine, colour, -1, cv2.LINE_AA, 4)
     cv2.rectangle(image, (150, 20), (200, 54), (180, 180, 180), -1)
+    # A ring of their size is none of them, and one about a disc takes nothing from it.
+    for ring in ((60, 190), (115, 61)):
+        cv2.circle(image, ring, 16 if ring[0] == 60 else 27, (230, 230, 80), 3, cv2.LINE_AA)
     camera = stick_camera((0, 239, 100, 239, 0.5), (320, 240))
     found = search_picture(image, camera, None, plain_disc(0.085)).stones
     assert len(found) == 3
