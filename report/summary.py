@@ -33,9 +33,9 @@ def odds_text(odds: Mapping[str, Any], written: Sequence[Path]) -> list[str]:
             lines.append(f"  {name}  always leaves the sheet")
             continue
         x, y = (f"{item[k]:+7.2f}{_spread(item[f'sd_{k}'])} m" for k in "xy")
-        line = (
-            f"  {name}  x {x}   y {y}   moved {item['moved']:4.0%}   in play {item['in_play']:4.0%}"
-        )
+        line = f"  {name}  x {x}   y {y}   moved {item['moved']:4.0%}"
+        if item["in_play"] is not None:
+            line += f"   in play {item['in_play']:4.0%}"
         if item["in_house"] is not None:
             line += (
                 f"   in the house {item['in_house']:4.0%}   shot stone {item['shot_stone']:4.0%}"

@@ -69,7 +69,8 @@ class Odds:
     """Where one stone comes to rest: mean and spread (m), and how often (0..1).
 
     Mean and spread are those of the samples in which it stays ``in_play``; None if it never does,
-    the spread also if it does once. Discs that are no curling stones have no house to be in.
+    the spread also if it does once. Without a sheet there is none to stay on, and discs that are no
+    curling stones have no house to be in.
     """
 
     x: float | None
@@ -77,7 +78,7 @@ class Odds:
     sd_x: float | None
     sd_y: float | None
     moved: float
-    in_play: float
+    in_play: float | None
     in_house: float | None
     shot_stone: float | None
 
@@ -220,7 +221,7 @@ def odds(outcomes: pd.DataFrame, start: Start) -> dict[str, Odds]:
         out[stone.name] = Odds(
             **_spread(x[in_play[:, k], k], y[in_play[:, k], k]),
             moved=float(moved.mean()),
-            in_play=float(in_play[:, k].mean()),
+            in_play=None if start.shot.bounds is None else float(in_play[:, k].mean()),
             in_house=float(inside[:, k].mean()) if house else None,
             shot_stone=float((inside[:, k] & (nearest == k)).mean()) if house else None,
         )

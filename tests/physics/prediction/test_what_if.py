@@ -149,6 +149,8 @@ def test_odds_count() -> None:
     assert [told[name].shot_stone for name in "ABC"] == [0.0, 0.5, 0.5]
     assert [told[name].moved for name in "ABC"] == [1.0, 1.0, 0.0]
     assert (told["A"].x, told["A"].sd_x) == (2.5, 2.5)
+    nowhere = replace(start, shot=replace(start.shot, bounds=None))
+    assert {item.in_play for item in odds(table, nowhere).values()} == {None}
     table.loc[table["stone"] == "B", "in_play"] = 0
     told = odds(table, start)
     assert (told["B"].x, told["B"].sd_y, told["B"].in_play) == (None, None, 0.0)
