@@ -44,7 +44,8 @@ def parts(
     value, stderr : float or None
         None and NaN stand for "not known".
     most : int, optional
-        Decimals at most; what is nothing at so many, error and all, is written as 0.
+        Decimals at most, or two more where the error would be 0 without them. What is nothing at so
+        many, error and all, is written as 0.
 
     Returns
     -------
@@ -58,7 +59,8 @@ def parts(
         return significant(value) if most is None or value == 0 else fixed(value, most), None
     decimals = decimals_of(stderr)
     if most is not None:
-        decimals = min(decimals, most)
+        shown = decimals - 1  # with them the error has one digit
+        decimals = min(decimals, max(most, shown) if shown <= most + 2 else most)
         if max(abs(value), stderr) < 2 * 10**-most:
             return "0", None
     return fixed(value, decimals), fixed(stderr, decimals)
