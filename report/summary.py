@@ -90,13 +90,17 @@ def simulation_text(simulation: Simulation, path: Path) -> str:
 
 def season_text(shots: pd.DataFrame, pooled: Mapping[str, Pooled]) -> list[str]:
     """One line per shot, and what all say together."""
-    width = max((len(name) for name in shots["shot"]), default=0)
-    lines = [
-        f"{shot['shot']:<{width}s}   {count(int(shot['hits']), 'hit')}"
-        f"   e = {plus_minus(shot['restitution'], shot['stderr_restitution'])}"
-        f"   μ = {plus_minus(shot['friction'], shot['stderr_friction'])}"
+    cells = [
+        (
+            shot["shot"],
+            count(int(shot["hits"]), "hit"),
+            f"e = {plus_minus(shot['restitution'], shot['stderr_restitution'])}",
+            f"μ = {plus_minus(shot['friction'], shot['stderr_friction'])}",
+        )
         for shot in shots.to_dict("records")
     ]
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    lines = ["   ".join(map(str.ljust, row, widths)).rstrip() for row in cells]
     for name, sign in (("restitution", "e"), ("friction", "μ")):
         mean = pooled[name]
         text = f"{name:<11s} {sign} = {plus_minus(mean.value, mean.stderr)}"
