@@ -59,6 +59,7 @@ _HITS = (
     Column("energy lost", "energy_lost", "%", decimals=0, factor=100),
     Column("stone on stone friction", "stone_friction", stderr="stderr_stone_friction"),
     Column("note", "note", kind="note"),
+    Column("note on that friction", "note_stone_friction", kind="note"),
 )
 _GLIDES = (
     Column("stone", "stone", kind="word"),

@@ -87,6 +87,7 @@ def hit_table(collisions: Sequence[Collision]) -> pd.DataFrame:
                 "stone_friction": c.stone_friction,
                 "stderr_stone_friction": c.stderr_stone_friction,
                 "note": c.note,
+                "note_stone_friction": c.note_stone_friction,
             }
             for rank, c in enumerate(collisions, 1)
         ]

@@ -50,3 +50,10 @@ def test_without_a_house_there_is_nothing_for_coaches(shot):
 def test_empty_notes_take_no_room(made):
     assert "note" not in [column.title for column in made["coach_hits"].head]
     assert "note" in [column.title for column in made["hits"].head]
+
+
+def test_why_a_hit_tells_no_friction_between_stones(shot):
+    hits = tuple(replace(hit, note_stone_friction="no spin") for hit in shot.results.collisions)
+    made = {t.name: t for t in page_tables(replace(shot.results, collisions=hits), shot.tracks)}
+    column = next(c for c in made["hits"].head if c.title == "note on that friction")
+    assert column.parts(made["hits"].records[0])[0] == "no spin"
