@@ -1,1 +1,9 @@
-"""How stones are turned: the pictures of their caps against each other."""
+"""How stones are turned: the pictures of their caps against each other.
+
+`angles` gives those of a stone in a clip of any length, part by part. Of one part `handle` turns
+each picture onto the clip's own mean picture of that cap: about, by circular cross-correlation
+(`facing`, `half_turns`), and then by registration (`align`). Before, `cover` leaves out rings that
+something lies before and `shade` and `glints` take out light that does not turn; after, `pitch`
+takes out the parallax of a handle that rises. At which height handles are seen all stones tell
+(`common_height`).
+"""
