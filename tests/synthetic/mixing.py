@@ -5,6 +5,7 @@ Light is nearly a power of 2.2 of its code (ITU-R BT.709); power 1 is codes. Bot
 
 from __future__ import annotations
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,7 +15,9 @@ Field = NDArray[np.float32]
 def lit(codes: NDArray[np.uint8], power: float) -> Field:
     """Give what is mixed of a picture or of colours."""
     table = 255 * (np.arange(256) / 255) ** power
-    return np.asarray(table.astype(np.float32)[codes])
+    if codes.ndim < 3:
+        return np.asarray(table.astype(np.float32)[codes])
+    return np.asarray(cv2.LUT(codes, table.astype(np.float32)), np.float32)
 
 
 def coded(mixed: Field, power: float) -> Field:

@@ -125,9 +125,10 @@ def _integrate(studio: Studio, camera: CameraPath, t: float, shutter: float) -> 
                 cv2.resize(picture, camera.size, interpolation=cv2.INTER_AREA), np.uint8
             )
         mixed = lit(picture, studio.scene.light.power)
-        total = mixed if total is None else total + mixed
+        total = mixed if total is None else cv2.add(total, mixed, dst=total)
     assert total is not None
-    return np.asarray(total / np.float32(steps), np.float32)
+    total /= np.float32(steps)
+    return total
 
 
 def _enlarged(view: View, factor: int) -> View:
