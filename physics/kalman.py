@@ -135,9 +135,10 @@ def _fit_pieces(
     by_hits, _ = cut_all(known, contacts, radius)
     pieces = [replace(piece, opens=None, closes=None) for piece in by_hits]
     loose = fit_shot(known, pieces, (), radius, deceleration=free(radius))
-    _, friction, prior = measure_glides(loose, known, radius)
+    glides = measure_glides(loose, known, radius)
+    prior = glides.prior
     fit = fit_shot(known, pieces, (), radius, deceleration=prior)
-    a = prior.mean if friction.value is not None else 0.0
+    a = prior.mean if glides.told else 0.0
     return fit, Model(max(a, 0.0), prior.along, prior.share, prior.sd_share), noises(fit, known)
 
 

@@ -44,8 +44,8 @@ def parts(
     value, stderr : float or None
         None and NaN stand for "not known".
     most : int, optional
-        Decimals at most, or two more where the error would be 0 without them. What is nothing at so
-        many, error and all, is written as 0.
+        Decimals at most; up to two more for the first digit of an error that has none there. What
+        is nothing at so many, error and all, is written as 0.
 
     Returns
     -------

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ from physics.filter.slowing import (
     power_prior,
     speed_left,
 )
+from physics.local_fit.free_glides import are_free, is_pushed
 from physics.local_fit.shot_fit import Deceleration, ShotFit
 from physics.local_fit.traces import PLACE_REACH, Trace
 from physics.statistics.random_effects import random_effects, weighted_mean
@@ -54,11 +56,6 @@ CLEAR = 2.0
 WORST = 0.02
 """Standard error of a friction beyond which a glide is said to tell nothing."""
 
-PUSHED = 0.2
-"""Acceleration ahead or to a side, m/s², that neither ice nor a table that is not quite level gives
-(one degree gives 0.17): what has it is no glide, but pushed, carried or led.
-"""
-
 
 def free(radius: float) -> Deceleration:
     """Weak prior of the decelerations of discs, for when they are to be measured."""
@@ -66,28 +63,46 @@ def free(radius: float) -> Deceleration:
     return Deceleration(0.0, 3.0, 3.0, float(share.value or 0.0), float(share.stderr or 0.0))
 
 
-def measure_glides(
-    fit: ShotFit, known: Mapping[str, Trace], radius: float, led: Collection[str] = ()
-) -> tuple[tuple[Glide, ...], Friction, Deceleration]:
-    """Measure the friction of each glide of a fit that assumed `free` decelerations.
+@dataclass(frozen=True)
+class Glides:
+    """What the glides of a shot tell.
 
-    Stones that are `led` have none.
-
-    Returns
-    -------
-    glides : tuple of Glide
-        Each piece that is long enough to tell its friction.
+    Attributes
+    ----------
+    free : tuple of Glide
+        Each piece that is slowed by the ice alone, long enough to tell its friction.
     friction : Friction
         Pooled over them.
     prior : Deceleration
-        What to assume of a glide that is too short to tell.
+        What to assume of a piece that is too short to tell: as all others have it, free or not.
+    told : bool
+        Whether there is any of them; else `prior` is what is known of any disc.
+    pushed : tuple of Glide
+        Pieces in which a stone is pushed, carried or led.
+    """
+
+    free: tuple[Glide, ...]
+    friction: Friction
+    prior: Deceleration
+    told: bool
+    pushed: tuple[Glide, ...]
+
+
+def measure_glides(
+    fit: ShotFit,
+    known: Mapping[str, Trace],
+    radius: float,
+    changes: Mapping[str, Sequence[float]] = MappingProxyType({}),
+) -> Glides:
+    """Measure the friction of each glide of a fit that assumed `free` decelerations.
+
+    Stones whose motion changes too often without a hit, at the times `changes`, tell none.
     """
     law = free(radius)
-    each = list(_long_glides(fit, known, radius, led))
+    each = list(_long_glides(fit, known, radius))
     slowed = _slowed(fit, each)
     shape = _shape(fit, each, slowed, law)
     pooled = random_effects(*slowed.at_1_m_per_s(shape.share, shape.sd))
-    friction = _friction(each, slowed, law, shape)
     spread = pooled.spread if pooled.excess > CLEAR else 0.0
     usual = USUAL if curling_size(radius) else ANY
     mean, sd = float(usual.value or 0.0), float(usual.stderr or 0.0)
@@ -97,10 +112,20 @@ def measure_glides(
         mean, sd = mean + share * (measured - mean), sd * error / float(np.hypot(sd, error))
     spread = float(np.sqrt(max(spread, LEAST_SPREAD) ** 2 + sd**2))
     across = float(np.hypot(spread, TURNING)) if curling_size(radius) else spread
-    return (
-        tuple(one.glide for one in each),
-        friction,
+    pushed = {one.rank: one.glide for one in each if one.pushed}
+    of_ice = are_free(fit.pieces, pushed, changes)
+    alone = [one for one in each if of_ice[one.rank]]
+    if len(alone) < len(each):
+        slowed = _slowed(fit, alone)
+        own = _shape(fit, alone, slowed, law)
+    else:
+        own = shape
+    return Glides(
+        tuple(one.glide for one in alone),
+        _friction(alone, slowed, law, own),
         replace(law, mean=mean, along=spread, across=across, share=shape.share, sd_share=shape.sd),
+        bool(each),
+        tuple(pushed.values()),
     )
 
 
@@ -109,7 +134,7 @@ class _MeasuredGlide:
     """A glide with its deceleration half-way, m/s², at the speed there, m/s.
 
     ``by_fit`` are the derivatives of the deceleration by the unknowns of the fit, ``bent`` is its
-    error from the error that places share.
+    error from the error that places share, `pushed` whether it is no free glide.
     """
 
     glide: Glide
@@ -118,14 +143,15 @@ class _MeasuredGlide:
     value: float
     by_fit: Floats
     bent: float
+    pushed: bool
 
 
 def _long_glides(
-    fit: ShotFit, known: Mapping[str, Trace], radius: float, led: Collection[str]
+    fit: ShotFit, known: Mapping[str, Trace], radius: float
 ) -> Iterator[_MeasuredGlide]:
     """Measure each glide that is long enough."""
     for i, piece in enumerate(fit.pieces):
-        if piece.rest or len(piece.samples) < 5 or piece.stone in led:
+        if piece.rest or len(piece.samples) < 5:
             continue
         t = known[piece.stone].t[piece.samples]
         start, end = float(t[0]), min(float(t[-1]), fit.stop(i))
@@ -142,13 +168,13 @@ def _long_glides(
         bent, bent_aside = (float(np.hypot(*(bend * way))) for way in (along, to_left))
         sd = float(np.hypot(np.sqrt(by_fit @ fit.cov @ by_fit), bent)) / GRAVITY
         sd_aside = float(np.hypot(np.sqrt(aside_by_fit @ fit.cov @ aside_by_fit), bent_aside))
-        pushed = max(-slowing - 3 * GRAVITY * sd, abs(aside) - 3 * sd_aside) > PUSHED
-        if pushed or sd > WORST:
+        if sd > WORST:
             continue
         glide = Glide(
             piece.stone, start, end, slowing / GRAVITY, sd, aside / speed, sd_aside / speed, speed
         )
-        yield _MeasuredGlide(glide, i, speed, slowing, by_fit, bent)
+        pushed = is_pushed(slowing, aside, GRAVITY * sd, sd_aside)
+        yield _MeasuredGlide(glide, i, speed, slowing, by_fit, bent, pushed)
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ Nothing is differentiated twice. See `physics.local_fit.fit` for the model.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -16,7 +16,7 @@ from data.results import Collision, Estimate, Friction, Glide
 from data.sheet import GRAVITY
 from physics.local_fit.contacts import Contact, cut_all
 from physics.local_fit.fit import fit_shot
-from physics.local_fit.glides import WORST, free, measure_glides
+from physics.local_fit.glides import WORST, Glides, free, measure_glides
 from physics.local_fit.hits import measure_hits, pooled
 from physics.local_fit.off_centre import centred
 from physics.local_fit.segments import Piece
@@ -29,6 +29,9 @@ Floats = NDArray[np.float64]
 
 UNEVEN = 0.025
 """Difference of decelerations from glide to glide that is worth a word, m/s²: a quarter of them."""
+
+VAGUE = 0.3
+"""Share of a friction that its error may be, where it is larger than that of any ice."""
 
 
 @dataclass(frozen=True)
@@ -105,23 +108,23 @@ def estimate_from_traces(
             masses=masses, still=still, deceleration=slowing, momentum=momentum,
         )  # fmt: skip
 
-    glides, friction, prior = measure_glides(fit(pieces, free(radius)), known, radius, untold.led)
-    friction, doubt = _checked(friction, glides, prior)
+    told = measure_glides(fit(pieces, free(radius)), known, radius, untold.changes)
+    friction, doubt = _checked(told)
+    glides, prior = told.free, told.prior
     if not meetings:
-        unseen = ("restitution: no hit seen", *untold.said)
+        unseen = ("restitution: no hit seen", *untold.said, *_pushes(told))
         return Local(Estimate(), friction, (), glides, doubt, unseen, fit(pieces, prior), known)
     joint = fit(pieces, prior)
     apart = fit(pieces, prior, momentum=False)
     collisions, restitution = measure_hits(joint, apart, known, radius, masses or {})
     warnings = [text for hit in collisions for text in _doubts(hit)]
-    warnings += [*untold.said, *_distances(joint, radius)]
+    warnings += [*untold.said, *_pushes(told), *_distances(joint, radius)]
     return Local(restitution, friction, collisions, glides, doubt, tuple(warnings), joint, known)
 
 
-def _checked(
-    friction: Friction, glides: Sequence[Glide], prior: Deceleration
-) -> tuple[Friction, str | None]:
+def _checked(told: Glides) -> tuple[Friction, str | None]:
     """Return the friction of the glides if it can be one, and what is odd about it."""
+    friction, prior = told.friction, told.prior
     value, stderr = friction.value, friction.stderr
     if value is None or stderr is None:
         return friction, "friction: no stone glides freely for long enough to tell it"
@@ -130,10 +133,10 @@ def _checked(
             f"friction: the stones gain speed (μ = {value:.3f} ± {stderr:.3f}), so these are no"
             " free glides on level ice; not reported"
         )
-    each = [glide.friction for glide in glides if glide.friction is not None]
-    if stderr > WORST:
-        differ = f", for glides differ ({min(each):.3f} to {max(each):.3f})" * (len(each) > 1)
-        return Friction(), f"friction: {value:.3f} ± {stderr:.3f} tells nothing{differ}; left out"
+    each = [glide.friction for glide in told.free if glide.friction is not None]
+    if stderr > max(WORST, VAGUE * value):
+        of = f" (of glides from {min(each):.3f} to {max(each):.3f})" * (len(each) > 1)
+        return Friction(), f"friction: {value:.3f} ± {stderr:.3f}{of} tells nothing; not reported"
     if value < 0:
         return friction, (
             f"friction: {value:.4f} ± {stderr:.4f}: too little is seen to tell it from none"
@@ -145,6 +148,16 @@ def _checked(
             " it depends on speed or place, the value is a mean"
         )
     return friction, None
+
+
+def _pushes(told: Glides) -> Iterator[str]:
+    """Say which stones are pushed, and when."""
+    for stone in dict.fromkeys(glide.stone for glide in told.pushed):
+        own = [glide for glide in told.pushed if glide.stone == stone]
+        yield (
+            f"{stone} is pushed, carried or led, as it seems, between {own[0].t0:.2f} and"
+            f" {own[-1].t1:.2f} s: what is no free glide tells no friction"
+        )
 
 
 def _doubts(hit: Collision) -> list[str]:

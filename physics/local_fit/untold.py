@@ -50,8 +50,8 @@ FEW = 7
 STEPS = 40
 """Times in a span at which it is looked how near two stones are."""
 
-LED = 4
-"""Changes of a stone's motion that nothing seen explains; one with more does not glide freely."""
+LISTED = 4
+"""Changes of one stone's motion that are said one by one."""
 
 
 @dataclass(frozen=True)
@@ -83,12 +83,12 @@ class Untold(NamedTuple):
     ----------
     said : tuple of str
         Where stones were hit, or may have been, and no hit is told.
-    led : frozenset of str
-        Stones whose motion changes so often that they do not glide freely.
+    changes : mapping
+        Stone to the times, s, at which its motion changes, and nothing is seen that hit it.
     """
 
     said: tuple[str, ...]
-    led: frozenset[str]
+    changes: Mapping[str, Sequence[float]]
 
 
 def untold_hits(known: Mapping[str, Trace], told: Sequence[Meeting], radius: float) -> Untold:
@@ -133,8 +133,8 @@ def untold_hits(known: Mapping[str, Trace], told: Sequence[Meeting], radius: flo
     ):
         out.setdefault(pair, (time, text))
     lone = [(changes[0].end, _said_alone(name, changes)) for name, changes in alone.items()]
-    led = frozenset(name for name, changes in alone.items() if len(changes) > LED)
-    return Untold(tuple(text for _, text in sorted([*lone, *out.values()])), led)
+    times = {name: [change.end for change in changes] for name, changes in alone.items()}
+    return Untold(tuple(text for _, text in sorted([*lone, *out.values()])), times)
 
 
 def _said(change: _Change, other: str, seen: bool) -> str:
@@ -168,10 +168,10 @@ def _unfit(first: str, second: str, when: str, apart: float, radius: float) -> s
 def _said_alone(name: str, changes: Sequence[_Change]) -> str:
     """Say where the motion of one stone changes, and nothing is seen that hit it."""
     when = [change.when for change in changes]
-    if len(when) > LED:
+    if len(when) > LISTED:
         return (
             f"the motion of {name} changes {len(when)} times between {changes[0].start:.2f} and"
-            f" {changes[-1].end:.2f} s and no stone is seen that hit it: it does not glide freely"
+            f" {changes[-1].end:.2f} s and no stone is seen that hit it"
         )
     times = " and ".join(filter(None, (", ".join(when[:-1]), when[-1])))
     if all(change.hidden for change in changes):

@@ -54,16 +54,19 @@ def test_picture_of_any_season(runs: dict[str, Results]) -> None:
 
 
 def test_command_reads_folders_of_runs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    for name, value in (("x", 0.80), ("y", 0.86)):
+    for name, value, stderr in (("x", 0.80, 0.001), ("y", 0.86, 0.00111)):
         (tmp_path / "runs" / name).mkdir(parents=True)
-        shot = replace(SHOT, restitution=Estimate(value, 0.001))
+        shot = replace(SHOT, restitution=Estimate(value, stderr))
         write_results(shot, tmp_path / "runs" / name / "results.json")
     out = tmp_path / "out"
     assert main(["season", str(tmp_path / "runs"), "-o", str(out)]) == 0
-    assert "e = 0.83" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "e = 0.83" in said
+    first, second = said.splitlines()[:2]
+    assert first.index("μ =") == second.index("μ =")
     content = json.loads((out / "season.json").read_text("utf-8"))
     assert content["shots"] == ["x", "y"]
-    assert content["restitution"]["value"] == pytest.approx(0.83)
+    assert content["restitution"]["value"] == pytest.approx(0.83, abs=1e-5)
     assert content["restitution"]["stderr"] > 0.02
     assert pd.read_csv(out / "shots.csv")["restitution"].tolist() == [0.80, 0.86]
     assert (out / "season.png").stat().st_size > 10_000

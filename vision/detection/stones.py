@@ -229,7 +229,8 @@ def _hollow(rays: Rays, disc: Stone) -> NDArray[np.bool_]:
         for part in (share < WITHIN, share > BEYOND)
     )
     unlike = np.linalg.norm(within - beyond, axis=2) > ALIKE
-    return np.asarray(unlike.mean(1) < UNLIKE)
+    seen = rays.inside[:, :, share > BEYOND].all(2)
+    return np.asarray((unlike & seen).sum(1) < UNLIKE * seen.sum(1))
 
 
 def with_samples(found: Sighting, seen: Measures, index: int, disc: Stone) -> Sighting:

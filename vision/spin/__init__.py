@@ -2,8 +2,8 @@
 
 `angles` gives those of a stone in a clip of any length, part by part. Of one part `handle` turns
 each picture onto the clip's own mean picture of that cap: about, by circular cross-correlation
-(`facing`, `half_turns`), and then by registration (`align`). Before, `cover` leaves out rings that
-something lies before and `shade` and `glints` take out light that does not turn; after, `pitch`
-takes out the parallax of a handle that rises. At which height handles are seen all stones tell
-(`common_height`).
+(`facing`), with half turns put right (`half_turns`), and then by registration (`align`). `cover`
+leaves out rings that something lies before; `shade` and `glints` take out light that does not turn,
+as it is matched; `pitch` takes out the parallax of a handle that rises. At which height handles are
+seen all stones tell (`common_height`).
 """

@@ -170,7 +170,7 @@ def test_ice_turns_curling_stones_alone() -> None:
     told = local(slowed(0.25, 10.0))
     assert told.fit is not None
     stone, puck = (
-        measure_glides(told.fit, told.known, radius)[2].across for radius in (0.1455, 0.04)
+        measure_glides(told.fit, told.known, radius).prior.across for radius in (0.1455, 0.04)
     )
     assert 0.015 < stone < 0.04
     assert puck < 0.015

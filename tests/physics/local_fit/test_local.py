@@ -1,10 +1,8 @@
 from __future__ import annotations
 
 import numpy as np
-import pandas as pd
 import pytest
 
-from data.tracks import check_sightings
 from physics.local_fit.contacts import find_contacts
 from physics.local_fit.local import estimate_locally
 from tests.physics.watch import RADIUS, hit_motion, watch
@@ -128,43 +126,3 @@ def test_no_ice_draws_the_restitution_of_a_fast_hit_aside(ice: Ice, span: float)
             assert e.stderr is not None
             pulls.append((e.value - Impact().restitution) / e.stderr)
     assert abs(np.mean(pulls)) < 0.35, pulls
-
-
-def test_a_motion_that_no_ice_explains_has_no_friction() -> None:
-    # A mass on a spring in the plane: it gains and loses speed all the time.
-    t = np.arange(0.0, 10.0, 1 / 60)
-    orbit = np.column_stack([1.0 * np.cos(1.3 * t), 0.5 * np.sin(1.3 * t)])
-    noisy = orbit + np.random.default_rng(0).normal(0, 0.001, orbit.shape)
-    seen = pd.DataFrame({"stone": "A", "t": t, "x": noisy[:, 0], "y": noisy[:, 1]})
-    found = estimate_locally(check_sightings(seen), (), radius=RADIUS)
-    assert not found.glides
-    assert found.friction.value is None
-    assert "no stone glides freely" in str(found.friction_doubt)
-
-
-def test_glides_that_differ_by_more_than_ice_does_tell_no_friction() -> None:
-    # Slowed and pushed on by turns, as by a hand that leads it.
-    seen = []
-    for k, slowing in enumerate((1.2, -0.15, 0.1, -0.1)):
-        t = np.arange(0.0, 1.2, 1 / 60)
-        y = 1.5 * t - 0.5 * slowing * t**2
-        noise = np.random.default_rng(k).normal(0, 0.001, (2, len(t)))
-        seen.append(pd.DataFrame({"stone": f"S{k}", "t": t, "x": k + noise[0], "y": y + noise[1]}))
-    found = estimate_locally(check_sightings(pd.concat(seen)), (), radius=RADIUS)
-    assert len(found.glides) == 4
-    assert found.friction.value is None
-    assert "tells nothing, for glides differ (-0.0" in str(found.friction_doubt)
-
-
-@pytest.mark.parametrize(("turns", "glides"), [(2, True), (12, False)])
-def test_a_stone_that_is_led_tells_no_friction(turns: int, glides: bool) -> None:
-    t = np.arange(0.0, 0.8 * (turns + 1), 1 / 60)
-    stretch = (t // 0.8).astype(int)
-    velocity = np.column_stack([np.where(stretch % 2, 0.4, -0.4), np.full(len(t), 0.6)])
-    way = np.cumsum(velocity, axis=0) / 60 + np.random.default_rng(0).normal(
-        0, 5e-4, velocity.shape
-    )
-    seen = pd.DataFrame({"stone": "A", "t": t, "x": way[:, 0], "y": way[:, 1]})
-    found = estimate_locally(check_sightings(seen), (), radius=RADIUS)
-    assert bool(found.glides) == glides
-    assert (found.friction.value is not None) == glides

@@ -229,3 +229,28 @@ def test_real_stills(shared: Path) -> None:
     assert np.median(errors) < 0.006
     assert np.percentile(errors, 95) < 0.025
     assert false <= 4  # some stones are not in the list of those measured
+
+
+@pytest.mark.parametrize("ground", [25, 200])
+@pytest.mark.parametrize("inside", [9.0, 25.0])
+def test_rings_are_no_discs_beside_the_picture_s_edge_either(ground: int, inside: float) -> None:
+    camera = stick_camera((0, 239, 100, 239, 0.5), (320, 240))
+
+    def found(thickness: int) -> int:
+        image = np.full((240, 320, 3), ground, np.uint8)
+        centre = (round(inside * 16), 120 * 16)
+        radius = 17 * 16 if thickness < 0 else 16 * 16
+        cv2.circle(image, centre, radius, (60, 70, 160), thickness, cv2.LINE_AA, 4)
+        return len(search_picture(image, camera, None, plain_disc(0.085)).stones)
+
+    assert found(3) == 0
+    assert found(-1) == 1
+
+
+def test_a_disc_half_on_paint_of_its_colour_is_one() -> None:
+    image = np.full((240, 320, 3), 200, np.uint8)
+    image[:, :160] = (60, 70, 160)
+    cv2.circle(image, (160 * 16 + 6, 120 * 16), 17 * 16, (60, 70, 160), -1, cv2.LINE_AA, 4)
+    cv2.circle(image, (160 * 16 + 6, 120 * 16), 16 * 16, (20, 20, 20), 3, cv2.LINE_AA, 4)
+    camera = stick_camera((0, 239, 100, 239, 0.5), (320, 240))
+    assert len(search_picture(image, camera, None, plain_disc(0.085)).stones) == 1
