@@ -141,6 +141,21 @@ def test_real_stones(shared: Path, name: str) -> None:
     assert score.rmse < 0.015
 
 
+@pytest.mark.parametrize(
+    ("name", "last", "hit"),
+    [("video_1_0233_0240", None, 0.95), ("video_13_0030_0034", 52, 1.1)],
+)
+def test_balls_among_projected_rings_hit_each_other(
+    shared: Path, name: str, last: int | None, hit: float
+) -> None:
+    clip = open_clip([shared / "clips" / f"{name}.mp4"], frames=(0, last))
+    cameras = stick_cameras(clip, (70.0, 360.0, 1173.0, 360.0, 1.9))
+    seen = track_stones(clip, cameras, disc=plain_disc(0.0286)).sightings
+    (contact,) = find_contacts(seen, 0.0286)
+    assert contact.t == pytest.approx(hit, abs=0.05)
+    assert {*seen.loc[seen["t"] > hit, "stone"]} == {*contact.stones}
+
+
 def test_pucks_on_a_dark_table(shared: Path) -> None:
     clip = open_clip([shared / "clips" / "collision-pucks.mp4"], frames=(2, 31))
     cameras = stick_cameras(clip, (20.0, 219.8, 20.0, 35.9, 0.5))

@@ -248,9 +248,10 @@ class Watch:
         """Add to a view the stones of known colours that were not seen in it so far.
 
         What lies there before any is known is sought on a finer map: it answers more clearly there.
+        So are plain discs, of which nothing but a rim answers.
         """
-        first = not self._leads and not is_plain(self.disc)
-        radius_px = SEARCH.radius_px if first else self._search.radius_px
+        finer = not self._leads or is_plain(self.disc)
+        radius_px = SEARCH.radius_px if finer else self._search.radius_px
         search = replace(self._search, radius_px=radius_px)
         fresh = replace(self._follower, search=search).sought(view)
         view.sightings.extend(fresh)
