@@ -139,7 +139,8 @@ def _fit_pieces(
     prior = glides.prior
     fit = fit_shot(known, pieces, (), radius, deceleration=prior)
     a = prior.mean if glides.told else 0.0
-    return fit, Model(max(a, 0.0), prior.along, prior.share, prior.sd_share), noises(fit, known)
+    along = float(np.hypot(prior.along, min(a, 0.0)))  # what gains speed does not slow
+    return fit, Model(max(a, 0.0), along, prior.share, prior.sd_share), noises(fit, known)
 
 
 def _track(

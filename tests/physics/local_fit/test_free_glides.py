@@ -71,6 +71,11 @@ def test_what_follows_one_push_is_free_and_between_two_nothing() -> None:
     assert are_free(rests, {2, 3}, {}).tolist() == [True, True, False, False]
     other = [*row[:2], Piece("B", 0.0, 1.0, np.arange(30))]
     assert are_free(other, {0, 1}, {}).tolist() == [False, False, True]
+    # A hit, or a rest whose piece has been left out, begins anew.
+    struck = [*row[:2], Piece("A", 2.0, 3.0, np.arange(30), opens=0)]
+    assert are_free(struck, {0, 1}, {}).tolist() == [False, False, True]
+    later = [*row[:2], Piece("A", 5.0, 6.0, np.arange(30))]
+    assert are_free(later, {0, 1}, {}).tolist() == [False, False, True]
 
 
 @pytest.mark.parametrize(
@@ -80,6 +85,9 @@ def test_a_motion_that_changes_all_the_time_is_led(apart: float, count: int, so:
     piece = Piece("A", -np.inf, np.inf, np.arange(90))
     assert are_free([piece], (), {"A": [k * apart for k in range(count)]}).tolist() == [so]
     assert are_free([piece], (), {"B": [0.1 * k for k in range(9)]}).all()
+    times = {"A": [k * apart for k in range(count)]}
+    rests = [Piece("A", k * apart, (k + 0.9) * apart, np.arange(9)) for k in range(count)]
+    assert are_free(rests, (), times).all() == so  # however it is cut
 
 
 def test_an_orbit_has_no_friction() -> None:
@@ -133,6 +141,14 @@ def test_a_push_up_to_the_hit_spoils_neither_restitution_nor_tracks(gain: float)
     assert found.restitution.value == pytest.approx(0.83, abs=0.02)
     assert found.restitution.stderr is not None and found.restitution.stderr < 0.02
     assert found.friction.value == pytest.approx(0.0109, abs=0.0005)
+    assert any("A is pushed, carried or led" in text for text in found.warnings)
     tracks = smooth(sightings, contacts, radius=RADIUS).query("stone == 'A' and t < 0.98")
     speed = 1.5 - gain * (1.0 - tracks["t"])
     assert np.sqrt(np.mean((tracks["vy"] - speed) ** 2)) < 0.05
+
+
+def test_what_gains_speed_all_the_way_is_followed() -> None:
+    tracks = smooth(seen(by_turns(np.array([-0.8]), 0.2, 1.2)), (), radius=0.04)
+    off = tracks["vy"] - (0.2 + 0.8 * tracks["t"])
+    assert np.sqrt(np.mean(off**2)) < 0.03
+    assert np.sqrt(np.mean((off / tracks["sd_vy"]) ** 2)) < 1.5

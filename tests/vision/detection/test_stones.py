@@ -238,6 +238,8 @@ def test_rings_are_no_discs_beside_the_picture_s_edge_either(ground: int, inside
 
     def found(thickness: int) -> int:
         image = np.full((240, 320, 3), ground, np.uint8)
+        image += (0.2 * np.arange(320)).astype(np.uint8)[None, ::-1, None] // 2  # light falls off
+        image[120:123, :20] = 120  # a line that ends within it
         centre = (round(inside * 16), 120 * 16)
         radius = 17 * 16 if thickness < 0 else 16 * 16
         cv2.circle(image, centre, radius, (60, 70, 160), thickness, cv2.LINE_AA, 4)
