@@ -59,8 +59,9 @@ def parts(
         return significant(value) if most is None or value == 0 else fixed(value, most), None
     decimals = decimals_of(stderr)
     if most is not None:
-        shown = decimals - 1  # with them the error has one digit
-        decimals = min(decimals, max(most, shown) if shown <= most + 2 else most)
+        if decimals > most:
+            one_digit = decimals - 1
+            decimals = one_digit if one_digit <= most + 2 else most
         if max(abs(value), stderr) < 2 * 10**-most:
             return "0", None
     return fixed(value, decimals), fixed(stderr, decimals)

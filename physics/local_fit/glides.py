@@ -100,8 +100,7 @@ def measure_glides(
     """
     law = free(radius)
     each = list(_long_glides(fit, known, radius))
-    slowed = _slowed(fit, each)
-    shape = _shape(fit, each, slowed, law)
+    slowed, shape = _told(fit, each, law)
     pooled = random_effects(*slowed.at_1_m_per_s(shape.share, shape.sd))
     spread = pooled.spread if pooled.excess > CLEAR else 0.0
     usual = USUAL if curling_size(radius) else ANY
@@ -115,14 +114,10 @@ def measure_glides(
     pushed = {one.rank: one.glide for one in each if one.pushed}
     of_ice = are_free(fit.pieces, pushed, changes)
     alone = [one for one in each if of_ice[one.rank]]
-    if len(alone) < len(each):
-        slowed = _slowed(fit, alone)
-        own = _shape(fit, alone, slowed, law)
-    else:
-        own = shape
+    own = (slowed, shape) if len(alone) == len(each) else _told(fit, alone, law)
     return Glides(
         tuple(one.glide for one in alone),
-        _friction(alone, slowed, law, own),
+        _friction(alone, *own, law),
         replace(law, mean=mean, along=spread, across=across, share=shape.share, sd_share=shape.sd),
         bool(each),
         tuple(pushed.values()),
@@ -203,6 +198,14 @@ def _slowed(fit: ShotFit, each: Sequence[_MeasuredGlide]) -> _Slowed:
     return _Slowed(np.array([one.value for one in each]), cov, more([one.speed for one in each]))
 
 
+def _told(
+    fit: ShotFit, each: Sequence[_MeasuredGlide], law: Deceleration
+) -> tuple[_Slowed, _Shape]:
+    """Put glides together, and tell from them how the friction falls."""
+    slowed = _slowed(fit, each)
+    return slowed, _shape(fit, each, slowed, law)
+
+
 def _acceleration(fit: ShotFit, rank: int, t: float, way: Floats) -> tuple[float, Floats]:
     """Acceleration of a piece in a direction, at a time, and its derivatives by `fit.theta`."""
     own, power = fit.unknowns(rank), fit.power(rank)
@@ -279,7 +282,7 @@ def _acceleration_error(sd_place: Floats, speed: float, duration: float) -> Floa
 
 
 def _friction(
-    each: Sequence[_MeasuredGlide], slowed: _Slowed, law: Deceleration, shape: _Shape
+    each: Sequence[_MeasuredGlide], slowed: _Slowed, shape: _Shape, law: Deceleration
 ) -> Friction:
     """Friction that the glides show: the same at all speeds unless they tell that it falls.
 

@@ -135,7 +135,7 @@ def _checked(told: Glides) -> tuple[Friction, str | None]:
         )
     each = [glide.friction for glide in told.free if glide.friction is not None]
     if stderr > max(WORST, VAGUE * value):
-        of = f" (of glides from {min(each):.3f} to {max(each):.3f})" * (len(each) > 1)
+        of = f" (of glides from {min(each):.3f} to {max(each):.3f})" if len(each) > 1 else ""
         return Friction(), f"friction: {value:.3f} ± {stderr:.3f}{of} tells nothing; not reported"
     if value < 0:
         return friction, (

@@ -15,8 +15,6 @@ Field = NDArray[np.float32]
 def lit(codes: NDArray[np.uint8], power: float) -> Field:
     """Give what is mixed of a picture or of colours."""
     table = 255 * (np.arange(256) / 255) ** power
-    if codes.ndim < 3:
-        return np.asarray(table.astype(np.float32)[codes])
     return np.asarray(cv2.LUT(codes, table.astype(np.float32)), np.float32)
 
 
