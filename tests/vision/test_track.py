@@ -72,6 +72,12 @@ def test_the_sample_is_followed_from_end_to_end() -> None:
     turn = stones.sightings[stones.sightings["stone"] == "A"].set_index("frame")["theta"]
     true = truth[truth["stone"] == "A"].set_index("frame")["theta"].loc[turn.index]
     assert (turn - true - (turn - true).mean()).std() < 0.04
+    angles = stones.sightings.dropna(subset="theta").groupby("stone").first()
+    handles = truth.set_index(["stone", "frame"])["theta"]
+    for name, ours in score.names.items():
+        angle, frame = angles.loc[ours, ["theta", "frame"]]
+        aside = angle - handles[name, frame]
+        assert abs(np.sin(aside)) < 0.05  # its ends are alike
 
 
 def test_a_clip_without_stones_says_so(tmp_path: Path) -> None:

@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vision.spin.align import LASTING, ORDERS, Array, Complex, align, ring_weights, rings_seen
+from vision.spin.bearing import bearing
 from vision.spin.cover import uncovered
 from vision.spin.facing import angle_between, angles_between
 from vision.spin.glints import course, unlit
@@ -189,7 +190,10 @@ def handle_angles(
     sd_centre: Array,
     slants: Array | None = None,
 ) -> HandleAngles:
-    """Angle of one stone in every frame, continuous, its zero in the first frame seen.
+    """Angle of one stone in every frame, continuous.
+
+    It is the direction of the handle, on the ice, or half a turn off; where no handle stands out of
+    the cap (`vision.spin.bearing`) its zero is the first frame seen.
 
     Parameters
     ----------
@@ -250,7 +254,11 @@ def handle_angles(
     error = np.hypot(LASTING * odd * covered * fit.sd, by.apart[good])
     if np.median(np.hypot(error, np.sqrt((risen**2).sum(1).mean()))) > UNSURE:
         return nothing
-    theta[rows], sd[rows], rise[rows] = angle - angle[0], error, risen
+    angle = angle - angle[0]
+    upright = upright_mean(
+        best.pictures[good], angle, rings_seen(best.pictures[good])[:, None, :, None]
+    )
+    theta[rows], sd[rows], rise[rows] = angle + (bearing(upright) or 0.0), error, risen
     return HandleAngles(theta, sd, rise, by.unlike, frozenset({by.height}))
 
 

@@ -54,7 +54,7 @@ def test_many_turns_are_counted_without_drift() -> None:
     times = np.arange(400) / 25
     true = 0.4 + 2.2 * times
     theta, sd = handle_angles(times, [spectrum(a, rng) for a in true], RADII)
-    error = theta - theta[0] - (true - true[0])
+    error = theta - true
     assert np.abs(error).max() < 0.03
     assert abs(np.polyfit(times, error, 1)[0]) < 2e-4
     # Noise is all there is here; what real pictures add is allowed for.
@@ -99,7 +99,7 @@ def test_the_height_is_believed_at_which_the_pictures_agree(first: bool) -> None
         np.concatenate([r, w] if first else [w, r], 1) for r, w in zip(right, wrong, strict=True)
     ]
     theta, sd = handle_angles(times, seen, RADII)
-    assert np.abs(theta - (true - true[0])).max() < 5 * np.nanmax(sd)
+    assert np.abs(theta - true).max() < 5 * np.nanmax(sd)
 
 
 def test_a_handle_seen_beside_its_place_is_not_taken_for_turned() -> None:
