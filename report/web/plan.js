@@ -113,12 +113,25 @@ function extent(places, rings, radius, margin) {
   const reach = rings.length ? 6 * rings[0] : Infinity;
   const all = boxes.concat(places.filter(([x, y]) => Math.hypot(x, y) < reach));
   if (!all.length) return [-1, -1, 1, 1];
-  let [x0, y0, x1, y1] = [Infinity, Infinity, -Infinity, -Infinity];
-  for (const [x, y] of all) {
-    x0 = Math.min(x0, x); x1 = Math.max(x1, x);
-    y0 = Math.min(y0, y); y1 = Math.max(y1, y);
-  }
+  const [x0, y0, x1, y1] = boxOf(all);
   const grow = (low, high) => Math.max(margin, (8 * radius - (high - low)) / 2);
   const [dx, dy] = [grow(x0, x1), grow(y0, y1)];
   return [x0 - dx, y0 - dy, x1 + dx, y1 + dy];
+}
+
+/** Corners of the box that places fill, m. */
+function boxOf(places) {
+  let [x0, y0, x1, y1] = [Infinity, Infinity, -Infinity, -Infinity];
+  for (const [x, y] of places) {
+    x0 = Math.min(x0, x); x1 = Math.max(x1, x);
+    y0 = Math.min(y0, y); y1 = Math.max(y1, y);
+  }
+  return [x0, y0, x1, y1];
+}
+
+/** Places brought into the box that others fill and an edge around it, m. */
+function near(others, edge, places) {
+  const [x0, y0, x1, y1] = boxOf(others);
+  const between = (low, value, high) => Math.min(Math.max(value, low - edge), high + edge);
+  return places.map(([x, y]) => [between(x0, x, x1), between(y0, y, y1)]);
 }

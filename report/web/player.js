@@ -19,6 +19,11 @@ function decodeStone(stone, data, times) {
   return out;
 }
 
+/** Places of stones, [x, y] of each row, m. */
+function placesOf(stones) {
+  return stones.flatMap(({ x, y }) => Array.from(x, (value, k) => [value, y[k]]));
+}
+
 /** Index of the last of the rising values that is at most `value`, -1 before the first. */
 function lastUpTo(values, value) {
   let low = 0, high = values.length;
@@ -59,10 +64,10 @@ class Player {
   }
 
   #drawPlan() {
-    const { data } = this, places = (this.places = []);
-    for (const stones of [this.stones, ...Object.values(this.simulations)]) {
-      for (const { x, y } of stones) x.forEach((value, k) => places.push([value, y[k]]));
-    }
+    const { data } = this, measured = placesOf(this.stones);
+    const simulated = Object.values(this.simulations).flatMap(placesOf);
+    // A simulation gone astray may leave the picture.
+    const places = (this.places = measured.concat(near(measured, 4 * data.radius, simulated)));
     this.plan = new PlanView(byId("plan-view"), data, places);
     this.hits = data.hits.filter((hit) => hit.x !== null).map((hit) => (
       { t: hit.t, mark: this.plan.hit(hit.x, hit.y) }
@@ -293,7 +298,7 @@ class SpeedChart {
       text(number(t, every < 1 ? 1 : 0), { x: x(t), y: H - bottom + 14, "text-anchor": "middle" });
     }
     text("speed (m/s)", { x: 0, y: 9 }, "axis");
-    text("time (s)", { x: W - right, y: H - 1, "text-anchor": "end" }, "axis");
+    text("time (s)", { x: W - right, y: H - 3, "text-anchor": "end" }, "axis");
     const groups = []; // hits too close for a label each share one
     player.data.hits.forEach((hit, k) => {
       const at = x(hit.t), last = groups[groups.length - 1];

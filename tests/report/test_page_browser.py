@@ -343,6 +343,23 @@ def test_without_its_clip_the_plan_plays_alone(browser, page, tmp_path, shot):
         assert_shows(tab, shot, tab.value("player.rank"))
 
 
+def test_a_simulation_gone_astray_leaves_the_measured_shot_in_sight(browser, tmp_path, shot):
+    """As of a disc that a wall turned back, which no model knows of."""
+    width = []
+    for aside in (0.0, 40.0):
+        simulations = {model: t.copy() for model, t in shot.simulations.items()}
+        for table in simulations.values():
+            table["x"] += aside * (table["stone"] == "A")
+        page = write_report(
+            tmp_path, results=shot.results, tracks=shot.tracks, simulations=simulations, house=None
+        )
+        with browser.tab() as tab:
+            tab.open(page)
+            width.append(tab.value("player.plan.svg.viewBox.baseVal.width"))
+            assert tab.complaints == []
+    assert width[0] < width[1] < 1.5 * width[0]
+
+
 def test_a_still_picture_has_a_page_too(browser, tmp_path, shot):
     still = shot.tracks[shot.tracks["frame"] == 0].assign(vx=np.nan, vy=np.nan, omega=np.nan)
     results = dataclasses.replace(
