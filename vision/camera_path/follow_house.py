@@ -25,6 +25,7 @@ from vision.film.clip import Clip, Frame
 from vision.film.picture import image_of
 from vision.film.shelf import Shelf
 from vision.optics.camera import Camera
+from vision.optics.paint import TWELVE
 from vision.optics.placed import Placed, nobody
 from vision.optics.pose import View
 from vision.optics.rig import ANYWHERE, OVERHEAD
@@ -46,6 +47,9 @@ MOST_SPANS = 5
 PATIENCE = 12
 """Frames in a row that may fail before following gives up and only finding is left."""
 
+PARTLY = 0.6
+"""Share of the 12-ft circle in view below which it hardly tells to which side a camera leans: some
+that do by 15° seemed to hang over the tee, or to lean the other way."""
 
 ROOM = 400
 """Frames whose marks, some 30 kB each, need not be put aside: as many as most shots have."""
@@ -200,7 +204,8 @@ class HouseFollower:
         if piece is None:
             prior = OVERHEAD if house.overhead else ANYWHERE
             edges = EdgeTracker(self._size, house.evidence.palette, house.edge, house.evidence)
-            piece = Piece(self._size, house.rig, prior, edges, self._shelf)
+            partly = house.evidence.visible[TWELVE] < PARTLY
+            piece = Piece(self._size, house.rig, prior, edges, self._shelf, bool(partly))
             view = house.view
             self._pieces.append(piece)
         self._piece = piece

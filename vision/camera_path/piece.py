@@ -24,17 +24,18 @@ from vision.film.picture import Picture
 from vision.film.shelf import Kept, Shelf
 from vision.optics.adjust import Solution, solve
 from vision.optics.camera import Camera
+from vision.optics.lean import fit_leaning
 from vision.optics.linear import Observations
 from vision.optics.paint import CENTRE_LINE, CIRCLES, EIGHT, FOUR, TEE_LINE, TWELVE, Marks, joined
 from vision.optics.pose import ROLL, View, camera
 from vision.optics.predict import MEMORY, predict
 from vision.optics.resection import solve_view, solve_views
-from vision.optics.rig import Prior
-from vision.sheet.house_fit import SHARING, HouseFit
+from vision.optics.rig import ANYWHERE, Prior
+from vision.sheet.house_fit import SHARING, TILT_GAIN, HouseFit
 
 Array = NDArray[np.float64]
 
-REFINE_AT = (8, 40, 160)
+REFINE_AT = (8, 20, 40, 160)
 """Numbers of frames at which what they share is fitted anew on the way."""
 
 MOST_HELD = 16
@@ -81,6 +82,8 @@ class Piece:
         Refines the views.
     shelf : Shelf
         Where marks and glimpses of the frames are put aside; the pieces of a clip share one.
+    partly : bool
+        Whether its first frame shows so little of the house that it may lean to another side.
     seen : list of Seen
         The frames so far.
     glimpses : list of Glimpse
@@ -99,6 +102,7 @@ class Piece:
     prior: Prior
     edges: EdgeTracker
     shelf: Shelf = field(default_factory=Shelf)
+    partly: bool = False
     seen: list[Seen] = field(default_factory=list)
     glimpses: list[Glimpse] = field(default_factory=list)
     found: int = 0
@@ -281,7 +285,18 @@ class Piece:
             return
         self._zooms = min(log_f, shortest), max(log_f, longest)
         self._due = self._due[enough:]
-        self.rig = self._joint(self._spread()).rig
+        spread = self._spread()
+        fit = self._joint(spread)
+        if self.partly:
+            lean = fit_leaning(
+                [s.marks.get() for s in spread], [s.view for s in spread], self.rig, self.size,
+                sharing=SHARING,
+            )  # fmt: skip
+            if fit.cost - lean.cost > TILT_GAIN * SHARING:
+                self.rig, self.prior = lean.rig, ANYWHERE
+                self._view_again(len(self.seen))
+                return
+        self.rig = fit.rig
         self._view_again(max(MEMORY, len(self._held)))  # by them the next are predicted
 
     def _view_again(self, count: int) -> None:

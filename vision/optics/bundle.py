@@ -141,8 +141,9 @@ def bundle(
     cov = cov[np.ix_(known, known)]
     views = tuple(View(v) for v in state.views)
     return Bundle(
-        state.rig, state.travel, span, problem.pieces, state.offset, cov, noise, cropped
-    ), views
+        state.rig, state.travel, span, problem.pieces, state.offset, cov, noise, cropped,
+        float(paint[0]),
+    ), views  # fmt: skip
 
 
 def _is_cropped(problem: _Problem, state: _State, paint: Array, noise: Array) -> bool:

@@ -49,6 +49,8 @@ class Bundle:
         ones.
     cropped : bool
         Whether pictures seem to be cropped off their middle, or stretched.
+    ragged : float
+        How far circles lie off their course, as it was learned, a standard deviation, m.
     """
 
     rig: Array
@@ -59,6 +61,7 @@ class Bundle:
     cov: Array
     noise: Array
     cropped: bool = False
+    ragged: float = 0.0
 
     def moved(self, t: Array) -> Array:
         """How far the camera is from the rig's place at these times, shape (n, 3), m."""

@@ -6,7 +6,6 @@ resolution, with the lines, whether or not the camera hangs over the tee.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,11 +13,12 @@ from numpy.typing import NDArray
 
 from data.sheet import HOUSE
 from vision.film.picture import Image
-from vision.optics.adjust import Solution, solve
+from vision.optics.adjust import solve
 from vision.optics.camera import Camera
+from vision.optics.lean import fit_leaning
 from vision.optics.paint import TWELVE
-from vision.optics.pose import DOWN, View, aim, camera, rescaled, rotation_matrix, rotation_vector
-from vision.optics.rig import ANYWHERE, OVERHEAD, POSITION, Prior, start_rig
+from vision.optics.pose import DOWN, View, aim, camera, rescaled, rotation_vector
+from vision.optics.rig import ANYWHERE, OVERHEAD, Prior, start_rig
 from vision.sheet.lines import sides, upright
 from vision.sheet.marks import Evidence, measure_marks
 from vision.sheet.mixing import lit
@@ -51,10 +51,6 @@ TILT_GAIN = 3.0
 """By how much the log likelihood must rise for a camera that does not hang over the tee: odds of
 twenty. Lens and paint can make up for 10 to 15° of tilt but for so little; in no real still from
 overhead does it rise by as much."""
-
-ASLANT = np.radians(18)
-"""How far to each side, and at the usual height, such a camera is also looked for: from above a
-fit finds one that stands 10 to 15° aslant only where the tee is near the picture's middle."""
 
 
 @dataclass(frozen=True)
@@ -154,16 +150,6 @@ def _aimed(guess: Guess, position: Array, size: tuple[int, int]) -> View:
     return View(np.append(vector, level.vector[3]))
 
 
-def _aside(view: View, rig: Array) -> Iterator[tuple[View, Array]]:
-    """Lead a camera about the tee to each side, nearer or farther with its zoom: views and rigs."""
-    zoom = ANYWHERE.mean[2] / rig[POSITION][2]
-    for way in ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)):
-        turn = rotation_matrix(ASLANT * np.array([*way, 0.0])).T @ DOWN
-        vector = rotation_vector(view.rotation @ turn.T @ DOWN.T)
-        begin = start_rig(ANYWHERE, zoom * turn @ rig[POSITION])
-        yield View(np.append(vector, view.vector[3] + np.log(zoom))), begin
-
-
 def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) -> HouseFit | None:
     """Fit at full resolution: the circles, then with the lines.
 
@@ -187,15 +173,10 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
     if len(circles.marks) < LEAST_MARKS:
         return None
 
-    def fitted(begin: tuple[View, Array], prior: Prior) -> Solution:
-        views = [begin[0]]
-        return solve(
-            [circles.marks], views, begin[1], size, prior=prior, sharing=SHARING, view_sd=ROUND
-        )
-
-    begins = ((view, rig), *_aside(view, rig))
-    over = fitted(begins[0], OVERHEAD)
-    anywhere = min((fitted(begin, ANYWHERE) for begin in begins), key=lambda fit: fit.cost)
+    over = solve([circles.marks], [view], rig, size, prior=OVERHEAD, sharing=SHARING, view_sd=ROUND)
+    anywhere = fit_leaning(
+        [circles.marks], [view], rig, size, sharing=SHARING, view_sd=ROUND, iterations=12
+    )
     overhead = (over.cost - anywhere.cost) / SHARING < TILT_GAIN
     fit = over if overhead else anywhere
     view, rig = fit.views[0], fit.rig

@@ -266,3 +266,16 @@ def test_real_ice_under_a_known_camera(shared: Path) -> None:
     first = truth["frames"][0]
     place = -np.array(first["R"]).T @ np.array(first["T"])
     np.testing.assert_allclose(track.cameras[0].position, place, atol=0.5)
+
+
+@pytest.mark.parametrize("start", [4.6, 3.9])
+def test_a_camera_that_leans_is_found_though_it_comes_to_the_house_from_afar(start: float) -> None:
+    """A sliver of the house looks as if seen from overhead, or leaning to the other side."""
+    keys = (Key(0.0, 0.1, start, 100), Key(1.4, 0.1, 1.3, 100), Key(2.0, 0.1, 1.2, 100))
+    path = CameraPath((960, 540), (0.3, 3.0, 9.0), keys)
+    track, frames = follow(path, duration=2.0)
+    assert len(track.cameras) == frames
+    position = track.cameras[0].position
+    assert position is not None
+    assert np.abs(position - path.position).max() < 0.2
+    assert worst(track, path) < 0.005
