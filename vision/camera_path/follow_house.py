@@ -30,7 +30,7 @@ from vision.optics.placed import Placed, nobody
 from vision.optics.pose import View
 from vision.optics.rig import ANYWHERE, OVERHEAD
 from vision.sheet.house import find_house
-from vision.sheet.house_fit import HouseFit
+from vision.sheet.house_fit import PARTLY, HouseFit
 
 Array = NDArray[np.float64]
 
@@ -38,18 +38,15 @@ FIND_EVERY, FIND_RARELY = 5, 15
 """Frames from one attempt to find the house to the next: one more after each failure, till the
 second. What is found then is followed back through the frames kept."""
 
-LOOK_BACK = 30
-"""Frames kept while the house has not been found, to be followed backwards from the first find."""
+LOOK_BACK, MOST_WAITING = 100, 72 * 1920 * 1080
+"""Frames kept while the house has not been found, to be followed backwards from the first find;
+and pixels that they may have together: beyond that there are fewer of them."""
 
 MOST_SPANS = 5
 """Runs of frames left out that one warning names: more are for the table of cameras."""
 
 PATIENCE = 12
 """Frames in a row that may fail before following gives up and only finding is left."""
-
-PARTLY = 0.6
-"""Share of the 12-ft circle in view below which it hardly tells to which side a camera leans: some
-that do by 15° seemed to hang over the tee, or to lean the other way."""
 
 ROOM = 400
 """Frames whose marks, some 30 kB each, need not be put aside: as many as most shots have."""
@@ -75,7 +72,7 @@ class HouseFollower:
         self._pieces: list[Piece] = []
         self._piece: Piece | None = None
         self._ahead: list[Frame] = []
-        self._waiting: deque[Frame] = deque(maxlen=LOOK_BACK)
+        self._waiting: deque[Frame] = deque(maxlen=_looked_back(size))
         self._between = FIND_EVERY
         self._since_find = FIND_EVERY
 
@@ -270,6 +267,11 @@ def follow_house(
             " --stick X1,Y1,X2,Y2,METRES"
         )
     return track
+
+
+def _looked_back(size: tuple[int, int]) -> int:
+    """How many pictures of a size, px, wait for the house to be found."""
+    return min(LOOK_BACK, max(MOST_WAITING // (size[0] * size[1]), 1))
 
 
 def _left_out(best: Piece, pieces: Sequence[Piece], which: str) -> tuple[str, ...]:

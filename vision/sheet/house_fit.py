@@ -19,12 +19,13 @@ from vision.optics.lean import fit_leaning
 from vision.optics.paint import TWELVE
 from vision.optics.pose import DOWN, View, aim, camera, rescaled, rotation_vector
 from vision.optics.rig import ANYWHERE, OVERHEAD, Prior, start_rig
-from vision.sheet.lines import sides, upright
+from vision.sheet.lines import SURE_STEP, lesser_side_step, sides, upright
 from vision.sheet.marks import Evidence, measure_marks
 from vision.sheet.mixing import lit
 from vision.sheet.outline import HALF_WAY, PaintEdge, find_edge
 from vision.sheet.proof import worth
 from vision.sheet.rings import Guess
+from vision.sheet.straight import by_sides
 
 Array = NDArray[np.float64]
 
@@ -51,6 +52,11 @@ TILT_GAIN = 3.0
 """By how much the log likelihood must rise for a camera that does not hang over the tee: odds of
 twenty. Lens and paint can make up for 10 to 15° of tilt but for so little; in no real still from
 overhead does it rise by as much."""
+
+PARTLY = 0.6
+"""Share of the 12-ft circle in view below which it hardly tells to which side a camera leans: some
+that do by 15° seemed to hang over the tee, or to lean the other way. Then the sheet's sides say it,
+where they are straight for one of the two, and later frames."""
 
 
 @dataclass(frozen=True)
@@ -179,8 +185,13 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
     )
     overhead = (over.cost - anywhere.cost) / SHARING < TILT_GAIN
     fit = over if overhead else anywhere
-    view, rig = fit.views[0], fit.rig
-    view, rig = upright(image, view, rig)
+    view, rig = upright(image, fit.views[0], fit.rig)
+    if circles.visible[TWELVE] < PARTLY and lesser_side_step(image, view, rig) < SURE_STEP / 2:
+        straight = by_sides(
+            image, circles.marks, anywhere, sharing=SHARING, most=TILT_GAIN * SHARING, view_sd=ROUND
+        )
+        if straight is not None:
+            (view, rig), overhead = straight, False
     rig = sides(image, view, rig)
     prior = OVERHEAD if overhead else ANYWHERE
     edge = HALF_WAY

@@ -117,8 +117,14 @@ def clearness(image: Image, view: View, rig: Array) -> float:
 
 
 def _strength(image: Image, view: View, rig: Array, every: float = DENSELY) -> float:
-    """Add up the steps at both sides of the sheet, grey levels."""
+    """Add up the steps at both sides of the sheet, grey levels, as far as these are straight."""
     return sum(step for _, _, step in _side_steps(image, view, rig, every))
+
+
+def lesser_side_step(image: Image, view: View, rig: Array) -> float:
+    """Tell the step at that side of the sheet at which it is less, grey levels; 0 without both."""
+    steps = [step for _, _, step in _side_steps(image, view, rig)]
+    return min(steps) if len(steps) == 2 else 0.0
 
 
 def _best_cross(image: Image, view: View, rig: Array) -> tuple[float, float, float]:
