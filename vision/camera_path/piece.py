@@ -114,6 +114,7 @@ class Piece:
     _ice: IceTracker = field(default_factory=IceTracker)
     _fresh: list[Picture] = field(default_factory=list)
     _held: list[Frame] = field(default_factory=list)
+    _waiting: list[Frame] = field(default_factory=list)
     _shaken: bool = False
 
     @property
@@ -226,6 +227,8 @@ class Piece:
 
     def let_go(self) -> list[tuple[Frame, Camera]]:
         """Give the frames that still wait, but for those that were left out since."""
+        if self._waiting:
+            self._begin_earlier()
         known = {seen.index: seen for seen in self.seen[-len(self._held) :]}
         held, self._held = self._held, []
         return [(f, self.camera(known[f.index])) for f in held if f.index in known]
@@ -350,7 +353,8 @@ class Piece:
         view, marks : View, Marks
             Of its house, as found.
         waiting : sequence of Frame
-            Those before it, in order.
+            Those before it, in order. At the beginning they wait for the first fit of what frames
+            share: what is far from the rings would be sought in the wrong place.
 
         Returns
         -------
@@ -366,18 +370,40 @@ class Piece:
         self._add(first, frame.picture)
         self._make_good(before)
         placed = [frame]
-        left = [*reversed(waiting)]
+        if before:
+            placed = [*self._followed_back(waiting, before), frame]
+            self.seen = [*before, *reversed(self.seen)]
+            self._picture = frame.picture
+        else:
+            self._waiting = [*waiting]
+        self._fresh = []
+        self._ice.forget()
+        return self._held_back(placed)
+
+    def _begin_earlier(self) -> None:
+        """Follow back from the first frame to those before it, and go on from the last."""
+        waiting, self._waiting = self._waiting, []
+        after, self.seen = self.seen[1:], self.seen[:1]
+        picture, fresh = self._picture, self._fresh
+        stride, shaken = self.edges.stride, self._shaken
+        self._picture, self.edges.stride = self._held[0].picture, 1
+        self._ice.forget()
+        self._held = [*self._followed_back(waiting, after), *self._held]
+        self.seen = [*reversed(self.seen), *after]
+        self._picture, self._fresh = picture, fresh
+        self.edges.stride, self._shaken = stride, shaken
+        self._ice.forget()
+
+    def _followed_back(self, waiting: Sequence[Frame], others: list[Seen]) -> list[Frame]:
+        """Follow back from the last frame through others, as far as it goes; these, in order."""
+        left, placed = [*reversed(waiting)], []
         while left and (followed := self.follow(left[: self.edges.stride])):
             for earlier, seen in zip(left, followed, strict=False):
                 self._add(seen, earlier.picture)
                 placed.append(earlier)
-            self._make_good(before)
+            self._make_good(others)
             del left[: len(followed)]
-        placed.reverse()
-        self.seen = [*before, *reversed(self.seen)]
-        self._picture, self._fresh = frame.picture, []
-        self._ice.forget()
-        return self._held_back(placed)
+        return placed[::-1]
 
     def camera(self, seen: Seen) -> Camera:
         """Give the provisional camera of a frame."""
