@@ -24,7 +24,7 @@ from vision.optics.bundle import LOST, NOISE_TRUST, bundle
 from vision.optics.camera import Camera, CameraError
 from vision.optics.lean import fit_leaning
 from vision.optics.linear import Observations, by_measure, by_rig, linearised, view_equations
-from vision.optics.paint import CIRCLES, FIXED, Marks, joined
+from vision.optics.paint import CIRCLES, FIXED, MEASURED, Marks, joined
 from vision.optics.pose import VIEW_SIZE, View, camera, turning
 from vision.optics.projection import PARAMETERS
 from vision.optics.quality import ARC, edges_off, quality, warnings
@@ -68,6 +68,10 @@ show."""
 RAGGED = 0.002
 """How ragged circles are from which on the camera may lean to another side than it was thought to,
 m: with cameras that did they were learned to be so by 3.6 to 5 mm, with others by 0.2 to 1.4."""
+
+UNPLACED = 0.02
+"""How unsure it is where a line lies, m, from which on it tells nothing of a view: no frame that
+shows the rings shows it, and rules say where its middle is, about."""
 
 CROPPED = 5.0
 """By how much more they are larger in pictures that seem to be cropped or stretched, whose places
@@ -225,7 +229,7 @@ def fit_frames(
     moved : ndarray, shape (frames,)
         How far the edges move from one frame to the next, px.
     """
-    each = [s.marks.get() for s in seen]
+    each = [_on_known(s.marks.get(), shared) for s in seen]
     marks = joined(each)
     marks = replace(marks, sd=marks.sd * shared.noise[family(marks.line)])
     offset, piece = shared.offsets(marks)
@@ -281,6 +285,12 @@ def fit_frames(
             )
         )  # fmt: skip
     return found, moved
+
+
+def _on_known(marks: Marks, shared: Bundle) -> Marks:
+    """Give the marks on lines of which it is known where they are on the ice."""
+    sd = np.append(np.sqrt(np.diag(shared.cov)[:RIG_SIZE]), 0.0)[MEASURED]
+    return marks.pick(np.flatnonzero(sd[marks.line] < UNPLACED))
 
 
 def _spread_of(shared: Bundle) -> float:

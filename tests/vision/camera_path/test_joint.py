@@ -15,7 +15,7 @@ from vision.camera_path.keyframe import Keyframe
 from vision.film.clip import open_clip
 from vision.film.shelf import Kept
 from vision.optics.camera import Camera
-from vision.optics.paint import FIXED, TEE_LINE, TWELVE, Marks
+from vision.optics.paint import FIXED, HOG_LINE, TEE_LINE, TWELVE, Marks, joined
 from vision.optics.pose import View
 from vision.optics.resection import solve_view
 from vision.optics.rig import OVERHEAD, start_rig
@@ -115,6 +115,26 @@ def test_a_shaking_picture_is_aside_wherever_in_the_clip_it_is() -> None:
     cameras = fit_clip(seen, start_rig(OVERHEAD), OVERHEAD, SIZE).cameras
     aside = [np.sqrt(c.error.own[0, 0]) * c.f_px for c in cameras if c.error is not None]
     np.testing.assert_allclose(aside, 0.1, rtol=0.2)  # half of what is left of its edges
+
+
+def test_a_line_that_no_frame_with_rings_shows_moves_no_view() -> None:
+    """As a wide hog line, of which one edge is measured 5 cm beside its middle."""
+    seen = clip(np.random.default_rng(7), noise=0.1)
+    true = true_view(0.1, 1240.0)
+    x = np.linspace(-2, 2, 20)
+    places = [np.c_[x + aside, np.full((20, 2), [6.45, 0.0])] for aside in (0.0, 1e-4)]
+    pixel, ahead = (true.project(place) for place in places)
+    way = (ahead - pixel) / np.linalg.norm(ahead - pixel, axis=1, keepdims=True)
+    normal = np.stack([way[:, 1], -way[:, 0]], axis=-1)
+    hog = Marks(np.full(20, HOG_LINE), x, pixel, normal, np.full(20, 0.45))
+    rings = seen_marks(true, np.random.default_rng(8), 5, 0.1)
+    found = []
+    for marks in (rings, joined([rings, hog])):
+        carried = Seen(8, 8 / 25, seen[-1].view, Kept(marks), False)
+        track = fit_clip([*seen, carried], start_rig(OVERHEAD), OVERHEAD, SIZE)
+        found.append(track.cameras[-1].ice(true.project(np.c_[HOUSE, np.zeros(len(HOUSE))])))
+    np.testing.assert_allclose(found[1], found[0], atol=1e-9)
+    assert np.hypot(*(found[1] - HOUSE).T).max() < 0.005
 
 
 def test_quality_falls_when_the_fit_is_bad() -> None:
