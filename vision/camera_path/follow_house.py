@@ -25,12 +25,11 @@ from vision.film.clip import Clip, Frame
 from vision.film.picture import image_of
 from vision.film.shelf import Shelf
 from vision.optics.camera import Camera
-from vision.optics.paint import TWELVE
 from vision.optics.placed import Placed, nobody
 from vision.optics.pose import View
 from vision.optics.rig import ANYWHERE, OVERHEAD
 from vision.sheet.house import find_house
-from vision.sheet.house_fit import PARTLY, HouseFit
+from vision.sheet.house_fit import HouseFit
 
 Array = NDArray[np.float64]
 
@@ -201,8 +200,7 @@ class HouseFollower:
         if piece is None:
             prior = OVERHEAD if house.overhead else ANYWHERE
             edges = EdgeTracker(self._size, house.evidence.palette, house.edge, house.evidence)
-            partly = house.evidence.visible[TWELVE] < PARTLY
-            piece = Piece(self._size, house.rig, prior, edges, self._shelf, bool(partly))
+            piece = Piece(self._size, house.rig, prior, edges, self._shelf, house.vague)
             view = house.view
             self._pieces.append(piece)
         self._piece = piece

@@ -82,8 +82,8 @@ class Piece:
         Refines the views.
     shelf : Shelf
         Where marks and glimpses of the frames are put aside; the pieces of a clip share one.
-    partly : bool
-        Whether its first frame shows so little of the house that it may lean to another side.
+    vague : bool
+        Whether its first frame tells at best roughly how the camera leans.
     seen : list of Seen
         The frames so far.
     glimpses : list of Glimpse
@@ -102,7 +102,7 @@ class Piece:
     prior: Prior
     edges: EdgeTracker
     shelf: Shelf = field(default_factory=Shelf)
-    partly: bool = False
+    vague: bool = False
     seen: list[Seen] = field(default_factory=list)
     glimpses: list[Glimpse] = field(default_factory=list)
     found: int = 0
@@ -290,7 +290,7 @@ class Piece:
         self._due = self._due[enough:]
         spread = self._spread()
         fit = self._joint(spread)
-        if self.partly:
+        if self.vague:
             lean = fit_leaning(
                 [s.marks.get() for s in spread], [s.view for s in spread], self.rig, self.size,
                 sharing=SHARING,

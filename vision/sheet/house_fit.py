@@ -75,6 +75,8 @@ class HouseFit:
         Whether it looks like a camera that hangs over the tee.
     edge : PaintEdge
         Where the circles are in the profiles across them.
+    vague : bool
+        Whether circles and the sheet's sides tell at best roughly how the camera leans.
     """
 
     camera: Camera
@@ -84,6 +86,7 @@ class HouseFit:
     rms_px: float
     overhead: bool
     edge: PaintEdge
+    vague: bool = False
 
 
 @dataclass(frozen=True)
@@ -186,7 +189,9 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
     overhead = (over.cost - anywhere.cost) / SHARING < TILT_GAIN
     fit = over if overhead else anywhere
     view, rig = upright(image, fit.views[0], fit.rig)
-    if circles.visible[TWELVE] < PARTLY and lesser_side_step(image, view, rig) < SURE_STEP / 2:
+    vague = circles.visible[TWELVE] < PARTLY
+    vague &= lesser_side_step(image, view, rig) < SURE_STEP / 2
+    if vague:
         straight = by_sides(
             image, circles.marks, anywhere, sharing=SHARING, most=TILT_GAIN * SHARING, view_sd=ROUND
         )
@@ -212,4 +217,4 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
     found = camera(view, rig, size, frame=frame, t=t, rms_px=rms)
     if worth(evidence) == 0:
         return None
-    return HouseFit(found, view, rig, evidence, rms, overhead, edge)
+    return HouseFit(found, view, rig, evidence, rms, overhead, edge, bool(vague))
