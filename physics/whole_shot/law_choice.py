@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -104,8 +105,8 @@ def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None
 
 
 def _refitted(best: GlobalFit, shot: Watched, held: Mapping[str, float]) -> GlobalFit:
-    """Fit with other laws from where the best fit is, with the noise that it has told."""
-    return fit_shots([shot], fixed=held, start=_values(best), noise=best.inflation)
+    """Fit with other laws from where the best fit has them, with the noise that it has told."""
+    return fit_shots([shot], fixed=held, start=_values(best, held), noise=best.inflation)
 
 
 def _either_sense(shot: Watched, held: Mapping[str, float]) -> list[GlobalFit]:
@@ -249,9 +250,17 @@ def _name(fit: GlobalFit, best: GlobalFit) -> str:
     return f"ice {ice}, curl {curl}, {hits}" + ", spins of the other sense" * other
 
 
-def _values(fit: GlobalFit) -> dict[str, float]:
-    """Where the next fit sets out from."""
-    return dict(zip(fit.names, fit.values.tolist(), strict=True))
+def _values(fit: GlobalFit, held: Mapping[str, float] = MappingProxyType({})) -> dict[str, float]:
+    """Where the next fit sets out from: what this one tells, if the ice is as it is held.
+
+    Without a slope friction is another, and speeds with it: from where they are with one a fit may
+    come to rest on the way.
+    """
+    known = [name for name in STRAIGHT if name in held and name in fit.names]
+    at = [fit.names.index(name) for name in known]
+    aside = np.array([held[name] for name in known]) - fit.values[at]
+    values = fit.values + fit.cov[:, at] @ np.linalg.solve(fit.cov[np.ix_(at, at)], aside)
+    return dict(zip(fit.names, values.tolist(), strict=True))
 
 
 def _beside(fit: GlobalFit, best: GlobalFit) -> float:

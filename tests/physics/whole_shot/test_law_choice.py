@@ -18,6 +18,7 @@ from physics.whole_shot.law_choice import (
     _against,
     _either_sense,
     _hit_by_hit,
+    _values,
 )
 from physics.whole_shot.shot_model import Watched
 from physics.whole_shot.watched import SLOPE, THROWN
@@ -80,6 +81,23 @@ def test_other_laws_are_fitted_with_the_noise_that_is_known(
     first = noises.index(next(noise for noise in noises if noise != 1))
     assert len(noises) - first >= 3
     assert noises[first:] == pytest.approx(len(noises[first:]) * [found.whole.inflation], rel=0.02)
+
+
+def test_a_fit_with_fewer_unknowns_sets_out_from_where_they_leave_the_others() -> None:
+    watched = measure(Ice(b=0.00626, a=0.00201, v_c=0.0639, curl=0.0082)).whole
+    assert watched is not None
+    full = fit_shots(watched.shots, fixed={"v_c": V_C}, start=USUAL)
+    held = {"slope": 0.0, "v_c": V_C, "stone_friction": 2.0}
+    values = _values(full, held)
+    assert values["slope"] == pytest.approx(0.0, abs=1e-12)
+    # The likeliest of a normal distribution there: its gradient is along what is held alone.
+    moved = np.array([values[name] for name in full.names]) - full.values
+    sd = np.sqrt(np.diag(full.cov))
+    slope = np.linalg.solve(full.cov / np.outer(sd, sd), moved / sd)
+    others = np.array([name != "slope" for name in full.names])
+    assert np.abs(moved[others] / sd[others]).max() > 0.01
+    assert np.abs(slope[others]).max() < 1e-6 * np.abs(slope).max()
+    assert _values(full) == dict(zip(full.names, full.values.tolist(), strict=True))
 
 
 def test_the_first_fit_sets_out_from_even_ice_and_lost_spins_from_either_sense(
