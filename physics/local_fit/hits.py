@@ -210,9 +210,13 @@ def _why_not(
         return lost
     for stone in fit.meetings[k].stones:
         for rank, when in zip(fit.sides[k, stone], ("before", "after"), strict=True):
-            seen = len(fit.pieces[rank].samples)
+            piece = fit.pieces[rank]
+            seen = len(piece.samples)
             if seen < SEEN:
-                return f"restitution unknown: {stone} is seen {seen} times {when} it"
+                between = piece.opens is not None and piece.closes is not None
+                often = ("not seen", "seen once", f"seen {seen} times")[min(seen, 2)]
+                where = "between two hits" if between else f"{when} it"
+                return f"restitution unknown: {stone} is {often} {where}"
     return f"restitution unknown: its standard error would be {stderr:.2g}"
 
 

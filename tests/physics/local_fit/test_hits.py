@@ -9,6 +9,7 @@ from physics.local_fit.contacts import find_contacts
 from physics.local_fit.hits import pooled
 from physics.local_fit.local import estimate_locally
 from tests.physics.watch import RADIUS, hit_motion, watch
+from tests.synthetic.physics import Start
 
 
 def test_why_the_friction_between_stones_is_not_told() -> None:
@@ -24,6 +25,17 @@ def test_why_the_friction_between_stones_is_not_told() -> None:
     (told,) = estimate_locally(slid, find_contacts(slid, RADIUS), radius=RADIUS).collisions
     assert told.stone_friction == pytest.approx(0.05, abs=0.02)
     assert told.note_stone_friction is None
+
+
+def test_why_a_restitution_is_not_told_says_where_a_stone_was_seen() -> None:
+    chain = [Start(0.02, 2 * RADIUS + 0.004)]
+    motion = hit_motion(0.25, 0.02, others=chain, before=0.6, after=0.8)
+    seen = watch(motion, np.random.default_rng(1), sd=0.01)
+    hits = estimate_locally(seen, find_contacts(seen, RADIUS), radius=RADIUS).collisions
+    assert [hit.note for hit in hits] == [
+        None,
+        "restitution unknown: B is seen once between two hits",
+    ]
 
 
 def test_a_pool_takes_chance_for_chance() -> None:
