@@ -117,6 +117,13 @@ class Hit:
     before: Mapping[str, StoneState]
     after: Mapping[str, StoneState]
 
+    @property
+    def closing_speed(self) -> float:
+        """Speed at which the stones came nearer to each other, m/s."""
+        one, two = (self.before[stone] for stone in self.stones)
+        nx, ny = self.normal
+        return (one.vx - two.vx) * nx + (one.vy - two.vy) * ny
+
 
 @dataclass(frozen=True)
 class Rest:

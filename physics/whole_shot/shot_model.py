@@ -24,6 +24,10 @@ Floats = NDArray[np.float64]
 TOGETHER = 0.04
 """Time within which the order of hits is not told, s: a frame."""
 
+SOFT = 0.02
+"""Closing speed of a hit that tracks do not show, m/s: as where two stones that have hit each other
+touch again because the first goes on behind the second."""
+
 STATE: tuple[str, ...] = ("x", "y", "vx", "vy", "omega")
 
 
@@ -180,18 +184,18 @@ class Watched:
     def first_other_hit(self, simulation: Simulation) -> tuple[float, str] | None:
         """Time, s, and name of the first hit that was not seen as simulated; None without.
 
-        Hits at about one time, as in a row of stones that touch, may come in another order.
+        Hits at about one time, as in a row of stones that touch, may come in another order. One
+        that is too soft to be seen need not have been.
         """
-        simulated = [
-            (hit.t + self.start, " and ".join(sorted(hit.stones))) for hit in simulation.hits
-        ]
         seen = [(t, " and ".join(pair)) for t, pair in zip(self.times, self.hits, strict=True)]
-        for hit in simulated:
+        for hit in simulation.hits:
+            pair = " and ".join(sorted(hit.stones))
             near = [other for other in seen if other[0] <= seen[0][0] + TOGETHER]
-            same = next((other for other in near if other[1] == hit[1]), None)
-            if same is None:
-                return min([hit, *seen[:1]])
-            seen.remove(same)
+            same = next((other for other in near if other[1] == pair), None)
+            if same is not None:
+                seen.remove(same)
+            elif hit.closing_speed > SOFT:
+                return min([(hit.t + self.start, pair), *seen[:1]])
         return seen[0] if seen else None
 
     def until(self, end: float) -> Watched:

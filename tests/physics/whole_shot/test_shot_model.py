@@ -52,6 +52,22 @@ def test_a_hit_that_was_not_seen_is_named() -> None:
     assert late == (3.5, "A and C")
 
 
+@pytest.mark.parametrize(("speed", "named"), [(0.01, False), (0.05, True)])
+def test_a_hit_too_soft_to_be_seen_need_not_have_been(speed: float, named: bool) -> None:
+    """As where a stone goes on behind the one that it has hit, and touches it again."""
+    run = watched().replay(VALUES)
+    pairs, times = zip(*((hit.stones, hit.t + 2.0) for hit in run.hits), strict=True)
+    last = run.hits[-1]
+    first, second = last.stones
+    nx, ny = last.normal
+    behind = replace(last.after[second], vx=speed * nx, vy=speed * ny)
+    before = {first: behind, second: replace(behind, vx=0.0, vy=0.0)}
+    again = replace(last, t=last.t + 0.2, before=before)
+    assert again.closing_speed == pytest.approx(speed)
+    other = watched(pairs, times).first_other_hit(replace(run, hits=(*run.hits, again)))
+    assert other == ((pytest.approx(again.t + 2.0), "B and C") if named else None)
+
+
 def test_what_was_seen_before_a_time() -> None:
     shot = watched((("A", "B"), ("B", "C")), (2.5, 3.0)).until(2.8)
     assert shot.hits == (("A", "B"),)
