@@ -45,6 +45,17 @@ def test_a_cap_without_a_bar_points_nowhere() -> None:
     assert told(np.full_like(noise, 120)) is None
 
 
+def test_a_mirrored_lamp_is_no_handle() -> None:
+    direction = np.arange(RAYS)[:, None, None] * (2 * np.pi / RAYS)
+    lamp = 100 * np.exp(20 * (np.cos(direction - 2.0) - 1)) * np.ones((1, len(RADII), 3))
+    rng = np.random.default_rng(5)
+    plain = 100 + rng.normal(0, 4, lamp.shape)
+    assert told((plain + lamp).astype(np.uint8)) is None
+    beside = np.clip(patch(0.7, rng) + 0.5 * lamp, 0, 255).astype(np.uint8)
+    found = told(beside)
+    assert found is None or abs(np.sin(found - 0.7)) < 0.1
+
+
 def test_spokes_alike_all_round_point_nowhere() -> None:
     """As some discs on air tables have."""
     angle = np.arange(RAYS)[:, None, None] * (2 * np.pi / RAYS)
