@@ -97,7 +97,8 @@ def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None
     if falls:
         # Beside stones that do not slide as these do no other ice would fit either.
         even = {"slope": 0.0, "v_c": V_C, **held}
-        rooted = _refitted(best, replace(shot, ice=penner), even)
+        uneven = replace(shot, ice=penner)  # it needs no slope to be so
+        rooted = fit_shots([uneven], fixed=even, start=_values(best), noise=best.inflation)
         if rooted.settled:
             tried.append(rooted)
             criteria.append(least + _beside(rooted, best))

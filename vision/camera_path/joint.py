@@ -70,8 +70,8 @@ RAGGED = 0.002
 m: with cameras that did they were learned to be so by 3.6 to 5 mm, with others by 0.2 to 1.4."""
 
 UNPLACED = 0.02
-"""How unsure it is where a line lies, m, from which on it tells nothing of a view: no frame that
-shows the rings shows it, and rules say where its middle is, about."""
+"""How unsure it is where a line lies, m, from which on it tells nothing of a view: no frame of the
+joint fit shows it, and rules say where its middle is, about."""
 
 CROPPED = 5.0
 """By how much more they are larger in pictures that seem to be cropped or stretched, whose places
@@ -154,7 +154,7 @@ def fit_clip(
         lean = fit_leaning(marks, views, shared.rig, size, sharing=SHARING)
         other, _ = bundle(marks, times, lean.views, lean.rig, size, ANYWHERE)
         if other.ragged < shared.ragged / 2:
-            shared = other
+            shared, prior = other, ANYWHERE
     cameras = _fit_frames(seen, shared, size, edge.sd)
     sd = _spread_of(shared) * np.sqrt(np.diag(shared.cov)[:RIG_SIZE])
     place, scale = shared.rig[POSITION], _scale_sd(chosen[-1].view, shared.rig, edge.sd)

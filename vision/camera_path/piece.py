@@ -384,15 +384,11 @@ class Piece:
         """Follow back from the first frame to those before it, and go on from the last."""
         waiting, self._waiting = self._waiting, []
         after, self.seen = self.seen[1:], self.seen[:1]
-        picture, fresh = self._picture, self._fresh
-        stride, shaken = self.edges.stride, self._shaken
-        self._picture, self.edges.stride = self._held[0].picture, 1
-        self._ice.forget()
+        there = self._picture, self._ice, self._fresh, self._shaken, self.edges.stride
+        self._picture, self._ice, self.edges.stride = self._held[0].picture, IceTracker(), 1
         self._held = [*self._followed_back(waiting, after), *self._held]
         self.seen = [*reversed(self.seen), *after]
-        self._picture, self._fresh = picture, fresh
-        self.edges.stride, self._shaken = stride, shaken
-        self._ice.forget()
+        self._picture, self._ice, self._fresh, self._shaken, self.edges.stride = there
 
     def _followed_back(self, waiting: Sequence[Frame], others: list[Seen]) -> list[Frame]:
         """Follow back from the last frame through others, as far as it goes; these, in order."""

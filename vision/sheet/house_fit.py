@@ -18,14 +18,14 @@ from vision.optics.camera import Camera
 from vision.optics.lean import fit_leaning
 from vision.optics.paint import TWELVE
 from vision.optics.pose import DOWN, View, aim, camera, rescaled, rotation_vector
-from vision.optics.rig import ANYWHERE, OVERHEAD, Prior, start_rig
-from vision.sheet.lines import SURE_STEP, lesser_side_step, sides, upright
+from vision.optics.rig import ANYWHERE, OVERHEAD, POSITION, Prior, start_rig
+from vision.sheet.lines import lesser_side_step, sides, upright
 from vision.sheet.marks import Evidence, measure_marks
 from vision.sheet.mixing import lit
 from vision.sheet.outline import HALF_WAY, PaintEdge, find_edge
 from vision.sheet.proof import worth
 from vision.sheet.rings import Guess
-from vision.sheet.straight import by_sides
+from vision.sheet.straight import LEAST, by_sides
 
 Array = NDArray[np.float64]
 
@@ -57,6 +57,9 @@ PARTLY = 0.6
 """Share of the 12-ft circle in view below which it hardly tells to which side a camera leans: some
 that do by 15° seemed to hang over the tee, or to lean the other way. Then the sheet's sides say it,
 where they are straight for one of the two, and later frames."""
+
+USUAL = 2.0
+"""How far from where cameras hang over a tee one may be to be one of them, standard deviations."""
 
 
 @dataclass(frozen=True)
@@ -190,13 +193,15 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
     fit = over if overhead else anywhere
     view, rig = upright(image, fit.views[0], fit.rig)
     vague = circles.visible[TWELVE] < PARTLY
-    vague &= lesser_side_step(image, view, rig) < SURE_STEP / 2
+    vague &= lesser_side_step(image, view, rig) < LEAST
     if vague:
         straight = by_sides(
             image, circles.marks, anywhere, sharing=SHARING, most=TILT_GAIN * SHARING, view_sd=ROUND
         )
         if straight is not None:
-            (view, rig), overhead = straight, False
+            view, rig = straight
+            off = (rig - OVERHEAD.mean)[POSITION] / OVERHEAD.sd[POSITION]
+            overhead = bool(np.abs(off).max() < USUAL)
     rig = sides(image, view, rig)
     prior = OVERHEAD if overhead else ANYWHERE
     edge = HALF_WAY

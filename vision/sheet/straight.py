@@ -6,7 +6,8 @@ metres beside it are straight lines, and parallel ones, for one lean alone.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,17 +15,23 @@ from numpy.typing import ArrayLike, NDArray
 from vision.film.picture import Image
 from vision.optics.adjust import Solution, solve
 from vision.optics.paint import Marks
-from vision.optics.pose import View
+from vision.optics.pose import View, camera, turned
 from vision.optics.rig import ANYWHERE, POSITION
 from vision.sheet.lines import SURE_STEP, lesser_side_step, upright
 
 Array = NDArray[np.float64]
 
 PLACES = np.arange(0.0, 7.1, 0.4)
-"""How far up or down the sheet a camera is tried, m: sides are made out half a metre either way."""
+"""How far from the tee, towards the middle of the picture or away from it, a camera is tried, m."""
+
+FINER = 0.1 * np.array([-3.0, -2.0, -1.0, 1.0, 2.0, 3.0])
+"""The same about the best of these: sides are made out a quarter of a metre either way or more."""
 
 HELD = 0.02
 """How nearly it is held there, m."""
+
+LEAST = SURE_STEP / 2
+"""Step at either side of the sheet that is proof of it, grey levels."""
 
 
 def by_sides(
@@ -52,19 +59,44 @@ def by_sides(
         View and rig; None where there are no such sides from anywhere.
     """
     size = (image.shape[1], image.shape[0])
-    best, step = None, SURE_STEP / 2
-    for way in (1.0, -1.0):
-        view, rig = fit.views[0], fit.rig
-        for y in way * PLACES:
-            tried = _held(circles, view, rig, size, float(y), sharing, view_sd)
-            view, rig = tried.views[0], tried.rig
-            if tried.cost > fit.cost + most:
-                continue
-            up = upright(image, view, rig)
-            seen = lesser_side_step(image, *up)
-            if seen > step:
-                best, step = up, seen
-    return best
+    marks, start, shared = _to_the_middle(circles, fit.views[0], fit.rig, size)
+
+    def tried(view: View, rig: Array, places: Array) -> Iterator[_Tried]:
+        for place in places:
+            held = _held(marks, view, rig, size, float(place), sharing, view_sd)
+            view, rig = held.views[0], held.rig
+            if held.cost <= fit.cost + most:
+                up = upright(image, view, rig)
+                yield _Tried(lesser_side_step(image, *up), float(place), (view, rig), up)
+
+    roughly = [*tried(start, shared, PLACES), *tried(start, shared, -PLACES[1:])]
+    best = max(roughly, key=lambda one: one.step, default=None)
+    if best is None or not best.step:
+        return None
+    best = max(best, *tried(*best.held, best.place + FINER), key=lambda one: one.step)
+    return best.upright if best.step > LEAST else None
+
+
+@dataclass(frozen=True)
+class _Tried:
+    """A camera held at a place, the same with the ice's axes upright, and its step at the sides."""
+
+    step: float
+    place: float
+    held: tuple[View, Array]
+    upright: tuple[View, Array]
+
+
+def _to_the_middle(
+    circles: Marks, view: View, rig: Array, size: tuple[int, int]
+) -> tuple[Marks, View, Array]:
+    """Turn the ice's axes so that y points from the tee to the middle of the picture.
+
+    That way a sliver of the house leaves open where the camera is.
+    """
+    x, y = camera(view, rig, size).ice(np.array([[size[0] / 2, size[1] / 2]]))[0]
+    turn = float(np.arctan2(y, x)) - np.pi / 2
+    return replace(circles, along=circles.along - turn), *turned(view, rig, turn)
 
 
 def _held(
@@ -72,12 +104,12 @@ def _held(
     view: View,
     rig: Array,
     size: tuple[int, int],
-    y: float,
+    place: float,
     sharing: float,
     view_sd: ArrayLike,
 ) -> Solution:
-    """Fit a camera that is so far up the sheet, m."""
+    """Fit a camera that is so far from the tee along y, m."""
     mean, sd = ANYWHERE.mean.copy(), ANYWHERE.sd.copy()
-    mean[POSITION][1], sd[POSITION][1] = y, HELD
+    mean[POSITION][1], sd[POSITION][1] = place, HELD
     prior = replace(ANYWHERE, mean=mean, sd=sd)
     return solve([circles], [view], rig, size, prior=prior, sharing=sharing, view_sd=view_sd)

@@ -62,6 +62,30 @@ def followed(house: HouseFit, frames: list[Frame]) -> Piece:
     return piece
 
 
+def test_what_comes_before_the_first_frame_is_followed_back_once_the_camera_has_been_fitted() -> (
+    None
+):
+    frames, house = filmed()
+    known, first = followed(house, frames), 3
+    seen = known.seen[first]
+    piece = Piece(house.camera.size, house.rig, OVERHEAD, tracker(house))
+    given = piece.enter(frames[first], seen.view, seen.marks.get(), frames[:first])
+    left = frames[first + 1 :]
+    assert len(piece.seen) == 1
+    while left and not given:
+        followed_on = piece.follow(left[: min(piece.edges.stride, 2)])
+        given = piece.take(left[: len(followed_on)], followed_on)
+        del left[: len(followed_on)]
+    last = len(frames) - len(left) - 1
+    assert left and piece._picture is frames[last].picture
+    assert [frame.index for frame, _ in given] == [*range(last + 1)]
+    assert [s.index for s in piece.seen] == [*range(last + 1)]
+    assert piece.follow(left[:1])[0].index == last + 1  # it goes on from there
+    for one, (_, now) in zip(known.seen, given, strict=False):
+        off = known.camera(one).project(RINGS) - now.project(RINGS)
+        assert np.hypot(*off.T).max() < 0.5
+
+
 def test_frames_wait_till_what_they_share_has_been_fitted() -> None:
     frames, house = filmed()
     start = Piece(house.camera.size, house.rig, OVERHEAD, tracker(house))
