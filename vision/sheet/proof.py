@@ -67,11 +67,12 @@ def worth(evidence: Evidence) -> float:
         return 0.0
     seen = evidence.visible > IN_VIEW
     # Edges of other things rarely stand as 3 : 2; where there are but 3 : 1, they must be whole
-    # and what is around them ice.
+    # and what is around them ice. Of a sliver of the house the 8-ft circle looks like the 4-ft.
     inner = support[1] > LEAST_SUPPORT or (support[2] > LEAST_SUPPORT and not seen[1])
     ice = evidence.palette[TWELVE, 0]
     icy = ice.min() >= max(GREYEST * ice.max(), DIMMEST)
-    if not inner and not (min(support[0], support[2]) >= WHOLE and icy):
+    whole = min(support[0], support[2], evidence.visible[0]) >= WHOLE
+    if not inner and not (whole and icy):
         return 0.0
     return float(covered.sum() + 0.5 * support[seen].mean())
 

@@ -21,11 +21,15 @@ from vision.sheet.lines import SURE_STEP, lesser_side_step, upright
 
 Array = NDArray[np.float64]
 
-PLACES = np.arange(0.0, 7.1, 0.4)
-"""How far from the tee, towards the middle of the picture or away from it, a camera is tried, m."""
+ASIDE = np.arange(0.0, 14.1, 0.4)
+"""How far from where it is thought to be, towards the middle of the picture or away from it, a
+camera is tried, m, as far as the circles allow."""
 
 FINER = 0.1 * np.array([-3.0, -2.0, -1.0, 1.0, 2.0, 3.0])
 """The same about the best of these: sides are made out a quarter of a metre either way or more."""
+
+NEARLY = 0.8
+"""Share of the most that is seen of the sides that is about as much."""
 
 HELD = 0.02
 """How nearly it is held there, m."""
@@ -65,23 +69,31 @@ def by_sides(
         for place in places:
             held = _held(marks, view, rig, size, float(place), sharing, view_sd)
             view, rig = held.views[0], held.rig
-            if held.cost <= fit.cost + most:
-                up = upright(image, view, rig)
-                yield _Tried(lesser_side_step(image, *up), float(place), (view, rig), up)
+            if held.cost > fit.cost + most:
+                break
+            up = upright(image, view, rig)
+            seen = lesser_side_step(image, *up)
+            yield _Tried(seen, held.cost, float(place), (view, rig), up)
 
-    roughly = [*tried(start, shared, PLACES), *tried(start, shared, -PLACES[1:])]
-    best = max(roughly, key=lambda one: one.step, default=None)
-    if best is None or not best.step:
+    here = shared[POSITION][1]
+    roughly = [*tried(start, shared, here + ASIDE), *tried(start, shared, here - ASIDE[1:])]
+    most_seen = max(one.step for one in roughly) if roughly else 0.0
+    if not most_seen:
         return None
-    best = max(best, *tried(*best.held, best.place + FINER), key=lambda one: one.step)
+    # Of places from which sides are seen about as well, the circles tell which it is.
+    likely = [one for one in roughly if one.step >= NEARLY * most_seen]
+    best = min(likely, key=lambda one: one.cost)
+    near = [best, *tried(*best.held, best.place + FINER)]
+    best = max(near, key=lambda one: one.step)
     return best.upright if best.step > LEAST else None
 
 
 @dataclass(frozen=True)
 class _Tried:
-    """A camera held at a place, the same with the ice's axes upright, and its step at the sides."""
+    """A camera held at a place, what it costs, and with the ice's axes upright its sides' step."""
 
     step: float
+    cost: float
     place: float
     held: tuple[View, Array]
     upright: tuple[View, Array]

@@ -127,6 +127,15 @@ def test_two_circles_of_which_none_is_the_second_need_ice_around_them() -> None:
     assert worth(seen(drawn(HOUSE[:1]))) == 0
 
 
+def test_two_circles_of_which_none_is_the_second_are_none_of_a_sliver() -> None:
+    """Of a sliver of the house the 8-ft circle looks like the 4-ft one of a nearer house."""
+    evidence = seen(drawn(HOUSE[::2]))
+    assert worth(evidence) > 0
+    assert worth(replace(evidence, visible=0.42 * evidence.visible)) == 0
+    whole = seen(drawn(HOUSE))
+    assert worth(replace(whole, visible=0.42 * whole.visible)) > 0
+
+
 @pytest.mark.parametrize("cross", [True, False])
 def test_bare_ice_between_the_paint_or_the_lines_prove_it(cross: bool) -> None:
     assert proved(drawn(HOUSE, cross=cross))
