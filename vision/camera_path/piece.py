@@ -35,7 +35,7 @@ from vision.sheet.house_fit import SHARING, TILT_GAIN, HouseFit
 
 Array = NDArray[np.float64]
 
-REFINE_AT = (8, 20, 40, 160)
+REFINE_AT = (8, 40, 160)
 """Numbers of frames at which what they share is fitted anew on the way."""
 
 MOST_HELD = 16
