@@ -192,8 +192,8 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
     overhead = (over.cost - anywhere.cost) / SHARING < TILT_GAIN
     fit = over if overhead else anywhere
     view, rig = upright(image, fit.views[0], fit.rig)
-    vague = circles.visible[TWELVE] < PARTLY
-    vague &= lesser_side_step(image, view, rig) < LEAST
+    partly = bool(circles.visible[TWELVE] < PARTLY)
+    vague = partly and lesser_side_step(image, view, rig) < LEAST
     if vague:
         straight = by_sides(
             image, circles.marks, anywhere, sharing=SHARING, most=TILT_GAIN * SHARING, view_sd=ROUND
@@ -222,4 +222,4 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
     found = camera(view, rig, size, frame=frame, t=t, rms_px=rms)
     if worth(evidence) == 0:
         return None
-    return HouseFit(found, view, rig, evidence, rms, overhead, edge, bool(vague))
+    return HouseFit(found, view, rig, evidence, rms, overhead, edge, vague)

@@ -77,7 +77,7 @@ def by_sides(
 
     here = shared[POSITION][1]
     roughly = [*tried(start, shared, here + ASIDE), *tried(start, shared, here - ASIDE[1:])]
-    most_seen = max(one.step for one in roughly) if roughly else 0.0
+    most_seen = max((one.step for one in roughly), default=0.0)
     if not most_seen:
         return None
     # Of places from which sides are seen about as well, the circles tell which it is.

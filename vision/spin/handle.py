@@ -242,12 +242,13 @@ def handle_angles(
         return nothing
     rows = seen[good]
     aside = np.hypot(TURNING.shift, sd_centre[rows])
-    fit = align(best.pictures[good], best.angles[good], radii, aside)
+    own = best.pictures[good]
+    fit = align(own, best.angles[good], radii, aside)
     unlike = np.maximum(1 - best.likeness[good] ** 2, ALIKE)
     covered = np.clip((unlike / (BEFORE * np.median(unlike))) ** 2, 1.0, WORST)
     angle, risen = fit.angle, rise[rows]
     if slants is not None:
-        angle, risen = levelled(best.pictures[good], fit.angle, radii, slants[rows])
+        angle, risen = levelled(own, fit.angle, radii, slants[rows])
     odd = np.clip((1 - _alike(best) / len(seen)) / ODD, 1.0, ODDEST)
     dim = np.clip(TURNS / max(best.share, 1e-6) - 1, 0.0, DIM)
     odd += dim * max(odd - ODDER, 0.0)
@@ -255,9 +256,7 @@ def handle_angles(
     if np.median(np.hypot(error, np.sqrt((risen**2).sum(1).mean()))) > UNSURE:
         return nothing
     angle = angle - angle[0]
-    upright = upright_mean(
-        best.pictures[good], angle, rings_seen(best.pictures[good])[:, None, :, None]
-    )
+    upright = upright_mean(own, angle, rings_seen(own)[:, None, :, None])
     theta[rows], sd[rows], rise[rows] = angle + (bearing(upright) or 0.0), error, risen
     return HandleAngles(theta, sd, rise, by.unlike, frozenset({by.height}))
 
