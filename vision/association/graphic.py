@@ -46,6 +46,8 @@ def is_graphic(track: Track, cameras: Sequence[Camera], disc: Stone) -> bool:
     Compares the squares of residuals in standard errors of three places: one that stays in the
     picture, one that stays on the ice, and a glide on it. Under a camera that stands still the
     first two are the same. What shows as much as a stone may be one that a camera goes along with.
+    A graphic stays for most of the time: a stone that is hit may come to rest as the camera does,
+    and neither one place on the ice nor one glide is all of its path.
 
     Parameters
     ----------
@@ -66,13 +68,11 @@ def is_graphic(track: Track, cameras: Sequence[Camera], disc: Stone) -> bool:
     )
     rms = np.array([by_frame[frame].rms_px for frame in track.frames])
     sd = np.hypot(np.sqrt(sd_x * sd_y) * by.scale_at(places), np.fmax(rms, LEAST_SD))
-    stays, rests, glides = (
-        float(np.mean(np.minimum(((seen - where) ** 2).sum(1) / sd**2, ASTRAY)))
-        for where in (np.median(seen, 0), *on_ice)
-    )
+    off = [((seen - where) ** 2).sum(1) / sd**2 for where in (np.median(seen, 0), *on_ice)]
+    stays, rests, glides = (float(np.mean(np.minimum(squares, ASTRAY))) for squares in off)
     if np.percentile(score, 75) <= IN_THE_OPEN:
         glides = np.inf
-    return min(rests, glides) - stays > TOLD
+    return bool(np.median(off[0]) < ASTRAY) and min(rests, glides) - stays > TOLD
 
 
 def glide(times: Array, places: Array) -> Array:

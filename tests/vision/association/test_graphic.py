@@ -80,6 +80,21 @@ def test_a_stone_that_was_at_rest_before_a_hit_is_no_graphic() -> None:
     assert not is_graphic(track, cameras_of(times, 0 * x), STONE)
 
 
+@pytest.mark.parametrize("still", [0.2, 0.35, 0.48, 0.6])
+def test_a_stone_that_comes_to_rest_as_the_camera_does_is_no_graphic(still: float) -> None:
+    """It rests, is hit, glides and rests again: for a part of the time it stays in the picture.
+
+    There its place is the middle one of all, for the camera has gone beyond and come back.
+    """
+    times = np.arange(150) / 25
+    moving = np.clip(times / times[-1], 0, 1 - still) / (1 - still)
+    x = np.where(moving < 0.5, 1.2, -1.2) * np.sin(2 * np.pi * moving) ** 2
+    along = 0.7 * np.clip((moving - 0.2) / 0.8, 0, 1) * (2 - np.clip((moving - 0.2) / 0.8, 0, 1))
+    noise = np.random.default_rng(6).normal(0, 0.0008, (150, 2))
+    track = track_of(times, np.column_stack([along, 0 * x]) + noise)
+    assert not is_graphic(track, cameras_of(times, x), STONE)
+
+
 @pytest.mark.parametrize(
     ("move", "count"),
     [(move, count) for move in ("zoom", "smooth pan", "pan after rest") for count in (30, 75)]
