@@ -130,11 +130,12 @@ class Estimates:
 
     @property
     def laws(self) -> Joint | None:
-        """Restitution, frictions and size as the whole shot tells them, with their covariance.
+        """Restitution, frictions, size and loss as the whole shot tells them, with covariance.
 
-        The size is the distance of two stones' centres as they hit each other over two radii.
+        The size is the distance of two stones' centres as they hit each other over two radii, the
+        loss that of spin times speed, m rad/s³.
         """
-        return None if self.whole is None else self.whole.joint((*LAWS, "size"))
+        return None if self.whole is None else self.whole.joint((*LAWS, "size", "loss"))
 
 
 def estimate(

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from data.tracks import TRACK_COLUMNS, Columns, Table, no_rows, teams
 from physics.filter.rate_filter import angle_response, filtered
-from physics.filter.stretch import START_SD, Filter, Model, Stretch
+from physics.filter.stretch import GATE, PATIENCE, START_SD, Filter, Model, Stretch
 from physics.local_fit.contacts import Contact, cut_all
 from physics.local_fit.fit import fit_shot
 from physics.local_fit.glides import free, measure_glides
@@ -163,11 +163,13 @@ def _track(
     z = np.column_stack([trace.xy[row], trace.theta[row]])
     z[~sighted] = np.nan
     white, slow = noise.white[row], noise.slow[row]
+    off = _off(fit, place, t, z[:, :2]) / np.hypot(white, slow)[:, :2]
     mean, spread = np.full((len(t), 6), np.nan), np.full((len(t), 6), np.nan)
     seen, response = np.zeros(len(t), dtype=int), np.zeros((len(t), 2, 2))
     part = np.searchsorted(np.array([hit.t for hit in hits]), t, side="right")
     for k in np.unique(part):
         at = np.flatnonzero(part == k)
+        z[_slipped(at, off)] = np.nan
         if np.isfinite(z[at, 0]).any():
             stretch = Stretch(
                 t[at], z[at], white[at], slow[at], place[at], rest[at], idle[at], speed[at], model
@@ -195,6 +197,32 @@ def _track(
     table |= {name: mean[:, i] for i, name in enumerate(columns)}
     table |= {f"sd_{name}": spread[:, i] for i, name in enumerate(columns)}
     return table, response[:, 1]
+
+
+def _off(fit: ShotFit, place: NDArray[np.int64], t: Floats, xy: Floats) -> Floats:
+    """How far sightings are from the fits of their pieces, (n, 2), m; NaN where there are none."""
+    out = np.empty_like(xy)
+    for rank in np.unique(place):
+        own = place == rank
+        out[own] = xy[own] - fit.places(int(rank), t[own])
+    return out
+
+
+def _slipped(at: NDArray[np.intp], off: Floats) -> NDArray[np.intp]:
+    """Tell which of the rows of a stretch begin it far off its fit, as the next ones do not.
+
+    A filter believes what it begins with, and would refuse those.
+
+    Parameters
+    ----------
+    at : (m,) array of int
+        The rows between two hits.
+    off : (n, 2) array
+        How far all sightings are from their fits, in their standard deviations.
+    """
+    seen = at[np.isfinite(off[at, 0])]
+    good = (off[seen[: PATIENCE + 1]] ** 2).sum(axis=1) < GATE
+    return seen[: int(good.argmax())] if good.any() else seen[:0]
 
 
 def _modes(

@@ -32,6 +32,10 @@ SLIPPERIEST = 2e-4
 """Friction below that of anything that glides: a twentieth of that of the keenest ice."""
 
 
+LISTED = 4
+"""Marks left out that are named one by one, the worst."""
+
+
 @dataclass(frozen=True)
 class Run:
     """The outcome of a run.
@@ -102,6 +106,8 @@ def analyse(
     pace = _pace if measured.house is not None else _pace_anywhere
     notes = (*notes, *pace(estimates.friction))
     notes = (*notes, *_throws(later_throws(tracks)), *_few(sightings["frame"].nunique()))
+    if measured.clip is None:  # in a clip people cover stones in passing
+        notes = (*notes, *_left_out(sightings, tracks))
     results = Results(
         input=_input(measured),
         restitution=estimates.restitution,
@@ -211,6 +217,24 @@ def _throws(later: Mapping[str, float]) -> tuple[str, ...]:
         " predictions of the first hit; to measure one alone cut the table, or name its frames"
         " (--frames)",
     )
+
+
+def _left_out(sightings: pd.DataFrame, tracks: pd.DataFrame) -> tuple[str, ...]:
+    """Name the marks that are far off the ways of their stones, so that no track heeds them."""
+    import numpy as np
+
+    refused = tracks.loc[tracks["seen"] == 0, ["stone", "frame", "t", "x", "y"]]
+    both = refused.merge(sightings, on=["stone", "frame"], suffixes=("", "_marked"))
+    both["off"] = np.hypot(both["x"] - both["x_marked"], both["y"] - both["y_marked"])
+    both = both.dropna(subset="off")
+    if both.empty:
+        return ()
+    worst = both.nlargest(LISTED, "off").sort_values("t")
+    each = ", ".join(
+        f"{row.stone} at {row.t:.2f} s ({100 * row.off:.2g} cm off)" for row in worst.itertuples()
+    )
+    more = f" and {len(both) - len(worst)} more" if len(both) > len(worst) else ""
+    return (f"marks that are off the ways of their stones are left out: {each}{more}",)
 
 
 def _way_out(settings: Settings) -> str:

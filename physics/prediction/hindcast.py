@@ -19,7 +19,8 @@ from data.sheet import STONE
 from physics.estimate import Estimates
 from physics.impact import Frictional, Impact, PointMass, RigidBody
 from physics.local_fit.traces import Trace
-from physics.local_fit.untold import SUDDEN
+from physics.local_fit.untold import OFTEN, SUDDEN
+from physics.local_fit.ways import SLOWING
 from physics.prediction.as_fitted import AsFitted, as_fitted, by_itself
 from physics.prediction.laws import Laws, measured_laws
 from physics.prediction.spread import Doubt, path_spread, simulated, simulated_hits
@@ -287,7 +288,9 @@ def _end(track: pd.DataFrame, hits: Sequence[float], start: float) -> float:
     edge = np.append(np.searchsorted(hits, t), len(hits))
     free = edge[np.maximum(now - 1, 0)] == edge[np.minimum(then + 1, len(t) - 1)]
     change = np.hypot(*(v[then] - v[now]).T)
-    sudden = free & (change > SUDDEN + 4 * np.sqrt(variance[now] + variance[then]))
+    # Ice does much in the time for which a stone is out of sight.
+    slowed = OFTEN * SLOWING * (t[then] - t[now])
+    sudden = free & (change > SUDDEN + slowed + 4 * np.sqrt(variance[now] + variance[then]))
     return float(t[now[sudden][0]]) if sudden.any() else np.inf
 
 

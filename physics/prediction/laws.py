@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -96,11 +96,17 @@ def measured_laws(shot: Estimates | Results, radius: float) -> Laws:
         Estimate(max(rubbing.value or 0.0, 0.0), rubbing.stderr),
         ice,
         sd_friction,
-        FCV1Curl(turn=shot.curl.value or 0.0) if curling else NoCurl(),
+        _curl(shot.curl.value or 0.0, _of(shot.laws, "loss")) if curling else NoCurl(),
         (shot.curl.stderr or 0.0) if curling else 0.0,
         _of(shot.laws, "size") or UNSCALED,
         assumed,
     )
+
+
+def _curl(turn: float, loss: Estimate | None) -> FCV1Curl:
+    """Return the law of curl, with the usual loss of spin where it is not told."""
+    usual = FCV1Curl(turn=turn)
+    return usual if loss is None or loss.value is None else replace(usual, loss=loss.value)
 
 
 def between_stones(laws: Joint | None, collisions: Sequence[Collision]) -> Estimate:

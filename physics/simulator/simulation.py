@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, is_dataclass
 from itertools import combinations
 
 import numpy as np
@@ -227,8 +227,30 @@ def check_shot(shot: Shot) -> None:
     for one, two in combinations(shot.stones, 2):
         if one.x == two.x and one.y == two.y:
             faults.append(f"stones {one.name} and {two.name} lie on the same place")
+    faults += _faults_of_laws(shot)
     if faults:
         raise InputError(f"shot: {'; '.join(faults)}")
+
+
+def _faults_of_laws(shot: Shot) -> list[str]:
+    """Say which numbers of the laws make no sense. A fit tries some that nothing is made of."""
+    faults = []
+    for law in (shot.impact, shot.ice, shot.curl):
+        for item in fields(law) if is_dataclass(law) else ():
+            value = getattr(law, item.name)
+            if isinstance(value, float | int) and not math.isfinite(value):
+                faults.append(f"{law.name}: {item.name} = {value:g} is not finite")
+    if faults:
+        return faults
+    for item in fields(shot.impact) if is_dataclass(shot.impact) else ():
+        value, least = getattr(shot.impact, item.name), item.metadata.get("low", -math.inf)
+        if value < least or (value == least and item.metadata.get("above")):
+            faults.append(f"{shot.impact.name}: {item.name} = {value:g} is too small")
+    if not float(shot.ice.deceleration(1.0)) > 0:
+        faults.append(f"{shot.ice.name}: the ice must slow stones")
+    if not float(shot.curl.spin_loss(1.0)) >= 0:
+        faults.append(f"{shot.curl.name}: the ice must not speed up spins")
+    return faults
 
 
 _NUMBERS = ("x", "y", "vx", "vy", "omega", "theta", "mass")

@@ -8,6 +8,7 @@ sightings far off lose weight as Huber has it.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -30,8 +31,8 @@ STEP = 1e-7
 so closely that with 1e-5 what derivatives miss leads a descent nowhere, or to where it does not
 end."""
 
-SPIN_STEP = 1e-3
-"""Difference of a spin for a derivative, rad/s."""
+SPIN_STEP, LOSS_STEP = 1e-3, 1e-5
+"""Difference of a spin, rad/s, and of its loss times speed, m rad/s³, for a derivative."""
 
 LOST, CROSSED = 0.1, 0.5
 """Spins of less than the first, rad/s, may be lost on the way to a hit: they all do the same there,
@@ -122,7 +123,8 @@ class _Problem:
         self.high = np.array([unknown.high for unknown in each])
         self.mean = np.array([_or(unknown.prior, "value", 0.0) for unknown in each])
         self.sd = np.array([_or(unknown.prior, "stderr", np.inf) for unknown in each])
-        self.step = np.array([SPIN_STEP if n.endswith("omega") else STEP for n in self.names])
+        steps = {"omega": SPIN_STEP, "loss": LOSS_STEP}
+        self.step = np.array([steps.get(re.split("[:.]", n)[-1], STEP) for n in self.names])
         self.sightings = sum(len(t.t) for shot in self.shots for t in shot.traces.values())
         self.ended = [(fit, inverse(fit.cov)) for fit in self.ends if fit.settled]
 

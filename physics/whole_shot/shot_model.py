@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.results import Estimate
-from data.sheet import STONE, curling_size
+from data.sheet import STONE
 from physics.curl import Curl, FCV1Curl, NoCurl
 from physics.filter.slowing import V_C
 from physics.ice import Fit, IceLaw, Penner
@@ -40,8 +40,9 @@ class Unknown:
     name : str
         ``restitution``, ``stone_friction`` (μ_s between stones), ``friction`` (of the ice at
         1 m/s), ``slope`` and ``v_c`` (a and v_c in μ(v) = a / (v + v_c) + b, m/s), ``turn`` (of
-        the path at 1 m/s, rad/s), ``size`` (distance at contact over two radii), or a state at
-        the start such as ``A.x``, ``A.y``, ``A.vx``, ``A.vy`` and ``A.omega``.
+        the path at 1 m/s, rad/s), ``loss`` (of spin times speed, m rad/s³), ``size`` (distance at
+        contact over two radii), or a state at the start such as ``A.x``, ``A.y``, ``A.vx``,
+        ``A.vy`` and ``A.omega``.
     guess : float
         Where a fit sets out from.
     low, high : float
@@ -156,9 +157,7 @@ class Watched:
         )
         impact = Frictional(values["restitution"], values["stone_friction"])
         radius = self.radius * values.get("size", 1.0)
-        curling = curling_size(self.radius)
-        bend = curl(values) if curling else curl(values, loss=0.0)
-        return Shot(stones, impact, self.ice(values), bend, radius)
+        return Shot(stones, impact, self.ice(values), curl(values), radius)
 
     def replay(self, values: Mapping[str, float]) -> Simulation:
         """Simulate the shot up to its last sighting."""
@@ -213,9 +212,9 @@ class Watched:
         )
 
 
-def curl(values: Mapping[str, float], loss: float = FCV1Curl.loss) -> Curl:
-    """Return the law of curl with the turn at 1 m/s as given, and spins lost as in FCV1."""
-    turn = values.get("turn", 0.0)
+def curl(values: Mapping[str, float]) -> Curl:
+    """Return the law of curl with the turn at 1 m/s and the loss of spin as given."""
+    turn, loss = values.get("turn", 0.0), values.get("loss", 0.0)
     return FCV1Curl(turn=turn, loss=loss) if turn or loss else NoCurl()
 
 

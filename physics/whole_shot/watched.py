@@ -46,6 +46,11 @@ SLOPE, KNEE, TURN = Estimate(0.002, 0.001), Estimate(V_C, 0.04), Estimate(0.0, 0
 FCV1, some 0.0035 in Penner's law; no ice is known whose friction hardly falls), and of the turn of
 a path at 1 m/s, rad/s (0.0082 in FCV1)."""
 
+LOSS = Estimate(0.0125, 0.0125)
+"""What is known of the loss of spin times speed, m rad/s³: 0.025 in FCV1, and other ice may take
+none. When a slow spin dies tells for how long its stone curls: held at a wrong value it made e of
+a shot up to ten of its errors wrong."""
+
 RESTED = 2.0
 """Time for which a stone at rest says where it is, before the shot and after its way, s. What it
 says for longer is how its errors last: a minute of it would outweigh all that moves."""
@@ -69,8 +74,8 @@ class Priors:
         Of the ice; 0.006 to 0.016 was measured by Li et al., 2022, Lubricants 10, 265.
     size : Estimate
         Distance at contact over two radii.
-    slope, v_c, turn : Estimate
-        How friction falls and paths curl, as at `SLOPE`, `KNEE` and `TURN`.
+    slope, v_c, turn, loss : Estimate
+        How friction falls, paths curl and spins are lost, as at `SLOPE`, `KNEE`, `TURN` and `LOSS`.
     """
 
     restitution: Estimate
@@ -80,6 +85,7 @@ class Priors:
     slope: Estimate = SLOPE
     v_c: Estimate = KNEE
     turn: Estimate = TURN
+    loss: Estimate = LOSS
 
 
 RESTITUTION, STONE_FRICTION, FRICTION = 0.83, 0.05, 0.0109
@@ -182,7 +188,7 @@ def watch(
     start = min(float(traces[name].t[0]) for name in come or traces)
     traces = {name: trace.since(start - RESTED) for name, trace in traces.items()}
     least = SLIPPERIEST if curling_size(radius) else 1e-5
-    laws = (
+    laws: tuple[Unknown, ...] = (
         Unknown("restitution", _mean(priors.restitution), 0.0, 1.5, priors.restitution),
         Unknown("stone_friction", SLIDING, 0.0, 2.0, priors.stone_friction),
         Unknown("friction", _mean(priors.friction), least, 1.0, priors.friction),
@@ -191,6 +197,8 @@ def watch(
         Unknown("turn", 0.0, -0.1, 0.1, priors.turn),
         Unknown("size", 1.0, 0.7, 1.3, priors.size),
     )
+    if curling_size(radius):  # other discs may glide on anything
+        laws += (Unknown("loss", _mean(priors.loss), 0.0, 0.2, priors.loss),)
     noise = noises(fit, known)
     states: list[Unknown] = []
     spins: list[SpinSeen] = []

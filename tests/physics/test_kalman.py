@@ -238,6 +238,21 @@ def test_outliers_are_refused() -> None:
     assert np.abs(off[:, :2]).max() < 0.03
 
 
+@pytest.mark.parametrize("stone", ["A", "B"])
+@pytest.mark.parametrize("since", [0.0, 1.0])
+def test_a_slip_that_a_way_begins_with_is_refused(stone: str, since: float) -> None:
+    """The first of all sightings, and the first after the hit: the next ones are believed."""
+    motion = hit_motion(1.5, 0.05)
+    seen = watch(motion, np.random.default_rng(38), sd=0.002)
+    first = seen.index[(seen["stone"] == stone) & (seen["t"] > since)][0]
+    seen.loc[first, "x"] += 0.3
+    tracks = smooth(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    own = tracks[tracks["stone"] == stone]
+    assert own["t"][own["seen"] == 0].tolist() == [seen.loc[first, "t"]]
+    off, _ = errors(tracks, motion)
+    assert np.abs(off[:, :2]).max() < 0.01
+
+
 def test_angles_that_nobody_saw_are_empty(shared: Path) -> None:
     seen = airtable(shared)
     tracks = smooth(seen, find_contacts(seen, 0.035), radius=0.035)

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from data.errors import SceneError
 from data.results import Estimate
 from data.sheet import HOUSE
 from data.tracks import SIGHTING_COLUMNS, check_sightings
+from tests.physics.watch import hit_motion, watch
 from work.analyse import _pace_anywhere, analyse
 from work.measure import Measured
 from work.settings import Settings
@@ -115,3 +117,18 @@ def test_too_few_frames_to_tell_motion_are_said(frames: int, warned: bool) -> No
     seen = seen.reindex(columns=list(SIGHTING_COLUMNS))
     said = analyse(Measured((Path("few.csv"),), seen, 25.0, frames, ())).results.warnings
     assert any("too few to tell which of them move" in text for text in said) == warned
+
+
+def test_marks_that_no_track_heeds_are_named() -> None:
+    seen = watch(hit_motion(1.5, 0.05), np.random.default_rng(39), sd=0.002)
+    measured = Measured((Path("shot.csv"),), seen, 30.0, 90, ())
+    assert not any("left out" in text for text in analyse(measured).results.warnings)
+    slipped = seen.copy()
+    slipped.loc[[20, 130], "x"] += 0.3
+    times = [f"{seen.loc[k, 'stone']} at {seen.loc[k, 't']:.2f} s (30 cm off)" for k in (20, 130)]
+    [said] = [
+        text
+        for text in analyse(replace(measured, table=slipped)).results.warnings
+        if "left out" in text
+    ]
+    assert all(each in said for each in times)

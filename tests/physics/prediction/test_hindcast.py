@@ -159,6 +159,15 @@ def test_stones_that_grip_each_other_are_simulated_so() -> None:
     assert "at least" in (scores["frictional"].note or "")
 
 
+def test_a_stone_counts_beyond_where_it_was_hidden() -> None:
+    """Ice takes .13 m/s of it in 1.2 s, and nothing else does."""
+    seen = watch(hit_motion(1.5, 0.05, after=3.0), np.random.default_rng(52), sd=0.001)
+    hidden = (seen["stone"] == "B") & seen["t"].between(1.6, 2.8)
+    _, scores, warnings = again(seen[~hidden].reset_index(drop=True))
+    assert warnings == ()
+    assert set(scores["frictional"].rest_error) == {"A", "B"}
+
+
 def test_a_stone_counts_until_something_else_moves_it() -> None:
     seen = watch(hit_motion(1.2, 0.08), np.random.default_rng(48), sd=0.002)
     hit = find_contacts(seen, RADIUS)[0].t

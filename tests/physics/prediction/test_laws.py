@@ -47,6 +47,15 @@ def test_the_distance_at_which_stones_meet_is_a_law_of_the_shot() -> None:
     assert size.stderr == pytest.approx(0.002)
 
 
+def test_spin_is_lost_as_the_shot_tells_else_as_usual() -> None:
+    class Shot(Estimates):
+        laws = Joint(("loss",), (0.004,), ((1e-6,),))
+
+    assert measured_laws(Estimates(), R).curl == FCV1Curl(turn=0.0)
+    assert measured_laws(Shot(), R).curl == FCV1Curl(turn=0.0, loss=0.004)
+    assert measured_laws(Shot(), R / 5).curl == NoCurl()
+
+
 def test_what_a_shot_does_not_tell_is_assumed_with_its_doubt() -> None:
     laws = measured_laws(Estimates(), R)
     assert laws.restitution == LITERATURE.restitution

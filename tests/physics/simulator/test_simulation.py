@@ -1,11 +1,15 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 
 from data.errors import InputError
+from physics.curl import FCV1Curl
+from physics.ice import Constant, Fit
+from physics.impact import Frictional, PointMass
 from physics.simulator.simulate import simulate
 from physics.simulator.simulation import SIMULATION_COLUMNS, Shot, States, StoneStart, check_shot
 
@@ -63,6 +67,25 @@ def test_mistakes_are_told(stones: tuple[StoneStart, ...], message: str) -> None
     for refusing in (check_shot, simulate):
         with pytest.raises(InputError, match=message):
             refusing(Shot(stones))
+
+
+@pytest.mark.parametrize(
+    ("law", "message"),
+    [
+        ({"impact": PointMass(math.nan)}, "point-mass: restitution = nan is not finite"),
+        ({"impact": PointMass(-0.1)}, "point-mass: restitution = -0.1 is too small"),
+        ({"impact": Frictional(0.8, -0.1)}, "frictional: stone_friction = -0.1 is too small"),
+        ({"impact": Frictional(0.8, 0.1, 0.0)}, "frictional: inertia = 0 is too small"),
+        ({"ice": Constant(0.0)}, "constant: the ice must slow stones"),
+        ({"ice": Fit(b=-1.0)}, "fit: the ice must slow stones"),
+        ({"curl": FCV1Curl(turn=math.inf)}, "fcv1: turn = inf is not finite"),
+        ({"curl": FCV1Curl(loss=-0.01)}, "fcv1: the ice must not speed up spins"),
+    ],
+)
+def test_laws_that_make_no_sense_are_refused(law: dict[str, Any], message: str) -> None:
+    stones = StoneStart("A", 0, 2, 0, -1.5), StoneStart("B", 0, 0)
+    with pytest.raises(InputError, match=message):
+        simulate(Shot(stones, **law), until=5.0)
 
 
 def test_all_mistakes_are_told_at_once() -> None:

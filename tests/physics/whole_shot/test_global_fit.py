@@ -111,3 +111,19 @@ def test_what_a_map_shares_is_no_wrong_simulation() -> None:
     assert any("differ from the tracks" in warning for warning in untold.warnings)
     assert told.restitution.stderr is not None
     assert abs((told.restitution.value or 0) - 0.83) < 2 * told.restitution.stderr
+
+
+def test_how_ice_takes_spin_need_not_be_known() -> None:
+    """B spins slowly after the hit, and curls as long as it does: by FCV1 it dies on the way."""
+    starts = [Start(0.1, -1.2, 0, 1.5, 0.3, 0.8), Start(0, 0)]
+    ice = Ice(b=0.0109, curl=0.0082, spin_decay=0.012)
+    impact = Impact(0.83, stone_friction=0.01)
+    motion = simulate(starts, 8, ice=ice, impact=impact, step=5e-4, keep_every=4)
+    for seed in range(2):
+        seen = watch(motion, np.random.default_rng(seed), sd=0.001)
+        found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+        assert found.whole is not None
+        told = found.whole["restitution"]
+        assert told.stderr is not None
+        assert told.stderr < 0.001
+        assert abs((told.value or 0.0) - 0.83) < 2.5 * told.stderr
