@@ -69,7 +69,8 @@ def _refuse_racing(sightings: pd.DataFrame, source: str, advice: str) -> None:
         if speed > FASTEST_STONE:
             raise InputError(
                 f"{source}: {stone} moves at {speed:.1f} m/s at t = {moment(t)}, faster than any"
-                f" curling stone: {advice}, a slipped mark, or other discs (--radius)"
+                f" curling stone: {advice}, a slipped mark, names exchanged, or other discs"
+                " (--radius)"
             )
 
 

@@ -260,7 +260,7 @@ def _check_scale(table: pd.DataFrame, source: str, advice: str) -> list[str]:
         if speed > FASTEST:
             raise InputError(
                 f"{source}: {stone} moves at {speed:.0f} m/s at t = {moment(t)}: probably"
-                f" {advice}, or a slipped mark"
+                f" {advice}, a slipped mark, or two names exchanged"
             )
     extent = float(np.ptp(xy, axis=0).max())
     if len(xy) > 1 and extent < SMALLEST:

@@ -19,7 +19,7 @@ from data.errors import SceneError
 from data.progress import Progress, no_progress
 from vision.camera_path.edge_tracker import EdgeTracker
 from vision.camera_path.joint import HouseTrack, fit_clip
-from vision.camera_path.piece import Piece
+from vision.camera_path.piece import MOST_MISSED, Piece
 from vision.camera_path.replay import Glimpse, glimpse, has_jumped, is_nearer, is_replay
 from vision.film.clip import Clip, Frame
 from vision.film.picture import image_of
@@ -128,6 +128,8 @@ class HouseFollower:
                 if house is not None:
                     del self._ahead[0]
                     return self._start(frame, house)
+                if piece.missed > MOST_MISSED:
+                    seen, piece.lost = [], PATIENCE
             if seen:
                 del self._ahead[: len(seen)]
                 self._waiting.clear()
@@ -138,6 +140,7 @@ class HouseFollower:
             if piece.lost == 1:
                 self._since_find = self._between = FIND_EVERY
             if piece.lost > PATIENCE:
+                piece.give_up_missed()
                 self._piece = None
         del self._ahead[0]
         house = self._find(frame)
@@ -183,6 +186,8 @@ class HouseFollower:
     def finish(self) -> HouseTrack | None:
         """Fit what all frames of the shot share; None where no house was seen."""
         self.catch_up()
+        for piece in self._pieces:
+            piece.give_up_missed()
         pieces = [p for p in self._pieces if p.found]
         if not pieces:
             return None
@@ -203,6 +208,8 @@ class HouseFollower:
             piece = Piece(self._size, house.rig, prior, edges, self._shelf, house.vague)
             view = house.view
             self._pieces.append(piece)
+        if self._piece is not None and self._piece is not piece:
+            self._piece.give_up_missed()
         self._piece = piece
         placed = piece.enter(frame, view, house.evidence.marks, self._waiting)
         self._waiting.clear()

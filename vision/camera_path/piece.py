@@ -49,6 +49,10 @@ goes with the zoom, and what it is beyond that is not known."""
 REFINE_FRAMES = 6
 """Of all frames so many, spread over them, say what they share on the way."""
 
+MOST_MISSED = 25
+"""Frames in a row that may be carried to where rings should be in view, and are not. Of 60 clips
+none has one but where another picture is blended in, and what is fixed to the ice is of that."""
+
 MOST_BLUR = 0.004
 """Blur of a picture beyond which it would not look like a sharp one of the same, widths of it."""
 
@@ -121,6 +125,11 @@ class Piece:
     def missed(self) -> int:
         """Frames in a row that were carried to where rings should be in view, and are not."""
         return self._ice.missed
+
+    def give_up_missed(self) -> None:
+        """Leave out the last frames where they were carried so: nothing bears them out."""
+        del self.seen[len(self.seen) - self.missed :]
+        self._ice.forget()
 
     def follow(self, frames: Sequence[Frame]) -> list[Seen]:
         """Follow into the next frames, of which there should be no more than `edges.stride`.
@@ -393,12 +402,18 @@ class Piece:
     def _followed_back(self, waiting: Sequence[Frame], others: list[Seen]) -> list[Frame]:
         """Follow back from the last frame through others, as far as it goes; these, in order."""
         left, placed = [*reversed(waiting)], []
-        while left and (followed := self.follow(left[: self.edges.stride])):
+        while (
+            left
+            and self.missed <= MOST_MISSED
+            and (followed := self.follow(left[: self.edges.stride]))
+        ):
             for earlier, seen in zip(left, followed, strict=False):
                 self._add(seen, earlier.picture)
                 placed.append(earlier)
             self._make_good(others)
             del left[: len(followed)]
+        del placed[len(placed) - self.missed :]
+        self.give_up_missed()
         return placed[::-1]
 
     def camera(self, seen: Seen) -> Camera:
