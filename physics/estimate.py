@@ -130,12 +130,12 @@ class Estimates:
 
     @property
     def laws(self) -> Joint | None:
-        """Restitution, frictions, size and loss as the whole shot tells them, with covariance.
+        """What the whole shot tells of restitution and frictions, and more, with covariance.
 
-        The size is the distance of two stones' centres as they hit each other over two radii, the
-        loss that of spin times speed, m rad/s³.
+        Size is the distance of two stones' centres as they hit each other over two radii, loss
+        that of spin times speed, m rad/s³, and inertia k in I = k m R².
         """
-        return None if self.whole is None else self.whole.joint((*LAWS, "size", "loss"))
+        return None if self.whole is None else self.whole.joint((*LAWS, "size", "loss", "inertia"))
 
 
 def estimate(

@@ -41,8 +41,8 @@ class Unknown:
         ``restitution``, ``stone_friction`` (μ_s between stones), ``friction`` (of the ice at
         1 m/s), ``slope`` and ``v_c`` (a and v_c in μ(v) = a / (v + v_c) + b, m/s), ``turn`` (of
         the path at 1 m/s, rad/s), ``loss`` (of spin times speed, m rad/s³), ``size`` (distance at
-        contact over two radii), or a state at the start such as ``A.x``, ``A.y``, ``A.vx``,
-        ``A.vy`` and ``A.omega``.
+        contact over two radii), ``inertia`` (k in I = k m R²), or a state at the start such as
+        ``A.x``, ``A.y``, ``A.vx``, ``A.vy`` and ``A.omega``.
     guess : float
         Where a fit sets out from.
     low, high : float
@@ -155,7 +155,8 @@ class Watched:
             )
             for name in self.traces
         )
-        impact = Frictional(values["restitution"], values["stone_friction"])
+        inertia = values.get("inertia", STONE.inertia)
+        impact = Frictional(values["restitution"], values["stone_friction"], inertia)
         radius = self.radius * values.get("size", 1.0)
         return Shot(stones, impact, self.ice(values), curl(values), radius)
 

@@ -127,3 +127,20 @@ def test_how_ice_takes_spin_need_not_be_known() -> None:
         assert told.stderr is not None
         assert told.stderr < 0.001
         assert abs((told.value or 0.0) - 0.83) < 2.5 * told.stderr
+
+
+def test_how_round_stones_are_need_not_be_known() -> None:
+    """It tells which part of a glancing hit goes into spins; those that are seen tell it."""
+    starts = [Start(0.12, -1.8, 0, 1.9, 0.3, 1.2), Start(0, 0)]
+    ice = Ice(b=0.0109, curl=0.0082, spin_decay=0.02)
+    for k in (0.5, 0.44):
+        impact = Impact(0.83, stone_friction=0.08, inertia=k)
+        motion = simulate(starts, 7, ice=ice, impact=impact, step=5e-4, keep_every=4)
+        seen = watch(motion, np.random.default_rng(0), sd=0.0007)
+        found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+        assert found.whole is not None
+        for name, true in (("restitution", 0.83), ("inertia", k)):
+            told = found.whole[name]
+            assert told.stderr is not None
+            assert told.stderr < 0.01
+            assert abs((told.value or 0.0) - true) < 2.5 * told.stderr
