@@ -132,7 +132,10 @@ class HouseFollower:
                     seen, piece.lost = [], PATIENCE
             if seen:
                 del self._ahead[: len(seen)]
-                self._waiting.clear()
+                if piece.missed:  # they may be another's
+                    self._waiting.extend(frames[: len(seen)])
+                else:
+                    self._waiting.clear()
                 placed = piece.take(frames[: len(seen)], seen)
                 self._watch_for_cuts(piece)
                 return placed
@@ -211,7 +214,9 @@ class HouseFollower:
         if self._piece is not None and self._piece is not piece:
             self._piece.give_up_missed()
         self._piece = piece
-        placed = piece.enter(frame, view, house.evidence.marks, self._waiting)
+        last = piece.seen[-1].index if piece.seen else -1
+        waiting = [before for before in self._waiting if before.index > last]
+        placed = piece.enter(frame, view, house.evidence.marks, waiting)
         self._waiting.clear()
         return placed
 

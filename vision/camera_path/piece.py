@@ -228,11 +228,14 @@ class Piece:
         return self._held_back(frames)
 
     def _held_back(self, frames: Sequence[Frame]) -> list[tuple[Frame, Camera]]:
-        """Give frames with cameras, and those that waited: once what they share has been fitted."""
+        """Give frames with cameras, and those that waited: once what they share has been fitted.
+
+        Those that were carried to where rings should be in view wait until these are seen.
+        """
         self._held += frames
         self._refine()
-        fitted = self._due[0] > REFINE_AT[0]
-        return self.let_go() if fitted or len(self._held) > MOST_HELD else []
+        ready = self._due[0] > REFINE_AT[0] or len(self._held) > MOST_HELD
+        return self.let_go() if ready and not self.missed else []
 
     def let_go(self) -> list[tuple[Frame, Camera]]:
         """Give the frames that still wait, but for those that were left out since."""
