@@ -18,13 +18,14 @@ from numpy.typing import NDArray
 from data.errors import SceneError
 from data.progress import Progress, no_progress
 from vision.camera_path.edge_tracker import EdgeTracker
-from vision.camera_path.joint import HouseTrack, fit_clip
+from vision.camera_path.joint import HouseTrack, Seen, fit_clip
 from vision.camera_path.piece import MOST_MISSED, Piece
 from vision.camera_path.replay import Glimpse, glimpse, has_jumped, is_nearer, is_replay
 from vision.film.clip import Clip, Frame
 from vision.film.picture import image_of
 from vision.film.shelf import Shelf
 from vision.optics.camera import Camera
+from vision.optics.paint import TWELVE
 from vision.optics.placed import Placed, nobody
 from vision.optics.pose import View
 from vision.optics.rig import ANYWHERE, OVERHEAD
@@ -40,6 +41,17 @@ second. What is found then is followed back through the frames kept."""
 LOOK_BACK, MOST_WAITING = 100, 72 * 1920 * 1080
 """Frames kept while the house has not been found, to be followed backwards from the first find;
 and pixels that they may have together: beyond that there are fewer of them."""
+
+WHOLE, FULLER = 0.75, 0.2
+"""Share of the 12-ft circle in view from which on a house that is found needs no second look, and
+how much more of another one must be in view."""
+
+ELSEWHERE = 1.0
+"""Distance of two tees, m, from which on they are of two houses."""
+
+LOOK_TWICE = 6
+"""Frames followed after which there is a second look, before any is given: the first ones of a
+dissolve hide more of the house in the middle than of one beside that is cut."""
 
 MOST_SPANS = 5
 """Runs of frames left out that one warning names: more are for the table of cameras."""
@@ -74,6 +86,7 @@ class HouseFollower:
         self._waiting: deque[Frame] = deque(maxlen=_looked_back(size))
         self._between = FIND_EVERY
         self._since_find = FIND_EVERY
+        self._in_view = 1.0
 
     def look(self, frame: Frame) -> Sequence[tuple[Frame, Camera]]:
         """Take in one more frame; a few are placed together where they can be predicted.
@@ -136,6 +149,13 @@ class HouseFollower:
                     self._waiting.extend(frames[: len(seen)])
                 else:
                     self._waiting.clear()
+                other = self._fuller(piece, frames[len(seen) - 1], seen[-1])
+                if other is not None:
+                    self._pieces.remove(piece)
+                    self._piece = None
+                    self._waiting.extend(piece.taken_back())
+                    self._waiting.extend(frames[: len(seen) - 1])
+                    return self._start(frames[len(seen) - 1], other)
                 placed = piece.take(frames[: len(seen)], seen)
                 self._watch_for_cuts(piece)
                 return placed
@@ -151,6 +171,17 @@ class HouseFollower:
             return self._start(frame, house)
         self._waiting.append(frame)
         return []
+
+    def _fuller(self, piece: Piece, frame: Frame, seen: Seen) -> HouseFit | None:
+        """Look once more where the house that was found is cut: there may be a fuller one."""
+        if self._in_view > WHOLE or piece.found < LOOK_TWICE:
+            return None
+        before, self._in_view = self._in_view, 1.0
+        house = find_house(image_of(frame.picture), frame=frame.index, t=frame.t)
+        if house is None or float(house.evidence.visible[TWELVE]) < before + FULLER:
+            return None
+        tee = piece.camera(seen).ice(house.camera.project(np.zeros((1, 2))))
+        return house if float(np.hypot(*tee[0])) > ELSEWHERE else None
 
     def _watch_for_cuts(self, piece: Piece) -> None:
         """End a piece that has been cut to a replay, or from one, without losing the house."""
@@ -211,6 +242,7 @@ class HouseFollower:
             piece = Piece(self._size, house.rig, prior, edges, self._shelf, house.vague)
             view = house.view
             self._pieces.append(piece)
+            self._in_view = float(house.evidence.visible[TWELVE])
         if self._piece is not None and self._piece is not piece:
             self._piece.give_up_missed()
         self._piece = piece

@@ -245,6 +245,11 @@ class Piece:
         held, self._held = self._held, []
         return [(f, self.camera(known[f.index])) for f in held if f.index in known]
 
+    def taken_back(self) -> list[Frame]:
+        """Take back the frames that were not given, in order: they are of another house."""
+        frames, self._waiting, self._held = [*self._waiting, *self._held], [], []
+        return frames
+
     def _add(self, seen: Seen, picture: Picture) -> None:
         seen.marks.put_aside(self.shelf)
         self.seen.append(seen)

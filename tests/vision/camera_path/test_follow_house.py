@@ -133,6 +133,64 @@ def test_a_dissolve_from_another_camera_s_house_ends_its_piece() -> None:
     assert worst(track, path) < 0.005
 
 
+def crowd(rng: np.random.Generator, size: tuple[int, int]) -> np.ndarray:
+    """A picture full of corners, and without a house."""
+    picture = np.full((size[1], size[0], 3), 90, np.uint8)
+    for _ in range(300):
+        x, y = (int(rng.integers(side)) for side in size)
+        colour = rng.integers(0, 256, 3).tolist()
+        cv2.rectangle(picture, (x, y), (x + 40, y + 25), colour, -1)
+    return picture
+
+
+@pytest.mark.parametrize("backwards", [False, True])
+def test_no_camera_is_carried_onto_what_is_blended_in(tmp_path: Path, backwards: bool) -> None:
+    """Nothing moves in either picture, so that what is fixed to the ice seems to go on."""
+    house = render_still(SCENE, still_camera())
+    other = crowd(np.random.default_rng(3), (house.shape[1], house.shape[0]))
+    shown = np.clip(np.arange(45) - 14, 0, 16) / 16
+    if backwards:
+        shown = shown[::-1]
+    paths = []
+    for k, share in enumerate(shown.tolist()):
+        paths.append(tmp_path / f"{k:02d}.png")
+        cv2.imwrite(str(paths[-1]), cv2.addWeighted(other, share, house, 1 - share, 0))
+    track = follow_house(open_clip(paths))
+    frames = [camera.frame for camera in track.cameras]
+    assert set(np.flatnonzero(shown == 0).tolist()) <= set(frames)
+    assert shown[frames].max() < 0.8
+
+
+def test_a_house_beside_that_is_cut_gives_way_to_the_one_in_the_middle(tmp_path: Path) -> None:
+    """As long as something hides that one, the other is all that there is."""
+    path = still_camera(target=(0.75, 0.3), px_per_m=115)
+    house = render_still(SCENE, path)
+    tee = path.at(0.0).project(np.zeros((1, 3)))[0].astype(int).tolist()
+    paths = []
+    for k in range(24):
+        picture = house.copy()
+        if k < 3:
+            cv2.circle(picture, tee, 235, (60, 70, 60), -1)
+        paths.append(tmp_path / f"{k:02d}.png")
+        cv2.imwrite(str(paths[-1]), picture)
+    track = follow_house(open_clip(paths))
+    frames = [camera.frame for camera in track.cameras]
+    assert frames[-1] == 23
+    assert frames[0] <= 4
+    ice = np.c_[RINGS, np.zeros(len(RINGS))]
+    assert max(rms(camera, path.at(0.0).project(ice)) for camera in track.cameras) < 0.005
+    given = follow_in_order(paths)
+    assert given == frames
+
+
+def follow_in_order(paths: list[Path]) -> list[int]:
+    """Frames as they are given, one by one."""
+    clip = open_clip(paths)
+    follower = HouseFollower(clip.size)
+    given = [frame.index for frame in clip for frame, _ in follower.look(frame)]
+    return given + [frame.index for frame, _ in follower.catch_up()]
+
+
 def test_a_house_is_followed_while_the_picture_fades_in() -> None:
     path = broadcast_camera(end=1.0, size=(640, 360), px_per_m=(64.0, 56.0))
     rng, follower = np.random.default_rng(1), HouseFollower((640, 360))
