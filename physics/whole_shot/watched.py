@@ -62,9 +62,9 @@ STRIDE = 0.02
 NEAR_HIT = 1.0
 """Time beside a hit in whose middle a spin is told, s: far enough from where it changes."""
 
-INERTIA = Estimate(0.48, 0.03)
-"""What is known of k in a curling stone's moment of inertia k m R²: 0.5 for a cylinder, down to 0.42
-the rounder it is."""
+INERTIA = Estimate(0.5, 0.03)
+"""What is known of k in a curling stone's moment of inertia k m R²: 0.5 for a cylinder, less the
+rounder it is."""
 
 
 @dataclass(frozen=True)
