@@ -61,9 +61,10 @@ from the side, and hardly any of them would be told."""
 LEVEL, NEARLY_LEVEL = 0.96, 0.9
 """Foreshortening of circles from which on a camera is likely to hang over the tee, and may."""
 
-FAR = 15.0
-"""Height of a camera, m, from which on it may rather lean the other way: ellipses do not tell on
-which side the ice is nearer, and what a fit cannot undo it takes for a camera far away."""
+FAR = 12.0
+"""Height of a camera, m, from which on it may rather lean the other way, as it may where no fit
+comes to a camera at all: ellipses do not tell on which side the ice is nearer, and what a fit cannot
+undo it takes for a camera far away."""
 
 
 def find_house(image: Image, *, frame: int = 0, t: float = 0.0) -> HouseFit | None:
@@ -210,9 +211,9 @@ def _rough_fits(small: Image, factor: float, hypotheses: Sequence[Guess]) -> lis
             fitted = _from(small, seen)
             if fitted is not None:
                 break
-        if fitted is not None and fitted.rig[POSITION][2] > FAR:
-            other = _from(small, replace(seen, lean=seen.lean + np.pi))
-            fitted = max(fitted, other or fitted, key=lambda fit: fit.score)
+        if fitted is None or fitted.rig[POSITION][2] > FAR:
+            other = _from(small, replace(here, lean=here.lean + np.pi))
+            fitted = max(filter(None, (fitted, other)), key=lambda fit: fit.score, default=None)
         if fitted is not None:
             fits.append(fitted)
             if fitted.score > ENOUGH and aside[k] <= min(aside[k:]):

@@ -100,6 +100,16 @@ def test_what_is_nearest_may_be_at_the_top(tilt: float) -> None:
     np.testing.assert_allclose(fit.camera.position, other_end, atol=0.5)
 
 
+@pytest.mark.parametrize("y", [-0.6, 0.6, 2.0])
+@pytest.mark.parametrize(("back", "height"), [(4.0, 7.0), (5.8, 9.3), (7.0, 7.0)])
+def test_stones_may_come_from_the_top_to_a_camera_above_them(
+    back: float, height: float, y: float
+) -> None:
+    """It hangs on their side of the house: what is nearest is at the top."""
+    path = still_camera(position=(0.1, back, height), target=(0.1, y), px_per_m=139.0)
+    assert rms(errors(find_house(render_still(sample_scene(), path, 1.0)), path)) < 0.006
+
+
 @pytest.mark.parametrize(("tilt", "height"), [(63.0, 5.0), (70.0, 5.0), (71.0, 1.6)])
 def test_a_camera_beside_the_players_is_refused(tilt: float, height: float) -> None:
     scene = replace(sample_scene(), paint=PAINTS["navy-orange"])
