@@ -17,8 +17,7 @@ from physics.local_fit.noise import Noise, noises
 from physics.local_fit.shot_fit import ShotFit
 from physics.local_fit.spins import spin_on
 from physics.local_fit.traces import Trace
-from physics.local_fit.untold import AT_ONCE, SUDDEN
-from physics.local_fit.ways import first_way
+from physics.local_fit.untold import SUDDEN
 from physics.whole_shot.shot_model import SpinSeen, Unknown, Watched
 
 Floats = NDArray[np.float64]
@@ -55,9 +54,6 @@ a shot up to ten of its errors wrong."""
 RESTED = 2.0
 """Time for which a stone at rest says where it is, before the shot and after its way, s. What it
 says for longer is how its errors last: a minute of it would outweigh all that moves."""
-
-STRIDE = 0.02
-"""From one time to the next at which it is looked how near two stones were, s."""
 
 NEAR_HIT = 1.0
 """Time beside a hit in whose middle a spin is told, s: far enough from where it changes."""
@@ -197,10 +193,9 @@ def watch(
     # Back from there stones at rest stay, however long they are seen; others would not.
     come = [name for name in traces if name in runs and not fit.pieces[runs[name][0]].rest]
     start = min(float(traces[name].t[0]) for name in come or traces)
-    for name in [name for name in come if name not in hit and len(traces) > 1]:
-        others = {other: trace for other, trace in traces.items() if other != name}
-        if _met(traces[name], others, ends, start, radius):
-            del traces[name]
+    # Who comes into view on its way after a hit was hit out of sight: from where nobody knows.
+    late = [name for name in come if order and traces[name].t[0] > times[order[0]]]
+    traces = {name: trace for name, trace in traces.items() if name in hit or name not in late}
     traces = {name: trace.since(start - RESTED) for name, trace in traces.items()}
     least = SLIPPERIEST if curling_size(radius) else 1e-5
     laws: tuple[Unknown, ...] = (
@@ -239,25 +234,6 @@ def watch(
         radius,
         masses or {},
     )
-
-
-def _met(
-    path: Trace, others: Mapping[str, Trace], ends: Mapping[str, float], start: float, radius: float
-) -> bool:
-    """Whether a stone that comes into view on its way met another one since the start.
-
-    It is in that one's place before, or came by as something that was not seen moved that one. It
-    was hit out of sight then, and where it was before nobody knows.
-    """
-    way = first_way(path, 0)
-    t = np.arange(start, way.t, STRIDE)
-    for name, other in others.items():
-        there = np.column_stack([np.interp(t, other.t, of_axis) for of_axis in other.xy.T])
-        apart, sd = np.hypot(*(way.at(t) - there).T), way.sd(t)
-        moved = np.abs(t - ends.get(name, np.inf)) < AT_ONCE
-        if np.any(apart + 2 * sd < 2 * radius) or np.any((apart < 2 * radius + 3 * sd) & moved):
-            return True
-    return False
 
 
 def _mean(estimate: Estimate) -> float:
