@@ -115,7 +115,7 @@ def warnings(
     if cropped:
         found.append(
             "the picture seems to be cropped off its middle or stretched (or taken from above"
-            " 20 m): places may be centimetres off; give the clip as it was recorded"
+            " 20 m, or by hand): places may be centimetres off; give the clip as it was recorded"
         )
     if sd > UNTOLD * prior_sd:
         found.append(

@@ -62,9 +62,9 @@ LEVEL, NEARLY_LEVEL = 0.96, 0.9
 """Foreshortening of circles from which on a camera is likely to hang over the tee, and may."""
 
 FAR = 12.0
-"""Height of a camera, m, from which on it may rather lean the other way, as it may where no fit
-comes to a camera at all: ellipses do not tell on which side the ice is nearer, and what a fit cannot
-undo it takes for a camera far away."""
+"""Height of a camera, m, from which on it may rather lean the other way, as where no fit comes to
+a camera at all: ellipses do not tell on which side the ice is nearer, and what a fit cannot undo it
+takes for a camera far away."""
 
 
 def find_house(image: Image, *, frame: int = 0, t: float = 0.0) -> HouseFit | None:
