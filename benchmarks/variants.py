@@ -86,10 +86,8 @@ def as_measured(shot: Estimates, radius: float) -> Priors:
     known = Priors(laws.restitution, laws.stone_friction, friction, laws.size)
     if shot.whole is None:
         return known
-    shape = {
-        name: Estimate(shot.whole[name].value, 0.0) for name in ("slope", "v_c", "turn", "loss")
-    }
-    return replace(known, **shape)
+    names = ("slope", "v_c", "turn", "loss", "inertia")
+    return replace(known, **{name: Estimate(shot.whole[name].value, 0.0) for name in names})
 
 
 def _places(errors: Mapping[str, float | None], stated: Mapping[str, float | None]) -> str:

@@ -222,7 +222,7 @@ def _slipped(at: NDArray[np.intp], off: Floats) -> NDArray[np.intp]:
     """
     seen = at[np.isfinite(off[at, 0])]
     good = (off[seen[: PATIENCE + 1]] ** 2).sum(axis=1) < GATE
-    return seen[: int(good.argmax())] if good.any() else seen[:0]
+    return np.asarray(seen[: int(good.argmax())] if good.any() else seen[:0])
 
 
 def _modes(

@@ -230,8 +230,10 @@ def _left_out(sightings: pd.DataFrame, tracks: pd.DataFrame) -> tuple[str, ...]:
     if both.empty:
         return ()
     worst = both.nlargest(LISTED, "off").sort_values("t")
+    columns = (worst[name].tolist() for name in ("stone", "t", "off"))
     each = ", ".join(
-        f"{row.stone} at {row.t:.2f} s ({100 * row.off:.2g} cm off)" for row in worst.itertuples()
+        f"{stone} at {t:.2f} s ({100 * off:.0f} cm off)"
+        for stone, t, off in zip(*columns, strict=True)
     )
     more = f" and {len(both) - len(worst)} more" if len(both) > len(worst) else ""
     return (f"marks that are off the ways of their stones are left out: {each}{more}",)

@@ -14,7 +14,7 @@ from data.errors import InputError
 from data.results import Collision, Estimate, Prediction
 from data.sheet import STONE
 from physics.estimate import Estimates
-from physics.impact import Frictional, Impact, PointMass
+from physics.impact import PointMass
 from physics.local_fit.contacts import cut_all
 from physics.local_fit.fit import fit_shot
 from physics.local_fit.glides import free
@@ -272,9 +272,7 @@ def _sampled(
             replace(stone, x=now.x, y=now.y, vx=now.vx, vy=now.vy, omega=now.omega, theta=now.theta)
         )
     onward = seen.shot({**values, **laws})
-    impact: Impact = PointMass(laws["restitution"])
-    if model == "frictional":
-        impact = Frictional(laws["restitution"], laws["stone_friction"])
+    impact = onward.impact if model == "frictional" else PointMass(laws["restitution"])
     since = times - seen.start - lasts
     rest = simulate(replace(onward, stones=tuple(stones), impact=impact), until=float(since[-1]))
     table = rest.sample(since)

@@ -97,7 +97,8 @@ def simulate_measured(
     clock = tracks.groupby("frame", sort=True)["t"].first()
     clock = clock[clock >= start]
     doubt = _doubt(tracks, start, estimates, laws)
-    usual = Frictional(laws.restitution.value or 0.0, laws.stone_friction.value or 0.0)
+    rubbing = laws.stone_friction.value or 0.0
+    usual = Frictional(laws.restitution.value or 0.0, rubbing, laws.inertia)
     again = Shot(stones, usual, laws.ice, laws.curl, radius * (laws.size.value or 1.0))
     may = _may_have_been(estimates.whole, again, doubt, start)
     ends = explained_until(tracks, estimates, start)
@@ -248,7 +249,7 @@ def _models(
     out: dict[str, Impact | None] = {
         "point-mass": PointMass(e),
         "rigid-body": RigidBody(e),
-        "frictional": Frictional(e, rubbing),
+        "frictional": Frictional(e, rubbing, laws.inertia),
     }
     hit_stones = {stone for hit in estimates.collisions for stone in hit.stones}
     blind = [s.name for s in stones if s.name in hit_stones and s.omega_after is None]

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from data.results import Collision, Estimate, Friction, Joint, Results
-from data.sheet import curling_size
+from data.sheet import STONE, curling_size
 from physics.curl import Curl, FCV1Curl, NoCurl
 from physics.estimate import Estimates
 from physics.ice import Constant, Fit, IceLaw
@@ -17,6 +17,9 @@ from physics.whole_shot.watched import LITERATURE, STONE_FRICTION, literature
 
 UNSCALED = Estimate(1.0, 0.0)
 """Stones that meet at two radii."""
+
+LOSS = float(LITERATURE.loss.value or 0.0)
+"""Loss of spin times speed where the shot does not tell it, m rad/s³."""
 
 LEAST_FRICTION = 1e-6
 """Friction of ice that slows no stone: a law needs some."""
@@ -58,6 +61,8 @@ class Laws:
     size : Estimate
         Distance of two stones' centres as they hit each other over two radii: what the scale of
         the tracks and their radius make of it.
+    inertia : float
+        k in the moment of inertia k m R².
     assumed : mapping of str to str
         ``restitution``, ``stone_friction`` or ``friction`` to what was assumed of it, where the
         shot does not tell.
@@ -70,6 +75,7 @@ class Laws:
     curl: Curl
     sd_turn: float = 0.0
     size: Estimate = UNSCALED
+    inertia: float = STONE.inertia
     assumed: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -96,17 +102,12 @@ def measured_laws(shot: Estimates | Results, radius: float) -> Laws:
         Estimate(max(rubbing.value or 0.0, 0.0), rubbing.stderr),
         ice,
         sd_friction,
-        _curl(shot.curl.value or 0.0, _of(shot.laws, "loss")) if curling else NoCurl(),
+        FCV1Curl(shot.curl.value or 0.0, _value(shot.laws, "loss", LOSS)) if curling else NoCurl(),
         (shot.curl.stderr or 0.0) if curling else 0.0,
         _of(shot.laws, "size") or UNSCALED,
+        _value(shot.laws, "inertia", STONE.inertia),
         assumed,
     )
-
-
-def _curl(turn: float, loss: Estimate | None) -> FCV1Curl:
-    """Return the law of curl, with the usual loss of spin where it is not told."""
-    usual = FCV1Curl(turn=turn)
-    return usual if loss is None or loss.value is None else replace(usual, loss=loss.value)
 
 
 def between_stones(laws: Joint | None, collisions: Sequence[Collision]) -> Estimate:
@@ -124,6 +125,12 @@ def between_stones(laws: Joint | None, collisions: Sequence[Collision]) -> Estim
     values, errors = np.array(told, float).T
     weights = errors**-2
     return Estimate(float(weights @ values / weights.sum()), float(weights.sum() ** -0.5))
+
+
+def _value(laws: Joint | None, name: str, usual: float) -> float:
+    """Value of one of the laws of a whole shot, the usual one where it does not tell it."""
+    told = _of(laws, name)
+    return usual if told is None or told.value is None else told.value
 
 
 def _of(laws: Joint | None, name: str) -> Estimate | None:

@@ -126,7 +126,8 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     sd[:, :2] = np.sqrt(sd[:, :2] ** 2 - shared[:, None] ** 2)
     thrown = _fastest(stones)
     radius = results.radius * (laws.size.value or 1.0)
-    impact = Frictional(laws.restitution.value or 0.0, laws.stone_friction.value or 0.0)
+    rubbing = laws.stone_friction.value or 0.0
+    impact = Frictional(laws.restitution.value or 0.0, rubbing, laws.inertia)
     stone = stones[thrown]
     speed = math.hypot(stone.vx, stone.vy)
     ahead = (stone.x * stone.vx + stone.y * stone.vy) / speed

@@ -7,6 +7,7 @@ from bisect import bisect_right
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -234,23 +235,32 @@ def check_shot(shot: Shot) -> None:
 
 def _faults_of_laws(shot: Shot) -> list[str]:
     """Say which numbers of the laws make no sense. A fit tries some that nothing is made of."""
-    faults = []
-    for law in (shot.impact, shot.ice, shot.curl):
-        for item in fields(law) if is_dataclass(law) else ():
-            value = getattr(law, item.name)
-            if isinstance(value, float | int) and not math.isfinite(value):
-                faults.append(f"{law.name}: {item.name} = {value:g} is not finite")
+    laws = (shot.impact, shot.ice, shot.curl)
+    faults = [
+        f"{law.name}: {key} = {value:g} is not finite"
+        for law in laws
+        for key, value, _ in _parameters(law)
+        if not math.isfinite(value)
+    ]
     if faults:
         return faults
-    for item in fields(shot.impact) if is_dataclass(shot.impact) else ():
-        value, least = getattr(shot.impact, item.name), item.metadata.get("low", -math.inf)
-        if value < least or (value == least and item.metadata.get("above")):
-            faults.append(f"{shot.impact.name}: {item.name} = {value:g} is too small")
+    faults += [
+        f"{shot.impact.name}: {key} = {value:g} is too small"
+        for key, value, limits in _parameters(shot.impact)
+        if value < limits.get("low", value) or (limits.get("above") and value == limits["low"])
+    ]
     if not float(shot.ice.deceleration(1.0)) > 0:
         faults.append(f"{shot.ice.name}: the ice must slow stones")
     if not float(shot.curl.spin_loss(1.0)) >= 0:
         faults.append(f"{shot.curl.name}: the ice must not speed up spins")
     return faults
+
+
+def _parameters(law: Any) -> list[tuple[str, float, Mapping[str, Any]]]:
+    """Names and values of the numbers of a law, and what limits they have."""
+    every = fields(law) if is_dataclass(law) else ()
+    named = [(item.name, getattr(law, item.name), item.metadata) for item in every]
+    return [one for one in named if isinstance(one[1], float | int)]
 
 
 _NUMBERS = ("x", "y", "vx", "vy", "omega", "theta", "mass")

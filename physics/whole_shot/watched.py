@@ -194,7 +194,8 @@ def watch(
     come = [name for name in traces if name in runs and not fit.pieces[runs[name][0]].rest]
     start = min(float(traces[name].t[0]) for name in come or traces)
     # Who comes into view on its way after a hit was hit out of sight: from where nobody knows.
-    late = [name for name in come if order and traces[name].t[0] > times[order[0]]]
+    first = min([times[k] for k in order[:1]] + [*ends.values()], default=np.inf)
+    late = [name for name in come if traces[name].t[0] > first]
     traces = {name: trace for name, trace in traces.items() if name in hit or name not in late}
     traces = {name: trace.since(start - RESTED) for name, trace in traces.items()}
     least = SLIPPERIEST if curling_size(radius) else 1e-5
@@ -343,7 +344,7 @@ def _seen(
     spin = spin_on(fit, rank, known, noise, middle) if middle < end else Estimate()
     if spin.value is None or spin.stderr is None:
         return []
-    # Ice takes spin from a stone as FCV1 has it, but only about so much.
+    # Ice takes about so much spin from a stone: how that hangs on its speed is not certain.
     away = abs(middle - (hits or seen)[0])
     speed = float(np.hypot(*fit.motion(rank, middle)[1]))
     lost = float(FCV1Curl().spin_loss(speed)) * away

@@ -42,16 +42,9 @@ LOOK_BACK, MOST_WAITING = 100, 72 * 1920 * 1080
 """Frames kept while the house has not been found, to be followed backwards from the first find;
 and pixels that they may have together: beyond that there are fewer of them."""
 
-WHOLE, FULLER = 0.75, 0.2
-"""Share of the 12-ft circle in view from which on a house that is found needs no second look, and
-how much more of another one must be in view."""
-
-ELSEWHERE = 1.0
-"""Distance of two tees, m, from which on they are of two houses."""
-
-LOOK_TWICE = 6
-"""Frames followed after which there is a second look, before any is given: the first ones of a
-dissolve hide more of the house in the middle than of one beside that is cut."""
+FULLER, ELSEWHERE = 0.2, 1.0
+"""How much more of the 12-ft circle must be in view for another house to take the place of one that
+is cut, and distance of two tees, m, from which on they are of two houses."""
 
 MOST_SPANS = 5
 """Runs of frames left out that one warning names: more are for the table of cameras."""
@@ -86,7 +79,6 @@ class HouseFollower:
         self._waiting: deque[Frame] = deque(maxlen=_looked_back(size))
         self._between = FIND_EVERY
         self._since_find = FIND_EVERY
-        self._in_view = 1.0
 
     def look(self, frame: Frame) -> Sequence[tuple[Frame, Camera]]:
         """Take in one more frame; a few are placed together where they can be predicted.
@@ -110,7 +102,10 @@ class HouseFollower:
         placed: list[tuple[Frame, Camera]] = []
         while self._ahead:
             placed += self._placed_next()
-        return placed if self._piece is None else [*placed, *self._piece.let_go()]
+        if self._piece is None:
+            return placed
+        self._piece.give_up_missed()
+        return [*placed, *self._piece.let_go()]
 
     @property
     def _stride(self) -> int:
@@ -141,7 +136,7 @@ class HouseFollower:
                 if house is not None:
                     del self._ahead[0]
                     return self._start(frame, house)
-                if piece.missed > MOST_MISSED:
+                if piece.missed > min(MOST_MISSED, _looked_back(self._size)):
                     seen, piece.lost = [], PATIENCE
             if seen:
                 del self._ahead[: len(seen)]
@@ -149,7 +144,7 @@ class HouseFollower:
                     self._waiting.extend(frames[: len(seen)])
                 else:
                     self._waiting.clear()
-                other = self._fuller(piece, frames[len(seen) - 1], seen[-1])
+                other = self._fuller(piece, frames[len(seen) - 1], seen)
                 if other is not None:
                     self._pieces.remove(piece)
                     self._piece = None
@@ -172,15 +167,18 @@ class HouseFollower:
         self._waiting.append(frame)
         return []
 
-    def _fuller(self, piece: Piece, frame: Frame, seen: Seen) -> HouseFit | None:
-        """Look once more where the house that was found is cut: there may be a fuller one."""
-        if self._in_view > WHOLE or piece.found < LOOK_TWICE:
+    def _fuller(self, piece: Piece, frame: Frame, seen: Sequence[Seen]) -> HouseFit | None:
+        """Look once more where the house that was found is cut: there may be a fuller one.
+
+        In the last of the frames that were followed.
+        """
+        if not piece.second_look_due(len(seen)):
             return None
-        before, self._in_view = self._in_view, 1.0
+        before, piece.in_view = piece.in_view, 1.0
         house = find_house(image_of(frame.picture), frame=frame.index, t=frame.t)
         if house is None or float(house.evidence.visible[TWELVE]) < before + FULLER:
             return None
-        tee = piece.camera(seen).ice(house.camera.project(np.zeros((1, 2))))
+        tee = piece.camera(seen[-1]).ice(house.camera.project(np.zeros((1, 2))))
         return house if float(np.hypot(*tee[0])) > ELSEWHERE else None
 
     def _watch_for_cuts(self, piece: Piece) -> None:
@@ -220,8 +218,6 @@ class HouseFollower:
     def finish(self) -> HouseTrack | None:
         """Fit what all frames of the shot share; None where no house was seen."""
         self.catch_up()
-        for piece in self._pieces:
-            piece.give_up_missed()
         pieces = [p for p in self._pieces if p.found]
         if not pieces:
             return None
@@ -242,8 +238,10 @@ class HouseFollower:
             piece = Piece(self._size, house.rig, prior, edges, self._shelf, house.vague)
             view = house.view
             self._pieces.append(piece)
-            self._in_view = float(house.evidence.visible[TWELVE])
-        if self._piece is not None and self._piece is not piece:
+            piece.in_view = float(house.evidence.visible[TWELVE])
+            if self._first is not None:
+                piece.in_view = 1.0  # it is the one that is asked for
+        if self._piece is not None and not (self._piece is piece and piece.goes_on_at(view)):
             self._piece.give_up_missed()
         self._piece = piece
         last = piece.seen[-1].index if piece.seen else -1

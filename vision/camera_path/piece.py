@@ -50,8 +50,14 @@ REFINE_FRAMES = 6
 """Of all frames so many, spread over them, say what they share on the way."""
 
 MOST_MISSED = 25
-"""Frames in a row that may be carried to where rings should be in view, and are not. Of 60 clips
-none has one but where another picture is blended in, and what is fixed to the ice is of that."""
+"""Frames in a row that may be carried to where rings should be in view, and are not, till these are
+seen. Of 60 clips none has one but where another picture is blended in, and what is fixed to the ice
+is of that."""
+
+WHOLE, LOOK_TWICE = 0.75, 6
+"""Share of the 12-ft circle in view from which on a house that is found needs no second look, and
+frames followed after which there is one, before any is given: the first ones of a dissolve hide
+more of the house in the middle than of one beside that is cut."""
 
 MOST_BLUR = 0.004
 """Blur of a picture beyond which it would not look like a sharp one of the same, widths of it."""
@@ -72,7 +78,7 @@ LEAST_EXPLAINED, SAME_RMS_PX = 0.8, 0.3
 how much worse than another's it may explain the house, px."""
 
 
-@dataclass
+@dataclass(eq=False)
 class Piece:
     """Frames of one camera, and what is known of it.
 
@@ -88,6 +94,8 @@ class Piece:
         Where marks and glimpses of the frames are put aside; the pieces of a clip share one.
     vague : bool
         Whether its first frame tells at best roughly how the camera leans.
+    in_view : float
+        Share of the 12-ft circle that its first frame shows; 1 after a second look.
     seen : list of Seen
         The frames so far.
     glimpses : list of Glimpse
@@ -107,6 +115,7 @@ class Piece:
     edges: EdgeTracker
     shelf: Shelf = field(default_factory=Shelf)
     vague: bool = False
+    in_view: float = 1.0
     seen: list[Seen] = field(default_factory=list)
     glimpses: list[Glimpse] = field(default_factory=list)
     found: int = 0
@@ -120,6 +129,12 @@ class Piece:
     _held: list[Frame] = field(default_factory=list)
     _waiting: list[Frame] = field(default_factory=list)
     _shaken: bool = False
+    _doubtful: int = 0
+
+    @property
+    def to_be_looked_at_twice(self) -> bool:
+        """Whether its house is cut, and nobody has looked for a fuller one yet."""
+        return self.in_view < WHOLE
 
     @property
     def missed(self) -> int:
@@ -127,9 +142,16 @@ class Piece:
         return self._ice.missed
 
     def give_up_missed(self) -> None:
-        """Leave out the last frames where they were carried so: nothing bears them out."""
-        del self.seen[len(self.seen) - self.missed :]
+        """Leave out the last frames if they were carried so: nothing bears them out."""
+        left = {seen.index for seen in self.seen[len(self.seen) - self._doubtful :]}
+        self.seen = [seen for seen in self.seen if seen.index not in left]
+        self._held = [frame for frame in self._held if frame.index not in left]
+        self._doubtful = 0
         self._ice.forget()
+
+    def goes_on_at(self, view: View) -> bool:
+        """Whether a view is near where the last frame was, or was carried to."""
+        return _length(view.sweep(self.seen[-1].view)) < LEAPT * self.size[0]
 
     def follow(self, frames: Sequence[Frame]) -> list[Seen]:
         """Follow into the next frames, of which there should be no more than `edges.stride`.
@@ -230,12 +252,14 @@ class Piece:
     def _held_back(self, frames: Sequence[Frame]) -> list[tuple[Frame, Camera]]:
         """Give frames with cameras, and those that waited: once what they share has been fitted.
 
-        Those that were carried to where rings should be in view wait until these are seen.
+        Those that were carried to where rings should be in view wait until these are seen, and
+        those of a house that is cut until it has been looked at twice.
         """
         self._held += frames
         self._refine()
         ready = self._due[0] > REFINE_AT[0] or len(self._held) > MOST_HELD
-        return self.let_go() if ready and not self.missed else []
+        waits = self._doubtful or self.to_be_looked_at_twice
+        return self.let_go() if ready and not waits else []
 
     def let_go(self) -> list[tuple[Frame, Camera]]:
         """Give the frames that still wait, but for those that were left out since."""
@@ -250,9 +274,15 @@ class Piece:
         frames, self._waiting, self._held = [*self._waiting, *self._held], [], []
         return frames
 
+    def second_look_due(self, more: int) -> bool:
+        """Whether there are enough frames, with so many more, to look for a fuller house."""
+        many = self.found + more >= LOOK_TWICE or len(self._held) + more > MOST_HELD
+        return self.to_be_looked_at_twice and many and not self.missed
+
     def _add(self, seen: Seen, picture: Picture) -> None:
         seen.marks.put_aside(self.shelf)
         self.seen.append(seen)
+        self._doubtful = 0 if seen.found or not self.missed else self._doubtful + 1
         self.found += seen.found
         self._picture, self.lost = picture, 0
         self._fresh = [*self._fresh, picture] if seen.found else []
@@ -380,7 +410,7 @@ class Piece:
             that wait, in order; as `take`.
         """
         before, self.seen, self.edges.stride = self.seen, [], 1
-        self._zooms = (float(view.vector[3]),) * 2
+        self._zooms, self._doubtful = (float(view.vector[3]),) * 2, 0
         self._ice.forget()
         settled = self.edges.settle([frame], [view], self.rig, view)
         first = settled[0] if settled else Seen(frame.index, frame.t, view, Kept(marks), True)
@@ -388,7 +418,7 @@ class Piece:
         self._make_good(before)
         placed = [frame]
         if before:
-            placed = [*self._followed_back(waiting, before), frame]
+            placed = [*self._followed_back(waiting, before, before[-1]), frame]
             self.seen = [*before, *reversed(self.seen)]
             self._picture = frame.picture
         else:
@@ -407,21 +437,25 @@ class Piece:
         self.seen = [*reversed(self.seen), *after]
         self._picture, self._ice, self._fresh, self._shaken, self.edges.stride = there
 
-    def _followed_back(self, waiting: Sequence[Frame], others: list[Seen]) -> list[Frame]:
-        """Follow back from the last frame through others, as far as it goes; these, in order."""
+    def _followed_back(
+        self, waiting: Sequence[Frame], others: list[Seen], before: Seen | None = None
+    ) -> list[Frame]:
+        """Follow back from the last frame through others, as far as it goes; these, in order.
+
+        Frames that do not show rings where they should count if they lead to the one `before`.
+        """
         left, placed = [*reversed(waiting)], []
-        while (
-            left
-            and self.missed <= MOST_MISSED
-            and (followed := self.follow(left[: self.edges.stride]))
-        ):
+        most = MOST_MISSED if before is None else 2 * MOST_MISSED
+        while left and self.missed <= most and (followed := self.follow(left[: self.edges.stride])):
             for earlier, seen in zip(left, followed, strict=False):
                 self._add(seen, earlier.picture)
                 placed.append(earlier)
             self._make_good(others)
             del left[: len(followed)]
-        del placed[len(placed) - self.missed :]
-        self.give_up_missed()
+        if left or before is None or not self.goes_on_at(before.view):
+            del placed[len(placed) - self._doubtful :]
+            self.give_up_missed()
+        self._doubtful = 0
         return placed[::-1]
 
     def camera(self, seen: Seen) -> Camera:

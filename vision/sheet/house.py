@@ -47,12 +47,13 @@ BRIGHT, GREY, MOSTLY = 0.6, 0.2, 0.5
 """Least lightness of ice, as a share of a picture's brightest tenth; by what share of that its
 colours differ; and how much of a picture must look so for pale paint to be looked for."""
 
-SPACINGS = (4.7, 5.0, 4.4)
+SPACINGS = (4.7, 5.0, 4.4, 5.4, 5.8, 6.2)
 """How far apart the houses of neighbouring sheets may be, m: the width of a sheet (4.42 to 5.00 m
-by the rules of World Curling), within what a fit reaches."""
+by the rules of World Curling) and what lies between two, within what a fit reaches."""
 
 LEAST_NEARER = 0.05
-"""By what share of the picture's width a house beside must be nearer to its middle."""
+"""By what share of the picture's width a house beside must be nearer to its middle, to the side or,
+seen from beside the sheets, up or down."""
 
 FLATTEST = np.tan(np.radians(66))
 """How far aside of the tee the camera may stand, in heights: one beside the players sees stones
@@ -126,13 +127,16 @@ def _middle_most(image: Image, small: Image, factor: float, found: HouseFit) -> 
 
 def _beside(small: Image, factor: float, found: HouseFit) -> Iterator[RoughFit]:
     """Fit the houses beside the one found that are nearer to the middle of the picture."""
-    width = found.camera.size[0]
+    width, height = found.camera.size
     offsets = np.array([side * apart for apart in SPACINGS for side in (-1, 1)])
     centres = found.camera.project(np.stack([offsets, 0 * offsets], -1))
     ends = found.camera.project(np.stack([offsets + 0.5, 0 * offsets], -1))
-    own = float(found.camera.project(np.zeros((1, 2)))[0, 0])
-    for offset, centre, end in zip(offsets.tolist(), centres, ends, strict=True):
-        if abs(centre[0] - width / 2) < abs(own - width / 2) - LEAST_NEARER * width:
+    middle = np.array([width, height]) / 2
+    own, *others = np.hypot(
+        *(np.concatenate([found.camera.project(np.zeros((1, 2))), centres]) - middle).T
+    ).tolist()
+    for offset, centre, end, aside in zip(offsets.tolist(), centres, ends, others, strict=True):
+        if aside < own - LEAST_NEARER * width:
             rig = found.rig.copy()
             rig[POSITION] -= offset, 0.0, 0.0
             scale = 2 * factor * float(np.hypot(*(end - centre)))

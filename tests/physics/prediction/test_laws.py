@@ -47,13 +47,15 @@ def test_the_distance_at_which_stones_meet_is_a_law_of_the_shot() -> None:
     assert size.stderr == pytest.approx(0.002)
 
 
-def test_spin_is_lost_as_the_shot_tells_else_as_usual() -> None:
+def test_loss_of_spin_and_inertia_are_as_the_shot_tells_else_as_usual() -> None:
     class Shot(Estimates):
-        laws = Joint(("loss",), (0.004,), ((1e-6,),))
+        laws = Joint(("loss", "inertia"), (0.004, 0.45), ((1e-6, 0.0), (0.0, 1e-4)))
 
-    assert measured_laws(Estimates(), R).curl == FCV1Curl(turn=0.0)
-    assert measured_laws(Shot(), R).curl == FCV1Curl(turn=0.0, loss=0.004)
+    untold, told = measured_laws(Estimates(), R), measured_laws(Shot(), R)
+    assert untold.curl == FCV1Curl(turn=0.0, loss=0.0125)
+    assert told.curl == FCV1Curl(turn=0.0, loss=0.004)
     assert measured_laws(Shot(), R / 5).curl == NoCurl()
+    assert (untold.inertia, told.inertia) == (0.5, 0.45)
 
 
 def test_what_a_shot_does_not_tell_is_assumed_with_its_doubt() -> None:
@@ -78,7 +80,7 @@ def test_measured_laws_are_taken_as_they_are_if_they_can_be() -> None:
     assert laws.restitution == Estimate(1.0, 0.03)
     assert laws.ice == Fit(0.002, 0.064, 0.0061)
     assert laws.sd_friction == pytest.approx(0.025)
-    assert (laws.curl, laws.sd_turn) == (FCV1Curl(turn=0.006), 0.001)
+    assert (laws.curl, laws.sd_turn) == (FCV1Curl(turn=0.006, loss=0.0125), 0.001)
     assert (measured_laws(shot, 0.025).curl, measured_laws(shot, 0.025).sd_turn) == (NoCurl(), 0.0)
 
 

@@ -31,6 +31,8 @@ from vision.film.picture import image_of
 from vision.optics.camera import Camera
 from vision.optics.lean import fit_leaning
 from vision.optics.projection import apply_homography
+from vision.sheet.house import find_house
+from vision.sheet.house_fit import HouseFit
 
 SCENE = replace(sample_scene(), paint=PAINTS["navy-orange"])
 
@@ -161,34 +163,105 @@ def test_no_camera_is_carried_onto_what_is_blended_in(tmp_path: Path, backwards:
     assert shown[frames].max() < 0.8
 
 
-def test_a_house_beside_that_is_cut_gives_way_to_the_one_in_the_middle(tmp_path: Path) -> None:
-    """As long as something hides that one, the other is all that there is."""
+def noisy(pictures: list[np.ndarray]) -> list[np.ndarray]:
+    rng = np.random.default_rng(7)
+    return [np.clip(p + rng.normal(0, 1.0, p.shape), 0, 255).astype(np.uint8) for p in pictures]
+
+
+def given_and_kept(
+    pictures: list[np.ndarray], first: HouseFit | None = None
+) -> tuple[list[int], list[int], HouseTrack]:
+    """Frames as they are given one by one, those of the track, and the track."""
+    size = (pictures[0].shape[1], pictures[0].shape[0])
+    follower = HouseFollower(size, first)
+    frames = [Frame(k, k / 25, picture) for k, picture in enumerate(noisy(pictures))]
+    given = [seen.index for frame in frames for seen, _ in follower.look(frame)]
+    given += [seen.index for seen, _ in follower.catch_up()]
+    track = follower.finish()
+    assert track is not None
+    return given, [camera.frame for camera in track.cameras], track
+
+
+def beside_and_whole() -> tuple[np.ndarray, np.ndarray, np.ndarray, CameraPath]:
+    """A house beside that is cut while the one in the middle is hidden, both, and the latter."""
     path = still_camera(target=(0.75, 0.3), px_per_m=115)
     house = render_still(SCENE, path)
-    tee = path.at(0.0).project(np.zeros((1, 3)))[0].astype(int).tolist()
-    paths = []
-    for k in range(24):
-        picture = house.copy()
-        if k < 3:
-            cv2.circle(picture, tee, 235, (60, 70, 60), -1)
-        paths.append(tmp_path / f"{k:02d}.png")
-        cv2.imwrite(str(paths[-1]), picture)
-    track = follow_house(open_clip(paths))
-    frames = [camera.frame for camera in track.cameras]
-    assert frames[-1] == 23
-    assert frames[0] <= 4
+    tee, other = (
+        path.at(0.0).project(np.array([[x, 0.0, 0.0]]))[0].astype(int).tolist() for x in (0, 5.73)
+    )
+    hidden, alone = house.copy(), house.copy()
+    cv2.circle(hidden, tee, 235, (60, 70, 60), -1)
+    cv2.circle(alone, other, 235, (60, 70, 60), -1)
+    return hidden, house, alone, path
+
+
+@pytest.mark.parametrize(
+    ("seen", "hidden", "again", "lost"),
+    [(1, 40, 0, 40), (1, 40, 20, 0), (20, 50, 20, 0), (20, 10, 0, 10), (20, 10, 20, 0)],
+)
+def test_rings_may_be_hidden_for_a_while(seen: int, hidden: int, again: int, lost: int) -> None:
+    """Corners beside carry the camera; unless the rings come back nothing bears it out."""
+    rng = np.random.default_rng(0)
+    path = still_camera()
+    house = render_still(SCENE, path)
+    x, y = path.at(0.0).project(np.zeros((1, 3)))[0].astype(int).tolist()
+    reach = 6 + round(abs(path.at(0.0).project(np.array([[1.83, 0.0, 0.0]]))[0, 0] - x))
+    for _ in range(80):
+        u, v = int(rng.integers(house.shape[1])), int(rng.integers(house.shape[0]))
+        if np.hypot(u - x, v - y) > reach + 30:
+            cv2.rectangle(house, (u, v), (u + 10, v + 8), rng.integers(0, 256, 3).tolist(), -1)
+    covered = house.copy()
+    cv2.rectangle(covered, (x - reach, y - reach), (x + reach, y + reach), (60, 70, 60), -1)
+    given, kept, track = given_and_kept([house] * seen + [covered] * hidden + [house] * again)
+    assert given == kept
+    assert len(kept) == seen + hidden + again - lost
+    ice = np.c_[RINGS, np.zeros(len(RINGS))]
+    pixels = path.at(0.0).project(ice)
+    assert max(rms(camera, pixels) for camera in track.cameras) < 0.01
+
+
+def test_what_was_blended_in_between_two_views_is_left_out() -> None:
+    house = render_still(SCENE, still_camera())
+    moved = render_still(SCENE, still_camera(target=(0.5, 0.9)))
+    other = crowd(np.random.default_rng(3), (house.shape[1], house.shape[0]))
+    mixed = [cv2.addWeighted(other, k / 8, house, 1 - k / 8, 0) for k in range(1, 9)]
+    given, kept, _ = given_and_kept([house] * 15 + mixed + [other] * 12 + [moved] * 20)
+    assert given == kept
+    assert {*range(15), *range(35, 55)} <= set(kept)
+    assert not set(kept) & set(range(23, 35))
+
+
+@pytest.mark.parametrize("before", [0, 12])
+def test_the_house_in_the_middle_takes_the_place_of_one_beside(before: int) -> None:
+    """Also where another camera's house came first."""
+    hidden, house, _, path = beside_and_whole()
+    other = render_still(SCENE, tilted_camera(0.7, height=6.0, px_per_m=85))
+    given, kept, track = given_and_kept([other] * before + [hidden] * 3 + [house] * 24)
+    assert given == [*range(before), *kept]
+    assert kept[0] >= before
+    assert kept[-24:] == list(range(before + 3, before + 27))
     ice = np.c_[RINGS, np.zeros(len(RINGS))]
     assert max(rms(camera, path.at(0.0).project(ice)) for camera in track.cameras) < 0.005
-    given = follow_in_order(paths)
-    assert given == frames
 
 
-def follow_in_order(paths: list[Path]) -> list[int]:
-    """Frames as they are given, one by one."""
-    clip = open_clip(paths)
-    follower = HouseFollower(clip.size)
-    given = [frame.index for frame in clip for frame, _ in follower.look(frame)]
-    return given + [frame.index for frame, _ in follower.catch_up()]
+def test_a_house_that_is_asked_for_stays_though_a_fuller_one_stands_beside() -> None:
+    hidden, house, _, _ = beside_and_whole()
+    first = find_house(hidden)
+    assert first is not None
+    given, kept, track = given_and_kept([house] * 24, first)
+    assert given == kept == list(range(24))
+    tee = track.cameras[-1].project(np.zeros((1, 2)))
+    assert np.abs(tee - first.camera.project(np.zeros((1, 2)))).max() < 1.0
+
+
+@pytest.mark.parametrize("count", [6, 7, 9])
+def test_each_frame_is_given_once_where_a_house_beside_vanishes(count: int) -> None:
+    hidden, _, alone, path = beside_and_whole()
+    given, kept, track = given_and_kept([hidden] * count + [alone] * 24)
+    assert given == sorted(set(given))
+    assert kept == list(range(count, count + 24))
+    ice = np.c_[RINGS, np.zeros(len(RINGS))]
+    assert max(rms(camera, path.at(0.0).project(ice)) for camera in track.cameras) < 0.005
 
 
 def test_a_house_is_followed_while_the_picture_fades_in() -> None:

@@ -177,6 +177,22 @@ def test_the_house_in_the_middle_is_taken_by_a_camera_aside(side: int) -> None:
     assert rms(errors(find_house(render_still(scene, path, 1.0)), path)) < 0.02
 
 
+@pytest.mark.parametrize("side", [-1, 1])
+def test_the_house_in_the_middle_is_taken_from_beside_the_sheets(side: int) -> None:
+    """People stand on it; the one farther off is bare, whole, and above it in the picture."""
+    scene = sample_scene()
+    near = replace(scene.sheet, pitch=5.0)
+    scene = replace(scene, sheet=near, people=sweepers(scene, 2.0))
+    path = still_camera(
+        position=(5.8 * side, -0.1, 5.4), target=(-0.6 * side, 0.3), px_per_m=75,
+        roll=side * np.pi / 2,
+    )  # fmt: skip
+    fit = find_house(render_still(scene, path, 1.0))
+    assert fit is not None
+    tee = path.at(1.0).project(np.zeros((1, 3)))
+    np.testing.assert_allclose(fit.camera.project(np.zeros((1, 2))), tee, atol=1.0)
+
+
 def test_no_house_is_no_house() -> None:
     rng = np.random.default_rng(0)
     bare = render_still(sample_scene(), still_camera(target=(0.0, 6.5)), 1.0)
