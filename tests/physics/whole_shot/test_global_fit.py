@@ -53,7 +53,8 @@ def test_held_unknowns_stay_and_shared_ones_are_one() -> None:
 
 
 def test_a_fit_that_comes_to_where_another_ended_is_that_one() -> None:
-    shots, fixed = [whole().shots[0]], {"friction": 0.0109, **STRAIGHT}
+    shots = [whole().shots[0]]
+    fixed = {"friction": 0.0109, "loss": 0.0125, "inertia": 0.5, **STRAIGHT}
     first = fit_shots(shots, fixed=fixed)
     aside = {"restitution": 0.7, "stone_friction": 0.1}
     assert fit_shots(shots, fixed=fixed, start=aside, ends=[first]) is first
