@@ -197,7 +197,14 @@ def beside_and_whole() -> tuple[np.ndarray, np.ndarray, np.ndarray, CameraPath]:
 
 @pytest.mark.parametrize(
     ("seen", "hidden", "again", "lost"),
-    [(1, 40, 0, 40), (1, 40, 20, 0), (20, 50, 20, 0), (20, 10, 0, 10), (20, 10, 20, 0)],
+    [
+        (1, 40, 0, 40),
+        (1, 40, 20, 0),
+        (20, 50, 20, 0),
+        (20, 70, 20, 70),
+        (20, 10, 0, 10),
+        (20, 10, 20, 0),
+    ],
 )
 def test_rings_may_be_hidden_for_a_while(seen: int, hidden: int, again: int, lost: int) -> None:
     """Corners beside carry the camera; unless the rings come back nothing bears it out."""
