@@ -17,7 +17,7 @@ from data.errors import InputError
 from data.results import SimulationScore
 from data.sheet import STONE
 from physics.estimate import Estimates
-from physics.impact import Frictional, Impact, PointMass, RigidBody
+from physics.impact import Impact, PointMass, RigidBody
 from physics.local_fit.traces import Trace
 from physics.local_fit.untold import OFTEN, SUDDEN
 from physics.local_fit.ways import SLOWING
@@ -97,9 +97,7 @@ def simulate_measured(
     clock = tracks.groupby("frame", sort=True)["t"].first()
     clock = clock[clock >= start]
     doubt = _doubt(tracks, start, estimates, laws)
-    rubbing = laws.stone_friction.value or 0.0
-    usual = Frictional(laws.restitution.value or 0.0, rubbing, laws.inertia)
-    again = Shot(stones, usual, laws.ice, laws.curl, radius * (laws.size.value or 1.0))
+    again = Shot(stones, laws.frictional, laws.ice, laws.curl, radius * (laws.size.value or 1.0))
     may = _may_have_been(estimates.whole, again, doubt, start)
     ends = explained_until(tracks, estimates, start)
     warnings += [
@@ -245,11 +243,11 @@ def _models(
     notes: dict[str, str] = {}
     if estimates.collisions and "stone_friction" in laws.assumed:
         notes["frictional"] = _as_it_fits(estimates.whole) or laws.assumed["stone_friction"]
-    e, rubbing = laws.restitution.value or 0.0, laws.stone_friction.value or 0.0
+    e = laws.restitution.value or 0.0
     out: dict[str, Impact | None] = {
         "point-mass": PointMass(e),
         "rigid-body": RigidBody(e),
-        "frictional": Frictional(e, rubbing, laws.inertia),
+        "frictional": laws.frictional,
     }
     hit_stones = {stone for hit in estimates.collisions for stone in hit.stones}
     blind = [s.name for s in stones if s.name in hit_stones and s.omega_after is None]

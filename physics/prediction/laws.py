@@ -13,6 +13,7 @@ from data.sheet import STONE, curling_size
 from physics.curl import Curl, FCV1Curl, NoCurl
 from physics.estimate import Estimates
 from physics.ice import Constant, Fit, IceLaw
+from physics.impact import Frictional
 from physics.whole_shot.watched import LITERATURE, STONE_FRICTION, literature
 
 UNSCALED = Estimate(1.0, 0.0)
@@ -77,6 +78,12 @@ class Laws:
     size: Estimate = UNSCALED
     inertia: float = STONE.inertia
     assumed: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def frictional(self) -> Frictional:
+        """What a hit does by these laws, with Coulomb's friction."""
+        rubbing = self.stone_friction.value or 0.0
+        return Frictional(self.restitution.value or 0.0, rubbing, self.inertia)
 
 
 def measured_laws(shot: Estimates | Results, radius: float) -> Laws:

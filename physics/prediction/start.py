@@ -15,7 +15,6 @@ from data.results import Results
 from data.sheet import SHEET, STONE, curling_size
 from physics.curl import NoCurl
 from physics.ice import IceLaw
-from physics.impact import Frictional
 from physics.local_fit.traces import shared_correlation
 from physics.prediction.laws import measured_laws
 from physics.prediction.throws import newcomers
@@ -126,8 +125,6 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     sd[:, :2] = np.sqrt(sd[:, :2] ** 2 - shared[:, None] ** 2)
     thrown = _fastest(stones)
     radius = results.radius * (laws.size.value or 1.0)
-    rubbing = laws.stone_friction.value or 0.0
-    impact = Frictional(laws.restitution.value or 0.0, rubbing, laws.inertia)
     stone = stones[thrown]
     speed = math.hypot(stone.vx, stone.vy)
     ahead = (stone.x * stone.vx + stone.y * stone.vy) / speed
@@ -140,7 +137,7 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     release = max(HOG_TO_TEE + ahead - way, 0.0) if curling else 0.0
     bounds = Bounds(1 if stone.vy > 0 else -1) if curling else None
     return Start(
-        Shot(tuple(moved), impact, laws.ice, laws.curl, radius, bounds),
+        Shot(tuple(moved), laws.frictional, laws.ice, laws.curl, radius, bounds),
         thrown,
         sd,
         together,

@@ -8,7 +8,6 @@ sightings far off lose weight as Huber has it.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -124,7 +123,7 @@ class _Problem:
         self.mean = np.array([_or(unknown.prior, "value", 0.0) for unknown in each])
         self.sd = np.array([_or(unknown.prior, "stderr", np.inf) for unknown in each])
         steps = {"omega": SPIN_STEP, "loss": LOSS_STEP}
-        self.step = np.array([steps.get(re.split("[:.]", n)[-1], STEP) for n in self.names])
+        self.step = np.array([steps.get(u.name.rpartition(".")[2], STEP) for u in each])
         self.sightings = sum(len(t.t) for shot in self.shots for t in shot.traces.values())
         self.ended = [(fit, inverse(fit.cov)) for fit in self.ends if fit.settled]
 

@@ -194,7 +194,7 @@ def watch(
     come = [name for name in traces if name in runs and not fit.pieces[runs[name][0]].rest]
     start = min(float(traces[name].t[0]) for name in come or traces)
     # Who comes into view on its way after a hit was hit out of sight: from where nobody knows.
-    first = min([times[k] for k in order[:1]] + [*ends.values()], default=np.inf)
+    first = min([*(times[k] for k in order), *ends.values()], default=np.inf)
     late = [name for name in come if traces[name].t[0] > first]
     traces = {name: trace for name, trace in traces.items() if name in hit or name not in late}
     traces = {name: trace.since(start - RESTED) for name, trace in traces.items()}

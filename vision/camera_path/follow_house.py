@@ -235,12 +235,11 @@ class HouseFollower:
         if piece is None:
             prior = OVERHEAD if house.overhead else ANYWHERE
             edges = EdgeTracker(self._size, house.evidence.palette, house.edge, house.evidence)
-            piece = Piece(self._size, house.rig, prior, edges, self._shelf, house.vague)
+            # One that is asked for needs no second look.
+            in_view = 1.0 if self._first is not None else float(house.evidence.visible[TWELVE])
+            piece = Piece(self._size, house.rig, prior, edges, self._shelf, house.vague, in_view)
             view = house.view
             self._pieces.append(piece)
-            piece.in_view = float(house.evidence.visible[TWELVE])
-            if self._first is not None:
-                piece.in_view = 1.0  # it is the one that is asked for
         if self._piece is not None and not (self._piece is piece and piece.goes_on_at(view)):
             self._piece.give_up_missed()
         self._piece = piece

@@ -127,16 +127,14 @@ def _middle_most(image: Image, small: Image, factor: float, found: HouseFit) -> 
 
 def _beside(small: Image, factor: float, found: HouseFit) -> Iterator[RoughFit]:
     """Fit the houses beside the one found that are nearer to the middle of the picture."""
-    width, height = found.camera.size
-    offsets = np.array([side * apart for apart in SPACINGS for side in (-1, 1)])
+    size = np.array(found.camera.size)
+    offsets = np.array([0.0, *(side * apart for apart in SPACINGS for side in (-1, 1))])
     centres = found.camera.project(np.stack([offsets, 0 * offsets], -1))
     ends = found.camera.project(np.stack([offsets + 0.5, 0 * offsets], -1))
-    middle = np.array([width, height]) / 2
-    own, *others = np.hypot(
-        *(np.concatenate([found.camera.project(np.zeros((1, 2))), centres]) - middle).T
-    ).tolist()
-    for offset, centre, end, aside in zip(offsets.tolist(), centres, ends, others, strict=True):
-        if aside < own - LEAST_NEARER * width:
+    aside = np.hypot(*(centres - size / 2).T)
+    nearer = aside < aside[0] - LEAST_NEARER * size[0]
+    for offset, centre, end, near in zip(offsets.tolist(), centres, ends, nearer, strict=True):
+        if near:
             rig = found.rig.copy()
             rig[POSITION] -= offset, 0.0, 0.0
             scale = 2 * factor * float(np.hypot(*(end - centre)))
