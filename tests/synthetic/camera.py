@@ -116,10 +116,12 @@ class View:
     def ground(self, pixels: ArrayLike) -> Array:
         """Ice points (..., 2), m, seen at picture pixels; NaN above the horizon."""
         offset = (self.lens.undistort(pixels) - self.lens.centre) / self.focal
-        ray = offset @ self.rotation[:2] + self.rotation[2]
-        drop = np.where(ray[..., 2] < -1e-6, -ray[..., 2], np.nan)
-        along = self.position[2] / drop
-        return np.asarray(self.position[:2] + ray[..., :2] * along[..., None])
+        right, down, ahead = self.rotation
+        u, v = offset[..., 0], offset[..., 1]
+        rise = u * right[2] + v * down[2] + ahead[2]
+        along = self.position[2] / np.where(rise < -1e-6, -rise, np.nan)
+        x, y = (self.position[k] + (u * right[k] + v * down[k] + ahead[k]) * along for k in (0, 1))
+        return np.stack([x, y], axis=-1)
 
     def scale(self, x: float, y: float) -> float:
         """Pixels per metre at an ice point: root of the Jacobian's determinant."""

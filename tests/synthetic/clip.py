@@ -17,7 +17,7 @@ from tests.synthetic.camera import CameraPath, View
 from tests.synthetic.ice import Picture
 from tests.synthetic.people import hidden
 from tests.synthetic.render import Studio, expose, in_cut, motion_of
-from tests.synthetic.scene import Graphic, Scene, Stone
+from tests.synthetic.scene import Graphic, Scene
 from tests.synthetic.video import on_ticks, write_video
 
 Frames = Iterator[tuple[float, Picture]]
@@ -132,8 +132,8 @@ def describe(scene: Scene, camera: CameraPath, times: ArrayLike, *, fps: float =
              *view.position, int(cut is None))
         )  # fmt: skip
         states = motion.at(float(t))
-        for stone, state in zip(scene.stones, states, strict=True):
-            visible = 0.0 if cut is not None else _visible(scene, view, stone, state, float(t))
+        seen = [0.0] * len(states) if cut is not None else _visible(scene, view, states, float(t))
+        for stone, state, visible in zip(scene.stones, states, seen, strict=True):
             rows.append((stone.name, frame, t, *state, visible))
     tracks = pd.DataFrame(rows, columns=["stone", "frame", "t", *STATE, "visible"])
     names = [s.name for s in scene.stones]
@@ -238,27 +238,28 @@ def _source() -> str:
     return hashlib.sha256(b"".join(f.read_bytes() for f in files)).hexdigest()
 
 
-def _visible(scene: Scene, view: View, stone: Stone, state: NDArray[np.float64], t: float) -> float:
-    radii = stone.cap_radius * np.sqrt((np.arange(60) + 0.5) / 60)
-    angles = np.arange(60) * np.pi * (3 - np.sqrt(5))
-    disc = np.column_stack(
-        [
-            state[0] + radii * np.cos(angles),
-            state[1] + radii * np.sin(angles),
-            np.full(60, stone.cap_height),
-        ]
+def _visible(scene: Scene, view: View, states: NDArray[np.float64], t: float) -> list[float]:
+    """The part of each stone's cap that is seen."""
+    radii, heights = (
+        np.array([[getattr(stone, name)] for stone in scene.stones]).reshape(-1, 1)
+        for name in ("cap_radius", "cap_height")
     )
-    undistorted, depth = view.pinhole(disc)
-    far = np.abs(undistorted - view.lens.centre).max() > np.hypot(*view.lens.size)
-    if (depth < 0.5).any() or far:
-        return 0.0
-    pixels = view.lens.distort(undistorted)
+    spread = radii * np.sqrt((np.arange(60) + 0.5) / 60)
+    angles = np.arange(60) * np.pi * (3 - np.sqrt(5))
+    x, y = states[:, :1] + spread * np.cos(angles), states[:, 1:2] + spread * np.sin(angles)
+    discs = np.stack([x, y, np.broadcast_to(heights, x.shape)], axis=-1)
+    undistorted, depth = view.pinhole(discs)
+    off = np.abs(undistorted - view.lens.centre).max(axis=(1, 2), initial=0.0)
+    near = (depth >= 0.5).all(-1) & (off <= np.hypot(*view.lens.size))
+    pixels = view.lens.distort(undistorted[near])
     w, h = view.lens.size
     seen = ((pixels >= -0.5) & (pixels <= [w - 0.5, h - 0.5])).all(-1)
     seen &= ~hidden(view, scene.people, t, pixels)
     for graphic in scene.graphics:
         seen &= ~_under(graphic, pixels)
-    return float(seen.mean())
+    visible = np.zeros(len(states))
+    visible[near] = seen.mean(-1)
+    return [float(share) for share in visible]
 
 
 def _under(graphic: Graphic, pixels: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -5,7 +5,8 @@ Edges are painted with their exact distance, so that the 50 % point of an edge l
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import lru_cache
 
 import cv2
 import numpy as np
@@ -33,29 +34,54 @@ class Extent:
 
 @dataclass(frozen=True)
 class Plate:
-    """The same ice at falling resolution; pixel (0, 0) is centred half a pixel inside."""
+    """The same ice at falling resolution, in steps of √2.
+
+    Pixel (0, 0) is centred half a pixel inside. What is coarser than `finest` is made when it is
+    first asked for.
+    """
 
     extent: Extent
-    levels: tuple[Picture, ...]
+    finest: Picture
     outside: Colour
+    coarser: dict[int, Picture] = field(default_factory=dict)
+
+    @property
+    def coarsest(self) -> int:
+        """The last level: 6, or the first with no more than 150 pixels along one side."""
+        few = (k for k in range(6) if min(self._size(k)) <= 150)
+        return next(few, 6)
+
+    def _size(self, level: int) -> tuple[int, int]:
+        h, w = (round(n * 0.5 ** (level / 2)) for n in self.finest.shape[:2])
+        return w, h
+
+    def level(self, level: int) -> Picture:
+        """The ice at finest density over √2 to the power of `level`."""
+        if level == 0:
+            return self.finest
+        if level not in self.coarser:
+            # by size and not by factor, so that the coarser picture spans the whole extent
+            smaller = cv2.resize(self.finest, self._size(level), interpolation=cv2.INTER_AREA)
+            self.coarser[level] = np.asarray(smaller, np.uint8)
+        return self.coarser[level]
 
     def density(self, level: int) -> tuple[float, float]:
         """Plate pixels per metre along x and y."""
-        h, w = self.levels[level].shape[:2]
+        w, h = self._size(level)
         e = self.extent
         return w / (e.x1 - e.x0), h / (e.y1 - e.y0)
 
 
 class _Canvas:
-    """A float picture of the ice in which shapes are blended by their coverage."""
+    """A float picture (3, h, w) of the ice in which shapes are blended by their coverage."""
 
     def __init__(self, extent: Extent, density: float, ground: Colour) -> None:
         w = round((extent.x1 - extent.x0) * density)
         h = round((extent.y1 - extent.y0) * density)
         whole = Extent(extent.x0, extent.x0 + w / density, extent.y1 - h / density, extent.y1)
         self.extent, self.density = whole, density
-        self.image = np.empty((h, w, 3), np.float32)
-        self.image[:] = ground
+        self.image = np.empty((3, h, w), np.float32)
+        self.image[:] = np.array(ground)[:, None, None]
         self.x = (extent.x0 + (np.arange(w) + 0.5) / density).astype(np.float32)
         self.y = (extent.y1 - (np.arange(h) + 0.5) / density).astype(np.float32)
 
@@ -68,8 +94,9 @@ class _Canvas:
         return slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
 
     def blend(self, where: tuple[slice, slice], coverage: Field, colour: Colour) -> None:
-        part = self.image[where]
-        part += coverage[..., None] * (np.array(colour, np.float32) - part)
+        for layer, value in zip(self.image, colour, strict=True):
+            part = layer[where]
+            part += coverage * (np.float32(value) - part)
 
     def _cover(self, distance: Field) -> Field:
         return np.asarray(np.clip(0.5 - distance * self.density, 0, 1), np.float32)
@@ -114,23 +141,21 @@ class _Canvas:
 
 
 def paint_plate(scene: Scene, extent: Extent, density: float) -> Plate:
-    """Paint the scene's ice at `density` px/m, with coarser levels in steps of √2."""
-    sheet = scene.sheet
+    """Paint the scene's ice at `density` px/m."""
+    return _painted(scene.sheet, scene.paint, scene.light, scene.seed, extent, density)
+
+
+@lru_cache(maxsize=2)  # stills are often of the same ice, seen by the same camera
+def _painted(
+    sheet: Sheet, paint: Paint, light: Light, seed: int, extent: Extent, density: float
+) -> Plate:
     canvas = _Canvas(extent, density, sheet.carpet)
     for n in (-2, -1, 1, 2):
-        _paint_sheet(canvas, sheet, scene.paint, n * sheet.pitch)
-    _paint_sheet(canvas, sheet, scene.paint, 0.0)
-    _texture(canvas, scene.light, np.random.default_rng(scene.seed))
-    finest = np.clip(canvas.image + 0.5, 0, 255).astype(np.uint8)
-    levels = [finest]
-    while min(levels[-1].shape[:2]) > 150 and len(levels) < 7:
-        factor = 0.5 ** (len(levels) / 2)
-        h, w = (round(n * factor) for n in finest.shape[:2])
-        # by size and not by factor, so that the coarser picture spans the whole extent
-        levels.append(
-            np.asarray(cv2.resize(finest, (w, h), interpolation=cv2.INTER_AREA), np.uint8)
-        )
-    return Plate(canvas.extent, tuple(levels), sheet.carpet)
+        _paint_sheet(canvas, sheet, paint, n * sheet.pitch)
+    _paint_sheet(canvas, sheet, paint, 0.0)
+    _texture(canvas, light, np.random.default_rng(seed))
+    finest = cv2.merge([np.clip(c + 0.5, 0, 255).astype(np.uint8) for c in canvas.image])
+    return Plate(canvas.extent, np.asarray(finest, np.uint8), sheet.carpet)
 
 
 def _paint_sheet(canvas: _Canvas, sheet: Sheet, paint: Paint, x: float) -> None:
@@ -171,7 +196,7 @@ def _stripes(sheet: Sheet) -> tuple[tuple[float, float], ...]:
 
 
 def _texture(canvas: _Canvas, light: Light, rng: np.random.Generator) -> None:
-    h, w = canvas.image.shape[:2]
+    h, w = canvas.image.shape[1:]
     metre = canvas.density
     tone = np.zeros((h, w), np.float32)
     for length, depth in ((2.2, 3.0), (0.6, 1.6), (0.05, 0.8)):
@@ -185,7 +210,8 @@ def _texture(canvas: _Canvas, light: Light, rng: np.random.Generator) -> None:
         where = canvas.window(x - 3 * spread, x + 3 * spread, y - 3 * spread, y + 3 * spread)
         r2 = (canvas.x[where[1]][None] - x) ** 2 + (canvas.y[where[0]][:, None] - y) ** 2
         tone[where] += light.glare * np.exp(-r2 / (2 * spread**2))
-    canvas.image += tone[..., None] * (0.25 + 0.75 * canvas.image / 255)
+    for layer in canvas.image:
+        layer += tone * (0.25 + 0.75 / 255 * layer)
 
 
 def warp(plate: Plate, view: View) -> Picture:
@@ -197,18 +223,18 @@ def warp(plate: Plate, view: View) -> Picture:
     finest = plate.density(0)
     middle = view.ground(view.lens.centre)
     wanted = finest[0] / max(view.scale(float(middle[0]), float(middle[1])), 1.0)
-    level = int(np.clip(np.floor(2 * np.log2(max(wanted, 1.0)) + 0.5), 0, len(plate.levels) - 1))
+    level = int(np.clip(np.floor(2 * np.log2(max(wanted, 1.0)) + 0.5), 0, plate.coarsest))
     dx, dy = plate.density(level)
     e = plate.extent
     maps = []
     for metres in ((nodes[..., 0] - e.x0) * dx - 0.5, (e.y1 - nodes[..., 1]) * dy - 0.5):
-        grid = np.nan_to_num(metres, nan=-1e4).clip(-1e4, 3e4)
+        grid = np.nan_to_num(metres, nan=-1e4).clip(-1e4, 3e4).astype(np.float32)
         full = cv2.resize(
             grid, (len(columns) * CELL, len(rows) * CELL), interpolation=cv2.INTER_LINEAR
         )
-        maps.append(full[CELL : CELL + h, CELL : CELL + w].astype(np.float32))
+        maps.append(full[CELL : CELL + h, CELL : CELL + w])
     warped = cv2.remap(
-        plate.levels[level], maps[0], maps[1], cv2.INTER_LINEAR,
+        plate.level(level), maps[0], maps[1], cv2.INTER_LINEAR,
         borderMode=cv2.BORDER_CONSTANT, borderValue=plate.outside,
     )  # fmt: skip
     return np.asarray(warped, np.uint8)

@@ -69,26 +69,30 @@ def draw_people(picture: Picture, view: View, people: tuple[Person, ...], t: flo
     bodies = [limbs(person, t) for person in people]
     for body in bodies:
         for window, distance, _, _ in _covered(view, tuple(_shadow(part) for part in body)):
-            keep = 1 - 0.13 * np.clip(0.5 - distance / 14, 0, 1)
-            picture[window] = (picture[window] * keep[..., None] + 0.5).astype(np.uint8)
+            dark = distance < 7
+            keep = 1 - 0.13 * np.clip(0.5 - distance[dark] / 14, 0, 1)
+            part = picture[window]
+            part[dark] = (part[dark] * keep[:, None] + 0.5).astype(np.uint8)
     for body in bodies:
-        for window, distance, radius, part in _covered(view, body):
-            cover = np.clip(0.5 - distance, 0, 1)[..., None]
-            inside = np.clip(-distance / np.maximum(radius, 1.0), 0, 1)[..., None]
-            tone = np.array(part.colour, float) * (0.72 + 0.33 * np.sqrt(inside))
-            mixed = picture[window] + cover * (tone - picture[window])
-            picture[window] = np.clip(mixed + 0.5, 0, 255).astype(np.uint8)
+        for window, distance, radius, limb in _covered(view, body):
+            seen = distance < 0.5
+            depth, part = distance[seen], picture[window]
+            cover = np.clip(0.5 - depth, 0, 1)[:, None]
+            inside = np.clip(-depth / np.maximum(radius[seen], 1.0), 0, 1)[:, None]
+            tone = np.array(limb.colour, np.float32) * (0.72 + 0.33 * np.sqrt(inside))
+            mixed = part[seen] + cover * (tone - part[seen])
+            part[seen] = np.clip(mixed + 0.5, 0, 255).astype(np.uint8)
 
 
 def hidden(view: View, people: tuple[Person, ...], t: float, pixels: Array) -> NDArray[np.bool_]:
-    """Whether picture pixels, shape (n, 2), lie under somebody."""
-    under = np.zeros(len(pixels), bool)
+    """Whether picture pixels, shape (..., 2), lie under somebody."""
+    under = np.zeros(pixels.shape[:-1], bool)
     points = view.lens.undistort(pixels)
     for person in people:
         for part in limbs(person, t):
             found = _on_screen(view, part)
             if found is not None:
-                under |= _distance(points, *found)[0] < 0
+                under |= _distance(points[..., 0], points[..., 1], *found)[0] < 0
     return under
 
 
@@ -106,12 +110,14 @@ def _on_screen(view: View, part: Limb) -> tuple[Array, Array] | None:
     return ends, view.focal * part.radius / depth
 
 
-def _distance(points: Array, ends: Array, radii: Array) -> tuple[Array, Array]:
-    axis = ends[1] - ends[0]
-    along = np.clip((points - ends[0]) @ axis / max(float(axis @ axis), 1e-9), 0, 1)
-    near = ends[0] + along[..., None] * axis
+def _distance(x: Array, y: Array, ends: Array, radii: Array) -> tuple[Array, Array]:
+    u, v = x - ends[0, 0], y - ends[0, 1]
+    axis_u, axis_v = (ends[1] - ends[0]).tolist()
+    squared = max(axis_u * axis_u + axis_v * axis_v, 1e-9)
+    along = np.clip((u * axis_u + v * axis_v) / squared, 0, 1)
     radius = radii[0] + along * (radii[1] - radii[0])
-    return np.linalg.norm(points - near, axis=-1) - radius, radius
+    u, v = u - along * axis_u, v - along * axis_v
+    return np.sqrt(u * u + v * v) - radius, radius
 
 
 def _covered(
@@ -133,8 +139,10 @@ def _covered(
         if (low >= high).any():
             continue
         window = slice(int(low[1]), int(high[1])), slice(int(low[0]), int(high[0]))
-        grid = np.stack(
-            np.meshgrid(np.arange(low[0], high[0]), np.arange(low[1], high[1])), axis=-1
-        )
-        distance, radius = _distance(view.lens.undistort(grid), ends, radii)
+        x, y = np.arange(low[0], high[0], dtype=float), np.arange(low[1], high[1], dtype=float)
+        if view.lens.k1 or view.lens.k2:
+            grid = view.lens.undistort(np.stack(np.meshgrid(x, y), axis=-1))
+            distance, radius = _distance(grid[..., 0], grid[..., 1], ends, radii)
+        else:
+            distance, radius = _distance(x[None], y[:, None], ends, radii)
         yield window, distance, radius, part

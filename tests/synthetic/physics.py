@@ -147,15 +147,19 @@ def _advance(s: list[float], ice: Ice, dt: float) -> None:
         travel = 0.5 * (speed + slower) * dt
         if slower <= 0:
             travel, slower = speed * speed / (2 * GRAVITY * ice.friction(speed)), 0.0
-        heading = math.atan2(vy, vx)
-        bend = 0.0
         if ice.curl and omega:
+            heading = math.atan2(vy, vx)
             rate = ice.curl * max(speed, 0.01) ** -ice.curl_power
             bend = math.copysign(rate * dt, omega)
-        s[0] = x + travel * math.cos(heading + bend / 2)
-        s[1] = y + travel * math.sin(heading + bend / 2)
-        s[3] = slower * math.cos(heading + bend)
-        s[4] = slower * math.sin(heading + bend)
+            s[0] = x + travel * math.cos(heading + bend / 2)
+            s[1] = y + travel * math.sin(heading + bend / 2)
+            s[3] = slower * math.cos(heading + bend)
+            s[4] = slower * math.sin(heading + bend)
+        else:
+            s[0] = x + travel * vx / speed
+            s[1] = y + travel * vy / speed
+            s[3] = slower * vx / speed
+            s[4] = slower * vy / speed
     spin = math.copysign(max(abs(omega) - loss * dt, 0.0), omega)
     s[2] = theta + 0.5 * (omega + spin) * dt
     s[5] = spin
@@ -197,15 +201,18 @@ def simulate(
     for k in range(1, math.ceil(duration / step) + 1):
         t = k * step
         moving = [i for i, s in enumerate(now) if s[3] or s[4]]
-        for i, s in enumerate(now):
-            if i in moving or s[5]:
+        for s in now:
+            if s[3] or s[4] or s[5]:
                 _advance(s, ice, step)
         for i in moving:
             for j in range(len(now)):
-                if j == i or (j in moving and j < i):
+                if j == i or (j < i and j in moving):
                     continue
                 a, b = now[i], now[j]
-                dx, dy = b[0] - a[0], b[1] - a[1]
+                dx = b[0] - a[0]
+                if dx >= reach or dx <= -reach:
+                    continue
+                dy = b[1] - a[1]
                 if dx * dx + dy * dy >= reach * reach:
                     continue
                 gap = math.hypot(dx, dy)

@@ -7,7 +7,7 @@ lie symmetrically about it.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, lru_cache
 
 import cv2
 import numpy as np
@@ -45,7 +45,7 @@ class Studio:
     motion: Motion
     supersample: int = 1
     plates: dict[CameraPath, Plate] = field(default_factory=dict)
-    grain: dict[tuple[int, int], NDArray[np.int16]] = field(default_factory=dict)
+    grain: dict[tuple[int, int], NDArray[np.float32]] = field(default_factory=dict)
 
     def plate(self, camera: CameraPath) -> Plate:
         """The painted ice, fine and wide enough for this camera."""
@@ -83,7 +83,7 @@ def expose(
     if light.softness > 0:
         cv2.GaussianBlur(clean, (0, 0), light.softness, dst=clean)
     clean = coded(clean, light.power)
-    clean *= _fall_off(camera.size, light.vignette, light.gain)
+    cv2.multiply(clean, _fall_off(camera.size, light.vignette, light.gain), dst=clean)
     picture = _with_grain(studio, clean, light.noise, rng)
     for graphic in scene.graphics:
         _overlay(picture, graphic)
@@ -111,7 +111,7 @@ def _integrate(studio: Studio, camera: CameraPath, t: float, shutter: float) -> 
     people_move = bool(studio.scene.people) and steps == 1
     if people_move:
         steps = 2
-    total: NDArray[np.float32] | None = None
+    total = np.zeros((*camera.size[::-1], 3), np.float32)
     ice = warp(studio.plate(camera), _enlarged(view, studio.supersample)) if sway < STILL else None
     for k in range(steps):
         moment = t + shutter * ((k + 0.5) / steps - 0.5)
@@ -124,9 +124,8 @@ def _integrate(studio: Studio, camera: CameraPath, t: float, shutter: float) -> 
             picture = np.asarray(
                 cv2.resize(picture, camera.size, interpolation=cv2.INTER_AREA), np.uint8
             )
-        mixed = lit(picture, studio.scene.light.power)
-        total = mixed if total is None else cv2.add(total, mixed, dst=total)
-    assert total is not None
+        power = studio.scene.light.power
+        cv2.accumulate(picture if power == 1 else lit(picture, power), total)
     total /= np.float32(steps)
     return total
 
@@ -170,11 +169,13 @@ def _elsewhere(
     return np.clip(wide[:, pan : pan + w], 0, 255)
 
 
+@lru_cache(maxsize=2)
 def _fall_off(size: tuple[int, int], vignette: float, gain: float) -> NDArray[np.float32]:
     w, h = size
     x = (np.arange(w, dtype=np.float32) - (w - 1) / 2) / np.float32(np.hypot(w, h) / 2)
     y = (np.arange(h, dtype=np.float32) - (h - 1) / 2) / np.float32(np.hypot(w, h) / 2)
-    return np.asarray(gain * (1 - vignette * (x[None] ** 2 + y[:, None] ** 2))[..., None])
+    falling = np.float32(gain) * (1 - np.float32(vignette) * (x[None] ** 2 + y[:, None] ** 2))
+    return np.asarray(cv2.merge([falling] * 3), np.float32)
 
 
 def _with_grain(
@@ -185,12 +186,11 @@ def _with_grain(
     h, w = clean.shape[:2]
     pad = 61
     if (w, h) not in studio.grain:
-        normal = rng.standard_normal((h + pad, w + pad, 3), dtype=np.float32)
-        studio.grain[w, h] = (normal * 64).astype(np.int16)
+        studio.grain[w, h] = rng.standard_normal((h + pad, w + pad, 3), dtype=np.float32)
     row, column = rng.integers(0, pad, 2)
     grain = studio.grain[w, h][row : row + h, column : column + w]
-    noisy = clean + grain * np.float32(noise / 64 * rng.choice([-1, 1])) + 0.5
-    return np.asarray(np.clip(noisy, 0, 255), np.uint8)
+    noisy = cv2.scaleAdd(grain, float(noise * rng.choice([-1, 1])), clean)
+    return np.asarray(cv2.convertScaleAbs(cv2.max(noisy, 0.0, dst=noisy)), np.uint8)
 
 
 def _overlay(picture: Picture, graphic: Graphic) -> None:
