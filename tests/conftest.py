@@ -1,5 +1,8 @@
 from __future__ import annotations
 
+import fcntl
+import os
+import pickle
 from pathlib import Path
 
 import pytest
@@ -22,5 +25,16 @@ def shared() -> Path:
 
 @pytest.fixture(scope="session")
 def sample(tmp_path_factory: pytest.TempPathFactory) -> pipeline.Run:
-    """One run of the bundled sample with all its files."""
-    return pipeline.run(out=tmp_path_factory.mktemp("sample") / "out")
+    """One run of the bundled sample with all its files, which no test may change.
+
+    Processes of pytest-xdist share it: the first that asks for it makes it, others wait and read.
+    """
+    base = tmp_path_factory.getbasetemp()
+    shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+    with (shared / "sample.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        kept = shared / "sample.pickle"
+        if not kept.exists():
+            run = pipeline.run(out=shared / "sample" / "out")
+            kept.write_bytes(pickle.dumps(run))
+        return pickle.loads(kept.read_bytes())
