@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,7 @@ from physics.kalman import smooth
 from physics.local_fit.contacts import find_contacts
 from physics.local_fit.local import estimate_locally
 from tests.physics.watch import RADIUS, airtable, discs, hit_motion, semireal, uncut, watch
-from tests.synthetic.physics import Ice, Impact, Start, simulate
+from tests.synthetic.physics import Ice, Impact, Motion, Start, simulate
 
 MASSES = {"a": 28.73, "b": 28.19}
 
@@ -23,38 +24,35 @@ def measure(seen: pd.DataFrame, radius: float = RADIUS) -> Estimates:
     return estimate(seen, find_contacts(seen, radius), radius=radius)
 
 
-@pytest.mark.parametrize(
-    ("sd", "fps", "speed", "given"),
-    [(0.01, 30, 2.0, True), (0.003, 25, 1.0, False), (0.01, 60, 1.0, True)],
-)
-def test_errors_mean_what_they_say(sd: float, fps: float, speed: float, given: bool) -> None:
+@cache
+def repeated(sd: float, fps: float, speed: float, given: bool) -> tuple[Motion, list[Estimates]]:
+    """A hit, and what is measured of it with other noise each time."""
+    motion = hit_motion(speed, 0.06, before=1.0, after=2.0, restitution=0.8, stone_friction=0.1)
     rng = np.random.default_rng(11)
-    truth, slow = 0.8, 0.0109
-    motion = hit_motion(speed, 0.06, before=1.0, after=2.0, restitution=truth, friction=slow)
-    rows = []
-    for _ in range(20):
-        found = measure(watch(motion, rng, fps=fps, sd=sd, given=given))
-        rows.append(
-            (
-                found.restitution.value,
-                found.restitution.stderr,
-                found.friction.value,
-                found.friction.stderr,
-            )
-        )
-    for value, stderr, true in zip(
-        np.array(rows, float).T[::2], np.array(rows, float).T[1::2], (truth, slow), strict=True
+    return motion, [measure(watch(motion, rng, fps=fps, sd=sd, given=given)) for _ in range(14)]
+
+
+CASES = [(0.01, 30, 2.0, True), (0.003, 25, 1.0, False)]
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_errors_mean_what_they_say(case: tuple[float, float, float, bool]) -> None:
+    _, found = repeated(*case)
+    for told, true in (
+        ([one.restitution for one in found], 0.8),
+        ([one.friction for one in found], 0.0109),
     ):
-        pull = (value - true) / stderr
+        value, stderr = np.array([(one.value, one.stderr) for one in told], float).T
         assert abs(np.mean(value) - true) < 4 * np.std(value) / np.sqrt(len(value))
-        assert np.std(value) == pytest.approx(np.median(stderr), rel=0.35)
-        assert 0.87 <= np.mean(np.abs(pull) < 2) <= 1.0
+        # The scatter of 14 is known to a fifth.
+        assert np.std(value) == pytest.approx(np.median(stderr), rel=0.4)
+        assert np.mean(np.abs(value - true) < 2 * stderr) > 0.85
 
 
 def test_precision_of_a_short_clip() -> None:
     motion = hit_motion(2.0, 0.0, before=0.5, after=0.5)
     rng = np.random.default_rng(12)
-    found = [measure(watch(motion, rng, sd=0.01)).restitution for _ in range(8)]
+    found = [measure(watch(motion, rng, sd=0.01)).restitution for _ in range(5)]
     assert np.median([float(e.stderr or np.nan) for e in found]) < 0.022
     assert np.std([float(e.value or np.nan) for e in found]) < 0.025
 
@@ -96,19 +94,19 @@ def test_states_and_spins_beside_the_hit() -> None:
     assert hit.energy_lost == pytest.approx(lost, abs=0.02)
 
 
-def test_errors_of_the_states_mean_what_they_say() -> None:
-    motion = hit_motion(1.5, 0.1, before=0.7, after=1.0, stone_friction=0.1)
-    rng = np.random.default_rng(17)
-    true, pulls = motion.hits[0], []
-    for _ in range(12):
-        (hit,) = measure(watch(motion, rng, sd=0.004)).collisions
+@pytest.mark.parametrize("case", CASES)
+def test_errors_of_the_states_mean_what_they_say(case: tuple[float, float, float, bool]) -> None:
+    motion, found = repeated(*case)
+    true, pulls, sd = motion.hits[0], [], case[0]
+    for one in found:
+        (hit,) = one.collisions
         for name, before, after in zip("AB", true.before, true.after, strict=True):
             for state, values in ((hit.before[name], before), (hit.after[name], after)):
                 if np.hypot(*values[:2]) > 0:
                     off = np.array([state.vx, state.vy, state.omega], float) - values
                     pulls.append(off / [state.sd_vx, state.sd_vy, state.sd_omega])
                 assert state.sd_x is not None
-                assert 0.0002 < state.sd_x < 0.004
+                assert 0.05 * sd < state.sd_x < sd
     assert 0.4 < np.std(pulls) < 1.3
     assert np.mean(np.abs(pulls) < 2) > 0.9
 
@@ -263,12 +261,13 @@ def test_errors_that_places_share_are_in_that_of_restitution() -> None:
     for seed in range(6):
         rng = np.random.default_rng(200 + seed)
         seen = watch(hit_motion(1.2, 0.08), rng, sd=0.001)
-        alone = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).restitution
         # A map of the ice that is wrong by 3 mm, now this way, now that, alike over a metre.
         x, y = seen["x"].to_numpy(), seen["y"].to_numpy()
         for axis, first, second in (("x", x, y), ("y", y, x)):
             wave = np.sin(first + rng.uniform(0, 6)) * np.sin(second + rng.uniform(0, 6))
             seen[axis] += 0.006 * wave
+        if seed == 0:
+            alone = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).restitution
         seen[["sd_place_x", "sd_place_y"]] = 0.003
         found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).restitution
         assert found.value is not None
@@ -281,7 +280,7 @@ def test_errors_that_places_share_are_in_that_of_restitution() -> None:
 
 def test_ice_that_slows_slow_stones_more_does_not_bias_restitution() -> None:
     errors = []
-    for seed in range(8):
+    for seed in range(6):
         rng = np.random.default_rng(400 + seed)
         starts = [
             Start(rng.uniform(0.03, 0.2), -1.2, 0, rng.uniform(0.7, 1.6), 0.3, 1.0),
@@ -436,24 +435,23 @@ def test_however_long_stones_rest_the_estimates_are_the_same(
     sd: float, at_rest: float, given: bool
 ) -> None:
     motion = hit_motion(0.8, 0.05, after=9.0)
-    cut, *long = [
+    cut, long = [
         estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
-        for rests in ((3.0, 3.0), (40.0, 3.0), (160.0, 200.0))
+        for rests in ((3.0, 3.0), (160.0, 200.0))
         for seen in [uncut(motion, rests, sd=sd, at_rest=at_rest, given=given)]
     ]
     assert cut.whole is not None
     assert cut.restitution.value == pytest.approx(0.83, abs=2.5 * (cut.restitution.stderr or 0))
-    for one in long:
-        assert len(one.collisions) == 1
-        assert one.whole is not None
-        for told, known in (
-            (one.restitution, cut.restitution),
-            (one.local.restitution, cut.local.restitution),
-            (one.friction, cut.friction),
-            (one.local.friction, cut.local.friction),
-        ):
-            assert told.value == pytest.approx(known.value, abs=0.6 * (known.stderr or 0))
-            assert told.stderr == pytest.approx(known.stderr, rel=0.3)
+    assert len(long.collisions) == 1
+    assert long.whole is not None
+    for told, known in (
+        (long.restitution, cut.restitution),
+        (long.local.restitution, cut.local.restitution),
+        (long.friction, cut.friction),
+        (long.local.friction, cut.local.friction),
+    ):
+        assert told.value == pytest.approx(known.value, abs=0.6 * (known.stderr or 0))
+        assert told.stderr == pytest.approx(known.stderr, rel=0.3)
 
 
 @pytest.mark.parametrize(
