@@ -24,7 +24,7 @@ def test_a_hit_is_timed_to_a_fraction_of_a_frame() -> None:
     rng = np.random.default_rng(1)
     motion = hit_motion()
     pulls = []
-    for _ in range(30):
+    for _ in range(20):
         (hit,) = find_contacts(watch(motion, rng), RADIUS)
         pulls.append((hit.t - motion.hits[0].t) / hit.stderr_t)
         assert abs(hit.t - motion.hits[0].t) < 0.3 / 30

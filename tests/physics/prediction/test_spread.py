@@ -92,7 +92,7 @@ def test_nothing_doubtful_has_no_spread_and_the_same_seed_gives_the_same() -> No
 def test_errors_of_a_simulated_shot_mean_what_they_say() -> None:
     motion = hit_motion(1.5, 0.1, before=1.2, after=3.0, stone_friction=0.1)
     rng, pulls = np.random.default_rng(18), []
-    for _ in range(7):
+    for _ in range(5):
         seen = watch(motion, rng, sd=0.004, fps=25)
         hits = find_contacts(seen, RADIUS)
         tracks = smooth(seen, hits, radius=RADIUS)
