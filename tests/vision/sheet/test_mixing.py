@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache, lru_cache
 from math import inf
 
 import cv2
@@ -27,18 +28,32 @@ def camera(size: tuple[int, int]) -> CameraPath:
     return still_camera(size=size, position=(0.1, -0.1, 9.0), target=(0.1, 0.2), px_per_m=px_per_m)
 
 
-def picture(paint: str, gamma: float, outline: bool = False) -> np.ndarray:
-    """A house drawn large and sharp, then blurred and reduced: codes, or light if gamma is 2.2."""
+@lru_cache(maxsize=4)
+def large(paint: str, outline: bool) -> np.ndarray:
     dark = (25.0, 22.0, 20.0) if outline else None
     scene = replace(Scene(paint=replace(PAINTS[paint], outline=dark)), light=SHARP)
-    large = render_still(scene, camera((TIMES * SIZE[0], TIMES * SIZE[1]))) / 255.0
-    light = cv2.GaussianBlur(large**gamma, (0, 0), TIMES * 0.6)
+    return render_still(scene, camera((TIMES * SIZE[0], TIMES * SIZE[1])))
+
+
+@cache
+def picture(paint: str, gamma: float, outline: bool = False) -> np.ndarray:
+    """A house drawn large and sharp, then blurred and reduced: codes, or light if gamma is 2.2."""
+    codes = np.arange(256, dtype=np.float32) / 255
+    light = cv2.LUT(large(paint, outline), codes**gamma)
+    light = cv2.GaussianBlur(light, (0, 0), TIMES * 0.6)
     small = 255 * cv2.resize(light, SIZE, interpolation=cv2.INTER_AREA) ** (1 / gamma)
     noise = np.random.default_rng(5).normal(0, 1.0, small.shape)
     luma = cv2.cvtColor(np.clip(small + noise, 0, 255).round().astype(np.uint8), cv2.COLOR_BGR2YUV)
     chroma = cv2.resize(luma[..., 1:], None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
     luma[..., 1:] = cv2.resize(chroma, SIZE, interpolation=cv2.INTER_LINEAR)
     return cv2.cvtColor(luma, cv2.COLOR_YUV2BGR)
+
+
+@cache
+def house(paint: str, gamma: float, outline: bool = False) -> HouseFit:
+    found = find_house(picture(paint, gamma, outline))
+    assert found is not None
+    return found
 
 
 def larger(found: HouseFit) -> float:
@@ -51,31 +66,26 @@ def larger(found: HouseFit) -> float:
 @pytest.mark.parametrize("paint", ["navy-orange", "teal-red", "purple-gold"])
 def test_the_edge_is_where_half_of_the_light_is(paint: str) -> None:
     """Half way between the codes it would be 2.5 to 3.4 mm too large."""
-    mixed = find_house(picture(paint, 2.2))
-    assert mixed is not None
+    mixed = house(paint, 2.2)
     assert mixed.edge.light[TWELVE] < -0.08 and mixed.edge.light[EIGHT] > 0.08
     assert abs(larger(mixed)) < 1.2
 
 
 @pytest.mark.parametrize("paint", ["navy-orange", "teal-red", "purple-gold"])
 def test_or_half_way_between_codes_that_were_blurred(paint: str) -> None:
-    coded = find_house(picture(paint, 1.0))
-    assert coded is not None
+    coded = house(paint, 1.0)
     assert abs(coded.edge.light[TWELVE]) < 0.03
     assert abs(larger(coded)) < 0.6
 
 
 @pytest.mark.parametrize("paint", ["navy-orange", "teal-red", "green-lime", "red-blue"])
 def test_an_outline_is_not_taken_for_light(paint: str) -> None:
-    found = find_house(picture(paint, 1.0, outline=True))
-    assert found is not None
+    found = house(paint, 1.0, outline=True)
     assert not any(found.edge.light)
 
 
 def test_what_a_line_hides_is_left_open() -> None:
-    image = picture("navy-orange", 2.2)
-    found = find_house(image)
-    assert found is not None
+    image, found = picture("navy-orange", 2.2), house("navy-orange", 2.2)
     camera = found.view, found.rig, found.evidence
     plain, lined = (lit(PaintEdge(sd=0.01, line=line), image, *camera) for line in (0.0, 0.3))
     assert any(plain.light) and not any(lined.light)
@@ -94,9 +104,7 @@ def test_without_colour_the_edge_lies_between_the_two_and_as_unsure_as_that(gamm
 
 
 def test_rings_too_pale_tell_what_is_usual_of_light_and_rings_out_of_view_nothing() -> None:
-    image = picture("navy-orange", 2.2)
-    found = find_house(image)
-    assert found is not None
+    image, found = picture("navy-orange", 2.2), house("navy-orange", 2.2)
     view, rig = found.view, found.rig
     slope = found.evidence.steepness
     assert share_of_light(np.full_like(image, 230), view, rig, slope) == likely(0.0, inf)
@@ -109,9 +117,7 @@ def test_more_light_than_there_can_be_tells_of_light_only_where_it_is_told_vague
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Else it is an outline's doing."""
-    image = picture("navy-orange", 2.2)
-    found = find_house(image)
-    assert found is not None
+    image, found = picture("navy-orange", 2.2), house("navy-orange", 2.2)
     slope = found.evidence.steepness
     blur = 1 / (np.sqrt(2 * np.pi) * slope)
     for share_sd, errors, vaguely in ((0.4, 2.0, False), (0.6, 2.0, True), (0.6, 3.0, False)):
@@ -148,8 +154,7 @@ def test_a_share_of_light_that_is_measured_closely_is_the_nearest(
 def test_the_scale_is_as_good_as_is_said_if_the_colours_tell_what_was_blurred(
     paint: str, gamma: float
 ) -> None:
-    found = find_house(picture(paint, gamma))
-    assert found is not None
+    found = house(paint, gamma)
     stated = 1e3 * found.edge.sd / 84
     assert abs(larger(found)) < 2 * stated < 2.6
 
