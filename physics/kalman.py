@@ -14,7 +14,7 @@ all places share is added in the end, to places and, as an error of the scale, t
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import erfc, sqrt
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -24,7 +24,16 @@ from numpy.typing import NDArray
 
 from data.tracks import TRACK_COLUMNS, Columns, Table, no_rows, teams
 from physics.filter.rate_filter import angle_response, filtered
-from physics.filter.stretch import GATE, PATIENCE, START_SD, Filter, Model, Stretch
+from physics.filter.spin_loss import spin_loss
+from physics.filter.stretch import (
+    GATE,
+    PATIENCE,
+    START_SD,
+    Filter,
+    Model,
+    Stretch,
+    loss_error,
+)
 from physics.local_fit.contacts import Contact, cut_all
 from physics.local_fit.fit import fit_shot
 from physics.local_fit.glides import free, measure_glides
@@ -113,15 +122,18 @@ def smoothed(
     times, first = np.unique(np.append(t, [*unseen.values()]), return_index=True)
     frames = np.append(np.asarray(rank, int), np.array([*unseen], int))[first]
     fit, model, noise = _fit_pieces(known, contacts, radius)
-    each: dict[str, Columns] = {}
-    rise: dict[str, Floats] = {}
+    ways = {}
     for name, trace in known.items():
         inside = (times >= trace.t[0]) & (times <= trace.t[-1])
         hits = sorted((c for c in contacts if name in c.stones), key=lambda c: c.t)
-        each[name], rise[name] = _track(
-            trace, times[inside], frames[inside], hits, fit, model, noise[name], run
-        )
-    share_spins(each, contacts, radius, masses, rise)
+        ways[name] = _way(trace, times[inside], frames[inside], hits, fit, model, noise[name])
+    loss = spin_loss([glide for way in ways.values() for glide in way.glides])
+    model = replace(model, spin_loss=loss[0], sd_spin_loss=loss[1])
+    each: dict[str, Columns] = {}
+    together: dict[str, Floats] = {}
+    for name, way in ways.items():
+        each[name], together[name] = _track(way, model, run)
+    share_spins(each, contacts, radius, masses, together)
     team, tables = teams(sightings), list(each.values())
     tracks = {name: np.concatenate([table[name] for table in tables]) for name in tables[0]}
     tracks["team"] = np.array([team[stone] for stone in tracks["stone"].tolist()])
@@ -143,7 +155,37 @@ def _fit_pieces(
     return fit, Model(max(a, 0.0), along, prior.share, prior.sd_share), noises(fit, known)
 
 
-def _track(
+@dataclass(frozen=True)
+class _Way:
+    """One stone all the time: its stretches from hit to hit, where it is seen in them at all.
+
+    Attributes
+    ----------
+    trace : Trace
+        Its sightings.
+    t, frames, row, part : (n,) array
+        Times, s, with their frames, the sighting nearest to each, and how many hits it comes after.
+    hits : sequence of Contact
+        Of the stone, in order of time.
+    stretches : list of (array of int, Stretch)
+        Which of the times each holds, and what the filter is given.
+    """
+
+    trace: Trace
+    t: Floats
+    frames: NDArray[np.int64]
+    row: NDArray[np.int64]
+    part: NDArray[np.int64]
+    hits: Sequence[Contact]
+    stretches: list[tuple[NDArray[np.intp], Stretch]]
+
+    @property
+    def glides(self) -> list[tuple[Stretch, Floats]]:
+        """Stretches, and what their angles are off by together, (n, 2), rad."""
+        return [(stretch, self.trace.rise[self.row[at]]) for at, stretch in self.stretches]
+
+
+def _way(
     trace: Trace,
     t: Floats,
     frames: NDArray[np.int64],
@@ -151,12 +193,8 @@ def _track(
     fit: ShotFit,
     model: Model,
     noise: Noise,
-    run: Filter,
-) -> tuple[Columns, Floats]:
-    """Run the filter over one stone, hit to hit.
-
-    Also tells what its spins are off by together, (n, 2), for errors that its angles share.
-    """
+) -> _Way:
+    """Cut one stone's sightings at its hits; what begins a stretch far off is left out."""
     row = np.clip(np.searchsorted(trace.t, t), 0, len(trace.t) - 1)
     sighted = trace.t[row] == t
     place, rest, idle, speed = _modes(trace.stone, t, fit)
@@ -164,9 +202,8 @@ def _track(
     z[~sighted] = np.nan
     white, slow = noise.white[row], noise.slow[row]
     off = _off(fit, place, t, z[:, :2]) / np.hypot(white, slow)[:, :2]
-    mean, spread = np.full((len(t), 6), np.nan), np.full((len(t), 6), np.nan)
-    seen, response = np.zeros(len(t), dtype=int), np.zeros((len(t), 2, 2))
     part = np.searchsorted(np.array([hit.t for hit in hits]), t, side="right")
+    stretches = []
     for k in np.unique(part):
         at = np.flatnonzero(part == k)
         z[_slipped(at, off)] = np.nan
@@ -174,12 +211,31 @@ def _track(
             stretch = Stretch(
                 t[at], z[at], white[at], slow[at], place[at], rest[at], idle[at], speed[at], model
             )
-            mean[at], spread[at], seen[at] = run(stretch)
-            response[at] = angle_response(stretch, trace.rise[row[at]])
-    spread[:, 4:] = np.hypot(spread[:, 4:], np.linalg.norm(response, axis=2))
+            stretches.append((at, stretch))
+    return _Way(trace, t, frames, row, part, hits, stretches)
+
+
+def _track(way: _Way, model: Model, run: Filter) -> tuple[Columns, Floats]:
+    """Run the filter over one stone, hit to hit.
+
+    Also tells what its spins are off by together, (n, 3), by the errors that its angles share and
+    by that of what spin the ice takes.
+    """
+    trace, t, row, hits, part = way.trace, way.t, way.row, way.hits, way.part
+    mean, spread = np.full((len(t), 6), np.nan), np.full((len(t), 6), np.nan)
+    seen, together = np.zeros(len(t), dtype=int), np.zeros((len(t), 2, 3))
+    sighted = np.zeros(len(t), dtype=bool)
+    for at, cut in way.stretches:
+        sighted[at] = np.isfinite(cut.z[:, 0])
+        stretch = replace(cut, model=model)
+        mean[at], spread[at], seen[at] = run(stretch)
+        together[at, :, :2] = angle_response(stretch, trace.rise[row[at]])
+        lost = loss_error(stretch)
+        together[at, :, 2] = angle_response(stretch, lost[:, :1])[:, :, 0] - lost
+    spread[:, 4:] = np.hypot(spread[:, 4:], np.linalg.norm(together, axis=2))
     for k in np.unique(part):
         at = np.flatnonzero(part == k)
-        if 0 < k < len(hits) and np.isfinite(z[at, 0]).sum() < 2:
+        if 0 < k < len(hits) and sighted[at].sum() < 2:
             _interpolate(hits, part, t, mean, spread, at)
     untold = spread[:, 5] > UNTOLD
     if not np.isfinite(trace.theta).any():
@@ -193,10 +249,10 @@ def _track(
         # One look tells a place and an angle, but nothing of motion.
         mean[:, [2, 3, 5]], spread[:, [2, 3, 5]] = np.nan, np.nan
     columns = ("x", "y", "vx", "vy", "theta", "omega")
-    table = {"stone": np.full(len(t), trace.stone), "frame": frames, "t": t, "seen": seen}
+    table = {"stone": np.full(len(t), trace.stone), "frame": way.frames, "t": t, "seen": seen}
     table |= {name: mean[:, i] for i, name in enumerate(columns)}
     table |= {f"sd_{name}": spread[:, i] for i, name in enumerate(columns)}
-    return table, response[:, 1]
+    return table, together[:, 1]
 
 
 def _off(fit: ShotFit, place: NDArray[np.int64], t: Floats, xy: Floats) -> Floats:

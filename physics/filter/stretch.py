@@ -7,7 +7,7 @@ and x and y have the same model.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,16 +47,14 @@ never fades altogether; a longer time follows the errors of sightings instead.""
 PLACE_MEMORY, ANGLE_MEMORY = 0.3, 0.8
 """Times over which errors of sightings that last for a while become others, s."""
 
-LOSS_SD, MOST_LOSS_SD = (0.003, 0.045), (0.1, 1.0)
+LOSS_SD, MOST_LOSS_SD = (0.003, 0.015), (0.1, 1.0)
 """How much a slow stone loses speed (m/s²) and spin (rad/s²) otherwise than is known: times its
 speed, m/s, and at most. It is slowed more, and loses its spin faster (FCV1: 0.02 / (v + 0.06) and
-0.025 / v). Of speed less is left open, for the mean of the glides has most of it; of spin more, for
-it is lost for longer than `MEMORY`."""
+0.025 / v). Of both little is left open, for the glides tell most of it (`Model`)."""
 
-LOST = 0.0125
-"""How much spin a stone loses, rad/s², times its speed, m/s: half of what FCV1 has (Uehara and Ito,
-2021), and `LOSS_SD` leaves open whether all of that or none. Where none was known beforehand, the
-spins of clips drawn with FCV1 came out too small before and after hits, which slow stones."""
+SPIN_LOSS = SPIN_LOSS_SD = 0.0125
+"""What is known beforehand of how much spin a stone loses, rad/s², times its speed, m/s: half of
+what FCV1 has (Uehara and Ito, 2021), perhaps all of that or none."""
 
 GATE = 100.0
 """Squared normalised innovation beyond which a sighting is refused."""
@@ -70,13 +68,16 @@ class Model:
     """How one stone's speed is expected to change.
 
     ``a`` is the deceleration at 1 m/s (m/s²), ``spread`` its deviation; at other speeds it goes
-    as FCV1 has it if a ``share`` ± ``sd_share`` of it fades.
+    as FCV1 has it if a ``share`` ± ``sd_share`` of it fades. The ice takes ``spin_loss`` ±
+    ``sd_spin_loss`` of spin (rad/s²), times the speed (m/s).
     """
 
     a: float
     spread: float
     share: float = 0.0
     sd_share: float = 0.0
+    spin_loss: float = SPIN_LOSS
+    sd_spin_loss: float = SPIN_LOSS_SD
 
 
 @dataclass(frozen=True)
@@ -209,6 +210,21 @@ def drift(stretch: Stretch, along: Steps, turning: Steps) -> Floats:
     return out
 
 
+def loss_rate(loss: float, speed: Floats) -> Floats:
+    """How much spin stones of these speeds lose, rad/s², by the loss times the speed."""
+    return np.minimum(loss / np.maximum(speed, 1e-6), MOST_LOSS_SD[1])
+
+
+def loss_error(stretch: Stretch) -> Floats:
+    """Change of angle and spin since the first time by one standard error of the loss, (n, 2)."""
+    speed, turning = np.hypot(*stretch.speed[:-1].T), steps(stretch)[1]
+    model = stretch.model
+    more = replace(model, spin_loss=model.spin_loss + model.sd_spin_loss)
+    return _spin_lost(replace(stretch, model=more), speed, turning) - _spin_lost(
+        stretch, speed, turning
+    )
+
+
 def _spin_lost(stretch: Stretch, speed: Floats, turning: Steps) -> Floats:
     """Known change of angle and spin since the first time, shape (n, 2)."""
     out = np.zeros((len(stretch.t), 2))
@@ -218,7 +234,7 @@ def _spin_lost(stretch: Stretch, speed: Floats, turning: Steps) -> Floats:
     sd = np.hypot(stretch.sd[told, 2], stretch.slow[told, 2])
     weight = 1 / np.maximum(sd, SHARPEST)
     spin = float(np.polyfit(stretch.t[told], stretch.z[told, 2], 1, w=weight)[0])
-    loss = np.minimum(LOST / np.maximum(speed, 1e-6), MOST_LOSS_SD[1])
+    loss = loss_rate(stretch.model.spin_loss, speed)
     loss[stretch.rest[1:]] = 0.0
     theta, omega = 0.0, 0.0
     each = (np.diff(stretch.t), turning.reach, turning.keep, loss)

@@ -50,7 +50,7 @@ class _Stretch:
     """A stone from one hit to the next.
 
     Its table, its rows there, those that tell its spin, and what all spins of the table are off by
-    together, (rows of the table, 2).
+    together, (rows of the table, k).
     """
 
     table: Columns
@@ -130,7 +130,7 @@ def share_spins(
     masses : mapping, optional
         Stone to mass in any unit; 1 where absent.
     together : mapping
-        Stone to what its spins are off by together, (rows, 2), rad/s, each times one number of
+        Stone to what its spins are off by together, (rows, k), rad/s, by k numbers of
         standard deviation 1: a part of ``sd_omega``; nothing where absent.
     """
     masses = masses or {}
@@ -245,7 +245,7 @@ class _Spins:
 def _stretches(table: Columns, together: Floats | None, times: Sequence[float]) -> list[_Stretch]:
     """Cut a stone's rows at its hits."""
     if together is None:
-        together = np.zeros((len(table["t"]), 2))
+        together = np.zeros((len(table["t"]), 1))
     part = np.searchsorted(np.array(times), table["t"], side="right")
     moving = np.isfinite(table["sd_vx"])
     told = np.isfinite(table["sd_omega"])

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from physics.filter import rate_filter, reference_filter
-from physics.filter.stretch import LOST, Model, Stretch
+from physics.filter.stretch import SPIN_LOSS, Model, Stretch
 from physics.kalman import smooth
 from physics.local_fit.contacts import find_contacts
 from tests.physics.watch import RADIUS, hit_motion, watch
@@ -60,7 +60,7 @@ def test_tracks_are_the_same_by_either_filter() -> None:
 
 def test_a_steady_motion_is_found_exactly() -> None:
     t = np.arange(40) / 25
-    loss = LOST / np.hypot(0.5, 0.3)
+    loss = SPIN_LOSS / np.hypot(0.5, 0.3)
     z = np.column_stack([1 + 0.5 * t, 2 - 0.3 * t, 0.7 * t - 0.5 * loss * t**2])
     n = len(t)
     stretch = Stretch(

@@ -7,8 +7,8 @@ import pytest
 
 from physics.filter.stretch import (
     ANGLE_MEMORY,
-    LOST,
     PLACE_MEMORY,
+    SPIN_LOSS,
     Model,
     Stretch,
     drift,
@@ -45,7 +45,7 @@ def test_the_ice_takes_spin_and_more_of_a_slow_stone(sign: int) -> None:
     known = drift(turning, *steps(turning))
     t = moved.t
     # What is lost at 1 - 0.9 t, m/s, put together in closed form.
-    lost = LOST * np.log(1 / (1 - 0.9 * t)) / 0.9
+    lost = SPIN_LOSS * np.log(1 / (1 - 0.9 * t)) / 0.9
     assert known[:17, 5] == pytest.approx(-sign * lost[:17], rel=0.1)
     angle = np.concatenate([[0], np.cumsum(0.5 * np.diff(t) * (known[1:, 5] + known[:-1, 5]))])
     assert known[:, 4] == pytest.approx(angle, abs=1e-12)

@@ -1,0 +1,95 @@
+"""How much spin the ice takes, told by the angles of all stones of a shot.
+
+A gliding stone loses spin as 1 / v (FCV1: Uehara and Ito, 2021): by how much differs from ice to
+ice, some take none, but on one ice it is the same for all stones all the time. A single angle
+tells nothing of it, a glide of seconds a little, all glides of a shot as a rule more than is
+known beforehand. What is left open then is one number, not a noise that is anew at each moment.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physics.filter.stretch import ANGLE_MEMORY, SPIN_LOSS, SPIN_LOSS_SD, Stretch, loss_rate
+
+Floats = NDArray[np.float64]
+
+FEWEST, MOST, SHORTEST = 8, 40, 0.5
+"""Angles from which on a glide is asked, how many of it are looked at, and how long it lasts, s."""
+
+SLOWEST, IDLE = 0.05, 0.15
+"""Speed, m/s, and spin, rad/s, below which a stone is not asked: it may have stopped."""
+
+SHARPEST = 1e-3
+"""Smallest error of an angle that counts, rad."""
+
+
+def spin_loss(glides: Sequence[tuple[Stretch, Floats]]) -> tuple[float, float]:
+    """Tell how much spin stones lose, times their speed.
+
+    Each piece of a stretch is fitted by θ₀ + ω₀ t and the loss, by generalised least squares with
+    the errors that angles have anew, those that last for a while and those that all share. What
+    is known beforehand (`physics.filter.stretch.SPIN_LOSS`) and all glides are pooled.
+
+    Parameters
+    ----------
+    glides : sequence of (Stretch, ndarray)
+        Stones between two hits, and what their angles are off by together, (n, k), rad, by k
+        numbers of standard deviation 1.
+
+    Returns
+    -------
+    loss, sd : float
+        rad/s² times m/s, not below 0, and its standard error.
+    """
+    told = [(SPIN_LOSS, SPIN_LOSS_SD)]
+    told += [each for stretch, together in glides for each in _each(stretch, together)]
+    value, sd = np.array(told).T
+    weight = sd**-2
+    mean = float(weight @ value / weight.sum())
+    return max(mean, 0.0), float(weight.sum() ** -0.5)
+
+
+def _each(stretch: Stretch, together: Floats) -> list[tuple[float, float]]:
+    """Give the loss that each piece of a stretch tells."""
+    speed = np.hypot(*stretch.speed.T)
+    asked = np.isfinite(stretch.z[:, 2]) & ~stretch.rest & (speed > SLOWEST)
+    out = []
+    for piece in np.unique(stretch.piece[asked]):
+        rows = np.flatnonzero(asked & (stretch.piece == piece))
+        if len(rows) >= FEWEST and stretch.t[rows[-1]] - stretch.t[rows[0]] >= SHORTEST:
+            some = rows[np.linspace(0, len(rows) - 1, min(len(rows), MOST)).astype(int)]
+            out += _of_piece(stretch, some, together[some], speed[some])
+    return out
+
+
+def _of_piece(
+    stretch: Stretch, rows: NDArray[np.intp], together: Floats, speed: Floats
+) -> list[tuple[float, float]]:
+    """Fit the angles of a piece; nothing where it hardly turns."""
+    t, theta = stretch.t[rows] - stretch.t[rows[0]], stretch.z[rows, 2]
+    spin = float(np.polyfit(t, theta, 1)[0])
+    if abs(spin) < IDLE:
+        return []
+    new, lasting = np.maximum(stretch.sd[rows, 2], SHARPEST), stretch.slow[rows, 2]
+    apart = np.abs(np.subtract.outer(t, t))
+    cov = np.diag(new**2) + np.outer(lasting, lasting) * np.exp(-apart / ANGLE_MEMORY)
+    cov += together @ together.T
+    rate = loss_rate(SPIN_LOSS, speed) / SPIN_LOSS
+    lost = -np.copysign(1.0, spin) * _summed(t, _summed(t, rate))
+    basis = np.stack([np.ones_like(t), t, lost], axis=1)
+    weighed = np.linalg.solve(cov, basis)
+    spread = np.linalg.inv(basis.T @ weighed)
+    fitted = spread @ weighed.T @ theta
+    left = theta - basis @ fitted
+    square = float(left @ np.linalg.solve(cov, left)) / (len(t) - 3)
+    return [(float(fitted[2]), float(np.sqrt(spread[2, 2] * max(square, 1.0))))]
+
+
+def _summed(t: Floats, rate: Floats) -> Floats:
+    """Integral from the first time on, by trapezes."""
+    steps = 0.5 * (rate[1:] + rate[:-1]) * np.diff(t)
+    return np.concatenate([[0.0], np.cumsum(steps)])
