@@ -134,6 +134,7 @@ def share_spins(
         standard deviation 1: a part of ``sd_omega``; nothing where absent.
     """
     masses = masses or {}
+    count = max((shared.shape[1] for shared in together.values()), default=1)
     hits = {
         stone: sorted((hit for hit in contacts if stone in hit.stones), key=lambda hit: hit.t)
         for stone in tables
@@ -142,7 +143,11 @@ def share_spins(
         (stone, k): stretch
         for stone, own in hits.items()
         for k, stretch in enumerate(
-            _stretches(tables[stone], together.get(stone), [hit.t for hit in own])
+            _stretches(
+                tables[stone],
+                together.get(stone, np.zeros((len(tables[stone]["t"]), count))),
+                [hit.t for hit in own],
+            )
         )
     }
     # The unknowns: the spin of each stretch at either hit, told by a row of it.
@@ -242,10 +247,8 @@ class _Spins:
             begin = rows.stop
 
 
-def _stretches(table: Columns, together: Floats | None, times: Sequence[float]) -> list[_Stretch]:
+def _stretches(table: Columns, together: Floats, times: Sequence[float]) -> list[_Stretch]:
     """Cut a stone's rows at its hits."""
-    if together is None:
-        together = np.zeros((len(table["t"]), 1))
     part = np.searchsorted(np.array(times), table["t"], side="right")
     moving = np.isfinite(table["sd_vx"])
     told = np.isfinite(table["sd_omega"])
