@@ -24,9 +24,9 @@ Flags = NDArray[np.bool_]
 BLACK_LUMA, BLACK = 24, 10
 """Up to which luma, and up to which blue, green and red, it is black; as coded, black is 16."""
 
-SHARE = 0.05
+SHARE = 0.3
 """Share of a row or column that is not black where there is picture: coded coarsely, what is beside
-it has traces of it, and somebody's mark may be on a bar."""
+it has traces of it, and on a bar may be a title: bold letters over a third of it fill 0.15."""
 
 UNEVEN = 4
 """By how many px bars on either side may differ."""

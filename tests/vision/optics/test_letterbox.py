@@ -69,6 +69,16 @@ def test_bars_are_cut_off(tmp_path: Path, crf: int, traces: int) -> None:
     assert lit.read == 5 and not lit.warnings
 
 
+@pytest.mark.parametrize("at", [(4, 15), (100, H - 6)])
+def test_a_title_on_a_bar_leaves_it_one(tmp_path: Path, at: tuple[int, int]) -> None:
+    """Taken for picture, the ends of the bars passed for the sides of the sheet: axes turned."""
+    pictures = [barred(scene(k), 0, 0, above=24) for k in range(4)]
+    for picture in pictures:
+        cv2.putText(picture, "Final, end 7", at, cv2.FONT_HERSHEY_DUPLEX, 0.55, (255,) * 3, 2)
+    lit = lit_clip(video(tmp_path / "title.mp4", pictures, crf=15))
+    assert lit.size == (W, H - 2 * 24)
+
+
 def test_bars_are_told_by_few_pictures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     clip = video(tmp_path / "pillars.mp4", [barred(scene(0), 110, 110)] * 30)
     assert len(list(clip.key_pictures())) < 3
