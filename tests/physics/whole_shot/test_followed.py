@@ -130,6 +130,21 @@ def test_what_comes_after_a_gap_is_left_if_it_makes_all_much_noisier(
     assert (end is not None) == (found.shots[0] is not shot) == left
 
 
+@pytest.mark.parametrize(("map_sd", "left"), [(0.0, True), (0.002, False)])
+def test_a_map_that_errs_makes_a_longer_part_noisier_and_ends_no_shot(
+    map_sd: float, left: bool
+) -> None:
+    """Where stated errors of the map hold what differs, all that was seen is one shot."""
+    seen = watch(hit_motion(), np.random.default_rng(4), sd=0.0003)
+    later = seen["t"] > 2.0
+    seen.loc[later, ["x", "y"]] += 0.002 * np.sin(4 * seen.loc[later, ["t", "t"]].to_numpy())
+    seen = seen[~((seen["t"] > 1.8) & (seen["t"] < 2.2))].reset_index(drop=True)
+    seen = seen.assign(sd_place_x=map_sd, sd_place_y=map_sd)
+    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    assert found.whole is not None
+    assert any("does not continue it" in text for text in found.warnings) == left
+
+
 @pytest.mark.parametrize("lost", [0.0, 0.02])
 def test_a_shot_is_left_where_the_clip_has_lost_time(lost: float) -> None:
     seen = watch(hit_motion(), np.random.default_rng(4), sd=0.0005)
