@@ -44,6 +44,10 @@ BESIDE, OPPOSITE = 0.1, 0.9
 """Time beside a change of motion, s, at which velocities are those before and after it; cosine from
 which two changes are opposite, and along a line."""
 
+SEVERAL = 3
+"""Stones whose motion changes at one time, with none that hit them, from which on it is rather the
+camera that moved, or people that move them."""
+
 FEW = 7
 """Sightings of which a median tells where a stone is."""
 
@@ -132,9 +136,10 @@ def untold_hits(known: Mapping[str, Trace], told: Sequence[Meeting], radius: flo
         *_touching(paths, told, radius),
     ):
         out.setdefault(pair, (time, text))
-    lone = [(changes[0].end, _said_alone(name, changes)) for name, changes in alone.items()]
     times = {name: [change.end for change in changes] for name, changes in alone.items()}
-    return Untold(tuple(text for _, text in sorted([*lone, *out.values()])), times)
+    together, alone = _together(alone)
+    lone = [(changes[0].end, _said_alone(name, changes)) for name, changes in alone.items()]
+    return Untold(tuple(text for _, text in sorted([*together, *lone, *out.values()])), times)
 
 
 def _said(change: _Change, other: str, seen: bool) -> str:
@@ -202,6 +207,27 @@ def _out_of_reach(
                 text = _unfit(first, second, one.when, apart, radius)
                 pairs.append((frozenset({first, second}), one.end, text))
     return pairs, {name: changes for name, changes in left.items() if changes}
+
+
+def _together(
+    alone: Mapping[str, Sequence[_Change]],
+) -> tuple[list[tuple[float, str]], dict[str, list[_Change]]]:
+    """Say changes in sight of several stones at one time at once; second those that are left."""
+    seen = sorted((c for own in alone.values() for c in own if not c.hidden), key=lambda c: c.end)
+    said, told = [], set[_Change]()
+    for first in seen:
+        same = {c.stone: c for c in seen if 0 <= c.end - first.end < AT_ONCE and c not in told}
+        if first in told or len(same) < SEVERAL:
+            continue
+        told.update(same.values())
+        *names, last = sorted(same)
+        text = (
+            f"the motion of {', '.join(names)} and {last} changes at once {first.when} and no stone"
+            " is seen that hit them: was the camera moved, or did people move the stones?"
+        )
+        said.append((first.end, text))
+    left = {name: [c for c in own if c not in told] for name, own in alone.items()}
+    return said, {name: own for name, own in left.items() if own}
 
 
 def _changes(

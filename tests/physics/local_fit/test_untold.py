@@ -296,3 +296,18 @@ def test_one_stone_under_two_names_at_once_asks_for_no_scale() -> None:
     t = np.arange(0.0, 5.0, 1 / FPS)
     way = np.where((t > 2.0)[:, None], glide(np.zeros(2), np.array([0.1, -0.8]), t - 2.0), 0.0)
     assert not any("scale" in text for text in said(table(t, {"A": way, "A2": way + 0.002}, {})))
+
+
+@pytest.mark.parametrize("count", [2, 3, 4])
+def test_several_stones_that_move_at_once_ask_for_the_camera(count: int) -> None:
+    """A camera that is shoved: all that lie there go the same way for a moment."""
+    t = np.arange(0.0, 5.0, 1 / FPS)
+    shove = 0.25 * np.clip((t - 2.0) / 0.5, 0, 1)[:, None] * [1.0, 0.0]
+    corners = [(-1.5, 1.0), (1.0, 1.5), (0.9, -1.0), (-1.0, -1.2)]
+    places = {name: at + shove for name, at in zip("ABCD"[:count], corners, strict=False)}
+    texts = said(table(t, places, {}))
+    asked = [text for text in texts if "was the camera moved" in text]
+    lone = [text for text in texts if "no stone is seen that hit it" in text]
+    assert (len(asked), len(lone)) == ((0, 2) if count < 3 else (2, 0))
+    for text in asked:
+        assert ", ".join("ABCD"[: count - 1]) + f" and {'ABCD'[count - 1]} changes at" in text
