@@ -33,6 +33,7 @@ def angles_in_parts(
     most: int = MOST,
     slants: Array | None = None,
     height: int | None = None,
+    steep: float | None = None,
 ) -> HandleAngles:
     """Angle of one stone in every frame; see `vision.spin.handle.handle_angles`.
 
@@ -51,6 +52,8 @@ def angles_in_parts(
     height : int, optional
         Which of those at which caps were unrolled to go by; what the stone itself tells if not
         given.
+    steep : float, optional
+        As for `vision.spin.handle.handle_angles`.
 
     Returns
     -------
@@ -64,7 +67,7 @@ def angles_in_parts(
         rows = [*kept]
         pictures = [item.get()[:, rings] for item in kept.values()]
         of = None if slants is None else slants[rows]
-        told = handle_angles(times[rows], pictures, radii, sd_centre[rows], of)
+        told = handle_angles(times[rows], pictures, radii, sd_centre[rows], of, steep)
         theta[rows], sd[rows], rise[rows] = told.theta, told.sd, told.rise
         return replace(told, theta=theta, sd=sd, rise=rise)
     first: Complex | None = None
@@ -73,7 +76,7 @@ def angles_in_parts(
     for part in np.array_split(np.array([*kept], np.intp), ceil(len(kept) / most)):
         each = [kept[index] for index in part.tolist()]
         of = None if slants is None else slants[part]
-        told, mean = _part(times[part], each, rings, radii, sd_centre[part], of)
+        told, mean = _part(times[part], each, rings, radii, sd_centre[part], of, steep)
         parts.append(told)
         if mean is None:
             continue
@@ -88,7 +91,8 @@ def angles_in_parts(
         theta[part], last = angle, int(part[seen[-1]])
     unlike = np.sum([told.unlike for told in parts], axis=0)
     heights = frozenset().union(*(told.heights for told in parts))
-    return HandleAngles(theta, sd, rise, unlike, heights)
+    steeps = [told.steep for told in parts if told.steep is not None]
+    return HandleAngles(theta, sd, rise, unlike, heights, steeps[0] if steeps else None)
 
 
 def _part(
@@ -98,10 +102,11 @@ def _part(
     radii: Array,
     sd_centre: Array,
     slants: Array | None,
+    steep: float | None,
 ) -> tuple[HandleAngles, Complex | None]:
     """Angles of pictures, and the mean picture turned back; None if none is told."""
     pictures = [item.get()[:, rings] for item in kept]
-    told = handle_angles(times, pictures, radii, sd_centre, slants)
+    told = handle_angles(times, pictures, radii, sd_centre, slants, steep)
     seen = np.flatnonzero(np.isfinite(told.theta)).tolist()
     if not seen:
         return told, None
