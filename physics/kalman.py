@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.tracks import TRACK_COLUMNS, Columns, Table, no_rows, teams
-from physics.filter.rate_filter import angle_response, filtered
+from physics.filter.rate_filter import angle_response, filtered, loss_response
 from physics.filter.spin_loss import spin_loss
 from physics.filter.stretch import (
     GATE,
@@ -32,7 +32,6 @@ from physics.filter.stretch import (
     Filter,
     Model,
     Stretch,
-    loss_error,
 )
 from physics.local_fit.contacts import Contact, cut_all
 from physics.local_fit.fit import fit_shot
@@ -230,8 +229,7 @@ def _track(way: _Way, model: Model, run: Filter) -> tuple[Columns, Floats]:
         stretch = replace(cut, model=model)
         mean[at], spread[at], seen[at] = run(stretch)
         together[at, :, :2] = angle_response(stretch, trace.rise[row[at]])
-        lost = loss_error(stretch)
-        together[at, :, 2] = angle_response(stretch, lost[:, :1])[:, :, 0] - lost
+        together[at, :, 2] = loss_response(stretch)
     spread[:, 4:] = np.hypot(spread[:, 4:], np.linalg.norm(together, axis=2))
     for k in np.unique(part):
         at = np.flatnonzero(part == k)

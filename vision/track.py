@@ -30,7 +30,7 @@ from vision.film.clip import Clip
 from vision.optics.camera import Camera
 from vision.optics.cameras import Cameras
 from vision.spin.angles import angles_in_parts
-from vision.spin.common_make import common_height, common_steepness, turned, turned_widely
+from vision.spin.common_height import common_height, turned_widely
 from vision.spin.handle import HandleAngles
 
 if TYPE_CHECKING:
@@ -189,22 +189,22 @@ def off_axis(track: Track, slants: Array) -> Array:
 def _angles(
     tracks: Mapping[str, Track], disc: Stone, slants: Mapping[str, Array]
 ) -> dict[str, HandleAngles]:
-    """Tell how stones are turned; such as hardly are, by what handles of others show that turn."""
+    """Tell how stones are turned; such as hardly are, at the height at which others turn."""
 
-    def told(name: str, height: int | None, steep: float | None = None) -> HandleAngles:
+    def told(name: str, height: int | None = None) -> HandleAngles:
         track, slant = tracks[name], slants[name]
         off, spectra = off_axis(track, slant), track.sightings.spectra
         times, radii = np.array(track.times), handle_radii(disc)
-        return angles_in_parts(times, spectra, radii, off, slants=slant, height=height, steep=steep)
+        return angles_in_parts(times, spectra, radii, off, slants=slant, height=height)
 
-    angles = {name: told(name, None) for name in tracks}
+    angles = {name: told(name) for name in tracks}
     height = common_height(angles.values())
-    steep = common_steepness(angles.values())
-    for name, own in angles.items():
-        other = height is not None and own.heights - {height} and not turned_widely(own)
-        if other or (steep is not None and own.steep is None and turned(own)):
-            angles[name] = told(name, height if other else None, steep)
-    return angles
+    if height is None:
+        return angles
+    doubtful = [
+        name for name, own in angles.items() if own.heights - {height} and not turned_widely(own)
+    ]
+    return angles | {name: told(name, height) for name in doubtful}
 
 
 def _rows(

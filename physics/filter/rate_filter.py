@@ -23,6 +23,7 @@ from physics.filter.stretch import (
     Steps,
     Stretch,
     drift,
+    loss_error,
     steps,
 )
 
@@ -180,6 +181,12 @@ def angle_response(stretch: Stretch, shared: Floats) -> Floats:
         out[:, :, column] = _smoothed(states, innovations, turns)[0]
     out[stretch.idle, 1] = 0.0
     return out
+
+
+def loss_response(stretch: Stretch) -> Floats:
+    """Error of the smoothed angle and spin by one standard error of the loss of spin, (n, 2)."""
+    lost = loss_error(stretch)
+    return np.asarray(angle_response(stretch, lost[:, :1])[:, :, 0] - lost)
 
 
 def _listed(way: Steps) -> list[Step]:

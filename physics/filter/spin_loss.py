@@ -23,6 +23,9 @@ FEWEST, MOST, SHORTEST = 8, 40, 0.5
 SLOWEST, IDLE = 0.05, 0.15
 """Speed, m/s, and spin, rad/s, below which a stone is not asked: it may have stopped."""
 
+MOST_LOST = 0.1
+"""Largest loss that is told, four times FCV1's."""
+
 SHARPEST = 1e-3
 """Smallest error of an angle that counts, rad."""
 
@@ -32,7 +35,8 @@ def spin_loss(glides: Sequence[tuple[Stretch, Floats]]) -> tuple[float, float]:
 
     Each piece of a stretch is fitted by θ₀ + ω₀ t and the loss, by generalised least squares with
     the errors that angles have anew, those that last for a while and those that all share. What
-    is known beforehand (`physics.filter.stretch.SPIN_LOSS`) and all glides are pooled.
+    is known beforehand (`physics.filter.stretch.SPIN_LOSS`) and all glides are pooled; where they
+    agree less than their errors say, the pooled one is larger by Birge's ratio.
 
     Parameters
     ----------
@@ -43,14 +47,15 @@ def spin_loss(glides: Sequence[tuple[Stretch, Floats]]) -> tuple[float, float]:
     Returns
     -------
     loss, sd : float
-        rad/s² times m/s, not below 0, and its standard error.
+        rad/s² times m/s, 0 to `MOST_LOST`, and its standard error.
     """
     told = [(SPIN_LOSS, SPIN_LOSS_SD)]
     told += [each for stretch, together in glides for each in _each(stretch, together)]
     value, sd = np.array(told).T
     weight = sd**-2
     mean = float(weight @ value / weight.sum())
-    return max(mean, 0.0), float(weight.sum() ** -0.5)
+    apart = float(weight @ (value - mean) ** 2) / max(len(value) - 1, 1)
+    return min(max(mean, 0.0), MOST_LOST), float(np.sqrt(max(apart, 1.0) / weight.sum()))
 
 
 def _each(stretch: Stretch, together: Floats) -> list[tuple[float, float]]:

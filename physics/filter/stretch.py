@@ -50,7 +50,8 @@ PLACE_MEMORY, ANGLE_MEMORY = 0.3, 0.8
 LOSS_SD, MOST_LOSS_SD = (0.003, 0.015), (0.1, 1.0)
 """How much a slow stone loses speed (m/s²) and spin (rad/s²) otherwise than is known: times its
 speed, m/s, and at most. It is slowed more, and loses its spin faster (FCV1: 0.02 / (v + 0.06) and
-0.025 / v). Of both little is left open, for the glides tell most of it (`Model`)."""
+0.025 / v). Of both little is left open here: what all glides share has an error of its own
+(`Model`)."""
 
 SPIN_LOSS = SPIN_LOSS_SD = 0.0125
 """What is known beforehand of how much spin a stone loses, rad/s², times its speed, m/s: half of

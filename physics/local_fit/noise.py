@@ -14,7 +14,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.filter.stretch import ANGLE_MEMORY, GATE, LOSS_SD, MOST_LOSS_SD, PLACE_MEMORY
+from physics.filter.stretch import (
+    ANGLE_MEMORY,
+    GATE,
+    MOST_LOSS_SD,
+    PLACE_MEMORY,
+    SPIN_LOSS,
+    SPIN_LOSS_SD,
+)
 from physics.local_fit.shot_fit import ShotFit
 from physics.local_fit.traces import Trace, level, local_residuals
 
@@ -146,7 +153,8 @@ def _angles(fit: ShotFit, known: Mapping[str, Trace]) -> Iterator[Run]:
         basis = np.stack([np.ones_like(tau), tau, 0.5 * tau * tau], axis=1)
         # What bends more than a stone of that speed loses spin is an error, and one that lasts.
         way = float(np.hypot(*(trace.xy[samples[-1]] - trace.xy[samples[0]])))
-        loss = min(LOSS_SD[1] * tau[-1] / max(way, 1e-6), MOST_LOSS_SD[1])
+        lost = SPIN_LOSS + SPIN_LOSS_SD
+        loss = min(lost * tau[-1] / max(way, 1e-6), MOST_LOSS_SD[1])
         alike = max(1.0, 2 * ANGLE_MEMORY / float(np.median(np.diff(t))))
         held = np.array([[0.0, 0.0, np.sqrt(alike) / loss]])
         weight, off = 1 / sd, np.zeros_like(t)

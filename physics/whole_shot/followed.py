@@ -11,9 +11,9 @@ from physics.whole_shot.whole_fit import GlobalFit
 
 AWAY, QUIETER, UNEXPLAINED = 0.2, 2.0, 2.0
 """Time, s, in which nothing is seen if a clip shows something else; how many times less noise the
-shot has before that if what comes after is not its continuation; and from which `GlobalFit.misfit`
-on it is none. Of a clip a longer part is noisier, for its map errs: six that were shown on after
-something else came to 1.8 at most, with 20 ms lost to 3.6 and more."""
+shot has before that if what comes after is not its continuation; and the least misfit of the whole
+(`GlobalFit.misfit`) at which it may be none. Of a clip a longer part is noisier, for its map errs:
+six that were shown on after something else came to 1.8 at most, with 20 ms lost to 3.6 and more."""
 
 
 def fit_followed(shot: Watched) -> tuple[GlobalFit, str | None]:

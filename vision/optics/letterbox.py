@@ -20,13 +20,16 @@ from vision.optics.camera import Camera
 from vision.optics.projection import middle
 
 Flags = NDArray[np.bool_]
+Shares = NDArray[np.float64]
 
 BLACK_LUMA, BLACK = 24, 10
 """Up to which luma, and up to which blue, green and red, it is black; as coded, black is 16."""
 
-SHARE = 0.3
-"""Share of a row or column that is not black where there is picture: coded coarsely, what is beside
-it has traces of it, and on a bar may be a title: bold letters over a third of it fill 0.15."""
+SHARE, MARKED, FILLED = 0.05, 0.3, 0.6
+"""Share of a row or column that is not black where there is picture, coded coarsely, for what is
+beside it has traces of it; up to which a title or somebody's mark may fill a bar (bold letters over
+two thirds of it); and from which on there is picture right beside such a bar. A sheet that goes
+aslant through a dark hall has no such edge."""
 
 UNEVEN = 4
 """By how many px bars on either side may differ."""
@@ -70,7 +73,7 @@ class LitClip(Clip):
         """Whether a picture, which may not have been asked, shows something to its borders."""
         values = _values(picture)
         lit = _lit(values[:, [0, -1]]).mean(0), _lit(values[[0, -1]]).mean(1)
-        return any(bar and ends.max() > SHARE for bar, ends in zip(self.bars, lit, strict=True))
+        return any(bar and ends.max() > MARKED for bar, ends in zip(self.bars, lit, strict=True))
 
 
 def lit_clip(clip: Clip, progress: Progress = no_progress) -> Clip:
@@ -83,7 +86,7 @@ def lit_clip(clip: Clip, progress: Progress = no_progress) -> Clip:
     if first is None:
         return clip
     shown = _together(_shown(first), clip.key_pictures())
-    if not shown[0].any():
+    if not (shown[0] > SHARE).any():
         progress("black bars", 0, 1)
         shown = _together(shown, (frame.picture for frame in clip.every()))
     bars = _bar(shown[0]), _bar(shown[1])
@@ -113,10 +116,10 @@ def _inner(values: Image, aside: int, above: int) -> Image:
     return values[above : height - above, aside : width - aside]
 
 
-def _shown(picture: Picture) -> tuple[Flags, Flags]:
-    """Which columns and which rows of a picture show something."""
+def _shown(picture: Picture) -> tuple[Shares, Shares]:
+    """Share of each column and of each row of a picture that is not black."""
     lit = _lit(_values(picture))
-    return lit.mean(0) > SHARE, lit.mean(1) > SHARE
+    return lit.mean(0), lit.mean(1)
 
 
 def _values(picture: Picture) -> Image:
@@ -129,21 +132,28 @@ def _lit(values: Image) -> Flags:
     return np.asarray(values > BLACK_LUMA if values.ndim == 2 else values.max(2) > BLACK)
 
 
-def _together(shown: tuple[Flags, Flags], pictures: Iterable[Picture]) -> tuple[Flags, Flags]:
-    """Which columns and which rows any picture shows, till no bars are left at either end."""
+def _together(shown: tuple[Shares, Shares], pictures: Iterable[Picture]) -> tuple[Shares, Shares]:
+    """Most that any picture shows in each column and row, till no bars are left at either end."""
     left = iter(pictures)
-    while any(not (lit[0] or lit[-1]) for lit in shown) and (more := next(left, None)) is not None:
+    while any(lit[[0, -1]].max() <= MARKED for lit in shown):
+        more = next(left, None)
+        if more is None:
+            break
         columns, rows = _shown(more)
-        shown = shown[0] | columns, shown[1] | rows
+        shown = np.maximum(shown[0], columns), np.maximum(shown[1], rows)
     return shown
 
 
-def _bar(shown: Flags) -> int:
+def _bar(lit: Shares) -> int:
     """Width of the bars at either end, px, to an even number; 0 where there are none."""
-    first, last = int(shown.argmax()), int(shown[::-1].argmax())
-    width = max(first, last)
-    bars = abs(first - last) <= UNEVEN and LEAST < width / len(shown) < MOST
-    return width + width % 2 if bars else 0
+    for share, beside in ((SHARE, 0.0), (MARKED, FILLED)):
+        first, last = int((lit > share).argmax()), int((lit > share)[::-1].argmax())
+        width = max(first, last)
+        if abs(first - last) > UNEVEN or not LEAST < width / len(lit) < MOST:
+            continue
+        if lit[[width + UNEVEN, -1 - width - UNEVEN]].min() > beside:
+            return width + width % 2
+    return 0
 
 
 def _with_bars(seen: Camera, bars: tuple[int, int], size: tuple[int, int]) -> Camera:

@@ -6,5 +6,5 @@ each picture onto the clip's own mean picture of that cap: about, by circular cr
 leaves out rings that something lies before; `shade` and `glints` take out light that does not turn,
 as it is matched; `inclined` unrolls a handle that rises anew, on a plane that rises with it, and
 `pitch` takes out what parallax is left. `bearing` tells which way a handle points. At which height
-handles are seen, and how steeply they rise, all stones tell (`common_make`).
+handles are seen all stones tell (`common_height`).
 """

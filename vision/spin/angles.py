@@ -33,7 +33,6 @@ def angles_in_parts(
     most: int = MOST,
     slants: Array | None = None,
     height: int | None = None,
-    steep: float | None = None,
 ) -> HandleAngles:
     """Angle of one stone in every frame; see `vision.spin.handle.handle_angles`.
 
@@ -52,8 +51,6 @@ def angles_in_parts(
     height : int, optional
         Which of those at which caps were unrolled to go by; what the stone itself tells if not
         given.
-    steep : float, optional
-        As for `vision.spin.handle.handle_angles`.
 
     Returns
     -------
@@ -67,7 +64,7 @@ def angles_in_parts(
         rows = [*kept]
         pictures = [item.get()[:, rings] for item in kept.values()]
         of = None if slants is None else slants[rows]
-        told = handle_angles(times[rows], pictures, radii, sd_centre[rows], of, steep)
+        told = handle_angles(times[rows], pictures, radii, sd_centre[rows], of)
         theta[rows], sd[rows], rise[rows] = told.theta, told.sd, told.rise
         return replace(told, theta=theta, sd=sd, rise=rise)
     first: Complex | None = None
@@ -76,7 +73,7 @@ def angles_in_parts(
     for part in np.array_split(np.array([*kept], np.intp), ceil(len(kept) / most)):
         each = [kept[index] for index in part.tolist()]
         of = None if slants is None else slants[part]
-        told, mean = _part(times[part], each, rings, radii, sd_centre[part], of, steep)
+        told, mean = _part(times[part], each, rings, radii, sd_centre[part], of)
         parts.append(told)
         if mean is None:
             continue
@@ -91,8 +88,7 @@ def angles_in_parts(
         theta[part], last = angle, int(part[seen[-1]])
     unlike = np.sum([told.unlike for told in parts], axis=0)
     heights = frozenset().union(*(told.heights for told in parts))
-    steeps = [told.steep for told in parts if told.steep is not None]
-    return HandleAngles(theta, sd, rise, unlike, heights, steeps[0] if steeps else None)
+    return HandleAngles(theta, sd, rise, unlike, heights)
 
 
 def _part(
@@ -102,11 +98,10 @@ def _part(
     radii: Array,
     sd_centre: Array,
     slants: Array | None,
-    steep: float | None,
 ) -> tuple[HandleAngles, Complex | None]:
     """Angles of pictures, and the mean picture turned back; None if none is told."""
     pictures = [item.get()[:, rings] for item in kept]
-    told = handle_angles(times, pictures, radii, sd_centre, slants, steep)
+    told = handle_angles(times, pictures, radii, sd_centre, slants)
     seen = np.flatnonzero(np.isfinite(told.theta)).tolist()
     if not seen:
         return told, None

@@ -31,7 +31,6 @@ from numpy.typing import NDArray
 from vision.spin.align import (
     LASTING,
     ORDERS,
-    Alignment,
     Array,
     Complex,
     align,
@@ -43,7 +42,7 @@ from vision.spin.cover import uncovered
 from vision.spin.facing import angle_between, angles_between
 from vision.spin.glints import course, unlit
 from vision.spin.half_turns import unfolded
-from vision.spin.inclined import ASLANT, along_handle, inclined, steepness, uphill_end
+from vision.spin.inclined import inclined, rise_of_handle
 from vision.spin.pitch import levelled
 from vision.spin.shade import parts, unturned, upright_mean
 
@@ -129,8 +128,6 @@ class HandleAngles:
     heights : frozenset of int
         Which of them were believed: one, several by parts of a long track, none where nothing was
         seen.
-    steep : float or None
-        How steeply the handle rises along itself (`vision.spin.inclined`), if it tells that itself.
     """
 
     theta: Array
@@ -138,7 +135,6 @@ class HandleAngles:
     rise: Array
     unlike: Array
     heights: frozenset[int] = frozenset()
-    steep: float | None = None
 
 
 @dataclass(frozen=True)
@@ -203,7 +199,6 @@ def handle_angles(
     radii: Array,
     sd_centre: Array,
     slants: Array | None = None,
-    steep: float | None = None,
 ) -> HandleAngles:
     """Angle of one stone in every frame, continuous.
 
@@ -223,9 +218,6 @@ def handle_angles(
         Standard error per axis of the centres about which the cap was unrolled, m.
     slants : ndarray, shape (n, 2), optional
         Of the view of each place; from above if not given.
-    steep : float, optional
-        How steeply handles of its make rise along themselves, to either end, where it does not
-        tell that itself.
 
     Returns
     -------
@@ -264,9 +256,12 @@ def handle_angles(
     fit = align(own, best.angles[good], radii, aside)
     unlike = np.maximum(1 - best.likeness[good] ** 2, ALIKE)
     covered = np.clip((unlike / (BEFORE * np.median(unlike))) ** 2, 1.0, WORST)
-    angle, risen, steep_itself = fit.angle, rise[rows], None
+    angle, risen = fit.angle, rise[rows]
     if slants is not None:
-        own, fit, steep_itself = _inclined(own, fit, radii, slants[rows], aside, steep)
+        uphill = rise_of_handle(own, fit.angle, radii, slants[rows], aside)
+        if uphill is not None:
+            own = inclined(own, fit.angle, radii, slants[rows], uphill)
+            fit = align(own, fit.angle, radii, aside)
         angle, risen = levelled(own, fit.angle, radii, slants[rows])
     odd = np.clip((1 - _alike(best) / len(seen)) / ODD, 1.0, ODDEST)
     dim = np.clip(TURNS / max(best.share, 1e-6) - 1, 0.0, DIM)
@@ -277,30 +272,7 @@ def handle_angles(
     angle = angle - angle[0]
     upright = upright_mean(own, angle, rings_seen(own)[:, None, :, None])
     theta[rows], sd[rows], rise[rows] = angle + (bearing(upright) or 0.0), error, risen
-    return HandleAngles(theta, sd, rise, by.unlike, frozenset({by.height}), steep_itself)
-
-
-def _inclined(
-    pictures: Complex,
-    fit: Alignment,
-    radii: Array,
-    slants: Array,
-    sd_shift: Array,
-    steep: float | None,
-) -> tuple[Complex, Alignment, float | None]:
-    """Unroll pictures on the plane along which their handle rises, if it does, and align them anew.
-
-    How steep that is they tell themselves, which is given third, or it is known but for its sign.
-    """
-    itself = steepness(pictures, fit.angle, radii, slants, sd_shift)
-    rise = itself
-    if rise is None and steep and np.median(np.hypot(*slants.T)) > ASLANT:
-        rise = uphill_end(pictures, fit.angle, radii, slants, sd_shift, steep)
-    along = along_handle(pictures, fit.angle)
-    if not rise or along is None:
-        return pictures, fit, itself
-    pictures = inclined(pictures, fit.angle, radii, slants, rise * along)
-    return pictures, align(pictures, fit.angle, radii, sd_shift), itself
+    return HandleAngles(theta, sd, rise, by.unlike, frozenset({by.height}))
 
 
 @dataclass(frozen=True)

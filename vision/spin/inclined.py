@@ -11,7 +11,6 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from vision.spin.align import ORDERS, Array, Complex, align, ring_weights, rings_seen, turned
 from vision.spin.bearing import bearing
@@ -29,11 +28,6 @@ BETTER = 0.08
 that turned widely all eight that rise by 0.2 and more lost 0.09 to 0.23 of it, one level handle
 0.07, others 0.03 at most; what lost most at the largest that is tried had been lost otherwise. Of
 180 plainer ones no level handle was told to rise, and of 115 that do three the wrong way."""
-
-OTHERWISE = 0.6
-"""How unlike pictures are at most with the right end of a handle higher, beside the other end: of
-60 drawn ones that turned by 0.4 to 1.8 rad 33 of 34 with less were right, of the others two in
-three."""
 
 RAYS, FINER = 64, 4
 """Directions, and places from ring to ring, between which pictures are interpolated."""
@@ -68,9 +62,9 @@ def inclined(
     return out
 
 
-def steepness(
+def rise_of_handle(
     pictures: Complex, angles: Array, radii: Array, slants: Array, sd_shift: Array
-) -> float | None:
+) -> complex | None:
     """Tell how steeply a handle rises along itself, if it is seen aslant and turns widely.
 
     Parameters
@@ -82,14 +76,22 @@ def steepness(
 
     Returns
     -------
-    float or None
-        In the direction of the handle (`vision.spin.bearing`); None where nothing is told.
+    complex or None
+        How steep it is, and in which direction, of a cap at angle 0; None where nothing is told.
     """
     if np.median(np.hypot(*slants.T)) < ASLANT or np.ptp(angles) < WIDELY:
         return None
-    unlike = _unlike(pictures, angles, radii, slants, sd_shift, STEEPNESSES)
-    if unlike is None:
+    seen = rings_seen(pictures)[:, None, :, None]
+    direction = bearing(upright_mean(pictures, angles, seen))
+    if direction is None:
         return None
+    along = complex(np.exp(1j * direction))
+    some = np.linspace(0, len(pictures) - 1, min(len(pictures), MOST)).astype(int)
+    pictures, angles, slants, sd_shift = pictures[some], angles[some], slants[some], sd_shift[some]
+    planes = (
+        inclined(pictures, angles, radii, slants, steep * along) for steep in STEEPNESSES.tolist()
+    )
+    unlike = np.array([_unlike(plane, angles, radii, sd_shift) for plane in planes])
     middle = len(unlike) // 2
     # What is not interpolated keeps all its noise.
     unlike[middle] = min(unlike[middle], unlike[[middle - 1, middle + 1]].mean())
@@ -98,50 +100,11 @@ def steepness(
         return None
     before, at, after = unlike[best - 1 : best + 2]
     beside = 0.5 * (before - after) / (before - 2 * at + after)
-    return float(STEEPNESSES[best] + beside * (STEEPNESSES[1] - STEEPNESSES[0]))
+    steep = STEEPNESSES[best] + beside * (STEEPNESSES[1] - STEEPNESSES[0])
+    return complex(steep * along)
 
 
-def uphill_end(
-    pictures: Complex, angles: Array, radii: Array, slants: Array, sd_shift: Array, steep: float
-) -> float:
-    """Tell at which end a handle of known steepness is higher: signed; 0 if that is not clear."""
-    either = np.array([steep, -steep])
-    unlike = _unlike(pictures, angles, radii, slants, sd_shift, either)
-    if unlike is None or unlike.min() > OTHERWISE * unlike.max():
-        return 0.0
-    return float(either[unlike.argmin()])
-
-
-def along_handle(pictures: Complex, angles: Array) -> complex | None:
-    """Direction of a handle, of a cap at angle 0, as a number of size 1; None where none is."""
-    seen = rings_seen(pictures)[:, None, :, None]
-    direction = bearing(upright_mean(pictures, angles, seen))
-    return None if direction is None else complex(np.exp(1j * direction))
-
-
-def _unlike(
-    pictures: Complex,
-    angles: Array,
-    radii: Array,
-    slants: Array,
-    sd_shift: Array,
-    steepnesses: Array,
-) -> Array | None:
-    """Sum of what is not explained by their mean of pictures, at each steepness."""
-    along = along_handle(pictures, angles)
-    if along is None:
-        return None
-    some = np.linspace(0, len(pictures) - 1, min(len(pictures), MOST)).astype(int)
-    pictures, angles, slants, sd_shift = pictures[some], angles[some], slants[some], sd_shift[some]
-    return np.array(
-        [
-            _left(inclined(pictures, angles, radii, slants, steep * along), angles, radii, sd_shift)
-            for steep in steepnesses.tolist()
-        ]
-    )
-
-
-def _left(pictures: Complex, angles: Array, radii: Array, sd_shift: Array) -> float:
+def _unlike(pictures: Complex, angles: Array, radii: Array, sd_shift: Array) -> float:
     """Sum over pictures of the share that their mean does not explain, once they are aligned."""
     angles = align(pictures, angles, radii, sd_shift).angle
     seen = rings_seen(pictures)[:, None, :, None]
@@ -160,9 +123,9 @@ def _unrolled(pictures: Complex, radii: Array, aside: Array, uphill: Array) -> C
     spectrum = np.zeros((count, RAYS // 2 + 1, *pictures.shape[2:]), np.complex64)
     spectrum[:, ORDERS] = pictures * RAYS / weight
     plain = np.fft.irfft(spectrum, RAYS, axis=1).astype(np.float32)
-    # Beyond the rings that are seen the next of them goes on.
-    first, last = seen.argmax(1), rings - 1 - seen[:, ::-1].argmax(1)
-    shown = np.clip(np.arange(rings), first[:, None], last[:, None])
+    # Where a ring is not seen the nearest of those that are goes on.
+    apart = np.abs(np.subtract.outer(np.arange(rings), np.arange(rings)))
+    shown = np.where(seen[:, None, :], apart, rings).argmin(2)
     plain = np.take_along_axis(plain, shown[:, None, :, None], axis=2)
     fine = np.matmul(_between(rings), plain)
     place = radii * np.exp(2j * np.pi * np.arange(RAYS) / RAYS)[:, None]
@@ -183,6 +146,11 @@ def _unrolled(pictures: Complex, radii: Array, aside: Array, uphill: Array) -> C
 
 @lru_cache(maxsize=4)
 def _between(rings: int) -> Array:
-    """Matrix that interpolates between rings, (finer, rings)."""
-    fine = np.linspace(0, rings - 1, (rings - 1) * FINER + 1)
-    return np.asarray(CubicSpline(np.arange(rings), np.eye(rings))(fine), np.float32)
+    """Matrix that interpolates between rings, (finer, rings): cubic convolution (Keys, 1981)."""
+    fine = np.arange((rings - 1) * FINER + 1) / FINER
+    out = np.zeros((len(fine), rings))
+    for ring in range(-1, rings + 1):  # the outermost go on
+        x = np.abs(fine - ring)
+        near, far = (1.5 * x - 2.5) * x**2 + 1, ((-0.5 * x + 2.5) * x - 4) * x + 2
+        out[:, min(max(ring, 0), rings - 1)] += np.where(x < 1, near, np.where(x < 2, far, 0.0))
+    return out.astype(np.float32)

@@ -21,6 +21,8 @@ Image = NDArray[np.uint8]
 
 W, H = 320, 180
 SHOWN = 100
+SHEET = np.array([[110, 0], [210, 0], [W - 1, H], [0, H]])
+"""Corners of a lit sheet in a dark hall."""
 
 
 def scene(seed: int, light: float = 1.0, width: int = W) -> Image:
@@ -132,8 +134,9 @@ def test_above_and_below_and_of_pictures(tmp_path: Path) -> None:
         [barred(scene(k), 60, 160) for k in range(4)],  # the axis is who knows where
         [barred(scene(k), 110, 0) for k in range(4)],
         [barred(scene(k), 4, 4) for k in range(4)],
+        [cv2.fillPoly(0 * scene(0), [SHEET], (230, 220, 210))] * 4,
     ],
-    ids=["none", "fade", "night", "title", "uneven", "one side", "narrow"],
+    ids=["none", "fade", "night", "title", "uneven", "one side", "narrow", "sheet"],
 )
 def test_what_is_not_taken_for_bars(tmp_path: Path, pictures: list[Image]) -> None:
     clip = video(tmp_path / "clip.mp4", pictures)

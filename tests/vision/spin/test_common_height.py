@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from tests.vision.spin.test_handle import RADII, SURE, patch
 from vision.film.shelf import Kept
 from vision.spin.angles import angles_in_parts
-from vision.spin.common_make import common_height, turned_widely
+from vision.spin.common_height import common_height, turned_widely
 from vision.spin.handle import DOUBT, HandleAngles, cap_spectrum
 
 TIMES = np.arange(80) / 25

@@ -1,11 +1,10 @@
-"""What handles of one make share, told by the stones of a clip that turned: height and steepness.
+"""At which height the handles of a clip are seen, told by the stones that turned.
 
 Caps are unrolled at the height of the grip and at that of the cap (`vision.spin.handle`). At the
 wrong one what turns about the stone's axis is seen beside it, and pictures of a stone that turned
 widely are much less alike. Those of a stone that turned a little are about as much alike at either
 height, light and shade on the cap decide, and its angles, told about a point beside its axis, are
-off by a tenth. Stones of one clip have handles of one make: what turned tells it for the others,
-and how steeply they rise (`vision.spin.inclined`) as well.
+off by a tenth. Stones of one clip have handles of one make: what turned tells it for the others.
 """
 
 from __future__ import annotations
@@ -16,23 +15,15 @@ import numpy as np
 
 from vision.spin.handle import DOUBT, HandleAngles
 
-AT_ALL = 0.1
-"""By how much a stone turned whose angles depend on how steep its handle is, rad."""
-
 WIDELY = 1.5
 """By how much a stone turned that tells the height by itself, rad. Of 27 drawn stones seen at 45 to
 55 degrees all 12 that turned by 1.9 and more told the right one, and 11 of the 15 others."""
 
 
-def turned(told: HandleAngles, least: float = AT_ALL) -> bool:
-    """Say whether a stone turned, by that much at least, rad."""
-    seen = told.theta[np.isfinite(told.theta)]
-    return len(seen) > 0 and float(np.ptp(seen)) > least
-
-
 def turned_widely(told: HandleAngles) -> bool:
     """Say whether a stone turned so far that it tells by itself at which height that is seen."""
-    return turned(told, WIDELY)
+    seen = told.theta[np.isfinite(told.theta)]
+    return len(seen) > 0 and float(np.ptp(seen)) > WIDELY
 
 
 def common_height(stones: Collection[HandleAngles]) -> int | None:
@@ -53,19 +44,3 @@ def common_height(stones: Collection[HandleAngles]) -> int | None:
     unlike = np.sum(wide, axis=0)
     better, worse = np.argsort(unlike).tolist()
     return better if unlike[worse] > DOUBT * unlike[better] else None
-
-
-def common_steepness(stones: Collection[HandleAngles]) -> float | None:
-    """Tell how steeply the handles of a clip rise, to either end.
-
-    Parameters
-    ----------
-    stones : collection of HandleAngles
-
-    Returns
-    -------
-    float or None
-        The median of those that tell it themselves; None if none does.
-    """
-    steep = [abs(told.steep) for told in stones if told.steep is not None]
-    return float(np.median(steep)) if steep else None
