@@ -23,16 +23,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.tracks import TRACK_COLUMNS, Columns, Table, no_rows, teams
-from physics.filter.rate_filter import angle_response, filtered, loss_response
+from physics.filter.rate_filter import filtered, shared_response
 from physics.filter.spin_loss import spin_loss
-from physics.filter.stretch import (
-    GATE,
-    PATIENCE,
-    START_SD,
-    Filter,
-    Model,
-    Stretch,
-)
+from physics.filter.stretch import GATE, PATIENCE, START_SD, Filter, Model, Stretch
 from physics.local_fit.contacts import Contact, cut_all
 from physics.local_fit.fit import fit_shot
 from physics.local_fit.glides import free, measure_glides
@@ -228,8 +221,7 @@ def _track(way: _Way, model: Model, run: Filter) -> tuple[Columns, Floats]:
         sighted[at] = np.isfinite(cut.z[:, 0])
         stretch = replace(cut, model=model)
         mean[at], spread[at], seen[at] = run(stretch)
-        together[at, :, :2] = angle_response(stretch, trace.rise[row[at]])
-        together[at, :, 2] = loss_response(stretch)
+        together[at] = shared_response(stretch, trace.rise[row[at]])
     spread[:, 4:] = np.hypot(spread[:, 4:], np.linalg.norm(together, axis=2))
     for k in np.unique(part):
         at = np.flatnonzero(part == k)

@@ -183,10 +183,16 @@ def angle_response(stretch: Stretch, shared: Floats) -> Floats:
     return out
 
 
-def loss_response(stretch: Stretch) -> Floats:
-    """Error of the smoothed angle and spin by one standard error of the loss of spin, (n, 2)."""
+def shared_response(stretch: Stretch, rise: Floats) -> Floats:
+    """Tell what the smoothed angle and spin are off by together: (n, 2, k + 1).
+
+    By what angles share, `rise` (n, k), as for `angle_response`, and last by one standard error of
+    the loss of spin.
+    """
     lost = loss_error(stretch)
-    return np.asarray(angle_response(stretch, lost[:, :1])[:, :, 0] - lost)
+    out = angle_response(stretch, np.column_stack([rise, lost[:, 0]]))
+    out[:, :, -1] -= lost
+    return out
 
 
 def _listed(way: Steps) -> list[Step]:

@@ -8,7 +8,7 @@ known beforehand. What is left open then is one number, not a noise that is anew
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,27 +58,27 @@ def spin_loss(glides: Sequence[tuple[Stretch, Floats]]) -> tuple[float, float]:
     return min(max(mean, 0.0), MOST_LOST), float(np.sqrt(max(apart, 1.0) / weight.sum()))
 
 
-def _each(stretch: Stretch, together: Floats) -> list[tuple[float, float]]:
+def _each(stretch: Stretch, together: Floats) -> Iterator[tuple[float, float]]:
     """Give the loss that each piece of a stretch tells."""
     speed = np.hypot(*stretch.speed.T)
     asked = np.isfinite(stretch.z[:, 2]) & ~stretch.rest & (speed > SLOWEST)
-    out = []
     for piece in np.unique(stretch.piece[asked]):
         rows = np.flatnonzero(asked & (stretch.piece == piece))
         if len(rows) >= FEWEST and stretch.t[rows[-1]] - stretch.t[rows[0]] >= SHORTEST:
             some = rows[np.linspace(0, len(rows) - 1, min(len(rows), MOST)).astype(int)]
-            out += _of_piece(stretch, some, together[some], speed[some])
-    return out
+            told = _of_piece(stretch, some, together[some], speed[some])
+            if told is not None:
+                yield told
 
 
 def _of_piece(
     stretch: Stretch, rows: NDArray[np.intp], together: Floats, speed: Floats
-) -> list[tuple[float, float]]:
-    """Fit the angles of a piece; nothing where it hardly turns."""
+) -> tuple[float, float] | None:
+    """Fit the angles of a piece; None where it hardly turns."""
     t, theta = stretch.t[rows] - stretch.t[rows[0]], stretch.z[rows, 2]
     spin = float(np.polyfit(t, theta, 1)[0])
     if abs(spin) < IDLE:
-        return []
+        return None
     new, lasting = np.maximum(stretch.sd[rows, 2], SHARPEST), stretch.slow[rows, 2]
     apart = np.abs(np.subtract.outer(t, t))
     cov = np.diag(new**2) + np.outer(lasting, lasting) * np.exp(-apart / ANGLE_MEMORY)
@@ -91,7 +91,7 @@ def _of_piece(
     fitted = spread @ weighed.T @ theta
     left = theta - basis @ fitted
     square = float(left @ np.linalg.solve(cov, left)) / (len(t) - 3)
-    return [(float(fitted[2]), float(np.sqrt(spread[2, 2] * max(square, 1.0))))]
+    return float(fitted[2]), float(np.sqrt(spread[2, 2] * max(square, 1.0)))
 
 
 def _summed(t: Floats, rate: Floats) -> Floats:

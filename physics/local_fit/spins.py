@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from data.results import Estimate
 from data.sheet import STONE
-from physics.filter.rate_filter import angle_response, filtered, loss_response
+from physics.filter.rate_filter import filtered, shared_response
 from physics.filter.stretch import Model, Stretch
 from physics.local_fit.noise import Noise
 from physics.local_fit.shot_fit import ContactState, ShotFit
@@ -118,7 +118,7 @@ def spin_on(
     )
     mean, spread, _ = filtered(stretch)
     at = int(np.searchsorted(t, time))
-    together = *angle_response(stretch, trace.rise[row])[at, 1], loss_response(stretch)[at, 1]
+    together = shared_response(stretch, trace.rise[row])[at, 1]
     return Estimate(float(mean[at, 5]), float(np.hypot(spread[at, 5], np.linalg.norm(together))))
 
 

@@ -115,10 +115,10 @@ def _step(
     moved = np.concatenate([np.zeros((len(shift), 1)), shift], axis=1)
     model = mean + (moved.astype(np.float32) @ flat).reshape(-1, *ways.shape[1:])
     model *= seen[:, None, :, None]
-    gain = _product(here, model) / np.maximum(_product(model, model), 1e-12)
+    gain = product(here, model) / np.maximum(product(model, model), 1e-12)
     rest = here * (1 / np.maximum(gain, 0.1)).astype(np.float32)[:, None, None, None] - model
     count = 2 * rest[0, :, 0].size * np.maximum(seen.sum(1), 1)
-    noise = ALIKE**2 * _product(rest, rest) / count
+    noise = ALIKE**2 * product(rest, rest) / count
     by_ring = np.einsum("pkrc,qkrc->rpq", ways.conj(), ways).real
     normal = np.einsum("nr,rpq->npq", seen.astype(float), by_ring)
     prior = np.diag([0.0, 1.0, 1.0]) * (noise / sd_shift**2)[:, None, None]
@@ -129,7 +129,7 @@ def _step(
     return np.einsum("npq,nq->np", inverse, pull), np.sqrt(inverse[:, 0, 0] * noise)
 
 
-def _product(first: Complex, second: Complex) -> Array:
+def product(first: Complex, second: Complex) -> Array:
     """Real part of the scalar product of each of n pictures with another."""
     flat, other = first.reshape(len(first), 1, -1), second.conj().reshape(len(second), -1, 1)
     return np.asarray((flat @ other).real[:, 0, 0])

@@ -28,15 +28,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.spin.align import (
-    LASTING,
-    ORDERS,
-    Array,
-    Complex,
-    align,
-    ring_weights,
-    rings_seen,
-)
+from vision.spin.align import LASTING, ORDERS, Array, Complex, align, ring_weights, rings_seen
 from vision.spin.bearing import bearing
 from vision.spin.cover import uncovered
 from vision.spin.facing import angle_between, angles_between

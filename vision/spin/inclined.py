@@ -11,8 +11,18 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
-from vision.spin.align import ORDERS, Array, Complex, align, ring_weights, rings_seen, turned
+from vision.spin.align import (
+    ORDERS,
+    Array,
+    Complex,
+    align,
+    product,
+    ring_weights,
+    rings_seen,
+    turned,
+)
 from vision.spin.bearing import bearing
 from vision.spin.shade import parts, upright_mean
 
@@ -40,14 +50,8 @@ def inclined(
 
     Parameters
     ----------
-    pictures : ndarray, shape (n, orders, rings, channels)
-        From `vision.spin.handle.cap_spectrum`; a ring that is not seen is 0.
-    angles : ndarray, shape (n,)
-        That bring them onto their mean, rad.
-    radii : ndarray, shape (rings,)
-        m.
-    slants : ndarray, shape (n, 2)
-        Of the view (`vision.optics.cameras.Cameras.slants`), with the axes that angles count from.
+    pictures, angles, radii, slants
+        As for `vision.spin.pitch.levelled`.
     rise : complex
         How steep the plane is, and in which direction, of a cap at angle 0.
 
@@ -56,9 +60,9 @@ def inclined(
     ndarray, shape (n, orders, rings, channels)
     """
     out = np.empty_like(pictures)
-    aside, uphill = slants @ np.array([1, 1j]), rise * np.exp(1j * angles)
     for part in parts(np.arange(len(pictures))):
-        out[part] = _unrolled(pictures[part], radii, aside[part], uphill[part])
+        fine, seen = _finely(pictures[part], radii), rings_seen(pictures[part])
+        out[part] = _on_plane(fine, seen, radii, slants[part], rise * np.exp(1j * angles[part]))
     return out
 
 
@@ -81,16 +85,15 @@ def rise_of_handle(
     """
     if np.median(np.hypot(*slants.T)) < ASLANT or np.ptp(angles) < WIDELY:
         return None
-    seen = rings_seen(pictures)[:, None, :, None]
-    direction = bearing(upright_mean(pictures, angles, seen))
+    shown = rings_seen(pictures)[:, None, :, None]
+    direction = bearing(upright_mean(pictures, angles, shown))
     if direction is None:
         return None
-    along = complex(np.exp(1j * direction))
+    along = np.exp(1j * direction)
     some = np.linspace(0, len(pictures) - 1, min(len(pictures), MOST)).astype(int)
     pictures, angles, slants, sd_shift = pictures[some], angles[some], slants[some], sd_shift[some]
-    planes = (
-        inclined(pictures, angles, radii, slants, steep * along) for steep in STEEPNESSES.tolist()
-    )
+    fine, seen, uphill = _finely(pictures, radii), rings_seen(pictures), along * np.exp(1j * angles)
+    planes = (_on_plane(fine, seen, radii, slants, steep * uphill) for steep in STEEPNESSES)
     unlike = np.array([_unlike(plane, angles, radii, sd_shift) for plane in planes])
     middle = len(unlike) // 2
     # What is not interpolated keeps all its noise.
@@ -110,24 +113,32 @@ def _unlike(pictures: Complex, angles: Array, radii: Array, sd_shift: Array) -> 
     seen = rings_seen(pictures)[:, None, :, None]
     mean = upright_mean(pictures, angles, seen)[1:-1] * seen
     upright = turned(pictures, -angles)[:, 1:-1]
-    alike = np.einsum("nkrc,nkrc->n", upright, mean.conj()).real
-    size = np.einsum("nkrc,nkrc->n", upright, upright.conj()).real
-    size *= np.einsum("nkrc,nkrc->n", mean, mean.conj()).real
-    return float((1 - alike**2 / np.maximum(size, 1e-20)).sum())
+    size = product(upright, upright) * product(mean, mean)
+    return float((1 - product(upright, mean) ** 2 / np.maximum(size, 1e-20)).sum())
 
 
-def _unrolled(pictures: Complex, radii: Array, aside: Array, uphill: Array) -> Complex:
-    """Unroll some pictures on planes that rise by `uphill`, seen at the slants `aside`."""
-    count, rings = len(pictures), len(radii)
-    seen, weight = rings_seen(pictures), ring_weights(radii)[:, None]
-    spectrum = np.zeros((count, RAYS // 2 + 1, *pictures.shape[2:]), np.complex64)
-    spectrum[:, ORDERS] = pictures * RAYS / weight
+def _finely(pictures: Complex, radii: Array) -> Array:
+    """Values of some pictures on `RAYS` rays and, from ring to ring, at `FINER` places."""
+    rings, seen = len(radii), rings_seen(pictures)
+    spectrum = np.zeros((len(pictures), RAYS // 2 + 1, *pictures.shape[2:]), np.complex64)
+    spectrum[:, ORDERS] = pictures * RAYS / ring_weights(radii)[:, None]
     plain = np.fft.irfft(spectrum, RAYS, axis=1).astype(np.float32)
     # Where a ring is not seen the nearest of those that are goes on.
     apart = np.abs(np.subtract.outer(np.arange(rings), np.arange(rings)))
     shown = np.where(seen[:, None, :], apart, rings).argmin(2)
     plain = np.take_along_axis(plain, shown[:, None, :, None], axis=2)
-    fine = np.matmul(_between(rings), plain)
+    return np.asarray(np.matmul(_between(rings), plain))
+
+
+def _on_plane(
+    fine: Array,
+    seen: NDArray[np.bool_],
+    radii: Array,
+    slants: Array,
+    uphill: NDArray[np.complex128],
+) -> Complex:
+    """Unroll what `_finely` gives on planes that rise by `uphill`: harmonics of the rings seen."""
+    aside = slants @ np.array([1, 1j])
     place = radii * np.exp(2j * np.pi * np.arange(RAYS) / RAYS)[:, None]
     height = (uphill.conj()[:, None, None] * place).real
     from_where = place + aside[:, None, None] * height
@@ -137,11 +148,13 @@ def _unrolled(pictures: Complex, radii: Array, aside: Array, uphill: Array) -> C
     ring, ray = out.astype(np.intp), around.astype(np.intp)
     more = (out - ring)[..., None].astype(np.float32)
     beside = (around - ray)[..., None].astype(np.float32)
-    own, ray, after = np.arange(count)[:, None, None], ray % RAYS, (ray + 1) % RAYS
+    own, ray, after = np.arange(len(fine))[:, None, None], ray % RAYS, (ray + 1) % RAYS
     inner = (1 - beside) * fine[own, ray, ring] + beside * fine[own, after, ring]
     outer = (1 - beside) * fine[own, ray, ring + 1] + beside * fine[own, after, ring + 1]
-    unrolled = np.fft.rfft((1 - more) * inner + more * outer, axis=1)[:, ORDERS] / RAYS * weight
-    return np.asarray(unrolled * seen[:, None, :, None], np.complex64)
+    unrolled = np.fft.rfft((1 - more) * inner + more * outer, axis=1)[:, ORDERS] / RAYS
+    return np.asarray(
+        unrolled * ring_weights(radii)[:, None] * seen[:, None, :, None], np.complex64
+    )
 
 
 @lru_cache(maxsize=4)

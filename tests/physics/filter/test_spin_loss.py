@@ -7,9 +7,9 @@ import pandas as pd
 import pytest
 from numpy.typing import NDArray
 
-from physics.filter.rate_filter import angle_response, filtered
+from physics.filter.rate_filter import filtered, shared_response
 from physics.filter.spin_loss import spin_loss
-from physics.filter.stretch import SPIN_LOSS, SPIN_LOSS_SD, Model, Stretch, loss_error
+from physics.filter.stretch import SPIN_LOSS, SPIN_LOSS_SD, Model, Stretch
 from physics.kalman import smooth
 from tests.physics.watch import RADIUS
 
@@ -90,8 +90,7 @@ def test_what_is_open_of_the_loss_is_an_error_of_the_spin(sign: float) -> None:
     seen, spin = glide(loss + sd, sd=1e-3, sign=sign)
     seen = replace(seen, sd=seen.sd * [1, 1, 20])  # else they would tell
     seen = replace(seen, model=replace(seen.model, spin_loss=loss, sd_spin_loss=sd))
-    shape = loss_error(seen)
-    expected = (angle_response(seen, shape[:, :1])[:, :, 0] - shape)[:, 1]
+    expected = shared_response(seen, none(seen))[:, 1, 2]
     off = filtered(seen)[0][:, 5] - spin
     assert np.abs(off).max() > 0.003
     assert off == pytest.approx(expected, abs=0.15 * np.abs(off).max())

@@ -68,7 +68,8 @@ def test_what_is_open_of_the_loss_of_spin_is_in_their_errors(
     fit, known = fitted(watch(hit_motion(), np.random.default_rng(5), sd=0.002, sd_theta=0.015))
     before = beside(fit, known)["A"][0].stderr
     monkeypatch.setattr(
-        "physics.local_fit.spins.loss_response", lambda stretch: np.full((len(stretch.t), 2), 0.7)
+        "physics.local_fit.spins.shared_response",
+        lambda stretch, rise: np.full((len(rise), 2, 1), 0.7),
     )
     after = beside(fit, known)["A"][0].stderr
     assert before is not None and after is not None
