@@ -26,7 +26,7 @@ from physics.estimate import Estimates, estimate
 from physics.local_fit.contacts import find_contacts
 from physics.prediction.forecast import predict
 from physics.prediction.laws import measured_laws
-from physics.whole_shot.watched import Priors, literature
+from physics.whole_shot.priors import Priors, literature
 from tests.synthetic.clip import Truth, cached_clip
 from tests.synthetic.scenes import sample_variant
 from work.analyse import Run

@@ -34,8 +34,9 @@ from physics.statistics.random_effects import random_effects
 from physics.whole_shot.followed import fit_followed, followed
 from physics.whole_shot.misfit import misfits
 from physics.whole_shot.off_centre import centred_traces
+from physics.whole_shot.priors import loose_priors
 from physics.whole_shot.shot_model import ice
-from physics.whole_shot.watched import loose_priors, watch
+from physics.whole_shot.watched import watch
 from physics.whole_shot.whole_fit import GlobalFit
 
 POOR_FIT = 30.0

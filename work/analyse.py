@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from data.results import Collision, Estimate, Input, Results
     from physics.local_fit.contacts import Contact
-    from physics.whole_shot.watched import Priors
+    from physics.whole_shot.priors import Priors
 
 
 FEWEST = 4
@@ -178,7 +178,7 @@ def _pace(friction: Estimate) -> tuple[str, ...]:
 
     A clip that runs k times too slowly shows μ / k², tracks k times too long k μ.
     """
-    from physics.whole_shot.watched import FRICTION
+    from physics.whole_shot.priors import FRICTION
 
     value, stderr = friction.value, friction.stderr
     if value is None or stderr is None or value <= 0:

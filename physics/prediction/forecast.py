@@ -23,8 +23,9 @@ from physics.prediction.hindcast import explained_until, score
 from physics.prediction.throws import foreseen_until
 from physics.simulator.simulate import simulate
 from physics.whole_shot.law_choice import fit_with_chosen_laws
+from physics.whole_shot.priors import Priors, literature
 from physics.whole_shot.shot_model import penner
-from physics.whole_shot.watched import Priors, literature, watch
+from physics.whole_shot.watched import watch
 from physics.whole_shot.whole_fit import GlobalFit, draw_choices
 
 Floats = NDArray[np.float64]

@@ -14,7 +14,7 @@ from physics.curl import Curl, FCV1Curl, NoCurl
 from physics.estimate import Estimates
 from physics.ice import Constant, Fit, IceLaw
 from physics.impact import Frictional
-from physics.whole_shot.watched import LITERATURE, STONE_FRICTION, literature
+from physics.whole_shot.priors import LITERATURE, STONE_FRICTION, literature
 
 UNSCALED = Estimate(1.0, 0.0)
 """Stones that meet at two radii."""

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Mapping, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -18,6 +17,7 @@ from physics.local_fit.shot_fit import ShotFit
 from physics.local_fit.spins import spin_on
 from physics.local_fit.traces import Trace
 from physics.local_fit.untold import SUDDEN
+from physics.whole_shot.priors import Priors
 from physics.whole_shot.shot_model import SpinSeen, Unknown, Watched
 
 Floats = NDArray[np.float64]
@@ -41,97 +41,12 @@ THROWN = 1.5
 """Spin that a fit sets out from where none is seen before a hit, rad/s: from a spin of nothing,
 which may be lost before the hit, no slope leads to another."""
 
-SLOPE, KNEE, TURN = Estimate(0.002, 0.001), Estimate(V_C, 0.04), Estimate(0.0, 0.01)
-"""What is known of a and v_c in μ(v) = a / (v + v_c) + b, m/s, where friction falls (a is 0.002 in
-FCV1, some 0.0035 in Penner's law; no ice is known whose friction hardly falls), and of the turn of
-a path at 1 m/s, rad/s (0.0082 in FCV1)."""
-
-LOSS = Estimate(0.0125, 0.0125)
-"""What is known of the loss of spin times speed, m rad/s³: 0.025 in FCV1, and other ice may take
-none. When a slow spin dies tells for how long its stone curls: held at a wrong value it made e of
-a shot up to ten of its errors wrong."""
-
 RESTED = 2.0
 """Time for which a stone at rest says where it is, before the shot and after its way, s. What it
 says for longer is how its errors last: a minute of it would outweigh all that moves."""
 
 NEAR_HIT = 1.0
 """Time beside a hit in whose middle a spin is told, s: far enough from where it changes."""
-
-INERTIA = Estimate(0.5, 0.03)
-"""What is known of k in a curling stone's moment of inertia k m R²: 0.5 for a cylinder, less the
-rounder it is."""
-
-
-@dataclass(frozen=True)
-class Priors:
-    """What is known of the laws before any sighting.
-
-    Attributes
-    ----------
-    restitution : Estimate
-        0.83 ± 0.06 is what the study of the 2018 Olympic final quotes; simulators take 0.5
-        to 1.
-    stone_friction : Estimate
-        Between two stones; nobody seems to have measured it, simulators take 0 to 0.2.
-    friction : Estimate
-        Of the ice; 0.006 to 0.016 was measured by Li et al., 2022, Lubricants 10, 265.
-    size : Estimate
-        Distance at contact over two radii.
-    slope, v_c, turn, loss : Estimate
-        How friction falls, paths curl and spins are lost, as at `SLOPE`, `KNEE`, `TURN` and `LOSS`.
-    inertia : Estimate
-        k in the moment of inertia k m R², as at `INERTIA`.
-    """
-
-    restitution: Estimate
-    stone_friction: Estimate
-    friction: Estimate
-    size: Estimate
-    slope: Estimate = SLOPE
-    v_c: Estimate = KNEE
-    turn: Estimate = TURN
-    loss: Estimate = LOSS
-    inertia: Estimate = INERTIA
-
-
-RESTITUTION, STONE_FRICTION, FRICTION = 0.83, 0.05, 0.0109
-"""What is assumed where a shot tells nothing."""
-
-LITERATURE = Priors(
-    Estimate(RESTITUTION, 0.06),
-    Estimate(STONE_FRICTION, 0.05),
-    Estimate(FRICTION, 0.003),
-    Estimate(1.0, 0.01),
-)
-"""Priors of a shot of curling stones of which nothing is known yet; sources at `Priors`."""
-
-
-def literature(radius: float) -> Priors:
-    """Return priors of a shot of which nothing is known yet, for discs of a radius, m.
-
-    Curling stones have those of `LITERATURE`. Other discs may glide on anything, and bounce less
-    or more: 0.56 was measured of pucks with soft rims, billiard balls have 0.92 to 0.98.
-    """
-    if curling_size(radius):
-        return LITERATURE
-    anything = loose_priors(radius).friction
-    return replace(LITERATURE, restitution=Estimate(0.7, 0.2), friction=anything)
-
-
-def loose_priors(radius: float) -> Priors:
-    """Return priors that leave the say to the sightings.
-
-    Only the friction is that of curling ice where the discs have the size of curling stones:
-    half a second of a glide does not tell it, and velocities at a hit depend on it.
-    """
-    curling = curling_size(radius)
-    return Priors(
-        restitution=Estimate(0.8, 1.0),
-        stone_friction=Estimate(0.1, 0.3),
-        friction=Estimate(0.0105, 0.004) if curling else Estimate(0.01, 0.1),
-        size=Estimate(1.0, 0.015 if curling else 0.05),
-    )
 
 
 def watch(
@@ -172,34 +87,46 @@ def watch(
     runs = {name: run for name, run in runs.items() if run}
     ends = _ends(fit, runs)
     times = [fit.time(k) for k in range(len(fit.meetings))]
-    order = sorted(
-        (
-            k
-            for k, meeting in enumerate(fit.meetings)
-            if all(times[k] < ends[stone] for stone in meeting.stones)
-        ),
-        key=lambda k: times[k],
-    )
+    told = [
+        k
+        for k, meeting in enumerate(fit.meetings)
+        if all(times[k] < ends[stone] for stone in meeting.stones)
+    ]
+    order = sorted(told, key=lambda k: times[k])
     hit = {stone for k in order for stone in fit.meetings[k].stones}
-    traces = {}
-    for name, run in runs.items():
-        if name in hit or not fit.pieces[run[0]].rest:
-            shown = known[name].until(min(ends[name], _rested(fit, run, known[name])))
-            if len(shown.t):
-                traces[name] = shown
+    # Who comes into view on its way after a hit was hit out of sight: from where nobody knows.
+    late = min([*(times[k] for k in order), *ends.values()], default=np.inf)
+    traces, start = _traces(known, fit, runs, ends, hit, bystanders, late)
     if not traces:
         return None
-    traces |= {name: known[name] for name in bystanders if len(known[name].t)}
-    # Back from there stones at rest stay, however long they are seen; others would not.
-    come = [name for name in traces if name in runs and not fit.pieces[runs[name][0]].rest]
-    start = min(float(traces[name].t[0]) for name in come or traces)
-    # Who comes into view on its way after a hit was hit out of sight: from where nobody knows.
-    first = min([*(times[k] for k in order), *ends.values()], default=np.inf)
-    late = [name for name in come if traces[name].t[0] > first]
-    traces = {name: trace for name, trace in traces.items() if name in hit or name not in late}
-    traces = {name: trace.since(start - RESTED) for name, trace in traces.items()}
-    least = SLIPPERIEST if curling_size(radius) else 1e-5
-    laws: tuple[Unknown, ...] = (
+    noise = noises(fit, known)
+    states: list[Unknown] = []
+    spins: list[SpinSeen] = []
+    for name in traces:
+        run = runs.get(name, [])
+        seen = [_seen(fit, rank, known, noise, ends[name]) for rank in run]
+        spins += [spin for of_piece in seen for spin in of_piece]
+        states += _state(name, known[name], fit, run, start)
+        if run and not fit.pieces[run[0]].rest:
+            first = seen[0][0].omega if seen[0] else THROWN
+            states.append(Unknown(f"{name}.omega", first, prior=Estimate(0.0, 3.0)))
+    return Watched(
+        traces,
+        start,
+        (*_laws(priors, radius), *states),
+        tuple(spins),
+        tuple(_pair(fit.meetings[k].stones) for k in order),
+        tuple(times[k] for k in order),
+        radius,
+        masses or {},
+    )
+
+
+def _laws(priors: Priors, radius: float) -> tuple[Unknown, ...]:
+    """Unknowns of the laws that all stones obey."""
+    curling = curling_size(radius)
+    least = SLIPPERIEST if curling else 1e-5
+    laws = (
         Unknown("restitution", _mean(priors.restitution), 0.0, 1.5, priors.restitution),
         Unknown("stone_friction", SLIDING, 0.0, 2.0, priors.stone_friction),
         Unknown("friction", _mean(priors.friction), least, 1.0, priors.friction),
@@ -208,33 +135,45 @@ def watch(
         Unknown("turn", 0.0, -0.1, 0.1, priors.turn),
         Unknown("size", 1.0, 0.7, 1.3, priors.size),
     )
-    if curling_size(radius):  # other discs may be of any make, and glide on anything
-        laws += (
-            Unknown("loss", _mean(priors.loss), 0.0, 0.2, priors.loss),
-            Unknown("inertia", _mean(priors.inertia), 0.3, 0.6, priors.inertia),
-        )
-    noise = noises(fit, known)
-    states: list[Unknown] = []
-    spins: list[SpinSeen] = []
-    for name in traces:
-        run = runs.get(name, [])
-        states += _state(name, known[name], fit, run, start)
-        seen = [_seen(fit, rank, known, noise, ends[name]) for rank in run]
-        spins += [spin for of_piece in seen for spin in of_piece]
-        if run and not fit.pieces[run[0]].rest:
-            first = seen[0][0].omega if seen[0] else THROWN
-            states.append(Unknown(f"{name}.omega", first, prior=Estimate(0.0, 3.0)))
-    pairs = tuple(_pair(fit.meetings[k].stones) for k in order)
-    return Watched(
-        traces,
-        start,
-        (*laws, *states),
-        tuple(spins),
-        pairs,
-        tuple(times[k] for k in order),
-        radius,
-        masses or {},
+    if not curling:  # other discs may be of any make, and glide on anything
+        return laws
+    return (
+        *laws,
+        Unknown("loss", _mean(priors.loss), 0.0, 0.2, priors.loss),
+        Unknown("inertia", _mean(priors.inertia), 0.3, 0.6, priors.inertia),
     )
+
+
+def _traces(
+    known: Mapping[str, Trace],
+    fit: ShotFit,
+    runs: Mapping[str, Sequence[int]],
+    ends: Mapping[str, float],
+    hit: Collection[str],
+    bystanders: Sequence[str],
+    late: float,
+) -> tuple[dict[str, Trace], float]:
+    """Sightings that count, by stone, and when the shot begins, s.
+
+    Of those that move or are `hit`, till they `end` or rest, but for those that come into view
+    after `late` and are not hit; and of bystanders, as long as the shot lasts.
+    """
+    counted = {}
+    for name, run in runs.items():
+        if name in hit or not fit.pieces[run[0]].rest:
+            shown = known[name].until(min(ends[name], _rested(fit, run, known[name])))
+            if len(shown.t):
+                counted[name] = shown
+    if not counted:
+        return {}, np.nan
+    counted |= {name: known[name] for name in bystanders if len(known[name].t)}
+    # Back from there stones at rest stay, however long they are seen; others would not.
+    come = [name for name in counted if name in runs and not fit.pieces[runs[name][0]].rest]
+    start = min(float(counted[name].t[0]) for name in come or counted)
+    left_out = {name for name in come if counted[name].t[0] > late} - set(hit)
+    return {
+        name: trace.since(start - RESTED) for name, trace in counted.items() if name not in left_out
+    }, start
 
 
 def _mean(estimate: Estimate) -> float:

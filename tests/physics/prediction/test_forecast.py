@@ -13,7 +13,7 @@ from physics.estimate import estimate
 from physics.kalman import smooth
 from physics.local_fit.contacts import find_contacts
 from physics.prediction.forecast import ASSUMED, assumed, predict
-from physics.whole_shot.watched import Priors
+from physics.whole_shot.priors import Priors
 from tests.physics.watch import RADIUS, hit_motion, watch
 from tests.synthetic.physics import Ice, Impact, Motion, Start
 from tests.synthetic.physics import simulate as move

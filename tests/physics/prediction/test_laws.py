@@ -10,7 +10,7 @@ from physics.curl import FCV1Curl, NoCurl
 from physics.estimate import Estimates
 from physics.ice import Constant, Fit
 from physics.prediction.laws import LEAST_FRICTION, between_stones, measured_laws
-from physics.whole_shot.watched import LITERATURE
+from physics.whole_shot.priors import LITERATURE
 
 R = 0.1455
 

@@ -20,8 +20,9 @@ from physics.whole_shot.law_choice import (
     _hit_by_hit,
     _values,
 )
+from physics.whole_shot.priors import SLOPE
 from physics.whole_shot.shot_model import Watched
-from physics.whole_shot.watched import SLOPE, THROWN
+from physics.whole_shot.watched import THROWN
 from physics.whole_shot.whole_fit import GlobalFit
 from tests.physics.watch import RADIUS, hit_motion, watch
 from tests.synthetic.physics import Ice, Impact, Start, simulate
