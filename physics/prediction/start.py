@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -113,29 +113,22 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
         )
         for row in table.to_dict("records")
     )
-    if not stones or max(math.hypot(stone.vx, stone.vy) for stone in stones) == 0:
+    if not any(_moves(stone) for stone in stones):
         raise InputError("tracks: no stone moves before the first hit; nothing to throw again")
-    sd = np.nan_to_num(table[[f"sd_{key}" for key in STATE]].to_numpy(float))
-    # A stone at rest is known to rest.
-    sd[[stone.vx == stone.vy == 0 for stone in stones], 2:] = 0.0
-    # What the places share is alike near each other, of which none can be more than all.
-    shared = np.minimum(results.shared_error or 0.0, sd[:, :2].min(axis=1))
-    xy = np.array([(stone.x, stone.y) for stone in stones])
-    together = np.outer(shared, shared) * shared_correlation(xy)
-    sd[:, :2] = np.sqrt(sd[:, :2] ** 2 - shared[:, None] ** 2)
+    sd, together = _errors(table, stones, results.shared_error or 0.0)
     thrown = _fastest(stones)
-    radius = results.radius * (laws.size.value or 1.0)
     stone = stones[thrown]
-    speed = math.hypot(stone.vx, stone.vy)
-    ahead = (stone.x * stone.vx + stone.y * stone.vy) / speed
     # With another one under way too, the measured moment is where both are known.
-    alone = sum(math.hypot(other.vx, other.vy) > 0 for other in stones) == 1
+    alone = sum(map(_moves, stones)) == 1
     way = _room(stones, thrown, results.radius) if results.collisions and alone else 0.0
     moved = list(stones)
     moved[thrown] = _taken_back(stone, way, laws.ice)
-    curling = curling_size(results.radius)
-    release = max(HOG_TO_TEE + ahead - way, 0.0) if curling else 0.0
-    bounds = Bounds(1 if stone.vy > 0 else -1) if curling else None
+    radius = results.radius * (laws.size.value or 1.0)
+    release, bounds = 0.0, None
+    if curling_size(results.radius):
+        ahead = (stone.x * stone.vx + stone.y * stone.vy) / math.hypot(stone.vx, stone.vy)
+        release = max(HOG_TO_TEE + ahead - way, 0.0)
+        bounds = Bounds(1 if stone.vy > 0 else -1)
     return Start(
         Shot(tuple(moved), laws.frictional, laws.ice, laws.curl, radius, bounds),
         thrown,
@@ -149,6 +142,27 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
         release,
         (*laws.assumed.values(), *_left_out(late)),
     )
+
+
+def _moves(stone: StoneStart) -> bool:
+    return math.hypot(stone.vx, stone.vy) > 0
+
+
+def _errors(
+    table: pd.DataFrame, stones: Sequence[StoneStart], lasting: float
+) -> tuple[Array, Array]:
+    """Own errors of the stones' states, (stones, 5), and what places share, (stones, stones).
+
+    `lasting` is a standard error that all places have in common, m.
+    """
+    sd = np.nan_to_num(table[[f"sd_{key}" for key in STATE]].to_numpy(float))
+    # A stone at rest is known to rest.
+    sd[[not _moves(stone) for stone in stones], 2:] = 0.0
+    # What the places share is alike near each other, of which none can be more than all.
+    shared = np.minimum(lasting, sd[:, :2].min(axis=1))
+    sd[:, :2] = np.sqrt(sd[:, :2] ** 2 - shared[:, None] ** 2)
+    xy = np.array([(stone.x, stone.y) for stone in stones])
+    return sd, np.outer(shared, shared) * shared_correlation(xy)
 
 
 def _left_out(late: Mapping[str, float]) -> tuple[str, ...]:
