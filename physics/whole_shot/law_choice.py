@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from types import MappingProxyType
 
@@ -59,55 +59,87 @@ def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None
     """
     held = {"v_c": V_C, **(fixed or {})}
     best, *others = _either_sense(shot, held)
-    shot = best.shots[0]
-    tried, criteria, least = [best], [0.0], 0.0
-    tried += others
-    criteria += [_beside(other, best) for other in others]
-    asked = [name for name in ("slope", "turn") if name in best.names]
-    while asked:
-        name = max(asked, key=lambda each: _against(best, each))
-        asked.remove(name)
-        against = _against(best, name)
-        if against < -SELDOM:
-            continue
-        fewer = STRAIGHT[name]
-        less = _refitted(best, shot, held | {name: fewer})
-        more = less.deviance - best.deviance
-        if not less.settled or more > max(ELSEWHERE * best.deviance, SELDOM * best.inflation):
-            continue
-        tried.append(less)
-        criteria.append(least - against)
-        if against > 0:
-            best, held, least = less, held | {name: fewer}, least - against
-    falls = "slope" in best.names and "v_c" not in (fixed or {})
+    tried = _Tried(best, held, [best], [0.0])
+    for other in others:
+        tried.add(other, _beside(other, best))
+    _leave_out(tried)
+    falls = "slope" in tried.best.names and "v_c" not in (fixed or {})
     if falls:
-        # where friction falls there is a knee to be found
-        free = {name: value for name, value in held.items() if name != "v_c"}
-        bent = _refitted(best, shot, free)
-        if bent.settled:
-            tried[criteria.index(least)] = bent
-            best, held = bent, free
+        _let_bend(tried)
     if shot.hits:
-        stuck = _refitted(best, shot, held | STICKING)
+        stuck = tried.refitted(tried.held | STICKING)
         if stuck.settled:
-            tried.append(stuck)
-            criteria.append(least + _beside(stuck, best))
-            if criteria[-1] < least:
-                best, held, least = stuck, held | STICKING, criteria[-1]
+            tried.add(stuck, tried.least + _beside(stuck, tried.best), tried.held | STICKING)
     if falls:
         # Beside stones that do not slide as these do no other ice would fit either.
-        even = {"slope": 0.0, "v_c": V_C, **held}
-        uneven = replace(shot, ice=penner)  # it needs no slope to be so
-        rooted = fit_shots([uneven], fixed=even, start=_values(best), noise=best.inflation)
+        even = {"slope": 0.0, "v_c": V_C, **tried.held}
+        uneven = replace(best.shots[0], ice=penner)  # it needs no slope to be so
+        start, noise = _values(tried.best), tried.best.inflation
+        rooted = fit_shots([uneven], fixed=even, start=start, noise=noise)
         if rooted.settled:
-            tried.append(rooted)
-            criteria.append(least + _beside(rooted, best))
-    return _with_others(best, tried, np.array(criteria))
+            tried.add(rooted, tried.least + _beside(rooted, tried.best))
+    return _with_others(tried.best, tried.fits, np.array(tried.criteria))
 
 
-def _refitted(best: GlobalFit, shot: Watched, held: Mapping[str, float]) -> GlobalFit:
-    """Fit with other laws from where the best fit has them, with the noise that it has told."""
-    return fit_shots([shot], fixed=held, start=_values(best, held), noise=best.inflation)
+@dataclass
+class _Tried:
+    """Fits of a shot with some laws and others, and the best of them.
+
+    Attributes
+    ----------
+    best : GlobalFit
+    held : dict
+        Unknowns that it holds, and at what.
+    fits : list of GlobalFit
+    criteria : list of float
+        Of each, minus twice the log probability of the sightings, but for what all share.
+    least : float
+        That of the best.
+    """
+
+    best: GlobalFit
+    held: dict[str, float]
+    fits: list[GlobalFit]
+    criteria: list[float]
+    least: float = 0.0
+
+    def add(self, fit: GlobalFit, criterion: float, held: dict[str, float] | None = None) -> None:
+        """Count a fit in; it is the best from then on if it is better, and says what it holds."""
+        self.fits.append(fit)
+        self.criteria.append(criterion)
+        if held is not None and criterion < self.least:
+            self.best, self.held, self.least = fit, held, criterion
+
+    def refitted(self, held: Mapping[str, float]) -> GlobalFit:
+        """Fit with other laws from where the best fit has them, with the noise that it has told."""
+        best = self.best
+        return fit_shots(best.shots, fixed=held, start=_values(best, held), noise=best.inflation)
+
+
+def _leave_out(tried: _Tried) -> None:
+    """Try without friction that falls and paths that curl, what speaks most against it first."""
+    asked = [name for name in ("slope", "turn") if name in tried.best.names]
+    while asked:
+        best = tried.best
+        against = {name: _against(best, name) for name in asked}
+        name = max(asked, key=lambda each: against[each])
+        asked.remove(name)
+        if against[name] < -SELDOM:
+            continue
+        held = {**tried.held, name: STRAIGHT[name]}
+        less = tried.refitted(held)
+        more = less.deviance - best.deviance
+        if less.settled and more <= max(ELSEWHERE * best.deviance, SELDOM * best.inflation):
+            tried.add(less, tried.least - against[name], held)
+
+
+def _let_bend(tried: _Tried) -> None:
+    """Find the speed about which friction falls, and take that fit for the best."""
+    free = {name: value for name, value in tried.held.items() if name != "v_c"}
+    bent = tried.refitted(free)
+    if bent.settled:
+        tried.fits[tried.criteria.index(tried.least)] = bent
+        tried.best, tried.held = bent, free
 
 
 def _either_sense(shot: Watched, held: Mapping[str, float]) -> list[GlobalFit]:
