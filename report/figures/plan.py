@@ -109,23 +109,35 @@ def plan_figure(
         ax.set(xlabel="$x$ (m)", ylabel="$y$ (m)")
         ax.grid(False)
         title(figure, "Plan view")
-        handles: list[Artist] = [line("measured", color=GREY, lw=2)] if moved else []
-        handles += [
-            line(plain_text(model), color=GREY, linestyle=dash, lw=1.1)
-            for model, (_, dash) in lines.items()
-        ]
-        if collisions:
-            handles.append(line("hit", color=BLACK, marker="x", ls="none", mew=1.6))
-        if under_way:
-            shaft: dict[str, Any] = {"marker": r"$\rightarrow$", "ls": "none", "ms": 11, "mew": 0}
-            handles.append(line("last seen under way", color=GREY, **shaft))
-        if factor:
-            by = "" if factor == 1 else f", {factor} × enlarged"
-            shade: dict[str, Any] = {"color": GREY, "marker": "o", "ls": "none", "alpha": 0.5}
-            handles.append(line(f"± 2 sd{by}", mew=0, ms=7, **shade))
+        handles = _handles(bool(moved), lines, bool(collisions), bool(under_way), factor)
         if handles:
             legend_below(figure, handles)
     return figure
+
+
+def _handles(
+    moved: bool,
+    lines: Mapping[str, tuple[Any, Any]],
+    hits: bool,
+    under_way: bool,
+    factor: int | None,
+) -> list[Artist]:
+    """Entries of the legend, of what is drawn."""
+    handles: list[Artist] = [line("measured", color=GREY, lw=2)] if moved else []
+    handles += [
+        line(plain_text(model), color=GREY, linestyle=dash, lw=1.1)
+        for model, (_, dash) in lines.items()
+    ]
+    if hits:
+        handles.append(line("hit", color=BLACK, marker="x", ls="none", mew=1.6))
+    if under_way:
+        shaft: dict[str, Any] = {"marker": r"$\rightarrow$", "ls": "none", "ms": 11, "mew": 0}
+        handles.append(line("last seen under way", color=GREY, **shaft))
+    if factor:
+        by = "" if factor == 1 else f", {factor} × enlarged"
+        shade: dict[str, Any] = {"color": GREY, "marker": "o", "ls": "none", "alpha": 0.5}
+        handles.append(line(f"± 2 sd{by}", mew=0, ms=7, **shade))
+    return handles
 
 
 def draw_house(ax: Axes, house: House, low: Array, high: Array) -> None:
