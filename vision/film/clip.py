@@ -15,6 +15,7 @@ import numpy as np
 
 from data.errors import InputError
 from data.inputs import IMAGE_SUFFIXES, picture_times
+from vision.film.fields import deinterlaced
 from vision.film.picture import Image as Image
 from vision.film.picture import Picture, Planes, image_of
 from vision.film.repeats import Repeats
@@ -299,21 +300,24 @@ def _decoded(container: Any) -> Iterator[tuple[float, Planes]]:
     stream = container.streams.video[0]
     # Threads that decode side by side cost a sixth more in all, and hold pictures each.
     stream.codec_context.thread_count = 1
-    begin, pixel = stream.start_time or 0, float(stream.sample_aspect_ratio or 1)
-    ticks, seconds = stream.time_base.denominator, stream.time_base.numerator
-    packets = container.demux(stream)
+    clock, pixel = stream.time_base, float(stream.sample_aspect_ratio or 1)
+    begin = (stream.start_time or 0) * clock
+    for frame in deinterlaced(_frames(container.demux(stream)), stream):
+        stamp = frame.dts if frame.pts is None else frame.pts
+        if stamp is not None:
+            yield float(stamp * (frame.time_base or clock) - begin), Planes.of(frame, pixel)
+
+
+def _frames(packets: Iterator[Any]) -> Iterator[av.VideoFrame]:
+    """Decode packets in order, but for those that are damaged."""
     while True:
         try:
-            packet = next(packets)
-            frames = packet.decode()
+            frames = next(packets).decode()
         except StopIteration:
             return
         except (av.error.InvalidDataError, av.error.EOFError):
             continue
-        for frame in frames:
-            stamp = frame.dts if frame.pts is None else frame.pts
-            if stamp is not None:
-                yield (stamp - begin) * seconds / ticks, Planes.of(frame, pixel)
+        yield from frames
 
 
 def _read_image(path: Path) -> Image | None:
