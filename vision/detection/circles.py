@@ -230,7 +230,8 @@ def _bends(residual: Array, use: Flags) -> Array:
 
 def medians(values: Array | NDArray[np.float32], use: Flags) -> Array:
     """Median of the chosen values of each row, shape (n, m); 0 where there are none."""
-    ranked = np.sort(np.where(use, values, np.inf), axis=1)
+    ranked = np.where(use, values, np.inf)
+    ranked.sort(axis=1)
     count = use.sum(1)
     middle = ranked[np.arange(len(ranked)), np.maximum(count - 1, 0) // 2]
     return np.asarray(np.where(count > 0, middle, 0.0))
