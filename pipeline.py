@@ -6,7 +6,6 @@ Everything heavy is imported where it is used, so that ``curlshot --help`` answe
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -424,6 +423,8 @@ def _convert_each(arguments: argparse.Namespace) -> str:
 
 
 def _do_simulate(arguments: argparse.Namespace, bars: Bars) -> str:
+    import json
+
     from data.tracks import write_table
     from physics.prediction.what_if import Changes, changed
     from physics.simulator.simulate import simulate

@@ -31,7 +31,7 @@ import numpy as np
 import pandas as pd
 
 import pipeline
-from command.threads import LIMITS
+from command.threads import LIMITS, use_one_thread
 from report.encode import Encoder
 from tests.synthetic.camera import broadcast_camera
 from tests.synthetic.clip import cached_clip
@@ -195,6 +195,10 @@ def main() -> None:
     if arguments.lengths:
         print(lengths().to_string(index=False))
         return
+    if not os.environ.keys() >= {*LIMITS}:
+        # The command sees to that before it loads libraries; here they are loaded by now.
+        use_one_thread()
+        os.execv(sys.executable, sys.orig_argv)
     for clip in arguments.clips or [long_clip()]:
         frames = decoded(clip)  # from now on the file is at hand
         print(clip)

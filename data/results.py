@@ -5,29 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from data.estimates import Estimate as Estimate
+from data.estimates import Friction as Friction
+from data.estimates import Glide as Glide
 from data.sheet import STONE
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """A value with its standard error; both None where the input cannot tell."""
-
-    value: float | None = None
-    stderr: float | None = None
-
-
-@dataclass(frozen=True)
-class Friction(Estimate):
-    """Coefficient of friction of the ice, with the law that it belongs to.
-
-    ``law`` is ``constant``, or ``fit`` for μ(v) = a / (v + v_c) + b; then the value is that at
-    1 m/s, and ``a``, ``v_c`` (m/s) and ``b`` are the law's constants.
-    """
-
-    law: str = "constant"
-    a: float | None = None
-    v_c: float | None = None
-    b: float | None = None
 
 
 @dataclass(frozen=True)
@@ -172,23 +153,6 @@ class Collision:
     def earliest(self) -> float:
         """Time before which the stones have not met for certain, s: three standard errors."""
         return self.t - 3 * (self.stderr_t or 0.0)
-
-
-@dataclass(frozen=True)
-class Glide:
-    """One free glide of one stone and the friction that slowed it.
-
-    ``turn`` is how its path turned (rad/s, to the left positive) at its mean ``speed`` (m/s).
-    """
-
-    stone: str
-    t0: float
-    t1: float
-    friction: float | None
-    stderr: float | None
-    turn: float | None = None
-    stderr_turn: float | None = None
-    speed: float | None = None
 
 
 @dataclass(frozen=True)

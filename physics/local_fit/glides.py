@@ -9,7 +9,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from data.results import Estimate, Friction, Glide
+from data.estimates import Estimate, Friction, Glide
 from data.sheet import GRAVITY, curling_size
 from physics.filter.slowing import (
     FORM_SD,

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from data.results import Collision
 from physics.filter.stretch import PLACE_MEMORY
 from physics.local_fit.breaks import ALIKE
 from physics.local_fit.contacts import Contact
@@ -24,6 +24,9 @@ from physics.local_fit.segments import Piece, cut
 from physics.local_fit.shot_fit import Meeting
 from physics.local_fit.traces import Trace
 from physics.statistics.residuals import huber_weights
+
+if TYPE_CHECKING:
+    from data.results import Collision
 
 Floats = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from data.results import Estimate
+from data.estimates import Estimate
 
 Floats = NDArray[np.float64]
 

@@ -287,8 +287,9 @@ def colour_differences(first: Array, second: Array) -> Array:
     """
     first, second = np.asarray(first, float)[:, None], np.asarray(second, float)
     grey = np.maximum(chroma(first), chroma(second)) < GREY
-    light, *hue = np.moveaxis((first - second) ** 2, -1, 0)
-    return np.asarray(np.sqrt(np.where(grey, LIGHT_OF_GREY, LIGHT) * light + sum(hue)))
+    square = (first - second) ** 2
+    light = np.where(grey, LIGHT_OF_GREY, LIGHT) * square[..., 0]
+    return np.asarray(np.sqrt(light + (square[..., 1] + square[..., 2])))
 
 
 def _colour(samples: Array, floor: tuple[float, float, float]) -> Colour:

@@ -164,21 +164,22 @@ def fit_circles(
         edge, strength = bands.edges((usual + change).reshape(n, circles, -1))
         target = edge.reshape(n, -1) - usual
         base = may * (strength > strong).reshape(n, -1)
+        residual = target - change
         for _ in range(3):
-            w = base * _likely(target - change, scale)
-            typical = 1.4826 * medians(np.abs(target - change), w > 0)
+            w = base * _likely(residual, scale)
+            typical = 1.4826 * medians(np.abs(residual), w > 0)
             scale = np.maximum(np.minimum(scale, 3.5 * typical), least)
             solution = design.solve(w, target, prior)
             change = design.edges(solution)
-    agree = (base > 0) & (np.abs(target - change) < 0.75 * scale[:, None]) & inside
+            residual = target - change
+    agree = (base > 0) & (np.abs(residual) < 0.75 * scale[:, None]) & inside
     agree = agree.reshape(n, circles, -1)
     shares = agree.sum(-1) / np.maximum(inside.reshape(n, circles, -1).sum(-1), 1)
     # From here on circles that are known to lie aside have less of a say.
     base *= np.repeat([rim.say for rim in rims], len(rays.angle))
     for _ in range(2):
-        solution = design.solve(base * _likely(target - change, scale), target, prior)
-        change = design.edges(solution)
-    residual = target - change
+        solution = design.solve(base * _likely(residual, scale), target, prior)
+        residual = target - design.edges(solution)
     fits = (base > 0) & (np.abs(residual) < 0.75 * scale[:, None])
     count = fits.sum(1)
     rms = np.sqrt((residual**2 * fits).sum(1) / np.maximum(count, 1))
@@ -229,7 +230,8 @@ def _bends(residual: Array, use: Flags) -> Array:
 
 def medians(values: Array | NDArray[np.float32], use: Flags) -> Array:
     """Median of the chosen values of each row, shape (n, m); 0 where there are none."""
-    ranked = np.sort(np.where(use, values, np.inf), axis=1)
+    ranked = np.where(use, values, np.inf)
+    ranked.sort(axis=1)
     count = use.sum(1)
     middle = ranked[np.arange(len(ranked)), np.maximum(count - 1, 0) // 2]
     return np.asarray(np.where(count > 0, middle, 0.0))

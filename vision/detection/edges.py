@@ -146,7 +146,7 @@ def fit_edges(
         How each place is measured.
     """
     cap, granite = _rims(samples, rays, views, appearance, disc, effort)
-    visible = (samples.stony & cap.inside).mean(1)
+    visible = visible_on(samples, rays, appearance, disc)
     leaning = np.clip((np.hypot(*views.slant.T) - ASLANT[0]) / (ASLANT[1] - ASLANT[0]), 0.0, 1.0)
     dark = _without_hue(appearance) & (leaning > 0) & _dark(samples)
     leaning[dark] = 1.0
@@ -180,6 +180,12 @@ def fit_edges(
         doubt[fast] = np.hypot(doubt[fast], off)
         light[fast[off.any(1)]] = np.nan
     return Edges(fit, visible, light, swept, doubt)
+
+
+def visible_on(samples: Samples, rays: Rays, appearance: Appearance, disc: Stone) -> Array:
+    """Share of the way around stones on which both cap and granite are seen, shape (n,)."""
+    at_cap = rays.at(disc.cap_radius * appearance.outline[0])
+    return np.asarray((samples.stony & at_cap).mean(1))
 
 
 def mixtures_matter(views: Views, appearance: Appearance) -> bool:

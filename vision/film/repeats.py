@@ -8,9 +8,10 @@ far less than where something moved just before and just after.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from math import inf, sqrt
+from functools import cached_property
+from math import sqrt
 from typing import TYPE_CHECKING
 
 import cv2
@@ -42,17 +43,42 @@ FEW = 4
 """Places that change so, at least: a stone that moves by a pixel covers as many."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Change:
-    """How much two pictures differ, levels of 255: on the whole (r.m.s.), and at a few places."""
+    """How much two pictures differ.
 
-    whole: float = 0.0
-    few: float = 0.0
+    Attributes
+    ----------
+    away : ndarray of uint8
+        At each of the places by which they are compared, levels of 255.
+    """
 
-    def beside(self, other: Change) -> bool:
-        """Whether it is next to nothing beside another, of something that moved."""
-        small = self.whole < SHARE * other.whole and self.few < FEW_SHARE * other.few
-        return small and other.few >= MOVED
+    away: Image
+
+    @cached_property
+    def whole(self) -> float:
+        """By how much on the whole, root mean square."""
+        return cv2.norm(self.away) / sqrt(self.away.size)
+
+    @cached_property
+    def few(self) -> float:
+        """By how much at a few places."""
+        places = self.away.ravel().copy()
+        # The largest of bytes is found a few times in a fraction of the time of ranking them.
+        for _ in range(FEW - 1):
+            places[places.argmax()] = 0
+        return float(places.max())
+
+    def beside(self, others: Sequence[Change]) -> bool:
+        """Whether it is next to nothing beside others, of something that moved.
+
+        The third largest of these counts, for a cut or a flash makes one or two.
+        """
+        rank = -min(3, (len(others) + 1) // 2)
+        if self.whole >= SHARE * sorted(other.whole for other in others)[rank]:
+            return False  # as a rule; few places take longer to ask
+        few = sorted(other.few for other in others)[rank]
+        return self.few < FEW_SHARE * few and few >= MOVED
 
 
 @dataclass
@@ -79,10 +105,10 @@ class Repeats:
             before, seen = seen, _sample(frame.picture)
             if kept is not None:
                 change = changed(kept, seen)
-                if len(held) < MOST and change.beside(self._usual(len(held))):
+                if len(held) < MOST and self._may_repeat(change, len(held)):
                     held.append((frame, change))
                     continue
-                repeat = bool(held) and all(one.beside(change) for _, one in held)
+                repeat = bool(held) and all(one.beside([change]) for _, one in held)
                 if repeat and tell_nothing(len(held), so_was_last):
                     self.left_out |= {one.index: (one.t, last) for one, _ in held}
                 else:
@@ -96,17 +122,14 @@ class Repeats:
             yield frame
         yield from (one for one, _ in held)
 
-    def _usual(self, held: int) -> Change:
-        """Change of late: the third largest, for a cut or a flash makes one or two.
+    def _may_repeat(self, change: Change, held: int) -> bool:
+        """Whether a change is next to nothing beside those of late.
 
-        What it is at first only the next pictures can tell.
+        At first only the next pictures can tell what these are.
         """
-        if not self._changes:
-            return Change(inf, MOVED / FEW_SHARE) if held + 1 < HALT else Change()
-        rank = -min(3, (len(self._changes) + 1) // 2)
-        whole = sorted(change.whole for change in self._changes)
-        few = sorted(change.few for change in self._changes)
-        return Change(whole[rank], few[rank])
+        if self._changes:
+            return change.beside(self._changes)
+        return held + 1 < HALT and change.few < MOVED
 
 
 def tell_nothing(count: int, so_was_last: bool) -> bool:
@@ -128,12 +151,7 @@ def tell_nothing(count: int, so_was_last: bool) -> bool:
 
 def changed(one: Image, other: Image) -> Change:
     """Compare two pictures by the same places of each, whatever the shape."""
-    away = cv2.absdiff(one, other)
-    whole, places = cv2.norm(away) / sqrt(away.size), away.ravel()
-    # The largest of bytes is found a few times in a fraction of the time in which they are ranked.
-    for _ in range(FEW - 1):
-        places[places.argmax()] = 0
-    return Change(whole, float(places.max()))
+    return Change(np.asarray(cv2.absdiff(one, other), np.uint8))
 
 
 def _sample(picture: Picture) -> Image:
