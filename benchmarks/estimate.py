@@ -1,6 +1,6 @@
 """Whether the estimates are as sharp, as honest and as fast as they should be: one table.
 
-Run from the repository root: ``python -m benchmarks.estimate [--draws 60] [--local 200]
+Run from the repository root: ``python -m benchmarks.estimate [--draws 200] [--local 300]
 [--first 0]``. Shots are drawn at random over noise (3 mm, 1 cm), frames a second (25, 30, 60),
 closing speeds (0.3 to 3 m/s), time in view on either side of a hit (0.5 to 3 s), one to three
 hits, restitution, friction between the stones, and ice, every other time as FCV1 has it, else of
@@ -247,8 +247,8 @@ def table(rows: Iterable[Row]) -> str:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--draws", type=int, default=60, help="shots fitted as a whole")
-    parser.add_argument("--local", type=int, default=200, help="shots in all")
+    parser.add_argument("--draws", type=int, default=200, help="shots fitted as a whole")
+    parser.add_argument("--local", type=int, default=300, help="shots in all")
     parser.add_argument("--first", type=int, default=0, help="seed of the first shot")
     arguments = parser.parse_args()
     begin = time.process_time()

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from data.errors import SceneError
 from data.progress import Progress, no_progress
+from data.sheet import HOUSE
 from vision.camera_path.edge_tracker import EdgeTracker
 from vision.camera_path.joint import HouseTrack, Seen, fit_clip
 from vision.camera_path.piece import MOST_MISSED, Piece
@@ -45,6 +46,9 @@ and pixels that they may have together: beyond that there are fewer of them."""
 FULLER, ELSEWHERE = 0.2, 1.0
 """How much more of the 12-ft circle must be in view for another house to take the place of one that
 is cut, and distance of two tees, m, from which on they are of two houses."""
+
+BESIDE = np.array([(way * apart, 0.0) for way in (-1, 1) for apart in np.arange(4.2, 5.7, 0.2)])
+"""Where tees of the sheets beside may be, m: sheets are 4.4 to 5 m wide, with paths between."""
 
 MOST_SPANS = 5
 """Runs of frames left out that one warning names: more are for the table of cameras."""
@@ -175,10 +179,13 @@ class HouseFollower:
         if not piece.second_look_due(len(seen)):
             return None
         before, piece.in_view = piece.in_view, 1.0
+        camera = piece.camera(seen[-1])
+        if _most_beside(camera) < before:
+            return None
         house = find_house(image_of(frame.picture), frame=frame.index, t=frame.t)
         if house is None or float(house.evidence.visible[TWELVE]) < before + FULLER:
             return None
-        tee = piece.camera(seen[-1]).ice(house.camera.project(np.zeros((1, 2))))
+        tee = camera.ice(house.camera.project(np.zeros((1, 2))))
         return house if float(np.hypot(*tee[0])) > ELSEWHERE else None
 
     def _watch_for_cuts(self, piece: Piece) -> None:
@@ -340,3 +347,11 @@ def _span(piece: Piece) -> str:
 
 def _frames(first: int, last: int) -> str:
     return f"{first}" if first == last else f"{first} to {last}"
+
+
+def _most_beside(camera: Camera) -> float:
+    """Share of the 12-ft circle that the house of a sheet beside shows in a picture, at most."""
+    angles = np.linspace(0, 2 * np.pi, 48, endpoint=False)
+    around = HOUSE.twelve_foot * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    pixels = camera.project(BESIDE[:, None] + around)
+    return float(((pixels >= 0) & (pixels < camera.size)).all(-1).mean(1).max())
