@@ -5,6 +5,7 @@ import os
 import shutil
 import subprocess
 import sys
+from itertools import islice
 from pathlib import Path
 
 import cv2
@@ -20,6 +21,8 @@ from data.results_file import read_results
 from data.tracks import SEEN_AS, TRACK_COLUMNS
 from report.summary import summary
 from tests.scoring import read_truth, score_tracks
+from tests.synthetic.video import write_video
+from vision.film.clip import open_clip
 
 SAMPLE = pipeline.sample_clip()
 CONTRACT = {
@@ -80,6 +83,31 @@ def test_sample_is_measured_to_the_bars(sample: pipeline.Run) -> None:
     assert e.stderr is not None and mu.stderr is not None
     assert abs(e.value - truth.restitution) < 4 * e.stderr
     assert abs(mu.value - truth.friction) < 4 * mu.stderr
+
+
+def test_a_clip_told_at_another_rate_tells_what_it_tells_at_its_own(
+    sample: pipeline.Run, tmp_path: Path
+) -> None:
+    pictures = [frame.image for frame in islice(open_clip([SAMPLE]).every(), 76)]
+    # 25 a second told as 30: five pictures in six frames.
+    thirty = [(k / 30, pictures[5 * k // 6]) for k in range(90)]
+    write_video(tmp_path / "thirty.mp4", thirty, fps=30.0)
+    run = pipeline.run([tmp_path / "thirty.mp4"])
+    hits, known = run.results.collisions, sample.results.collisions
+    assert [hit.stones for hit in hits] == [("A", "B"), ("B", "C")]
+    for hit, other in zip(hits, known, strict=True):
+        assert hit.restitution == pytest.approx(other.restitution, abs=0.015)
+        assert hit.stderr is not None and other.stderr is not None
+        assert hit.stderr < 3 * other.stderr
+    assert hits[1].t - hits[0].t == pytest.approx(known[1].t - known[0].t, abs=0.002)
+    assert run.results.friction.value == pytest.approx(sample.results.friction.value, rel=0.03)
+    assert len(run.results.warnings) == 1
+    # All frames are in the tables, those that repeat as not seen, at times in their order.
+    assert run.cameras["frame"].tolist() == [*range(90)]
+    assert (run.cameras["t"].diff().iloc[1:] > 0).all()
+    of_a = run.tracks[run.tracks["stone"] == "A"]
+    assert of_a["frame"].tolist() == [*range(90)]
+    assert set(of_a.loc[of_a["frame"] % 6 == 1, "seen"]) == {0}
 
 
 def test_sample_names_stones_by_their_first_motion(sample: pipeline.Run) -> None:

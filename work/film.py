@@ -54,6 +54,10 @@ def film(files: tuple[Path, ...], settings: Settings, progress: Progress, placed
         followed = _follow(clip, settings, progress, placed)
         house = House(*(float(radius) for radius in followed.radii))
         filmed = Filmed(clip, followed.cameras, disc, house, followed.warnings)
+    if clip.cadence is not None:
+        from vision.optics.camera import taken_at
+
+        filmed = replace(filmed, cameras=taken_at(filmed.cameras, clip.cadence.times))
     if not filmed.cameras:
         raise InputError(f"{files[0]}: none of the frames that are used can be read")
     check_size(settings.radius, filmed.cameras[0])

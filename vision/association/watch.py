@@ -95,7 +95,7 @@ class Watch:
         self._leads: list[Lead] = []
         self._since = self._most = MEMORY
         self._searched_first = False
-        self._seen: dict[int, tuple[float, Kept[Sequence[Sighting]]]] = {}
+        self._seen: dict[int, Kept[Sequence[Sighting]]] = {}
 
     def look(self, frame: Frame, camera: Camera) -> None:
         """Take in a frame; it waits for some more, the first ones until the stones are learned."""
@@ -113,7 +113,7 @@ class Watch:
         # The next search goes back no farther: no more pictures than that are held at all.
         while self._recent and len(self._recent) + len(self._waiting) > self._most:
             self._put_aside(self._recent.popleft())
-        self._seen[frame.index] = frame.t, Kept(view.sightings)
+        self._seen[frame.index] = Kept(view.sightings)
         if len(self._waiting) >= (BLOCK if self._knows else self._most):
             self._catch_up()
 
@@ -128,8 +128,9 @@ class Watch:
         Parameters
         ----------
         cameras : sequence of Camera
-            As they are known by now: they place the stones, and tell the errors that their
-            sightings share; frames without one are left out.
+            As they are known by now, and at the times at which the frames were taken: they place
+            the stones, and tell the errors that their sightings share; frames without one are left
+            out.
         """
         self._catch_up()
         if self._since and self._recent:
@@ -140,9 +141,9 @@ class Watch:
     def _placed(self, known: Sequence[Camera]) -> Iterator[tuple[int, float, Sequence[Sighting]]]:
         for begin in range(0, len(known), AT_ONCE):
             some = known[begin : begin + AT_ONCE]
-            times, seen = zip(*(self._seen.pop(camera.frame) for camera in some), strict=True)
-            placed = placed_by(some, [one.get() for one in seen], self._shown)
-            yield from zip([camera.frame for camera in some], times, placed, strict=True)
+            seen = [self._seen.pop(camera.frame).get() for camera in some]
+            placed = placed_by(some, seen, self._shown)
+            yield from ((one.frame, one.t, each) for one, each in zip(some, placed, strict=True))
         self._seen.clear()
 
     @property
@@ -214,7 +215,7 @@ class Watch:
         view.put_aside(self._shelf)
         rows: Kept[Sequence[Sighting]] = Kept(Rows(view.sightings))
         rows.put_aside(self._shelf)
-        self._seen[view.frame.index] = view.frame.t, rows
+        self._seen[view.frame.index] = rows
 
     def _misses(self, view: StoneView) -> bool:
         """Whether none of the known stones is followed, or a view shows where one is missed."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain, pairwise
 from pathlib import Path
@@ -15,6 +15,7 @@ import numpy as np
 
 from data.errors import InputError
 from data.inputs import IMAGE_SUFFIXES, picture_times
+from vision.film.cadence import Cadence, cadence_of
 from vision.film.fields import deinterlaced
 from vision.film.picture import Image as Image
 from vision.film.picture import Picture, Planes, image_of
@@ -42,7 +43,8 @@ class Frame:
 class Clip:
     """A clip that can be read through, again and again, always in order.
 
-    Pictures that repeat the one before are left out (`vision.film.repeats`).
+    Pictures that repeat the one before are left out (`vision.film.repeats`). Single ones are where
+    they come in a cadence, which one pass shows and from the next on is followed.
 
     Attributes
     ----------
@@ -58,10 +60,13 @@ class Clip:
         The range of frames that is used, both included.
     warnings : list of str
         Filled while reading: what could not be read.
-    read : int
-        How many frames the latest pass has given so far.
+    read, passed : int
+        How many frames the latest pass has given so far, and gone through, repeats among them.
     repeated : dict of int to (float, int)
-        Of each frame that it has left out as a repeat the time, s, and the frame that it repeats.
+        Of each frame that it has left out as a repeat the time, s, and the frame that it repeats;
+        in the end also of those that the cadence says to be one.
+    cadence : Cadence or None
+        When the pictures were taken, if that is not when they are told, and a pass has shown it.
     """
 
     files: tuple[Path, ...]
@@ -72,7 +77,9 @@ class Clip:
     last: int | None = None
     warnings: list[str] = field(default_factory=list)
     read: int = 0
+    passed: int = 0
     repeated: dict[int, tuple[float, int]] = field(default_factory=dict)
+    cadence: Cadence | None = None
     _begun: tuple[Any, Iterator[tuple[float, Planes]]] | None = field(
         default=None, init=False, repr=False, compare=False
     )
@@ -107,21 +114,26 @@ class Clip:
 
     def __iter__(self) -> Iterator[Frame]:
         """Yield the frames in order, decoding as it goes."""
-        repeats = Repeats()
-        self.read, self.repeated = 0, repeats.left_out
-        for frame in repeats.distinct(self.every()):
+        repeats, known = Repeats(), self.cadence
+        self.read, self.repeated, self.passed = 0, repeats.left_out, 0
+        for frame in repeats.distinct(self._counted()):
+            if known is not None and frame.index not in known.times:
+                continue
             self.read += 1
-            yield frame
+            yield frame if known is None else replace(frame, t=known.times[frame.index])
+        self.cadence = cadence_of(repeats.shown)
+        if self.cadence is not None:
+            self.repeated = self.repeated | self.cadence.repeats
         if self.repeated:
             self._warn(
                 f"{self.files[0]}: {len(self.repeated)} of {self.passed} pictures repeat the one"
-                " before them; what is seen in them is left out"
+                f" before them; what is seen in them is left out{_so_taken(self.cadence)}"
             )
 
-    @property
-    def passed(self) -> int:
-        """How many frames the latest pass has gone through so far, repeats among them."""
-        return self.read + len(self.repeated)
+    def _counted(self) -> Iterator[Frame]:
+        for frame in self.every():
+            self.passed += 1
+            yield frame
 
     def every(self) -> Iterator[Frame]:
         """Yield all frames, repeats among them."""
@@ -186,6 +198,17 @@ class Clip:
                 self._warn(f"{path}: not of the size of the first picture; left out")
             else:
                 yield Frame(index, times[index] / rate, image)
+
+
+def _so_taken(cadence: Cadence | None) -> str:
+    """Say which cadence was followed, if one was."""
+    if cadence is None:
+        return ""
+    rate, told = cadence.rate, cadence.told
+    return (
+        f"; they come as in a clip of {rate:.4g} pictures a second that is told as one of"
+        f" {told:.4g}, so the others are spaced evenly in time"
+    )
 
 
 def open_clip(

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import cv2
 import numpy as np
 
+from vision.film.cadence import Shown
 from vision.film.picture import Image, Picture, Planes
 
 if TYPE_CHECKING:
@@ -32,6 +33,10 @@ coded anew to 0.15 and less; where the camera halts for a moment a stone goes on
 
 MOVED = 16.0
 """Levels of 255 by which some places change where something moves: less is what coding changes."""
+
+NEW_SHARE = 0.4
+"""Part of the changes of late from which on a picture is surely a new one: grain that is coded anew
+comes to a third."""
 
 MOST = 32
 """Pictures in a row held back till it shows whether to leave them out, at most: for memory."""
@@ -70,15 +75,16 @@ class Change:
         return float(places.max())
 
     def beside(self, others: Sequence[Change]) -> bool:
-        """Whether it is next to nothing beside others, of something that moved.
-
-        The third largest of these counts, for a cut or a flash makes one or two.
-        """
-        rank = -min(3, (len(others) + 1) // 2)
-        if self.whole >= SHARE * sorted(other.whole for other in others)[rank]:
+        """Whether it is next to nothing beside others, of something that moved."""
+        if self.whole >= SHARE * _usual(other.whole for other in others):
             return False  # as a rule; few places take longer to ask
-        few = sorted(other.few for other in others)[rank]
+        few = _usual(other.few for other in others)
         return self.few < FEW_SHARE * few and few >= MOVED
+
+    def goes_on(self, others: Sequence[Change]) -> bool:
+        """Whether something moved, about as much as it did in others."""
+        usual = _usual(other.whole for other in others)
+        return self.whole > NEW_SHARE * usual and self.few >= MOVED
 
 
 @dataclass
@@ -91,9 +97,13 @@ class Repeats:
     ----------
     left_out : dict of int to (float, int)
         Of each frame that was left out its time, s, and the frame that it repeats.
+    shown : list of Shown
+        Of each frame whether it shows a new picture, for a cadence to be told by in the end. A
+        halt says nothing of it.
     """
 
     left_out: dict[int, tuple[float, int]] = field(default_factory=dict)
+    shown: list[Shown] = field(default_factory=list)
     _changes: deque[Change] = field(default_factory=lambda: deque(maxlen=9))
 
     def distinct(self, frames: Iterable[Frame]) -> Iterator[Frame]:
@@ -103,12 +113,15 @@ class Repeats:
         seen: Image = np.zeros(0, np.uint8)
         for frame in frames:
             before, seen = seen, _sample(frame.picture)
+            differs, new = 0.0, False
             if kept is not None:
                 change = changed(kept, seen)
                 if len(held) < MOST and self._may_repeat(change, len(held)):
                     held.append((frame, change))
                     continue
                 repeat = bool(held) and all(one.beside([change]) for _, one in held)
+                again = False if repeat and len(held) < HALT else None
+                self.shown += [Shown(one.index, one.t, again, by.whole) for one, by in held]
                 if repeat and tell_nothing(len(held), so_was_last):
                     self.left_out |= {one.index: (one.t, last) for one, _ in held}
                 else:
@@ -116,10 +129,13 @@ class Repeats:
                 if held and not repeat:
                     self._changes.extend(one for _, one in held)
                     change = changed(before, seen)
+                differs, new = change.whole, bool(self._changes) and change.goes_on(self._changes)
                 self._changes.append(change)
                 held, so_was_last = [], repeat
             last, kept = frame.index, seen
+            self.shown.append(Shown(frame.index, frame.t, new or None, differs))
             yield frame
+        self.shown += [Shown(one.index, one.t, None, by.whole) for one, by in held]
         yield from (one for one, _ in held)
 
     def _may_repeat(self, change: Change, held: int) -> bool:
@@ -132,12 +148,19 @@ class Repeats:
         return held + 1 < HALT and change.few < MOVED
 
 
+def _usual(values: Iterable[float]) -> float:
+    """Give the third largest, or of a few the middle one, for a cut or a flash makes one or two."""
+    ranked = sorted(values)
+    return ranked[-min(3, (len(ranked) + 1) // 2)]
+
+
 def tell_nothing(count: int, so_was_last: bool) -> bool:
-    """Whether pictures that repeat one before are to be left out.
+    """Whether pictures that repeat one before are to be left out as soon as they are seen.
 
     Not a single one now and then: where every fifth is repeated to make 30 a second of 24, the
-    others are told up to a frame late, more and more from one repeat to the next, so that stones
-    would seem faster than they are if the repeat did not say how unsure times are.
+    others are told up to a frame late, more and more from one repeat to the next. In the end their
+    `cadence` may tell when they were taken; else stones would seem faster than they are if the
+    repeat did not say how unsure times are.
 
     Parameters
     ----------

@@ -200,6 +200,11 @@ class Camera:
         )
 
 
+def taken_at(cameras: Sequence[Camera], times: Mapping[int, float]) -> tuple[Camera, ...]:
+    """Give cameras the times of their frames, s; those of frames without a time are left out."""
+    return tuple(replace(one, t=times[one.frame]) for one in cameras if one.frame in times)
+
+
 def carried(
     cameras: Sequence[Camera], repeated: Mapping[int, tuple[float, int]]
 ) -> tuple[Camera, ...]:
@@ -211,14 +216,10 @@ def carried(
         Of such a frame the time, s, and the frame that it repeats.
     """
     known = {camera.frame: camera for camera in cameras}
-    more = [
-        replace(known[of], frame=frame, t=t, found=False)
-        for frame, (t, of) in repeated.items()
-        if of in known
-    ]
-    return (
-        tuple(sorted([*cameras, *more], key=lambda camera: camera.frame)) if more else (*cameras,)
-    )
+    for frame, (t, of) in sorted(repeated.items()):
+        if of in known:
+            known[frame] = replace(known[of], frame=frame, t=t, found=False)
+    return tuple(known[frame] for frame in sorted(known))
 
 
 def camera_columns(cameras: Sequence[Camera]) -> Columns:

@@ -60,7 +60,7 @@ class LitClip(Clip):
         """Yield the frames in order, without the bars."""
         hidden = False
         for frame in self.whole:
-            self.read = self.whole.read
+            self.read, self.passed = self.whole.read, self.whole.passed
             if not hidden and self._hides(frame.picture):
                 hidden = True
                 self._warn(
@@ -68,6 +68,7 @@ class LitClip(Clip):
                     " something there; give the frames of the shot alone (--frames)"
                 )
             yield Frame(frame.index, frame.t, without_bars(frame.picture, self.bars))
+        self.cadence = self.whole.cadence
 
     def _hides(self, picture: Picture) -> bool:
         """Whether a picture, which may not have been asked, shows something to its borders."""

@@ -107,17 +107,19 @@ def test_pictures_of_caps_are_left_where_they_were_put_aside(
 def test_in_the_end_stones_are_placed_by_the_cameras_that_are_known_by_then(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Some pictures at once; a picture without a camera, and a camera without one, are left out."""
+    """At their times; a picture without a camera, and a camera without one, are left out."""
     monkeypatch.setattr("vision.association.watch.AT_ONCE", 5)
     image, camera = picture(AT_REST), camera_of(CAMERA, scene_of(AT_REST))
     watches = Watch(), Watch()
     for index in range(12):
         for watch in watches:
             watch.look(Frame(index, index / 25, image), camera)
-    known = [replace(camera, frame=index, k1=0.01 * index) for index in [*range(1, 12), 99]]
+    known = [
+        replace(camera, frame=index, t=index / 24, k1=0.01 * index) for index in [*range(1, 12), 99]
+    ]
     seen = {frame: sightings for frame, _, sightings in watches[0].finish(lasting(camera))}
     found = list(watches[1].finish(known))
-    assert [(frame, t) for frame, t, _ in found] == [(k, k / 25) for k in range(1, 12)]
+    assert [(frame, t) for frame, t, _ in found] == [(k, k / 24) for k in range(1, 12)]
     for (frame, _, sightings), by in zip(found, known, strict=False):
         (expected,) = placed_by([by], [seen[frame]], STONE)
         assert len(sightings) == len(AT_REST)
