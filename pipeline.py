@@ -162,7 +162,7 @@ def _write_run(
         write_table(done.cameras, stage / "camera.csv")
     if done.posterior is not None:
         write_table(done.posterior, stage / "posterior.csv")
-    house = measured.house
+    house = done.house
     overlay: Path | None = None
     clip_start = 0.0
     if measured.clip is not None and settings.overlay:

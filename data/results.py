@@ -223,6 +223,7 @@ class Results:
     ``masses`` has those given, in any unit, of all stones or none. ``shared_error`` is the standard
     deviation (m, per axis) of what places near each other share, None where nothing is known of it.
     ``teams`` has each stone's as in ``tracks.csv``, without those of which nothing is known.
+    ``sheet`` says whether places count from the tee of a sheet, along y.
     """
 
     input: Input
@@ -244,3 +245,4 @@ class Results:
     masses: Mapping[str, float] = field(default_factory=dict)
     teams: Mapping[str, str] = field(default_factory=dict)
     shared_error: float | None = None
+    sheet: bool = True

@@ -87,6 +87,7 @@ def read_results(path: Path) -> Results:
             masses={str(name): _length(mass) for name, mass in raw.get("masses", {}).items()},
             teams={str(name): str(team) for name, team in raw.get("teams", {}).items()},
             shared_error=_length(raw["shared_error"]) if raw.get("shared_error") else None,
+            sheet=bool(raw.get("sheet", True)),
         )
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}") from None

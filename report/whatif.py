@@ -17,7 +17,7 @@ from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
 from data.files import write_text
-from data.sheet import HOUSE, STONE, curling_size
+from data.sheet import HOUSE, STONE
 from data.tracks import write_table
 from physics.prediction.start import Start
 from report.figures import draw_house
@@ -61,6 +61,7 @@ def write_odds(folder: Path, start: Start, outcomes: pd.DataFrame, odds: Mapping
         odds["thrown"],
         f"{odds['thrown']} thrown {count(odds['samples'], 'time')}",
         start.shot.radius,
+        house=start.house,
     )
     figure.savefig(folder / "spread.png", dpi=PNG_DPI)
 
@@ -71,11 +72,13 @@ def spread_figure(
     thrown: str,
     title: str,
     radius: float = STONE.radius,
+    *,
+    house: bool = True,
 ) -> Figure:
     """Draw where the stones come to rest, the thrown one as a heat map, others as dots.
 
     Those that leave the sheet come to rest nowhere on it: they are counted beside the names.
-    Few throws are dots, all of them, and discs that are no curling stones have no house.
+    Few throws are dots, all of them.
 
     Parameters
     ----------
@@ -89,6 +92,8 @@ def spread_figure(
         One line.
     radius : float
         Radius of the stones, m.
+    house : bool
+        Whether places count from the tee of a house.
     """
     own = outcomes["stone"] == thrown
     # A stone that nothing touched lies where it lay.
@@ -102,14 +107,14 @@ def spread_figure(
     }
     ends, throws = places.pop(thrown), int(own.sum())
     lying = {name: place for name, place in before.items() if name != thrown}
-    low, high = _corners([ends, *places.values()], [*lying.values()], radius)
+    low, high = _corners([ends, *places.values()], [*lying.values()], radius, house)
     colours = stone_colours(outcomes["stone"].unique())
     wide, tall = high - low
     width = 7.0
     with styled():
         figure = new_figure(width, min((width - 1.6) * tall / wide + 1.3, 10.0))
         ax = figure.subplots()
-        if curling_size(radius):
+        if house:
             draw_house(ax, HOUSE, low, high)
         label = f"where {plain_text(thrown)} ends, % of throws on 10 cm × 10 cm"
         _draw_ends(ax, ends, throws, (low, high), radius, label)
@@ -184,7 +189,7 @@ def _gone(share: float) -> str:
 
 
 def _corners(
-    ends: list[Array], lying: list[tuple[float, float]], radius: float
+    ends: list[Array], lying: list[tuple[float, float]], radius: float, house: bool
 ) -> tuple[Array, Array]:
     """Corners of what is shown, m: the house, the stones and nearly all of the outcomes.
 
@@ -193,7 +198,7 @@ def _corners(
     middle = np.median(ends[0], axis=0) if len(ends[0]) else np.zeros(2)
     at_home = bool((np.abs(middle) < FARTHEST).all())
     centre = np.zeros(2) if at_home else middle
-    rim = radius + (HOUSE.twelve_foot if curling_size(radius) else 0.0)
+    rim = radius + (HOUSE.twelve_foot if house else 0.0)
     parts = [np.array([[-rim, -rim], [rim, rim]]) + centre, np.array(lying).reshape(-1, 2)]
     parts += [np.quantile(places, [1 - SHARE, SHARE], axis=0) for places in ends if len(places)]
     shown = np.clip(np.concatenate(parts), centre - FARTHEST, centre + FARTHEST)

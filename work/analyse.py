@@ -32,6 +32,11 @@ SLIPPERIEST = 2e-4
 """Friction below that of anything that glides: a twentieth of that of the keenest ice."""
 
 
+NO_SHEET = (
+    "the shot does not come along y within the sides of a sheet whose tee is the origin: no house"
+    " and no lines; put the origin on the tee and y along the sheet if there is one"
+)
+
 LISTED = 4
 """Marks left out that are named one by one, the worst."""
 
@@ -82,7 +87,7 @@ def analyse(
     from physics.posterior import sample_posterior, summarise
     from physics.prediction.forecast import predict
     from physics.prediction.hindcast import simulate_measured
-    from physics.prediction.throws import later_throws
+    from physics.prediction.throws import along_sheet, later_throws
     from vision.optics.camera import camera_table
 
     sightings, radius = measured.sightings, settings.radius
@@ -103,6 +108,11 @@ def analyse(
     drawn = sample_posterior(estimates, settings.samples, np.random.default_rng(0))
     if settings.samples and drawn is None:
         notes = (*notes, "no samples: the shot tells neither restitution nor friction")
+    house = measured.house
+    if house is not None and measured.clip is None:
+        first = min((hit.earliest for hit in estimates.collisions), default=np.inf)
+        if not along_sheet(tracks, first, radius):
+            house, notes = None, (*notes, NO_SHEET)
     pace = _pace if measured.house is not None else _pace_anywhere
     notes = (*notes, *pace(estimates.friction))
     notes = (*notes, *_throws(later_throws(tracks)), *_few(sightings["frame"].nunique()))
@@ -128,6 +138,7 @@ def analyse(
         teams={stone: team for stone, team in of_team.items() if team},
         masses=masses or {},
         shared_error=_shared_error(sightings),
+        sheet=house is not None,
     )
     cameras = camera_table(measured.cameras) if measured.cameras else None
     simulations = [as_tracks(table, model, of_team) for model, table in sampled.items()]
@@ -137,7 +148,7 @@ def analyse(
         cameras,
         results,
         pd.concat(simulations, ignore_index=True) if simulations else as_tracks(None, ""),
-        house=measured.house,
+        house=house,
         posterior=drawn,
     )
 

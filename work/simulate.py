@@ -132,15 +132,18 @@ def throw_often(
         "samples": count,
         "throw_sd": {"speed": speed, "direction": direction},
         "stones": {name: asdict(item) for name, item in odds(outcomes, start).items()},
-        "warnings": [*start.assumed, *_not_told(start.shot.radius, count)],
+        "warnings": [*start.assumed, *_not_told(start, count)],
     }
 
 
-def _not_told(radius: float, count: int) -> list[str]:
+def _not_told(start: Start, count: int) -> list[str]:
     """Say why some of what samples tell is null."""
     notes = []
+    radius = start.shot.radius
     if not curling_size(radius):
         notes.append(f"discs of radius {radius:g} m: no house, so none is in it or shot stone")
+    elif not start.house:
+        notes.append("places do not count from a tee: no stone is in a house or shot stone")
     if count == 1:
         notes.append("thrown once: no spread")
     return notes

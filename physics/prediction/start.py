@@ -11,7 +11,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from data.errors import InputError
-from data.results import Results
+from data.results import Estimate, MeasuredState, Results
 from data.sheet import SHEET, STONE, curling_size
 from physics.curl import NoCurl
 from physics.ice import IceLaw
@@ -23,11 +23,14 @@ from physics.simulator.curve import Curve, curve_for
 from physics.simulator.motion import Motion, Path
 from physics.simulator.simulation import Shot, StoneStart
 from physics.whole_shot.shot_model import STATE
+from physics.whole_shot.watched import THROWN
 
 Array = NDArray[np.float64]
 
 BACK = 1.0
 """How far the thrown stone is taken back from its first hit, m, to have room for changes."""
+FREE = 3.0
+"""How much discs that are no curling stones may spin, a standard deviation, rad/s."""
 HOG_TO_TEE = SHEET.far_tee - SHEET.hog_line
 """From the hog line where the stone is let go to the tee, m."""
 
@@ -52,6 +55,8 @@ class Start:
         stones meet, relative to it.
     release : float
         Distance that the thrown stone has come since it was let go, m.
+    house : bool
+        Whether places count from the tee of a house.
     assumed : tuple of str
         What had to be assumed.
     """
@@ -66,6 +71,7 @@ class Start:
     sd_turn: float = 0.0
     sd_size: float = 0.0
     release: float = 0.0
+    house: bool = True
     assumed: tuple[str, ...] = ()
 
 
@@ -73,7 +79,11 @@ def written_start(shot: Shot) -> Start:
     """Return a shot written by hand: known exactly, let go where it begins."""
     count = len(shot.stones)
     return Start(
-        shot, _fastest(shot.stones), np.zeros((count, len(STATE))), np.zeros((count, count))
+        shot,
+        _fastest(shot.stones),
+        np.zeros((count, len(STATE))),
+        np.zeros((count, count)),
+        house=curling_size(shot.radius),
     )
 
 
@@ -91,8 +101,8 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     -------
     Start
         The thrown stone, the fastest, is taken back by `BACK` on its way, or less where
-        another stone lies in it or moves too. If it is a curling stone, it is let go at the
-        hog line, and stones that leave the sheet are taken away.
+        another stone lies in it or moves too. If it is a curling stone on a sheet, it is let go at
+        the hog line, and stones that leave the sheet are taken away.
 
     Raises
     ------
@@ -104,7 +114,7 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     late = newcomers(tracks, time)
     tracks = tracks[~tracks["stone"].isin(late.keys())]
     rows = [_row(group, time, laws.ice) for _, group in tracks.groupby("stone", sort=True)]
-    table = pd.DataFrame(rows).reset_index(drop=True)
+    table, unseen = _with_spins(pd.DataFrame(rows).reset_index(drop=True), results)
     stones = tuple(
         StoneStart(
             str(row["stone"]),
@@ -125,7 +135,8 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
     moved[thrown] = _taken_back(stone, way, laws.ice)
     radius = results.radius * (laws.size.value or 1.0)
     release, bounds = 0.0, None
-    if curling_size(results.radius):
+    house = results.sheet and curling_size(results.radius)
+    if house:
         ahead = (stone.x * stone.vx + stone.y * stone.vy) / math.hypot(stone.vx, stone.vy)
         release = max(HOG_TO_TEE + ahead - way, 0.0)
         bounds = Bounds(1 if stone.vy > 0 else -1)
@@ -140,8 +151,34 @@ def measured_start(tracks: pd.DataFrame, results: Results) -> Start:
         laws.sd_turn,
         laws.size.stderr or 0.0,
         release,
-        (*laws.assumed.values(), *_left_out(late)),
+        house,
+        (*laws.assumed.values(), *unseen, *_left_out(late)),
     )
+
+
+def _with_spins(table: pd.DataFrame, results: Results) -> tuple[pd.DataFrame, tuple[str, ...]]:
+    """Give spins to stones that were not seen to turn, with their errors, and say which.
+
+    Of one that moves what fits the whole shot best, or else any of either sense.
+    """
+    curling = curling_size(results.radius)
+    anyhow = Estimate(0.0, math.hypot(THROWN, THROWN) if curling else FREE)
+    table, simulated, said = table.copy(), results.simulations.get("frictional"), []
+    first: dict[str, MeasuredState] = {}
+    for hit in simulated.hits if simulated is not None else ():
+        first = {**hit.before, **first}
+    for k in table.index[table["omega"].isna()]:
+        name, spin = str(table.loc[k, "stone"]), Estimate(0.0, 0.0)
+        if math.hypot(table.loc[k, "vx"], table.loc[k, "vy"]) > 0:
+            state = first.get(name)
+            told = state is not None and state.omega is not None and bool(state.sd_omega)
+            spin = Estimate(state.omega, state.sd_omega) if state and told else anyhow
+            how = "by what fits the whole shot" if told else "assumed"
+            said.append(
+                f"spin of {name} not seen: {spin.value:.2g} ± {spin.stderr:.2g} rad/s {how}"
+            )
+        table.loc[k, ["omega", "sd_omega"]] = spin.value, spin.stderr
+    return table, tuple(said)
 
 
 def _moves(stone: StoneStart) -> bool:
@@ -218,6 +255,7 @@ def _row(group: pd.DataFrame, time: float, ice: IceLaw) -> pd.Series:
     """State of a stone at a time: its last one, from where it glides on, or its first one."""
     early = group[group["t"] <= time]
     row = group.iloc[0 if early.empty else len(early) - 1].copy()
+    spin = float(row["omega"])  # is not known where the stone was not seen to turn
     row[list(STATE)] = row[list(STATE)].astype(float).fillna(0.0)
     if early.empty:
         # It comes into view later: its way there is not known.
@@ -226,6 +264,8 @@ def _row(group: pd.DataFrame, time: float, ice: IceLaw) -> pd.Series:
         x, y, vx, vy, omega = (float(row[key]) for key in STATE)
         then = Path(0.0, Motion(x, y, 0.0, vx, vy, omega), ice, NoCurl()).at(time - row["t"])
         row[list(STATE)] = [then.x, then.y, then.vx, then.vy, then.omega]
+    if not early.empty and math.isnan(spin):
+        row["omega"] = spin
     return row
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from data.results import Collision
+from physics.simulator.bounds import Bounds
 
 STILL = 0.03
 """Speed below which a stone has stopped, m/s: ice of μ = 0.008 stops it within 6 mm."""
@@ -70,6 +71,23 @@ def newcomers(tracks: pd.DataFrame, time: float) -> dict[str, float]:
         for name, when in first.items()
         if str(name) in under_way or when > stop
     }
+
+
+def along_sheet(tracks: pd.DataFrame, hit: float, radius: float) -> bool:
+    """Whether the first throw is one on a sheet with the origin at its tee and y along it.
+
+    It is, as far as can be told, if the stone that is fastest before the first hit, at the time
+    `hit`, s, comes from within the side lines and goes along rather than across.
+    """
+    early = tracks[tracks["t"] < hit]
+    speed = np.nan_to_num(np.hypot(early["vx"].to_numpy(float), early["vy"].to_numpy(float)))
+    if not len(early) or speed.max() <= STILL:
+        return True
+    fastest = early.iloc[int(speed.argmax())]
+    begin = early[early["stone"] == fastest["stone"]].iloc[0]
+    play = 1 if fastest["vy"] > 0 else -1
+    within = float(Bounds(play).beyond(begin["x"], begin["y"], radius)) <= 0
+    return within and abs(fastest["vx"]) < abs(fastest["vy"])
 
 
 def foreseen_until(

@@ -13,7 +13,7 @@ from scipy.special import ndtri
 
 from data.errors import InputError
 from data.progress import Progress, no_progress
-from data.sheet import GRAVITY, HOUSE, curling_size
+from data.sheet import GRAVITY, HOUSE
 from physics.curl import Curl, FCV1Curl
 from physics.ice import IceLaw
 from physics.prediction.laws import Scaled
@@ -69,8 +69,8 @@ class Odds:
     """Where one stone comes to rest: mean and spread (m), and how often (0..1).
 
     Mean and spread are those of the samples in which it stays ``in_play``; None if it never does,
-    the spread also if it does once. Without a sheet there is none to stay on, and discs that are no
-    curling stones have no house to be in.
+    the spread also if it does once. Without a sheet there is none to stay on, nor a house to be in
+    for discs that are no curling stones and where places do not count from its tee.
     """
 
     x: float | None
@@ -214,7 +214,6 @@ def odds(outcomes: pd.DataFrame, start: Start) -> dict[str, Odds]:
     distance = np.where(in_play, np.hypot(x, y), np.inf)
     inside = distance < HOUSE.twelve_foot + start.shot.radius
     nearest = np.where(inside, distance, np.inf).argmin(axis=1)
-    house = curling_size(start.shot.radius)
     out = {}
     for k, stone in enumerate(start.shot.stones):
         moved = (hits[:, k] > 0) | (math.hypot(stone.vx, stone.vy) > 0)
@@ -222,8 +221,8 @@ def odds(outcomes: pd.DataFrame, start: Start) -> dict[str, Odds]:
             **_spread(x[in_play[:, k], k], y[in_play[:, k], k]),
             moved=float(moved.mean()),
             in_play=None if start.shot.bounds is None else float(in_play[:, k].mean()),
-            in_house=float(inside[:, k].mean()) if house else None,
-            shot_stone=float((inside[:, k] & (nearest == k)).mean()) if house else None,
+            in_house=float(inside[:, k].mean()) if start.house else None,
+            shot_stone=float((inside[:, k] & (nearest == k)).mean()) if start.house else None,
         )
     return out
 

@@ -72,6 +72,7 @@ RESULTS = Results(
     posterior=Posterior(100, {"restitution": {"0.5": 0.83}}, {"restitution": {"restitution": 1.0}}),
     teams={"A": "#d8c020"},
     shared_error=0.0013,
+    sheet=False,
 )
 
 
@@ -96,6 +97,7 @@ def test_the_form_of_the_file() -> None:
         *("schema", "input", "restitution", "friction", "collisions", "glides"),
         *("simulations", "warnings", "radius", "predictions", "laws", "methods", "law_choice"),
         *("curl", "stones", "misfits", "posterior", "masses", "teams", "shared_error"),
+        "sheet",
     }
     assert raw["input"] == {
         "files": ["clip Ä.mp4"],

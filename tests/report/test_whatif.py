@@ -63,13 +63,13 @@ def test_a_few_throws_are_dots(throws: int, words: list[str]) -> None:
     assert labels[: len(words) + 1] == ["where A ends", *words]
 
 
-def test_pucks_have_no_house() -> None:
+def test_a_house_is_drawn_where_there_is_one() -> None:
     before = {"A": (0.0, -0.2), "B": (0.1, 0.1), "$C": (0.0, 0.3)}
     circles = [
         sum(isinstance(patch, Circle) for patch in spread_figure(
-            outcomes((0, 0)), before, "A", "t", radius
+            outcomes((0, 0)), before, "A", "t", house=house
         ).axes[0].patches)
-        for radius in (0.1455, 0.037)
+        for house in (True, False)
     ]  # fmt: skip
     assert circles[0] - circles[1] == 4
 

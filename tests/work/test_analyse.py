@@ -49,6 +49,22 @@ def test_a_clip_in_slow_motion_is_told_by_its_friction(slower: float, said: str)
     assert [said in w for w in warnings] == [True] * bool(said)
 
 
+@pytest.mark.parametrize("across", [False, True])
+def test_a_table_that_goes_across_a_sheet_has_none(across: bool) -> None:
+    t = np.arange(50) / 25
+    way = 2.0 - 1.2 * t + 0.5 * 0.0109 * 9.81 * t**2
+    noise = np.random.default_rng(0).normal(0, 0.0003, (2, 50))
+    places = (
+        {"x": way + noise[0], "y": noise[1]} if across else {"x": noise[0], "y": way + noise[1]}
+    )
+    glide = pd.DataFrame({"stone": "A", "frame": range(50), "t": t, "team": "", **places})
+    glide = glide.assign(sd_x=0.0003, sd_y=0.0003, sd_place_x=0.0, sd_place_y=0.0)
+    glide = glide.reindex(columns=list(SIGHTING_COLUMNS))
+    done = analyse(Measured((Path("glide.csv"),), glide, 25.0, 50, (), house=HOUSE))
+    assert (done.house is None, done.results.sheet) == (across, not across)
+    assert any("put the origin on the tee" in text for text in done.results.warnings) == across
+
+
 @pytest.mark.parametrize(
     ("friction", "said"),
     [

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from data.errors import InputError
-from data.results import Estimate, Friction
+from data.results import Estimate, Friction, SimulatedHit, SimulationScore
 from data.sheet import GRAVITY
 from physics.ice import Constant, Penner
 from physics.prediction.start import HOG_TO_TEE, measured_start, speed_before
@@ -46,6 +46,31 @@ def test_what_was_not_measured_is_assumed_aloud() -> None:
     still = tracks.assign(vx=0.0, vy=0.0)
     with pytest.raises(InputError, match="no stone moves"):
         measured_start(still, results)
+
+
+def test_an_unseen_spin_is_what_fits_the_whole_shot_or_any() -> None:
+    tracks, results = measured()
+    blind = tracks.assign(omega=np.where(tracks["stone"] == "C", 0.0, np.nan), sd_omega=np.nan)
+    (hit,) = results.collisions
+    turning = replace(hit.before["A"], omega=-1.7, sd_omega=0.2)
+    simulated = SimulatedHit(hit.t, 0.001, hit.stones, {**hit.before, "A": turning}, hit.after)
+    scores = {"frictional": SimulationScore(0.001, hits=(simulated,))}
+    for given, spin, sd, how in (
+        (scores, -1.7, 0.2, "by what fits the whole shot"),
+        ({}, 0.0, 1.5 * math.sqrt(2), "assumed"),
+    ):
+        start = measured_start(blind, replace(results, simulations=given))
+        a, b, c = start.shot.stones
+        assert (a.omega, start.sd[0, 4]) == pytest.approx((spin, sd))
+        assert [b.omega, c.omega, *start.sd[1:, 4]] == [0.0] * 4
+        (said,) = start.assumed
+        assert said.startswith("spin of A not seen") and said.endswith(how)
+
+
+def test_without_a_sheet_no_stone_leaves_it() -> None:
+    tracks, results = measured()
+    start = measured_start(tracks, replace(results, sheet=False))
+    assert (start.shot.bounds, start.house, start.release) == (None, False, 0.0)
 
 
 @pytest.mark.parametrize("way", [-2.0, 0.0, 5.0, 60.0])

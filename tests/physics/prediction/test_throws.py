@@ -14,8 +14,8 @@ from physics.local_fit.contacts import find_contacts
 from physics.prediction.forecast import ASSUMED, predict
 from physics.prediction.hindcast import simulate_measured
 from physics.prediction.start import measured_start
-from physics.prediction.throws import come_in, foreseen_until, later_throws
-from tests.physics.measured import measured
+from physics.prediction.throws import along_sheet, come_in, foreseen_until, later_throws
+from tests.physics.measured import R, measured
 from tests.physics.watch import RADIUS, watch
 from tests.synthetic.physics import Ice, Impact, Start, simulate
 
@@ -120,6 +120,23 @@ def test_without_a_fit_of_the_whole_it_is_not_simulated_again(both) -> None:
     assert found.whole is not None
     assert set(whole["frictional"]["stone"]) == {"A", "B", "C"}
     assert again["frictional"].rest_error.keys() == {"A", "B", "C"}
+
+
+@pytest.mark.parametrize(
+    ("turn", "dx", "dy", "there"),
+    [(0, 0, 0, True), (2, 0, 0, True), (0, 1.5, 2.0, True), (1, 0, 0, False), (0, 6, 2.5, False)],
+)
+def test_a_shot_along_a_sheet_comes_along_y_within_its_sides(
+    turn: int, dx: float, dy: float, there: bool
+) -> None:
+    """Turned by right angles and moved, as where the origin is anywhere."""
+    tracks, results = measured()
+    turned = tracks.copy()
+    for x, y in (("x", "y"), ("vx", "vy")):
+        place = (tracks[x] + 1j * tracks[y]) * 1j**turn
+        turned[x], turned[y] = place.to_numpy().real, place.to_numpy().imag
+    turned[["x", "y"]] += [dx, dy]
+    assert along_sheet(turned, results.collisions[0].t, R) == there
 
 
 def test_a_stone_that_comes_in_later_does_not_lie_in_the_way_of_a_what_if() -> None:

@@ -157,7 +157,7 @@ def test_odds_count() -> None:
     assert [told[name].shot_stone for name in "ABC"] == [0.0, 0.0, 1.0]
     once = odds(table[table["sample"] == 0], start)["A"]
     assert (once.x, once.sd_x, once.sd_y) == (5.0, None, None)
-    pucks = replace(start, shot=replace(start.shot, radius=0.037))
+    pucks = replace(start, house=False)
     assert {(item.in_house, item.shot_stone) for item in odds(table, pucks).values()} == {
         (None,) * 2
     }
