@@ -31,8 +31,8 @@ CELL = 0.05
 """Width of a cell of the heat map, m."""
 SHARE = 0.98
 """Share of the outcomes that the picture shows at least, per axis and end, unless far off."""
-FARTHEST = 6.4
-"""Most that the picture shows along and across, m from its centre."""
+FARTHEST, ANYWHERE = 6.4, 20.0
+"""Most that the picture shows along and across, m from its centre, with a house and without."""
 FEW = 50
 """Throws; fewer are dots, for a map of them would show how it is smoothed."""
 MOST_DOTS = 1000
@@ -193,15 +193,16 @@ def _corners(
 ) -> tuple[Array, Array]:
     """Corners of what is shown, m: the house, the stones and nearly all of the outcomes.
 
-    Where the thrown stone ends far from the house, what is about its end instead.
+    Where there is none, or the thrown stone ends far from it, what is about its end instead.
     """
     middle = np.median(ends[0], axis=0) if len(ends[0]) else np.zeros(2)
-    at_home = bool((np.abs(middle) < FARTHEST).all())
+    at_home = house and bool((np.abs(middle) < FARTHEST).all())
     centre = np.zeros(2) if at_home else middle
+    reach = FARTHEST if house else ANYWHERE
     rim = radius + (HOUSE.twelve_foot if house else 0.0)
     parts = [np.array([[-rim, -rim], [rim, rim]]) + centre, np.array(lying).reshape(-1, 2)]
     parts += [np.quantile(places, [1 - SHARE, SHARE], axis=0) for places in ends if len(places)]
-    shown = np.clip(np.concatenate(parts), centre - FARTHEST, centre + FARTHEST)
+    shown = np.clip(np.concatenate(parts), centre - reach, centre + reach)
     return shown.min(axis=0) - 2 * radius, shown.max(axis=0) + 2 * radius
 
 
