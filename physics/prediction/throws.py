@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from data.results import Collision
+from data.sheet import SHEET
 from physics.simulator.bounds import Bounds
 
 STILL = 0.03
@@ -79,15 +80,15 @@ def along_sheet(tracks: pd.DataFrame, hit: float, radius: float) -> bool:
     It is, as far as can be told, if the stone that is fastest before the first hit, at the time
     `hit`, s, comes from within the side lines and goes along rather than across.
     """
-    early = tracks[tracks["t"] < hit]
-    speed = np.nan_to_num(np.hypot(early["vx"].to_numpy(float), early["vy"].to_numpy(float)))
-    if not len(early) or speed.max() <= STILL:
+    ways = [track for _, track in tracks[tracks["t"] < hit].sort_values("t").groupby("stone")]
+    velocities = [track[["vx", "vy"]].median().fillna(0.0).to_numpy(float) for track in ways]
+    speeds = [float(np.hypot(*velocity)) for velocity in velocities]
+    if not speeds or max(speeds) <= STILL:
         return True
-    fastest = early.iloc[int(speed.argmax())]
-    begin = early[early["stone"] == fastest["stone"]].iloc[0]
-    play = 1 if fastest["vy"] > 0 else -1
-    within = float(Bounds(play).beyond(begin["x"], begin["y"], radius)) <= 0
-    return within and abs(fastest["vx"]) < abs(fastest["vy"])
+    fastest = int(np.argmax(speeds))
+    begin, (vx, vy) = ways[fastest].iloc[0], velocities[fastest]
+    bounds = Bounds(1 if vy > 0 else -1, half_width=SHEET.half_width_max)
+    return float(bounds.beyond(begin["x"], begin["y"], radius)) <= 0 and abs(vx) < abs(vy)
 
 
 def foreseen_until(

@@ -47,7 +47,7 @@ FULLER, ELSEWHERE = 0.2, 1.0
 """How much more of the 12-ft circle must be in view for another house to take the place of one that
 is cut, and distance of two tees, m, from which on they are of two houses."""
 
-BESIDE = np.array([(way * apart, 0.0) for way in (-1, 1) for apart in np.arange(4.2, 5.7, 0.2)])
+BESIDE = np.array([(way * apart, 0.0) for way in (-1, 1) for apart in np.arange(4.2, 6.1, 0.2)])
 """Where tees of the sheets beside may be, m: sheets are 4.4 to 5 m wide, with paths between."""
 
 MOST_SPANS = 5

@@ -21,13 +21,17 @@ Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 LEAST = 4
-"""Repeats that it takes: three gaps between such as come by chance are hardly ever alike."""
+"""Repeats that it takes: three gaps between such as come by chance are hardly ever alike. And new
+pictures."""
 
 CONTRADICTED = 0.15
 """Frames, per repeat, that may be other than the cadence has them: a flash, a stone that halts."""
 
 UNEVEN = 0.2
 """Part of a frame by which told times may be off an even grid: containers round them."""
+
+PAUSE = 64
+"""Frames from one to the next beyond which a recording was halted: no cadence goes on across it."""
 
 EARLY = 0.05
 """Part of a frame by which a picture must be told early or late: of pictures that are all told
@@ -80,7 +84,7 @@ class Cadence:
 
 def cadence_of(shown: Sequence[Shown]) -> Cadence | None:
     """Tell the cadence of a clip; None where it has none, or told times are as even already."""
-    if sum(one.new is False for one in shown) < LEAST:
+    if min(sum(one.new is told for one in shown) for told in (False, True)) < LEAST:
         return None
     new = np.array([bool(one.new) for one in shown])
     known = np.array([one.new is not None for one in shown])
@@ -107,13 +111,15 @@ def cadence_of(shown: Sequence[Shown]) -> Cadence | None:
     times = dict(zip(frames[first].tolist(), (start + step * taken[first]).tolist(), strict=True))
     again = zip(frames.tolist(), (start + step * at).tolist(), of.tolist(), strict=True)
     repeats = {frame: (t, source) for frame, t, source in again if frame != source}
-    return Cadence(rate / step, 1 / step, times, repeats)
+    return Cadence(float(rate / step), float(1 / step), times, repeats)
 
 
 def _grid(t: Floats) -> Floats | None:
-    """Whole numbers of frames at which times lie, from 0 on; None where times are not even."""
-    gaps = np.diff(t)
-    at = np.append(0.0, np.cumsum(np.round(gaps / np.median(gaps))))
+    """Whole numbers of frames at which times lie, from 0 on; None if they are uneven or halt."""
+    gaps = np.diff(t) / np.median(np.diff(t))
+    if not gaps.max() < PAUSE:
+        return None
+    at = np.append(0.0, np.cumsum(np.round(gaps)))
     step, start = np.polyfit(at, t, 1)
     return at if np.abs(t - start - step * at).max() < UNEVEN * step else None
 

@@ -326,9 +326,8 @@ def _decoded(container: Any) -> Iterator[tuple[float, Planes]]:
     clock, pixel = stream.time_base, float(stream.sample_aspect_ratio or 1)
     begin = (stream.start_time or 0) * clock
     for frame in deinterlaced(_frames(container.demux(stream)), stream):
-        stamp = frame.dts if frame.pts is None else frame.pts
-        if stamp is not None:
-            yield float(stamp * (frame.time_base or clock) - begin), Planes.of(frame, pixel)
+        if frame.pts is not None:
+            yield float(frame.pts * (frame.time_base or clock) - begin), Planes.of(frame, pixel)
 
 
 def _frames(packets: Iterator[Any]) -> Iterator[av.VideoFrame]:

@@ -33,6 +33,7 @@ def deinterlaced(frames: Iterable[av.VideoFrame], stream: Any) -> Iterator[av.Vi
         Up to the first interlaced one as they are; what the others have as time base may differ
         from the stream's.
     """
+    frames = map(_stamped, frames)
     for _, alike in groupby(frames, lambda frame: (frame.width, frame.height, frame.format.name)):
         graph = None
         for frame in alike:
@@ -45,6 +46,13 @@ def deinterlaced(frames: Iterable[av.VideoFrame], stream: Any) -> Iterator[av.Vi
         if graph is not None:
             graph.push(None)
             yield from _pulled(graph)
+
+
+def _stamped(frame: av.VideoFrame) -> av.VideoFrame:
+    """Let a frame without a time of its own be shown when it was decoded."""
+    if frame.pts is None:
+        frame.pts = frame.dts
+    return frame
 
 
 def _graph(frame: av.VideoFrame, stream: Any) -> av.filter.Graph:

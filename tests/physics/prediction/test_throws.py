@@ -139,6 +139,13 @@ def test_a_shot_along_a_sheet_comes_along_y_within_its_sides(
     assert along_sheet(turned, results.collisions[0].t, R) == there
 
 
+def test_one_wild_velocity_of_a_stone_at_rest_is_no_throw_across() -> None:
+    tracks, results = measured()
+    wild = tracks[tracks["stone"] == "C"].index[10]
+    tracks.loc[wild, "vx"] = 5.0
+    assert along_sheet(tracks, results.collisions[0].t, R)
+
+
 def test_a_stone_that_comes_in_later_does_not_lie_in_the_way_of_a_what_if() -> None:
     tracks, results = measured()
     thrown = tracks[(tracks["stone"] == "A") & (tracks["t"] < 2)]

@@ -28,7 +28,13 @@ from tests.synthetic import (
 )
 from tests.synthetic.travelling import Travelling
 from tests.vision.places import RINGS
-from vision.camera_path.follow_house import PATIENCE, HouseFollower, HouseTrack, follow_house
+from vision.camera_path.follow_house import (
+    PATIENCE,
+    HouseFollower,
+    HouseTrack,
+    _most_beside,
+    follow_house,
+)
 from vision.film.clip import Frame, open_clip
 from vision.film.picture import image_of
 from vision.optics.camera import Camera
@@ -258,6 +264,14 @@ def test_the_house_in_the_middle_takes_the_place_of_one_beside(before: int) -> N
     assert kept[-24:] == list(range(before + 3, before + 27))
     ice = np.c_[RINGS, np.zeros(len(RINGS))]
     assert max(rms(camera, path.at(0.0).project(ice)) for camera in track.cameras) < 0.005
+
+
+@pytest.mark.parametrize(("wide", "low", "high"), [(20.0, 1.0, 1.0), (11.0, 0.2, 0.8), (4, 0, 0)])
+def test_how_much_of_a_house_beside_a_view_may_show(wide: float, low: float, high: float) -> None:
+    """From above, so many metres of ice across."""
+    scale = 1280 / wide
+    down = np.array([[scale, 0.0, 640.0], [0.0, -scale, 360.0], [0.0, 0.0, 1.0]])
+    assert low <= _most_beside(Camera(0, 0.0, down, (1280, 720))) <= high
 
 
 def test_a_house_that_is_asked_for_stays_though_a_fuller_one_stands_beside() -> None:

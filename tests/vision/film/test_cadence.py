@@ -13,6 +13,7 @@ import pytest
 from numpy.typing import NDArray
 
 from tests.synthetic.video import write_video
+from vision.film.cadence import Shown, cadence_of
 from vision.film.clip import Clip, open_clip
 
 Image = NDArray[np.uint8]
@@ -158,7 +159,24 @@ def test_repeats_that_grain_hides_make_no_cadence_of_the_others(tmp_path: Path) 
     shown = pulled_down(Fraction(24, 30), 80)
     clip = told(tmp_path / "a.mp4", shown, grain=8.0)
     frames, _ = read_twice(clip)
-    assert clip.cadence is None or frames == firsts(shown)
+    assert clip.cadence is not None
+    assert frames == firsts(shown)
+
+
+def test_repeats_among_which_nothing_is_surely_new_have_no_cadence() -> None:
+    seen = [None, False] * 4 + [None]
+    assert cadence_of([Shown(k, k / 50, new, 1.0) for k, new in enumerate(seen)]) is None
+
+
+@pytest.mark.parametrize(("pause", "one"), [(0.0, True), (3600.0, False), (95_000.0, False)])
+def test_no_cadence_goes_on_across_a_pause(pause: float, one: bool) -> None:
+    shown = pulled_down(Fraction(24, 30), 60)
+    times = np.arange(len(shown)) / TOLD + pause * (np.arange(len(shown)) > 40)
+    new = np.diff(shown, prepend=-1) > 0
+    frames = [
+        Shown(k, t, bool(n), float(n)) for k, (t, n) in enumerate(zip(times, new, strict=True))
+    ]
+    assert (cadence_of(frames) is not None) == one
 
 
 def test_pictures_that_are_all_told_twice_are_told_evenly(tmp_path: Path) -> None:

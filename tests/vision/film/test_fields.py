@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from vision.film.clip import open_clip
+from vision.film.fields import deinterlaced
 
 WIDTH, HEIGHT, FRAMES, STEP = 320, 96, 12, 6
 """Size, px, frames, and how far the bar goes from field to field, px."""
@@ -41,6 +42,17 @@ def middles(luma: np.ndarray) -> np.ndarray:
     """Where the bar is in each row, px."""
     bright = np.clip(luma.astype(float) - 80, 0, None)[8:-8]
     return bright @ np.arange(luma.shape[1]) / bright.sum(1)
+
+
+def test_frames_without_a_time_are_shown_when_they_were_decoded(tmp_path: Path) -> None:
+    with av.open(str(write(tmp_path / "bar.mp4", True))) as container:
+        stream = container.streams.video[0]
+        frames = list(container.decode(stream))
+        ticks = [frame.pts for frame in frames]
+        for frame, tick in zip(frames, ticks, strict=True):
+            frame.pts, frame.dts = None, tick
+        clock = [frame.pts * frame.time_base for frame in deinterlaced(iter(frames), stream)]
+        assert clock == [tick * stream.time_base for tick in ticks]
 
 
 @pytest.mark.parametrize("interlaced", [True, False])
