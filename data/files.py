@@ -56,6 +56,11 @@ def whole_file(path: Path) -> Iterator[Path]:
         os.umask(umask)
         part.chmod(0o666 & ~umask)
         part.replace(path)
+    except OSError as error:
+        # A full disk is told without a name, and nobody knows the temporary one.
+        if error.filename in (None, name):
+            error.filename = str(path)
+        raise
     finally:
         part.unlink(missing_ok=True)
 

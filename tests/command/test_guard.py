@@ -1,12 +1,20 @@
 from __future__ import annotations
 
 import errno
+import os
+import signal
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
 
 import pytest
 
 from command.bars import Bars
 from command.guard import guarded, one_line
 from data.errors import InputError, SceneError
+from data.files import staged
 
 
 class Watched(Bars):
@@ -48,6 +56,55 @@ def test_the_answer_is_printed(capsys) -> None:
     bars = Watched()
     assert guarded(lambda: "e 0.83 ± 0.01", bars) == 0
     assert (capsys.readouterr().out, bars.closed) == ("e 0.83 ± 0.01\n", 1)
+
+
+@contextmanager
+def handling(number: int, handler: object) -> Iterator[None]:
+    """Let a signal be handled so for a while."""
+    before = signal.signal(number, handler)
+    try:
+        yield
+    finally:
+        signal.signal(number, before)
+
+
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
+def test_a_signal_to_end_leaves_nothing_behind(name: str, tmp_path: Path, capsys) -> None:
+    number = getattr(signal, name, signal.SIGTERM)
+
+    def work() -> str:
+        with staged(tmp_path / "out") as stage:
+            (stage / "tracks.csv").write_text("half")
+            try:
+                os.kill(os.getpid(), number)
+                time.sleep(5)  # the signal is handled before it is over
+            finally:
+                os.kill(os.getpid(), number)  # as a shell does after its terminal
+        return "done"
+
+    bars = Watched()
+    with handling(number, signal.SIG_DFL):
+        assert guarded(work, bars) == 128 + number
+        assert signal.getsignal(number) is signal.SIG_DFL
+    assert list(tmp_path.iterdir()) == []
+    said = "curlshot: stopped; what was under way is not written\n"
+    assert (capsys.readouterr().err, bars.closed) == (said, 1)
+
+
+def test_signals_that_are_ignored_or_handled_stay_so() -> None:
+    seen: list[int] = []
+    for handler in (signal.SIG_IGN, lambda number, _: seen.append(number)):
+        with handling(signal.SIGTERM, handler):
+            assert guarded(lambda: str(os.kill(os.getpid(), signal.SIGTERM)), Watched()) == 0
+    assert seen == [signal.SIGTERM]
+
+
+def test_work_in_another_thread_takes_no_signals() -> None:
+    codes: list[int] = []
+    thread = threading.Thread(target=lambda: codes.append(guarded(lambda: "", Watched())))
+    thread.start()
+    thread.join()
+    assert codes == [0]
 
 
 def test_one_line() -> None:

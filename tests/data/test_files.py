@@ -32,6 +32,13 @@ def test_a_failure_leaves_the_old_file_and_no_rest(tmp_path: Path) -> None:
     assert names(tmp_path) == ["results.json"]
 
 
+def test_a_full_disk_is_told_with_the_name_of_the_file(tmp_path: Path) -> None:
+    path = tmp_path / "shot.csv"
+    with pytest.raises(OSError, match="No space") as caught, whole_file(path):
+        raise OSError(errno.ENOSPC, "No space left on device")
+    assert caught.value.filename == str(path)
+
+
 def test_a_failure_leaves_no_file_where_there_was_none(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt), whole_file(tmp_path / "a.mp4") as part:
         part.write_text("half")
