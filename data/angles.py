@@ -16,7 +16,6 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from data.columns import (
-    ANGLE_UNITS,
     clock_column,
     plain_name,
     refuse_disorder,
@@ -26,6 +25,7 @@ from data.columns import (
 )
 from data.delimited import TextTable, read_text_table
 from data.errors import InputError
+from data.units import ANGLE_UNITS
 
 Array = NDArray[np.float64]
 

@@ -12,18 +12,13 @@ from data.delimited import TextTable
 from data.errors import InputError
 from data.text import plain_decimals
 from data.tracks import LATEST
+from data.units import LENGTH_UNITS
 
 Array = NDArray[np.float64]
-
-LENGTH_UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
-"""Metres in one of each."""
 
 UNIT_SAID = "another calibration (the file says its own length unit)"
 UNIT_NOT_SAID = f"another length unit (--length-unit: {', '.join(LENGTH_UNITS)})"
 """What may be wrong with lengths, where the file says their unit and where it does not."""
-
-ANGLE_UNITS = {"rad": 1.0, "deg": np.pi / 180}
-"""Radians in one of each."""
 
 TIME_NAMES = {"t", "time", "zeit", "temps", "tiempo", "tempo", "tijd", "czas"}
 """What a column of times is called; spreadsheets are written by hand, in any language.

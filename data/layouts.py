@@ -15,8 +15,6 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from data.columns import (
-    ANGLE_UNITS,
-    LENGTH_UNITS,
     TIME_NAMES,
     clock_column,
     plain_name,
@@ -29,6 +27,7 @@ from data.delimited import TextTable, read_text_table
 from data.errors import InputError
 from data.track_file import TrackFile
 from data.tracks import SEEN_AS, stone_name
+from data.units import ANGLE_UNITS, LENGTH_UNITS
 from data.wide import (
     ANGLE_NAMES,
     COMPANIONS,

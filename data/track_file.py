@@ -19,7 +19,7 @@ class TrackFile:
     decimals : int or None
         To how many decimals the times are printed; None where that does not matter.
     length_unit, angle_unit : str or None
-        As the header says.
+        As the header says, or the project.
     continuous : bool
         Whether angles run on past a full turn by the layout's own rule.
     warnings : list of str

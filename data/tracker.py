@@ -17,7 +17,7 @@ import pandas as pd
 
 from data.angles import FASTEST_SPIN, attach, read_angles, spin_rate
 from data.clock import with_clock
-from data.columns import ANGLE_UNITS, LENGTH_UNITS, UNIT_NOT_SAID, UNIT_SAID
+from data.columns import UNIT_NOT_SAID, UNIT_SAID
 from data.discs import moment, top_speed
 from data.errors import InputError
 from data.export import read_parquet
@@ -27,6 +27,7 @@ from data.read_back import as_measured
 from data.stone_names import chosen, named_by_file, refuse_shared_names
 from data.track_file import TrackFile
 from data.tracks import ANGLES, LENGTHS, SEEN_AS, check_sightings
+from data.units import ANGLE_UNITS, LENGTH_UNITS, check_units, unit_of_lengths
 
 FASTEST = 20.0
 """m/s; a stone is thrown at 2 to 4."""
@@ -114,7 +115,7 @@ def read_table(
     ``t x1 y1 x2 y2`` without header. Tracker prints times to the millisecond; where
     equal steps explain the printed times, the equal steps are used.
     """
-    _check_units(length_unit, angle_unit, fps)
+    check_units(length_unit, angle_unit, fps)
     if not paths:
         raise InputError("no table of tracks given")
     files = []
@@ -143,7 +144,7 @@ def read_table(
     table = pd.concat([file.tracks for file in files], ignore_index=True)
     table, rate = with_clock(table, [file.decimals for file in files])
     table = check_sightings(table, source)
-    said = all(file.length_unit is not None for file in files)
+    said = all(file.length_unit in LENGTH_UNITS for file in files)
     advice = UNIT_SAID if said else UNIT_NOT_SAID
     warnings += _check_scale(table, source, advice) + _check_rate(rate, source)
     for stone, path in (angles or {}).items():
@@ -180,27 +181,14 @@ def _set_masses(
     return known, []
 
 
-def _check_units(length_unit: str, angle_unit: str | None, fps: float | None) -> None:
-    if length_unit not in LENGTH_UNITS:
-        raise InputError(f"length unit {length_unit!r}: one of {', '.join(LENGTH_UNITS)}, please")
-    if angle_unit is not None and angle_unit not in ANGLE_UNITS:
-        raise InputError(f"angle unit {angle_unit!r}: one of {', '.join(ANGLE_UNITS)}, please")
-    if fps is not None and not (np.isfinite(fps) and fps > 0):
-        raise InputError(f"frame rate {fps}: must be a positive number")
-
-
 def _to_si(path: Path, file: TrackFile, length_unit: str, angle_unit: str | None) -> list[str]:
     """Convert a file's tracks to metres and continuous radians."""
     warnings: list[str] = []
-    unit = length_unit
-    if file.length_unit is not None and file.length_unit != length_unit:
-        if length_unit != "m":
-            raise InputError(
-                f"{path}: x and y are in {file.length_unit} as the header says, not in"
-                f" {length_unit}"
-            )
-        unit = file.length_unit
-        warnings.append(f"{path}: x and y taken in {unit} as the header says")
+    project = is_project(path)
+    teller = "project" if project else "header"
+    unit = unit_of_lengths(file.length_unit, length_unit, str(path), teller)
+    if unit != length_unit and not project:
+        warnings.append(f"{path}: length unit {unit}, as the header says")
     tracks = file.tracks
     with np.errstate(over="ignore"):
         for name in LENGTHS:

@@ -14,10 +14,10 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
-from data.columns import LENGTH_UNITS
 from data.errors import InputError
 from data.track_file import TrackFile
 from data.tracks import LENGTHS
+from data.units import LENGTH_UNITS
 
 Array = NDArray[np.float64]
 Frames = NDArray[np.int64]
@@ -227,12 +227,7 @@ class Project:
         if not parts:
             raise InputError(f"{self.source}: no point mass with a mark in the clip")
         self.refuse_uncalibrated()
-        unit = self.length_unit if self.length_unit in LENGTH_UNITS else None
-        if unit is None and self.length_unit:
-            warnings.append(
-                f"{self.source}: its length unit is “{self.length_unit[:20]}”, which is unknown"
-                " here (--length-unit)"
-            )
+        unit = self.length_unit or None
         tracks = pd.concat(parts, ignore_index=True)
         masses = {track.name: track.mass for track in self.masses}
         return TrackFile(tracks, None, unit, "rad", True, warnings, masses)

@@ -11,11 +11,12 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from data.columns import ANGLE_UNITS, TIME_NAMES, clock_column, refuse_disorder, times_of, values_of
+from data.columns import TIME_NAMES, clock_column, refuse_disorder, times_of, values_of
 from data.delimited import TextTable
 from data.errors import InputError
 from data.track_file import TrackFile
 from data.tracks import stone_name
+from data.units import ANGLE_UNITS
 
 Array = NDArray[np.float64]
 

@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 
 from data.columns import (
-    ANGLE_UNITS,
-    LENGTH_UNITS,
     clock_column,
     plain_name,
     refuse_disorder,
@@ -16,6 +14,7 @@ from data.columns import (
 )
 from data.delimited import TextTable, read_text_table
 from data.errors import InputError
+from data.units import ANGLE_UNITS, LENGTH_UNITS
 
 
 def table(tmp_path: Path, text: str) -> TextTable:

@@ -124,4 +124,4 @@ def test_a_row_of_units_below_the_header(tmp_path: Path, units: str) -> None:
     found = read_table([path])
     assert list(found.sightings["stone"]) == ["Mass A"] * 2
     np.testing.assert_allclose(found.sightings["x"], [1.1, 1.12])
-    assert "taken in cm as the header says" in found.warnings[0]
+    assert "length unit cm, as the header says" in found.warnings[0]

@@ -84,6 +84,11 @@ def test_length_unit_of_the_project(tmp_path: Path) -> None:
     plain = read_table([put(tmp_path, project())]).sightings
     found = read_table([put(tmp_path, project(root=root))])
     np.testing.assert_allclose(found.sightings["x"], plain["x"] / 100)
-    assert any("taken in cm" in text for text in found.warnings)
-    odd = read_table([put(tmp_path, project(root=root.replace("cm", "ell")))])
-    assert any("“ell”, which is unknown" in text for text in odd.warnings)
+    assert not [text for text in found.warnings if "unit" in text or "header" in text]
+    with pytest.raises(InputError, match="length unit is cm, as the project says, not ft"):
+        read_table([put(tmp_path, project(root=root))], length_unit="ft")
+    odd = put(tmp_path, project(root=root.replace("cm", "ell")))
+    with pytest.raises(InputError, match="“ell”, which is unknown here; set"):
+        read_table([odd])
+    named = read_table([odd], length_unit="cm").sightings
+    np.testing.assert_allclose(named["x"], plain["x"] / 100)

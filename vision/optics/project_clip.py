@@ -13,12 +13,12 @@ from pathlib import Path
 import av
 import numpy as np
 
-from data.columns import LENGTH_UNITS
 from data.errors import InputError
 from data.inputs import IMAGE_SUFFIXES
 from data.progress import Progress, no_progress
 from data.project import unpack_clip
 from data.trk import Project
+from data.units import LENGTH_UNITS, unit_of_lengths
 from vision.film.clip import Clip, Frame, open_clip
 from vision.optics.camera import Camera
 from vision.optics.placed import Placed, nobody
@@ -181,7 +181,8 @@ def project_cameras(
     Raises
     ------
     InputError
-        A project without a calibration, or with one of other pixels than those of the clip.
+        A project without a calibration, or with one of other pixels than those of the clip, or in
+        an unknown length unit.
     """
     project.refuse_uncalibrated()
     source = project.source
@@ -190,8 +191,7 @@ def project_cameras(
             f"{source}: its calibration is of a video changed by filters"
             f" ({', '.join(project.filters)}); they are not applied here, so it does not fit"
         )
-    unit = project.length_unit if project.length_unit in LENGTH_UNITS else length_unit
-    metres = LENGTH_UNITS[unit]
+    metres = LENGTH_UNITS[unit_of_lengths(project.length_unit, length_unit, source, "project")]
     cameras = []
     for done, frame in enumerate(clip, 1):
         axes = project.axes.at([frame.index])

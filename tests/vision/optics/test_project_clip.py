@@ -147,6 +147,8 @@ def test_the_calibration_of_a_project_is_a_camera(tmp_path: Path) -> None:
     in_cm = replace(clip.project, length_unit="cm")
     (camera, *_), _ = project_cameras(clip, in_cm)
     np.testing.assert_allclose(camera.ice(pixels), cameras[0].ice(pixels) / 100)
+    with pytest.raises(InputError, match="“ell”, which is unknown here"):
+        project_cameras(clip, replace(clip.project, length_unit="ell"))
 
 
 @pytest.mark.parametrize(
