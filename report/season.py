@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -76,13 +77,15 @@ def _forest(axes: Axes, shots: pd.DataFrame, name: str, mean: Pooled, label: str
     )  # fmt: skip
     if mean.value is not None and mean.stderr is not None:
         axes.axvline(mean.value, color=BLACK, lw=1, label="mean of all shots")
-        for half, alpha, what in (
-            (mean.stderr, 0.45, "its standard error"),
-            (mean.scatter, 0.15, "scatter from shot to shot"),
+        # Either may be the wider: an area and an outline show both.
+        area: dict[str, Any] = {"color": SKY, "alpha": 0.4, "lw": 0}
+        outline: dict[str, Any] = {"fill": False, "ec": BLACK, "ls": "--", "lw": 1}
+        for half, look, what in (
+            (mean.stderr, area, "its standard error"),
+            (mean.scatter, outline, "scatter from shot to shot"),
         ):
             if half is not None:
-                low, high = mean.value - half, mean.value + half
-                axes.axvspan(low, high, color=SKY, alpha=alpha, lw=0, label=what)
+                axes.axvspan(mean.value - half, mean.value + half, label=what, **look)
     axes.set_yticks(rows, [plain_text(_short(shot)) for shot in shots["shot"]])
     axes.set_ylim(-0.7, len(shots) - 0.3)
     axes.set_xlabel(label)

@@ -53,6 +53,19 @@ def test_picture_of_any_season(runs: dict[str, Results]) -> None:
     figure.draw_without_rendering()
 
 
+def test_scatter_and_standard_error_are_told_apart_whichever_is_wider() -> None:
+    shots = shots_table({"one": SHOT, "two": SHOT})
+    means = pooled(shots)
+    for scatter in (0.001, 0.1):
+        mean = replace(means["restitution"], stderr=0.01, scatter=scatter)
+        figure = season_figure(shots, hits_table({}), means | {"restitution": mean})
+        error, spread = figure.axes[0].patches
+        assert error.get_fill() and not spread.get_fill()
+        assert [patch.get_label() for patch in (error, spread)] == [
+            "its standard error", "scatter from shot to shot"
+        ]  # fmt: skip
+
+
 def test_command_reads_folders_of_runs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name, value in (("x", 0.80), ("y", 0.86)):
         (tmp_path / "runs" / name).mkdir(parents=True)
