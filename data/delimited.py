@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -111,6 +111,26 @@ class TextTable:
                         ) from None
                     out[row, k] = np.nan
         return out
+
+    def refuse_cut(self, pairs: Iterable[tuple[int, int]]) -> None:
+        """Refuse rows that end within a pair of columns of which both or none have a number.
+
+        Empty cells at the end may be left off, as spreadsheets do; one that was left off before
+        shifts those behind it.
+
+        Raises
+        ------
+        InputError
+            With the line of the first.
+        """
+        ordered = [(min(pair), max(pair)) for pair in pairs]
+        for fields, line in self._split_rows():
+            used = _cells_used(fields) if len(fields) < self.width else self.width
+            if any(one < used <= two and fields[one].strip() for one, two in ordered):
+                raise InputError(
+                    f"{self.path}: line {line} has {used} cells, but there are {self.width}"
+                    " columns; a missing cell cannot be placed, leave it empty"
+                )
 
     def _split_rows(self) -> Iterator[tuple[list[str], int]]:
         for row, line in zip(self.rows, self.line_numbers, strict=True):

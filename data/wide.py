@@ -203,8 +203,10 @@ def side_by_side(
     Raises
     ------
     InputError
-        Where the times are in disorder, or there is no place at all.
+        Where a row has half a place at its end, the times are in disorder, or there is no place at
+        all.
     """
+    table.refuse_cut((place.x, place.y) for place in places)
     refuse_disorder(table, times)
     parts = []
     for place in places:

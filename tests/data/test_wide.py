@@ -34,6 +34,33 @@ def test_derived_columns_are_no_stones(tmp_path: Path, columns: str) -> None:
         read(tmp_path, f"t,{columns}\n0,1,2,3,4\n")
 
 
+@pytest.mark.parametrize("row", ["0.1,1,2,3", "1,2,3,4", "0.1,1,,3"])
+def test_a_row_that_a_missing_cell_has_shifted_is_refused(tmp_path: Path, row: str) -> None:
+    with pytest.raises(InputError, match="line 3 has 4 cells, but there are 5 columns"):
+        read(tmp_path, f"t,x1,y1,x2,y2\n0,1,2,3,4\n{row}\n0.2,1,2,3,5\n")
+
+
+def test_one_is_refused_without_a_header_too(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="line 2 has 4 cells, but there are 5 columns"):
+        read(tmp_path, "0,1,2,3,4\n0.1,1,2,3\n")
+
+
+@pytest.mark.parametrize(
+    ("columns", "row"),
+    [
+        ("x1,y1,x2,y2", "0.1,1,2"),
+        ("x1,y1,x2,y2", "0.1,1,2,"),
+        ("x1,y1,v1,x2,y2,v2", "0.1,1,2"),
+        ("x1,x2,y1,y2", "0.1,1,,2"),
+    ],
+)
+def test_empty_cells_at_the_end_may_be_left_off(tmp_path: Path, columns: str, row: str) -> None:
+    full = f"0,{','.join('1' * len(columns.split(',')))}"
+    file = read(tmp_path, f"t,{columns}\n{full}\n{row}\n")
+    assert xy(file, "1") == [[1, 1], [1, 2]]
+    assert xy(file, "2") == [[1, 1]]
+
+
 def test_columns_of_one_name_are_told(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="two columns named x_a; rename one"):
         read(tmp_path, "t,x_A,y_A,x_A,y_A\n0,1,2,3,4\n")
