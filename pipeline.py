@@ -21,7 +21,7 @@ from command.parser import command_line
 from command.threads import use_one_thread
 from data.errors import CurlshotError, InputError
 from data.files import check_folder, staged
-from data.inputs import IMAGE_SUFFIXES, TABLE_SUFFIXES, find_inputs
+from data.inputs import IMAGE_SUFFIXES, TABLE_SUFFIXES, find_inputs, named
 from data.progress import Progress, no_progress
 from data.sheet import House
 from work.analyse import Run, analyse
@@ -69,7 +69,7 @@ def sample_clip() -> Path:
 
 
 def run(
-    inputs: Sequence[str | Path] = (),
+    inputs: str | Path | Sequence[str | Path] = (),
     out: str | Path | None = None,
     settings: Settings = Settings(),
     progress: Progress = no_progress,
@@ -78,7 +78,7 @@ def run(
 
     Parameters
     ----------
-    inputs : sequence of str or Path
+    inputs : str or Path, or sequence of them
         A video, pictures (files, a folder or a glob), or tables of tracks; the bundled
         sample if none.
     out : str or Path, optional
@@ -99,7 +99,7 @@ def run(
         Where the input cannot be used; then nothing is written.
     """
     folder = None if out is None else check_folder(out)
-    files = find_inputs(inputs or (sample_clip(),))
+    files = find_inputs(named(inputs) or sample_clip())
     if folder is not None:
         own = {folder.resolve() / name for name in WRITTEN}
         lost = [path for path in files if path.resolve() in own]
@@ -115,7 +115,7 @@ def run(
 
 
 def run_each(
-    clips: Sequence[Path],
+    clips: str | Path | Sequence[str | Path],
     out: str | Path,
     settings: Settings = Settings(),
     progress: Progress = no_progress,
@@ -132,8 +132,9 @@ def run_each(
     folder = check_folder(out)
     done: dict[str, Run] = {}
     failed: dict[str, CurlshotError] = {}
-    for name, clip in apart(clips).items():
-        number = f"{len(done) + len(failed) + 1}/{len(clips)} "
+    by_name = apart([Path(clip) for clip in named(clips)])
+    for name, clip in by_name.items():
+        number = f"{len(done) + len(failed) + 1}/{len(by_name)} "
 
         def numbered(what: str, at: int, total: int | None, number: str = number) -> None:
             progress(number + what, at, total)
@@ -238,7 +239,7 @@ def season(
 
 
 def check(
-    inputs: Sequence[str | Path],
+    inputs: str | Path | Sequence[str | Path],
     settings: Settings = Settings(),
     progress: Progress = no_progress,
 ) -> tuple[Figure, list[str]]:

@@ -7,6 +7,9 @@ from pathlib import Path
 
 from command import values
 from data.sheet import STONE
+from data.units import ANGLE_UNITS, LENGTH_UNITS
+from work.limits import MOST_THROWS
+from work.settings import COACHES
 
 
 def radius_option(parser: argparse.ArgumentParser) -> None:
@@ -96,7 +99,7 @@ def what_if_options(parser: argparse.ArgumentParser) -> None:
         "--samples",
         type=values.samples,
         metavar="N",
-        help=f"throw it N times, at most {values.MOST_THROWS} (1000 for a measured shot, else 0)",
+        help=f"throw it N times, at most {MOST_THROWS} (1000 for a measured shot, else 0)",
     )
     change.add_argument(
         "--throw-sd",
@@ -132,7 +135,7 @@ def assumption_options(parser: argparse.ArgumentParser) -> None:
 def units_option(parser: argparse.ArgumentParser) -> None:
     """Add the unit of what coaches read."""
     parser.add_argument(
-        "--units", choices=("m", "ft"), default="m", help="of what coaches read (m); all else is SI"
+        "--units", choices=COACHES, default="m", help="of what coaches read (m); all else is SI"
     )
 
 
@@ -144,9 +147,9 @@ def tab_option(parser: argparse.ArgumentParser) -> None:
 def table_options(parser: argparse.ArgumentParser) -> None:
     """Add what may be said of tables."""
     parser.add_argument(
-        "--length-unit", choices=("m", "cm", "mm", "in", "ft"), default="m", help="of tables (m)"
+        "--length-unit", choices=tuple(LENGTH_UNITS), default="m", help="of tables (m)"
     )
-    parser.add_argument("--angle-unit", choices=("rad", "deg"), help="of tables")
+    parser.add_argument("--angle-unit", choices=tuple(ANGLE_UNITS), help="of tables")
     parser.add_argument(
         "--names",
         type=values.pair,

@@ -7,33 +7,26 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from work.limits import FRACTION, FRICTION, POSITIVE, RADIUS, SAMPLES, Limits, has_length
+
 if TYPE_CHECKING:
     from physics.prediction.what_if import Amount
 
-MOST_THROWS = 100_000
-"""Samples of a shot at most."""
 
-
-def positive(text: str) -> float:
-    """Read a positive number."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not 0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a positive number")
-    return value
-
-
-def number(text: str, low: float, high: float, what: str) -> float:
-    """Read a number between two bounds; `what` says what was expected."""
+def number(text: str, limits: Limits) -> float:
+    """Read a number between two bounds."""
     try:
         value = float(text)
     except ValueError:
         value = float("nan")
-    if not low <= value <= high:
-        raise argparse.ArgumentTypeError(f"{text!r} is not {what}")
+    if not limits.allow(value):
+        raise argparse.ArgumentTypeError(f"{text!r} is not {limits.what}")
     return value
+
+
+def positive(text: str) -> float:
+    """Read a positive number."""
+    return number(text, POSITIVE)
 
 
 def folder(text: str) -> Path:
@@ -45,53 +38,53 @@ def folder(text: str) -> Path:
 
 def fraction(text: str) -> float:
     """Read a number from 0 to 1."""
-    return number(text, 0.0, 1.0, "a number from 0 to 1")
+    return number(text, FRACTION)
 
 
 def friction(text: str) -> float:
     """Read a coefficient of friction of ice."""
-    return number(text, 1e-3, 0.1, "a friction of ice, 0.001 to 0.1")
+    return number(text, FRICTION)
 
 
 def radius(text: str) -> float:
     """Read the radius of a disc, m; centimetres and millimetres are refused."""
-    return number(text, 1e-3, 1.0, "a radius in metres, 0.001 to 1")
+    return number(text, RADIUS)
 
 
 def offset(text: str) -> float:
     """Read a distance, m, of either sign."""
-    return number(text, -5.0, 5.0, "a distance in metres, -5 to 5")
+    return number(text, Limits(-5.0, 5.0, "a distance in metres, -5 to 5"))
 
 
 def amount(text: str) -> Amount:
     """Read a number, or a factor such as ``1.1x``."""
     from physics.prediction.what_if import Amount
 
-    return Amount(*_or_factor(text, -20.0, 20.0, "a number, -20 to 20"))
+    return Amount(*_or_factor(text, Limits(-20.0, 20.0, "a number, -20 to 20")))
 
 
 def speed(text: str) -> Amount:
     """Read a speed, m/s, or a factor such as ``1.1x``."""
     from physics.prediction.what_if import Amount
 
-    return Amount(*_or_factor(text, 1e-6, 10.0, "a speed above 0, at most 10 m/s"))
+    return Amount(*_or_factor(text, Limits(1e-6, 10.0, "a speed above 0, at most 10 m/s")))
 
 
-def _or_factor(text: str, low: float, high: float, what: str) -> tuple[float, bool]:
+def _or_factor(text: str, limits: Limits) -> tuple[float, bool]:
     """Read a number between two bounds, and whether it is a factor."""
     value = text.removesuffix("x")
     try:
-        return number(value, low, high, what), value != text
+        return number(value, limits), value != text
     except argparse.ArgumentTypeError:
         raise argparse.ArgumentTypeError(
-            f"{text!r} is not {what}, nor a factor such as 1.1x, at most {high:g}x"
+            f"{text!r} is not {limits.what}, nor a factor such as 1.1x, at most {limits.high:g}x"
         ) from None
 
 
 def samples(text: str) -> int:
     """Read a number of samples."""
-    if not text.isdecimal() or not int(text) <= MOST_THROWS:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number of samples, 0 to {MOST_THROWS}")
+    if not text.isdecimal() or not SAMPLES.allow(int(text)):
+        raise argparse.ArgumentTypeError(f"{text!r} is not {SAMPLES.what}")
     return int(text)
 
 
@@ -102,8 +95,8 @@ def throw_sd(text: str) -> tuple[float, float]:
         raise argparse.ArgumentTypeError(f"{text!r} is not V,A, e.g. 0.0076,0.0018")
     speed, angle = parts
     return (
-        number(speed, 0.0, 1.0, "a standard deviation in m/s, 0 to 1"),
-        number(angle, 0.0, 1.0, "a standard deviation in rad, 0 to 1"),
+        number(speed, Limits(0.0, 1.0, "a standard deviation in m/s, 0 to 1")),
+        number(angle, Limits(0.0, 1.0, "a standard deviation in rad, 0 to 1")),
     )
 
 
@@ -122,9 +115,10 @@ def stick(text: str) -> tuple[float, float, float, float, float]:
         x1, y1, x2, y2, metres = (float(part) for part in text.split(","))
     except ValueError:
         raise argparse.ArgumentTypeError(f"{text!r} is not X1,Y1,X2,Y2,METRES") from None
-    if (x1, y1) == (x2, y2) or not metres > 0:
+    ends = x1, y1, x2, y2, metres
+    if not has_length(ends):
         raise argparse.ArgumentTypeError(f"{text!r}: the stick has no length")
-    return x1, y1, x2, y2, metres
+    return ends
 
 
 def house(text: str) -> tuple[int | None, float, float, float, float, float, float]:

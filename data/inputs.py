@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import glob
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from pathlib import Path
 
@@ -22,7 +22,12 @@ SPREADSHEET = "a spreadsheet; save it as CSV"
 """What is said of them, and of archives that are one under another name."""
 
 
-def find_inputs(names: Sequence[str | Path]) -> tuple[Path, ...]:
+def named(names: str | Path | Iterable[str | Path]) -> tuple[str | Path, ...]:
+    """Give names as several, also where there is one alone: a text has letters, which are none."""
+    return (names,) if isinstance(names, str | Path) else tuple(names)
+
+
+def find_inputs(names: str | Path | Sequence[str | Path]) -> tuple[Path, ...]:
     """Files behind what a person names: files, globs, folders of pictures in natural order.
 
     Raises
@@ -31,7 +36,7 @@ def find_inputs(names: Sequence[str | Path]) -> tuple[Path, ...]:
         Something that is not there, a folder without pictures, or an empty name.
     """
     found: list[Path] = []
-    for name in names:
+    for name in named(names):
         if not str(name).strip():  # as of an unset variable; it would be the working folder
             raise InputError("an empty name; name a clip, pictures or a table of tracks")
         path = Path(name)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def convert(
-    inputs: Sequence[str | Path],
+    inputs: str | Path | Sequence[str | Path],
     out: str | Path,
     settings: Settings = Settings(),
     over: str | Path | None = None,
@@ -27,7 +27,7 @@ def convert(
 
     Parameters
     ----------
-    inputs : sequence of str or Path
+    inputs : str or Path, or sequence of them
         Tables of tracks and projects. Of a run's ``tracks.csv`` a project also takes the
         ``simulation.csv`` and, with `over`, the ``camera.csv`` beside it.
     out : str or Path
@@ -67,13 +67,13 @@ def convert(
 
 
 def convert_each(
-    inputs: Sequence[str | Path], out: str | Path, settings: Settings = Settings()
+    inputs: str | Path | Sequence[str | Path], out: str | Path, settings: Settings = Settings()
 ) -> dict[Path, Measured | CurlshotError]:
     """Write each of many tables into a file of its own, of the same name with another ending.
 
     Parameters
     ----------
-    inputs : sequence of str or Path
+    inputs : str or Path, or sequence of them
         Tables of tracks and projects.
     out : str or Path
         An ending such as ``.csv``, for files beside the inputs, or ``FOLDER/.csv``.

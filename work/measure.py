@@ -51,7 +51,7 @@ class Measured:
 
 
 def measure(
-    inputs: Sequence[str | Path],
+    inputs: str | Path | Sequence[str | Path],
     settings: Settings = Settings(),
     progress: Progress = no_progress,
 ) -> Measured:

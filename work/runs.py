@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from data.errors import InputError
+from data.inputs import named
 
 if TYPE_CHECKING:
     from data.results import Results
@@ -24,7 +25,7 @@ def apart(clips: Sequence[Path]) -> dict[str, Path]:
     return named
 
 
-def find_runs(names: Sequence[str | Path]) -> dict[str, Results]:
+def find_runs(names: str | Path | Sequence[str | Path]) -> dict[str, Results]:
     """Read the results of runs: of their folders, of folders of such folders, or files.
 
     Raises
@@ -35,7 +36,7 @@ def find_runs(names: Sequence[str | Path]) -> dict[str, Results]:
     from data.results_file import read_results
 
     found: list[Path] = []
-    for path in map(Path, names):
+    for path in map(Path, named(names)):
         here = path / "results.json" if path.is_dir() else path
         below = sorted(path.glob("*/results.json")) if path.is_dir() else []
         if not here.exists() and not below:

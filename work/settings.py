@@ -9,6 +9,11 @@ from pathlib import Path
 from data.errors import InputError
 from data.inputs import PROJECT_SUFFIXES
 from data.sheet import STONE
+from data.units import check_units
+from work.limits import FRACTION, FRICTION, POSITIVE, RADIUS, SAMPLES, has_length
+
+COACHES = ("m", "ft")
+"""Units of what coaches read."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +61,8 @@ class Settings:
     Raises
     ------
     InputError
-        More than one of stick, house and camera.
+        More than one of stick, house and camera, a unit that is unknown, or a number that makes no
+        sense.
     """
 
     fps: float | None = None
@@ -83,6 +89,19 @@ class Settings:
         given = [name for name, value in ways.items() if value is not None]
         if len(given) > 1:
             raise InputError(f"{' and '.join(given)} exclude each other; give one of them")
+        check_units(self.length_unit, self.angle_unit, self.fps)
+        if self.units not in COACHES:
+            raise InputError(f"units {self.units!r}: one of {', '.join(COACHES)}, please")
+        if self.stick is not None and not has_length(self.stick):
+            raise InputError(f"stick {self.stick}: has no length")
+        RADIUS.check("radius", self.radius)
+        SAMPLES.check("samples", self.samples)
+        for stone, mass in self.masses.items():
+            POSITIVE.check(f"mass of {stone}", mass)
+        if self.restitution is not None:
+            FRACTION.check("restitution", self.restitution)
+        if self.friction is not None:
+            FRICTION.check("friction", self.friction)
 
 
 def refuse_table_options(path: Path, settings: Settings) -> None:

@@ -27,6 +27,13 @@ def test_a_glob_is_sorted_and_files_keep_their_order(tmp_path: Path) -> None:
     assert [path.name for path in found] == ["a.txt", "b2.csv", "b10.csv"]
 
 
+def test_one_name_alone_is_no_list_of_letters(tmp_path: Path) -> None:
+    (path,) = made(tmp_path, "ok.csv")
+    assert find_inputs(str(path)) == find_inputs(path) == (path,)
+    with pytest.raises(InputError, match="an empty name"):
+        find_inputs("")
+
+
 def test_brackets_in_a_name_are_a_name_first(tmp_path: Path) -> None:
     (plain,) = made(tmp_path / "take [7]", "a [1].csv")
     assert find_inputs([plain]) == (plain,)

@@ -27,6 +27,7 @@ def test_clips_of_one_name_are_told_apart_by_their_folders(tmp_path: Path) -> No
 def test_runs_are_found_in_folders_of_folders(tmp_path: Path) -> None:
     one, two = written(tmp_path / "season" / "one"), written(tmp_path / "season" / "two")
     assert list(find_runs([tmp_path / "season"])) == ["one", "two"]
+    assert list(find_runs(str(one))) == ["one"]
     assert list(find_runs([two, one / "results.json", two])) == ["two", "one"]
 
 

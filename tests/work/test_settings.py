@@ -1,12 +1,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import pipeline
 from data.errors import InputError
-from work.settings import Settings, refuse_table_options
+from report.units import UNITS
+from work.settings import COACHES, Settings, refuse_table_options
 
 
 def test_a_tab_is_refused_where_nothing_has_tabs() -> None:
@@ -27,3 +29,28 @@ def test_check_refuses_them_too(tmp_path: Path, capsys: pytest.CaptureFixture[st
     words = ["check", str(pipeline.sample_clip()), "-o", str(tmp_path / "o"), "-q", "--tab", "x"]
     assert pipeline.main(words) == 2
     assert "only tables take --tab" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("said", "reason"),
+    [
+        ({"radius": -1.0}, "radius: -1.0 is not a radius in metres, 0.001 to 1"),
+        ({"radius": float("nan")}, "radius: nan is not a radius in metres"),
+        ({"restitution": 3.0}, "restitution: 3.0 is not a number from 0 to 1"),
+        ({"friction": 0.5}, "friction: 0.5 is not a friction of ice"),
+        ({"samples": -4}, "samples: -4 is not a number of samples, 0 to 100000"),
+        ({"masses": {"A": 0.0}}, "mass of A: 0.0 is not a positive number"),
+        ({"fps": float("inf")}, "frame rate inf: must be a positive number"),
+        ({"stick": (1.0, 2.0, 1.0, 2.0, 0.5)}, "has no length"),
+        ({"length_unit": "furlong"}, "length unit 'furlong': one of m, cm"),
+        ({"angle_unit": "turn"}, "angle unit 'turn': one of rad, deg"),
+        ({"units": "yd"}, "units 'yd': one of m, ft"),
+    ],
+)
+def test_what_the_command_refuses_is_refused_from_python(said: dict[str, Any], reason: str) -> None:
+    with pytest.raises(InputError, match=reason):
+        Settings(**said)
+
+
+def test_every_unit_of_coaches_is_known_where_it_is_written() -> None:
+    assert set(COACHES) == set(UNITS)

@@ -1,0 +1,43 @@
+"""What numbers that a person gives may be, on the command line and from Python."""
+
+from __future__ import annotations
+
+import math
+import sys
+from dataclasses import dataclass
+
+from data.errors import InputError
+
+MOST_THROWS = 100_000
+"""Samples of a shot at most."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """From `low` to `high`; `what` says in words what is expected."""
+
+    low: float
+    high: float
+    what: str
+
+    def allow(self, value: float) -> bool:
+        """Tell whether a number lies within; NaN does not."""
+        return self.low <= value <= self.high
+
+    def check(self, name: str, value: float) -> None:
+        """Raise `InputError` where a number lies outside."""
+        if not self.allow(value):
+            raise InputError(f"{name}: {value!r} is not {self.what}")
+
+
+POSITIVE = Limits(math.ulp(0.0), sys.float_info.max, "a positive number")
+FRACTION = Limits(0.0, 1.0, "a number from 0 to 1")
+FRICTION = Limits(1e-3, 0.1, "a friction of ice, 0.001 to 0.1")
+RADIUS = Limits(1e-3, 1.0, "a radius in metres, 0.001 to 1")
+SAMPLES = Limits(0, MOST_THROWS, f"a number of samples, 0 to {MOST_THROWS}")
+
+
+def has_length(stick: tuple[float, float, float, float, float]) -> bool:
+    """Tell whether a calibration stick, x1, y1, x2, y2, metres, has two ends and a length."""
+    x1, y1, x2, y2, metres = stick
+    return (x1, y1) != (x2, y2) and POSITIVE.allow(metres)
