@@ -8,23 +8,19 @@ import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import Field, dataclass
 from difflib import get_close_matches
-from itertools import combinations
 from pathlib import Path
 from typing import Any
 
 from data.errors import InputError
 from physics.registry import models, parameters_of
 from physics.simulator.bounds import Bounds
-from physics.simulator.simulation import FARTHEST, FASTEST, Shot, StoneStart
+from physics.simulator.simulation import FARTHEST, FASTEST, Shot, StoneStart, overlaps
 
 RADIUS = 0.145
 """Radius of a stone where the file gives none, m: that of published simulators with `FCV1`."""
 
 LARGEST = 1.0
 """Radius of a disc that is none, m: 14.5 is one in centimetres."""
-
-LARGEST_OVERLAP = 0.2
-"""How far two stones may overlap as placed, in radii: more is a mistake, less is measuring."""
 
 _FAMILIES = {"model": ("impact", "frictional"), "ice": ("ice", "fcv1"), "curl": ("curl", "fcv1")}
 """Key in the file, the family of models that it chooses from, and the choice without it."""
@@ -231,13 +227,7 @@ def _check_together(stones: Sequence[StoneStart], radius: float, faults: list[st
     faults += [f"two stones named {name}" for name in twice]
     if faults:
         return
-    for one, two in combinations(stones, 2):
-        overlap = 2 * radius - math.dist((one.x, one.y), (two.x, two.y))
-        if overlap > LARGEST_OVERLAP * radius:
-            faults.append(
-                f"stones {one.name} and {two.name} overlap by {1000 * overlap:.0f} mm:"
-                " move them apart"
-            )
+    faults += overlaps(stones, radius)
 
 
 def _finite(value: float) -> bool:

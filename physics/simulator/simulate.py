@@ -38,7 +38,7 @@ def simulate(shot: Shot, *, until: float | None = None) -> Simulation:
     Stones that touch are hit one pair at a time, in the order of the shot's stones where two
     pairs meet at one moment, until none of them closes. Stones that lean on each other
     without hitting (they touch and close by less than `SLOW`) push each other by small
-    impulses, which are not listed as hits. Stones placed closer than two radii are taken
+    impulses, which are not listed as hits. Stones placed a little closer than two radii are taken
     to touch where they are, which gives no energy to either. A stone that leaves the shot's
     bounds is in nobody's way from then on.
 
@@ -52,8 +52,8 @@ def simulate(shot: Shot, *, until: float | None = None) -> Simulation:
     Raises
     ------
     InputError
-        Where stones share a name or place, numbers make no sense, or a stone that is hit
-        lacks the spin after the hit which the model needs.
+        Where stones share a name or lie in one another (`LARGEST_OVERLAP`), numbers make no sense,
+        or a stone that is hit lacks the spin after the hit which the model needs.
     ValueError
         Where `until` lies before 0.
     """

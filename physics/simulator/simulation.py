@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass
 from itertools import combinations
 from typing import Any
@@ -33,6 +33,9 @@ FASTEST = 100.0
 """Highest speed (m/s) and spin (rad/s) that a stone may start with."""
 FARTHEST = 1000.0
 """Farthest place that a stone may start from, m."""
+
+LARGEST_OVERLAP = 0.2
+"""How far two stones may overlap as placed, in radii: more is a mistake, less is measuring."""
 
 
 @dataclass(frozen=True)
@@ -225,12 +228,23 @@ def check_shot(shot: Shot) -> None:
         ]
         if stone.mass <= 0:
             faults.append(f"stone {stone.name}: mass = {stone.mass:g} must be above 0")
-    for one, two in combinations(shot.stones, 2):
-        if one.x == two.x and one.y == two.y:
-            faults.append(f"stones {one.name} and {two.name} lie on the same place")
+    faults += overlaps(shot.stones, shot.radius)
     faults += _faults_of_laws(shot)
     if faults:
         raise InputError(f"shot: {'; '.join(faults)}")
+
+
+def overlaps(stones: Sequence[StoneStart], radius: float) -> list[str]:
+    """Say which stones lie in one another by more than `LARGEST_OVERLAP`."""
+    found = []
+    for one, two in combinations(stones, 2):
+        overlap = 2 * radius - math.dist((one.x, one.y), (two.x, two.y))
+        if overlap > LARGEST_OVERLAP * radius:
+            found.append(
+                f"stones {one.name} and {two.name} overlap by {1000 * overlap:.0f} mm:"
+                " move them apart"
+            )
+    return found
 
 
 def _faults_of_laws(shot: Shot) -> list[str]:

@@ -59,7 +59,8 @@ def test_states_of_a_shot_repeat_its_stones() -> None:
         ((StoneStart("A", 0, math.nan),), "stone A: y = nan is not finite"),
         ((StoneStart("A", 0, 0, mass=0),), "mass = 0 must be above 0"),
         ((StoneStart("A", 0, 0, 1e9),), "vx = 1e.09 is out of all bounds"),
-        ((StoneStart("A", 0, 0), StoneStart("B", 0, 0)), "A and B lie on the same place"),
+        ((StoneStart("A", 0, 0), StoneStart("B", 0, 0)), "A and B overlap by 291 mm: move"),
+        ((StoneStart("A", 0, 0, 0, 1), StoneStart("B", 0, 0.1)), "A and B overlap by 191 mm"),
         ((StoneStart("A", 0, 0, omega_after=(1.0, math.inf)),), "omega_after = inf"),
     ],
 )
