@@ -58,7 +58,7 @@ def whole_file(path: Path) -> Iterator[Path]:
         part.replace(path)
     except OSError as error:
         # A full disk is told without a name, and nobody knows the temporary one.
-        if error.filename in (None, name):
+        if error.errno is not None and error.filename in (None, name):
             error.filename = str(path)
         raise
     finally:

@@ -9,6 +9,12 @@ from data.errors import InputError
 LENGTH_UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 """Metres in one of each."""
 
+SPELLED = {
+    "meter": "m", "metre": "m", "centimeter": "cm", "centimetre": "cm", "millimeter": "mm",
+    "millimetre": "mm", "inch": "in", "inche": "in", "foot": "ft", "feet": "ft",
+}  # fmt: skip
+"""Units written out, without an s at their end."""
+
 ANGLE_UNITS = {"rad": 1.0, "deg": math.pi / 180}
 """Radians in one of each."""
 
@@ -42,6 +48,7 @@ def unit_of_lengths(told: str | None, said: str, source: str, teller: str) -> st
     """
     if not told:
         return said
+    told = SPELLED.get(told.strip().lower().removesuffix("s"), told)
     if told not in LENGTH_UNITS:
         if said == "m":
             raise InputError(
