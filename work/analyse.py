@@ -87,7 +87,7 @@ def analyse(
     from physics.posterior import sample_posterior, summarise
     from physics.prediction.forecast import predict
     from physics.prediction.hindcast import simulate_measured
-    from physics.prediction.throws import along_sheet, later_throws
+    from physics.prediction.throws import along_sheet, first_hit, later_throws
     from vision.optics.camera import camera_table
 
     sightings, radius = measured.sightings, settings.radius
@@ -109,10 +109,9 @@ def analyse(
     if settings.samples and drawn is None:
         notes = (*notes, "no samples: the shot tells neither restitution nor friction")
     house = measured.house
-    if house is not None and measured.clip is None:
-        first = min((hit.earliest for hit in estimates.collisions), default=np.inf)
-        if not along_sheet(tracks, first, radius):
-            house, notes = None, (*notes, NO_SHEET)
+    placed = measured.clip is None and house is not None  # by hand, wherever the origin was put
+    if placed and not along_sheet(tracks, first_hit(estimates.collisions), radius):
+        house, notes = None, (*notes, NO_SHEET)
     pace = _pace if measured.house is not None else _pace_anywhere
     notes = (*notes, *pace(estimates.friction))
     notes = (*notes, *_throws(later_throws(tracks)), *_few(sightings["frame"].nunique()))

@@ -20,7 +20,7 @@ from physics.local_fit.fit import fit_shot
 from physics.local_fit.glides import free
 from physics.local_fit.traces import traces
 from physics.prediction.hindcast import explained_until, score
-from physics.prediction.throws import foreseen_until
+from physics.prediction.throws import first_hit, foreseen_until
 from physics.simulator.simulate import simulate
 from physics.whole_shot.law_choice import fit_with_chosen_laws
 from physics.whole_shot.priors import Priors, literature
@@ -98,7 +98,7 @@ def predict(
     """
     if not estimates.collisions:
         return {}
-    first = min(hit.earliest for hit in estimates.collisions)
+    first = first_hit(estimates.collisions)
     rigid = Prediction(None, note="needs spins after the hit, which only the shot itself tells")
     fit = _before(sightings[sightings["t"] < first], radius, masses or {}, laws)
     if fit is None:

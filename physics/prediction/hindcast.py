@@ -24,7 +24,7 @@ from physics.local_fit.ways import SLOWING
 from physics.prediction.as_fitted import AsFitted, as_fitted, by_itself
 from physics.prediction.laws import Laws, measured_laws
 from physics.prediction.spread import Doubt, path_spread, simulated, simulated_hits
-from physics.prediction.throws import foreseen_until, newcomers
+from physics.prediction.throws import first_hit, foreseen_until, newcomers
 from physics.simulator.simulate import simulate
 from physics.simulator.simulation import Shot, StoneStart
 from physics.whole_shot.shot_model import STATE
@@ -150,7 +150,7 @@ def _start_time(tracks: pd.DataFrame, estimates: Estimates) -> float:
         wide, high = (np.asarray(each[axis].agg(np.ptp), float) for axis in ("x", "y"))
         seen = each["t"].first().to_numpy(float)[np.hypot(wide, high) > MOVED]
         return float(seen.max(initial=times[0]))
-    before = times[times < min(hit.earliest for hit in estimates.collisions)]
+    before = times[times < first_hit(estimates.collisions)]
     return float(before[-1] if len(before) else times[0])
 
 
@@ -158,10 +158,10 @@ def _states(
     tracks: pd.DataFrame, start: float, estimates: Estimates, masses: Mapping[str, float]
 ) -> tuple[StoneStart, ...]:
     """Every stone's state at the start; one first seen later starts where it is then."""
-    first_hit = min((hit.earliest for hit in estimates.collisions), default=np.inf)
+    first = first_hit(estimates.collisions)
     out = []
     for name, group in tracks.groupby("stone", sort=True):
-        early = group[group["t"] < first_hit]
+        early = group[group["t"] < first]
         late = early.empty
         row = group.iloc[0] if late else early.iloc[-1]
         if not estimates.collisions:

@@ -17,11 +17,12 @@ from physics.curl import NoCurl
 from physics.ice import IceLaw
 from physics.local_fit.traces import shared_correlation
 from physics.prediction.laws import measured_laws
-from physics.prediction.throws import newcomers
+from physics.prediction.throws import first_hit, newcomers
 from physics.simulator.bounds import Bounds
 from physics.simulator.curve import Curve, curve_for
 from physics.simulator.motion import Motion, Path
 from physics.simulator.simulation import Shot, StoneStart
+from physics.whole_shot.priors import SPIN
 from physics.whole_shot.shot_model import STATE
 from physics.whole_shot.watched import THROWN
 
@@ -29,8 +30,6 @@ Array = NDArray[np.float64]
 
 BACK = 1.0
 """How far the thrown stone is taken back from its first hit, m, to have room for changes."""
-FREE = 3.0
-"""How much discs that are no curling stones may spin, a standard deviation, rad/s."""
 HOG_TO_TEE = SHEET.far_tee - SHEET.hog_line
 """From the hog line where the stone is let go to the tee, m."""
 
@@ -162,7 +161,7 @@ def _with_spins(table: pd.DataFrame, results: Results) -> tuple[pd.DataFrame, tu
     Of one that moves what fits the whole shot best, or else any of either sense.
     """
     curling = curling_size(results.radius)
-    anyhow = Estimate(0.0, math.hypot(THROWN, THROWN) if curling else FREE)
+    anyhow = Estimate(0.0, math.hypot(THROWN, THROWN)) if curling else SPIN
     table, simulated, said = table.copy(), results.simulations.get("frictional"), []
     first: dict[str, MeasuredState] = {}
     for hit in simulated.hits if simulated is not None else ():
@@ -242,7 +241,7 @@ def _time(tracks: pd.DataFrame, results: Results) -> float:
 
     Without a hit, the first at which the fastest stone is seen.
     """
-    first = min((hit.earliest for hit in results.collisions), default=math.inf)
+    first = first_hit(results.collisions)
     early = tracks["t"] < first
     if math.isfinite(first) and early.any():
         return float(tracks.loc[early, "t"].max())

@@ -74,6 +74,11 @@ def newcomers(tracks: pd.DataFrame, time: float) -> dict[str, float]:
     }
 
 
+def first_hit(collisions: Sequence[Collision]) -> float:
+    """Time, s, before which no stones have met for certain; infinity without a hit."""
+    return min((hit.earliest for hit in collisions), default=np.inf)
+
+
 def along_sheet(tracks: pd.DataFrame, hit: float, radius: float) -> bool:
     """Whether the first throw is one on a sheet with the origin at its tee and y along it.
 

@@ -23,6 +23,10 @@ INERTIA = Estimate(0.5, 0.03)
 rounder it is."""
 
 
+SPIN = Estimate(0.0, 3.0)
+"""What is known of the spin of a disc that moves, rad/s."""
+
+
 @dataclass(frozen=True)
 class Priors:
     """What is known of the laws before any sighting.

@@ -17,7 +17,7 @@ from physics.local_fit.shot_fit import ShotFit
 from physics.local_fit.spins import spin_on
 from physics.local_fit.traces import Trace
 from physics.local_fit.untold import SUDDEN
-from physics.whole_shot.priors import Priors
+from physics.whole_shot.priors import SPIN, Priors
 from physics.whole_shot.shot_model import SpinSeen, Unknown, Watched
 
 Floats = NDArray[np.float64]
@@ -109,7 +109,7 @@ def watch(
         states += _state(name, known[name], fit, run, start)
         if run and not fit.pieces[run[0]].rest:
             first = seen[0][0].omega if seen[0] else THROWN
-            states.append(Unknown(f"{name}.omega", first, prior=Estimate(0.0, 3.0)))
+            states.append(Unknown(f"{name}.omega", first, prior=SPIN))
     return Watched(
         traces,
         start,
