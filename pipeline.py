@@ -47,7 +47,7 @@ __all__ = [
 VERSION = "0.1.0"
 WRITTEN = (
     "tracks.csv", "camera.csv", "results.json", "simulation.csv", "report.html", "overlay.mp4",
-    "figures", "tables", "posterior.csv",
+    "figures", "tables", "posterior.csv", "ensemble.json",
 )  # fmt: skip
 """All that a run may write into its folder."""
 
@@ -151,6 +151,7 @@ def _write_run(
 ) -> None:
     from data.results_file import write_results
     from data.tracks import write_table, write_tracks
+    from physics.prediction.ensemble import write_ensemble
     from report.page import write_report
     from report.provenance import Provenance, sources
     from report.tables import residual_table
@@ -163,6 +164,8 @@ def _write_run(
         write_table(done.cameras, stage / "camera.csv")
     if done.posterior is not None:
         write_table(done.posterior, stage / "posterior.csv")
+    if done.ensemble is not None:
+        write_ensemble(done.ensemble, stage / "ensemble.json")
     house = done.house
     overlay: Path | None = None
     clip_start = 0.0
@@ -195,6 +198,7 @@ def _write_run(
             measured.sightings, done.tracks, done.results.collisions, done.results.radius
         ),
         posterior=done.posterior,
+        ensemble=done.ensemble,
         unit=UNITS[settings.units],
         provenance=Provenance(
             VERSION,
@@ -380,6 +384,7 @@ def _do_check(arguments: argparse.Namespace, bars: Bars) -> str:
 def _do_estimate(arguments: argparse.Namespace, bars: Bars) -> str:
     from data.results_file import write_results
     from data.tracks import write_table
+    from physics.prediction.ensemble import write_ensemble
     from report.summary import summary
     from report.units import UNITS
 
@@ -391,6 +396,8 @@ def _do_estimate(arguments: argparse.Namespace, bars: Bars) -> str:
         write_results(done.results, stage / "results.json")
         if done.posterior is not None:
             write_table(done.posterior, stage / "posterior.csv")
+        if done.ensemble is not None:
+            write_ensemble(done.ensemble, stage / "ensemble.json")
     return summary(done.results, done.tracks, folder, done.house, UNITS[arguments.units])
 
 
@@ -451,7 +458,7 @@ def _do_simulate(arguments: argparse.Namespace, bars: Bars) -> str:
         throws = MEASURED_THROWS if measured_shot(shot) else 0
     outcome = simulation_json(simulation)
     lines = [simulation_text(simulation, folder / "simulation.csv")]
-    warnings = start.assumed
+    warnings = [*start.assumed.values()]
     with staged(folder, replaces=WHAT_IF) as stage:
         write_table(table, stage / "simulation.csv")
         if throws:

@@ -220,8 +220,7 @@ class Input:
 class Results:
     """All that a run found out.
 
-    ``masses`` has those given, in any unit, of all stones or none. ``shared_error`` is the standard
-    deviation (m, per axis) of what places near each other share, None where nothing is known of it.
+    ``masses`` has those given, in any unit, of all stones or none.
     ``teams`` has each stone's as in ``tracks.csv``, without those of which nothing is known.
     ``sheet`` says whether places count from the tee of a sheet, along y.
     """
@@ -244,5 +243,4 @@ class Results:
     posterior: Posterior | None = None
     masses: Mapping[str, float] = field(default_factory=dict)
     teams: Mapping[str, str] = field(default_factory=dict)
-    shared_error: float | None = None
     sheet: bool = True

@@ -86,7 +86,6 @@ def read_results(path: Path) -> Results:
             posterior=(_made(Posterior, raw["posterior"]) if raw.get("posterior") else None),
             masses={str(name): _length(mass) for name, mass in raw.get("masses", {}).items()},
             teams={str(name): str(team) for name, team in raw.get("teams", {}).items()},
-            shared_error=_length(raw["shared_error"]) if raw.get("shared_error") else None,
             sheet=bool(raw.get("sheet", True)),
         )
     except OSError as error:

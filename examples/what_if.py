@@ -10,6 +10,7 @@ from pathlib import Path
 
 from data.results_file import read_results
 from data.tracks import read_tracks
+from physics.prediction.ensemble import read_ensemble
 from physics.prediction.start import measured_start
 from physics.prediction.what_if import Amount, Changes, changed, odds, sample
 
@@ -17,7 +18,11 @@ if not sys.argv[1:]:
     print("usage: python examples/what_if.py RUN", file=sys.stderr)
     sys.exit(2)
 run = Path(sys.argv[1])
-start = measured_start(read_tracks(run / "tracks.csv"), read_results(run / "results.json"))
+start = measured_start(
+    read_tracks(run / "tracks.csv"),
+    read_results(run / "results.json"),
+    read_ensemble(run / "ensemble.json"),
+)
 
 for words, changes in (
     ("as thrown", Changes()),

@@ -20,6 +20,7 @@ from data.errors import InputError
 from data.files import whole_file, write_text
 from data.results import Results
 from data.sheet import House
+from physics.prediction.ensemble import Ensemble
 from report.cells import data, data_parts, data_significant
 from report.gallery import pictures
 from report.listing import page_tables
@@ -56,6 +57,7 @@ def write_report(
     house: House | None = None,
     residuals: pd.DataFrame | None = None,
     posterior: pd.DataFrame | None = None,
+    ensemble: Ensemble | None = None,
     unit: Unit = METRES,
     provenance: Provenance = UNKNOWN,
 ) -> Path:
@@ -86,6 +88,8 @@ def write_report(
         Of the places that were seen, for the figure of them (see `report.gallery.pictures`).
     posterior : DataFrame, optional
         Samples of restitution and frictions, for the figure of them.
+    ensemble : Ensemble, optional
+        What the shot may have been, to throw it again on the page.
     unit : Unit
         Of the tables for coaches.
     provenance : Provenance
@@ -109,7 +113,7 @@ def write_report(
     write_tables(folder / "tables", tables)
     scores = [(name, score.rmse) for name, score in results.simulations.items()]
     known = [(rmse, name) for name, rmse in scores if rmse is not None]
-    what_if = _what_if(tracks, results)
+    what_if = _what_if(tracks, results, ensemble)
     page = (
         _environment()
         .get_template("page.html")
@@ -179,10 +183,14 @@ def _json(values: Any) -> Markup:
     return Markup(text)
 
 
-def _what_if(tracks: pd.DataFrame, results: Results) -> dict[str, Any] | None:
+def _what_if(
+    tracks: pd.DataFrame, results: Results, ensemble: Ensemble | None
+) -> dict[str, Any] | None:
     """Return the shot to throw again; None where no stone moves."""
+    if ensemble is None:
+        return None
     try:
-        return trial(tracks, results)
+        return trial(tracks, results, ensemble)
     except InputError:
         return None
 

@@ -15,7 +15,6 @@ from numpy.typing import ArrayLike
 
 from data.results import Results
 from data.sheet import SHEET, House
-from physics.simulator.simulation import Shot
 from report.style import stone_colours, team_colour
 
 STEPS: Mapping[str, float] = {
@@ -85,21 +84,6 @@ def playback(
             for model, table in simulations.items()
         },
     }
-
-
-def shot_values(shot: Shot) -> dict[str, Any]:
-    """Give a shot as the simulator of the page takes it: laws by their names, with parameters."""
-    stones = []
-    for stone in shot.stones:
-        given = stone.omega_after
-        after = given if isinstance(given, tuple) else () if given is None else (given,)
-        stones.append({**asdict(stone), "omega_after": list(after)})
-    laws = {
-        family: {"name": law.name, **asdict(law)}  # type: ignore[call-overload]
-        for family, law in (("impact", shot.impact), ("ice", shot.ice), ("curl", shot.curl))
-    }
-    bounds = None if shot.bounds is None else asdict(shot.bounds)
-    return {"stones": stones, "radius": shot.radius, "bounds": bounds, **laws}
 
 
 def differences(values: ArrayLike, column: str) -> list[int]:

@@ -11,10 +11,11 @@ import pandas as pd
 
 from data.results import Results
 from data.sheet import GRAVITY
+from physics.prediction.ensemble import Ensemble
 from physics.prediction.start import measured_start
 from physics.registry import models
 from physics.simulator.simulation import StoneStart
-from report.playback import shot_values
+from physics.simulator.values import shot_values
 
 
 @dataclass(frozen=True)
@@ -34,21 +35,21 @@ class Slider:
     value: str
 
 
-def trial(tracks: pd.DataFrame, results: Results) -> dict[str, Any]:
-    """Give the shot before its first hit as the page's simulator takes it.
+def trial(tracks: pd.DataFrame, results: Results, ensemble: Ensemble) -> dict[str, Any]:
+    """Give the shot as it began, as the page's simulator takes it.
 
     Returns
     -------
     dict
-        ``shot`` (see `report.playback.shot_values`), ``thrown`` (its rank), ``laws`` to choose
-        from, ``spins_known`` (whether the rigid-body model can run), ``assumed``.
+        ``shot`` (see `physics.simulator.values.shot_values`), ``thrown`` (its rank), ``laws`` to
+        choose from, ``spins_known`` (whether the rigid-body model can run), ``assumed``.
 
     Raises
     ------
     InputError
         Where no stone moves before the first hit.
     """
-    start = measured_start(tracks, results)
+    start = measured_start(tracks, results, ensemble)
     spins = {stone.name: _spins_after(stone, results) for stone in start.shot.stones}
     stones = tuple(replace(s, omega_after=spins[s.name] or None) for s in start.shot.stones)
     return {
@@ -59,7 +60,7 @@ def trial(tracks: pd.DataFrame, results: Results) -> dict[str, Any]:
             for family in ("ice", "curl")
         },
         "spins_known": all(spins.values()),
-        "assumed": list(start.assumed),
+        "assumed": list(start.assumed.values()),
     }
 
 

@@ -30,6 +30,7 @@ CONTRACT = {
     "camera.csv",
     "results.json",
     "simulation.csv",
+    "ensemble.json",
     "report.html",
     "figures",
     "tables",

@@ -47,7 +47,7 @@ def left(folder: Path) -> set[str]:
 def test_estimates_of_other_tracks_stand_alone(folder, tmp_path):
     tracks = glide(tmp_path / "other.csv")
     assert pipeline.main(["estimate", str(tracks), "-o", str(folder), "-q"]) == 0
-    assert left(folder) == {"results.json", "notes.txt"}
+    assert left(folder) == {"results.json", "ensemble.json", "notes.txt"}
     assert (folder / "results.json").read_text() != OLD
 
 
@@ -55,7 +55,8 @@ def test_estimates_stay_beside_their_own_tracks(folder):
     tracks = glide(folder / "tracks.csv")
     text = tracks.read_text()
     assert pipeline.main(["estimate", str(tracks), "-o", str(folder), "-q"]) == 0
-    assert left(folder) == {"results.json", "tracks.csv", "camera.csv", "notes.txt"}
+    written = {"results.json", "ensemble.json"}
+    assert left(folder) == {*written, "tracks.csv", "camera.csv", "notes.txt"}
     assert tracks.read_text() == text
 
 

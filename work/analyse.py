@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from data.results import Collision, Estimate, Input, Results
     from physics.local_fit.contacts import Contact
+    from physics.prediction.ensemble import Ensemble
     from physics.whole_shot.priors import Priors
 
 
@@ -61,6 +62,8 @@ class Run:
         The rings; None where the scene has no house.
     posterior : DataFrame or None
         As ``posterior.csv``: draws of restitution and frictions, where they were asked for.
+    ensemble : Ensemble or None
+        As ``ensemble.json``: shots that may have been this one; None where nothing moves.
     """
 
     tracks: pd.DataFrame
@@ -70,6 +73,7 @@ class Run:
     out: Path | None = None
     house: House | None = None
     posterior: pd.DataFrame | None = None
+    ensemble: Ensemble | None = None
 
 
 def analyse(
@@ -101,7 +105,8 @@ def analyse(
     estimates = estimate(sightings, contacts, radius=radius, masses=masses)
     timed = _timed(contacts, estimates.collisions)
     tracks = smooth(sightings, timed, radius=radius, masses=masses, unseen=measured.repeats)
-    sampled, scores, notes = simulate_measured(tracks, estimates, radius=radius, masses=masses)
+    again = simulate_measured(tracks, estimates, radius=radius, masses=masses)
+    notes = again.warnings
     laws = _assumed_laws(settings)
     predictions = predict(sightings, tracks, estimates, radius=radius, masses=masses, laws=laws)
     of_team = teams(tracks)
@@ -123,7 +128,7 @@ def analyse(
         friction=estimates.friction,
         collisions=estimates.collisions,
         glides=estimates.glides,
-        simulations=scores,
+        simulations=again.scores,
         warnings=tuple(dict.fromkeys((*measured.warnings, *estimates.warnings, *notes))),
         radius=radius,
         predictions=predictions,
@@ -136,11 +141,10 @@ def analyse(
         posterior=None if drawn is None else summarise(drawn),
         teams={stone: team for stone, team in of_team.items() if team},
         masses=masses or {},
-        shared_error=_shared_error(sightings),
         sheet=house is not None,
     )
     cameras = camera_table(measured.cameras) if measured.cameras else None
-    simulations = [as_tracks(table, model, of_team) for model, table in sampled.items()]
+    simulations = [as_tracks(table, model, of_team) for model, table in again.samples.items()]
     progress("physics", 1, 1)
     return Run(
         tracks,
@@ -149,6 +153,7 @@ def analyse(
         pd.concat(simulations, ignore_index=True) if simulations else as_tracks(None, ""),
         house=house,
         posterior=drawn,
+        ensemble=again.ensemble,
     )
 
 
@@ -163,14 +168,6 @@ def _input(measured: Measured) -> Input:
         frames=measured.frames,
         duration=float(times.max() - times.min()),
     )
-
-
-def _shared_error(sightings: pd.DataFrame) -> float | None:
-    """Tell what places share of their errors, m per axis; None where it is not known."""
-    from physics.local_fit.traces import SHARED
-
-    variance = (sightings.reindex(columns=list(SHARED)) ** 2).mean(axis=1)
-    return None if variance.isna().all() else float(variance.median() ** 0.5)
 
 
 def _few(frames: int) -> tuple[str, ...]:

@@ -58,18 +58,24 @@ def read_start(path: Path, folder: Path) -> Start:
     """
     from data.results_file import read_results
     from data.tracks import read_tracks
+    from physics.prediction.ensemble import read_ensemble
     from physics.prediction.start import measured_start, written_start
     from physics.simulator.shot import read_shot
 
     if not measured_shot(path):
         return written_start(read_shot(path))
     results = read_results(path)
-    tracks = path.parent / "tracks.csv"
-    if not tracks.exists():
-        raise InputError(f"{tracks}: no such file; it belongs beside {path.name}")
     if folder.resolve() == path.parent.resolve():
         raise InputError(f"{folder}: holds the run itself; name another folder with -o")
-    return measured_start(read_tracks(tracks), results)
+    tracks = read_tracks(_beside(path, "tracks.csv"))
+    return measured_start(tracks, results, read_ensemble(_beside(path, "ensemble.json")))
+
+
+def _beside(path: Path, name: str) -> Path:
+    file = path.with_name(name)
+    if not file.exists():
+        raise InputError(f"{file}: no such file; it belongs beside {path.name}: run again")
+    return file
 
 
 def sampled(simulation: Simulation, fps: float, model: str) -> pd.DataFrame:
@@ -132,7 +138,7 @@ def throw_often(
         "samples": count,
         "throw_sd": {"speed": speed, "direction": direction},
         "stones": {name: asdict(item) for name, item in odds(outcomes, start).items()},
-        "warnings": [*start.assumed, *_not_told(start, count)],
+        "warnings": [*start.assumed.values(), *_not_told(start, count)],
     }
 
 

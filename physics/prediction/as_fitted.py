@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import replace
 from itertools import islice
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from data.errors import InputError
-from physics.impact import Impact
+from physics.prediction.ensemble import Ensemble
 from physics.prediction.spread import DRAWS, Doubt, drawn
 from physics.simulator.simulate import simulate
 from physics.simulator.simulation import Shot, StoneStart
@@ -27,37 +26,13 @@ TRIES = 4
 """Draws at most for each that is asked for."""
 
 
-@dataclass(frozen=True)
-class AsFitted:
-    """Shots that may have been one that was seen.
-
-    Attributes
-    ----------
-    start : float
-        Time in the clip at which they begin, s.
-    likely : Shot
-        The one that fits best.
-    others : sequence of Shot
-        Drawn from what its errors leave open.
-    """
-
-    start: float
-    likely: Shot
-    others: Sequence[Shot]
-
-    def by(self, impact: Impact) -> AsFitted:
-        """Return them with the hits of another model, with their own restitution and friction."""
-        others = [_hit_by(other, impact) for other in self.others]
-        return AsFitted(self.start, _hit_by(self.likely, impact), others)
-
-
-def by_itself(shot: Shot, doubt: Doubt, at: float, count: int = DRAWS) -> AsFitted:
+def by_itself(shot: Shot, doubt: Doubt, at: float, count: int = DRAWS) -> Ensemble:
     """Return a shot that begins at a time, s, with laws and states drawn each by itself."""
     rng = np.random.default_rng(0)
-    return AsFitted(at, shot, [drawn(shot, doubt, rng) for _ in range(count)])
+    return Ensemble(at, shot, [drawn(shot, doubt, rng) for _ in range(count)])
 
 
-def as_fitted(fit: GlobalFit, shot: Shot, doubt: Doubt, at: float, count: int = DRAWS) -> AsFitted:
+def as_fitted(fit: GlobalFit, shot: Shot, doubt: Doubt, at: float, count: int = DRAWS) -> Ensemble:
     """Return a shot as the fit of the whole of it has it.
 
     Other shots are drawn from the fits with all choices of laws, by their probabilities, the
@@ -91,7 +66,8 @@ def as_fitted(fit: GlobalFit, shot: Shot, doubt: Doubt, at: float, count: int = 
         whole = own.shots[0].shot(own.state(values=values))
         known = {stone.name: stone for stone in whole.stones}
         stones = tuple(_joined(stone, known.get(stone.name), since) for stone in other.stones)
-        return replace(whole, stones=stones)
+        # Of hits a shot without any tells nothing.
+        return replace(whole, stones=stones, impact=whole.impact if seen.hits else other.impact)
 
     likely = joined(shot, fit, fit.values)
     run = simulate(likely, until=since)
@@ -101,7 +77,7 @@ def as_fitted(fit: GlobalFit, shot: Shot, doubt: Doubt, at: float, count: int = 
     )
     possible = islice(_possible(fit, rng, TRIES * count), count)
     others = [joined(drawn(shot, doubt, rng), own, values) for own, values in possible]
-    return AsFitted(seen.start, joined(shot, fit, fit.values), others)
+    return Ensemble(seen.start, joined(shot, fit, fit.values), others)
 
 
 def _possible(
@@ -134,13 +110,3 @@ def _joined(stone: StoneStart, own: StoneStart | None, since: float) -> StoneSta
     if own is None:
         return replace(stone, x=stone.x - since * stone.vx, y=stone.y - since * stone.vy)
     return replace(own, theta=stone.theta, omega_after=stone.omega_after)
-
-
-def _hit_by(shot: Shot, impact: Impact) -> Shot:
-    """Return a shot with the hits of another model, its restitution and friction kept."""
-    own: dict[str, Any] = {}
-    for item in fields(impact):  # type: ignore[arg-type]
-        if hasattr(shot.impact, item.name):
-            own[item.name] = getattr(shot.impact, item.name)
-    own["restitution"] = min(own["restitution"], 1.0)
-    return replace(shot, impact=replace(impact, **own))  # type: ignore[type-var]

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
@@ -21,12 +21,14 @@ from physics.impact import Impact, PointMass, RigidBody
 from physics.local_fit.traces import Trace
 from physics.local_fit.untold import OFTEN, SUDDEN
 from physics.local_fit.ways import SLOWING
-from physics.prediction.as_fitted import AsFitted, as_fitted, by_itself
+from physics.prediction.as_fitted import as_fitted, by_itself
+from physics.prediction.ensemble import Ensemble
 from physics.prediction.laws import Laws, measured_laws
 from physics.prediction.spread import Doubt, path_spread, simulated, simulated_hits
 from physics.prediction.throws import first_hit, foreseen_until, newcomers
 from physics.simulator.simulate import simulate
 from physics.simulator.simulation import Shot, StoneStart
+from physics.whole_shot.priors import SPIN
 from physics.whole_shot.shot_model import STATE
 from physics.whole_shot.whole_fit import GlobalFit
 
@@ -40,13 +42,40 @@ WITHIN = 0.1
 """Time within which a change of velocity is sudden, s."""
 
 
+@dataclass(frozen=True)
+class Hindcast:
+    """A measured shot simulated again.
+
+    Attributes
+    ----------
+    samples : dict of str to DataFrame
+        Model to the simulated states at the tracks' times from the start on, with the
+        columns ``stone, frame, t, x, y, theta, vx, vy, omega`` and the standard deviations
+        ``sd_x, sd_y, sd_vx, sd_vy, sd_omega`` that the errors of the start and the laws give.
+    scores : dict of str to SimulationScore
+        Root mean square distance over the stones that moved, m, and each stone's distance
+        between its simulated and measured last place; both without what follows when
+        something else (a wall, a hand) moved a stone.
+    warnings : tuple of str
+        What had to be assumed.
+    ensemble : Ensemble or None
+        Shots that may have been this one, with hits as `frictional` has them; None where there is
+        nothing to simulate.
+    """
+
+    samples: dict[str, pd.DataFrame]
+    scores: dict[str, SimulationScore]
+    warnings: tuple[str, ...]
+    ensemble: Ensemble | None = None
+
+
 def simulate_measured(
     tracks: pd.DataFrame,
     estimates: Estimates,
     *,
     radius: float,
     masses: Mapping[str, float] | None = None,
-) -> tuple[dict[str, pd.DataFrame], dict[str, SimulationScore], tuple[str, ...]]:
+) -> Hindcast:
     """Simulate a measured shot with each impact model and score it against the tracks.
 
     Start and laws are those of the fit of the whole shot, so that `frictional` tells how far the
@@ -66,22 +95,13 @@ def simulate_measured(
 
     Returns
     -------
-    samples : dict of str to DataFrame
-        Model to the simulated states at the tracks' times from the start on, with the
-        columns ``stone, frame, t, x, y, theta, vx, vy, omega`` and the standard deviations
-        ``sd_x, sd_y, sd_vx, sd_vy, sd_omega`` that the errors of the start and the laws give.
-    scores : dict of str to SimulationScore
-        Root mean square distance over the stones that moved, m, and each stone's distance
-        between its simulated and measured last place; both without what follows when
-        something else (a wall, a hand) moved a stone.
-    warnings : tuple of str
-        What had to be assumed.
+    Hindcast
     """
     warnings: list[str] = []
     if tracks.empty:
-        return {}, {}, ("no tracks to simulate",)
+        return Hindcast({}, {}, ("no tracks to simulate",))
     if tracks["vx"].isna().all():
-        return {}, {}, ("no stone was seen twice: places only, nothing to simulate",)
+        return Hindcast({}, {}, ("no stone was seen twice: places only, nothing to simulate",))
     start = _start_time(tracks, estimates)
     if not estimates.collisions:
         warnings.append("simulation: no hit, the stones only glide")
@@ -131,10 +151,10 @@ def simulate_measured(
             hits=simulated_hits(run, others, shots.start),
             rest_sd=_rest_sd(tracks, table, found),
         )
-    return samples, scores, tuple(warnings)
+    return Hindcast(samples, scores, tuple(warnings), may.by(laws.frictional))
 
 
-def _may_have_been(fit: GlobalFit | None, shot: Shot, doubt: Doubt, start: float) -> AsFitted:
+def _may_have_been(fit: GlobalFit | None, shot: Shot, doubt: Doubt, start: float) -> Ensemble:
     """Shots that may have been the one seen: of the fit of the whole of it where that is so."""
     if fit is not None:
         with suppress(InputError):
@@ -198,6 +218,8 @@ def _doubt(tracks: pd.DataFrame, start: float, estimates: Estimates, laws: Laws)
         row = group.iloc[0] if early.empty else early.iloc[-1]
         still = _or_zero(np.hypot(row["vx"], row["vy"])) < STILL
         errors = np.nan_to_num(row[[f"sd_{key}" for key in STATE]].to_numpy(float))
+        if np.isnan(row["omega"]):
+            errors[4] = SPIN.stderr
         states[str(name)] = np.where([False, False, still, still, still], 0.0, errors)
         own = [hit.after[str(name)] for hit in estimates.collisions if name in hit.stones]
         spins[str(name)] = tuple(state.sd_omega or 0.0 for state in own)

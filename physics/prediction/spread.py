@@ -22,7 +22,7 @@ from physics.whole_shot.shot_model import STATE
 
 Floats = NDArray[np.float64]
 
-DRAWS = 32
+DRAWS = 64
 """Simulated shots from which a spread is taken."""
 
 MOMENTS = 40

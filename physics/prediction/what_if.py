@@ -9,17 +9,14 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
-from scipy.special import ndtri
 
 from data.errors import InputError
 from data.progress import Progress, no_progress
 from data.sheet import GRAVITY, HOUSE
-from physics.curl import Curl, FCV1Curl
-from physics.ice import IceLaw
 from physics.prediction.laws import Scaled
 from physics.prediction.start import Start, speed_before
 from physics.simulator.many import simulate_many
-from physics.simulator.simulation import States, StoneStart
+from physics.simulator.simulation import Shot, States
 
 Array = NDArray[np.float64]
 
@@ -27,8 +24,6 @@ THROW_SD = (0.0076, 0.0018)
 """What players are off by as they let go: speed (m/s) and direction (rad)."""
 FASTEST_THROW, MOST_SPIN = 10.0, 20.0
 """Speed (m/s) and spin (rad/s) beyond which a throw is a mistake."""
-LAWS = 64
-"""Equally likely pairs of the ice's friction and of its curl: equal ones share work."""
 
 
 @dataclass(frozen=True)
@@ -92,30 +87,39 @@ def changed(start: Start, changes: Changes) -> Start:
         Where the thrown stone would begin on top of another or off the sheet, or be faster
         than any.
     """
-    shot = start.shot
-    if changes.restitution is not None:
-        impact: Any = replace(shot.impact, restitution=changes.restitution)  # type: ignore[type-var]
-        shot, start = replace(shot, impact=impact), replace(start, sd_restitution=0.0)
-    if changes.friction is not None:
-        present = float(shot.ice.deceleration(1.0)) / GRAVITY
-        ice = Scaled(shot.ice, changes.friction / present)
-        shot, start = replace(shot, ice=ice), replace(start, sd_friction=0.0)
-    stones = list(shot.stones)
-    stones[start.thrown] = stone = _thrown(stones[start.thrown], changes)
+    shot, *others = (
+        _changed(other, start.thrown, changes) for other in (start.shot, *start.others)
+    )
+    stone = shot.stones[start.thrown]
+    speed = math.hypot(stone.vx, stone.vy)
+    if changes.speed and speed > FASTEST_THROW:
+        raise InputError(
+            f"speed: {stone.name} would be thrown at {speed:.3g} m/s; at most {FASTEST_THROW:g}"
+        )
+    if changes.spin and abs(stone.omega) > MOST_SPIN:
+        raise InputError(
+            f"spin: {stone.name} would turn at {stone.omega:.3g} rad/s; at most {MOST_SPIN:g}"
+        )
     if changes.aim_offset:
         if shot.bounds is not None and shot.bounds.beyond(stone.x, stone.y, shot.radius) > 0:
             raise InputError(
                 f"aim offset {changes.aim_offset:g} m: {stone.name} would begin off the sheet;"
                 " choose another"
             )
-        for other in stones:
+        for other in shot.stones:
             apart = math.dist((stone.x, stone.y), (other.x, other.y))
             if other is not stone and apart < 2 * shot.radius:
                 raise InputError(
                     f"aim offset {changes.aim_offset:g} m: {stone.name} would begin on top of"
                     f" {other.name}; choose another"
                 )
-    return replace(start, shot=replace(shot, stones=tuple(stones)))
+    told = {
+        "restitution": changes.restitution is not None,
+        "friction": changes.friction is not None,
+        f"spin of {stone.name}": changes.spin is not None and not changes.spin.relative,
+    }
+    assumed = {name: text for name, text in start.assumed.items() if not told.get(name)}
+    return replace(start, shot=shot, others=tuple(others), assumed=assumed)
 
 
 def sample(
@@ -126,14 +130,13 @@ def sample(
 ) -> pd.DataFrame:
     """Simulate a shot many times, each a little off.
 
-    States, restitution, frictions, curl and the distance at which stones meet are drawn from their
-    standard errors, speed and direction of the throw from what players are off by; their errors
-    grow on the way to the start.
+    Each throw is of one of the shots that it may be, in turn; speed and direction are drawn from
+    what players are off by, whose errors grow on the way to the start.
 
     Parameters
     ----------
     start : Start
-        The shot and what is not known of it.
+        The shot and what it may be as well.
     count : int
         Number of samples.
     throw_sd : (float, float)
@@ -148,30 +151,26 @@ def sample(
         for one that has left the sheet at that place.
     """
     rng = np.random.default_rng(0)
-    shot = start.shot
-    places = States.of(shot, count)
-    for item, sd in zip(fields(places), start.sd.T, strict=True):
-        getattr(places, item.name)[:] += sd * rng.standard_normal((count, len(sd)))
-    none = np.zeros(len(shot.stones))
-    # The errors that places share are drawn once for all stones, for x and for y.
-    shared = rng.multivariate_normal(none, start.together, (2, count), method="eigh")
-    places.x[:] += shared[0]
-    places.y[:] += shared[1]
-    rank = rng.permutation(np.arange(count) % LAWS)
-    pairs = _laws(start, rng)
+    shot, shots = start.shot, start.others or (start.shot,)
+    picked = [shots[k] for k in rng.permutation(np.arange(count) % len(shots)).tolist()]
+    places = States(
+        *(
+            np.array([[getattr(s, item.name) for s in one.stones] for one in picked], float)
+            for item in fields(States)
+        )
+    )
     _throw(start, places, throw_sd, rng)
-    vary = {}
-    for name, sd, top in (
-        ("restitution", start.sd_restitution, 1.0),
-        ("stone_friction", start.sd_stone_friction, np.inf),
-    ):
-        if sd > 0:  # which says that the model has it
-            mean = float(getattr(shot.impact, name))
-            vary[name] = np.clip(mean + sd * rng.standard_normal(count), 0.0, top)
-    ice, curl = ([pair[k] for pair in (pairs[r] for r in rank)] for k in range(2))
-    radius = shot.radius * (1 + start.sd_size * rng.standard_normal(count))
     done = simulate_many(
-        shot, places, ice=ice, curl=curl, radius=radius, vary=vary, progress=progress
+        shot,
+        places,
+        ice=[one.ice for one in picked],
+        curl=[one.curl for one in picked],
+        radius=[one.radius for one in picked],
+        vary={
+            item.name: [getattr(one.impact, item.name) for one in picked]
+            for item in fields(shot.impact)  # type: ignore[arg-type]
+        },
+        progress=progress,
     )
     names = [stone.name for stone in shot.stones]
     return pd.DataFrame(
@@ -184,20 +183,6 @@ def sample(
             "in_play": done.in_play.ravel().astype(int),
         }
     )
-
-
-def _laws(start: Start, rng: np.random.Generator) -> list[tuple[IceLaw, Curl]]:
-    """Return as many equally likely pairs of ice and curl, or the one that is known."""
-    shot, steps = start.shot, ndtri((np.arange(LAWS) + 0.5) / LAWS)
-    ice: list[IceLaw] = [shot.ice] * LAWS
-    curl: list[Curl] = [shot.curl] * LAWS
-    if start.sd_friction > 0:
-        factors = np.maximum(1 + start.sd_friction * steps, 0.1)
-        ice = [Scaled(shot.ice, factor) for factor in factors.tolist()]
-    if start.sd_turn > 0 and isinstance(shot.curl, FCV1Curl):
-        turns = shot.curl.turn + start.sd_turn * rng.permutation(steps)
-        curl = [replace(shot.curl, turn=turn) for turn in turns.tolist()]
-    return list(zip(ice, curl, strict=True))
 
 
 def odds(outcomes: pd.DataFrame, start: Start) -> dict[str, Odds]:
@@ -239,30 +224,30 @@ def _spread(x: Array, y: Array) -> dict[str, float | None]:
     }
 
 
-def _thrown(stone: StoneStart, changes: Changes) -> StoneStart:
-    """Return the thrown stone with the changes made."""
+def _changed(shot: Shot, thrown: int, changes: Changes) -> Shot:
+    """Return a shot with the changes made."""
+    if changes.restitution is not None:
+        impact: Any = replace(shot.impact, restitution=changes.restitution)  # type: ignore[type-var]
+        shot = replace(shot, impact=impact)
+    if changes.friction is not None:
+        present = float(shot.ice.deceleration(1.0)) / GRAVITY
+        shot = replace(shot, ice=Scaled(shot.ice, changes.friction / present))
+    stones = list(shot.stones)
+    stone = stones[thrown]
     speed = math.hypot(stone.vx, stone.vy)
     if speed == 0:
-        return stone
+        return shot
     ux, uy = stone.vx / speed, stone.vy / speed
     speed = changes.speed.of(speed) if changes.speed else speed
-    spin = changes.spin.of(stone.omega) if changes.spin else stone.omega
-    if changes.speed and speed > FASTEST_THROW:
-        raise InputError(
-            f"speed: {stone.name} would be thrown at {speed:.3g} m/s; at most {FASTEST_THROW:g}"
-        )
-    if changes.spin and abs(spin) > MOST_SPIN:
-        raise InputError(
-            f"spin: {stone.name} would turn at {spin:.3g} rad/s; at most {MOST_SPIN:g}"
-        )
-    return replace(
+    stones[thrown] = replace(
         stone,
         x=stone.x - changes.aim_offset * uy,
         y=stone.y + changes.aim_offset * ux,
         vx=speed * ux,
         vy=speed * uy,
-        omega=spin,
+        omega=changes.spin.of(stone.omega) if changes.spin else stone.omega,
     )
+    return replace(shot, stones=tuple(stones))
 
 
 def _throw(

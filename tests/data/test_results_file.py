@@ -71,7 +71,6 @@ RESULTS = Results(
     misfits=(Misfit("A", 0.0, 1.2, 0.8, False, False), Misfit("A", 1.2, 5.5, 6.1, True, True)),
     posterior=Posterior(100, {"restitution": {"0.5": 0.83}}, {"restitution": {"restitution": 1.0}}),
     teams={"A": "#d8c020"},
-    shared_error=0.0013,
     sheet=False,
 )
 
@@ -96,7 +95,7 @@ def test_the_form_of_the_file() -> None:
     assert set(raw) == {
         *("schema", "input", "restitution", "friction", "collisions", "glides"),
         *("simulations", "warnings", "radius", "predictions", "laws", "methods", "law_choice"),
-        *("curl", "stones", "misfits", "posterior", "masses", "teams", "shared_error"),
+        *("curl", "stones", "misfits", "posterior", "masses", "teams"),
         "sheet",
     }
     assert raw["input"] == {

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 
@@ -9,6 +11,7 @@ from data.results import Collision, Estimate, Friction, Input, MeasuredState, Re
 from physics.curl import NoCurl
 from physics.ice import Constant
 from physics.impact import Frictional
+from physics.prediction.ensemble import Ensemble
 from physics.simulator.bounds import Bounds
 from physics.simulator.simulate import simulate
 from physics.simulator.simulation import Shot, StoneStart
@@ -25,8 +28,11 @@ HIT = Shot(
 )
 
 
-def measured(shot: Shot = HIT) -> tuple[pd.DataFrame, Results]:
-    """Tracks and results of a shot with one hit, as a run would write them."""
+def measured(shot: Shot = HIT) -> tuple[pd.DataFrame, Results, Ensemble]:
+    """Tracks, results and ensemble of a shot with one hit, as a run would write them.
+
+    Nothing is open but the speed of the first stone, to 1 and 2 mm/s, e, to .01 and .02.
+    """
     done = simulate(shot)
     (hit,) = done.hits
     tracks = done.sample(np.arange(0, 6, 0.04))
@@ -48,4 +54,13 @@ def measured(shot: Shot = HIT) -> tuple[pd.DataFrame, Results]:
         (collision,),
         radius=R,
     )
-    return tracks, results
+    boundless = replace(shot, bounds=None)
+    others = [
+        replace(
+            boundless,
+            stones=(replace(shot.stones[0], vy=shot.stones[0].vy + 0.001 * k), *shot.stones[1:]),
+            impact=Frictional(0.8 + 0.01 * k, 0.05),
+        )
+        for k in (-2, -1, 1, 2)
+    ]
+    return tracks, results, Ensemble(0.0, boundless, others)

@@ -27,6 +27,12 @@ from data.results import (
     Told,
 )
 from data.tracks import TRACK_COLUMNS
+from physics.curl import FCV1Curl
+from physics.ice import Constant
+from physics.impact import Frictional
+from physics.prediction.ensemble import Ensemble
+from physics.simulator.simulation import Shot as Throw
+from physics.simulator.simulation import StoneStart
 from tests.report.browser import Browser
 
 RADIUS = 0.1455
@@ -39,6 +45,7 @@ class Shot:
     tracks: pd.DataFrame
     simulations: dict[str, pd.DataFrame]
     results: Results
+    ensemble: Ensemble
 
 
 @dataclass(frozen=True)
@@ -150,7 +157,13 @@ def make_shot(frames: int = 170) -> Shot:
         ),
         warnings=("clip ends after 170 of 175 frames <used as far as it goes>",),
     )
-    return Shot(tracks[list(TRACK_COLUMNS)], simulations, results)
+    stones = tuple(
+        StoneStart(name, *map(float, (*p.place, *p.velocity)), p.omega)
+        for name, (p, *_) in pieces.items()
+    )
+    laws = Frictional(0.8312345, 0.05), Constant(0.01093456), FCV1Curl(0.006, 0.0125)
+    ensemble = Ensemble(0.0, Throw(stones, *laws, RADIUS), ())
+    return Shot(tracks[list(TRACK_COLUMNS)], simulations, results, ensemble)
 
 
 def simulated_hits(e: float) -> tuple[SimulatedHit, ...]:

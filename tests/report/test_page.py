@@ -74,6 +74,7 @@ def write(folder: Path, shot, **kwargs) -> Path:
         "tracks": shot.tracks,
         "simulations": shot.simulations,
         "house": HOUSE,
+        "ensemble": shot.ensemble,
         "provenance": Provenance(
             "1.2.3", "curlshot run 'take 7.mp4'", (Source("a<b", 7, "0" * 64),)
         ),

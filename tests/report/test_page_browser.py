@@ -88,6 +88,7 @@ def page(tmp_path_factory, shot, results) -> Path:
         house=HOUSE,
         overlay=folder / "overlay.mp4",
         clip_start=start,
+        ensemble=shot.ensemble,
     )
 
 
@@ -113,7 +114,7 @@ def tab(opened: Tab) -> Iterator[Tab]:
 
 @pytest.fixture(scope="module")
 def start(shot, results) -> Start:
-    return measured_start(shot.tracks[shot.tracks["frame"] < 50], results)
+    return measured_start(shot.tracks[shot.tracks["frame"] < 50], results, shot.ensemble)
 
 
 def rest(throw: Throw) -> dict[str, tuple[float, float]]:
@@ -389,9 +390,13 @@ def test_names_are_never_run(browser, tmp_path, shot):
         for hit in shot.results.collisions
     )
     results = dataclasses.replace(shot.results, collisions=collisions, simulations={})
+    likely = shot.ensemble.likely
+    stones = tuple(dataclasses.replace(s, name=evil) if s.name == "B" else s for s in likely.stones)
+    ensemble = dataclasses.replace(shot.ensemble, likely=dataclasses.replace(likely, stones=stones))
     page = write_report(
-        tmp_path, results=results, tracks=tracks, simulations={}, house=HOUSE, clip_name=evil
-    )
+        tmp_path, results=results, tracks=tracks, simulations={}, house=HOUSE, clip_name=evil,
+        ensemble=ensemble,
+    )  # fmt: skip
     with browser.tab() as tab:
         tab.open(page)
         assert tab.value("document.title").startswith(evil)

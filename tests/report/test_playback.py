@@ -6,12 +6,7 @@ import numpy as np
 import pytest
 
 from data.sheet import HOUSE
-from physics.curl import FCV1Curl
-from physics.ice import FCV1
-from physics.impact import PointMass
-from physics.simulator.bounds import Bounds
-from physics.simulator.simulation import Shot, StoneStart
-from report.playback import STEPS, differences, playback, shot_values
+from report.playback import STEPS, differences, playback
 
 
 def decoded(values: list[int], column: str) -> np.ndarray:
@@ -57,13 +52,3 @@ def test_hits_lie_where_the_stones_touch(shot):
             state = collision.before[stone]
             away = np.hypot(hit["x"] - state.x, hit["y"] - state.y)
             assert away == pytest.approx(shot.results.radius, abs=1e-6)
-
-
-def test_a_shot_is_told_in_full():
-    stones = (StoneStart("A", 0, -2, 0, 2, omega_after=0.3), StoneStart("B", 0, 0))
-    values = shot_values(Shot(stones, PointMass(0.8), FCV1(), FCV1Curl(), 0.14, Bounds(-1)))
-    assert values["impact"] == {"name": "point-mass", "restitution": 0.8}
-    assert values["ice"]["name"] == "fcv1" and values["ice"]["gravity"] == 9.807
-    assert values["curl"]["name"] == "fcv1" and values["bounds"]["play"] == -1
-    assert [stone["omega_after"] for stone in values["stones"]] == [[0.3], []]
-    json.dumps(values, allow_nan=False)

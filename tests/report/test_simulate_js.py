@@ -19,8 +19,8 @@ from physics.prediction.what_if import Amount, Changes, changed
 from physics.simulator.bounds import Bounds
 from physics.simulator.simulate import simulate
 from physics.simulator.simulation import Shot, Simulation, StoneStart
+from physics.simulator.values import shot_values
 from report import page
-from report.playback import shot_values
 from tests.report.browser import Browser, Tab, needs_chromium
 
 WEB = Path(page.__file__).parent / "web"

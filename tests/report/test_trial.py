@@ -13,8 +13,8 @@ from report.trial import sliders, trial
 
 
 def test_sliders_begin_at_what_was_measured(shot):
-    what_if = trial(shot.tracks, shot.results)
-    start = measured_start(shot.tracks, shot.results)
+    what_if = trial(shot.tracks, shot.results, shot.ensemble)
+    start = measured_start(shot.tracks, shot.results, shot.ensemble)
     thrown = start.shot.stones[start.thrown]
     stands = {s.key: (float(s.value), float(s.step)) for s in sliders(what_if)}
     truth = {
@@ -34,7 +34,7 @@ def test_sliders_begin_at_what_was_measured(shot):
 
 def test_sliders_reach_as_far_as_what_was_measured(shot):
     fast = Fit(0.001, 0.1, 0.03)
-    what_if = trial(shot.tracks, shot.results)
+    what_if = trial(shot.tracks, shot.results, shot.ensemble)
     what_if["shot"]["ice"] = {"name": "fit", **dataclasses.asdict(fast)}
     what_if["shot"]["stones"][what_if["thrown"]]["omega"] = -9.0
     reach = {s.key: s for s in sliders(what_if)}
@@ -43,16 +43,17 @@ def test_sliders_reach_as_far_as_what_was_measured(shot):
 
 
 def test_rigid_bodies_need_all_spins(shot):
-    assert trial(shot.tracks, shot.results)["spins_known"]
+    assert trial(shot.tracks, shot.results, shot.ensemble)["spins_known"]
     first, *others = shot.results.collisions
     after = {**first.after, "A": MeasuredState(0, 0, 0, 0, None)}
     blind = dataclasses.replace(
         shot.results, collisions=(dataclasses.replace(first, after=after), *others)
     )
-    assert not trial(shot.tracks, blind)["spins_known"]
+    assert not trial(shot.tracks, blind, shot.ensemble)["spins_known"]
 
 
 def test_nothing_to_throw_where_nothing_moves(shot):
-    still = shot.tracks[shot.tracks["stone"] == "D"]
+    likely = shot.ensemble.likely
+    still = dataclasses.replace(likely, stones=likely.stones[-1:])
     with pytest.raises(InputError, match="no stone moves"):
-        trial(still, dataclasses.replace(shot.results, collisions=()))
+        trial(shot.tracks, shot.results, dataclasses.replace(shot.ensemble, likely=still))

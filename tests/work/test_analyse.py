@@ -78,21 +78,6 @@ def test_a_friction_below_that_of_any_surface_is_told(friction: Estimate, said: 
     assert any("--fps" in text for text in _pace_anywhere(friction)) == said
 
 
-def test_stones_of_which_it_is_not_said_have_no_say_in_what_places_share() -> None:
-    still = pd.DataFrame({"stone": np.repeat(["A", "B", "C"], 20), "frame": [*range(20)] * 3})
-    still = still.assign(t=still["frame"] / 25, y=0.2, team="", sd_x=0.003, sd_y=0.003)
-    still["x"] = still["stone"].map({"A": 0.0, "B": 0.5, "C": 1.0})
-    told = still.assign(sd_place_x=still["stone"].map({"A": 0.004}), sd_place_y=0.003)
-    told.loc[told["stone"] != "A", "sd_place_y"] = np.nan
-
-    def shared(table: pd.DataFrame) -> float | None:
-        table = table.reindex(columns=list(SIGHTING_COLUMNS))
-        return analyse(Measured((Path("a.csv"),), table, 25.0, 20, ())).results.shared_error
-
-    assert shared(told) == pytest.approx(np.hypot(0.004, 0.003) / np.sqrt(2))
-    assert shared(still) is None
-
-
 @pytest.mark.parametrize(
     ("settings", "said"),
     [

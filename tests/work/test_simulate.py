@@ -15,7 +15,7 @@ def test_a_run_is_simulated_by_the_name_of_its_folder(
     monkeypatch.chdir(tmp_path)
     run = tmp_path / "semi.final-curlshot"
     run.mkdir()
-    for name in ("results.json", "tracks.csv"):
+    for name in ("results.json", "tracks.csv", "ensemble.json"):
         (run / name).write_bytes((sample.out / name).read_bytes())
     for shot in (run, run / "results.json"):
         assert pipeline.main(["simulate", str(shot), "--samples", "0"]) == 0

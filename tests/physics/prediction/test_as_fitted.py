@@ -8,10 +8,11 @@ import pytest
 
 from data.errors import InputError
 from physics.estimate import Estimates, estimate
-from physics.impact import Frictional, PointMass
+from physics.impact import Frictional
 from physics.kalman import smooth
 from physics.local_fit.contacts import find_contacts
-from physics.prediction.as_fitted import AsFitted, as_fitted, by_itself
+from physics.prediction.as_fitted import as_fitted, by_itself
+from physics.prediction.ensemble import Ensemble
 from physics.prediction.hindcast import simulate_measured
 from physics.prediction.spread import Doubt
 from physics.simulator.simulate import simulate
@@ -19,6 +20,7 @@ from physics.simulator.simulation import Shot, StoneStart
 from physics.whole_shot.global_fit import fit_shots
 from tests.physics.watch import RADIUS, hit_motion, watch
 from tests.synthetic.physics import Motion, Start
+from tests.synthetic.physics import simulate as simulate_truth
 
 MOTION = hit_motion(1.6, 0.06, before=1.2, after=3.0, others=[Start(0.03, 0.9)])
 
@@ -30,7 +32,7 @@ def seen(seed: int, motion: Motion = MOTION) -> tuple[pd.DataFrame, Estimates]:
     return table, found
 
 
-def fitted(found: Estimates, *further: StoneStart) -> AsFitted:
+def fitted(found: Estimates, *further: StoneStart) -> Ensemble:
     """The shot at its 1.0 s, otherwise known to stand at wrong places."""
     assert found.whole is not None
     stones = (*(StoneStart(name, k, k, theta=0.5) for k, name in enumerate("ABC")), *further)
@@ -44,13 +46,13 @@ def test_two_hits_end_where_they_did_as_far_as_is_stated() -> None:
     for seed in range(4):
         table, found = seen(seed)
         tracks = smooth(table, find_contacts(table, RADIUS), radius=RADIUS)
-        samples, scores, _ = simulate_measured(tracks, found, radius=RADIUS)
-        last = samples["frictional"].groupby("stone").last()
+        done = simulate_measured(tracks, found, radius=RADIUS)
+        last = done.samples["frictional"].groupby("stone").last()
         truth = MOTION.at(np.array([last["t"].iloc[0]]))[0][:, :2]
         error = last[["x", "y"]].to_numpy() - truth
         pulls.append(error / last[["sd_x", "sd_y"]].to_numpy())
         off.append(np.hypot(*error.T).max())
-        again = scores["frictional"].rest_error
+        again = done.scores["frictional"].rest_error
         assert set(again) == {"A", "B", "C"}
         assert max(error or 0.0 for error in again.values()) < 0.01
     assert np.max(off) < 0.01
@@ -105,14 +107,23 @@ def test_what_the_fit_knows_nothing_of_is_kept() -> None:
         fitted(found, impossible)
 
 
-def test_another_model_keeps_restitution_and_friction() -> None:
+def test_without_a_fit_each_error_is_drawn_by_itself() -> None:
     shot = Shot((StoneStart("A", 0, -1, 0, 1), StoneStart("B", 0, 0)), Frictional(0.8, 0.07))
-    none = {name: np.zeros(5) for name in "AB"}
-    may = by_itself(shot, Doubt(none, {}, restitution=0.05), 2.0, 6)
-    other = may.by(PointMass(0.1))
-    assert isinstance(other.likely.impact, PointMass) and other.likely.impact.restitution == 0.8
-    kept = [getattr(shot.impact, "restitution", None) for shot in may.others]
-    assert [getattr(shot.impact, "restitution", None) for shot in other.others] == kept
-    assert len(set(kept)) == 6
-    bouncy = replace(shot, impact=Frictional(1.0, 0.07))
-    assert by_itself(bouncy, Doubt(none, {}), 0.0, 1).by(Frictional(0.2, 0.0)).likely == bouncy
+    doubt = Doubt({name: np.zeros(5) for name in "AB"}, {}, restitution=0.05)
+    may = by_itself(shot, doubt, 2.0, 200)
+    assert (may.start, may.likely) == (2.0, shot)
+    drawn = [getattr(other.impact, "restitution", 0.0) for other in may.others]
+    assert np.std(drawn) == pytest.approx(0.05, rel=0.2)
+    assert {other.stones for other in may.others} == {shot.stones}
+
+
+def test_of_hits_a_shot_without_any_is_told_nothing() -> None:
+    """What is not known of e then is what was not known before."""
+    motion = simulate_truth([Start(0.0, -2.0, 0.0, 1.6, 0.3, 1.0), Start(1.0, 0.0)], 3.0)
+    found = seen(1, motion)[1]
+    assert not found.collisions and found.whole is not None
+    shot = Shot((StoneStart("A", 0, 0), StoneStart("B", 1, 1)), Frictional(0.7, 0.05))
+    doubt = Doubt({name: np.zeros(5) for name in "AB"}, {}, restitution=0.06)
+    may = as_fitted(found.whole, shot, doubt, 1.0, 100)
+    assert may.likely.impact == shot.impact
+    assert np.std([other.impact.restitution for other in may.others]) > 0.04

@@ -22,7 +22,8 @@ def again(
 ) -> tuple[dict[str, pd.DataFrame], dict[str, SimulationScore], tuple[str, ...]]:
     hits = find_contacts(seen, RADIUS)
     tracks = smooth(seen, hits, radius=RADIUS)
-    return simulate_measured(tracks, estimate(seen, hits, radius=RADIUS), radius=RADIUS)
+    done = simulate_measured(tracks, estimate(seen, hits, radius=RADIUS), radius=RADIUS)
+    return done.samples, done.scores, done.warnings
 
 
 def test_the_shot_again_lands_where_it_did() -> None:
@@ -56,7 +57,7 @@ def test_stones_meet_where_the_tracks_have_them_meet() -> None:
 
     def farthest(of: Estimates) -> float:
         tracks = smooth(seen, hits, radius=RADIUS)
-        score = simulate_measured(tracks, of, radius=RADIUS)[1]["frictional"]
+        score = simulate_measured(tracks, of, radius=RADIUS).scores["frictional"]
         return max(error or 0.0 for error in score.rest_error.values())
 
     # All but the size is told by the paths beside the hit too.
@@ -72,7 +73,7 @@ def test_a_frame_that_may_lie_behind_the_hit_is_no_start() -> None:
     frame = float(tracks["t"][tracks["t"] >= contact.t].min())
     late = replace(found.collisions[0], t=frame + 1e-5, stderr_t=frame - contact.t)
     found = replace(found, collisions=(late,))
-    _, scores, _ = simulate_measured(tracks, found, radius=RADIUS)
+    scores = simulate_measured(tracks, found, radius=RADIUS).scores
     assert [hit.stones for hit in scores["frictional"].hits] == [("A", "B")]
 
 
@@ -135,7 +136,7 @@ def test_what_is_seen_after_the_hit_does_not_move_the_start_without_a_fit_of_the
     other = tracks.copy()
     other.loc[other["t"] > hits[0].t, ["x", "y"]] += 0.5
     alone = replace(found, whole=None)
-    one, two = (simulate_measured(t, alone, radius=RADIUS)[0] for t in (tracks, other))
+    one, two = (simulate_measured(t, alone, radius=RADIUS).samples for t in (tracks, other))
     pd.testing.assert_frame_equal(one["frictional"], two["frictional"])
     start = one["frictional"].groupby("stone")[["x", "y"]].first()
     last = tracks[tracks["t"] < hits[0].t].groupby("stone")[["x", "y"]].last()
@@ -155,7 +156,7 @@ def test_stones_that_grip_each_other_are_simulated_so() -> None:
     assert "as in the fit" in (scores["frictional"].note or "")
     local = replace(estimates, whole=None)
     tracks = smooth(seen, find_contacts(seen, RADIUS), radius=RADIUS)
-    _, scores, _ = simulate_measured(tracks, local, radius=RADIUS)
+    scores = simulate_measured(tracks, local, radius=RADIUS).scores
     assert "at least" in (scores["frictional"].note or "")
 
 

@@ -97,13 +97,13 @@ def test_errors_of_a_simulated_shot_mean_what_they_say() -> None:
         hits = find_contacts(seen, RADIUS)
         tracks = smooth(seen, hits, radius=RADIUS)
         found = estimate(seen, hits, radius=RADIUS)
-        samples, scores, _ = simulate_measured(tracks, found, radius=RADIUS)
-        last = samples["frictional"].groupby("stone").last()
+        again = simulate_measured(tracks, found, radius=RADIUS)
+        last = again.samples["frictional"].groupby("stone").last()
         truth = motion.at(np.array([last["t"].iloc[0]]))[0][:, :2]
         pulls += (
             ((last[["x", "y"]] - truth) / last[["sd_x", "sd_y"]].to_numpy()).to_numpy().tolist()
         )
-        (hit,) = scores["frictional"].hits
+        (hit,) = again.scores["frictional"].hits
         for name, true in zip("AB", motion.hits[0].after, strict=True):
             state = hit.after[name]
             off = np.array([state.vx, state.vy]) - true[:2]

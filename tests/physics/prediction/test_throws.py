@@ -15,6 +15,7 @@ from physics.prediction.forecast import ASSUMED, predict
 from physics.prediction.hindcast import simulate_measured
 from physics.prediction.start import measured_start
 from physics.prediction.throws import along_sheet, come_in, foreseen_until, later_throws
+from physics.simulator.simulation import StoneStart
 from tests.physics.measured import R, measured
 from tests.physics.watch import RADIUS, watch
 from tests.synthetic.physics import Ice, Impact, Start, simulate
@@ -113,13 +114,13 @@ def test_what_another_throw_does_is_not_foretold(both) -> None:
 
 def test_without_a_fit_of_the_whole_it_is_not_simulated_again(both) -> None:
     _, tracks, found = both
-    samples, scores, _ = simulate_measured(tracks, replace(found, whole=None), radius=RADIUS)
-    assert set(samples["frictional"]["stone"]) == {"A", "B"}
-    assert scores["frictional"].rest_error.keys() == {"B"}
-    whole, again, _ = simulate_measured(tracks, found, radius=RADIUS)
+    alone = simulate_measured(tracks, replace(found, whole=None), radius=RADIUS)
+    assert set(alone.samples["frictional"]["stone"]) == {"A", "B"}
+    assert alone.scores["frictional"].rest_error.keys() == {"B"}
+    whole = simulate_measured(tracks, found, radius=RADIUS)
     assert found.whole is not None
-    assert set(whole["frictional"]["stone"]) == {"A", "B", "C"}
-    assert again["frictional"].rest_error.keys() == {"A", "B", "C"}
+    assert set(whole.samples["frictional"]["stone"]) == {"A", "B", "C"}
+    assert whole.scores["frictional"].rest_error.keys() == {"A", "B", "C"}
 
 
 @pytest.mark.parametrize(
@@ -130,7 +131,7 @@ def test_a_shot_along_a_sheet_comes_along_y_within_its_sides(
     turn: int, dx: float, dy: float, there: bool
 ) -> None:
     """Turned by right angles and moved, as where the origin is anywhere."""
-    tracks, results = measured()
+    tracks, results, _ = measured()
     turned = tracks.copy()
     for x, y in (("x", "y"), ("vx", "vy")):
         place = (tracks[x] + 1j * tracks[y]) * 1j**turn
@@ -140,19 +141,19 @@ def test_a_shot_along_a_sheet_comes_along_y_within_its_sides(
 
 
 def test_one_wild_velocity_of_a_stone_at_rest_is_no_throw_across() -> None:
-    tracks, results = measured()
+    tracks, results, _ = measured()
     wild = tracks[tracks["stone"] == "C"].index[10]
     tracks.loc[wild, "vx"] = 5.0
     assert along_sheet(tracks, results.collisions[0].t, R)
 
 
 def test_a_stone_that_comes_in_later_does_not_lie_in_the_way_of_a_what_if() -> None:
-    tracks, results = measured()
+    tracks, results, ensemble = measured()
     thrown = tracks[(tracks["stone"] == "A") & (tracks["t"] < 2)]
     tracks = pd.concat([tracks, thrown.assign(stone="D", t=thrown["t"] + 6.0)])
-    start = measured_start(tracks, results)
+    start = measured_start(tracks, results, ensemble)
     assert [stone.name for stone in start.shot.stones] == ["A", "B", "C"]
-    assert any(text.endswith("D at 6.00 s") for text in start.assumed)
+    assert start.assumed["left out"].endswith("D at 6.00 s")
 
 
 @pytest.mark.parametrize(
@@ -161,15 +162,17 @@ def test_a_stone_that_comes_in_later_does_not_lie_in_the_way_of_a_what_if() -> N
 def test_stones_first_seen_at_rest_were_hidden_unless_another_is_thrown_then(
     begins: float, another: float, known: bool
 ) -> None:
-    tracks, results = measured()
+    tracks, results, ensemble = measured()
     thrown = tracks[(tracks["stone"] == "A") & (tracks["t"] < 2)]
     lies = thrown.assign(stone="D", t=thrown["t"] + begins, x=0.1, y=-0.5, vx=0.0, vy=0.0)
     tracks = pd.concat([tracks, lies, thrown.assign(stone="E", t=thrown["t"] + another)])
     if not another:
         tracks = tracks[tracks["stone"] != "E"]
-    start = measured_start(tracks, results)
+    late = StoneStart("D", 0.1, -0.5), StoneStart("E", 1.2, 3.0, 0.0, -1.6)
+    likely = replace(ensemble.likely, stones=(*ensemble.likely.stones, *late))
+    start = measured_start(tracks, results, replace(ensemble, likely=likely, others=()))
     assert ("D" in [stone.name for stone in start.shot.stones]) == known
-    assert any("D at 8.00 s, E at 12.00 s" in text for text in start.assumed) != known
+    assert ("D at 8.00 s, E at 12.00 s" in start.assumed.get("left out", "")) != known
 
 
 def test_what_an_unknown_stone_sets_going_is_not_foreseen(both) -> None:

@@ -8,16 +8,22 @@ import pandas as pd
 import pytest
 
 from data.errors import InputError
+from data.results import Input, Results
 from data.sheet import GRAVITY
 from physics.curl import FCV1Curl, NoCurl
-from physics.ice import FCV1, Constant
+from physics.estimate import estimate
+from physics.ice import FCV1, Constant, Fit, Penner
 from physics.impact import Frictional, PointMass
+from physics.kalman import smooth
+from physics.local_fit.contacts import find_contacts
+from physics.prediction.hindcast import simulate_measured
 from physics.prediction.start import Start, measured_start, written_start
 from physics.prediction.what_if import Amount, Changes, changed, odds, sample
 from physics.simulator.bounds import Bounds
 from physics.simulator.simulate import simulate
 from physics.simulator.simulation import Shot, StoneStart
 from tests.physics.measured import HIT, MU, R, measured
+from tests.physics.watch import RADIUS, hit_motion, watch
 
 
 def test_changes_are_made_to_the_thrown_stone_and_the_laws() -> None:
@@ -56,84 +62,106 @@ def test_the_spread_of_a_lone_stone_is_that_of_its_throw() -> None:
     gone = 20.0
     later = math.sqrt(speed**2 - 2 * MU * GRAVITY * gone)
     stone = replace(shot.stones[0], y=gone, vy=later)
-    late = Start(
-        replace(shot, stones=(stone,)), 0, np.zeros((1, 5)), np.zeros((1, 1)), release=gone
-    )
+    late = Start(replace(shot, stones=(stone,)), 0, release=gone)
     again = sample(late, 4000, sd)
     assert again["y"].std() == pytest.approx(out["y"].std(), rel=0.01)
     assert again["x"].std() == pytest.approx(out["x"].std(), rel=0.01)
 
 
-def test_measured_uncertainties_spread_the_outcome() -> None:
-    shot = Shot((StoneStart("A", 0, 0, 0, 2.0),), PointMass(), Constant(MU), NoCurl(), R)
-    way = 2.0**2 / (2 * MU * GRAVITY)
-    start = Start(shot, 0, np.zeros((1, 5)), np.zeros((1, 1)), sd_friction=0.02)
-    out = sample(start, 4000, (0.0, 0.0))
-    assert out["y"].std() == pytest.approx(0.02 * way, rel=0.05)
-    assert out["x"].std() == pytest.approx(0.0, abs=1e-12)
-    speed = Start(shot, 0, np.array([[0, 0, 0, 0.01, 0]]), np.zeros((1, 1)))
-    out = sample(speed, 4000, (0.0, 0.0))
-    assert out["y"].std() == pytest.approx(2.0 * 0.01 / (MU * GRAVITY), rel=0.05)
-
-
-def test_restitution_is_drawn_where_it_is_not_known() -> None:
-    start = replace(written_start(replace(HIT, bounds=None)), sd_restitution=0.03)
-    out = sample(start, 600, (0.0, 0.0))
-    b = out[out["stone"] == "B"]
-    (hit,) = simulate(HIT).hits
-    # v' = (1 + e) u / 2 and way = v'² / (2 μ g), so d(way) / way = 2 de / (1 + e).
-    way = np.hypot(b["x"] - 0.1, b["y"] - 0.5)
-    assert way.std() / way.mean() == pytest.approx(2 * 0.03 / 1.8, rel=0.1)
-    assert hit.stones == ("A", "B")
+def test_each_shot_that_it_may_be_is_thrown_as_often() -> None:
+    """And each ends where it ends alone, whatever differs: states, laws, or the size."""
+    shot = replace(HIT, bounds=None)
+    first, *rest = shot.stones
+    start = Start(
+        shot,
+        0,
+        (
+            replace(shot, stones=(replace(first, vy=-1.7, x=0.15), *rest)),
+            replace(shot, impact=Frictional(0.7, 0.15, 0.45)),
+            replace(shot, ice=Fit(0.002, 0.06, 0.007), radius=1.01 * R),
+            replace(shot, curl=FCV1Curl(0.004, 0.02), ice=Penner(0.009)),
+        ),
+    )
+    out = sample(start, 40, (0.0, 0.0))
+    ends = {
+        tuple(np.round(places.ravel(), 5))
+        for _, group in out.groupby("sample")
+        for places in [group[["x", "y"]].to_numpy()]
+    }
+    expected = []
+    for other in start.others:
+        there = simulate(other).rest
+        expected.append(tuple(np.round([(there[n].x, there[n].y) for n in "ABC"], 5).ravel()))
+    assert ends == set(expected)
+    often = out[out["stone"] == "A"].round(5)[["x", "y"]].value_counts()
+    assert set(often) == {10}
     assert sample(start, 5).equals(sample(start, 5))
 
 
-def test_friction_between_stones_and_curl_are_drawn_where_they_are_not_known() -> None:
-    glancing = replace(HIT, impact=Frictional(0.8, 0.05), bounds=None)
-    start = replace(written_start(glancing), sd_stone_friction=0.01)
-    b = sample(start, 600, (0.0, 0.0)).query("stone == 'B'")
-    (hit,) = simulate(glancing).hits
-    # A rub μ_s turns B's velocity by atan μ_s.
-    away = np.arctan2(b["y"] - hit.before["B"].y, b["x"] - hit.before["B"].x)
-    assert away.std() == pytest.approx(0.01, rel=0.1)
-    stone = StoneStart("A", 0, 0, 0, 2.0, 1.0)
-    alone = Shot((stone,), ice=Constant(MU), curl=FCV1Curl(turn=0.008, loss=0.0))
-    out = sample(
-        Start(alone, 0, np.zeros((1, 5)), np.zeros((1, 1)), sd_turn=0.001), 2000, (0.0, 0.0)
+def test_what_is_set_is_known_exactly_and_what_is_a_factor_is_not() -> None:
+    shot = replace(HIT, bounds=None)
+    first, *rest = shot.stones
+    others = tuple(
+        replace(
+            shot,
+            stones=(
+                replace(first, vx=0.01 * k, vy=-1.6 - 0.02 * k, omega=0.5 + k),
+                *rest,
+            ),
+            impact=Frictional(0.8 + 0.02 * k, 0.05),
+            ice=Constant(MU + 0.001 * k),
+        )
+        for k in (-1, 1)
     )
-    bent, straight = (
-        simulate(replace(alone, curl=FCV1Curl(turn=turn, loss=0.0))).rest["A"].x
-        for turn in (0.009, 0.008)
-    )
-    assert out["x"].std() == pytest.approx(abs(bent - straight), rel=0.05)
+    start = Start(shot, 0, others)
+    set_to = changed(start, Changes(0.9, 0.012, Amount(2.0), Amount(-1.0)))
+    for other in (set_to.shot, *set_to.others):
+        stone = other.stones[0]
+        assert math.hypot(stone.vx, stone.vy) == pytest.approx(2.0)
+        assert (stone.omega, getattr(other.impact, "restitution", None)) == (-1.0, 0.9)
+        assert float(other.ice.deceleration(1.0)) == pytest.approx(0.012 * GRAVITY)
+    assert set_to.others[0].stones[0].vx != set_to.others[1].stones[0].vx
+    times = changed(start, Changes(speed=Amount(1.1, True), spin=Amount(-1.0, True)))
+    for now, before in zip(times.others, others, strict=True):
+        assert now.stones[0].vy == pytest.approx(1.1 * before.stones[0].vy)
+        assert now.stones[0].omega == -before.stones[0].omega
 
 
-def test_what_places_share_moves_all_stones_together() -> None:
-    tracks, results = measured()
-    start = measured_start(tracks, replace(results, shared_error=0.003))
-    a, b, c = (tracks[tracks["stone"] == name].iloc[0] for name in "ABC")
-    # Known to 4 mm, 3 of them alike: exp(-2 d²) for distances d in metres.
-    apart = math.dist((b["x"], b["y"]), (c["x"], c["y"]))
-    assert start.together[1, 2] == pytest.approx(0.003**2 * math.exp(-2 * apart**2))
-    assert start.together[0, 0] == pytest.approx(0.003**2)
-    assert start.sd[:, :2] == pytest.approx(math.sqrt(0.004**2 - 0.003**2))
-    assert a["y"] != start.shot.stones[0].y  # taken back, and its error with it
-    alone = measured_start(tracks, replace(results, shared_error=None))
-    assert not alone.together.any()
-    wide, narrow = (
-        sample(s, 600, (0.0, 0.0)).query("stone == 'B'")[["x", "y"]].std().sum()
-        for s in (alone, start)
-    )
-    assert narrow < 0.9 * wide
+def test_what_is_given_need_not_be_assumed() -> None:
+    names = ("restitution", "friction", "stone_friction", "spin of A", "spin of B")
+    start = replace(written_start(HIT), assumed={name: f"{name} is not known" for name in names})
+    left = changed(start, Changes(0.9, 0.012, spin=Amount(1.5))).assumed
+    assert set(left) == {"stone_friction", "spin of B"}
+    assert changed(start, Changes(spin=Amount(0.5, relative=True))).assumed == start.assumed
 
 
-def test_the_distance_at_contact_is_drawn_where_it_was_measured() -> None:
-    start = replace(written_start(replace(HIT, bounds=None)), sd_size=0.01)
-    b = sample(start, 600, (0.0, 0.0)).query("stone == 'B'")
-    smaller, larger = (
-        simulate(replace(HIT, radius=R * factor, bounds=None)).rest["B"] for factor in (0.99, 1.01)
-    )
-    assert b["x"].std() == pytest.approx(abs(larger.x - smaller.x) / 2, rel=0.1)
+def test_a_shot_thrown_again_ends_as_far_from_where_it_did_as_is_stated() -> None:
+    """From tracks of places alone, good to 3 mm, of one hit; the true end is the renderer's."""
+    pulls, off = [], []
+    for seed in range(6):
+        motion = hit_motion(1.6, 0.06, before=1.2, after=1.5)
+        table = watch(motion, np.random.default_rng(seed), sd=0.003)
+        hits = find_contacts(table, RADIUS)
+        found = estimate(table, hits, radius=RADIUS)
+        tracks = smooth(table, hits, radius=RADIUS)
+        again = simulate_measured(tracks, found, radius=RADIUS)
+        results = Results(
+            Input(("a.csv",), 30.0, 80, 2.7), found.restitution, found.friction,
+            found.collisions, radius=RADIUS, simulations=again.scores, sheet=False,
+        )  # fmt: skip
+        assert again.ensemble is not None
+        start = measured_start(tracks, results, again.ensemble)
+        told = odds(sample(start, 200, (0.0, 0.0)), start)
+        truth = hit_motion(1.6, 0.06, before=1.2, after=40.0)
+        ends = dict(zip("AB", truth.at(truth.times[-1:])[0][:, :2], strict=True))
+        for name, (x, y) in ends.items():
+            item = told[name]
+            assert item.x is not None and item.y is not None and item.sd_x and item.sd_y
+            pulls += [(item.x - x) / item.sd_x, (item.y - y) / item.sd_y]
+            off.append(math.hypot(item.x - x, item.y - y))
+    assert np.sqrt(np.mean(np.square(pulls))) < 1.6
+    assert np.sqrt(np.mean(np.square(pulls))) > 0.4
+    assert np.median(off) < 0.05
 
 
 def test_odds_count() -> None:
@@ -171,7 +199,7 @@ def test_a_measured_shot_is_played_on_a_sheet() -> None:
     ends = odds(outcomes, fast)
     assert ends["B"].in_play < 0.1
     assert ends["B"].in_house <= ends["B"].in_play
-    assert ends["C"].in_play > 0.8
+    assert ends["C"].in_play > 0.7
     assert set(outcomes["in_play"]) == {0, 1}
 
 
