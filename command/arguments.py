@@ -28,7 +28,7 @@ def settings_of(arguments: argparse.Namespace) -> Settings:
         camera=known.get("camera"),
         radius=known.get("radius", STONE.radius),
         masses=_by_stone("--mass", known.get("mass", ())),
-        length_unit=known.get("length_unit", "m"),
+        length_unit=known.get("length_unit"),
         angle_unit=known.get("angle_unit"),
         clip=known.get("clip", False),
         tab=known.get("tab"),

@@ -147,7 +147,7 @@ def tab_option(parser: argparse.ArgumentParser) -> None:
 def table_options(parser: argparse.ArgumentParser) -> None:
     """Add what may be said of tables."""
     parser.add_argument(
-        "--length-unit", choices=tuple(LENGTH_UNITS), default="m", help="of tables (m)"
+        "--length-unit", choices=tuple(LENGTH_UNITS), help="of tables (as the file says, else m)"
     )
     parser.add_argument("--angle-unit", choices=tuple(ANGLE_UNITS), help="of tables")
     parser.add_argument(

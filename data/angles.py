@@ -115,7 +115,8 @@ def read_angles(path: Path, angle_unit: str | None = None, fps: float | None = N
             raise InputError(f"{path}: no angle: needs t and θ, or t, x and y about the centre")
         theta, unit, wrapped = direction, "rad", True
     else:
-        said = written_unit(table.names or names, names, ("θ", "θr", *_CONTINUOUS), ANGLE_UNITS)
+        said = written_unit(table, names, ("θ", "θr", *_CONTINUOUS), ANGLE_UNITS)
+        said = said if said in ANGLE_UNITS else None
         unit, notes = _unit(path, times, theta, direction, said, angle_unit)
         warnings += notes
         wrapped = "θ" not in columns

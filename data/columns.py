@@ -12,7 +12,7 @@ from data.delimited import TextTable
 from data.errors import InputError
 from data.text import plain_decimals
 from data.tracks import LATEST
-from data.units import LENGTH_UNITS
+from data.units import LENGTH_UNITS, TIME_UNITS, abbreviated
 
 Array = NDArray[np.float64]
 
@@ -24,8 +24,6 @@ TIME_NAMES = {"t", "time", "zeit", "temps", "tiempo", "tempo", "tijd", "czas"}
 """What a column of times is called; spreadsheets are written by hand, in any language.
 ``tid`` (in Scandinavia) is none of them: it is a usual name for the number of a track, too."""
 
-_TIME_UNITS = {"s": 1.0, "sec": 1.0, "ms": 0.001}
-
 
 def plain_name(name: str) -> str:
     """Name of a column without unit, TeX and case: ``v_{x} (m/s)`` becomes ``vx``."""
@@ -34,17 +32,30 @@ def plain_name(name: str) -> str:
 
 
 def written_unit(
-    written: Sequence[str], plain: Sequence[str], wanted: Sequence[str], units: dict[str, float]
+    table: TextTable, plain: Sequence[str], wanted: Sequence[str], units: dict[str, float]
 ) -> str | None:
-    """Find the unit in brackets behind one of the wanted columns."""
-    for full, name in zip(written, plain, strict=True):
-        bracket = re.search(r"[(\[]\s*([^)\]]*?)\s*[)\]]", full[:100])
+    """Find the unit in brackets behind the wanted columns.
+
+    What stands behind all of them and is none of `units` is given as it stands; where other things
+    stand behind some, these are names.
+
+    Raises
+    ------
+    InputError
+        Where two of the units are given.
+    """
+    found: list[str | None] = []
+    for full, name in zip(table.names or plain, plain, strict=True):
         words = set(re.split(r"[_ .\d]+", name))
-        if "sd" in words:
-            continue
-        if bracket and not words.isdisjoint(wanted) and bracket.group(1) in units:
-            return bracket.group(1)
-    return None
+        if "sd" not in words and not words.isdisjoint(wanted):
+            bracket = re.search(r"[(\[]\s*([^)\]]*?)\s*[)\]]", full[:100])
+            found.append(abbreviated(bracket.group(1)) if bracket else None)
+    known = sorted({unit for unit in found if unit in units})
+    if len(known) > 1:
+        raise InputError(
+            f"{table.path}: columns in {' and '.join(known)}; one unit for all, please"
+        )
+    return known[0] if known else found[0] if len(set(found)) == 1 else None
 
 
 def clock_column(table: TextTable, names: Sequence[str], fps: float | None) -> int | None:
@@ -72,7 +83,13 @@ def times_of(
     if fps is not None and plain_name(written) == "frame":
         return times / fps, None, []
     bracket = re.search(r"[(\[]\s*(\w+)\s*[)\]]", written[:100])
-    unit = _TIME_UNITS.get(bracket.group(1), 1.0) if bracket else 1.0
+    told = abbreviated(bracket.group(1)) if bracket else "s"
+    if told not in TIME_UNITS:
+        raise InputError(
+            f"{table.path}: its time unit is “{told[:20]}”, which is unknown here; known are"
+            f" {', '.join(TIME_UNITS)}; frames are a column frame and their rate (--fps)"
+        )
+    unit = TIME_UNITS[told]
     different = np.unique(times)
     whole = bool((different == np.floor(different)).all()) and len(different) > 2
     decimals = _decimals(table, column)

@@ -27,7 +27,7 @@ from data.read_back import as_measured
 from data.stone_names import chosen, named_by_file, refuse_shared_names
 from data.track_file import TrackFile
 from data.tracks import ANGLES, LENGTHS, SEEN_AS, check_sightings
-from data.units import ANGLE_UNITS, LENGTH_UNITS, check_units, unit_of_lengths
+from data.units import ANGLE_UNITS, LENGTH_UNITS, abbreviated, check_units, unit_of_lengths
 
 FASTEST = 20.0
 """m/s; a stone is thrown at 2 to 4."""
@@ -70,7 +70,7 @@ class Imported:
 def read_table(
     paths: Sequence[Path],
     *,
-    length_unit: str = "m",
+    length_unit: str | None = None,
     angle_unit: str | None = None,
     fps: float | None = None,
     tab: str | None = None,
@@ -83,8 +83,8 @@ def read_table(
     ----------
     paths : sequence of Path
         One file with all stones, or several, each with its own.
-    length_unit : {"m", "cm", "mm", "in", "ft"}
-        Unit of x and y, where the file does not say.
+    length_unit : {"m", "cm", "mm", "in", "ft", "yd"}, optional
+        Unit of x and y, where the file does not say; m if not given.
     angle_unit : {"rad", "deg"}, optional
         Unit of the stones' own angles. If not given, radians, or degrees where radians
         would make a stone spin absurdly fast (a warning says so).
@@ -144,7 +144,7 @@ def read_table(
     table = pd.concat([file.tracks for file in files], ignore_index=True)
     table, rate = with_clock(table, [file.decimals for file in files])
     table = check_sightings(table, source)
-    said = all(file.length_unit in LENGTH_UNITS for file in files)
+    said = all(abbreviated(file.length_unit or "") in LENGTH_UNITS for file in files)
     advice = UNIT_SAID if said else UNIT_NOT_SAID
     warnings += _check_scale(table, source, advice) + _check_rate(rate, source)
     for stone, path in (angles or {}).items():
@@ -181,13 +181,15 @@ def _set_masses(
     return known, []
 
 
-def _to_si(path: Path, file: TrackFile, length_unit: str, angle_unit: str | None) -> list[str]:
+def _to_si(
+    path: Path, file: TrackFile, length_unit: str | None, angle_unit: str | None
+) -> list[str]:
     """Convert a file's tracks to metres and continuous radians."""
     warnings: list[str] = []
     project = is_project(path)
     teller = "project" if project else "header"
     unit = unit_of_lengths(file.length_unit, length_unit, str(path), teller)
-    if unit != length_unit and not project:
+    if unit != (length_unit or "m") and not project:
         warnings.append(f"{path}: length unit {unit}, as the header says")
     tracks = file.tracks
     with np.errstate(over="ignore"):

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from data.errors import InputError
 from data.track_file import TrackFile
 from data.tracks import LENGTHS
-from data.units import LENGTH_UNITS
+from data.units import LENGTH_UNITS, abbreviated
 
 Array = NDArray[np.float64]
 Frames = NDArray[np.int64]
@@ -248,7 +248,7 @@ class Project:
             return pd.DataFrame({"stone": track.name, "team": track.team, "frame": frames, **exact})
         x, y = self.coordinates.world(frames, track.marks[used]).T
         known = {"t": self.timing.times(frames), "frame": frames, "x": x, "y": y}
-        metre = 1 / LENGTH_UNITS.get(self.length_unit, 1.0)
+        metre = 1 / LENGTH_UNITS.get(abbreviated(self.length_unit), 1.0)
         texts = {
             name: column[used] * (metre if name in LENGTHS else 1.0)
             for name, column in track.texts.items()

@@ -6,22 +6,35 @@ import math
 
 from data.errors import InputError
 
-LENGTH_UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
+LENGTH_UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048, "yd": 0.9144}
 """Metres in one of each."""
 
 SPELLED = {
     "meter": "m", "metre": "m", "centimeter": "cm", "centimetre": "cm", "millimeter": "mm",
-    "millimetre": "mm", "inch": "in", "inche": "in", "foot": "ft", "feet": "ft",
+    "millimetre": "mm", "inch": "in", "inche": "in", "foot": "ft", "feet": "ft", "yard": "yd",
+    "second": "s", "sec": "s", "millisecond": "ms", "msec": "ms", "minute": "min", "hour": "h",
+    "radian": "rad", "degree": "deg", "°": "deg",
 }  # fmt: skip
 """Units written out, without an s at their end."""
+
+TIME_UNITS = {"s": 1.0, "ms": 0.001, "min": 60.0, "h": 3600.0}
+"""Seconds in one of each."""
 
 ANGLE_UNITS = {"rad": 1.0, "deg": math.pi / 180}
 """Radians in one of each."""
 
+_KNOWN = {*LENGTH_UNITS, *TIME_UNITS, *ANGLE_UNITS}
 
-def check_units(length_unit: str, angle_unit: str | None, fps: float | None) -> None:
+
+def abbreviated(unit: str) -> str:
+    """Give a unit as it is known here, whether written out or not; others as they are."""
+    plain = unit.strip().lower().removesuffix(".")
+    return SPELLED.get(plain.removesuffix("s"), plain if plain in _KNOWN else unit)
+
+
+def check_units(length_unit: str | None, angle_unit: str | None, fps: float | None) -> None:
     """Refuse units that are unknown, and rates of pictures or rows that are none."""
-    if length_unit not in LENGTH_UNITS:
+    if length_unit is not None and length_unit not in LENGTH_UNITS:
         raise InputError(f"length unit {length_unit!r}: one of {', '.join(LENGTH_UNITS)}, please")
     if angle_unit is not None and angle_unit not in ANGLE_UNITS:
         raise InputError(f"angle unit {angle_unit!r}: one of {', '.join(ANGLE_UNITS)}, please")
@@ -29,15 +42,15 @@ def check_units(length_unit: str, angle_unit: str | None, fps: float | None) -> 
         raise InputError(f"frame rate {fps}: must be a positive number")
 
 
-def unit_of_lengths(told: str | None, said: str, source: str, teller: str) -> str:
+def unit_of_lengths(told: str | None, said: str | None, source: str, teller: str) -> str:
     """Choose the unit of a file's lengths.
 
     Parameters
     ----------
     told : str or None
         What the file tells; None or empty where it tells nothing.
-    said : str
-        What the person says, m where nothing.
+    said : str or None
+        What the person says.
     source, teller : str
         The file, and what of it tells.
 
@@ -47,15 +60,15 @@ def unit_of_lengths(told: str | None, said: str, source: str, teller: str) -> st
         Where both tell and differ, or what the file tells is unknown and the person says nothing.
     """
     if not told:
-        return said
-    told = SPELLED.get(told.strip().lower().removesuffix("s"), told)
+        return said or "m"
+    told = abbreviated(told)
     if told not in LENGTH_UNITS:
-        if said == "m":
+        if said is None:
             raise InputError(
-                f"{source}: its length unit is “{told[:20]}”, which is unknown here; set one of"
-                f" {', '.join(LENGTH_UNITS)} in Tracker, or name it (--length-unit)"
+                f"{source}: its length unit is “{told[:20]}”, which is unknown here; known are"
+                f" {', '.join(LENGTH_UNITS)}: set one in the {teller}, or name it (--length-unit)"
             )
         return said
-    if said not in ("m", told):
+    if said not in (None, told):
         raise InputError(f"{source}: its length unit is {told}, as the {teller} says, not {said}")
     return told

@@ -40,7 +40,7 @@ class Settings:
     masses : mapping
         Masses by stone, in any unit, where they are not all equal.
     length_unit, angle_unit : str, optional
-        Units of tables.
+        Units of tables; as these say, else m and by evidence, where not given.
     clip : bool
         Whether what a Tracker project's clip shows is measured, not what is marked in it.
     tab : str, optional
@@ -72,7 +72,7 @@ class Settings:
     camera: Path | None = None
     radius: float = STONE.radius
     masses: Mapping[str, float] = field(default_factory=dict)
-    length_unit: str = "m"
+    length_unit: str | None = None
     angle_unit: str | None = None
     clip: bool = False
     tab: str | None = None
@@ -114,7 +114,7 @@ def refuse_table_options(path: Path, settings: Settings) -> None:
     sources = [path] if settings.camera is None else [path, settings.camera]
     if not any(source.suffix.lower() in PROJECT_SUFFIXES for source in sources):
         said["--tab"] = settings.tab
-        said["--length-unit"] = None if settings.length_unit == "m" else settings.length_unit
+        said["--length-unit"] = settings.length_unit
     given = [name for name, value in said.items() if value]
     if given:
         raise InputError(f"{path}: only tables take {', '.join(given)}; a clip is measured here")

@@ -14,13 +14,19 @@ from data.columns import (
 )
 from data.delimited import TextTable, read_text_table
 from data.errors import InputError
-from data.units import ANGLE_UNITS, LENGTH_UNITS
+from data.units import LENGTH_UNITS
 
 
 def table(tmp_path: Path, text: str) -> TextTable:
     path = tmp_path / "a.csv"
     path.write_text(text, encoding="utf-8")
     return read_text_table(path, lambda cells: "x" in cells)
+
+
+def read_head(tmp_path: Path, head: str) -> TextTable:
+    path = tmp_path / "a.csv"
+    path.write_text(f"{head}\n" + ",".join("1" for _ in head.split(",")) + "\n", encoding="utf-8")
+    return read_text_table(path, lambda cells: cells[0].startswith("t"))
 
 
 def times(tmp_path: Path, head: str, cells: list[str], fps: float | None = None):
@@ -36,19 +42,51 @@ def test_names_lose_units_and_dress(written: str, plain: str) -> None:
     assert plain_name(written) == plain
 
 
-def test_the_unit_is_that_behind_a_wanted_column() -> None:
-    head = ["t (s)", "x (cm)", "sd_x (mm)"]
-    plain = ["t", "x", "sd_x"]
-    assert written_unit(head, plain, ["x", "y"], LENGTH_UNITS) == "cm"
-    assert written_unit(head[::2], plain[::2], ["x", "y"], LENGTH_UNITS) is None
-    assert written_unit(["x (furlong)"], ["x"], ["x"], LENGTH_UNITS) is None
-    assert ANGLE_UNITS["deg"] * 180 == pytest.approx(np.pi)
+@pytest.mark.parametrize(
+    ("head", "unit"),
+    [
+        ("t (s),x (cm),sd_x (mm)", "cm"),
+        ("t (s),sd_x (mm),x", None),
+        ("t,x (Yards),y [yd.]", "yd"),
+        ("t,x (furlong),y (furlong)", "furlong"),
+        ("t,x (red),y (red),x (blue),y (blue)", None),
+        ("t,x (cm),y", "cm"),
+    ],
+)
+def test_the_unit_is_that_behind_the_wanted_columns(
+    tmp_path: Path, head: str, unit: str | None
+) -> None:
+    read = read_head(tmp_path, head)
+    assert read.names is not None
+    plain = [plain_name(name) for name in read.names]
+    assert written_unit(read, plain, ["x", "y"], LENGTH_UNITS) == unit
 
 
-def test_milliseconds_become_seconds(tmp_path: Path) -> None:
-    found, decimals, warnings = times(tmp_path, "t (ms)", ["0", "40", "80"])
-    np.testing.assert_allclose(found, [0, 0.04, 0.08])
+def test_two_units_of_one_table_are_refused(tmp_path: Path) -> None:
+    read = read_head(tmp_path, "t,x (cm),y (m)")
+    with pytest.raises(InputError, match="columns in cm and m"):
+        written_unit(read, ["t", "x", "y"], ["x", "y"], LENGTH_UNITS)
+
+
+@pytest.mark.parametrize(
+    ("head", "cells", "expected"),
+    [
+        ("t (ms)", ["0", "40", "80"], [0, 0.04, 0.08]),
+        ("t (min)", ["0", "0.5", "1"], [0, 30, 60]),
+        ("time (hours)", ["0", "0.5", "1"], [0, 1800, 3600]),
+    ],
+)
+def test_other_units_of_time_become_seconds(
+    tmp_path: Path, head: str, cells: list[str], expected: list[float]
+) -> None:
+    found, decimals, warnings = times(tmp_path, head, cells)
+    np.testing.assert_allclose(found, expected)
     assert (decimals, warnings) == (None, [])
+
+
+def test_a_time_in_no_unit_that_is_known_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="time unit is “fortnight”"):
+        times(tmp_path, "t (fortnight)", ["0", "0.5", "1"])
 
 
 def test_decimals_tell_how_times_were_printed(tmp_path: Path) -> None:

@@ -288,7 +288,7 @@ def test_missing_file_folder_and_bad_options(tmp_path: Path) -> None:
         read_table([])
     text = "t,x,y\n0,1,1\n"
     for options, reason in [
-        ({"length_unit": "yd"}, "length unit"),
+        ({"length_unit": "ell"}, "length unit"),
         ({"angle_unit": "grad"}, "angle unit"),
         ({"fps": 0.0}, "frame rate"),
         ({"fps": float("nan")}, "frame rate"),

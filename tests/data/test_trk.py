@@ -88,7 +88,7 @@ def test_length_unit_of_the_project(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="length unit is cm, as the project says, not ft"):
         read_table([put(tmp_path, project(root=root))], length_unit="ft")
     odd = put(tmp_path, project(root=root.replace("cm", "ell")))
-    with pytest.raises(InputError, match="“ell”, which is unknown here; set"):
+    with pytest.raises(InputError, match="“ell”, which is unknown here; known are"):
         read_table([odd])
     named = read_table([odd], length_unit="cm").sightings
     np.testing.assert_allclose(named["x"], plain["x"] / 100)

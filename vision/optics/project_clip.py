@@ -160,7 +160,7 @@ def _rate(video: Path, otherwise: float) -> float:
 def project_cameras(
     clip: Clip,
     project: Project,
-    length_unit: str = "m",
+    length_unit: str | None = None,
     progress: Progress = no_progress,
     placed: Placed = nobody,
 ) -> tuple[tuple[Camera, ...], tuple[str, ...]]:
@@ -172,7 +172,7 @@ def project_cameras(
         Frames with their times.
     project : Project
         Whose calibration it is.
-    length_unit : str
+    length_unit : str, optional
         Unit of its lengths where the project does not say.
     progress : Progress
     placed : Placed
