@@ -314,10 +314,15 @@ def _stale(folder: Path, inputs: Sequence[Path]) -> tuple[str, ...]:
     return tuple(name for name in WRITTEN if name not in kept)
 
 
-def _do_run(arguments: argparse.Namespace, bars: Bars) -> str:
+def _summary(done: Run, folder: Path, units: str) -> str:
     from report.summary import summary
     from report.units import UNITS
 
+    marked = done.cameras is None
+    return summary(done.results, done.tracks, folder, done.house, UNITS[units], marked=marked)
+
+
+def _do_run(arguments: argparse.Namespace, bars: Bars) -> str:
     inputs = arguments.inputs or [sample_clip()]
     files = find_inputs(inputs)
     if len(files) > 1 and not any(
@@ -326,7 +331,7 @@ def _do_run(arguments: argparse.Namespace, bars: Bars) -> str:
         return _run_season(arguments, files, bars)
     folder = out_folder(arguments, inputs[0])
     done = run(inputs, folder, settings_of(arguments), bars)
-    return summary(done.results, done.tracks, folder, done.house, UNITS[arguments.units])
+    return _summary(done, folder, arguments.units)
 
 
 def _run_season(arguments: argparse.Namespace, clips: Sequence[Path], bars: Bars) -> str:
@@ -385,8 +390,6 @@ def _do_estimate(arguments: argparse.Namespace, bars: Bars) -> str:
     from data.results_file import write_results
     from data.tracks import write_table
     from physics.prediction.ensemble import write_ensemble
-    from report.summary import summary
-    from report.units import UNITS
 
     settings, folder = settings_of(arguments), out_folder(arguments, arguments.inputs[0])
     refuse_clips(find_inputs(arguments.inputs), "run")
@@ -398,7 +401,7 @@ def _do_estimate(arguments: argparse.Namespace, bars: Bars) -> str:
             write_table(done.posterior, stage / "posterior.csv")
         if done.ensemble is not None:
             write_ensemble(done.ensemble, stage / "ensemble.json")
-    return summary(done.results, done.tracks, folder, done.house, UNITS[arguments.units])
+    return _summary(done, folder, arguments.units)
 
 
 def _do_convert(arguments: argparse.Namespace, _: Bars) -> str:

@@ -30,6 +30,7 @@ def settings_of(arguments: argparse.Namespace) -> Settings:
         masses=_by_stone("--mass", known.get("mass", ())),
         length_unit=known.get("length_unit"),
         angle_unit=known.get("angle_unit"),
+        no_house=known.get("no_house", False),
         clip=known.get("clip", False),
         tab=known.get("tab"),
         names=_by_stone("--names", known.get("names", [])),

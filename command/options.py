@@ -151,6 +151,9 @@ def table_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--angle-unit", choices=tuple(ANGLE_UNITS), help="of tables")
     parser.add_argument(
+        "--no-house", action="store_true", help="the origin of tables is not the tee of a house"
+    )
+    parser.add_argument(
         "--names",
         type=values.pair,
         action="append",

@@ -16,7 +16,7 @@ from data.units import LENGTH_UNITS, TIME_UNITS, abbreviated
 
 Array = NDArray[np.float64]
 
-UNIT_SAID = "another calibration (the file says its own length unit)"
+UNIT_SAID = "another length unit than the file says, or another calibration"
 UNIT_NOT_SAID = f"another length unit (--length-unit: {', '.join(LENGTH_UNITS)})"
 """What may be wrong with lengths, where the file says their unit and where it does not."""
 

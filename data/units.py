@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from numbers import Real
 
 from data.errors import InputError
 
@@ -38,7 +39,7 @@ def check_units(length_unit: str | None, angle_unit: str | None, fps: float | No
         raise InputError(f"length unit {length_unit!r}: one of {', '.join(LENGTH_UNITS)}, please")
     if angle_unit is not None and angle_unit not in ANGLE_UNITS:
         raise InputError(f"angle unit {angle_unit!r}: one of {', '.join(ANGLE_UNITS)}, please")
-    if fps is not None and not 0 < fps < math.inf:
+    if fps is not None and not (isinstance(fps, Real) and 0 < fps < math.inf):
         raise InputError(f"frame rate {fps}: must be a positive number")
 
 

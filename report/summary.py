@@ -139,8 +139,13 @@ def summary(
     out: Path | None = None,
     house: House | None = None,
     unit: Unit = METRES,
+    *,
+    marked: bool = False,
 ) -> str:
-    """Put the outcome into a dozen lines that a person can read; `unit` of lengths."""
+    """Put the outcome into a dozen lines that a person can read; `unit` of lengths.
+
+    Of tracks that were `marked` by hand it says what is taken for the tee.
+    """
     moved = moving_stones(tracks, results.collisions, results.radius)
     names = sorted(tracks["stone"].unique())
     lines = [
@@ -179,6 +184,8 @@ def summary(
     notes = [guess.note for guess in results.predictions.values()]
     if all(guess.rmse is None for guess in results.predictions.values()) and any(notes):
         lines.append(f"predicted   — ({next(filter(None, notes))})")
+    if house is not None and marked:
+        lines.append("house       the origin is taken for its tee (--no-house if it is not)")
     if house is not None:
         lines.append(f"shot stone  {_shot_stone(results, tracks, house, unit)}")
     lines += warned(results.warnings)

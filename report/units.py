@@ -15,8 +15,8 @@ class Unit:
         What is written after a number.
     per_metre, small_per_metre, fine_per_metre : float
         How many make a metre.
-    decimals : int
-        Of a place on the ice.
+    decimals, fine_decimals : int
+        Of a place on the ice, and of what is little.
     """
 
     symbol: str
@@ -26,6 +26,7 @@ class Unit:
     small_per_metre: float
     fine: str
     fine_per_metre: float
+    fine_decimals: int
 
     def length(self, metres: float) -> str:
         """Write a length."""
@@ -37,11 +38,11 @@ class Unit:
             round(max(metres, beside) * self.fine_per_metre, 1)
             < self.fine_per_metre / self.small_per_metre
         ):
-            return f"{metres * self.fine_per_metre:.1f} {self.fine}"
+            return f"{metres * self.fine_per_metre:.{self.fine_decimals}f} {self.fine}"
         return f"{metres * self.small_per_metre:.1f} {self.small}"
 
 
-METRES = Unit("m", 1.0, 2, "cm", 100.0, "mm", 1000.0)
-FEET = Unit("ft", 1 / 0.3048, 1, "in", 1 / 0.0254, "in", 1 / 0.0254)
+METRES = Unit("m", 1.0, 2, "cm", 100.0, "mm", 1000.0, 1)
+FEET = Unit("ft", 1 / 0.3048, 1, "in", 1 / 0.0254, "in", 1 / 0.0254, 2)
 UNITS = {unit.symbol: unit for unit in (METRES, FEET)}
 """By what a person writes."""

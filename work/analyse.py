@@ -196,7 +196,7 @@ def _pace(friction: Estimate) -> tuple[str, ...]:
     if times < 1:
         times, pace = 1 / times, "fast"
     return (
-        f"friction: {value:.2g} ± {stderr:.1g} is not that of curling ice; a clip in {pace} motion"
+        f"friction: {value:.2g} is not that of curling ice; a clip in {pace} motion"
         f" (about {times:.2g} times) or tracks in another length unit would look so: then speeds"
         " are not real ones, e is",
     )
@@ -208,7 +208,7 @@ def _pace_anywhere(friction: Estimate) -> tuple[str, ...]:
     if value is None or stderr is None or value <= 0 or value + 2 * stderr > SLIPPERIEST:
         return ()
     return (
-        f"friction: {value:.2g} ± {stderr:.1g} is below that of any surface; a wrong number of"
+        f"friction: {value:.2g} is below that of any surface; a wrong number of"
         " frames a second (--fps), slow motion or another length unit would look so: then speeds"
         " are not real ones, e is",
     )
@@ -239,11 +239,15 @@ def _left_out(sightings: pd.DataFrame, tracks: pd.DataFrame) -> tuple[str, ...]:
     worst = both.nlargest(LISTED, "off").sort_values("t")
     columns = (worst[name].tolist() for name in ("stone", "t", "off"))
     each = ", ".join(
-        f"{stone} at {t:.2f} s ({100 * off:.0f} cm off)"
-        for stone, t, off in zip(*columns, strict=True)
+        f"{stone} at {t:.2f} s ({_little(off)} off)" for stone, t, off in zip(*columns, strict=True)
     )
     more = f" and {len(both) - len(worst)} more" if len(both) > len(worst) else ""
     return (f"marks that are off the ways of their stones are left out: {each}{more}",)
+
+
+def _little(length: float) -> str:
+    """Write a length of centimetres, m, or of less."""
+    return f"{100 * length:.0f} cm" if length > 0.0095 else f"{1000 * length:.1f} mm"
 
 
 def _way_out(settings: Settings) -> str:

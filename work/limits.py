@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import sys
 from dataclasses import dataclass
+from numbers import Integral, Real
 
 from data.errors import InputError
 
@@ -14,19 +15,21 @@ MOST_THROWS = 100_000
 
 @dataclass(frozen=True)
 class Limits:
-    """From `low` to `high`; `what` says in words what is expected."""
+    """From `low` to `high`; `what` says in words what is expected, `kind` of numbers is it."""
 
     low: float
     high: float
     what: str
+    kind: type[Real] | type[Integral] = Real
 
     def allow(self, value: float) -> bool:
         """Tell whether a number lies within; NaN does not."""
         return self.low <= value <= self.high
 
-    def check(self, name: str, value: float) -> None:
-        """Raise `InputError` where a number lies outside."""
-        if not self.allow(value):
+    def check(self, name: str, value: object) -> None:
+        """Raise `InputError` where a value is no such number, or lies outside."""
+        number = isinstance(value, self.kind) and not isinstance(value, bool)
+        if not (number and self.allow(float(value))):  # type: ignore[arg-type]
             raise InputError(f"{name}: {value!r} is not {self.what}")
 
 
@@ -34,7 +37,9 @@ POSITIVE = Limits(math.ulp(0.0), sys.float_info.max, "a positive number")
 FRACTION = Limits(0.0, 1.0, "a number from 0 to 1")
 FRICTION = Limits(1e-3, 0.1, "a friction of ice, 0.001 to 0.1")
 RADIUS = Limits(1e-3, 1.0, "a radius in metres, 0.001 to 1")
-SAMPLES = Limits(0, MOST_THROWS, f"a number of samples, 0 to {MOST_THROWS}")
+SAMPLES = Limits(0, MOST_THROWS, f"a number of samples, 0 to {MOST_THROWS}", Integral)
+FRAME = Limits(0, sys.maxsize, "a number of a frame", Integral)
+ANY = Limits(-sys.float_info.max, sys.float_info.max, "a number")
 
 
 def has_length(stick: tuple[float, float, float, float, float]) -> bool:

@@ -113,7 +113,7 @@ def _imported(files: tuple[Path, ...], table: Imported, settings: Settings) -> M
         table.fps,
         table.sightings["t"].nunique(),
         table.warnings,
-        house=HOUSE if curling_size(settings.radius) else None,
+        house=HOUSE if curling_size(settings.radius) and not settings.no_house else None,
         masses=table.masses,
     )
 

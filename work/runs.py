@@ -42,6 +42,8 @@ def find_runs(names: str | Path | Sequence[str | Path]) -> dict[str, Results]:
         if not here.exists() and not below:
             raise InputError(f"{here}: no such file; name the folders of runs")
         found += [here] if here.exists() else below
+    if not found:
+        raise InputError("no runs given; name their folders")
     unique = dict.fromkeys(path.resolve() for path in found)
     folders = apart([path.parent.with_name(f"{path.parent.name}.run") for path in unique])
     runs = {name: read_results(path) for name, path in zip(folders, unique, strict=True)}

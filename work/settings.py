@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from data.errors import InputError
 from data.inputs import PROJECT_SUFFIXES
 from data.sheet import STONE
 from data.units import check_units
-from work.limits import FRACTION, FRICTION, POSITIVE, RADIUS, SAMPLES, has_length
+from work.limits import ANY, FRACTION, FRAME, FRICTION, POSITIVE, RADIUS, SAMPLES, has_length
 
 COACHES = ("m", "ft")
 """Units of what coaches read."""
@@ -41,6 +42,8 @@ class Settings:
         Masses by stone, in any unit, where they are not all equal.
     length_unit, angle_unit : str, optional
         Units of tables; as these say, else m and by evidence, where not given.
+    no_house : bool
+        Whether the origin of tables is not the tee of a house.
     clip : bool
         Whether what a Tracker project's clip shows is measured, not what is marked in it.
     tab : str, optional
@@ -74,6 +77,7 @@ class Settings:
     masses: Mapping[str, float] = field(default_factory=dict)
     length_unit: str | None = None
     angle_unit: str | None = None
+    no_house: bool = False
     clip: bool = False
     tab: str | None = None
     names: Mapping[str, str] = field(default_factory=dict)
@@ -92,16 +96,45 @@ class Settings:
         check_units(self.length_unit, self.angle_unit, self.fps)
         if self.units not in COACHES:
             raise InputError(f"units {self.units!r}: one of {', '.join(COACHES)}, please")
-        if self.stick is not None and not has_length(self.stick):
-            raise InputError(f"stick {self.stick}: has no length")
+        if self.frames is not None:
+            first, last = _parts("frames", self.frames, 2)
+            FRAME.check("frames", first)
+            if last is not None:
+                FRAME.check("frames", last)
+        if self.stick is not None:
+            for part in _parts("stick", self.stick, 5):
+                ANY.check("stick", part)
+            if not has_length(self.stick):
+                raise InputError(f"stick {self.stick}: has no length")
+        if self.house is not None:
+            frame, *points = _parts("house", self.house, 7)
+            if frame is not None:
+                FRAME.check("house", frame)
+            for part in points:
+                ANY.check("house", part)
         RADIUS.check("radius", self.radius)
         SAMPLES.check("samples", self.samples)
+        for name in ("masses", "names", "angles"):
+            if not isinstance(getattr(self, name), Mapping):
+                raise InputError(f"{name}: by stone, please, as in {name}={{'A': …}}")
         for stone, mass in self.masses.items():
             POSITIVE.check(f"mass of {stone}", mass)
+        # From Python a path may be a string.
+        if self.camera is not None:
+            object.__setattr__(self, "camera", Path(self.camera))
+        angles = {stone: Path(path) for stone, path in self.angles.items()}
+        object.__setattr__(self, "angles", angles)
         if self.restitution is not None:
             FRACTION.check("restitution", self.restitution)
         if self.friction is not None:
             FRICTION.check("friction", self.friction)
+
+
+def _parts(name: str, given: object, count: int) -> Sequence[Any]:
+    """Give the parts of a value that has so many."""
+    if isinstance(given, str) or not isinstance(given, Sequence) or len(given) != count:
+        raise InputError(f"{name} {given!r}: {count} values, please")
+    return given
 
 
 def refuse_table_options(path: Path, settings: Settings) -> None:
@@ -110,7 +143,7 @@ def refuse_table_options(path: Path, settings: Settings) -> None:
     Tabs and lengths of a project count there too, be it the clip's own or the camera's.
     """
     said: dict[str, object] = {"--names": settings.names, "--angles": settings.angles}
-    said["--angle-unit"] = settings.angle_unit
+    said["--angle-unit"], said["--no-house"] = settings.angle_unit, settings.no_house
     sources = [path] if settings.camera is None else [path, settings.camera]
     if not any(source.suffix.lower() in PROJECT_SUFFIXES for source in sources):
         said["--tab"] = settings.tab

@@ -151,6 +151,8 @@ def _shot(content: Mapping[str, Any], faults: list[str]) -> Shot:
     impact, ice, curl = [_model(physics, key) for key in _FAMILIES]
     stones = tuple(_stone(k, item, faults) for k, item in enumerate(tables, start=1))
     _check_together(stones, radius, faults)
+    if bounds is not None and not faults:
+        _check_way(stones, bounds, faults)
     if faults:
         return Shot(stones)
     return Shot(stones, impact(), ice(), curl(), radius, bounds)
@@ -228,6 +230,16 @@ def _check_together(stones: Sequence[StoneStart], radius: float, faults: list[st
     if faults:
         return
     faults += overlaps(stones, radius)
+
+
+def _check_way(stones: Sequence[StoneStart], bounds: Bounds, faults: list[str]) -> None:
+    """Note a sheet on which the fastest stone goes against the way of play."""
+    fastest = max(stones, key=lambda stone: math.hypot(stone.vx, stone.vy))
+    if fastest.vy * bounds.play < 0:
+        way, other = ("up", "down") if fastest.vy > 0 else ("down", "up")
+        faults.append(
+            f'sheet = "{other}" is for stones thrown {other} y, but {fastest.name} goes {way}'
+        )
 
 
 def _finite(value: float) -> bool:

@@ -126,6 +126,8 @@ def test_runs_of_one_name_are_told_apart(tmp_path: Path) -> None:
 def test_folder_without_runs_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="name the folders of runs"):
         find_runs([tmp_path])
+    with pytest.raises(InputError, match="no runs given"):
+        find_runs([])
 
 
 def test_one_bad_clip_does_not_stop_the_others(

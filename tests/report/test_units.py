@@ -19,7 +19,8 @@ def test_less_than_a_centimetre_is_in_millimetres():
     assert METRES.little(0.00994) == "9.9 mm"
     assert METRES.little(0.0) == "0.0 mm"
     assert METRES.little(0.004, beside=0.02) == "0.4 cm"
-    assert FEET.little(0.00254) == "0.1 in"
+    assert FEET.little(0.00254) == "0.10 in"
+    assert FEET.little(0.0005) == "0.02 in"
 
 
 def test_units_are_found_by_their_symbols():

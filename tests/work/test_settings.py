@@ -45,11 +45,26 @@ def test_check_refuses_them_too(tmp_path: Path, capsys: pytest.CaptureFixture[st
         ({"length_unit": "furlong"}, "length unit 'furlong': one of m, cm"),
         ({"angle_unit": "turn"}, "angle unit 'turn': one of rad, deg"),
         ({"units": "yd"}, "units 'yd': one of m, ft"),
+        ({"samples": 2.5}, "samples: 2.5 is not a number of samples"),
+        ({"radius": "0.1"}, "radius: '0.1' is not a radius"),
+        ({"fps": "25"}, "frame rate 25: must be a positive number"),
+        ({"masses": [1, 2]}, "masses: by stone, please"),
+        ({"names": ["A"]}, "names: by stone, please"),
+        ({"stick": (1.0, 2.0, 3.0, 4.0)}, "stick .*: 5 values, please"),
+        ({"stick": "1,2,3"}, "stick '1,2,3': 5 values, please"),
+        ({"frames": (0.5, 30)}, "frames: 0.5 is not a number of a frame"),
+        ({"frames": (0, "end")}, "frames: 'end' is not a number of a frame"),
+        ({"house": (0, 1, 2, 3, 4, 5, float("nan"))}, "house: nan is not a number"),
     ],
 )
 def test_what_the_command_refuses_is_refused_from_python(said: dict[str, Any], reason: str) -> None:
     with pytest.raises(InputError, match=reason):
         Settings(**said)
+
+
+def test_paths_may_be_strings() -> None:
+    settings = Settings(camera="camera.csv", angles={"A": "a.txt"})  # type: ignore[arg-type, dict-item]
+    assert (settings.camera, settings.angles) == (Path("camera.csv"), {"A": Path("a.txt")})
 
 
 def test_every_unit_of_coaches_is_known_where_it_is_written() -> None:

@@ -210,6 +210,8 @@ def test_the_sheet_is_chosen_by_its_way_of_play(tmp_path: Path) -> None:
     assert read(tmp_path, stone).bounds is None
     assert read(tmp_path, '[physics]\nsheet = "none"\n' + stone).bounds is None
     assert read(tmp_path, '[physics]\nsheet = "down"\n' + stone).bounds == Bounds(-1)
+    with pytest.raises(InputError, match=r'sheet = "down" is for .* thrown down y, but A goes up'):
+        read(tmp_path, '[physics]\nsheet = "down"\n' + stone + "vy = 2.0\n")
     with pytest.raises(InputError, match=r"no sheet 'upp' \(did you mean up\?\)"):
         read(tmp_path, '[physics]\nsheet = "upp"\n' + stone)
 
