@@ -100,9 +100,12 @@ def predict(
         return {}
     first = first_hit(estimates.collisions)
     rigid = Prediction(None, note="needs spins after the hit, which only the shot itself tells")
-    fit = _before(sightings[sightings["t"] < first], radius, masses or {}, laws)
+    note = "too little is seen before the first hit"
+    try:
+        fit = _before(sightings[sightings["t"] < first], radius, masses or {}, laws)
+    except InputError as error:
+        fit, note = None, f"cannot be simulated: {error}"
     if fit is None:
-        note = "too little is seen before the first hit"
         return {name: Prediction(None, note=note) for name in ("point-mass", "frictional")}
     out = {}
     for name in ("point-mass", "frictional"):

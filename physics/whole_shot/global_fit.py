@@ -192,8 +192,11 @@ class _Problem:
             damped = normal + damping * np.diag(told)
             new = at + bounded(damped, right, self.low - at, self.high - at)
             step = new - at
-            there = [self._residuals(rank, new) for rank in range(len(self.shots))]
-            new_cost = self._cost(new, there)
+            try:
+                there = [self._residuals(rank, new) for rank in range(len(self.shots))]
+                new_cost = self._cost(new, there)
+            except InputError:  # a step too far: to what cannot be simulated
+                there, new_cost = residuals, np.inf
             # Residuals larger than stated make errors that much larger.
             settled = SETTLED**2 * len(at) * max(1.0, cost / self.sightings)
             small = float(step @ normal @ step) < settled

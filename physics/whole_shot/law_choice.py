@@ -41,6 +41,9 @@ ELSEWHERE = 0.5
 does, if it has come to rest at another place: what the first tells of the unknowns does not hold
 there."""
 
+ALIKE = 0.3
+"""Part of its error by which an unknown differs, at most, in two fits that are one."""
+
 SELDOM = 9.0
 """Twice the log of odds beyond which other laws do not count."""
 
@@ -58,27 +61,62 @@ def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None
     falls: the one that is reported follows any ice but not to the last per cent.
     """
     held = {"v_c": V_C, **(fixed or {})}
-    best, *others = _either_sense(shot, held)
-    tried = _Tried(best, held, [best], [0.0])
-    for other in others:
-        tried.add(other, _beside(other, best))
+    first, *others = _either_sense(shot, held)
+    places = [_with_laws(first, held, 0.0, fixed or {})]
+    places += [_with_laws(other, held, _beside(other, first), fixed or {}) for other in others]
+    best = min(places, key=lambda place: place.least).best
+    every = [pair for place in places for pair in zip(place.criteria, place.fits, strict=True)]
+    criteria, fits = zip(*_distinct(every, best), strict=True)
+    return _with_others(best, fits, np.array(criteria))
+
+
+def _with_laws(
+    fit: GlobalFit, held: dict[str, float], criterion: float, fixed: Mapping[str, float]
+) -> _Tried:
+    """Try the laws that a fit may do with or without, from where it came to rest."""
+    tried = _Tried(fit, held, [fit], [criterion], criterion)
     _leave_out(tried)
-    falls = "slope" in tried.best.names and "v_c" not in (fixed or {})
+    falls = "slope" in tried.best.names and "v_c" not in fixed
     if falls:
         _let_bend(tried)
-    if shot.hits:
+    if fit.shots[0].hits:
         stuck = tried.refitted(tried.held | STICKING)
         if stuck.settled:
             tried.add(stuck, tried.least + _beside(stuck, tried.best), tried.held | STICKING)
     if falls:
         # Beside stones that do not slide as these do no other ice would fit either.
         even = {"slope": 0.0, "v_c": V_C, **tried.held}
-        uneven = replace(best.shots[0], ice=penner)  # it needs no slope to be so
+        uneven = replace(fit.shots[0], ice=penner)  # it needs no slope to be so
         start, noise = _values(tried.best), tried.best.inflation
         rooted = fit_shots([uneven], fixed=even, start=start, noise=noise)
         if rooted.settled:
             tried.add(rooted, tried.least + _beside(rooted, tried.best))
-    return _with_others(tried.best, tried.fits, np.array(tried.criteria))
+    return tried
+
+
+def _distinct(
+    every: Sequence[tuple[float, GlobalFit]], best: GlobalFit
+) -> list[tuple[float, GlobalFit]]:
+    """Leave out fits that came to the same place as another by the same laws: they count once."""
+    kept: list[tuple[float, GlobalFit]] = []
+    for criterion, fit in sorted(every, key=lambda pair: (pair[0], pair[1] is not best)):
+        if not any(_same(fit, other) for _, other in kept):
+            kept.append((criterion, fit))
+    return kept
+
+
+def _same(one: GlobalFit, two: GlobalFit) -> bool:
+    """Whether two fits have the same laws and values, but for a friction that neither tells."""
+    names, others = (
+        [name for name in fit.names if name != "stone_friction" or fit.told(name)]
+        for fit in (one, two)
+    )
+    if names != others or one.shots[0].ice is not two.shots[0].ice:
+        return False
+    at = [one.names.index(name) for name in names]
+    there = [two.names.index(name) for name in names]
+    off = np.abs(one.values[at] - two.values[there])
+    return bool((off < ALIKE * np.sqrt(np.diag(two.cov)[there])).all())
 
 
 @dataclass
@@ -101,7 +139,7 @@ class _Tried:
     held: dict[str, float]
     fits: list[GlobalFit]
     criteria: list[float]
-    least: float = 0.0
+    least: float
 
     def add(self, fit: GlobalFit, criterion: float, held: dict[str, float] | None = None) -> None:
         """Count a fit in; it is the best from then on if it is better, and says what it holds."""

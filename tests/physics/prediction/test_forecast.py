@@ -160,6 +160,18 @@ def test_too_little_before_the_hit_is_said(frames: int) -> None:
 FALLING = Ice(b=0.0075, a=0.0024, v_c=0.0639, curl=0.0082)
 
 
+def test_stones_that_lie_in_one_another_are_no_mistake_of_the_whole_run() -> None:
+    """As in a table whose scale is an eighth too small, with two stones that touch at rest."""
+    beside = [Start(0.9, 0.4), Start(0.9 + 2 * RADIUS, 0.4)]
+    motion = hit_motion(1.5, 0.05, after=1.0, others=beside)
+    seen = watch(motion, np.random.default_rng(7), sd=0.001)
+    seen[["x", "y"]] *= 0.88
+    found = forecast(seen)
+    for name in ("point-mass", "frictional"):
+        assert found[name].rmse is None
+        assert "stones C and D overlap" in str(found[name].note)
+
+
 def far_shot(ice: Ice, seed: int, before: float = 2.5) -> pd.DataFrame:
     """A shot that is seen till its stones have come to rest, far from where they hit."""
     thrown = Start(0.0, 0.0, 0.0, 2.0, 0.3, 1.5)
