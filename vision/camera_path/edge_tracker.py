@@ -126,12 +126,12 @@ class EdgeTracker:
     smeared: float = 0.0
     moved: Array = field(default_factory=lambda: np.zeros(CIRCLES))
     _shutter: Shutter = field(default_factory=Shutter)
-    _light: ShutterLight = field(init=False)
+    light: ShutterLight = field(init=False)
     _last: tuple[View, Array, Normals, Array] | None = None
     _focal: float = 0.0
 
     def __post_init__(self) -> None:
-        self._light = ShutterLight.of(self.edge, self.palette)
+        self.light = ShutterLight.of(self.edge, self.palette)
 
     def settle(
         self, frames: Sequence[Frame], views: Sequence[View], rig: Array, last: View
@@ -153,7 +153,7 @@ class EdgeTracker:
             enough of the circles.
         """
         self._zoom(last.focal, views[0].focal)
-        again, smeared, known = False, 0.0, self._light
+        again, smeared, known = False, 0.0, self.light
         for _ in range(ROUNDS):
             steps = [now.sweep(old) for now, old in zip(views, [last, *views], strict=False)]
             self.sweep = self._shutter.exposure * max(steps, key=np.linalg.norm)
@@ -161,6 +161,7 @@ class EdgeTracker:
             normals, standing = self._laid(views, rig)
             if not _enough(rig, normals.visible, normals.visible):
                 return []
+            share = self.light.share
             evidence = self._measured([frame.picture for frame in frames], normals, standing)
             evidence = evidence[: _leading([_enough(rig, e.visible, e.covered) for e in evidence])]
             if not evidence:
@@ -188,9 +189,17 @@ class EdgeTracker:
         rim = normals.normal[:, normals.kinds.get(TWELVE, slice(0))]
         self._shutter.learn(shown.slope, self.fit.view.sweep([last, *views][count - 1]) @ rim)
         return [
-            Seen(frame.index, frame.t, fit.view, Kept(e.marks.pick(fit.inliers)), True)
+            self._seen(frame, fit, e.marks.pick(fit.inliers), share)
             for frame, e, fit in zip(frames, evidence[:count], fits, strict=False)
         ]
+
+    def _seen(self, frame: Frame, fit: ViewSolution, marks: Marks, share: float) -> Seen:
+        """Give a frame with its marks, which were measured with a share of light."""
+        by_light = self._pan.by_light(marks)
+        return Seen(
+            frame.index, frame.t, fit.view, Kept(marks), True,
+            smeared=self.blur, share=share, by_light=by_light if by_light.any() else None,
+        )  # fmt: skip
 
     def expects(self, view: View, rig: Array) -> bool:
         """Whether a view should show enough of the circles to be refined."""
@@ -224,6 +233,15 @@ class EdgeTracker:
         away = np.linalg.norm(own - other, axis=2).max(1)
         known = np.isfinite(contrast) & np.isfinite(away)
         return bool((away < np.maximum(0.5 * contrast, MIN_CONTRAST))[known].all())
+
+    def relit(self, seen: Seen) -> Seen:
+        """Move the edges of a frame that a pan smears to where they lie by what is known by now."""
+        more = self.light.share - seen.share
+        if seen.by_light is None or not more:
+            return seen
+        marks = seen.marks.get()
+        pixel = marks.pixel + marks.normal * (more * seen.by_light)[:, None]
+        return replace(seen, marks=Kept(replace(marks, pixel=pixel)), share=self.light.share)
 
     @property
     def blur(self) -> float:
@@ -278,7 +296,7 @@ class EdgeTracker:
         return measure_along(
             pictures[: len(standing)], normals, standing,
             least_sd=MARK_SD, palette=self.palette, edge=self.edge,
-            levels=self._pan.levels(normals.line, normals.normal.T, self._light.share),
+            levels=self._pan.levels(normals.line, normals.normal.T, self.light.share),
         )  # fmt: skip
 
     def _fitted(
@@ -322,13 +340,13 @@ class EdgeTracker:
 
         `known` is what the frames before told; what was told by this one before is forgotten.
         """
-        used = self._light.share
+        used = self.light.share
         told = self._pan.told(marks, view, rig, self.size, used)
         if told is None:
             return 0.0
         share, sd, most = told
-        self._light = known.taking(share, sd)
-        return abs(self._light.share - used) * most
+        self.light = known.taking(share, sd)
+        return abs(self.light.share - used) * most
 
     def _is_sharper(self, shown: Evidence) -> bool:
         """Whether a frame would tell the edge better than the one that has told it."""
@@ -349,7 +367,7 @@ class EdgeTracker:
             self.edge = lit(edge, picture, self.fit.view, rig, shown)
         self._focal, self.told, slope = self.fit.view.focal, shown, shown.steepness
         self.moved = self.moved + self.edge.aside(slope) - before.aside(slope)
-        self._light = ShutterLight.of(self.edge, self.palette)
+        self.light = ShutterLight.of(self.edge, self.palette)
 
     def _learn(self, palette: Array, frames: int) -> None:
         """Take in the colours of the edges in the last of so many frames."""

@@ -232,6 +232,7 @@ class HouseFollower:
             best, which = max(pieces, key=lambda p: p.found), "the longest"
         else:
             best, which = pieces[0], "the one given"
+        best.relight()
         track = fit_clip(best.seen, best.rig, best.prior, self._size, best.edges.edge)
         left_out = *_left_out(best, pieces, which), *_unseen(pieces, self._looked)
         return replace(track, warnings=(*left_out, *track.warnings))

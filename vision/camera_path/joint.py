@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from data.sheet import HOUSE
 from vision.camera_path.keyframe import Keyframe, replaced
+from vision.camera_path.shutter import LEAST_SMEAR
 from vision.film.shelf import Kept
 from vision.optics.astray import astray, motion
 from vision.optics.bundle import LOST, NOISE_TRUST, bundle
@@ -115,6 +116,11 @@ class Seen:
         Whether its circles fix its view; else it is carried by fixed points of the ice.
     key : Keyframe, optional
         Where its fixed points are known from, if there are any.
+    smeared : float
+        How far a pan smears its edges, px.
+    share : float
+        Of light in what the shutter blurs, with which they were measured, and `by_light` how far
+        all of it would move them, (n,), px; None where nothing is smeared.
     """
 
     index: int
@@ -123,6 +129,9 @@ class Seen:
     marks: Kept[Marks]
     found: bool
     key: Keyframe | None = None
+    smeared: float = 0.0
+    share: float = 0.0
+    by_light: Array | None = None
 
 
 def fit_clip(
@@ -146,7 +155,7 @@ def fit_clip(
     edge : PaintEdge
         The outer edge of the 12-ft circle: as well as it is made out, all lengths are known.
     """
-    chosen = _spread([s for s in seen if s.found])
+    chosen = spread([s for s in seen if s.found], JOINT_FRAMES)
     times = [s.t for s in chosen]
     marks, views = [s.marks.get() for s in chosen], [s.view for s in chosen]
     shared, _ = bundle(marks, times, views, rig, size, prior)
@@ -325,7 +334,15 @@ def _shows_a_line(marks: Marks) -> bool:
     return bool(((marks.line >= CIRCLES) & (marks.line != FIXED)).any())
 
 
-def _spread(seen: Sequence[Seen]) -> list[Seen]:
-    """Frames for the joint fit, spread over the clip."""
-    at = np.unique(np.round(np.linspace(0, len(seen) - 1, JOINT_FRAMES)).astype(int))
+def spread(seen: Sequence[Seen], count: int) -> list[Seen]:
+    """Give some frames spread over all of them.
+
+    Where a smeared edge lies depends on what the shutter blurs, light or codes, which is told
+    beside a house that was sharp. Of one that comes into view in a pan those that no pan smears
+    are given, if there are as many.
+    """
+    sharp = [s for s in seen if s.smeared < LEAST_SMEAR]
+    if seen[0].smeared >= LEAST_SMEAR and len(sharp) >= count:
+        seen = sharp
+    at = np.unique(np.round(np.linspace(0, len(seen) - 1, count)).astype(int))
     return [seen[i] for i in at]

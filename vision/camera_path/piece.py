@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 from vision.camera_path.edge_tracker import HELD, LONGEST_STRIDE, EdgeTracker, put_right
 from vision.camera_path.egomotion import foretold
 from vision.camera_path.ice_tracker import IceTracker
-from vision.camera_path.joint import Seen
+from vision.camera_path.joint import Seen, spread
 from vision.camera_path.leap import leapt
 from vision.camera_path.replay import EVERY, Glimpse, cut_among, glimpse, shows_again
+from vision.camera_path.shutter import more_light
 from vision.film.clip import Frame
 from vision.film.picture import Picture
 from vision.film.shelf import Kept, Shelf
@@ -240,6 +241,23 @@ class Piece:
         self.rig = self._joint(self._spread()).rig
         self._view_again(MEMORY)
 
+    def relight(self) -> None:
+        """Move edges that pans smear to where they lie by what all of them tell of the shutter."""
+        if all(seen.by_light is None for seen in self.seen):
+            return
+        self.rig = self._joint(self._spread()).rig
+        self._view_again(len(self.seen))
+        for seen in self.seen:
+            if seen.by_light is not None:
+                more = more_light(seen.marks.get(), seen.view, self.rig, self.size, seen.by_light)
+                if more is not None:
+                    self.edges.light = self.edges.light.taking(seen.share + more[0], more[1])
+        for k, seen in enumerate(self.seen):
+            relit = self.edges.relit(seen)
+            if relit is not seen:
+                relit.marks.put_aside(self.shelf)
+                self.seen[k] = relit
+
     def take(self, frames: Sequence[Frame], seen: Sequence[Seen]) -> list[tuple[Frame, Camera]]:
         """Take in frames that were followed; give them back with provisional cameras.
 
@@ -362,9 +380,7 @@ class Piece:
 
     def _spread(self) -> list[Seen]:
         """Give a few of the frames that fixed their camera, spread over all of them."""
-        good = [s for s in self.seen if s.found]
-        at = np.unique(np.round(np.linspace(0, len(good) - 1, REFINE_FRAMES)).astype(int))
-        return [good[i] for i in at]
+        return spread([s for s in self.seen if s.found], REFINE_FRAMES)
 
     def _joint(self, frames: Sequence[Seen]) -> Solution:
         return solve(

@@ -129,19 +129,21 @@ class Smeared:
             With its standard error, and how far light moves edges at most, px. None where the
             frame tells nothing.
         """
-        if not self._tells or len(marks) < LEAST_EDGES:
+        if not self._tells:
             return None
+        moved = self.by_light(marks)
+        more = more_light(marks, view, rig, size, moved)
+        return None if more is None else (share + more[0], more[1], float(np.abs(moved).max()))
+
+    def by_light(self, marks: Marks) -> Array:
+        """How far edges lie along their normals if light is blurred beside if codes are, (n,), px.
+
+        At no place where no pan smears them by much.
+        """
+        if not self._tells:
+            return np.zeros(len(marks))
         part, width = self._smear(marks.normal)
-        moved = half_light(self.palette)[marks.line] * part * width
-        observed = Observations(marks, size)
-        at = linearised(observed, observed.points(rig), view.vector, rig)
-        known = np.append(at.by_view * marks.sd, moved[None], axis=0).T
-        value = at.residual * marks.sd
-        found, cov, scatter = regress(known, value, width=WIDTH, least=LEAST_SCATTER, rounds=ROUNDS)
-        sd = scatter * float(np.sqrt(ALIKE * cov[-1, -1]))
-        if sd > VAGUE:
-            return None
-        return share + float(found[-1]), sd, float(np.abs(moved).max())
+        return np.asarray(half_light(self.palette)[marks.line] * part * width)
 
     @property
     def _tells(self) -> bool:
@@ -152,3 +154,31 @@ class Smeared:
         square = (normal @ self.sweep) ** 2
         # A smear s adds s² / 12 to the variance, a slope of 1 / SHARP is that of SHARP² / 2π.
         return square / (square + 2 * SHARP**2), np.sqrt(square + SHARP**2)
+
+
+def more_light(
+    marks: Marks, view: View, rig: Array, size: tuple[int, int], by_light: Array
+) -> tuple[float, float] | None:
+    """Tell by how much more of what the shutter blurs is light than edges were measured with.
+
+    Parameters
+    ----------
+    marks, view, rig, size
+        As in `Smeared.told`.
+    by_light : ndarray, shape (n,)
+        How far light moves each, px.
+
+    Returns
+    -------
+    share, sd : float
+        With its standard error; None where the frame tells nothing.
+    """
+    if len(marks) < LEAST_EDGES:
+        return None
+    observed = Observations(marks, size)
+    at = linearised(observed, observed.points(rig), view.vector, rig)
+    known = np.append(at.by_view * marks.sd, by_light[None], axis=0).T
+    value = at.residual * marks.sd
+    found, cov, scatter = regress(known, value, width=WIDTH, least=LEAST_SCATTER, rounds=ROUNDS)
+    sd = scatter * float(np.sqrt(ALIKE * cov[-1, -1]))
+    return None if sd > VAGUE else (float(found[-1]), sd)

@@ -8,9 +8,18 @@ import pytest
 
 from tests.synthetic import PAINTS, CameraPath, Light, Scene, render_still, still_camera
 from vision.camera_path.edge_tracker import EdgeTracker
-from vision.camera_path.shutter import LEAST_SMEAR, RANGE, UNTOLD, ShutterLight, Smeared
+from vision.camera_path.joint import Seen, spread
+from vision.camera_path.shutter import (
+    LEAST_SMEAR,
+    RANGE,
+    UNTOLD,
+    ShutterLight,
+    Smeared,
+    more_light,
+)
 from vision.camera_path.smear import SHARP
 from vision.film.clip import Frame
+from vision.film.shelf import Kept
 from vision.optics.paint import EIGHT, TWELVE
 from vision.optics.pose import View, camera
 from vision.sheet.house import find_house
@@ -76,6 +85,39 @@ def test_a_pan_tells_what_its_shutter_blurs(gamma: float, share: float) -> None:
     assert told is not None
     assert abs(told[0] - share) < 0.2
     assert aside(seen.view, house.rig) < 2.0
+
+
+def test_edges_measured_with_another_share_are_moved_to_where_they_lie(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    house = before()
+    edges = EdgeTracker(SIZE, house.evidence.palette, house.edge)
+    monkeypatch.setattr(EdgeTracker, "_learn_light", lambda *_: 0.0)
+    ahead = View(house.view.vector - np.array([(MIDDLE - BEFORE) / HEIGHT, 0.0, 0.0, 0.0]))
+    (seen,) = edges.settle([Frame(1, 0.04, exposed(2.2))], [ahead], house.rig, house.view)
+    assert abs(seen.share) < 0.1 and seen.smeared > LEAST_SMEAR
+    shares = []
+    for _ in range(2):
+        assert seen.by_light is not None
+        more = more_light(seen.marks.get(), seen.view, house.rig, SIZE, seen.by_light)
+        assert more is not None
+        shares.append(more[0])
+        edges.light = ShutterLight(seen.share + more[0], more[1])
+        seen = edges.relit(seen)
+        assert seen.share == edges.light.share
+    assert shares[0] == pytest.approx(1.0, abs=0.3)
+    assert shares[1] == pytest.approx(0.0, abs=0.1)
+
+
+def test_a_house_that_comes_into_view_in_a_pan_is_fitted_where_it_is_sharp() -> None:
+    marks = Kept(before().evidence.marks)
+    seen = [
+        Seen(k, k / 25, before().view, marks, True, smeared=8.0 if k < 6 else 0.5)
+        for k in range(16)
+    ]
+    assert [s.index for s in spread(seen, 4)] == [6, 9, 12, 15]
+    assert [s.index for s in spread(seen, 12)] == [0, 1, 3, 4, 5, 7, 8, 10, 11, 12, 14, 15]
+    assert [s.index for s in spread(seen[6:] + seen[:6], 4)] == [6, 11, 0, 5]
 
 
 def test_what_is_smeared_across_the_pan_stays_where_it_is() -> None:
