@@ -112,6 +112,18 @@ def test_frames_that_the_clip_does_not_give_are_not_said_to_show_no_house() -> N
     assert not track.warnings
 
 
+@pytest.mark.parametrize("tilt", [0.25, 0.35])
+def test_another_camera_is_told_that_has_the_house_at_the_same_place(tilt: float) -> None:
+    """Its frames were taken for this one's, with edges that are a pixel off."""
+    path = still_camera(target=(0.1, 0.6), px_per_m=100)
+    place = (0.0, -8.0 * float(np.tan(tilt)), 8.0)
+    other = still_camera(position=place, target=(0.1, 0.6), px_per_m=100)
+    track, _ = follow(path, duration=1.6, cuts=(Cut(1.0, 1.6, other),))
+    assert [c.frame for c in track.cameras] == [*range(25)]
+    assert worst(track, path) < 0.003
+    assert any("left out: 2" in w for w in track.warnings)
+
+
 def test_another_camera_s_house_is_left_out() -> None:
     path = still_camera(target=(0.1, 0.6), px_per_m=100)
     other = tilted_camera(0.7, height=6.0, px_per_m=85)
