@@ -194,7 +194,7 @@ class Piece:
         return seen
 
     def _is_cut(self, seen: Seen) -> bool:
-        """Whether a frame that was just followed is of another camera, by how far its edges are off.
+        """Whether a frame that was just followed is of another camera, by how far edges are off.
 
         Else it is taken in for those that come.
         """
