@@ -149,9 +149,7 @@ def run_each(
 def _write_run(
     stage: Path, measured: Measured, done: Run, settings: Settings, progress: Progress
 ) -> None:
-    from data.results_file import write_results
     from data.tracks import write_table, write_tracks
-    from physics.prediction.ensemble import write_ensemble
     from report.page import write_report
     from report.provenance import Provenance, sources
     from report.tables import residual_table
@@ -159,13 +157,9 @@ def _write_run(
 
     write_tracks(done.tracks, stage / "tracks.csv", measured.table)
     write_table(done.simulations, stage / "simulation.csv")
-    write_results(done.results, stage / "results.json")
+    _write_estimates(stage, done)
     if done.cameras is not None:
         write_table(done.cameras, stage / "camera.csv")
-    if done.posterior is not None:
-        write_table(done.posterior, stage / "posterior.csv")
-    if done.ensemble is not None:
-        write_ensemble(done.ensemble, stage / "ensemble.json")
     house = done.house
     overlay: Path | None = None
     clip_start = 0.0
@@ -207,6 +201,19 @@ def _write_run(
         ),
     )
     progress("report", 1, 1)
+
+
+def _write_estimates(stage: Path, done: Run) -> None:
+    """Write what is told of a shot, and what it may have been."""
+    from data.results_file import write_results
+    from data.tracks import write_table
+    from physics.prediction.ensemble import write_ensemble
+
+    write_results(done.results, stage / "results.json")
+    if done.posterior is not None:
+        write_table(done.posterior, stage / "posterior.csv")
+    if done.ensemble is not None:
+        write_ensemble(done.ensemble, stage / "ensemble.json")
 
 
 def season(
@@ -387,20 +394,12 @@ def _do_check(arguments: argparse.Namespace, bars: Bars) -> str:
 
 
 def _do_estimate(arguments: argparse.Namespace, bars: Bars) -> str:
-    from data.results_file import write_results
-    from data.tracks import write_table
-    from physics.prediction.ensemble import write_ensemble
-
     settings, folder = settings_of(arguments), out_folder(arguments, arguments.inputs[0])
     refuse_clips(find_inputs(arguments.inputs), "run")
     measured = measure(arguments.inputs, settings, bars)
     done = analyse(measured, settings, bars)
     with staged(folder, replaces=_stale(folder, measured.files)) as stage:
-        write_results(done.results, stage / "results.json")
-        if done.posterior is not None:
-            write_table(done.posterior, stage / "posterior.csv")
-        if done.ensemble is not None:
-            write_ensemble(done.ensemble, stage / "ensemble.json")
+        _write_estimates(stage, done)
     return _summary(done, folder, arguments.units)
 
 

@@ -175,12 +175,12 @@ class Piece:
         views = self._foretold(frames) or expected
         last, before = self.seen[-1].view, self.edges.smeared
         seen = self._settle(frames[: len(views)], views)
-        if seen and self._is_cut(seen[-1]):
-            if len(seen) == 1:
-                return []
+        if len(seen) > 1 and self._is_cut(self._off_now(seen)):  # in one that comes later, maybe
             seen = self._settle(frames[:1], views[:1])
-            if seen and self._is_cut(seen[0]):
-                return []
+        off = self._off_now(seen)
+        if self._is_cut(off):
+            return []
+        self._off += [] if off is None else [off]
         self._shaken = self._is_shaken(expected, views, seen)
         far = bool(seen) and _length(seen[0].view.sweep(expected[0])) > LEAPT * self.size[0]
         if not seen and self._picture is not None:
@@ -193,19 +193,17 @@ class Piece:
         )
         return seen
 
-    def _is_cut(self, seen: Seen) -> bool:
-        """Whether a frame that was just followed is of another camera, by how far edges are off.
+    def _off_now(self, seen: Sequence[Seen]) -> float | None:
+        """How far edges are off in the last of frames that were followed, px; None if smeared."""
+        if not seen or not seen[-1].found or self.edges.blur > LEAST_SMEAR:
+            return None
+        return None if self.edges.fit is None else self.edges.fit.rms
 
-        Else it is taken in for those that come.
-        """
-        if not seen.found or self.edges.fit is None or self.edges.blur > LEAST_SMEAR:
+    def _is_cut(self, off: float | None) -> bool:
+        """Whether a frame whose edges are so far off, px, is another camera's."""
+        if off is None or len(self._off) < CUT_LOOKS:
             return False
-        off = self.edges.fit.rms
-        usual = float(np.median(self._off)) if len(self._off) == CUT_LOOKS else np.inf
-        if off > max(CUT_TIMES * usual, CUT_PX):
-            return True
-        self._off.append(off)
-        return False
+        return off > max(CUT_TIMES * float(np.median(self._off)), CUT_PX)
 
     def _foretold(self, frames: Sequence[Frame]) -> list[View]:
         """Tell the views of the next frames by their pictures, if how they went on does not."""
@@ -270,20 +268,17 @@ class Piece:
 
     def relight(self) -> None:
         """Move edges that pans smear to where they lie by what all of them tell of the shutter."""
-        if all(seen.by_light is None for seen in self.seen):
+        smeared = [(k, s, s.by_light) for k, s in enumerate(self.seen) if s.by_light is not None]
+        if not smeared:
             return
-        self.rig = self._joint(self._spread()).rig
-        self._view_again(len(self.seen))
-        for seen in self.seen:
-            if seen.by_light is not None:
-                more = more_light(seen.marks.get(), seen.view, self.rig, self.size, seen.by_light)
-                if more is not None:
-                    self.edges.light = self.edges.light.taking(seen.share + more[0], more[1])
-        for k, seen in enumerate(self.seen):
-            relit = self.edges.relit(seen)
-            if relit is not seen:
-                relit.marks.put_aside(self.shelf)
-                self.seen[k] = relit
+        rig = self.rig = self._joint(self._spread()).rig
+        for _, seen, by_light in smeared:
+            more = more_light(seen.marks.get(), seen.view, rig, self.size, by_light)
+            if more is not None:
+                self.edges.light = self.edges.light.taking(seen.share + more[0], more[1])
+        for k, seen, _ in smeared:
+            self.seen[k] = relit = self.edges.relit(seen)
+            relit.marks.put_aside(self.shelf)
 
     def take(self, frames: Sequence[Frame], seen: Sequence[Seen]) -> list[tuple[Frame, Camera]]:
         """Take in frames that were followed; give them back with provisional cameras.
