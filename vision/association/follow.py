@@ -11,13 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from itertools import combinations
-from math import dist, hypot, inf, sqrt
+from math import hypot, inf, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vision.association.assign import assign
+from vision.association.hits import MOTION_TOLD, struck
 from vision.association.lead import DECELERATION
 from vision.association.rows import Rows
 from vision.detection.appearance import colour_differences
@@ -47,15 +47,9 @@ PATIENCE = 3.0
 BIRTHS = 5
 """Sightings that make a track."""
 
-MOTION_TOLD = 3
-"""Sightings that tell how a stone moves, so that a hit nobody sees is expected."""
-
 BRIEF = 0.5
 """A track no longer than this, s, must show more in the open: shoulders look like a stone for a few
 frames where a person turns."""
-
-RESTITUTION = 0.85
-"""Of a hit that nobody saw."""
 
 
 @dataclass
@@ -232,13 +226,16 @@ def _assign(
     if not tracks or not sightings:
         return {}
     seen = np.array([(s.x, s.y) for s in sightings])
-    struck = _struck(tracks, t, radius)
-    waits = t - np.array([track.times[-1] for track in tracks])
+    last = np.array([track._place for track in tracks])
+    since = np.array([track.times[-1] for track in tracks])
+    ways = np.array([track._velocity if track.speed > 0 else (0.0, 0.0) for track in tracks])
+    told = np.array([len(track.times) >= MOTION_TOLD for track in tracks])
+    met = struck(last, ways, since, told, t, radius)
+    waits = t - since
     reach = np.minimum(REACH + GROWTH * waits, MOST_REACH)[:, None] * radius
     expected = np.array(
-        [struck[row] if row in struck else track.expected(t) for row, track in enumerate(tracks)]
+        [met[row][0] if row in met else track.expected(t) for row, track in enumerate(tracks)]
     )
-    last = np.array([track._place for track in tracks])
     away, near = (
         np.hypot(*(seen - places[:, None]).transpose(2, 0, 1)) for places in (expected, last)
     )
@@ -260,48 +257,3 @@ def _paired(cost: Array) -> list[tuple[int, int]]:
     if allowed.sum(0).max() < 2 and allowed.sum(1).max() < 2:  # no two claim the same
         return [(int(row), int(column)) for row, column in np.argwhere(allowed)]
     return [pair for pair in assign(cost) if allowed[pair]]
-
-
-def _struck(tracks: Sequence[Track], t: float, radius: float) -> dict[int, Array]:
-    """Where stones are expected that have met since they were seen, by their ranks.
-
-    Their paths are taken as straight; each stone's first meeting counts, and of the two only
-    the push along the line of their centres.
-    """
-    speeds = [track.speed for track in tracks]
-    longest = t - min(track.times[-1] for track in tracks)
-    near = [
-        (i, j)
-        for i, j in combinations(range(len(tracks)), 2)
-        if (speed := speeds[i] + speeds[j]) > 0
-        and dist(tracks[i]._place, tracks[j]._place) < 2 * radius + speed * longest
-    ]
-    if not near:
-        return {}
-    places = np.array([track._place for track in tracks])
-    ways = np.array([track._velocity if track.speed > 0 else (0.0, 0.0) for track in tracks])
-    since = np.array([track.times[-1] for track in tracks])
-    known = np.array([len(track.times) >= MOTION_TOLD for track in tracks])
-    first, second = np.array(near).T
-    start = np.maximum(since[first], since[second])
-    apart = places[second] + ways[second] * (start - since[second])[:, None]
-    apart = apart - places[first] - ways[first] * (start - since[first])[:, None]
-    closing = ways[second] - ways[first]
-    # They are two radii apart where |apart + closing s| = 2 R.
-    a, b = (closing**2).sum(1), (apart * closing).sum(1)
-    c = (apart**2).sum(1) - 4 * radius**2
-    root = np.sqrt(np.maximum(b * b - a * c, 0.0))
-    at = start + np.where(a > 0, (-b - root) / np.where(a > 0, a, 1.0), np.inf)
-    lasted = np.minimum(since[first], since[second])
-    meets = (b < 0) & (b * b > a * c) & (at >= lasted) & (at < t) & known[first] & known[second]
-    out: dict[int, Array] = {}
-    for k in np.flatnonzero(meets)[np.argsort(at[meets])].tolist():
-        pair = int(first[k]), int(second[k])
-        if out.keys() & set(pair):
-            continue
-        there = [places[i] + ways[i] * (at[k] - since[i]) for i in pair]
-        normal = (there[1] - there[0]) / (2 * radius)
-        push = -0.5 * (1 + RESTITUTION) * float(closing[k] @ normal) * normal
-        for i, place, change in zip(pair, there, (-push, push), strict=True):
-            out[i] = place + (ways[i] + change) * (t - at[k])
-    return out

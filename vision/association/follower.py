@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from data.sheet import Stone
 from vision.association.expected import ON_COURSE, SETTLED, look_beside, look_on_course
+from vision.association.hits import MOTION_TOLD, struck
 from vision.association.lead import DOUBTFUL, Lead
 from vision.association.still import portraits, unchanged
 from vision.detection.appearance import Appearance
@@ -160,24 +161,30 @@ class Follower:
         expected = [lead.at(t) for lead in leads]
         found = self._measured(views, leads, expected, ahead, step)
         going: list[tuple[Lead, Sighting | None]] = []
-        lost: list[Lead] = []
+        lost: list[int] = []
         # The best first: of two leads to one stone, the other is lost.
         for index in sorted(range(len(leads)), key=lambda i: -_score(found[i])):
             lead, sighting = leads[index], found[index]
             if _away(view.sightings, *expected[index]) < 0.5 * self.disc.radius:
                 continue  # it leads to a stone that is followed already
             if sighting is None or _away(view.sightings, sighting.x, sighting.y) < apart:
-                lost.append(lead)
+                lost.append(index)
                 continue
             view.sightings.append(sighting)
             going.append((lead.on(sighting, t, near, still), sighting))
-        for lead in lost:
+        hit = _struck(leads, t, self.disc.radius) if lost else {}
+        for index in lost:
+            lead = leads[index]
             nearby = None if lead.missed else self._near(view, lead)
             if nearby is not None:
                 view.sightings.append(nearby)
                 going.append((lead.on(nearby, t, near, still), nearby))
-            elif abs(t - lead.t) < (WAIT_AT_REST if lead.rests else WAIT):
+                continue
+            since = abs(t - lead.t)
+            if since < (WAIT_AT_REST if lead.rests else WAIT):
                 going.append((replace(lead, missed=True), None))
+            if index in hit and not lead.missed and since < WAIT:
+                going.append((lead.pushed(*hit[index], t), None))
         return self._portrayed(view, going, ahead[1] if len(views) > 1 else [])
 
     def _ahead(
@@ -315,6 +322,18 @@ def _look_at(
 ) -> Look:
     """Look where some of the stones are expected that drift as their leads do."""
     return view.look([expected[i] for i in which], [leads[i].drift(step) for i in which])
+
+
+def _struck(leads: Sequence[Lead], t: float, radius: float) -> dict[int, tuple[Array, Array]]:
+    """Where stones are and how they move at a time that have met since: by ranks of their leads."""
+    return struck(
+        _array([lead.place for lead in leads]),
+        _array([lead.velocity for lead in leads]),
+        np.array([lead.t for lead in leads]),
+        np.array([lead.rests or lead.along >= MOTION_TOLD for lead in leads]),
+        t,
+        radius,
+    )
 
 
 def _time_between(views: Sequence[StoneView], leads: Sequence[Lead]) -> float:

@@ -6,6 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from math import hypot
 
+import numpy as np
+from numpy.typing import NDArray
+
 from physics.simulator.approach import nearest
 from vision.association.still import Portrait
 from vision.detection.sighting import Sighting
@@ -13,6 +16,8 @@ from vision.film.shelf import Kept
 from vision.spin.align import Complex
 from vision.spin.facing import angle_between
 from vision.spin.handle import TURNING
+
+Array = NDArray[np.float64]
 
 STEADY = 5
 """Sightings at one place that make a stone one at rest."""
@@ -159,6 +164,11 @@ class Lead:
             portrait=None if sighting.measured else self.portrait,
             along=along,
         )
+
+    def pushed(self, place: Array, velocity: Array, t: float) -> Lead:
+        """Lead to where a hit that nobody saw would have the stone at a time, and how it moves."""
+        (x, y), (vx, vy) = place.tolist(), velocity.tolist()
+        return Lead((x, y), (vx, vy), t, (x, y), self.score)
 
     def _turned(self, sighting: Sighting) -> bool:
         """Whether the cap faces elsewhere than when it came to its place, as far as is seen."""

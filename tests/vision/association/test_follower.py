@@ -87,6 +87,26 @@ def test_a_stone_that_is_gone_is_waited_for_and_then_given_up(follower: Follower
     assert all(len(shown.sightings) == 2 for shown in views)
 
 
+def test_a_stone_that_was_hit_unseen_is_looked_for_where_the_hit_sends_it(
+    follower: Follower,
+) -> None:
+    """Thrown down at 2 m/s it meets the one below at 0.05 s; that is hidden at 0.1 s."""
+    x, y, resting = 0.3, 1.0, 1.0 - 2 * STONE.radius - 0.1
+    leads = [
+        Lead((x, y), (0.0, -2.0), 0.0, (x, y), 2.0, along=5),
+        Lead((x, resting), (0.0, 0.0), 0.0, (x, resting), 2.0, steady=5),
+    ]
+    goes = 0.5 * (1 + 0.83) * 2.0
+    true: list[Places] = [
+        [(x, y - 0.1 - (2 - goes) * since), (x, resting - goes * since)]
+        for since in (0.05, 0.15, 0.25)
+    ]
+    hidden, *shown = [view(places, k) for k, places in enumerate([true[0][:1], *true[1:]], 1)]
+    left = follower.follow([hidden, *shown], leads)
+    assert sum(not lead.missed for lead in left) == 2
+    assert seen(shown, true[1:]).max() < 0.006
+
+
 def test_what_is_hidden_is_not_looked_for_again_where_it_was_just_missed(
     follower: Follower, monkeypatch: pytest.MonkeyPatch
 ) -> None:
