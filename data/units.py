@@ -14,9 +14,12 @@ SPELLED = {
     "meter": "m", "metre": "m", "centimeter": "cm", "centimetre": "cm", "millimeter": "mm",
     "millimetre": "mm", "inch": "in", "inche": "in", "foot": "ft", "feet": "ft", "yard": "yd",
     "second": "s", "sec": "s", "millisecond": "ms", "msec": "ms", "minute": "min", "hour": "h",
+    "hr": "h", "sekunde": "s", "sekunden": "s", "sek": "s", "seconde": "s", "seconden": "s",
+    "segundo": "s", "secondi": "s", "sekundy": "s",
     "radian": "rad", "degree": "deg", "°": "deg",
 }  # fmt: skip
-"""Units written out, without an s at their end."""
+"""Units written out, without an s at their end; seconds in all languages that times are known in
+(`data.columns.TIME_NAMES`)."""
 
 TIME_UNITS = {"s": 1.0, "ms": 0.001, "min": 60.0, "h": 3600.0}
 """Seconds in one of each."""
@@ -30,7 +33,8 @@ _KNOWN = {*LENGTH_UNITS, *TIME_UNITS, *ANGLE_UNITS}
 def abbreviated(unit: str) -> str:
     """Give a unit as it is known here, whether written out or not; others as they are."""
     plain = unit.strip().lower().removesuffix(".")
-    return SPELLED.get(plain.removesuffix("s"), plain if plain in _KNOWN else unit)
+    one = plain.removesuffix("s")
+    return SPELLED.get(one, next((name for name in (plain, one) if name in _KNOWN), unit))
 
 
 def check_units(length_unit: str | None, angle_unit: str | None, fps: float | None) -> None:
@@ -73,3 +77,19 @@ def unit_of_lengths(told: str | None, said: str | None, source: str, teller: str
     if said not in (None, told):
         raise InputError(f"{source}: its length unit is {told}, as the {teller} says, not {said}")
     return told
+
+
+def unit_of_angles(told: str | None, said: str | None, source: str) -> str | None:
+    """Choose the unit of angles: what the person says, else what the file tells, if it does.
+
+    Raises
+    ------
+    InputError
+        Where what the file tells is unknown and the person says nothing.
+    """
+    if said or not told or told in ANGLE_UNITS:
+        return said or told or None
+    raise InputError(
+        f"{source}: its unit of angles is “{told[:20]}”, which is unknown here; known are"
+        f" {', '.join(ANGLE_UNITS)}: set one in the header, or name it (--angle-unit)"
+    )
