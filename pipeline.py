@@ -149,11 +149,11 @@ def run_each(
 def _write_run(
     stage: Path, measured: Measured, done: Run, settings: Settings, progress: Progress
 ) -> None:
+    from data.coach_units import UNITS
     from data.tracks import write_table, write_tracks
     from report.page import write_report
     from report.provenance import Provenance, sources
     from report.tables import residual_table
-    from report.units import UNITS
 
     write_tracks(done.tracks, stage / "tracks.csv", measured.table)
     write_table(done.simulations, stage / "simulation.csv")
@@ -322,8 +322,8 @@ def _stale(folder: Path, inputs: Sequence[Path]) -> tuple[str, ...]:
 
 
 def _summary(done: Run, folder: Path, units: str) -> str:
+    from data.coach_units import UNITS
     from report.summary import summary
-    from report.units import UNITS
 
     marked = done.cameras is None
     return summary(done.results, done.tracks, folder, done.house, UNITS[units], marked=marked)

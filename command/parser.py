@@ -13,7 +13,9 @@ from command.options import (
     assumption_options,
     clip_options,
     mass_option,
+    no_house_option,
     radius_option,
+    rate_option,
     tab_option,
     table_options,
     units_option,
@@ -92,6 +94,7 @@ def _run(commands: Any) -> None:
     clip_options(parser, "rate of pictures (25), or of a table without times, 1/s")
     mass_option(parser)
     table_options(parser)
+    no_house_option(parser)
     tab_option(parser)
     parser.add_argument(
         "--clip",
@@ -143,10 +146,11 @@ def _estimate(commands: Any) -> None:
     radius_option(parser)
     mass_option(parser)
     table_options(parser)
+    no_house_option(parser)
     tab_option(parser)
     assumption_options(parser)
     units_option(parser)
-    parser.add_argument("--fps", type=values.positive, help="rate of a table without times, 1/s")
+    rate_option(parser, "rate of a table without times, 1/s")
 
 
 def _season(commands: Any) -> None:
@@ -189,7 +193,7 @@ def _convert(commands: Any) -> None:
     parser.add_argument("--over", metavar="CLIP", help="the clip that a project shows")
     table_options(parser)
     tab_option(parser)
-    parser.add_argument("--fps", type=values.positive, help="rate of a table without times, 1/s")
+    rate_option(parser, "rate of a table without times, 1/s")
 
 
 def _simulate(commands: Any) -> None:
@@ -235,7 +239,7 @@ def _simulate(commands: Any) -> None:
         type=Path,
         help="SHOT.toml, or the folder of a run, or its results.json",
     )
-    parser.add_argument("--fps", type=values.positive, default=25.0, help="samples per second (25)")
+    rate_option(parser, "samples per second (25)", 25.0)
     parser.add_argument("--json", action="store_true", help="print the outcome as JSON")
     what_if_options(parser)
 

@@ -39,12 +39,13 @@ def abbreviated(unit: str) -> str:
 
 def check_units(length_unit: str | None, angle_unit: str | None, fps: float | None) -> None:
     """Refuse units that are unknown, and rates of pictures or rows that are none."""
-    if length_unit is not None and length_unit not in LENGTH_UNITS:
+    if length_unit is not None and length_unit not in tuple(LENGTH_UNITS):
         raise InputError(f"length unit {length_unit!r}: one of {', '.join(LENGTH_UNITS)}, please")
-    if angle_unit is not None and angle_unit not in ANGLE_UNITS:
+    if angle_unit is not None and angle_unit not in tuple(ANGLE_UNITS):
         raise InputError(f"angle unit {angle_unit!r}: one of {', '.join(ANGLE_UNITS)}, please")
-    if fps is not None and not (isinstance(fps, Real) and 0 < fps < math.inf):
-        raise InputError(f"frame rate {fps}: must be a positive number")
+    number = isinstance(fps, Real) and not isinstance(fps, bool)
+    if fps is not None and not (number and 0 < fps < math.inf):
+        raise InputError(f"frame rate {fps!r}: must be a positive number")
 
 
 def unit_of_lengths(told: str | None, said: str | None, source: str, teller: str) -> str:

@@ -7,12 +7,12 @@ from collections.abc import Mapping
 
 import pandas as pd
 
+from data.coach_units import METRES, Unit
 from data.results import Prediction, Results, SimulationScore
 from data.sheet import House
 from report import tables
 from report.coach_listing import coach_tables
 from report.columns import Column, Table
-from report.units import METRES, Unit
 
 _STATES = (
     Column("hit", "hit", kind="word"),

@@ -16,6 +16,7 @@ import pandas as pd
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from data.coach_units import METRES, Unit
 from data.errors import InputError
 from data.files import whole_file, write_text
 from data.results import Results
@@ -31,7 +32,6 @@ from report.style import render, stone_colours
 from report.tables import moving_stones
 from report.trial import sliders, trial
 from report.typeset import write_tables
-from report.units import METRES, Unit
 
 WEB = Path(__file__).parent / "web"
 SCRIPTS = ("motion.js", "simulate.js", "plan.js", "player.js", "whatif.js")

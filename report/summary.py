@@ -8,6 +8,7 @@ from typing import Any
 
 import pandas as pd
 
+from data.coach_units import METRES, Unit
 from data.results import Results
 from data.sheet import House
 from physics.prediction.forecast import AFTER
@@ -16,7 +17,6 @@ from physics.statistics.pool import Pooled
 from physics.statistics.season import POSSIBLE, SCATTER
 from report.numbers import count, plus_minus, warned
 from report.tables import moving_stones, rest_table, shot_stone
-from report.units import METRES, Unit
 
 ABREAST = 3
 """Stones on a line, which then has some hundred letters."""
