@@ -25,7 +25,7 @@ from physics.prediction.ensemble import Ensemble
 from report.cells import data, data_parts, data_significant
 from report.gallery import pictures
 from report.listing import page_tables
-from report.numbers import count
+from report.numbers import assumed, count
 from report.playback import playback
 from report.provenance import UNKNOWN, Provenance, libraries
 from report.style import render, stone_colours
@@ -168,6 +168,7 @@ def _environment() -> Environment:
     environment.filters["significant"] = data_significant
     environment.globals["pair"] = data_parts
     environment.globals["count"] = count
+    environment.globals["assumed"] = assumed
     return environment
 
 

@@ -15,7 +15,7 @@ from physics.prediction.forecast import AFTER
 from physics.simulator.simulation import Simulation
 from physics.statistics.pool import Pooled
 from physics.statistics.season import POSSIBLE, SCATTER
-from report.numbers import count, plus_minus, warned
+from report.numbers import assumed, count, plus_minus, warned
 from report.tables import moving_stones, rest_table, shot_stone
 
 ABREAST = 3
@@ -175,7 +175,7 @@ def summary(
     for model, guess in results.predictions.items():
         if guess.rmse is not None:
             lines.append(
-                f"predicted   {model}, from before the first hit, e assumed:"
+                f"predicted   {model}, from before the first hit, {assumed(guess)}:"
                 f" {unit.little(guess.rmse)} RMS off"
             )
             lines += _each(f"{AFTER} s after it", guess.error_after, guess.sd_after, unit)
