@@ -132,7 +132,8 @@ def run_each(
     folder = check_folder(out)
     done: dict[str, Run] = {}
     failed: dict[str, CurlshotError] = {}
-    by_name = apart([Path(clip) for clip in named(clips)])
+    once = {path.resolve(): path for path in map(Path, named(clips))}
+    by_name = apart([*once.values()])
     for name, clip in by_name.items():
         number = f"{len(done) + len(failed) + 1}/{len(by_name)} "
 
@@ -149,11 +150,11 @@ def run_each(
 def _write_run(
     stage: Path, measured: Measured, done: Run, settings: Settings, progress: Progress
 ) -> None:
+    from data.coach_units import UNITS
     from data.tracks import write_table, write_tracks
     from report.page import write_report
     from report.provenance import Provenance, sources
     from report.tables import residual_table
-    from report.units import UNITS
 
     write_tracks(done.tracks, stage / "tracks.csv", measured.table)
     write_table(done.simulations, stage / "simulation.csv")
@@ -221,6 +222,9 @@ def season(
 ) -> tuple[pd.DataFrame, dict[str, Pooled]]:
     """Put many shots side by side, and say what all of them say of e and μ.
 
+    One that is there twice, as of a copied run, counts once
+    (`physics.statistics.season.repeated`).
+
     Parameters
     ----------
     runs : mapping of str to Results
@@ -235,9 +239,11 @@ def season(
     pooled : dict
         ``restitution`` and ``friction``; see `physics.statistics.pool.Pooled`.
     """
-    from physics.statistics.season import hits_table, pooled, shots_table
+    from physics.statistics.season import hits_table, pooled, repeated, shots_table
 
     folder = None if out is None else check_folder(out)
+    again = repeated(runs)
+    runs = {name: run for name, run in runs.items() if name not in again}
     shots, hits = shots_table(runs), hits_table(runs)
     means = pooled(shots)
     if folder is None:
@@ -322,8 +328,8 @@ def _stale(folder: Path, inputs: Sequence[Path]) -> tuple[str, ...]:
 
 
 def _summary(done: Run, folder: Path, units: str) -> str:
+    from data.coach_units import UNITS
     from report.summary import summary
-    from report.units import UNITS
 
     marked = done.cameras is None
     return summary(done.results, done.tracks, folder, done.house, UNITS[units], marked=marked)
@@ -349,18 +355,29 @@ def _run_season(arguments: argparse.Namespace, clips: Sequence[Path], bars: Bars
     if not done:
         name, error = next(iter(failed.items()))
         raise InputError(f"none of {len(clips)} clips could be used; {name}: {error}")
-    shots, means = season({name: run.results for name, run in done.items()}, folder)
+    runs = {name: run.results for name, run in done.items()}
+    shots, means = season(runs, folder)
     failures = [f"{name}   not used: {one_line(str(why))}" for name, why in failed.items()]
-    return "\n".join([*season_text(shots, means), *failures, f"written     {folder}"])
+    left_out = [*_counted_once(runs), *failures]
+    return "\n".join([*season_text(shots, means), *left_out, f"written     {folder}"])
+
+
+def _counted_once(runs: Mapping[str, Results]) -> list[str]:
+    """Say which shots are there twice."""
+    from physics.statistics.season import repeated
+
+    again = repeated(runs)
+    return [f"{name}   the same shot as {one}: counted once" for name, one in again.items()]
 
 
 def _do_season(arguments: argparse.Namespace, _: Bars) -> str:
     from report.summary import season_text
 
     folder = Path(arguments.out or "season")
-    shots, means = season(find_runs(arguments.runs), folder)
+    runs = find_runs(arguments.runs)
+    shots, means = season(runs, folder)
     written = ", ".join(str(folder / name) for name in SEASON)
-    return "\n".join([*season_text(shots, means), f"written     {written}"])
+    return "\n".join([*season_text(shots, means), *_counted_once(runs), f"written     {written}"])
 
 
 def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:

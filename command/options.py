@@ -6,17 +6,19 @@ import argparse
 from pathlib import Path
 
 from command import values
+from data.coach_units import UNITS
 from data.sheet import STONE
 from data.units import ANGLE_UNITS, LENGTH_UNITS
-from work.limits import MOST_THROWS
-from work.settings import COACHES
+from work.limits import FRACTION, FRICTION, MOST_THROWS, POSITIVE, RADIUS, Limits
+
+OFFSETS = Limits(-5.0, 5.0, "a distance in metres, -5 to 5")
 
 
 def radius_option(parser: argparse.ArgumentParser) -> None:
     """Add the radius of the discs."""
     parser.add_argument(
         "--radius",
-        type=values.radius,
+        type=values.within(RADIUS),
         default=STONE.radius,
         metavar="METRES",
         help=f"radius of the discs ({STONE.radius}: a curling stone)",
@@ -35,10 +37,15 @@ def mass_option(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def rate_option(parser: argparse.ArgumentParser, rate: str, usual: float | None = None) -> None:
+    """Add a rate, of which `rate` says of what it is, and what it is if not given."""
+    parser.add_argument("--fps", type=values.within(POSITIVE), default=usual, help=rate)
+
+
 def clip_options(parser: argparse.ArgumentParser, rate: str = "rate of pictures, 1/s (25)") -> None:
     """Add what may be said of a clip; `rate` says of what that is."""
     radius_option(parser)
-    parser.add_argument("--fps", type=values.positive, help=rate)
+    rate_option(parser, rate)
     parser.add_argument(
         "--frames",
         type=values.frame_range,
@@ -71,14 +78,17 @@ def what_if_options(parser: argparse.ArgumentParser) -> None:
     """Add what may be changed in a shot, and how often it is thrown."""
     change = parser.add_argument_group("what if")
     change.add_argument(
-        "--restitution", type=values.fraction, metavar="E", help="e of the hits, 0 to 1"
+        "--restitution", type=values.within(FRACTION), metavar="E", help="e of the hits, 0 to 1"
     )
     change.add_argument(
-        "--friction", type=values.friction, metavar="MU", help="μ of the ice at 1 m/s, 0.001 to 0.1"
+        "--friction",
+        type=values.within(FRICTION),
+        metavar="MU",
+        help="μ of the ice at 1 m/s, 0.001 to 0.1",
     )
     change.add_argument(
         "--aim-offset",
-        type=values.offset,
+        type=values.within(OFFSETS),
         default=0.0,
         metavar="METRES",
         help="move the way of the thrown stone to its left, or right if negative, m",
@@ -113,13 +123,13 @@ def assumption_options(parser: argparse.ArgumentParser) -> None:
     """Add what predictions assume, and how much is drawn."""
     parser.add_argument(
         "--restitution",
-        type=values.fraction,
+        type=values.within(FRACTION),
         metavar="E",
         help="e that predictions assume (0.83 ± 0.06)",
     )
     parser.add_argument(
         "--friction",
-        type=values.friction,
+        type=values.within(FRICTION),
         metavar="MU",
         help="μ that predictions assume (0.0109 ± 0.003, of discs that are no stones 0.01 ± 0.1)",
     )
@@ -135,7 +145,10 @@ def assumption_options(parser: argparse.ArgumentParser) -> None:
 def units_option(parser: argparse.ArgumentParser) -> None:
     """Add the unit of what coaches read."""
     parser.add_argument(
-        "--units", choices=COACHES, default="m", help="of what coaches read (m); all else is SI"
+        "--units",
+        choices=tuple(UNITS),
+        default="m",
+        help="of what coaches read (m); all else is SI",
     )
 
 
@@ -144,15 +157,19 @@ def tab_option(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--tab", metavar="NAME", help="of a Tracker project with several tabs")
 
 
+def no_house_option(parser: argparse.ArgumentParser) -> None:
+    """Add whether tables count from a tee, for commands to which that matters."""
+    parser.add_argument(
+        "--no-house", action="store_true", help="the origin of tables is not the tee of a house"
+    )
+
+
 def table_options(parser: argparse.ArgumentParser) -> None:
     """Add what may be said of tables."""
     parser.add_argument(
         "--length-unit", choices=tuple(LENGTH_UNITS), help="of tables (as the file says, else m)"
     )
     parser.add_argument("--angle-unit", choices=tuple(ANGLE_UNITS), help="of tables")
-    parser.add_argument(
-        "--no-house", action="store_true", help="the origin of tables is not the tee of a house"
-    )
     parser.add_argument(
         "--names",
         type=values.pair,

@@ -13,7 +13,9 @@ from command.options import (
     assumption_options,
     clip_options,
     mass_option,
+    no_house_option,
     radius_option,
+    rate_option,
     tab_option,
     table_options,
     units_option,
@@ -92,6 +94,7 @@ def _run(commands: Any) -> None:
     clip_options(parser, "rate of pictures (25), or of a table without times, 1/s")
     mass_option(parser)
     table_options(parser)
+    no_house_option(parser)
     tab_option(parser)
     parser.add_argument(
         "--clip",
@@ -143,10 +146,11 @@ def _estimate(commands: Any) -> None:
     radius_option(parser)
     mass_option(parser)
     table_options(parser)
+    no_house_option(parser)
     tab_option(parser)
     assumption_options(parser)
     units_option(parser)
-    parser.add_argument("--fps", type=values.positive, help="rate of a table without times, 1/s")
+    rate_option(parser, "rate of a table without times, 1/s")
 
 
 def _season(commands: Any) -> None:
@@ -189,7 +193,7 @@ def _convert(commands: Any) -> None:
     parser.add_argument("--over", metavar="CLIP", help="the clip that a project shows")
     table_options(parser)
     tab_option(parser)
-    parser.add_argument("--fps", type=values.positive, help="rate of a table without times, 1/s")
+    rate_option(parser, "rate of a table without times, 1/s")
 
 
 def _simulate(commands: Any) -> None:
@@ -210,23 +214,26 @@ def _simulate(commands: Any) -> None:
         "(ensemble.json) and from what players are off by. They give outcomes.csv (where each\n"
         "stone ends in each sample), whatif.json and spread.png, a plan view.\n"
         "\n"
-        "SHOT.toml:\n"
-        "  [physics]                  # all optional\n"
+        "SHOT.toml, all of [physics] optional, and of a stone all but name, x and y:\n"
+        "  [physics]\n"
         '  model = "frictional"       # point-mass | rigid-body | frictional\n'
         "  restitution = 1.0\n"
-        "  stone_friction = 0.2\n"
-        '  ice = "fcv1"               # constant (with friction = 0.0109) | fcv1 | penner | fit\n'
-        '  curl = "fcv1"              # none | fcv1\n'
+        "  stone_friction = 0.2       # of frictional, as inertia = 0.5, I / (m R^2)\n"
+        '  ice = "fcv1"               # fcv1 or fit with a, v_c, b: friction a / (v + v_c) + b;\n'
+        "                             # constant or penner with friction; fcv1 with gravity\n"
+        '  curl = "fcv1"              # none | fcv1 with turn, loss, slow\n'
         "  radius = 0.145\n"
         '  sheet = "none"             # none | up | down: where stones that leave it go away\n'
-        "  inertia = 0.5              # I / (m R^2)\n"
-        "  [[stone]]                  # one for each stone\n"
+        "  [[stone]]                  # one for each stone; SI, radians\n"
         '  name = "A"\n'
         "  x = 0.0\n"
         "  y = 0.0\n"
         "  vx = 0.0\n"
         "  vy = 2.4\n"
-        "  omega = 1.5708             # rigid-body also needs omega_after\n",
+        "  omega = 1.5708\n"
+        "  theta = 0.0\n"
+        "  mass = 19.1\n"
+        "  omega_after = [1.2, 1.0]   # after each of its hits: rigid-body needs it\n",
         usual="NAME-curlshot; of a measured shot NAME-whatif",
     )
     parser.add_argument(
@@ -235,7 +242,7 @@ def _simulate(commands: Any) -> None:
         type=Path,
         help="SHOT.toml, or the folder of a run, or its results.json",
     )
-    parser.add_argument("--fps", type=values.positive, default=25.0, help="samples per second (25)")
+    rate_option(parser, "samples per second (25)", 25.0)
     parser.add_argument("--json", action="store_true", help="print the outcome as JSON")
     what_if_options(parser)
 

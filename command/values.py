@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import argparse
 import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from work.limits import FRACTION, FRICTION, POSITIVE, RADIUS, SAMPLES, Limits, has_length
+from work.limits import POSITIVE, SAMPLES, Limits, has_length
 
 if TYPE_CHECKING:
     from physics.prediction.what_if import Amount
@@ -24,9 +25,9 @@ def number(text: str, limits: Limits) -> float:
     return value
 
 
-def positive(text: str) -> float:
-    """Read a positive number."""
-    return number(text, POSITIVE)
+def within(limits: Limits) -> Callable[[str], float]:
+    """Give what reads a number between two bounds."""
+    return lambda text: number(text, limits)
 
 
 def folder(text: str) -> Path:
@@ -34,26 +35,6 @@ def folder(text: str) -> Path:
     if not text.strip():
         raise argparse.ArgumentTypeError(f"{text!r} is not the name of a folder")
     return Path(text)
-
-
-def fraction(text: str) -> float:
-    """Read a number from 0 to 1."""
-    return number(text, FRACTION)
-
-
-def friction(text: str) -> float:
-    """Read a coefficient of friction of ice."""
-    return number(text, FRICTION)
-
-
-def radius(text: str) -> float:
-    """Read the radius of a disc, m; centimetres and millimetres are refused."""
-    return number(text, RADIUS)
-
-
-def offset(text: str) -> float:
-    """Read a distance, m, of either sign."""
-    return number(text, Limits(-5.0, 5.0, "a distance in metres, -5 to 5"))
 
 
 def amount(text: str) -> Amount:
@@ -139,7 +120,7 @@ def mass(text: str) -> tuple[str, float]:
     name, _, value = text.rpartition("=")
     if not name:
         raise argparse.ArgumentTypeError(f"{text!r} is not STONE=MASS, e.g. A=19.1")
-    return name, positive(value)
+    return name, number(value, POSITIVE)
 
 
 def pair(text: str) -> tuple[str, str]:

@@ -83,6 +83,8 @@ def times_of(
     if fps is not None and plain_name(written) == "frame":
         return times / fps, None, []
     bracket = re.search(r"[(\[]\s*(\w+)\s*[)\]]", written[:100])
+    if bracket and bracket.group(1).lower() in TIME_NAMES:
+        bracket = None  # as in time (t)
     told = abbreviated(bracket.group(1)) if bracket else "s"
     if told not in TIME_UNITS:
         raise InputError(

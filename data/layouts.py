@@ -72,7 +72,7 @@ def read_layout(path: Path, fps: float | None) -> TrackFile:
     if table.names is not None and names is not None:
         file.length_unit = written_unit(table, names, ("x", "y"), LENGTH_UNITS)
         written = written_unit(table, names, tuple(ANGLE_NAMES), ANGLE_UNITS)
-        file.angle_unit = written if written in ANGLE_UNITS else file.angle_unit
+        file.angle_unit = written or file.angle_unit
     return file
 
 

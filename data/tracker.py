@@ -27,7 +27,14 @@ from data.read_back import as_measured
 from data.stone_names import chosen, named_by_file, refuse_shared_names
 from data.track_file import TrackFile
 from data.tracks import ANGLES, LENGTHS, SEEN_AS, check_sightings
-from data.units import ANGLE_UNITS, LENGTH_UNITS, abbreviated, check_units, unit_of_lengths
+from data.units import (
+    ANGLE_UNITS,
+    LENGTH_UNITS,
+    abbreviated,
+    check_units,
+    unit_of_angles,
+    unit_of_lengths,
+)
 
 FASTEST = 20.0
 """m/s; a stone is thrown at 2 to 4."""
@@ -197,7 +204,7 @@ def _to_si(
             if name in tracks:
                 tracks[name] = tracks[name] * LENGTH_UNITS[unit]
     if "theta" in tracks:
-        chosen = angle_unit or file.angle_unit
+        chosen = unit_of_angles(file.angle_unit, angle_unit, str(path))
         if chosen is None:
             chosen = "deg" if _spins_too_fast(tracks, file.continuous) else "rad"
             if chosen == "deg":

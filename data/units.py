@@ -14,9 +14,12 @@ SPELLED = {
     "meter": "m", "metre": "m", "centimeter": "cm", "centimetre": "cm", "millimeter": "mm",
     "millimetre": "mm", "inch": "in", "inche": "in", "foot": "ft", "feet": "ft", "yard": "yd",
     "second": "s", "sec": "s", "millisecond": "ms", "msec": "ms", "minute": "min", "hour": "h",
+    "hr": "h", "sekunde": "s", "sekunden": "s", "sek": "s", "seconde": "s", "seconden": "s",
+    "segundo": "s", "secondi": "s", "sekundy": "s",
     "radian": "rad", "degree": "deg", "°": "deg",
 }  # fmt: skip
-"""Units written out, without an s at their end."""
+"""Units written out, without an s at their end; seconds in all languages that times are known in
+(`data.columns.TIME_NAMES`)."""
 
 TIME_UNITS = {"s": 1.0, "ms": 0.001, "min": 60.0, "h": 3600.0}
 """Seconds in one of each."""
@@ -30,17 +33,19 @@ _KNOWN = {*LENGTH_UNITS, *TIME_UNITS, *ANGLE_UNITS}
 def abbreviated(unit: str) -> str:
     """Give a unit as it is known here, whether written out or not; others as they are."""
     plain = unit.strip().lower().removesuffix(".")
-    return SPELLED.get(plain.removesuffix("s"), plain if plain in _KNOWN else unit)
+    one = plain.removesuffix("s")
+    return SPELLED.get(one, next((name for name in (plain, one) if name in _KNOWN), unit))
 
 
 def check_units(length_unit: str | None, angle_unit: str | None, fps: float | None) -> None:
     """Refuse units that are unknown, and rates of pictures or rows that are none."""
-    if length_unit is not None and length_unit not in LENGTH_UNITS:
+    if length_unit is not None and length_unit not in tuple(LENGTH_UNITS):
         raise InputError(f"length unit {length_unit!r}: one of {', '.join(LENGTH_UNITS)}, please")
-    if angle_unit is not None and angle_unit not in ANGLE_UNITS:
+    if angle_unit is not None and angle_unit not in tuple(ANGLE_UNITS):
         raise InputError(f"angle unit {angle_unit!r}: one of {', '.join(ANGLE_UNITS)}, please")
-    if fps is not None and not (isinstance(fps, Real) and 0 < fps < math.inf):
-        raise InputError(f"frame rate {fps}: must be a positive number")
+    number = isinstance(fps, Real) and not isinstance(fps, bool)
+    if fps is not None and not (number and 0 < fps < math.inf):
+        raise InputError(f"frame rate {fps!r}: must be a positive number")
 
 
 def unit_of_lengths(told: str | None, said: str | None, source: str, teller: str) -> str:
@@ -73,3 +78,19 @@ def unit_of_lengths(told: str | None, said: str | None, source: str, teller: str
     if said not in (None, told):
         raise InputError(f"{source}: its length unit is {told}, as the {teller} says, not {said}")
     return told
+
+
+def unit_of_angles(told: str | None, said: str | None, source: str) -> str | None:
+    """Choose the unit of angles: what the person says, else what the file tells, if it does.
+
+    Raises
+    ------
+    InputError
+        Where what the file tells is unknown and the person says nothing.
+    """
+    if said or not told or told in ANGLE_UNITS:
+        return said or told or None
+    raise InputError(
+        f"{source}: its unit of angles is “{told[:20]}”, which is unknown here; known are"
+        f" {', '.join(ANGLE_UNITS)}: set one in the header, or name it (--angle-unit)"
+    )

@@ -6,11 +6,11 @@ from typing import Any
 
 import pandas as pd
 
+from data.coach_units import METRES, Unit
 from data.results import Results
 from data.sheet import House
 from report import tables
 from report.columns import Column, Table
-from report.units import METRES, Unit
 
 
 def coach_tables(

@@ -7,12 +7,13 @@ from collections.abc import Mapping
 
 import pandas as pd
 
+from data.coach_units import METRES, Unit
 from data.results import Prediction, Results, SimulationScore
 from data.sheet import House
 from report import tables
 from report.coach_listing import coach_tables
 from report.columns import Column, Table
-from report.units import METRES, Unit
+from report.numbers import assumed
 
 _STATES = (
     Column("hit", "hit", kind="word"),
@@ -225,10 +226,11 @@ def _scores(results: Results) -> Table:
 
 def _foretold(results: Results) -> Table:
     known = {name: guess for name, guess in results.predictions.items() if guess.rmse is not None}
+    how = next(map(assumed, known.values()), "")
     return _off(
         "predictions",
         "Predicted against measured",
-        "From what was seen before the first hit and is known of μ beforehand, with e assumed.",
+        f"From what was seen before the first hit and is known of μ beforehand, with {how}.",
         known,
     )
 

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from data.results import Prediction
 
 DASH = "—"
 MINUS = "−"
@@ -71,6 +75,13 @@ def plus_minus(value: float | None, stderr: float | None) -> str:
     """Write "value ± standard error", rounded by `parts`."""
     first, second = parts(value, stderr)
     return first if second is None else f"{first} ± {second}"
+
+
+def assumed(guess: Prediction) -> str:
+    """Say which e a prediction takes, and which μ where that is given and not told by the ice."""
+    e, mu = guess.restitution.value, guess.friction
+    said = "e" if e is None else f"e = {e:.3g}"
+    return f"{said} and μ = {mu.value:.3g} assumed" if mu.stderr == 0 else f"{said} assumed"
 
 
 def warned(texts: Iterable[str]) -> list[str]:

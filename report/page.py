@@ -16,6 +16,7 @@ import pandas as pd
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from data.coach_units import METRES, Unit
 from data.errors import InputError
 from data.files import whole_file, write_text
 from data.results import Results
@@ -24,14 +25,13 @@ from physics.prediction.ensemble import Ensemble
 from report.cells import data, data_parts, data_significant
 from report.gallery import pictures
 from report.listing import page_tables
-from report.numbers import count
+from report.numbers import assumed, count
 from report.playback import playback
 from report.provenance import UNKNOWN, Provenance, libraries
 from report.style import render, stone_colours
 from report.tables import moving_stones
 from report.trial import sliders, trial
 from report.typeset import write_tables
-from report.units import METRES, Unit
 
 WEB = Path(__file__).parent / "web"
 SCRIPTS = ("motion.js", "simulate.js", "plan.js", "player.js", "whatif.js")
@@ -168,6 +168,7 @@ def _environment() -> Environment:
     environment.filters["significant"] = data_significant
     environment.globals["pair"] = data_parts
     environment.globals["count"] = count
+    environment.globals["assumed"] = assumed
     return environment
 
 

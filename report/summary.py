@@ -8,15 +8,15 @@ from typing import Any
 
 import pandas as pd
 
+from data.coach_units import METRES, Unit
 from data.results import Results
 from data.sheet import House
 from physics.prediction.forecast import AFTER
 from physics.simulator.simulation import Simulation
 from physics.statistics.pool import Pooled
 from physics.statistics.season import POSSIBLE, SCATTER
-from report.numbers import count, plus_minus, warned
+from report.numbers import assumed, count, plus_minus, warned
 from report.tables import moving_stones, rest_table, shot_stone
-from report.units import METRES, Unit
 
 ABREAST = 3
 """Stones on a line, which then has some hundred letters."""
@@ -175,7 +175,7 @@ def summary(
     for model, guess in results.predictions.items():
         if guess.rmse is not None:
             lines.append(
-                f"predicted   {model}, from before the first hit, e assumed:"
+                f"predicted   {model}, from before the first hit, {assumed(guess)}:"
                 f" {unit.little(guess.rmse)} RMS off"
             )
             lines += _each(f"{AFTER} s after it", guess.error_after, guess.sd_after, unit)

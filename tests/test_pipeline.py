@@ -152,7 +152,8 @@ def test_summary_says_what_a_person_asks(sample: pipeline.Run) -> None:
     assert len(said) == 2
     for k in said:  # three stones, soon after the hit and at the end
         assert [line.count("(±") for line in lines[k + 1 : k + 3]] == [3, 3]
-        assert "from before the first hit, e assumed:" in lines[k]  # μ is told by the ice seen
+        # μ is told by the ice seen.
+        assert "from before the first hit, e = 0.83 assumed:" in lines[k]
 
 
 def test_single_picture_gives_positions_only(

@@ -2,19 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any
 
+from data.coach_units import UNITS
 from data.errors import InputError
 from data.inputs import PROJECT_SUFFIXES
 from data.sheet import STONE
 from data.units import check_units
-from work.limits import ANY, FRACTION, FRAME, FRICTION, POSITIVE, RADIUS, SAMPLES, has_length
+from work.limits import (
+    ANY,
+    FRACTION,
+    FRAME,
+    FRICTION,
+    POSITIVE,
+    RADIUS,
+    SAMPLES,
+    Limits,
+    has_length,
+)
 
-COACHES = ("m", "ft")
-"""Units of what coaches read."""
+Check = Callable[[str, object], None]
+"""Raises `InputError` where a value, of that name, makes no sense."""
 
 
 @dataclass(frozen=True)
@@ -94,47 +105,82 @@ class Settings:
         if len(given) > 1:
             raise InputError(f"{' and '.join(given)} exclude each other; give one of them")
         check_units(self.length_unit, self.angle_unit, self.fps)
-        if self.units not in COACHES:
-            raise InputError(f"units {self.units!r}: one of {', '.join(COACHES)}, please")
-        if self.frames is not None:
-            first, last = _parts("frames", self.frames, 2)
-            FRAME.check("frames", first)
-            if last is not None:
-                FRAME.check("frames", last)
-        if self.stick is not None:
-            for part in _parts("stick", self.stick, 5):
-                ANY.check("stick", part)
-            if not has_length(self.stick):
-                raise InputError(f"stick {self.stick}: has no length")
-        if self.house is not None:
-            frame, *points = _parts("house", self.house, 7)
-            if frame is not None:
-                FRAME.check("house", frame)
-            for part in points:
-                ANY.check("house", part)
-        RADIUS.check("radius", self.radius)
-        SAMPLES.check("samples", self.samples)
-        for name in ("masses", "names", "angles"):
-            if not isinstance(getattr(self, name), Mapping):
-                raise InputError(f"{name}: by stone, please, as in {name}={{'A': …}}")
-        for stone, mass in self.masses.items():
-            POSITIVE.check(f"mass of {stone}", mass)
+        for item in fields(self):
+            value, check = getattr(self, item.name), _CHECKS.get(item.name)
+            if check is not None and not (value is None and item.default is None):
+                check(item.name, value)
+        if self.stick is not None and not has_length(self.stick):
+            raise InputError(f"stick {self.stick}: has no length")
         # From Python a path may be a string.
         if self.camera is not None:
             object.__setattr__(self, "camera", Path(self.camera))
         angles = {stone: Path(path) for stone, path in self.angles.items()}
         object.__setattr__(self, "angles", angles)
-        if self.restitution is not None:
-            FRACTION.check("restitution", self.restitution)
-        if self.friction is not None:
-            FRICTION.check("friction", self.friction)
 
 
-def _parts(name: str, given: object, count: int) -> Sequence[Any]:
-    """Give the parts of a value that has so many."""
-    if isinstance(given, str) or not isinstance(given, Sequence) or len(given) != count:
-        raise InputError(f"{name} {given!r}: {count} values, please")
-    return given
+def _parts(*limits: tuple[Limits, bool]) -> Check:
+    """Check values that are several numbers, each within its limits, or None if that is allowed."""
+
+    def check(name: str, given: object) -> None:
+        several = isinstance(given, Sequence) and not isinstance(given, str)
+        if not several or len(given) != len(limits):  # type: ignore[arg-type]
+            raise InputError(f"{name} {given!r}: {len(limits)} values, please, in a tuple")
+        for part, (limit, none) in zip(given, limits, strict=True):  # type: ignore[call-overload]
+            if not (none and part is None):
+                limit.check(name, part)
+
+    return check
+
+
+def _by_stone(each: Check, what: str) -> Check:
+    """Check values by stone; `what` says what one is."""
+
+    def check(name: str, given: object) -> None:
+        if not isinstance(given, Mapping):
+            raise InputError(f"{name}: by stone, please, as in {name}={{'A': …}}")
+        for stone, value in given.items():
+            each(f"{what} of {stone}", value)
+
+    return check
+
+
+def _is(what: str, *kinds: type) -> Check:
+    """Check what is no number."""
+
+    def check(name: str, given: object) -> None:
+        if not isinstance(given, kinds):
+            raise InputError(f"{name}: {given!r} is not {what}")
+
+    return check
+
+
+def _coaches(name: str, given: object) -> None:
+    if given not in tuple(UNITS):
+        raise InputError(f"{name} {given!r}: one of {', '.join(UNITS)}, please")
+
+
+_TEXT, _PATH = _is("a text", str), _is("a path", str, os.PathLike)
+_YES_NO = _is("True or False", bool)
+
+_CHECKS: Mapping[str, Check] = {
+    "frames": _parts((FRAME, False), (FRAME, True)),
+    "stick": _parts(*[(ANY, False)] * 5),
+    "house": _parts((FRAME, True), *[(ANY, False)] * 6),
+    "camera": _PATH,
+    "radius": RADIUS.check,
+    "masses": _by_stone(POSITIVE.check, "mass"),
+    "no_house": _YES_NO,
+    "clip": _YES_NO,
+    "tab": _TEXT,
+    "names": _by_stone(_TEXT, "track"),
+    "angles": _by_stone(_PATH, "angles"),
+    "overlay": _YES_NO,
+    "restitution": FRACTION.check,
+    "friction": FRICTION.check,
+    "samples": SAMPLES.check,
+    "units": _coaches,
+}
+"""By what each setting is checked where it is given; units and the rate are checked together."""
 
 
 def refuse_table_options(path: Path, settings: Settings) -> None:

@@ -26,8 +26,8 @@ SLOWEST, IDLE = 0.05, 0.15
 MOST_LOST = 0.1
 """Largest loss that is told, four times FCV1's."""
 
-SHARPEST = 1e-3
-"""Smallest error of an angle that counts, rad."""
+LEAST_NEW = 1e-3
+"""What an angle is off by anew at least, rad, beside what lasts: exact ones would outweigh all."""
 
 
 def spin_loss(glides: Sequence[tuple[Stretch, Floats]]) -> tuple[float, float]:
@@ -79,7 +79,7 @@ def _of_piece(
     spin = float(np.polyfit(t, theta, 1)[0])
     if abs(spin) < IDLE:
         return None
-    new, lasting = np.maximum(stretch.sd[rows, 2], SHARPEST), stretch.slow[rows, 2]
+    new, lasting = np.maximum(stretch.sd[rows, 2], LEAST_NEW), stretch.slow[rows, 2]
     apart = np.abs(np.subtract.outer(t, t))
     cov = np.diag(new**2) + np.outer(lasting, lasting) * np.exp(-apart / ANGLE_MEMORY)
     cov += together @ together.T

@@ -28,3 +28,7 @@ class IceLaw(Protocol):
     def deceleration(self, speed: ArrayLike) -> NDArray[np.float64]:
         """Deceleration against the motion at `speed` > 0 (m/s), in m/s², positive."""
         ...
+
+    def scaled(self, factor: float) -> IceLaw:
+        """Return the law with all its friction multiplied by a factor."""
+        ...

@@ -27,3 +27,7 @@ class Constant:
     def deceleration(self, speed: ArrayLike) -> NDArray[np.float64]:
         """Deceleration μ g, m/s², of the shape of `speed`."""
         return np.full_like(np.asarray(speed, float), self.friction * GRAVITY)
+
+    def scaled(self, factor: float) -> Constant:
+        """Return the law with all its friction multiplied by a factor."""
+        return Constant(factor * self.friction)

@@ -36,3 +36,7 @@ class FCV1:
         """Deceleration μ(v) g, m/s²."""
         friction = self.a / (np.asarray(speed, float) + self.v_c) + self.b
         return np.asarray(friction * self.gravity)
+
+    def scaled(self, factor: float) -> FCV1:
+        """Return the law with all its friction multiplied by a factor."""
+        return FCV1(factor * self.a, self.v_c, factor * self.b, self.gravity)

@@ -34,3 +34,7 @@ class Fit:
         """Deceleration μ(v) g, m/s²."""
         friction = self.a / (np.asarray(speed, float) + self.v_c) + self.b
         return np.asarray(friction * GRAVITY)
+
+    def scaled(self, factor: float) -> Fit:
+        """Return the law with all its friction multiplied by a factor."""
+        return Fit(factor * self.a, self.v_c, factor * self.b)

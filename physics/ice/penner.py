@@ -29,3 +29,7 @@ class Penner:
     def deceleration(self, speed: ArrayLike) -> NDArray[np.float64]:
         """Deceleration μ(v) g, m/s²; `speed` must be positive."""
         return np.asarray(self.friction * GRAVITY / np.sqrt(np.asarray(speed, float)))
+
+    def scaled(self, factor: float) -> Penner:
+        """Return the law with all its friction multiplied by a factor."""
+        return Penner(factor * self.friction)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from itertools import islice
 
@@ -13,7 +14,7 @@ from data.errors import InputError
 from physics.prediction.ensemble import Ensemble
 from physics.prediction.spread import DRAWS, Doubt, drawn
 from physics.simulator.simulate import simulate
-from physics.simulator.simulation import Shot, StoneStart
+from physics.simulator.simulation import Shot, StoneStart, check_shot
 from physics.whole_shot.whole_fit import GlobalFit, draw_choices
 
 Floats = NDArray[np.float64]
@@ -29,7 +30,7 @@ TRIES = 4
 def by_itself(shot: Shot, doubt: Doubt, at: float, count: int = DRAWS) -> Ensemble:
     """Return a shot that begins at a time, s, with laws and states drawn each by itself."""
     rng = np.random.default_rng(0)
-    return Ensemble(at, shot, [drawn(shot, doubt, rng) for _ in range(count)])
+    return Ensemble(at, shot, _sound(drawn(shot, doubt, rng) for _ in range(count)))
 
 
 def as_fitted(fit: GlobalFit, shot: Shot, doubt: Doubt, at: float, count: int = DRAWS) -> Ensemble:
@@ -76,8 +77,18 @@ def as_fitted(fit: GlobalFit, shot: Shot, doubt: Doubt, at: float, count: int = 
         shot, stones=tuple(replace(s, theta=2 * s.theta - turned[s.name]) for s in shot.stones)
     )
     possible = islice(_possible(fit, rng, TRIES * count), count)
-    others = [joined(drawn(shot, doubt, rng), own, values) for own, values in possible]
+    others = _sound(joined(drawn(shot, doubt, rng), own, values) for own, values in possible)
     return Ensemble(seen.start, joined(shot, fit, fit.values), others)
+
+
+def _sound(shots: Iterable[Shot]) -> list[Shot]:
+    """Leave out what cannot be: stones that are drawn into one another."""
+    found = []
+    for shot in shots:
+        with suppress(InputError):
+            check_shot(shot)
+            found.append(shot)
+    return found
 
 
 def _possible(

@@ -75,8 +75,9 @@ def read_ensemble(path: Path) -> Ensemble:
         if raw["schema"] != SCHEMA:
             raise ValueError("another version")
         shots = [shot_of(values) for values in raw["shots"]]
-        if len({tuple(stone.name for stone in shot.stones) for shot in shots}) != 1:
-            raise ValueError("not of the same stones")
+        kinds = {(type(s.impact), *(stone.name for stone in s.stones)) for s in shots}
+        if len(kinds) != 1:
+            raise ValueError("not of the same stones and kind of hits")
         for shot in shots:
             check_shot(shot)
         return Ensemble(float(raw["start"]), shots[0], shots[1:])

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from data.results import Collision, Estimate, Friction, Joint, Results
 from data.sheet import STONE, curling_size
@@ -24,23 +23,6 @@ LOSS = float(LITERATURE.loss.value or 0.0)
 
 LEAST_FRICTION = 1e-6
 """Friction of ice that slows no stone: a law needs some."""
-
-
-@dataclass(frozen=True)
-class Scaled:
-    """A law of the ice with all its friction multiplied by a factor."""
-
-    law: IceLaw
-    factor: float
-
-    @property
-    def name(self) -> str:
-        """Name of the law."""
-        return self.law.name
-
-    def deceleration(self, speed: ArrayLike) -> NDArray[np.float64]:
-        """Deceleration, m/s²."""
-        return np.asarray(self.factor * self.law.deceleration(speed))
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,6 @@ from data.errors import InputError
 from data.results import MeasuredState, SimulatedHit, StoneState
 from physics.curl import FCV1Curl
 from physics.local_fit.traces import shared_correlation
-from physics.prediction.laws import Scaled
 from physics.simulator.simulate import simulate
 from physics.simulator.simulation import Hit, Shot, Simulation, StoneStart
 from physics.whole_shot.shot_model import STATE
@@ -152,7 +151,7 @@ def drawn(shot: Shot, doubt: Doubt, rng: np.random.Generator) -> Shot:
     curl = shot.curl
     if doubt.turn > 0 and isinstance(curl, FCV1Curl):
         curl = replace(curl, turn=curl.turn + doubt.turn * rng.standard_normal())
-    ice = Scaled(shot.ice, factor)
+    ice = shot.ice.scaled(factor)
     return replace(shot, stones=stones, impact=impact, ice=ice, curl=curl, radius=radius)
 
 

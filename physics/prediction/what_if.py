@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from data.errors import InputError
 from data.progress import Progress, no_progress
 from data.sheet import GRAVITY, HOUSE
-from physics.prediction.laws import Scaled
 from physics.prediction.start import Start, speed_before
 from physics.simulator.many import simulate_many
 from physics.simulator.simulation import Shot, States
@@ -231,7 +230,7 @@ def _changed(shot: Shot, thrown: int, changes: Changes) -> Shot:
         shot = replace(shot, impact=impact)
     if changes.friction is not None:
         present = float(shot.ice.deceleration(1.0)) / GRAVITY
-        shot = replace(shot, ice=Scaled(shot.ice, changes.friction / present))
+        shot = replace(shot, ice=shot.ice.scaled(changes.friction / present))
     stones = list(shot.stones)
     stone = stones[thrown]
     speed = math.hypot(stone.vx, stone.vy)

@@ -43,8 +43,9 @@ def shot_of(values: Mapping[str, Any]) -> Shot:
         Where something is missing, of the wrong kind, or no law of that name is known.
     """
     stones = tuple(
-        StoneStart(**{**stone, "omega_after": tuple(stone["omega_after"]) or None})
+        StoneStart(**{**stone, "name": str(stone["name"]), "omega_after": after or None})
         for stone in values["stones"]
+        for after in [tuple(stone["omega_after"])]
     )
     laws = {family: model(family, **values[family]) for family in FAMILIES}
     bounds = None if values["bounds"] is None else Bounds(**values["bounds"])

@@ -26,6 +26,27 @@ POSSIBLE = {"restitution": (0.0, 1.0), "friction": (0.0, np.inf)}
 """What e and μ of any shot lie between; a measured value may be off by its error."""
 
 
+def repeated(season: Mapping[str, Results]) -> dict[str, str]:
+    """Find shots that are another before them, to the last digit: name to that one's name."""
+    first: list[tuple[str, Results]] = []
+    found = {}
+    for name, shot in season.items():
+        same = next((other for other, known in first if _same(shot, known)), None)
+        if same is None:
+            first.append((name, shot))
+        else:
+            found[name] = same
+    return found
+
+
+def _same(one: Results, two: Results) -> bool:
+    told = bool(one.collisions or one.glides)
+    return told and all(
+        getattr(one, name) == getattr(two, name)
+        for name in ("collisions", "glides", "restitution", "friction")
+    )
+
+
 def shots_table(season: Mapping[str, Results]) -> pd.DataFrame:
     """One row per shot: e and μ with their errors (`SHOT_COLUMNS`), NaN where not known."""
     rows = [

@@ -74,7 +74,7 @@ def _with_laws(
     fit: GlobalFit, held: dict[str, float], criterion: float, fixed: Mapping[str, float]
 ) -> _Tried:
     """Try the laws that a fit may do with or without, from where it came to rest."""
-    tried = _Tried(fit, held, [fit], [criterion], criterion)
+    tried = _Tried([fit], [criterion], held)
     _leave_out(tried)
     falls = "slope" in tried.best.names and "v_c" not in fixed
     if falls:
@@ -125,28 +125,36 @@ class _Tried:
 
     Attributes
     ----------
-    best : GlobalFit
-    held : dict
-        Unknowns that it holds, and at what.
     fits : list of GlobalFit
     criteria : list of float
         Of each, minus twice the log probability of the sightings, but for what all share.
-    least : float
-        That of the best.
+    held : dict
+        Unknowns that the best holds, and at what.
+    rank : int
+        Of the best.
     """
 
-    best: GlobalFit
-    held: dict[str, float]
     fits: list[GlobalFit]
     criteria: list[float]
-    least: float
+    held: dict[str, float]
+    rank: int = 0
+
+    @property
+    def best(self) -> GlobalFit:
+        """The fit that makes the sightings most probable, of those that may be the best."""
+        return self.fits[self.rank]
+
+    @property
+    def least(self) -> float:
+        """Its criterion."""
+        return self.criteria[self.rank]
 
     def add(self, fit: GlobalFit, criterion: float, held: dict[str, float] | None = None) -> None:
         """Count a fit in; it is the best from then on if it is better, and says what it holds."""
+        if held is not None and criterion < self.least:
+            self.held, self.rank = held, len(self.fits)
         self.fits.append(fit)
         self.criteria.append(criterion)
-        if held is not None and criterion < self.least:
-            self.best, self.held, self.least = fit, held, criterion
 
     def refitted(self, held: Mapping[str, float]) -> GlobalFit:
         """Fit with other laws from where the best fit has them, with the noise that it has told."""
@@ -176,8 +184,7 @@ def _let_bend(tried: _Tried) -> None:
     free = {name: value for name, value in tried.held.items() if name != "v_c"}
     bent = tried.refitted(free)
     if bent.settled:
-        tried.fits[tried.criteria.index(tried.least)] = bent
-        tried.best, tried.held = bent, free
+        tried.fits[tried.rank], tried.held = bent, free
 
 
 def _either_sense(shot: Watched, held: Mapping[str, float]) -> list[GlobalFit]:

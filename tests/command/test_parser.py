@@ -1,8 +1,15 @@
 from __future__ import annotations
 
+import re
+from dataclasses import fields
+from pathlib import Path
+
 import pytest
 
 from command.parser import command_line
+from physics.registry import FAMILIES, models, parameters_of
+from physics.simulator.shot import read_shot
+from physics.simulator.simulation import StoneStart
 from pipeline import WORK
 
 
@@ -54,3 +61,14 @@ def test_inputs_come_in_the_order_they_were_named() -> None:
     parsed = command_line("1.0").parse_args(["run", "b.txt", "a.txt", "--mass", "A=2"])
     assert [str(name) for name in parsed.inputs] == ["b.txt", "a.txt"]
     assert parsed.mass == [("A", 2.0)]
+
+
+def test_the_help_of_simulate_has_a_shot_with_every_key(capsys, tmp_path: Path) -> None:
+    text = said(capsys, "simulate", "--help")[1]
+    example = text[text.index("  [physics]\n") :]
+    (tmp_path / "SHOT.toml").write_text(example)
+    assert [stone.name for stone in read_shot(tmp_path / "SHOT.toml").stones] == ["A"]
+    laws = [law for family in FAMILIES for law in models(family).values()]
+    keys = {item.name for law in laws for item in parameters_of(law)}
+    keys |= {item.name for item in fields(StoneStart)} | {"model", "ice", "curl", "radius", "sheet"}
+    assert not keys - set(re.findall(r"\w+", example))

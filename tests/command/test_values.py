@@ -8,17 +8,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from command import values
+from command.options import OFFSETS
 from physics.prediction.what_if import Amount
+from work.limits import FRACTION, FRICTION, POSITIVE, RADIUS
 
 
 @pytest.mark.parametrize(
     ("read", "text", "value"),
     [
-        (values.positive, "0.5", 0.5),
+        (values.within(POSITIVE), "0.5", 0.5),
         (values.folder, "shot", Path("shot")),
-        (values.fraction, "1", 1.0),
-        (values.friction, "0.0109", 0.0109),
-        (values.offset, "-0.05", -0.05),
+        (values.within(FRACTION), "1", 1.0),
+        (values.within(FRICTION), "0.0109", 0.0109),
+        (values.within(OFFSETS), "-0.05", -0.05),
         (values.amount, "1.5", Amount(1.5, False)),
         (values.amount, "-0.5x", Amount(-0.5, True)),
         (values.speed, "1.1x", Amount(1.1, True)),
@@ -41,14 +43,14 @@ def test_what_is_meant_is_read(read, text: str, value) -> None:
 @pytest.mark.parametrize(
     ("read", "text", "said"),
     [
-        (values.positive, "-1", "not a positive number"),
-        (values.positive, "inf", "not a positive number"),
+        (values.within(POSITIVE), "-1", "not a positive number"),
+        (values.within(POSITIVE), "inf", "not a positive number"),
         (values.folder, "", "not the name of a folder"),
-        (values.fraction, "1.2", "a number from 0 to 1"),
-        (values.friction, "0.5", "a friction of ice"),
-        (values.radius, "14.55", "a radius in metres"),
-        (values.radius, "-1", "a radius in metres"),
-        (values.offset, "far", "a distance in metres"),
+        (values.within(FRACTION), "1.2", "a number from 0 to 1"),
+        (values.within(FRICTION), "0.5", "a friction of ice"),
+        (values.within(RADIUS), "14.55", "a radius in metres"),
+        (values.within(RADIUS), "-1", "a radius in metres"),
+        (values.within(OFFSETS), "far", "a distance in metres"),
         (values.speed, "0", "nor a factor such as 1.1x"),
         (values.speed, "11x", "at most 10x"),
         (values.samples, "-1", "a number of samples"),
@@ -72,7 +74,7 @@ def test_what_makes_no_sense_is_refused_with_what_was_expected(read, text: str, 
 
 @given(
     st.sampled_from(
-        [values.positive, values.amount, values.speed, values.samples, values.throw_sd,
+        [values.within(POSITIVE), values.amount, values.speed, values.samples, values.throw_sd,
          values.frame_range, values.stick, values.house, values.mass, values.pair]
     ),
     st.text(alphabet="0123456789.,:=x-+eEnaif ²٣", max_size=12),

@@ -74,6 +74,7 @@ def test_two_units_of_one_table_are_refused(tmp_path: Path) -> None:
         ("t (ms)", ["0", "40", "80"], [0, 0.04, 0.08]),
         ("t (min)", ["0", "0.5", "1"], [0, 30, 60]),
         ("time (hours)", ["0", "0.5", "1"], [0, 1800, 3600]),
+        ("time (mins)", ["0", "0.5", "1"], [0, 30, 60]),
     ],
 )
 def test_other_units_of_time_become_seconds(
@@ -87,6 +88,19 @@ def test_other_units_of_time_become_seconds(
 def test_a_time_in_no_unit_that_is_known_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="time unit is “fortnight”"):
         times(tmp_path, "t (fortnight)", ["0", "0.5", "1"])
+
+
+@pytest.mark.parametrize(
+    "head", ["Zeit (Sekunden)", "temps [secondes]", "tiempo (segundos)", "t (sec)"]
+)
+def test_seconds_may_be_in_the_language_of_the_time(tmp_path: Path, head: str) -> None:
+    assert times(tmp_path, head, ["0.00", "0.50"])[0].tolist() == [0.0, 0.5]
+
+
+def test_another_name_of_the_time_is_no_unit(tmp_path: Path) -> None:
+    assert times(tmp_path, "time (t)", ["0.00", "0.50"])[0].tolist() == [0.0, 0.5]
+    with pytest.raises(InputError, match="whole numbers: frames"):
+        times(tmp_path, "time (t)", ["0", "1", "2"])
 
 
 def test_decimals_tell_how_times_were_printed(tmp_path: Path) -> None:

@@ -5,12 +5,13 @@ import sys
 from dataclasses import FrozenInstanceError
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import physics.ice
 import physics.registry
 from physics.curl import FCV1Curl, NoCurl
-from physics.ice import FCV1, Constant, Fit, Penner
+from physics.ice import FCV1, Constant, Fit, IceLaw, Penner
 from physics.impact import Frictional, PointMass, RigidBody
 from physics.registry import FAMILIES, model, models, parameters_of
 
@@ -66,3 +67,12 @@ def test_a_new_file_is_a_new_model(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 def test_examples_in_the_documentation() -> None:
     assert doctest.testmod(physics.registry).failed == 0
+
+
+@pytest.mark.parametrize("kind", models("ice").values())
+def test_ice_with_more_friction_is_of_the_same_law(kind: type[IceLaw]) -> None:
+    """So that a shot on it can be written by the law's name and read again."""
+    law, speeds = kind(), np.array([0.05, 0.3, 1.0, 3.0])
+    more = law.scaled(1.3)
+    assert type(more) is kind
+    assert more.deceleration(speeds) == pytest.approx(1.3 * law.deceleration(speeds), rel=1e-12)

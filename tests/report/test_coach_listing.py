@@ -2,9 +2,9 @@ from __future__ import annotations
 
 import pytest
 
+from data.coach_units import FEET
 from data.sheet import HOUSE
 from report.coach_listing import coach_tables
-from report.units import FEET
 
 
 def by_name(shot, *unit):

@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from report.numbers import DASH, MINUS, fixed, parts, plus_minus, significant
+from data.results import Estimate, Prediction
+from report.numbers import DASH, MINUS, assumed, fixed, parts, plus_minus, significant
 
 
 @pytest.mark.parametrize(
@@ -68,3 +69,17 @@ def test_numbers_without_an_error():
 )
 def test_decimals_have_an_end(value, stderr, most, said):
     assert parts(value, stderr, most) == said
+
+
+@pytest.mark.parametrize(
+    ("e", "mu", "said"),
+    [
+        (Estimate(0.83, 0.06), Estimate(0.0109, 0.003), "e = 0.83 assumed"),
+        (Estimate(0.9, 0.0), Estimate(0.012, 0.0), "e = 0.9 and μ = 0.012 assumed"),
+        (Estimate(), Estimate(), "e assumed"),
+    ],
+)
+def test_what_a_prediction_assumes_is_said_with_its_value(
+    e: Estimate, mu: Estimate, said: str
+) -> None:
+    assert assumed(Prediction(0.1, restitution=e, friction=mu)) == said

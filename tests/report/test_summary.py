@@ -6,11 +6,11 @@ import pandas as pd
 import pytest
 
 import pipeline
+from data.coach_units import FEET
 from data.results import Prediction
 from data.sheet import HOUSE
 from report import tables
 from report.summary import summary
-from report.units import FEET
 from tests.report.glides import glide
 
 

@@ -7,8 +7,7 @@ import pytest
 
 import pipeline
 from data.errors import InputError
-from report.units import UNITS
-from work.settings import COACHES, Settings, refuse_table_options
+from work.settings import Settings, refuse_table_options
 
 
 def test_a_tab_is_refused_where_nothing_has_tabs() -> None:
@@ -47,7 +46,15 @@ def test_check_refuses_them_too(tmp_path: Path, capsys: pytest.CaptureFixture[st
         ({"units": "yd"}, "units 'yd': one of m, ft"),
         ({"samples": 2.5}, "samples: 2.5 is not a number of samples"),
         ({"radius": "0.1"}, "radius: '0.1' is not a radius"),
-        ({"fps": "25"}, "frame rate 25: must be a positive number"),
+        ({"fps": "25"}, "frame rate '25': must be a positive number"),
+        ({"fps": True}, "frame rate True: must be a positive number"),
+        ({"length_unit": ["m"]}, r"length unit \['m'\]: one of m, cm"),
+        ({"samples": None}, "samples: None is not a number of samples"),
+        ({"camera": 5}, "camera: 5 is not a path"),
+        ({"angles": {"A": 5}}, "angles of A: 5 is not a path"),
+        ({"names": {"A": 5}}, "track of A: 5 is not a text"),
+        ({"tab": 1}, "tab: 1 is not a text"),
+        ({"no_house": "yes"}, "no_house: 'yes' is not True or False"),
         ({"masses": [1, 2]}, "masses: by stone, please"),
         ({"names": ["A"]}, "names: by stone, please"),
         ({"stick": (1.0, 2.0, 3.0, 4.0)}, "stick .*: 5 values, please"),
@@ -65,7 +72,3 @@ def test_what_the_command_refuses_is_refused_from_python(said: dict[str, Any], r
 def test_paths_may_be_strings() -> None:
     settings = Settings(camera="camera.csv", angles={"A": "a.txt"})  # type: ignore[arg-type, dict-item]
     assert (settings.camera, settings.angles) == (Path("camera.csv"), {"A": Path("a.txt")})
-
-
-def test_every_unit_of_coaches_is_known_where_it_is_written() -> None:
-    assert set(COACHES) == set(UNITS)

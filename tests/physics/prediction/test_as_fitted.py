@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -8,11 +9,12 @@ import pytest
 
 from data.errors import InputError
 from physics.estimate import Estimates, estimate
+from physics.ice import Constant
 from physics.impact import Frictional
 from physics.kalman import smooth
 from physics.local_fit.contacts import find_contacts
 from physics.prediction.as_fitted import as_fitted, by_itself
-from physics.prediction.ensemble import Ensemble
+from physics.prediction.ensemble import Ensemble, read_ensemble, write_ensemble
 from physics.prediction.hindcast import simulate_measured
 from physics.prediction.spread import Doubt
 from physics.simulator.simulate import simulate
@@ -115,6 +117,17 @@ def test_without_a_fit_each_error_is_drawn_by_itself() -> None:
     drawn = [getattr(other.impact, "restitution", 0.0) for other in may.others]
     assert np.std(drawn) == pytest.approx(0.05, rel=0.2)
     assert {other.stones for other in may.others} == {shot.stones}
+
+
+def test_what_is_drawn_without_a_fit_is_written_and_read(tmp_path: Path) -> None:
+    """Its ice is drawn too; what-ifs of such a shot were refused. So are stones in one another."""
+    shot = Shot((StoneStart("A", 0, -0.3, 0, 1), StoneStart("B", 0, 0)), ice=Constant(0.01))
+    doubt = Doubt({name: np.full(5, 0.03) for name in "AB"}, {}, friction=0.1)
+    may = by_itself(shot, doubt, 2.0, 200)
+    assert 20 < len(may.others) < 200
+    assert np.std([getattr(other.ice, "friction", 0.0) for other in may.others]) > 0.0005
+    write_ensemble(may, tmp_path / "ensemble.json")
+    assert read_ensemble(tmp_path / "ensemble.json") == may
 
 
 def test_of_hits_a_shot_without_any_is_told_nothing() -> None:

@@ -34,6 +34,7 @@ def test_what_is_written_is_read(tmp_path: Path) -> None:
         ({"radius": -1.0}, "radius = -1 must be above 0"),
         ({"radius": None}, "run again"),
         ({"stones": []}, "run again"),
+        ({"impact": {"name": "point-mass", "restitution": 0.8}}, "run again"),
     ],
 )
 def test_what_is_none_is_refused(tmp_path: Path, change: dict[str, Any], message: str) -> None:
@@ -45,6 +46,13 @@ def test_what_is_none_is_refused(tmp_path: Path, change: dict[str, Any], message
     path.write_text(json.dumps(raw))
     with pytest.raises(InputError, match=message):
         read_ensemble(path)
+
+
+def test_names_are_texts(tmp_path: Path) -> None:
+    path = tmp_path / "ensemble.json"
+    write_ensemble(measured()[2], path)
+    path.write_text(path.read_text().replace('"name": "A"', '"name": 5'))
+    assert {shot.stones[0].name for shot in read_ensemble(path).others} == {"5"}
 
 
 @pytest.mark.parametrize("content", ["", "{", "[]", "7", '"text"'])

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from report.units import FEET, METRES, UNITS
+from data.coach_units import FEET, METRES, UNITS
 
 
 def test_a_foot_has_twelve_inches():
