@@ -26,6 +26,7 @@ def settings_of(arguments: argparse.Namespace) -> Settings:
         stick=known.get("stick"),
         house=known.get("house"),
         camera=known.get("camera"),
+        camera_height=known.get("camera_height"),
         radius=known.get("radius", STONE.radius),
         masses=_by_stone("--mass", known.get("mass", ())),
         length_unit=known.get("length_unit"),

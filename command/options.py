@@ -9,7 +9,7 @@ from command import values
 from data.coach_units import UNITS
 from data.sheet import STONE
 from data.units import ANGLE_UNITS, LENGTH_UNITS
-from work.limits import FRACTION, FRICTION, MOST_THROWS, POSITIVE, RADIUS, Limits
+from work.limits import FRACTION, FRICTION, HEIGHT, MOST_THROWS, POSITIVE, RADIUS, Limits
 
 OFFSETS = Limits(-5.0, 5.0, "a distance in metres, -5 to 5")
 
@@ -71,6 +71,13 @@ def clip_options(parser: argparse.ArgumentParser, rate: str = "rate of pictures,
         metavar="CAMERA",
         help="a known camera, as a run's camera.csv: one row for a still camera, or one per frame;"
         " or a Tracker project, for its calibration",
+    )
+    parser.add_argument(
+        "--camera-height",
+        type=values.within(HEIGHT),
+        metavar="METRES",
+        help="how high the camera hangs above the ice, to 0.1 m, where the view does not tell it:"
+        " from straight above it does not",
     )
 
 

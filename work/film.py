@@ -104,11 +104,12 @@ def _follow(clip: Clip, settings: Settings, progress: Progress, placed: Placed) 
     if settings.house is None:
         from vision.camera_path.follow_house import follow_house
 
-        return follow_house(clip, progress, placed=placed)
+        return follow_house(clip, progress, placed=placed, height=settings.camera_height)
     from vision.camera_path.given import GivenHouse, follow_given
 
     frame, *points = settings.house
-    return follow_given(clip, GivenHouse.of(points, frame), progress, placed)
+    given = GivenHouse.of(points, frame)
+    return follow_given(clip, given, progress, placed, settings.camera_height)
 
 
 def check_size(radius: float, camera: Camera) -> None:

@@ -17,6 +17,7 @@ from work.limits import (
     FRACTION,
     FRAME,
     FRICTION,
+    HEIGHT,
     POSITIVE,
     RADIUS,
     SAMPLES,
@@ -47,6 +48,8 @@ class Settings:
         Table as ``camera.csv`` with a known camera: one row, or one per frame; or a Tracker
         project, whose coordinate system is the camera. With a radius other than a curling
         stone's, the discs are looked for as plain ones on no house.
+    camera_height : float, optional
+        How high the camera hangs above the ice, m, to 0.1 m; where it is found by the house.
     radius : float
         Radius of the discs, m.
     masses : mapping
@@ -75,7 +78,8 @@ class Settings:
     Raises
     ------
     InputError
-        More than one of stick, house and camera, a unit that is unknown, or a number that makes no
+        More than one of stick, house and camera, a height beside one of these that tells where the
+        camera is, a unit that is unknown, or a number that makes no
         sense.
     """
 
@@ -84,6 +88,7 @@ class Settings:
     stick: tuple[float, float, float, float, float] | None = None
     house: tuple[int | None, float, float, float, float, float, float] | None = None
     camera: Path | None = None
+    camera_height: float | None = None
     radius: float = STONE.radius
     masses: Mapping[str, float] = field(default_factory=dict)
     length_unit: str | None = None
@@ -104,6 +109,10 @@ class Settings:
         given = [name for name, value in ways.items() if value is not None]
         if len(given) > 1:
             raise InputError(f"{' and '.join(given)} exclude each other; give one of them")
+        if self.camera_height is not None and given not in ([], ["--house"]):
+            raise InputError(
+                f"--camera-height is of a camera found by its house, not by {given[0]}"
+            )
         check_units(self.length_unit, self.angle_unit, self.fps)
         for item in fields(self):
             value, check = getattr(self, item.name), _CHECKS.get(item.name)
@@ -167,6 +176,7 @@ _CHECKS: Mapping[str, Check] = {
     "stick": _parts(*[(ANY, False)] * 5),
     "house": _parts((FRAME, True), *[(ANY, False)] * 6),
     "camera": _PATH,
+    "camera_height": HEIGHT.check,
     "radius": RADIUS.check,
     "masses": _by_stone(POSITIVE.check, "mass"),
     "no_house": _YES_NO,
@@ -201,8 +211,10 @@ def refuse_table_options(path: Path, settings: Settings) -> None:
 
 def refuse_clip_options(path: Path, settings: Settings) -> None:
     """Refuse to pass over what a person says about a clip where tracks are read."""
-    said = {"--stick": settings.stick, "--house": settings.house, "--camera": settings.camera}
-    given = [name for name, value in {**said, "--frames": settings.frames}.items() if value]
+    said: dict[str, object] = {"--stick": settings.stick, "--house": settings.house}
+    said |= {"--camera": settings.camera, "--camera-height": settings.camera_height}
+    said["--frames"] = settings.frames
+    given = [name for name, value in said.items() if value]
     if given:
         clip = "; add --clip to measure its clip" if path.suffix.lower() in PROJECT_SUFFIXES else ""
         raise InputError(f"{path}: only clips take {', '.join(given)}; tracks are read here{clip}")

@@ -25,7 +25,7 @@ def words(files: list[Path], settings: Settings) -> list[str]:
         Settings(camera=Path("earlier run/camera.csv"), units="ft"),
         Settings(masses={"A": 19.1, "B": 18.0}, length_unit="cm", angle_unit="deg", tab="it's"),
         Settings(names={"A": "mass A"}, angles={"A": Path("a b.txt")}, restitution=0.8),
-        Settings(friction=0.012, clip=True),
+        Settings(friction=0.012, clip=True, camera_height=5.6),
     ],
 )
 def test_the_same_settings_come_back(settings):

@@ -41,6 +41,8 @@ def test_check_refuses_them_too(tmp_path: Path, capsys: pytest.CaptureFixture[st
         ({"masses": {"A": 0.0}}, "mass of A: 0.0 is not a positive number"),
         ({"fps": float("inf")}, "frame rate inf: must be a positive number"),
         ({"stick": (1.0, 2.0, 1.0, 2.0, 0.5)}, "has no length"),
+        ({"camera_height": 0.5}, "camera_height: 0.5 is not a height in metres, 1 to 100"),
+        ({"camera_height": 5.0, "camera": "c.csv"}, "--camera-height is of a camera found by its"),
         ({"length_unit": "furlong"}, "length unit 'furlong': one of m, cm"),
         ({"angle_unit": "turn"}, "angle unit 'turn': one of rad, deg"),
         ({"units": "yd"}, "units 'yd': one of m, ft"),

@@ -70,10 +70,17 @@ class HouseFollower:
     first : HouseFit, optional
         The house in the frame of its camera: what shows that one is the shot. Else it is looked
         for, and the longest piece is the shot.
+    height : float, optional
+        How high the camera hangs, m, where somebody says it.
     """
 
-    def __init__(self, size: tuple[int, int], first: HouseFit | None = None) -> None:
-        self._size = size
+    def __init__(
+        self,
+        size: tuple[int, int],
+        first: HouseFit | None = None,
+        height: float | None = None,
+    ) -> None:
+        self._size, self._height = size, height
         self._first = first
         self._looked: list[int] = []
         self._shelf = Shelf(ROOM)
@@ -241,7 +248,7 @@ class HouseFollower:
         """Begin a piece, or go on with one that shows the same; then follow it back."""
         piece, view = self._same(house, frame)
         if piece is None:
-            prior = OVERHEAD if house.overhead else ANYWHERE
+            prior = (OVERHEAD if house.overhead else ANYWHERE).at_height(self._height)
             edges = EdgeTracker(self._size, house.evidence.palette, house.edge, house.evidence)
             # One that is asked for needs no second look.
             in_view = 1.0 if self._first is not None else float(house.evidence.visible[TWELVE])
@@ -279,6 +286,7 @@ def follow_house(
     progress: Progress = no_progress,
     first: HouseFit | None = None,
     placed: Placed = nobody,
+    height: float | None = None,
 ) -> HouseTrack:
     """Follow the house through a clip.
 
@@ -287,7 +295,7 @@ def follow_house(
     clip : Clip
         Read once, in order; a single picture is a clip of one frame.
     progress : Progress
-    first : HouseFit, optional
+    first, height : HouseFit, float, optional
         As for `HouseFollower`.
     placed : Placed
         Told of each frame that has a camera, and of the camera as it is known by then.
@@ -297,7 +305,7 @@ def follow_house(
     SceneError
         No house can be made out in any frame.
     """
-    follower = HouseFollower(clip.size, first)
+    follower = HouseFollower(clip.size, first, height)
     for frame in clip:
         progress("house", clip.passed, clip.expected)
         for seen, provisional in follower.look(frame):

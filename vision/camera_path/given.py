@@ -84,11 +84,16 @@ class GivenHouse:
 
 
 def follow_given(
-    clip: Clip, house: GivenHouse, progress: Progress = no_progress, placed: Placed = nobody
+    clip: Clip,
+    house: GivenHouse,
+    progress: Progress = no_progress,
+    placed: Placed = nobody,
+    height: float | None = None,
 ) -> HouseTrack:
     """Follow the house through a clip from where a person says that it is.
 
-    `placed` is told of each frame and its camera, which may be provisional.
+    `placed` is told of each frame and its camera, which may be provisional; `height` is how high
+    that hangs, m, where a person says it.
 
     Raises
     ------
@@ -98,8 +103,8 @@ def follow_given(
     frame = _frame(clip, house)
     fit = fit_given(frame.image, house, frame=frame.index, t=frame.t)
     if fit is None:
-        return _as_given(clip, frame, house, progress, placed)
-    return follow_house(clip, progress, fit, placed)
+        return _as_given(clip, frame, house, progress, placed, height)
+    return follow_house(clip, progress, fit, placed, height)
 
 
 def hypotheses(house: GivenHouse, size: tuple[int, int]) -> list[Guess]:
@@ -185,14 +190,20 @@ def _camera(guess: Guess, size: tuple[int, int]) -> Camera:
 
 
 def _as_given(
-    clip: Clip, frame: Frame, house: GivenHouse, progress: Progress, placed: Placed
+    clip: Clip,
+    frame: Frame,
+    house: GivenHouse,
+    progress: Progress,
+    placed: Placed,
+    height: float | None,
 ) -> HouseTrack:
     """Take the three points for what they are, in all frames that show the same picture."""
     guess = hypotheses(house, clip.size)[0]
     view, rig, prior = start(guess, clip.size)
     view, rig = y_up(view, rig, clip.size)
     marks = _marks(house, view, rig, clip.size)
-    track = fit_clip([Seen(frame.index, frame.t, view, Kept(marks), True)], rig, prior, clip.size)
+    seen = [Seen(frame.index, frame.t, view, Kept(marks), True)]
+    track = fit_clip(seen, rig, prior.at_height(height), clip.size)
     given = replace(track.cameras[0], rms_px=float("nan"), quality=0.0)
     cameras = []
     for done, other in enumerate(clip, 1):

@@ -160,10 +160,11 @@ def fit_clip(
     marks, views = [s.marks.get() for s in chosen], [s.view for s in chosen]
     shared, _ = bundle(marks, times, views, rig, size, prior)
     if shared.ragged > RAGGED:
-        lean = fit_leaning(marks, views, shared.rig, size, sharing=SHARING)
-        other, _ = bundle(marks, times, lean.views, lean.rig, size, ANYWHERE)
+        anywhere = ANYWHERE.at_height(prior.height)
+        lean = fit_leaning(marks, views, shared.rig, size, sharing=SHARING, prior=anywhere)
+        other, _ = bundle(marks, times, lean.views, lean.rig, size, anywhere)
         if other.ragged < shared.ragged / 2:
-            shared, prior = other, ANYWHERE
+            shared, prior = other, anywhere
     cameras = _fit_frames(seen, shared, size, edge.sd)
     sd = _spread_of(shared) * np.sqrt(np.diag(shared.cov)[:RIG_SIZE])
     place, scale = shared.rig[POSITION], _scale_sd(chosen[-1].view, shared.rig, edge.sd)
@@ -173,7 +174,7 @@ def fit_clip(
         tuple(cameras),
         np.array([HOUSE.twelve_foot, *shared.rig[[R8, R4]]]),
         sd[POSITION],
-        warnings(cameras, float(place[2]), float(sd[2]), float(prior.sd[2]), lined, shared.cropped),
+        warnings(cameras, float(place[2]), float(sd[2]), prior, lined, shared.cropped),
     )
 
 

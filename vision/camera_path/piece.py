@@ -379,12 +379,13 @@ class Piece:
         spread = self._spread()
         fit = self._joint(spread)
         if self.vague:
+            anywhere = ANYWHERE.at_height(self.prior.height)
             lean = fit_leaning(
                 [s.marks.get() for s in spread], [s.view for s in spread], self.rig, self.size,
-                sharing=SHARING,
+                sharing=SHARING, prior=anywhere,
             )  # fmt: skip
             if fit.cost - lean.cost > TILT_GAIN * SHARING:
-                self.rig, self.prior = lean.rig, ANYWHERE
+                self.rig, self.prior = lean.rig, anywhere
                 self._view_again(len(self.seen))
                 return
         self.rig = fit.rig

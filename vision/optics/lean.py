@@ -15,7 +15,7 @@ from vision.optics.adjust import Solution, solve
 from vision.optics.paint import Marks
 from vision.optics.pose import DOWN, View, rotation_matrix, rotation_vector
 from vision.optics.resection import VIEW_SD
-from vision.optics.rig import ANYWHERE, POSITION, start_rig
+from vision.optics.rig import ANYWHERE, POSITION, Prior, start_rig
 
 Array = NDArray[np.float64]
 
@@ -34,10 +34,11 @@ def fit_leaning(
     size: tuple[int, int],
     *,
     sharing: float,
+    prior: Prior = ANYWHERE,
     view_sd: ArrayLike = VIEW_SD,
     iterations: int = STEPS,
 ) -> Solution:
-    """Fit cameras of which nothing is known beforehand; as `vision.optics.adjust.solve`.
+    """Fit cameras of which nothing else is known beforehand; as `vision.optics.adjust.solve`.
 
     Returns
     -------
@@ -47,16 +48,16 @@ def fit_leaning(
     fits = [
         solve(
             frames, begin, shared, size,
-            prior=ANYWHERE, sharing=sharing, view_sd=view_sd, iterations=iterations,
+            prior=prior, sharing=sharing, view_sd=view_sd, iterations=iterations,
         )
-        for begin, shared in ((views, rig), *_aside(views, rig))
+        for begin, shared in ((views, rig), *_aside(views, rig, prior))
     ]  # fmt: skip
     return min(fits, key=lambda fit: fit.cost)
 
 
-def _aside(views: Sequence[View], rig: Array) -> Iterator[tuple[list[View], Array]]:
+def _aside(views: Sequence[View], rig: Array, prior: Prior) -> Iterator[tuple[list[View], Array]]:
     """Lead a camera about the tee to each side, nearer or farther with its zoom: views and rigs."""
-    zoom = ANYWHERE.mean[2] / rig[POSITION][2]
+    zoom = prior.mean[POSITION][2] / rig[POSITION][2]
     for way in ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)):
         turn = rotation_matrix(ASLANT * np.array([*way, 0.0])).T @ DOWN
         led = [
@@ -67,4 +68,4 @@ def _aside(views: Sequence[View], rig: Array) -> Iterator[tuple[list[View], Arra
             )
             for view in views
         ]
-        yield led, start_rig(ANYWHERE, zoom * turn @ rig[POSITION])
+        yield led, start_rig(prior, zoom * turn @ rig[POSITION])

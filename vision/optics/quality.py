@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from vision.optics.camera import Camera
 from vision.optics.paint import CIRCLES, ice_frame, measures
 from vision.optics.pose import View, project
+from vision.optics.rig import POSITION, Prior
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -24,6 +25,9 @@ POOR_OFF = 0.005
 
 UNTOLD = 0.7
 """Share of its prior standard deviation above which the camera's height counts as assumed."""
+
+AT_ODDS = 2.0
+"""Standard deviations from which on a view has the camera elsewhere than somebody says."""
 
 ARC = np.radians(15.0)
 """Length of a piece of a circle that counts as explained where one of its edges is, rad."""
@@ -85,15 +89,17 @@ def quality(pieces: Index, off: float, view: View, rig: Array, size: tuple[int, 
 
 
 def warnings(
-    cameras: Sequence[Camera], height: float, sd: float, prior_sd: float, lined: bool, cropped: bool
+    cameras: Sequence[Camera], height: float, sd: float, prior: Prior, lined: bool, cropped: bool
 ) -> tuple[str, ...]:
     """Tell what a person should know before trusting the cameras of a clip.
 
     Parameters
     ----------
     cameras : sequence of Camera
-    height, sd, prior_sd : float
-        Of the camera above the ice: as found, and its standard deviations after and before, m.
+    height, sd : float
+        Of the camera above the ice as found, and its standard deviation, m.
+    prior : Prior
+        What was known of it beforehand.
     lined : bool
         Whether a line was seen beside the circles.
     cropped : bool
@@ -117,11 +123,17 @@ def warnings(
             "the picture seems to be cropped off its middle or stretched (or taken from above"
             " 20 m, or by hand): places may be centimetres off; give the clip as it was recorded"
         )
-    if sd > UNTOLD * prior_sd:
+    before, off = float(prior.sd[POSITION][2]), height - float(prior.mean[POSITION][2])
+    if prior.height is not None and abs(off) > AT_ODDS * before:
+        found.append(
+            f"the camera's height that was given, {prior.height:g} m, does not fit this view, which"
+            f" has it {'higher' if off > 0 else 'lower'}; places may be centimetres off"
+        )
+    if prior.height is None and sd > UNTOLD * before:
         found.append(
             f"the camera's height cannot be told from this view ({height:.1f} ±"
             f" {sd:.1f} m assumed); stones far from the picture's middle may be"
-            " centimetres off"
+            " centimetres off; say it with --camera-height if you know it"
         )
     if not lined:
         found.append("neither centre line nor tee line is seen; y is up in the picture")

@@ -6,7 +6,7 @@ The rig is an array of fifteen numbers; a `Prior` says what is known of them bef
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
@@ -22,6 +22,9 @@ CENTRE_X, TEE_Y, BACK_Y, HOG_Y, K1_BEND = 10, 11, 12, 13, 14
 RIG_SIZE = 15
 """Where each of its numbers lies in a rig; see `Prior`."""
 
+HEIGHT_SD = 0.1
+"""How well somebody who says it knows how high a camera hangs, m."""
+
 
 @dataclass(frozen=True)
 class Prior:
@@ -30,11 +33,20 @@ class Prior:
     Order: position x, y, z (m); k1, its change per unit of log focal length, k2; radii of the
     8-ft and 4-ft edges (m); x of the left and the right side of the sheet, x of the centre line,
     y of the tee line, of the back line and of the hog line (m); k1 per squared unit of log focal
-    length.
+    length. ``height`` is how high the camera hangs, m, where somebody says it.
     """
 
     mean: Array
     sd: Array
+    height: float | None = None
+
+    def at_height(self, height: float | None) -> Prior:
+        """Give that of a camera of which somebody says how high it hangs, m; itself if nobody."""
+        if height is None:
+            return self
+        mean, sd = self.mean.copy(), self.sd.copy()
+        mean[POSITION][2], sd[POSITION][2] = height, HEIGHT_SD
+        return replace(self, mean=mean, sd=sd, height=height)
 
 
 _LENS = ((-0.015, 0.05), (0.0, 0.05), (0.01, 0.02))  # k1, k1 by zoom, k2: broadcast lenses

@@ -53,9 +53,11 @@ def rms(camera: Camera, pixels: np.ndarray) -> float:
     return float(np.sqrt((error**2).sum(1).mean()))
 
 
-def follow(path: CameraPath, *, duration: float, **changes: object) -> tuple[HouseTrack, int]:
+def follow(
+    path: CameraPath, *, duration: float, height: float | None = None, **changes: object
+) -> tuple[HouseTrack, int]:
     clip, truth = cached_clip(replace(SCENE, **changes), path, duration=duration)
-    return follow_house(open_clip([clip])), len(truth.camera)
+    return follow_house(open_clip([clip]), height=height), len(truth.camera)
 
 
 def worst(track: HouseTrack, path: CameraPath) -> float:
@@ -75,6 +77,22 @@ def test_pan_zoom_roll_and_shake_are_followed() -> None:
     assert abs(position[2] - 9.9) < max(2.5 * track.position_sd[2], 0.3)
     paint = np.array(PAINTS["navy-orange"].radii[:3])
     assert (np.abs(track.radii - paint) < 0.003).all()
+
+
+def test_of_a_low_camera_overhead_the_height_can_be_said() -> None:
+    """Circles seen from straight above are the same from any height; caps above the ice are not."""
+    path = still_camera(position=(0.2, 0.4, 5.0), target=(0.2, 0.5), px_per_m=100)
+    caps = np.array([(1.6, 0.4, 0.12), (-1.4, 0.2, 0.12), (0.2, 2.0, 0.12)])
+    off = []
+    for height in (None, 5.1):
+        track, _ = follow(path, duration=0.4, height=height)
+        camera = track.cameras[-1]
+        places = camera.ice(path.at(camera.t).project(caps), height=0.12)
+        off.append(float(np.hypot(*(places - caps[:, :2]).T).max()))
+        assert worst(track, path) < 0.003
+    assert any("say it with --camera-height" in w for w in follow(path, duration=0.4)[0].warnings)
+    assert not track.warnings
+    assert off[0] > 0.008 and off[1] < 0.0025
 
 
 def test_a_house_that_comes_into_view_late_is_followed_back() -> None:

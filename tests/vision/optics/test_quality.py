@@ -8,6 +8,7 @@ from vision.optics.camera import Camera
 from vision.optics.paint import CIRCLES
 from vision.optics.pose import View
 from vision.optics.quality import ARC, POOR, POOR_OFF, edges_off, quality, warnings
+from vision.optics.rig import OVERHEAD
 from vision.optics.shared import BINS
 
 RIG = true_rig()
@@ -53,7 +54,7 @@ def cameras(qualities: list[float]) -> list[Camera]:
 
 def test_a_good_clip_has_no_warnings() -> None:
     for clip in (cameras([0.9] * 20), cameras([0.9] * 19 + [POOR / 2])):
-        assert warnings(clip, 8.0, 0.1, 1.5, lined=True, cropped=False) == ()
+        assert warnings(clip, 8.0, 0.1, OVERHEAD, lined=True, cropped=False) == ()
 
 
 @pytest.mark.parametrize(
@@ -75,5 +76,12 @@ def test_a_good_clip_has_no_warnings() -> None:
 def test_what_is_doubtful_is_told(
     qualities: list[float], sd: float, lined: bool, cropped: bool, told: str
 ) -> None:
-    (text,) = warnings(cameras(qualities), 8.0, sd, 1.5, lined, cropped)
+    (text,) = warnings(cameras(qualities), 8.0, sd, OVERHEAD, lined, cropped)
     assert told in text
+
+
+def test_a_height_that_is_said_is_not_assumed_but_may_be_at_odds_with_the_view() -> None:
+    said = OVERHEAD.at_height(5.6)
+    assert warnings(cameras([0.9] * 3), 5.65, 0.1, said, lined=True, cropped=False) == ()
+    (text,) = warnings(cameras([0.9] * 3), 6.1, 0.1, said, lined=True, cropped=False)
+    assert "given, 5.6 m, does not fit this view, which has it higher" in text
