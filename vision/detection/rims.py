@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import cv2
 import numpy as np
@@ -145,16 +146,22 @@ def falls_along(values: Floats | Bytes) -> Floats:
     ----------
     values : ndarray, shape (n, rays, radii, channels)
     """
+    if not values.size:
+        return np.zeros(values.shape, np.float32)
+    flat = values.reshape(-1, *values.shape[-2:])
+    filtered = cv2.sepFilter2D(flat, cv2.CV_32F, *_kernels())
+    return np.asarray(filtered, np.float32).reshape(values.shape)
+
+
+@lru_cache(maxsize=1)
+def _kernels() -> tuple[Floats, Floats]:
+    """Weights along the radius, by which values fall, and across the rays."""
     half = int(np.ceil(3 * _SMOOTH))
     x = np.arange(-half, half + 1, dtype=np.float32)
     slope = np.exp(-0.5 * (x / np.float32(_SMOOTH)) ** 2) * x
     slope /= (slope * x).sum()
     across = np.exp(-0.5 * (np.arange(-2, 3, dtype=np.float32) / 0.6) ** 2)
-    if not values.size:
-        return np.zeros(values.shape, np.float32)
-    flat = values.reshape(-1, *values.shape[-2:])
-    filtered = cv2.sepFilter2D(flat, cv2.CV_32F, -slope, across / across.sum())
-    return np.asarray(filtered, np.float32).reshape(values.shape)
+    return -slope, across / across.sum()
 
 
 def summed(values: Flags | Floats) -> Floats:
