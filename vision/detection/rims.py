@@ -125,12 +125,14 @@ class Bands:
         away *= away
         away *= np.float32(-0.5)
         shape = away.shape[:-1]
-        best = (self.fall[..., half : size - half] * np.exp(away, out=away)).argmax(-1).ravel()
+        away = np.exp(away, out=away)
+        away *= self.fall[..., half : size - half]
+        best = away.argmax(-1).ravel()
         offsets = np.arange(2 * half + 1)
         rows = np.arange(0, self.fall.size, size)
         # Which edge is meant is told by where it is expected; where it lies, by itself alone.
         strength = self.fall.ravel().take((rows + best)[:, None] + offsets)
-        best = np.clip(best + strength.argmax(1) - half, 0, size - 2 * half - 1)
+        best = np.minimum(np.maximum(best + strength.argmax(1) - half, 0), size - 2 * half - 1)
         strength = self.fall.ravel().take((rows + best)[:, None] + offsets)
         total = strength @ np.ones(len(offsets), np.float32)
         place = (strength @ (offsets - half).astype(np.float32)) / np.maximum(total, 1e-9)
