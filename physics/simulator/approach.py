@@ -10,11 +10,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.simulator.motion import Path, Point
+if TYPE_CHECKING:  # whoever follows stones in pictures needs no laws of ice
+    from physics.simulator.motion import Path, Point
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]

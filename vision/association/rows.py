@@ -49,8 +49,8 @@ class Rows(Sequence[Sighting]):
         self._numbers.extend(
             (
                 seen.x, seen.y, seen.sd_x, seen.sd_y, seen.visible, seen.score, seen.pixel_size,
-                seen.measured, seen.swept, *seen.sd_place, *seen.colour, *seen.bends, *seen.pixel,
-                *seen.light,
+                seen.measured, seen.swept, *seen.sd_place, *seen.colour.tolist(), *seen.bends,
+                *seen.pixel, *seen.light,
             )
         )  # fmt: skip
         self._spectra.append(seen.spectrum)

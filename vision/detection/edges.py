@@ -165,7 +165,7 @@ def fit_edges(
     by_mixture = np.zeros(len(visible), bool)
     by_mixture[rows] = dark[rows]
     # What displaces the edges of one side is made good by the other side, if that is seen.
-    doubt = np.tile(0.04 * disc.radius * (1 - visible)[:, None], 2)
+    doubt = np.repeat(0.04 * disc.radius * (1 - visible)[:, None], 2, axis=1)
     moves = (swept_share(views.drift) > 0) & fit.ok & (visible > OPEN)
     swept = moves & by_mixture
     doubt[swept] = np.hypot(doubt[swept], DRAWN_OUT * np.abs(views.drift[swept]))

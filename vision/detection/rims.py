@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import cv2
 import numpy as np
@@ -124,12 +125,14 @@ class Bands:
         away *= away
         away *= np.float32(-0.5)
         shape = away.shape[:-1]
-        best = (self.fall[..., half : size - half] * np.exp(away, out=away)).argmax(-1).ravel()
+        away = np.exp(away, out=away)
+        away *= self.fall[..., half : size - half]
+        best = away.argmax(-1).ravel()
         offsets = np.arange(2 * half + 1)
         rows = np.arange(0, self.fall.size, size)
         # Which edge is meant is told by where it is expected; where it lies, by itself alone.
         strength = self.fall.ravel().take((rows + best)[:, None] + offsets)
-        best = np.clip(best + strength.argmax(1) - half, 0, size - 2 * half - 1)
+        best = np.minimum(np.maximum(best + strength.argmax(1) - half, 0), size - 2 * half - 1)
         strength = self.fall.ravel().take((rows + best)[:, None] + offsets)
         total = strength @ np.ones(len(offsets), np.float32)
         place = (strength @ (offsets - half).astype(np.float32)) / np.maximum(total, 1e-9)
@@ -145,16 +148,22 @@ def falls_along(values: Floats | Bytes) -> Floats:
     ----------
     values : ndarray, shape (n, rays, radii, channels)
     """
+    if not values.size:
+        return np.zeros(values.shape, np.float32)
+    flat = values.reshape(-1, *values.shape[-2:])
+    filtered = cv2.sepFilter2D(flat, cv2.CV_32F, *_kernels())
+    return np.asarray(filtered, np.float32).reshape(values.shape)
+
+
+@lru_cache(maxsize=1)
+def _kernels() -> tuple[Floats, Floats]:
+    """Weights along the radius, by which values fall, and across the rays."""
     half = int(np.ceil(3 * _SMOOTH))
     x = np.arange(-half, half + 1, dtype=np.float32)
     slope = np.exp(-0.5 * (x / np.float32(_SMOOTH)) ** 2) * x
     slope /= (slope * x).sum()
     across = np.exp(-0.5 * (np.arange(-2, 3, dtype=np.float32) / 0.6) ** 2)
-    if not values.size:
-        return np.zeros(values.shape, np.float32)
-    flat = values.reshape(-1, *values.shape[-2:])
-    filtered = cv2.sepFilter2D(flat, cv2.CV_32F, -slope, across / across.sum())
-    return np.asarray(filtered, np.float32).reshape(values.shape)
+    return -slope, across / across.sum()
 
 
 def summed(values: Flags | Floats) -> Floats:

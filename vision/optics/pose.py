@@ -154,7 +154,8 @@ def camera(
     f = view.focal
     k = np.array([[f, 0, (w - 1) / 2], [0, f, (h - 1) / 2], [0, 0, 1]])
     r = view.rotation
-    matrix = k @ np.column_stack([r[:, 0], r[:, 1], -r @ rig[POSITION]])
+    r[:, 2] = -r @ rig[POSITION]
+    matrix = k @ r
     k1, k2 = distortion(rig, view.vector[3], size)
     return Camera(
         frame,

@@ -122,7 +122,8 @@ class Normals:
             return None
         measure, count = measures(rig)[self.line], len(self.line)
         (foot, way), (foot_on, way_on) = (self.foot, self.way), self.beyond
-        places = np.append(foot + way * measure, foot_on + way_on * measure, axis=1)
+        places = np.empty((2, 2 * count))
+        places[:, :count], places[:, count:] = foot + way * measure, foot_on + way_on * measure
         seen = project(places.T, view, rig, size).T
         point, (across, down) = seen[:, :count], seen[:, count:] - seen[:, :count]
         if not np.abs(point - self.point).max() < MOST_MOVED * size[0]:
@@ -134,8 +135,8 @@ class Normals:
             if inside.mean() < LEAST_LEFT:
                 return None
             point[:, ~inside] = OUTSIDE
-        normal = np.stack([down, -across]) / np.sqrt(across * across + down * down)
-        return np.stack([point, normal])
+        length = np.sqrt(across * across + down * down)
+        return np.array([point, [down / length, -across / length]])
 
 
 def lay_out(

@@ -17,12 +17,15 @@ from vision.spin.align import HARMONICS, Array, Complex, rings_seen
 _GRID = 1440
 """Angles of a whole turn that are tried."""
 
+_TURN = 1j * HARMONICS
+"""Logarithms by which a radian turns the harmonics."""
+
 
 @lru_cache(maxsize=64)
 def _offsets(reach: float) -> tuple[Array, NDArray[np.complex128]]:
     """Angles up to `reach` either way, rad, and how they turn the harmonics."""
     offset = np.linspace(-reach, reach, max(int(_GRID * reach / np.pi), 9))
-    return offset, np.exp(1j * HARMONICS[:, None] * offset)
+    return offset, np.exp(_TURN[:, None] * offset)
 
 
 def crossed(reference: Complex, spectra: Complex) -> tuple[Complex, Array]:
@@ -39,20 +42,26 @@ def crossed(reference: Complex, spectra: Complex) -> tuple[Complex, Array]:
 def _nearest(cross: Complex, expected: Array, reach: float) -> tuple[Array, Array]:
     """Angles about those expected at which pictures are most alike, to 2 mrad, and how much."""
     offset, phases = _offsets(ceil(100 * reach) / 100)
-    value = ((cross * np.exp(1j * HARMONICS * expected[:, None])) @ phases).real
+    value = ((cross * np.exp(_TURN * expected[:, None])) @ phases).real
     best = value.argmax(1)
     return expected + offset[best], value[np.arange(len(best)), best]
 
 
 def angle_between(
-    reference: Complex, spectrum: Complex, expected: float, reach: float
+    reference: Complex,
+    spectrum: Complex,
+    expected: float,
+    reach: float,
+    shown: NDArray[np.bool_] | None = None,
 ) -> tuple[float, float]:
     """Angle by which one cap is turned against a reference: `angles_between` of one, to 2 mrad.
 
-    Each frame asks for one a stone and more: so written it takes half of the time of those.
+    Each frame asks for one a stone and more: so written it takes half of the time of those. Whoever
+    has many pictures may say which rings are `shown` by the harmonics that are compared.
     """
     model, seen = reference[1:-1], spectrum[1:-1]
-    shown = rings_seen(seen[None])[0]
+    if shown is None:
+        shown = rings_seen(seen[None])[0]
     if not shown.all():
         model = np.where(shown[:, None], model, np.complex64(0))
     energy = sqrt(np.vdot(model, model).real * np.vdot(seen, seen).real)
@@ -60,7 +69,7 @@ def angle_between(
         return nan, 0.0
     cross = (seen * model.conj()).reshape(len(HARMONICS), -1).sum(1)
     offset, phases = _offsets(ceil(100 * reach) / 100)
-    value = ((cross * np.exp(1j * HARMONICS * expected)) @ phases).real
+    value = ((cross * np.exp(_TURN * expected)) @ phases).real
     best = int(value.argmax())
     return expected + float(offset[best]), float(value[best]) / energy
 
@@ -88,10 +97,10 @@ def angles_between(
     blank = energy <= 0
     angle, _ = _nearest(cross, expected, reach)
     for _ in range(4):  # Newton's method on a sum of cosines
-        phase = cross * np.exp(1j * HARMONICS * angle[:, None])
+        phase = cross * np.exp(_TURN * angle[:, None])
         slope, bend = -phase.imag @ HARMONICS, -phase.real @ HARMONICS**2
         step = -slope / np.where(bend < 0, bend, -np.inf)
         angle = angle + np.clip(step, -0.05, 0.05)
-    likeness = (cross * np.exp(1j * HARMONICS * angle[:, None])).real.sum(1)
+    likeness = (cross * np.exp(_TURN * angle[:, None])).real.sum(1)
     likeness = np.where(blank, 0.0, likeness / np.where(blank, 1.0, energy))
     return np.where(blank, np.nan, angle), likeness

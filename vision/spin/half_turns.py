@@ -105,14 +105,15 @@ def _path(gain: Array, cost: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]
     """Tell which spins and angles from stretch to stretch gain most, (count,) each."""
     rows = np.arange(len(cost))
     moves = rows - len(cost) // 2
-    back = (np.arange(TURNS) - moves[:, None]) % TURNS
-    high = cost[:, None].astype(np.float32)
+    back = rows[:, None] * TURNS + (np.arange(TURNS) - moves[:, None]) % TURNS
+    # To faster spins and, from the other end, to slower ones: side by side, for one pass.
+    back = np.concatenate([back, back[::-1]], axis=1)
+    high = np.repeat(np.stack([cost, -cost[::-1]], axis=1), TURNS, axis=1).astype(np.float32)
     best = [gain[0]]
     for more in gain[1:]:
-        come = best[-1][rows[:, None], back]
-        faster = np.maximum.accumulate(come + high, axis=0) - high
-        slower = np.maximum.accumulate((come - high)[::-1], axis=0)[::-1] + high
-        best.append(more + np.maximum(faster, slower))
+        come = best[-1].take(back) + high
+        come = np.maximum.accumulate(come, axis=0) - high
+        best.append(more + np.maximum(come[:, :TURNS], come[::-1, TURNS:]))
     s, p = (int(i) for i in np.unravel_index(best[-1].argmax(), best[-1].shape))
     path = [(s, p)]
     for earlier in best[-2::-1]:

@@ -429,6 +429,7 @@ def _followed_from(begin: int, times: Array, pictures: Complex) -> Array:
     angles = np.full(len(times), np.nan)
     angles[begin] = 0.0
     mean, weight = pictures[begin].copy(), 1.0
+    shown = rings_seen(pictures[:, 1:-1])
     for way in (range(begin + 1, len(times)), range(begin - 1, -1, -1)):
         before, told, spin = begin, begin, 0.0
         for index in way:
@@ -437,7 +438,7 @@ def _followed_from(begin: int, times: Array, pictures: Complex) -> Array:
             if abs(times[index] - times[told]) > TURNING.lost:
                 reach = np.pi
             expected = float(angles[before] + spin * wait)
-            angle, likeness = angle_between(mean, pictures[index], expected, reach)
+            angle, likeness = angle_between(mean, pictures[index], expected, reach, shown[index])
             if not likeness > TURNING.least_likeness:
                 continue
             angles[index], told = angle, index
