@@ -221,6 +221,7 @@ def _track(way: _Way, model: Model, run: Filter) -> tuple[Columns, Floats]:
         sighted[at] = np.isfinite(cut.z[:, 0])
         stretch = replace(cut, model=model)
         mean[at], spread[at], seen[at] = run(stretch)
+        _carry(stretch, mean, spread, at)
         together[at] = shared_response(stretch, trace.rise[row[at]])
     spread[:, 4:] = np.hypot(spread[:, 4:], np.linalg.norm(together, axis=2))
     for k in np.unique(part):
@@ -243,6 +244,29 @@ def _track(way: _Way, model: Model, run: Filter) -> tuple[Columns, Floats]:
     table |= {name: mean[:, i] for i, name in enumerate(columns)}
     table |= {f"sd_{name}": spread[:, i] for i, name in enumerate(columns)}
     return table, together[:, 1]
+
+
+def _carry(cut: Stretch, mean: Floats, spread: Floats, at: NDArray[np.intp]) -> None:
+    """Carry a stone that rests elsewhere than before from there to here, in the time between.
+
+    Between the last sighting at one place and the first at the other it may be anywhere on the
+    way, and move and turn at any speed.
+    """
+    sighted = np.flatnonzero(np.isfinite(cut.z[:, 0]))
+    moved = cut.rest[:-1] & cut.rest[1:] & (np.diff(cut.piece) != 0)
+    for row in np.flatnonzero(moved).tolist():
+        before, after = sighted[sighted <= row], sighted[sighted > row]
+        if not (len(before) and len(after)):
+            continue
+        ends = [before[-1], after[0]]
+        rows, (begin, end) = at[ends[0] + 1 : ends[1]], at[ends]
+        way, lasts = mean[end, :2] - mean[begin, :2], cut.t[ends[1]] - cut.t[ends[0]]
+        share = (cut.t[ends[0] + 1 : ends[1]] - cut.t[ends[0]]) / lasts
+        mean[rows, :2] = mean[begin, :2] + share[:, None] * way
+        far = float(np.hypot(*way))
+        spread[rows, :2] = np.hypot(spread[end, :2], far / sqrt(12))
+        mean[rows, 2:4], spread[rows, 2:4] = way / lasts, far / lasts
+        mean[rows, 4:], spread[rows, 4:] = np.nan, np.nan
 
 
 def _off(fit: ShotFit, place: NDArray[np.int64], t: Floats, xy: Floats) -> Floats:

@@ -38,7 +38,7 @@ STOPPED_SD = 0.01
 """How well a stone is known to have stopped, m/s: the moment of it is not exactly known."""
 
 ANYWHERE_SD = (10.0, 100.0)
-"""What is known of place (m) and angle (rad) before the first sighting."""
+"""What is known of place (m) and angle (rad) before the first sighting, and once moved unseen."""
 
 MEMORY = 0.125
 """Time over which what the ice takes keeps its deviation from the mean, s. Stones curl, and so it
@@ -176,6 +176,8 @@ def _steps(stretch: Stretch, still: Bools, deviation: Floats, sudden: Floats, ki
     stopped = np.where(stretch.idle[1:], STILL_SD[kind], STOPPED_SD)
     # What was left of a motion ends somewhere in the step, be it stopped dead in full run.
     stop = np.where(was, 0.0, jump) * dt**2 / 12
+    # Where it lay before says nothing of where it lies once it was moved.
+    stop = np.where(was & (np.diff(stretch.piece) != 0), ANYWHERE_SD[kind] ** 2, stop)
     return Steps(
         reach=np.where(ends, np.where(was, 0.0, 0.5 * dt), dt),
         keep=np.where(ends, 0.0, 1.0),

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from physics.local_fit.breaks import breaks
 from physics.local_fit.candidates import REACH, TOUCHING
+from physics.local_fit.segments import MOVED
 from physics.local_fit.shot_fit import Meeting
 from physics.local_fit.traces import Trace
 from physics.local_fit.ways import FEWEST, MISS, SLOWING, Gap, Way, first_way, gaps, last_way
@@ -201,9 +202,11 @@ def _out_of_reach(
             ]
             time = 0.5 * (one.end + same[0].end) if same else one.end
             if same and _collide(paths[first], paths[second], time):
+                apart = _apart(paths, first, second, time)
+                if not np.isfinite(apart):
+                    continue
                 left[first].remove(one)
                 left[second].remove(same[0])
-                apart = _apart(paths, first, second, time)
                 text = _unfit(first, second, one.when, apart, radius)
                 pairs.append((frozenset({first, second}), one.end, text))
     return pairs, {name: changes for name, changes in left.items() if changes}
@@ -300,7 +303,8 @@ def _leaves(path: Trace, radius: float) -> tuple[float, bool] | None:
         return None
     left = float(t[len(off) - int(np.argmin(beyond[::-1]))])
     k = min(int(np.searchsorted(path.t, left)), len(path.t) - FEWEST)
-    return left, first_way(path, k).speed > 0
+    elsewhere = off[-1] > least + MOVED * radius
+    return left, bool(elsewhere or first_way(path, k).speed > 0)
 
 
 def _away(path: Trace, place: Floats, radius: float) -> tuple[Floats, float, Floats]:

@@ -7,6 +7,9 @@ import pandas as pd
 import pytest
 
 from data.tracks import TRACK_COLUMNS, check_sightings
+from physics.filter import reference_filter as reference
+from physics.filter.rate_filter import filtered
+from physics.filter.stretch import Filter
 from physics.kalman import smooth
 from physics.local_fit.contacts import Contact, find_contacts
 from tests.physics.watch import RADIUS, airtable, hit_motion, watch
@@ -290,3 +293,23 @@ def test_what_sightings_share_is_not_averaged_out() -> None:
     tracks = smooth(check_sightings(table), (), radius=0.1455)
     assert (tracks["sd_x"].between(0.003, 0.0036)).all()
     assert (tracks["sd_y"].between(0.006, 0.0064)).all()
+
+
+@pytest.mark.parametrize("run", [filtered, reference.filtered])
+def test_a_stone_at_rest_that_was_moved_unseen_lies_where_it_is_seen(run: Filter) -> None:
+    """Between its two places nobody knows where it is, and the errors say so."""
+    rng = np.random.default_rng(5)
+    t = np.arange(0, 4, 1 / 30)
+    y = 0.85 - 0.19 * np.clip((t - 1.1) / 0.35, 0, 1)
+    table = pd.DataFrame({"stone": "B", "frame": np.arange(len(t)), "t": t, "x": 0.07, "y": y})
+    table[["x", "y"]] += rng.normal(0, 0.001, (len(t), 2))
+    hidden = (t > 1.05) & (t < 1.55)
+    table = table[~hidden]
+    unseen = {int(k): float(t[k]) for k in np.flatnonzero(hidden)}
+    tracks = smooth(check_sightings(table), (), radius=RADIUS, run=run, unseen=unseen)
+    off, sd = (tracks["y"] - y).to_numpy(), tracks["sd_y"].to_numpy()
+    assert np.abs(off[~hidden]).max() < 0.001
+    assert (tracks["seen"] == ~hidden).all()
+    assert (np.abs(off) < 2 * sd + 1e-4)[hidden].all()
+    assert sd[hidden].min() > 0.03 and sd[~hidden].max() < 0.001
+    assert (tracks.loc[hidden, "sd_vy"] > 0.3).all()

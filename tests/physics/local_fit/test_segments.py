@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from physics.local_fit.segments import cut
 from physics.local_fit.traces import Trace
@@ -47,3 +48,21 @@ def test_a_glide_stays_one_however_long_its_stone_rests_in_the_end() -> None:
         assert len(piece.samples) == len(t)
         assert piece.stops
         assert not piece.rest
+
+
+@pytest.mark.parametrize("hidden", [(1.0, 1.5), (1.21, 1.45)])
+def test_a_stone_that_rests_elsewhere_once_it_was_hidden_rests_twice(
+    hidden: tuple[float, float],
+) -> None:
+    """It goes from 1.2 s on and lies 19 cm farther at 1.5 s; some of the way may be seen."""
+    share = np.clip((T - 1.2) / 0.3, 0, 1)
+    y = 0.19 * (1 - (1 - share) ** 2)
+    seen = (hidden[0] >= T) | (hidden[1] <= T)
+    before, after = cut(trace(T[seen], y[seen], 0.001), [], 0.1455)
+    assert before.rest and after.rest
+    assert hidden[0] < before.end == after.start < hidden[1]
+
+
+def test_a_stone_that_light_moves_by_a_centimetre_rests_once() -> None:
+    (piece,) = cut(trace(T, np.where(T < 2, 0.0, 0.01), 0.001), [], 0.1455)
+    assert piece.rest

@@ -179,6 +179,14 @@ def test_stone_at_rest_that_was_moved_out_of_sight_is_said(moved: float, hits: i
     assert len(alone(places, t, (1.0, 2.5))) == hits
 
 
+@pytest.mark.parametrize(("moved", "hits"), [(0.012, 0), (0.05, 1)])
+def test_stone_at_rest_that_lies_elsewhere_after_a_blink_is_said(moved: float, hits: int) -> None:
+    """A centimetre may be light; of a short time it is not said that the stone was out of sight."""
+    t = np.arange(0.0, 4.0, 1 / FPS)
+    places = np.where((t < 2.0)[:, None], [0.0, 0.0], [moved, 0.0])
+    assert len(alone(places, t, (1.85, 2.2))) == hits
+
+
 @pytest.mark.parametrize(("wait", "hits"), [(2.0, 1), (6.0, 0)])
 def test_who_is_lost_too_long_is_nobody_who_hit(wait: float, hits: int) -> None:
     t = np.arange(0.0, 1.5 + wait + 1.5, 1 / FPS)
