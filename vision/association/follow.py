@@ -27,6 +27,9 @@ Array = NDArray[np.float64]
 
 Pair = tuple[float, float]
 
+NEWEST = 0.1
+"""Weight of the last sighting, seen in whole, in the colour of a cap."""
+
 OPEN = 0.7
 """Share of a stone that must be seen for nothing to cover it: what bends over it covers more."""
 
@@ -96,7 +99,7 @@ class Track:
         any_speed = (10 * radius) ** 2
         if not self.times:
             self._place, self._covariance = (x, y), (noise, 0.0, any_speed)
-            self.colour = np.asarray(sighting.colour, float)
+            self.colour = np.array(sighting.colour, float)
         else:
             step = t - self.times[-1]
             (ahead_x, ahead_y), (vx, vy), (p00, p01, p11) = (
@@ -116,7 +119,7 @@ class Track:
             self._place = ahead_x + gain * away_x, ahead_y + gain * away_y
             self._velocity = vx + rate * away_x, vy + rate * away_y
             self._covariance = p00 - gain * p00, p01 - gain * p01, p11 - rate * p01
-            self.colour = self.colour + 0.1 * (sighting.colour - self.colour)
+            self.colour += NEWEST * sighting.visible * (sighting.colour - self.colour)
         self.frames.append(frame)
         self.times.append(t)
         self.sightings.append(sighting)
@@ -244,6 +247,9 @@ def _assign(
     unlike = colour_differences(
         np.array([track.colour for track in tracks]), np.array([s.colour for s in sightings])
     )
+    # What is seen of one that somebody covers may be a jersey.
+    shown = np.minimum(np.array([s.visible for s in sightings]) / OPEN, 1.0)
+    unlike = unlike * shown**2
     # Young tracks yield to old ones.
     youth = np.array([0.5 if len(track.frames) < BIRTHS else 0.0 for track in tracks])
     value = distance**2 + (0.5 * unlike / other) ** 2 + youth[:, None]

@@ -62,24 +62,20 @@ class _Motion:
         s.
     place, velocity : ndarray, shape (2,)
         m and m/s.
-    colour : ndarray, shape (3,)
-        Of its cap, L*a*b*.
     """
 
     t: float
     place: Array
     velocity: Array
-    colour: Array
 
     @classmethod
     def of(cls, times: Array, seen: Sequence[Sighting]) -> _Motion:
         """From sightings on a straight way, the one at the end first."""
         end = float(times[0])
         places = np.array([(s.x, s.y) for s in seen])
-        colour = np.mean([s.colour for s in seen], axis=0)
         basis = np.stack([np.ones(len(times)), times - end], axis=1)
         (place, velocity), *_ = np.linalg.lstsq(basis, places, rcond=None)
-        return cls(end, place, velocity, colour)
+        return cls(end, place, velocity)
 
     @property
     def speed(self) -> float:
@@ -118,6 +114,14 @@ class _Stretch:
     def last(self) -> _Motion:
         return self._motion(range(self.end - 1, self.begin - 1, -1))
 
+    @cached_property
+    def colour(self) -> Array:
+        """Of its cap, L*a*b*: of one that goes out of sight a jersey may be seen in the end."""
+        seen = [self.track.sightings[k] for k in range(self.begin, self.end)]
+        return np.asarray(
+            np.average([s.colour for s in seen], axis=0, weights=[s.visible**2 for s in seen])
+        )
+
     def _motion(self, order: Sequence[int]) -> _Motion:
         times = np.array([self.track.times[k] for k in order])
         count = max(int((np.abs(times - times[0]) <= WINDOW).sum()), BIRTHS)
@@ -149,7 +153,7 @@ def rejoined(tracks: Sequence[Track], radius: float, other: float = OTHER) -> li
             unseen = after.track.times[after.begin] - before.track.times[before.end - 1]
             followed = before.track is after.track and before.end == after.begin
             if followed or 0 < unseen < PATIENCE:
-                cost[i, j] = min(_miss(before.last, after.first, radius, other), MISSED)
+                cost[i, j] = min(_miss(before, after, radius, other), MISSED)
             if followed and not before.last.speed + after.first.speed:
                 cost[i, j] = min(cost[i, j], TAPPED)
     goes_on = {i: j for i, j in assign(cost) if cost[i, j] < MISSED}
@@ -172,10 +176,11 @@ def _stretches(track: Track) -> list[_Stretch]:
     return [_Stretch(track, begin, end) for begin, end in ends]
 
 
-def _miss(before: _Motion, after: _Motion, radius: float, other: float) -> float:
+def _miss(gone: _Stretch, back: _Stretch, radius: float, other: float) -> float:
     """How far two ways of stones of one colour miss each other, in variances."""
-    if colour_difference(before.colour, after.colour) > other:
+    if colour_difference(gone.colour, back.colour) > other:
         return np.inf
+    before, after = gone.last, back.first
     t = np.linspace(before.t, after.t, STEPS)
     away = ((before.at(t) - after.at(t)) ** 2).sum(1)
     variance = before.variance(t, radius) + after.variance(t, radius)

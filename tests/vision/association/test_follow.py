@@ -234,3 +234,17 @@ def test_a_stone_that_a_jersey_half_covers_keeps_its_name() -> None:
     assert len(follow(clip([resting, beside], colours=colours), R)) == 2
     # One that stays where another one was before is another one.
     assert len(follow(clip([away, to_the_end], colours=colours), R)) == 2
+
+
+def test_a_stone_that_somebody_covers_keeps_its_colour() -> None:
+    """From 1 s on more and more of what is seen is a jersey; hidden, it comes out again."""
+    frames = []
+    for index in range(100):
+        t = index / 25
+        covered = float(np.clip((t - 1.0) / 0.5, 0, 1)) if t < 1.6 else 0.0
+        colour = (1 - covered) * RED + covered * YELLOW
+        one = sighting((0.3, 0.4), colour)._replace(visible=1 - 0.7 * covered)
+        frames.append((index, t, [] if 1.6 <= t < 2.4 else [one]))
+    assert len(rejoined(follow(frames, R), R)) == 1
+    (track,) = follow(frames[:40], R)
+    assert np.hypot(*(track.colour - RED)[1:]) < 0.3 * np.hypot(*(YELLOW - RED)[1:])
