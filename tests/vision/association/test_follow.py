@@ -243,7 +243,7 @@ def test_a_stone_that_somebody_covers_keeps_its_colour() -> None:
         t = index / 25
         covered = float(np.clip((t - 1.0) / 0.5, 0, 1)) if t < 1.6 else 0.0
         colour = (1 - covered) * RED + covered * YELLOW
-        one = sighting((0.3, 0.4), colour)._replace(visible=1 - 0.7 * covered)
+        one = sighting((0.3, 0.4), colour)._replace(visible=0.3 if covered else 1.0)
         frames.append((index, t, [] if 1.6 <= t < 2.4 else [one]))
     assert len(rejoined(follow(frames, R), R)) == 1
     (track,) = follow(frames[:40], R)
