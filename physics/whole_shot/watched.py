@@ -61,7 +61,8 @@ def watch(
     """Gather what a whole fit needs: sightings, first guesses, spins and the order of hits.
 
     A stone counts until something else than ice and hits moves it, and so do those that it
-    hits after that.
+    hits after that. One that lies still at first and is set off by what no hit tells counts as
+    long as it lies.
 
     Parameters
     ----------
@@ -85,7 +86,10 @@ def watch(
     """
     runs = {name: _without_slip(fit, run, known[name]) for name, run in _runs(fit).items()}
     runs = {name: run for name, run in runs.items() if run}
-    ends = _ends(fit, runs)
+    set_off = _set_off(fit, runs)
+    lie = {name: fit.pieces[run[0]].end for name, run in runs.items() if fit.pieces[run[0]].rest}
+    lie |= set_off
+    ends = _ends(fit, runs, set_off)
     times = [fit.time(k) for k in range(len(fit.meetings))]
     told = [
         k
@@ -96,7 +100,7 @@ def watch(
     hit = {stone for k in order for stone in fit.meetings[k].stones}
     # Who comes into view on its way after a hit was hit out of sight: from where nobody knows.
     late = min([*(times[k] for k in order), *ends.values()], default=np.inf)
-    traces, start = _traces(known, fit, runs, ends, hit, bystanders, late)
+    traces, start = _traces(known, fit, runs, ends, hit, bystanders, late, lie)
     if not traces:
         return None
     noise = noises(fit, known)
@@ -106,8 +110,8 @@ def watch(
         run = runs.get(name, [])
         seen = [_seen(fit, rank, known, noise, ends[name]) for rank in run]
         spins += [spin for of_piece in seen for spin in of_piece]
-        states += _state(name, known[name], fit, run, start)
-        if run and not fit.pieces[run[0]].rest:
+        states += _state(name, known[name], fit, run, start, lie.get(name))
+        if run and name not in lie:
             first = seen[0][0].omega if seen[0] else THROWN
             states.append(Unknown(f"{name}.omega", first, prior=SPIN))
     return Watched(
@@ -152,11 +156,12 @@ def _traces(
     hit: Collection[str],
     bystanders: Sequence[str],
     late: float,
+    lie: Collection[str],
 ) -> tuple[dict[str, Trace], float]:
     """Sightings that count, by stone, and when the shot begins, s.
 
     Of those that move or are `hit`, till they `end` or rest, but for those that come into view
-    after `late` and are not hit; and of bystanders, as long as the shot lasts.
+    after `late` and are not hit; and of bystanders, as long as the shot lasts. Some `lie` at first.
     """
     counted = {}
     for name, run in runs.items():
@@ -168,7 +173,7 @@ def _traces(
         return {}, np.nan
     counted |= {name: known[name] for name in bystanders if len(known[name].t)}
     # Back from there stones at rest stay, however long they are seen; others would not.
-    come = [name for name in counted if name in runs and not fit.pieces[runs[name][0]].rest]
+    come = [name for name in counted if name in runs and name not in lie]
     start = min(float(counted[name].t[0]) for name in come or counted)
     left_out = {name for name in come if counted[name].t[0] > late} - set(hit)
     return {
@@ -209,13 +214,33 @@ def _without_slip(fit: ShotFit, run: list[int], trace: Trace) -> list[int]:
     return run[1:] if float(np.hypot(*speed)) > STOPPING * (first.end - start) else run
 
 
-def _ends(fit: ShotFit, runs: Mapping[str, Sequence[int]]) -> dict[str, float]:
+def _set_off(fit: ShotFit, runs: Mapping[str, Sequence[int]]) -> dict[str, float]:
+    """Tell when stones that lay still are set off by what no hit tells, while others move, s.
+
+    Such a rest is no piece of the fit, for no hit bounds it. Taken for on its way from the start,
+    the stone would come through all that lies in its back: a fit from there never follows the shot,
+    and each of its simulations has stones that lean on each other by the hundred.
+    """
+    pieces = fit.pieces
+    moving = (pieces[rank].start for run in runs.values() for rank in run if not pieces[rank].rest)
+    begin = min(moving, default=np.inf)
+    firsts = {name: run[0] for name, run in runs.items() if pieces[run[0]].opens is None}
+    return {
+        name: pieces[rank].start
+        for name, rank in firsts.items()
+        if not pieces[rank].rest and pieces[rank].start > begin and _jumps(fit, None, rank)
+    }
+
+
+def _ends(
+    fit: ShotFit, runs: Mapping[str, Sequence[int]], set_off: Mapping[str, float]
+) -> dict[str, float]:
     """Find when something else than ice and hits moves each stone; infinity if never."""
-    ends = dict.fromkeys(runs, np.inf)
+    ends = dict.fromkeys(runs, np.inf) | dict(set_off)
     for name, run in runs.items():
         for one, two in pairwise(run):
             if fit.pieces[two].opens is None and _jumps(fit, one, two):
-                ends[name] = fit.pieces[two].start
+                ends[name] = min(ends[name], fit.pieces[two].start)
                 break
     order = sorted(range(len(fit.meetings)), key=fit.time)
     for k in order:  # who is hit by such a stone is no longer told either
@@ -234,11 +259,14 @@ def _rested(fit: ShotFit, run: Sequence[int], trace: Trace) -> float:
     return fit.stop(run[-1]) + RESTED
 
 
-def _jumps(fit: ShotFit, one: int, two: int) -> bool:
-    """Whether the velocity changes from a piece to the next by more than it is uncertain."""
+def _jumps(fit: ShotFit, one: int | None, two: int) -> bool:
+    """Whether the velocity changes from a piece, or rest, to the next by more than is uncertain."""
     t = fit.pieces[two].start
     speeds, variance = [], 0.0
     for rank in (one, two):
+        if rank is None:
+            speeds.append(np.zeros(2))
+            continue
         piece = fit.pieces[rank]
         tau = t - fit.origins[rank]
         speeds.append(np.zeros(2) if piece.rest else fit.motion(rank, t)[1])
@@ -251,11 +279,19 @@ def _jumps(fit: ShotFit, one: int, two: int) -> bool:
 
 
 def _state(
-    name: str, trace: Trace, fit: ShotFit, run: Sequence[int], start: float
+    name: str,
+    trace: Trace,
+    fit: ShotFit,
+    run: Sequence[int],
+    start: float,
+    lies: float | None,
 ) -> list[Unknown]:
-    """Unknowns of one stone's state at the start of the shot, guessed from its first piece."""
-    if not run or fit.pieces[run[0]].rest:
-        early = trace.xy if not run else trace.xy[trace.t < fit.pieces[run[0]].end]
+    """Unknowns of one stone's state at the start of the shot, guessed from its first piece.
+
+    It `lies` still until a time, s, if it is one that does at first.
+    """
+    if not run or lies is not None:
+        early = trace.xy if lies is None else trace.xy[trace.t < lies]
         place = np.median(early, axis=0) if len(early) else fit.theta[[6 * run[0], 6 * run[0] + 3]]
         return [Unknown(f"{name}.{key}", float(v)) for key, v in zip("xy", place, strict=True)]
     place, speed = fit.motion(run[0], start)
