@@ -141,7 +141,7 @@ def _spins(tracks: pd.DataFrame, shots: Sequence[Shot]) -> dict[str, str]:
         if _moves(stone) and stone.name not in seen:
             sd = float(np.std([shot.stones[k].omega for shot in shots[1:] or shots]))
             spin = f"spin of {stone.name}"
-            said[spin] = f"{spin} not seen: {stone.omega:.2g} ± {sd:.2g} rad/s taken"
+            said[spin] = f"{spin} not seen: {round(stone.omega, 3):.2g} ± {sd:.2g} rad/s taken"
     return said
 
 
