@@ -204,13 +204,13 @@ def _with_stops(path: Trace, run: list[Piece], radius: float) -> list[Piece]:
             else:
                 motion = _motion(path, last.samples)
                 joins = _speed(motion.last) < SLOW * radius + SLOW_END + 3 * motion.stderr
-            if last.rest and not joins:
-                out[-1], piece = _parted(path, last, piece)
             if joins:
                 samples = np.concatenate([last.samples, piece.samples])
                 out[-1] = replace(
                     last, end=piece.end, samples=samples, stops=not last.rest, closes=piece.closes
                 )
                 continue
+            if last.rest:
+                out[-1], piece = _parted(path, last, piece)
         out.append(piece)
     return out

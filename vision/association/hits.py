@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+from math import dist
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -45,15 +48,22 @@ def struck(
     dict of int to (place, velocity)
         At time t, by the ranks of the stones.
     """
-    first, second = np.triu_indices(len(places), 1)
-    speed = np.hypot(*velocities.T)
-    speeds = speed[first] + speed[second]
-    between = np.hypot(*(places[second] - places[first]).T)
-    reached = 2 * radius + speeds * (t - since.min(initial=t))
-    near = told[first] & told[second] & (speeds > 0) & (between < reached)
-    if not near.any():
+    speeds = np.hypot(*velocities.T).tolist()
+    if not any(speeds):
         return {}
-    first, second = first[near], second[near]
+    known, seen = told.tolist(), places.tolist()
+    longest = t - min(since.tolist())
+    near = [
+        (i, j)
+        for i, j in combinations(range(len(seen)), 2)
+        if (speed := speeds[i] + speeds[j]) > 0
+        and known[i]
+        and known[j]
+        and dist(seen[i], seen[j]) < 2 * radius + speed * longest
+    ]
+    if not near:
+        return {}
+    first, second = np.array(near).T
     start = np.maximum(since[first], since[second])
     apart = places[second] + velocities[second] * (start - since[second])[:, None]
     apart = apart - places[first] - velocities[first] * (start - since[first])[:, None]
