@@ -452,12 +452,11 @@ def _convert_each(arguments: argparse.Namespace) -> str:
 def _do_simulate(arguments: argparse.Namespace, bars: Bars) -> str:
     import json
 
-    from data.tracks import write_table
     from physics.prediction.what_if import Changes, changed
     from physics.simulator.simulate import simulate
     from report.numbers import warned
     from report.summary import odds_text, simulation_json, simulation_text
-    from report.whatif import write_odds
+    from report.whatif import write_odds, write_simulated
 
     shot = shot_file(arguments.shot)
     folder = what_if_folder(arguments, shot)
@@ -476,10 +475,11 @@ def _do_simulate(arguments: argparse.Namespace, bars: Bars) -> str:
     if throws is None:
         throws = MEASURED_THROWS if measured_shot(shot) else 0
     outcome = simulation_json(simulation)
-    lines = [simulation_text(simulation, folder / "simulation.csv")]
+    written = [folder / name for name in ("simulation.csv", "plan.png")]
+    lines = [simulation_text(simulation, written)]
     warnings = [*start.assumed.values()]
     with staged(folder, replaces=WHAT_IF) as stage:
-        write_table(table, stage / "simulation.csv")
+        write_simulated(stage, start, simulation, table)
         if throws:
             outcomes, odds = throw_often(
                 start, changes, throws, arguments.throw_sd, shot.name, bars

@@ -39,6 +39,22 @@ def test_tables_say_what_the_results_say() -> None:
     assert hits.loc[0, "closing_speed"] == pytest.approx(1.5)
 
 
+def test_a_shot_says_why_it_does_not_tell_e_or_friction(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    unseen, short = "restitution: no hit seen", "friction: no stone glides freely for long enough"
+    rub = "friction between the stones not told: 0.2, as in the fit of the whole shot"
+    told = replace(SHOT, warnings=(rub, "the friction differs from glide to glide"))
+    bare = replace(BARE, warnings=(unseen, "D is not followed", rub, short))
+    no_hit = replace(SHOT, restitution=Estimate(), warnings=(unseen, short))
+    shots = shots_table({"told": told, "bare": bare, "no hit": no_hit})
+    assert shots["note"].tolist() == ["", f"{unseen}; {short}", unseen]
+    for name, shot in (("a", told), ("b", bare)):
+        write_results(shot, tmp_path / name / "results.json")
+    assert main(["season", str(tmp_path), "-o", str(tmp_path / "out")]) == 0
+    assert f"{unseen}; {short}" in capsys.readouterr().out.splitlines()[2]
+
+
 def test_mean_leaves_out_what_is_not_known() -> None:
     means = pooled(shots_table({"one": SHOT, "none": BARE}))
     assert means["restitution"].shots == 1
