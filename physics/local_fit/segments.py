@@ -166,7 +166,7 @@ def _slow(path: Trace, samples: NDArray[Any], radius: float) -> bool:
     return _speed(motion.velocity) < SLOW * radius + 2 * motion.stderr
 
 
-def _lies_still(path: Trace, before: Piece, after: Piece, radius: float) -> bool:
+def lies_still(path: Trace, before: Piece, after: Piece, radius: float) -> bool:
     """Whether a stone that rested lies where it lay, as far as noise tells: none may see it go."""
     last, first = before.samples[-BETWEEN:], after.samples[:BETWEEN]
     if not (len(last) and len(first)):
@@ -200,7 +200,7 @@ def _with_stops(path: Trace, run: list[Piece], radius: float) -> list[Piece]:
         if out and piece.rest and (piece.closes is None or out[-1].rest):
             last = out[-1]
             if last.rest or last.stops:
-                joins = _lies_still(path, last, piece, radius)
+                joins = lies_still(path, last, piece, radius)
             else:
                 motion = _motion(path, last.samples)
                 joins = _speed(motion.last) < SLOW * radius + SLOW_END + 3 * motion.stderr
