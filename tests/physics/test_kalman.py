@@ -348,8 +348,11 @@ def test_a_stone_that_stops_unseen_and_is_hit_later_was_not_moved(run: Filter) -
 @pytest.mark.parametrize("run", [filtered, reference.filtered])
 def test_a_stone_that_stopped_and_was_turned_unseen_did_not_spin_before(run: Filter) -> None:
     later = (np.arange(0, 9, 1 / 25) > 6).astype(float)
-    table, _ = stopped((5.8, 6.4), y=0.3 * later, theta=2.5 * later)
-    tracks = smooth(check_sightings(table), (), radius=RADIUS, run=run)
-    before = tracks[tracks["t"].between(5.0, 5.8)]
+    table, when = stopped((5.8, 6.4), y=0.3 * later, theta=2.5 * later)
+    unseen = {round(25 * at): float(at) for at in when}
+    tracks = smooth(check_sightings(table), (), radius=RADIUS, run=run, unseen=unseen)
+    before = tracks[tracks["t"].between(5.0, 5.79)]
     assert (np.abs(before["omega"]) < 3 * before["sd_omega"]).all()
-    assert np.abs(tracks.loc[tracks["t"] > 6.4, "theta"] - 4.5).max() < 0.02
+    assert np.abs(tracks.loc[tracks["t"] > 6.41, "theta"] - 4.5).max() < 0.02
+    meanwhile = tracks.loc[tracks["seen"] == 0, ["theta", "omega", "sd_theta", "sd_omega"]]
+    assert len(meanwhile) == len(when) and meanwhile.isna().all(axis=None)

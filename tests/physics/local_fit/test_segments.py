@@ -63,6 +63,9 @@ def test_a_stone_that_rests_elsewhere_once_it_was_hidden_rests_twice(
     assert hidden[0] < before.end == after.start < hidden[1]
 
 
-def test_a_stone_that_light_moves_by_a_centimetre_rests_once() -> None:
-    (piece,) = cut(trace(T, np.where(T < 2, 0.0, 0.01), 0.001), [], 0.1455)
+@pytest.mark.parametrize(("off", "sd"), [(0.01, 0.001), (0.07, 0.01)])
+def test_a_stone_that_is_seen_elsewhere_by_what_light_or_noise_does_rests_once(
+    off: float, sd: float
+) -> None:
+    (piece,) = cut(trace(T, np.where(T < 2, 0.0, off), sd), [], 0.1455)
     assert piece.rest
