@@ -178,13 +178,13 @@ def lies_still(path: Trace, before: Piece, after: Piece, radius: float) -> bool:
 
 
 def _parted(path: Trace, before: Piece, after: Piece) -> tuple[Piece, Piece]:
-    """Part two rests where a stone is no longer nearer to the first of them."""
+    """Part two rests where a stone is no longer nearer to the first of them, but for strays."""
     samples = np.concatenate([before.samples, after.samples])
     there, here = (
         np.hypot(*(path.xy[samples] - np.median(path.xy[part], axis=0)).T)
         for part in (before.samples[-BETWEEN:], after.samples[:BETWEEN])
     )
-    k = int((there < here).sum())
+    k = int(np.cumsum(np.where(there < here, 1, -1))[:-1].argmax()) + 1
     time = float(path.t[samples[k - 1 : k + 1]].mean())
     return (
         replace(before, end=time, samples=samples[:k]),
