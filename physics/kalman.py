@@ -189,7 +189,7 @@ def _way(
     noise: Noise,
     radius: float,
 ) -> _Way:
-    """Cut one stone's sightings at its hits; what begins a stretch far off is left out."""
+    """Cut one stone's sightings at its hits; what begins one, or a rest, far off is left out."""
     row = np.clip(np.searchsorted(trace.t, t), 0, len(trace.t) - 1)
     sighted = trace.t[row] == t
     place, rest, idle, speed = _modes(trace.stone, t, fit)
@@ -202,11 +202,12 @@ def _way(
     stretches = []
     for k in np.unique(part):
         at = np.flatnonzero(part == k)
-        z[_slipped(at, off)] = np.nan
-        if np.isfinite(z[at, 0]).any():
-            stretch = Stretch(
-                t[at], z[at], white[at], slow[at], motion[at], rest[at], idle[at], speed[at], model
-            )
+        stretch = Stretch(
+            t[at], z[at], white[at], slow[at], motion[at], rest[at], idle[at], speed[at], model
+        )
+        for begin in (0, *(np.flatnonzero(stretch.moved) + 1).tolist()):
+            stretch.z[_slipped(at[begin:], off) - at[0]] = np.nan
+        if np.isfinite(stretch.z[:, 0]).any():
             stretches.append((at, stretch))
     return _Way(trace, t, frames, row, part, hits, stretches)
 
@@ -289,7 +290,7 @@ def _slipped(at: NDArray[np.intp], off: Floats) -> NDArray[np.intp]:
     Parameters
     ----------
     at : (m,) array of int
-        The rows between two hits.
+        The rows between two hits, or from where it lies elsewhere on.
     off : (n, 2) array
         How far all sightings are from their fits, in their standard deviations.
     """

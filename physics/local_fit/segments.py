@@ -184,7 +184,9 @@ def _parted(path: Trace, before: Piece, after: Piece) -> tuple[Piece, Piece]:
         np.hypot(*(path.xy[samples] - np.median(path.xy[part], axis=0)).T)
         for part in (before.samples[-BETWEEN:], after.samples[:BETWEEN])
     )
-    k = int(np.cumsum(np.where(there < here, 1, -1))[:-1].argmax()) + 1
+    nearer = np.cumsum(np.where(there < here, 1, -1))[:-1]
+    # Where a stray leaves two choices it was moved while nobody saw it for longer.
+    k = int(np.where(nearer == nearer.max(), np.diff(path.t[samples]), 0.0).argmax()) + 1
     time = float(path.t[samples[k - 1 : k + 1]].mean())
     return (
         replace(before, end=time, samples=samples[:k]),

@@ -356,3 +356,16 @@ def test_a_stone_that_stopped_and_was_turned_unseen_did_not_spin_before(run: Fil
     assert np.abs(tracks.loc[tracks["t"] > 6.41, "theta"] - 4.5).max() < 0.02
     meanwhile = tracks.loc[tracks["seen"] == 0, ["theta", "omega", "sd_theta", "sd_omega"]]
     assert len(meanwhile) == len(when) and meanwhile.isna().all(axis=None)
+
+
+@pytest.mark.parametrize("run", [filtered, reference.filtered])
+def test_a_stray_where_a_moved_stone_comes_back_has_no_say(run: Filter) -> None:
+    """It lies elsewhere from there on: the filter believed the stray and refused the others."""
+    later = (np.arange(0, 9, 1 / 25) > 6).astype(float)
+    table, _ = stopped((5.8, 6.4), y=0.3 * later)
+    back = table["t"].gt(6.4).idxmax()
+    table.loc[back, "y"] -= 0.15
+    tracks = smooth(check_sightings(table), (), radius=RADIUS, run=run)
+    after = tracks[tracks["t"] > 6.5]
+    assert (after["seen"] == 1).all()
+    assert (np.abs(after["y"] - 1.1) < 0.0005).all()

@@ -63,7 +63,7 @@ def test_a_stone_that_rests_elsewhere_once_it_was_hidden_rests_twice(
     assert hidden[0] < before.end == after.start < hidden[1]
 
 
-@pytest.mark.parametrize("stray", [20, 100])
+@pytest.mark.parametrize("stray", [20, 52, 68, 100])
 def test_a_stray_does_not_shift_where_two_rests_part(stray: int) -> None:
     """One sighting before, or one after, is taken for the stone and shows another at its place."""
     y = np.where(T < 2, 0.0, 0.3)
