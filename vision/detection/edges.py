@@ -16,7 +16,7 @@ from data.sheet import Stone
 from vision.detection.appearance import GREY, Appearance
 from vision.detection.circles import WALL, Fits, fit_circles
 from vision.detection.contrast import by_lightness
-from vision.detection.mixture import by_light
+from vision.detection.mixture import CapRays, by_light
 from vision.detection.patch import Effort
 from vision.detection.rays import Rays, directions
 from vision.detection.rims import Rim, falls_along
@@ -154,7 +154,11 @@ def fit_edges(
     hides = views.behind(effort.rays) > HIDDEN[0]
     unhidden = (np.where(hides, samples.capped, samples.stony) & cap.inside).mean(1)
     clear = np.flatnonzero((unhidden > OPEN) & (leaning > 0) & bool(appearance.caps))
-    signal = _against_mixtures(samples, rays, over, views, clear, dark, cap.radius, disc)
+    seen = CapRays(
+        rays, over, views.behind(effort.rays), samples.of_cap, samples.in_ring, samples.of_ring,
+        cap.radius, views.pixel,
+    )  # fmt: skip
+    signal = _against_mixtures(samples.signal, seen, clear, dark, disc)
     fit, exact = _fits(signal, rays, (cap, granite), views, clear, appearance, effort)
     near = exact.ok & (np.hypot(fit.shift[clear, 0], fit.shift[clear, 1]) < NEAR)
     rows = clear[near]
@@ -237,34 +241,31 @@ def _dark(samples: Samples) -> Flags:
 
 
 def _against_mixtures(
-    samples: Samples,
-    rays: Rays,
-    over: Rays,
-    views: Views,
-    clear: Places,
-    dark: Flags,
-    cap_radius: float,
-    disc: Stone,
+    signal: Floats, seen: CapRays, clear: Places, dark: Flags, disc: Stone
 ) -> Floats:
     """Say what steps between cap and what is beside it, where that is not granite alone.
 
     Of caps that hide their granite, and of dark ones, it is what their pixels mix.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n, rays, radii)
+        0.5 on the cap, −0.5 on its granite.
+    seen : CapRays
+    clear : ndarray of int
+        Places of stones that are seen well.
+    dark : ndarray of bool, shape (n,)
+        Whether caps have no hue and are darker than their granite.
+    disc : Stone
     """
-    behind, signal = views.behind(rays.inside.shape[1]), samples.signal.copy()
-    steep = clear[(behind[clear] > HIDDEN[0]).any(1) & ~dark[clear]]
+    out = signal.copy()
+    steep = clear[(seen.behind[clear] > HIDDEN[0]).any(1) & ~dark[clear]]
     if len(steep):
-        signal[steep] = against_beyond(
-            signal[steep], rays.at_places(steep), over.at_places(steep), behind[steep],
-            samples.of_cap[steep], (samples.in_ring, samples.of_ring[steep]), disc, cap_radius,
-            views.pixel[steep],
-        )  # fmt: skip
+        out[steep] = against_beyond(signal[steep], seen.at_places(steep), disc)
     mixed = clear[dark[clear]]
     if len(mixed):
-        signal[mixed] = by_light(
-            rays.at_places(mixed), over.at_places(mixed), behind[mixed], samples.of_cap[mixed],
-            (samples.in_ring, samples.of_ring[mixed]), disc, cap_radius, views.pixel[mixed],
-        )  # fmt: skip
-    return signal
+        out[mixed] = by_light(seen.at_places(mixed), disc)
+    return out
 
 
 def _fits(

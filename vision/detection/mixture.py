@@ -9,6 +9,7 @@ before it is coded, which draws the edges of dark caps inwards by some tenths of
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import erf, sqrt
 
 import numpy as np
@@ -60,6 +61,56 @@ INNER = 0.5, 0.75
 MISFIT = 0.12
 """Root mean square of what is left, as a share of the largest step, beyond which a ray shows
 something else: another stone, a line, somebody's shadow."""
+
+
+@dataclass(frozen=True)
+class CapRays:
+    """What is seen on rays about n caps, to model where each cap ends.
+
+    Attributes
+    ----------
+    rays, over : Rays
+        Such as fall off with the granite, and such as stay at the height of the cap
+        (`vision.detection.patch.over_caps`).
+    behind : ndarray, shape (n, rays)
+        Slant of the view along each ray, above 0 on the far side.
+    of_cap : ndarray of bool, shape (n, rays, well within the cap)
+        Samples that show the cap.
+    in_ring : slice
+        Radii that lie on the granite.
+    of_ring : ndarray of bool, shape (n, rays, well within the granite)
+        Samples there that show it.
+    radius : float
+        Where caps are seen to end, m.
+    pixel : ndarray, shape (n,)
+        How long a pixel is there, m.
+    """
+
+    rays: Rays
+    over: Rays
+    behind: Array
+    of_cap: Flags
+    in_ring: slice
+    of_ring: Flags
+    radius: float
+    pixel: Array
+
+    def at_places(self, index: NDArray[np.intp]) -> CapRays:
+        """Take those about some of the places."""
+        return CapRays(
+            self.rays.at_places(index),
+            self.over.at_places(index),
+            self.behind[index],
+            self.of_cap[index],
+            self.in_ring,
+            self.of_ring[index],
+            self.radius,
+            self.pixel[index],
+        )
+
+    def pixel_along(self, place: NDArray[np.intp], ray: NDArray[np.intp]) -> Array:
+        """How long a pixel is along some rays, m: `pixel` is the mean of its two sides."""
+        return np.asarray(self.pixel[place] * (1 + self.behind[place, ray] ** 2) ** 0.25)
 
 
 def light_of(bgr: Bytes) -> Array:
@@ -124,35 +175,15 @@ def granite_seen(slant: Array, disc: Stone) -> tuple[Array, Array]:
     return narrower * np.interp(slant, *SLIM), narrower * np.interp(slant, *FULL)
 
 
-def by_light(
-    rays: Rays,
-    over: Rays,
-    behind: Array,
-    of_cap: Flags,
-    of_ring: tuple[slice, Flags],
-    disc: Stone,
-    radius: float,
-    pixel: Array,
-) -> Array:
+def by_light(seen: CapRays, disc: Stone) -> Array:
     """Say how much of a cap without hue is on rays about n places.
 
     Parameters
     ----------
-    rays, over : Rays
-        Such as fall off with the granite, and such as stay at the height of the cap
-        (`vision.detection.patch.over_caps`).
-    behind : ndarray, shape (n, rays)
-        Slant of the view along each ray, above 0 on the far side.
-    of_cap : ndarray of bool, shape (n, rays, well within the cap)
-        Samples that show the cap.
-    of_ring : slice, ndarray of bool, shape (n, rays, well within the granite)
-        Where those are that may be granite, and which of them are.
+    seen : CapRays
+        What is seen there.
     disc : Stone
         Size of the stones.
-    radius : float
-        Where caps are seen to end, m.
-    pixel : ndarray, shape (n,)
-        How long a pixel is there, m.
 
     Returns
     -------
@@ -160,47 +191,48 @@ def by_light(
         0.5 on the cap, −0.5 on its granite, and on rays that look over the cap on whatever is
         beyond its edge.
     """
-    light = light_of(rays.bgr)
-    at_ring, of_ring_ = of_ring
+    light = light_of(seen.rays.bgr)
+    on_cap, on_ring = light[..., : seen.of_cap.shape[-1]], light[..., seen.in_ring]
     cap, granite = (
         (part * use).sum((1, 2)) / np.maximum(use.sum((1, 2)), 1)
-        for part, use in ((light[..., : of_cap.shape[-1]], of_cap), (light[..., at_ring], of_ring_))
+        for part, use in ((on_cap, seen.of_cap), (on_ring, seen.of_ring))
     )
     step = np.where(granite - cap > 1e-3, granite - cap, 1e-3)
     signal = np.asarray(0.5 - (light - cap[:, None, None]) / step[:, None, None])
-    place, ray = np.nonzero(behind > SLANT)
-    slant = behind[place, ray]
-    along = pixel[place] * (1 + slant**2) ** 0.25  # `pixel` is the mean of its two sides
-    strips = granite_seen(slant, disc)
-    at, told = _ends(
-        light_of(over.bgr[place, ray]), over.inside[place, ray], rays.radius, granite[place],
-        strips, along, radius, place,
-    )  # fmt: skip
-    blurs = (rays.radius - at[told, None]) / (BLUR * along[told, None])
+    place, ray = np.nonzero(seen.behind > SLANT)
+    along = seen.pixel_along(place, ray)
+    at, told = _ends(seen, place, ray, along, granite[place], disc)
+    blurs = (seen.rays.radius - at[told, None]) / (BLUR * along[told, None])
     signal[place[told], ray[told]] = 0.5 - past(blurs)
     return signal
 
 
 def _ends(
-    light: Array, inside: Flags, radii: Array, granite: Array, strips: tuple[Array, Array],
-    along: Array, radius: float, place: NDArray[np.intp],
-) -> tuple[Array, Flags]:  # fmt: skip
+    seen: CapRays,
+    place: NDArray[np.intp],
+    ray: NDArray[np.intp],
+    along: Array,
+    granite: Array,
+    disc: Stone,
+) -> tuple[Array, Flags]:
     """Find where the cap ends on each of m rays, m, and whether it does: by least squares.
+
+    How full the granite's shoulders are is not known: each ray is fitted for all of `FULLNESS`,
+    and the fits are averaged with the odds that the rays of a stone together give them.
 
     Parameters
     ----------
-    light, inside : ndarray, shape (m, radii)
-    radii : ndarray, shape (radii,)
-        m.
-    granite, along : ndarray, shape (m,)
-        Light of the granite, and how long a pixel is, m.
-    strips : tuple of ndarray, shape (m,)
-        How much of the granite is seen on slim and on full stones, m.
-    radius : float
-        Where the cap is expected to end, m.
-    place : ndarray of int, shape (m,)
-        Which rays are of one stone, ascending.
+    seen : CapRays
+    place, ray : ndarray of int, shape (m,)
+        Which rays, ascending by place.
+    along, granite : ndarray, shape (m,)
+        How long a pixel is on each, m, and the light of the granite.
+    disc : Stone
+        Size of the stones.
     """
+    light, inside = light_of(seen.over.bgr[place, ray]), seen.over.inside[place, ray]
+    radii, radius = seen.rays.radius, seen.radius
+    strips = granite_seen(seen.behind[place, ray], disc)
     step, each = float(radii[1] - radii[0]), np.arange(len(light))
     end = np.searchsorted(radii, radius + strips[1] + BEYOND * along).clip(max=len(radii) - 1)
     beyond = light[each, end]
@@ -208,7 +240,7 @@ def _ends(
     cap = np.median(light[:, low:high], axis=1)
     steps = np.maximum(np.abs(_coded(np.stack([beyond, granite])) - _coded(cap)).max(0), 1e-3)
     used = inside & (radii > radius - WITHIN) & (radii < (radius + strips[1] + along)[:, None])
-    seen = _coded(light)[:, None]
+    codes = _coded(light)[:, None]
     beside = around(radii, radius)
     c, g, b = (part[:, None] for part in (cap, granite, beyond))
     blur = BLUR * along[:, None]
@@ -216,7 +248,7 @@ def _ends(
     for full in FULLNESS:
         strip = (strips[0] + full * (strips[1] - strips[0]))[:, None]
         mixed = c + (g - c) * past(beside / blur) + (b - g) * past((beside - strip) / blur)
-        samples, least = moved(_coded(mixed)[:, None], seen, used)
+        samples, least = moved(_coded(mixed)[:, None], codes, used)
         at.append(radius + step * samples)
         misfit.append(least / steps**2)
     _, row = np.unique(place, return_inverse=True)

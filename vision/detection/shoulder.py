@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 
 from data.sheet import Stone
 from vision.detection.contrast import mean_colours
-from vision.detection.mixture import INNER, WITHIN, around, granite_seen, moved, past
-from vision.detection.rays import Rays
+from vision.detection.mixture import INNER, WITHIN, CapRays, around, granite_seen, moved, past
 from vision.film.picture import TO_CHROMA
 
 Array = NDArray[np.float64]
@@ -32,7 +31,7 @@ BLUR = np.array([0.75, 1.25, 1.25])
 samples of chroma for two pixels. Beyond caps of drawn clips .11 of the cap's chroma is left at 1.2
 pixels, .05 at 1.8."""
 
-FULL = 0.5
+USUAL_FULLNESS = 0.5
 """How far from slim to full shoulders the granite is taken to show: between what is known of real
 stones and the slimmest that are drawn. What is not so moves a place by some mm, but everywhere
 alike; told anew at each place, it would change with what lies beyond."""
@@ -48,60 +47,45 @@ LEAST = 36.0
 """Difference of luma and chromas, codes, below which nothing tells a cap from what is there."""
 
 
-def against_beyond(
-    signal: Floats, rays: Rays, over: Rays, behind: Array, of_cap: Flags,
-    of_ring: tuple[slice, Flags], disc: Stone, radius: float, pixel: Array,
-) -> Floats:  # fmt: skip
+def against_beyond(signal: Floats, seen: CapRays, disc: Stone) -> Floats:
     """Say how much of a cap is on rays about n places, where it hides its granite.
 
     Parameters
     ----------
     signal : ndarray, shape (n, rays, radii)
         0.5 on the cap, −0.5 on its granite.
-    rays, over : Rays
-        Such as fall off with the granite, and such as stay at the height of the cap
-        (`vision.detection.patch.over_caps`).
-    behind : ndarray, shape (n, rays)
-        Slant of the view along each ray, above 0 on the far side.
-    of_cap : ndarray of bool, shape (n, rays, well within the cap)
-        Samples that show the cap.
-    of_ring : slice, ndarray of bool, shape (n, rays, well within the granite)
-        Where those are that may be granite, and which of them are.
+    seen : CapRays
+        What is seen there.
     disc : Stone
         Size of the stones.
-    radius : float
-        Where caps are seen to end, m.
-    pixel : ndarray, shape (n,)
-        How long a pixel is there, m.
 
     Returns
     -------
     ndarray, shape (n, rays, radii)
         The same, but on rays that look over the cap −0.5 on whatever is beyond its edge.
     """
-    place, ray = np.nonzero(behind > HIDDEN[0])
+    place, ray = np.nonzero(seen.behind > HIDDEN[0])
     if not len(place):
         return signal
-    at_ring, of_ring_ = of_ring
-    cap = _mean(rays.bgr[:, :, : of_cap.shape[-1]], of_cap)[place]
-    granite = _mean(rays.bgr[:, :, at_ring], of_ring_)[place]
-    slant, radii = behind[place, ray], rays.radius
-    # `pixel` is the mean of its two sides: along the slant it is so much longer.
-    along = pixel[place] * (1 + slant**2) ** 0.25
+    bgr, over = seen.rays.bgr, seen.over
+    cap = _mean(bgr[:, :, : seen.of_cap.shape[-1]], seen.of_cap)[place]
+    granite = _mean(bgr[:, :, seen.in_ring], seen.of_ring)[place]
+    slant, along = seen.behind[place, ray], seen.pixel_along(place, ray)
+    radii, radius = seen.rays.radius, seen.radius
     slim, full = granite_seen(slant, disc)
-    strip = slim + FULL * (full - slim)
+    strip = slim + USUAL_FULLNESS * (full - slim)
     end = np.searchsorted(radii, radius + full + BEYOND * along).clip(max=len(radii) - 1)
-    seen = np.swapaxes(over.bgr[place, ray] @ TO_CHROMA.T, 1, 2)
-    beyond = seen[np.arange(len(place)), :, end]
+    codes = np.swapaxes(over.bgr[place, ray] @ TO_CHROMA.T, 1, 2)
+    beyond = codes[np.arange(len(place)), :, end]
     # Lamps and the handle lighten a cap here and there, but its hue is one.
     low, high = np.searchsorted(radii, np.array(INNER) * radius)
-    cap[:, 0] = np.median(seen[:, 0, low:high], axis=1)
+    cap[:, 0] = np.median(codes[:, 0, low:high], axis=1)
     inside = over.inside[place, ray]
     used = inside & (radii > radius - WITHIN) & (np.arange(len(radii)) <= end[:, None])
     beside, blur = around(radii, radius), (along[:, None] * BLUR)[..., None]
     ends = (granite - cap)[..., None] * past(beside / blur)
     ends += (beyond - granite)[..., None] * past((beside - strip[:, None, None]) / blur)
-    samples, least = moved(cap[..., None] + ends, seen, used)
+    samples, least = moved(cap[..., None] + ends, codes, used)
     at = radius + float(radii[1] - radii[0]) * samples
     apart = ((cap - beyond) ** 2).sum(1)
     odd = np.sqrt(least / np.maximum(apart, LEAST**2))

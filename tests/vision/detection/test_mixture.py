@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 
 from data.sheet import STONE
-from vision.detection.mixture import GAMMA, by_light
+from vision.detection.mixture import GAMMA, CapRays, by_light
 from vision.detection.rays import Rays, directions
 from vision.film.lab import lab_of
 
@@ -61,8 +61,8 @@ def told(rays: Rays) -> Array:
     cap = np.ones((1, RAYS, 20), bool)
     ring = np.ones((1, RAYS, 8), bool) & (BEHIND < 0.2)[:, None]
     pixel = np.array([PIXEL])
-    args = rays, rays, BEHIND[None], cap, (RING, ring), STONE, STONE.cap_radius, pixel
-    return np.asarray(by_light(*args)[0])
+    seen = CapRays(rays, rays, BEHIND[None], cap, RING, ring, STONE.cap_radius, pixel)
+    return np.asarray(by_light(seen, STONE)[0])
 
 
 def half_way(rays: Rays) -> Array:

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from data.sheet import STONE
 from vision.detection.contrast import by_hue
-from vision.detection.mixture import FULL, SLIM
+from vision.detection.mixture import FULL, SLIM, CapRays
 from vision.detection.rays import Rays, directions
 from vision.detection.shoulder import against_beyond
 from vision.film.lab import lab_of
@@ -56,10 +56,10 @@ def seen(
 def made(signal: Array, rays: Rays, pixel: float = PIXEL) -> Array:
     of_cap = np.ones((1, RAYS, int(np.searchsorted(RADIUS, 0.88 * STONE.cap_radius))), bool)
     ring = np.ones((1, RAYS, 8), bool) & (BEHIND < 0.2)[:, None]
-    return against_beyond(
-        signal, rays, rays, BEHIND[None], of_cap, (RING, ring), STONE, STONE.cap_radius,
-        np.array([pixel]),
-    )  # fmt: skip
+    seen = CapRays(
+        rays, rays, BEHIND[None], of_cap, RING, ring, STONE.cap_radius, np.array([pixel])
+    )
+    return against_beyond(signal, seen, STONE)
 
 
 def ends(signal: Array) -> Array:
