@@ -27,8 +27,20 @@ Array = NDArray[np.float64]
 
 Pair = tuple[float, float]
 
-NEWEST = 0.1
+COLOUR_GAIN = 0.1
 """Weight of the last sighting, seen in whole, in the colour of a cap."""
+
+SIGHTING_SD = 0.004
+"""What sightings err by beside what they say, radii: half a millimetre."""
+
+ACCELERATION_NOISE = 2.0
+"""Root of the spectral density of the acceleration, taken for white noise, radii/s^1.5."""
+
+ANY_SPEED = 10.0
+"""Standard deviation of a speed of which nothing is known, radii/s."""
+
+GATE = 25.0
+"""Squared normalised innovation beyond which a stone has been hit: its speed may be any."""
 
 OPEN = 0.7
 """Share of a stone that must be seen for nothing to cover it: what bends over it covers more."""
@@ -66,6 +78,9 @@ class Track:
     sightings : Rows
     colour : ndarray, shape (3,)
         Running mean of the cap's colour, L*a*b*.
+
+    Beside them it has the state of a Kalman filter of constant velocity. Its covariance is the same
+    for both axes: of place, of place with velocity, of velocity.
     """
 
     frames: list[int] = field(default_factory=list)
@@ -93,36 +108,46 @@ class Track:
         return x + vx * path, y + vy * path
 
     def add(self, frame: int, t: float, sighting: Sighting, radius: float) -> None:
-        """Take in a sighting: a filter of constant velocity that starts anew at a hit."""
+        """Take in a sighting."""
         x, y = sighting.x, sighting.y
-        noise = sighting.sd_x * sighting.sd_y + (0.004 * radius) ** 2
-        any_speed = (10 * radius) ** 2
+        noise = sighting.sd_x * sighting.sd_y + (SIGHTING_SD * radius) ** 2
         if not self.times:
-            self._place, self._covariance = (x, y), (noise, 0.0, any_speed)
+            self._place, self._covariance = (x, y), (noise, 0.0, (ANY_SPEED * radius) ** 2)
             self.colour = np.array(sighting.colour, float)
         else:
             step = t - self.times[-1]
-            (ahead_x, ahead_y), (vx, vy), (p00, p01, p11) = (
-                self._place, self._velocity, self._covariance,
-            )  # fmt: skip
-            ahead_x, ahead_y = ahead_x + vx * step, ahead_y + vy * step
-            jolt = (2.0 * radius) ** 2 * step
-            p00 += step * (2 * p01 + step * p11) + jolt * step**2 / 3
-            p01 += step * p11 + jolt * step / 2
-            p11 += jolt
-            away_x, away_y = x - ahead_x, y - ahead_y
-            if away_x**2 + away_y**2 > 25 * (p00 + noise):
-                p00 += any_speed * step**2
-                p01 += any_speed * step
-                p11 += any_speed
-            gain, rate = p00 / (p00 + noise), p01 / (p00 + noise)
-            self._place = ahead_x + gain * away_x, ahead_y + gain * away_y
-            self._velocity = vx + rate * away_x, vy + rate * away_y
-            self._covariance = p00 - gain * p00, p01 - gain * p01, p11 - rate * p01
-            self.colour += NEWEST * sighting.visible * (sighting.colour - self.colour)
+            self._predict(step, radius)
+            self._update(x, y, noise, step, radius)
+            self.colour += COLOUR_GAIN * sighting.visible * (sighting.colour - self.colour)
         self.frames.append(frame)
         self.times.append(t)
         self.sightings.append(sighting)
+
+    def _predict(self, step: float, radius: float) -> None:
+        """Predict the state so many seconds ahead."""
+        (x, y), (vx, vy), (p00, p01, p11) = self._place, self._velocity, self._covariance
+        q = (ACCELERATION_NOISE * radius) ** 2 * step
+        self._place = x + vx * step, y + vy * step
+        self._covariance = (
+            p00 + (step * (2 * p01 + step * p11) + q * step**2 / 3),
+            p01 + (step * p11 + q * step / 2),
+            p11 + q,
+        )
+
+    def _update(self, x: float, y: float, noise: float, step: float, radius: float) -> None:
+        """Update the state by a sighting at x, y with the variance `noise` per axis."""
+        (predicted_x, predicted_y), (vx, vy) = self._place, self._velocity
+        p00, p01, p11 = self._covariance
+        innovation_x, innovation_y = x - predicted_x, y - predicted_y
+        if innovation_x**2 + innovation_y**2 > GATE * (p00 + noise):
+            any_speed = (ANY_SPEED * radius) ** 2
+            p00 += any_speed * step**2
+            p01 += any_speed * step
+            p11 += any_speed
+        gain, rate = p00 / (p00 + noise), p01 / (p00 + noise)
+        self._place = predicted_x + gain * innovation_x, predicted_y + gain * innovation_y
+        self._velocity = vx + rate * innovation_x, vy + rate * innovation_y
+        self._covariance = p00 - gain * p00, p01 - gain * p01, p11 - rate * p01
 
 
 def follow(

@@ -29,7 +29,7 @@ MEMORY = 8
 """Sightings on one course that say together where a stone is and how fast: a course is not quite
 straight, and a touch may change it by little."""
 
-NEWEST = 0.2
+SCORE_GAIN = 0.2
 """Share of the last sighting in the evidence that is usual for a stone: one that goes astray bit by
 bit, along the edge of paint as light as its granite, still falls below that."""
 
@@ -48,7 +48,7 @@ TURNED = 0.06
 
 @dataclass(frozen=True)
 class Lead:
-    """Where a stone was at the time t, and how it moved.
+    """Where a stone was at the time t, and how it moved: the state of an alpha-beta filter.
 
     Attributes
     ----------
@@ -100,7 +100,7 @@ class Lead:
         return self.steady >= STEADY
 
     def at(self, t: float) -> tuple[float, float]:
-        """Where the stone is expected, m."""
+        """Where the stone is expected, m: the prediction."""
         slower, step = self._slowed(t)
         (x, y), (vx, vy), mean = self.place, self.velocity, 0.5 * (1 + slower)
         return x + mean * vx * step, y + mean * vy * step
@@ -123,7 +123,7 @@ class Lead:
         return 1 - step / lasts, step
 
     def on(self, sighting: Sighting, t: float, near: float, still: float) -> Lead:
-        """Go on from a sighting; it corrects what was expected, unless the course has changed.
+        """Go on from a sighting: it updates the state.
 
         Parameters
         ----------
@@ -133,22 +133,9 @@ class Lead:
             How far from its anchor it may be and rest, m.
         """
         x, y = sighting.x, sighting.y
-        (ahead_x, ahead_y), step, (slower, _) = self.at(t), t - self.t, self._slowed(t)
-        vx, vy = slower * self.velocity[0], slower * self.velocity[1]
-        away_x, away_y = x - ahead_x, y - ahead_y
-        if hypot(away_x, away_y) > near:
-            place, velocity = (x, y), ((x - self.place[0]) / step, (y - self.place[1]) / step)
-            along = 2
-        else:
-            along = min(self.along + 1, MEMORY)
-            # As a straight line fitted to so many would be corrected (Brookner, 1998, Tracking and
-            # Kalman filtering made easy: the expanding-memory g-h filter).
-            by_speed = 6 / (along * (along + 1))
-            by_place = (2 * along - 1) * by_speed / 3
-            place = ahead_x + by_place * away_x, ahead_y + by_place * away_y
-            velocity = vx + by_speed * away_x / step, vy + by_speed * away_y / step
+        place, velocity, along = self._updated(x, y, t, near)
         left = hypot(x - self.anchor[0], y - self.anchor[1])
-        score = self.score + NEWEST * (sighting.score - self.score)
+        score = self.score + SCORE_GAIN * (sighting.score - self.score)
         # What covers a stone by half draws it aside, or shows it turned.
         clear = sighting.score >= DOUBTFUL * self.score
         if clear and (left >= still or self._turned(sighting)):
@@ -164,6 +151,26 @@ class Lead:
             portrait=None if sighting.measured else self.portrait,
             along=along,
         )
+
+    def _updated(
+        self, x: float, y: float, t: float, near: float
+    ) -> tuple[tuple[float, float], tuple[float, float], int]:
+        """Place, velocity and `along` after a sighting at x, y, m.
+
+        As a straight line fitted to so many sightings would have them: the expanding-memory
+        alpha-beta (g-h) filter (Brookner, 1998, Tracking and Kalman filtering made easy). On
+        another course, `near` or farther from the prediction, it begins anew.
+        """
+        (predicted_x, predicted_y), step, (slower, _) = self.at(t), t - self.t, self._slowed(t)
+        innovation_x, innovation_y = x - predicted_x, y - predicted_y
+        if hypot(innovation_x, innovation_y) > near:
+            return (x, y), ((x - self.place[0]) / step, (y - self.place[1]) / step), 2
+        along = min(self.along + 1, MEMORY)
+        beta = 6 / (along * (along + 1))
+        alpha = (2 * along - 1) * beta / 3
+        place = predicted_x + alpha * innovation_x, predicted_y + alpha * innovation_y
+        vx, vy = slower * self.velocity[0], slower * self.velocity[1]
+        return place, (vx + beta * innovation_x / step, vy + beta * innovation_y / step), along
 
     def pushed(self, place: Array, velocity: Array, t: float) -> Lead:
         """Lead to where a hit that nobody saw would have the stone at a time, and how it moves."""
