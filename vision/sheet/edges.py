@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from vision.film.picture import TO_CHROMA
 from vision.optics.paint import CIRCLES
-from vision.sheet.normals import SAMPLES, Normals, Profiles
+from vision.sheet.normals import SAMPLES, Normals, Profiles, means_of_ends
 from vision.sheet.stations import THIN
 
 Array = NDArray[np.float64]
@@ -37,9 +37,10 @@ SHARPNESS = np.asarray(TO_CHROMA.T * _WORTH @ TO_CHROMA, np.float32)
 """How much colours (blue, green, red) tell of where an edge is: most cameras and films keep what
 is not brightness (ITU-R BT.601) at half the resolution."""
 
-_END = SAMPLES // 4
-_ENDS = np.zeros((2, SAMPLES), np.float32)
-_ENDS[0, :_END] = _ENDS[1, -_END:] = 1 / _END
+END = SAMPLES // 4
+"""Samples at either end of a profile that show what is beside the edge."""
+
+ENDS = means_of_ends(END)
 
 
 def steps(profile: Profiles, normals: Normals, known: Array) -> tuple[Profiles, Flags, Array]:
@@ -62,7 +63,7 @@ def steps(profile: Profiles, normals: Normals, known: Array) -> tuple[Profiles, 
     palette : ndarray, shape (..., 9, 2, 3)
         Colours on either side of each kind of edge.
     """
-    ends = _ENDS @ profile
+    ends = ENDS @ profile
     line = normals.line[: ends.shape[-1]]
     kinds = {kind: part for kind, part in normals.kinds.items() if kind not in THIN}
     sides = known.T.astype(np.float32)[..., line]

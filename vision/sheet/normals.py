@@ -47,6 +47,13 @@ LEAST, LEAST_BLOCKS = 8, 3
 """Fewer normals than this are no line; of a thin line, fewer blocks."""
 
 
+def means_of_ends(count: int) -> Profiles:
+    """Matrix, (2, SAMPLES), that takes the means of so many samples at either end of a profile."""
+    ends = np.zeros((2, SAMPLES), np.float32)
+    ends[0, :count] = ends[1, -count:] = 1 / count
+    return ends
+
+
 @dataclass(frozen=True, eq=False)
 class Normals:
     """Places on the lines, all inside the picture for which they were laid out.

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vision.optics.paint import CIRCLES
-from vision.sheet.edges import LIGHT, MIN_CONTRAST, SHARPNESS
+from vision.sheet.edges import END, ENDS, LIGHT, MIN_CONTRAST, SHARPNESS
 from vision.sheet.normals import SAMPLES, Profiles
 
 Array = NDArray[np.float64]
@@ -31,10 +31,7 @@ UNEVEN = 14.0
 FAINTEST = 0.25
 """Share of its strength below which it is taken for noise."""
 
-_END = SAMPLES // 4
-_ENDS = np.zeros((2, SAMPLES), np.float32)
-_ENDS[0, :_END] = _ENDS[1, -_END:] = 1 / _END
-_FAR = (SAMPLES - _END) / 2
+_FAR = (SAMPLES - END) / 2
 _OFF = (np.arange(SAMPLES) - SAMPLES // 2) / _FAR
 _BETWEEN = (0.5 + 0.5 * np.outer(_OFF, [-1, 1])).astype(np.float32)
 
@@ -67,19 +64,19 @@ def outlines(
             continue
         part = kinds[kind]
         some = profile[..., part]
-        ends = _ENDS @ some
+        ends = ENDS @ some
         usual = np.median(ends, axis=-1, keepdims=True)
         light = np.clip((ends * usual).sum(0) / np.maximum((usual * usual).sum(0), 1.0), *LIGHT)
         level = (np.square(ends - light * usual).sum(0) < UNEVEN**2).all(0)
         off = some - _BETWEEN @ ends
-        most = np.square(off[:, _END:-_END]).sum(0).argmax(0) + _END
+        most = np.square(off[:, END:-END]).sum(0).argmax(0) + END
         drawn = np.median(np.take_along_axis(off, most[None, None], 1)[:, 0], axis=-1)
         step = (usual[:, 1] - usual[:, 0])[:, 0]
         if drawn @ drawn < max(MIN_CONTRAST**2, DARKER**2 * float(step @ step)):
             continue
         axis = SHARPNESS @ drawn
         signal = np.tensordot(axis / (axis @ drawn), off, 1)
-        peak = signal[_END:-_END].max(0)
+        peak = signal[END:-END].max(0)
         good[part] = level & (peak > STRENGTH[0]) & (peak < STRENGTH[1])
         value[:, part] = signal - 0.5
         alone.append(part)

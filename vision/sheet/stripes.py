@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import HOUSE
-from vision.sheet.normals import LEAST_BLOCKS, SAMPLES, Normals, Profiles
+from vision.sheet.normals import LEAST_BLOCKS, SAMPLES, Normals, Profiles, means_of_ends
 from vision.sheet.runs import Runs
 from vision.sheet.stations import BLOCK, THIN
 
@@ -39,8 +39,7 @@ CALM = 12.0
 """Where the sides of a thin line differ by more it is something else, grey levels."""
 
 _END = SAMPLES // 5
-_ENDS = np.zeros((2, SAMPLES), np.float32)
-_ENDS[0, :_END] = _ENDS[1, -_END:] = 1 / _END
+_ENDS = means_of_ends(_END)
 _SLANT = (np.arange(SAMPLES, dtype=np.float32) - SAMPLES // 2) / (SAMPLES - _END)
 _LEVEL = np.eye(SAMPLES, dtype=np.float32) - np.stack([0.5 - _SLANT, 0.5 + _SLANT], 1) @ _ENDS
 """Takes the straight course from end to end off a profile."""
