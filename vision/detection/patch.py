@@ -101,16 +101,13 @@ def is_plain(disc: Stone) -> bool:
 @lru_cache(maxsize=8)
 def profile_of(disc: Stone, effort: Effort) -> Profile:
     """Give the samples of the stone's top, then two for each ring of the handle's picture."""
+    inner = effort.inner * disc.radius
     if is_plain(disc):
-        inner, outer, size = (
-            effort.inner * disc.radius,
-            effort.plain_outer * disc.radius,
-            disc.radius,
-        )
+        outer = effort.plain_outer * disc.radius
         top, grip = [(inner, 0.0), (outer, 0.0)], 0.0
     else:
-        inner, outer = effort.inner * disc.radius, effort.stone_outer * disc.radius
-        size, edge, height = disc.cap_radius, in_granite(disc, SHOULDER), disc.cap_height
+        outer = effort.stone_outer * disc.radius
+        edge, height = in_granite(disc, SHOULDER), disc.cap_height
         # The visible surface falls off towards the striking band, but not at the cap's edge:
         # away from a slanting view the rays would draw that edge out, and the circle fitted
         # to it would lie too near the camera.
@@ -121,7 +118,7 @@ def profile_of(disc: Stone, effort: Effort) -> Profile:
             (outer, disc.rim_height),
         ]
         grip = HANDLE_HEIGHT
-    low, high = effort.handle_inner * size, effort.handle_outer * size
+    low, high = _handle_span(disc, effort)
     rings = straight([(low, grip), (high, grip)], np.linspace(low, high, 2 * effort.handle_rings))
     return chained(straight(top, np.linspace(inner, outer, effort.radii)), rings)
 
@@ -156,11 +153,16 @@ def over_caps(looks: Sequence[Look], by: Cameras, rays: Rays, disc: Stone) -> Ra
 @lru_cache(maxsize=8)
 def handle_radii(disc: Stone, effort: Effort = EFFORT) -> Array:
     """Radii of the rings of the handle's picture, m, shape (rings,)."""
-    size = disc.radius if is_plain(disc) else disc.cap_radius
-    low, high = effort.handle_inner * size, effort.handle_outer * size
-    rings = np.linspace(low, high, 2 * effort.handle_rings).reshape(-1, 2).mean(1)
+    rings = np.linspace(*_handle_span(disc, effort), 2 * effort.handle_rings)
+    rings = rings.reshape(-1, 2).mean(1)
     rings.flags.writeable = False
     return np.asarray(rings)
+
+
+def _handle_span(disc: Stone, effort: Effort) -> tuple[float, float]:
+    """Radii between which the handle's picture is sampled, m."""
+    size = disc.radius if is_plain(disc) else disc.cap_radius
+    return effort.handle_inner * size, effort.handle_outer * size
 
 
 def unrolled(looks: Sequence[Look], by: Cameras, disc: Stone, effort: Effort) -> tuple[Rays, Bytes]:
