@@ -10,15 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import sqrt
+from math import isnan, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from physics.filter.stretch import (
     ANYWHERE_SD,
-    GATE,
-    PATIENCE,
+    Gate,
     Smoothed,
     Steps,
     Stretch,
@@ -112,7 +111,7 @@ def forward(stretch: Stretch) -> Forward:
     )
     values = (stretch.z - known[:, [0, 1, 4]]).tolist()
     out = Forward(known, (moves, moves, turns), ([], [], []), ([], [], []))
-    refused = wrong = 0
+    of_places, of_angles = Gate(), Gate()
     for k, ((zx, zy, angle), (rx, ry, error), slow) in enumerate(
         zip(values, (stretch.sd**2).tolist(), lasting, strict=True)
     ):
@@ -120,21 +119,17 @@ def forward(stretch: Stretch) -> Forward:
             x, y = _predicted(x, moves[k - 1], slow[0]), _predicted(y, moves[k - 1], slow[1])
             theta = _predicted(theta, turns[k - 1], slow[2])
         of_x = of_y = of_theta = None
-        if zx == zx:  # not NaN
+        if not isnan(zx):
             of_x, of_y = _innovation(x, zx, rx), _innovation(y, zy, ry)
-            if _distance(of_x) + _distance(of_y) < GATE or refused >= PATIENCE:
-                refused = 0
+            if of_places.passes(_distance(of_x) + _distance(of_y)):
                 x, y = _updated(x, of_x), _updated(y, of_y)
             else:
-                refused += 1
                 of_x = of_y = None
-        if angle == angle:
+        if not isnan(angle):
             of_theta = _innovation(theta, angle, error)
-            if _distance(of_theta) < GATE or wrong >= PATIENCE:
-                wrong = 0
+            if of_angles.passes(_distance(of_theta)):
                 theta = _updated(theta, of_theta)
             else:
-                wrong += 1
                 of_theta = None
         for state, states in zip((x, y, theta), out.states, strict=True):
             states.append(state)

@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from physics.filter.stretch import (
     ANYWHERE_SD,
-    GATE,
-    PATIENCE,
+    Gate,
     Smoothed,
     Steps,
     Stretch,
@@ -49,20 +48,14 @@ def filtered(stretch: Stretch) -> Smoothed:
     rows = np.eye(9)[[0, 1, 4]] + np.eye(9)[6:]
     means, covs = np.empty((n, 9)), np.empty((n, 9, 9))
     seen = np.zeros(n, dtype=int)
-    refused = wrong = 0
+    of_places, of_angles = Gate(), Gate()
     for k in range(n):
         if k:
             filter_.predict(F=moves[k], Q=noises[k])
         if np.isfinite(values[k, 0]):
-            if _update(filter_, rows[:2], values[k, :2], stretch.sd[k, :2], refused >= PATIENCE):
-                seen[k], refused = 1, 0
-            else:
-                refused += 1
+            seen[k] = _update(filter_, rows[:2], values[k, :2], stretch.sd[k, :2], of_places)
         if np.isfinite(values[k, 2]):
-            if _update(filter_, rows[2:], values[k, 2:], stretch.sd[k, 2:], wrong >= PATIENCE):
-                wrong = 0
-            else:
-                wrong += 1
+            _update(filter_, rows[2:], values[k, 2:], stretch.sd[k, 2:], of_angles)
         means[k], covs[k] = filter_.x, filter_.P
     # The method reads Fs[k + 1] on the way from k + 1 to k, as uneven steps need.
     mean, cov, _, _ = filter_.rts_smoother(means, covs, list(moves), list(noises))
@@ -72,14 +65,14 @@ def filtered(stretch: Stretch) -> Smoothed:
     return mean, spread, seen
 
 
-def _update(filter_: Any, rows: Floats, value: Floats, sd: Floats, anyway: bool) -> bool:
-    """Use a sighting if its squared normalised innovation lies within the gate, or anyway."""
+def _update(filter_: Any, rows: Floats, value: Floats, sd: Floats, gate: Gate) -> bool:
+    """Use a sighting that passes the gate."""
     error = value - rows @ filter_.x
     spread = rows @ filter_.P @ rows.T + np.diag(sd**2)
-    near = anyway or float(error @ np.linalg.solve(spread, error)) < GATE
-    if near:
+    passes = gate.passes(float(error @ np.linalg.solve(spread, error)))
+    if passes:
         filter_.update(value, R=np.diag(sd**2), H=rows)
-    return near
+    return passes
 
 
 def _matrices(pairs: tuple[Steps, Steps, Steps], slow: Floats) -> tuple[Floats, Floats]:

@@ -64,6 +64,19 @@ PATIENCE = 2
 """Refusals in a row after which the filter is taken to be wrong, and sightings to be right."""
 
 
+class Gate:
+    """Lets sightings in whose normalised innovation is small, and those after too many refusals."""
+
+    def __init__(self) -> None:
+        self._refused = 0
+
+    def passes(self, distance: float) -> bool:
+        """Whether a sighting is used, by its squared normalised innovation."""
+        passes = distance < GATE or self._refused >= PATIENCE
+        self._refused = 0 if passes else self._refused + 1
+        return passes
+
+
 @dataclass(frozen=True)
 class Model:
     """How one stone's speed is expected to change.
