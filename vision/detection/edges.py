@@ -46,8 +46,9 @@ FAR_FLANK = 0.25
 there, and where so wide a step falls most is chance: by up to 16 mm inside the level half-way."""
 
 OPEN, NEAR = 0.75, 0.02
-"""Share of a stone to be seen for that, but for the granite that hides behind its cap, and how near
-to where it is looked for, m: of one half covered, or not yet come upon, whole steps tell more."""
+"""The middle of a step tells the centre of a stone of which so much is seen (what granite hides
+behind its own cap counts as seen), and which whole steps have so near to where it is looked for, m:
+of one half covered, or not yet come upon, whole steps tell more."""
 
 ASLANT = 0.35, 0.6
 """Slants of the view from which on and up to which the middle of the step takes the place of the
@@ -147,22 +148,20 @@ def fit_edges(
     """
     cap, granite = _rims(samples, rays, views, appearance, disc, effort)
     visible = visible_on(samples, rays, appearance, disc)
-    leaning = np.clip((np.hypot(*views.slant.T) - ASLANT[0]) / (ASLANT[1] - ASLANT[0]), 0.0, 1.0)
-    dark = _without_hue(appearance) & (leaning > 0) & _dark(samples)
-    leaning[dark] = 1.0
+    behind = views.behind(effort.rays)
+    dark, middle_counts = _aslant(samples, views, appearance)
     # Of granite that hides behind its cap nothing can be seen.
-    hides = views.behind(effort.rays) > HIDDEN[0]
-    unhidden = (np.where(hides, samples.capped, samples.stony) & cap.inside).mean(1)
-    clear = np.flatnonzero((unhidden > OPEN) & (leaning > 0) & bool(appearance.caps))
+    shown = np.where(behind > HIDDEN[0], samples.capped, samples.stony) & cap.inside
+    clear = np.flatnonzero((shown.mean(1) > OPEN) & (middle_counts > 0) & bool(appearance.caps))
     seen = CapRays(
-        rays, over, views.behind(effort.rays), samples.of_cap, samples.in_ring, samples.of_ring,
-        cap.radius, views.pixel,
+        rays, over, behind, samples.of_cap, samples.in_ring, samples.of_ring, cap.radius,
+        views.pixel,
     )  # fmt: skip
     signal = _against_mixtures(samples.signal, seen, clear, dark, disc)
     fit, exact = _fits(signal, rays, (cap, granite), views, clear, appearance, effort)
     near = exact.ok & (np.hypot(fit.shift[clear, 0], fit.shift[clear, 1]) < NEAR)
     rows = clear[near]
-    fit = _moved(fit, exact.at_places(near), rows, leaning[rows])
+    fit = _moved(fit, exact.at_places(near), rows, middle_counts[rows])
     light = np.full((len(visible), 2), np.nan)
     if effort.light:
         light = _by_light_alone(samples, rays, cap, views, appearance, effort) - fit.shift
@@ -170,20 +169,41 @@ def fit_edges(
     by_mixture[rows] = dark[rows]
     # What displaces the edges of one side is made good by the other side, if that is seen.
     doubt = np.repeat(0.04 * disc.radius * (1 - visible)[:, None], 2, axis=1)
-    moves = (swept_share(views.drift) > 0) & fit.ok & (visible > OPEN)
-    swept = moves & by_mixture
+    edges = Edges(fit, visible, light, np.zeros(len(visible), bool), doubt)
+    return _unsmeared(edges, signal, rays, views, by_mixture, disc)
+
+
+def _aslant(samples: Samples, views: Views, appearance: Appearance) -> tuple[Flags, Array]:
+    """Say which caps are seen aslant and told by what their pixels mix, for they are dark.
+
+    Second how much the middle of the step counts beside the whole of it, 0 to 1; shape (n,) each.
+    """
+    counts = np.clip((np.hypot(*views.slant.T) - ASLANT[0]) / (ASLANT[1] - ASLANT[0]), 0.0, 1.0)
+    dark = _without_hue(appearance) & (counts > 0) & _dark(samples)
+    counts[dark] = 1.0
+    return dark, counts
+
+
+def _unsmeared(
+    edges: Edges, signal: Floats, rays: Rays, views: Views, by_mixture: Flags, disc: Stone
+) -> Edges:
+    """Place stones that move fast by what their caps covered in the exposure, as far as is seen.
+
+    Of those in `by_mixture` the middle of the edge stays, and is in doubt.
+    """
+    moves = (swept_share(views.drift) > 0) & edges.fit.ok & (edges.visible > OPEN)
+    swept, doubt, light = moves & by_mixture, edges.doubt.copy(), edges.light.copy()
     doubt[swept] = np.hypot(doubt[swept], DRAWN_OUT * np.abs(views.drift[swept]))
     light[swept] = np.nan
-    fast = np.flatnonzero(moves & ~by_mixture)
+    shift, fast = edges.fit.shift.copy(), np.flatnonzero(moves & ~by_mixture)
     if len(fast):
-        shift = fit.shift.copy()
         swept[fast], shift[fast], off = middles(
             signal[fast], rays.at_places(fast), disc, shift[fast], views.drift[fast]
         )
-        fit = replace(fit, shift=shift)
         doubt[fast] = np.hypot(doubt[fast], off)
         light[fast[off.any(1)]] = np.nan
-    return Edges(fit, visible, light, swept, doubt)
+    fit = replace(edges.fit, shift=shift)
+    return replace(edges, fit=fit, light=light, swept=swept, doubt=doubt)
 
 
 def visible_on(samples: Samples, rays: Rays, appearance: Appearance, disc: Stone) -> Array:
