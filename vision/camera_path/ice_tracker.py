@@ -31,7 +31,7 @@ NEAR = 0.002
 MOST_DRIFT = 0.25
 """A view carried so far astray is given up, m."""
 
-VIEW_SD = (1.0, 1.0, 0.02, 0.1)
+FROM_CORNERS_SD = (1.0, 1.0, 0.02, 0.1)
 """How far a view may lie from where its corners, or the views before, have it."""
 
 
@@ -109,7 +109,7 @@ class IceTracker:
         lines = edges.lines(pictures, placed, rig)
         marks = [joined(both) for both in zip(corners, lines, strict=False)]
         observed = Observations(joined(marks), edges.size, counts=[len(m) for m in marks])
-        fits = solve_views(observed, placed[: len(marks)], rig, view_sd=VIEW_SD)
+        fits = solve_views(observed, placed[: len(marks)], rig, view_sd=FROM_CORNERS_SD)
         frame, fit = frames[len(fits) - 1], fits[-1]
         self._cov = fit.cov
         if _is_worn(corners[len(fits) - 1], key):

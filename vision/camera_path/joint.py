@@ -24,7 +24,14 @@ from vision.optics.astray import astray, motion
 from vision.optics.bundle import LOST, NOISE_TRUST, bundle
 from vision.optics.camera import Camera, CameraError
 from vision.optics.lean import fit_leaning
-from vision.optics.linear import Observations, by_measure, by_rig, linearised, view_equations
+from vision.optics.linear import (
+    Linear,
+    Observations,
+    by_measure,
+    by_rig,
+    linearised,
+    view_equations,
+)
 from vision.optics.paint import CIRCLES, FIXED, MEASURED, Marks, joined
 from vision.optics.pose import VIEW_SIZE, View, camera, turning
 from vision.optics.projection import PARAMETERS
@@ -57,7 +64,7 @@ JOINT_FRAMES = 12
 TOGETHER = 32
 """Most frames whose views are fitted in one go; one left alone would seem to stand still."""
 
-VIEW_SD = (np.inf, np.inf, 0.05, np.inf)
+FROM_PROVISIONAL_SD = (np.inf, np.inf, 0.05, np.inf)
 """How far a view may lie from the provisional one: the roll is free where no line is seen."""
 
 LONG_RANGE = 1.4
@@ -165,7 +172,7 @@ def fit_clip(
         other, _ = bundle(marks, times, lean.views, lean.rig, size, anywhere)
         if other.ragged < shared.ragged / 2:
             shared, prior = other, anywhere
-    cameras = _fit_frames(seen, shared, size, edge.sd)
+    cameras = _cameras(seen, shared, size, edge.sd)
     sd = _spread_of(shared) * np.sqrt(np.diag(shared.cov)[:RIG_SIZE])
     place, scale = shared.rig[POSITION], _scale_sd(chosen[-1].view, shared.rig, edge.sd)
     sd[POSITION] = np.hypot(sd[POSITION], scale * place)
@@ -178,7 +185,7 @@ def fit_clip(
     )
 
 
-def _fit_frames(
+def _cameras(
     seen: Sequence[Seen], shared: Bundle, size: tuple[int, int], edge_sd: float
 ) -> list[Camera]:
     """Fit all frames; what is known from a keyframe is placed by that one's final camera."""
@@ -190,7 +197,7 @@ def _fit_frames(
         for part in np.array_split(np.arange(len(ready)), math.ceil(len(ready) / TOGETHER)):
             fresh = [ready[k] for k in part]
             known = [_carried(s, s.key, done[s.key.frame]) if s.key else s for s in fresh]
-            fitted, motions = fit_frames(known, shared, size, edge_sd)
+            fitted, motions = _fit_frames(known, shared, size, edge_sd)
             cameras += fitted
             moved += motions.tolist()
         done.update({camera.frame: camera for camera in _put_aside(cameras, np.array(moved))})
@@ -225,10 +232,10 @@ def _put_aside(cameras: Sequence[Camera], moved: Array) -> list[Camera]:
     return found
 
 
-def fit_frames(
+def _fit_frames(
     seen: Sequence[Seen], shared: Bundle, size: tuple[int, int], edge_sd: float
 ) -> tuple[list[Camera], Array]:
-    """Fit frames' views with what they share held.
+    """Fit the views of a few frames together, with what all frames share held.
 
     `edge_sd` is the standard error of the 12-ft circle's edge, px.
 
@@ -247,34 +254,13 @@ def fit_frames(
     times = np.array([s.t for s in seen])
     away = shared.moved(times)
     observed.foot -= observed.each(away.T)
-    fits = solve_views(observed, [s.view for s in seen], shared.rig, view_sd=VIEW_SD)
+    fits = solve_views(observed, [s.view for s in seen], shared.rig, view_sd=FROM_PROVISIONAL_SD)
     views = np.array([fit.view.vector for fit in fits])
     at = linearised(observed, observed.points(shared.rig), views, shared.rig)
-    weight = 1 / (1 + (at.residual / WIDTH) ** 2)
-    # A frame may be noisier than most: fewer marks, people, blur.
-    square = observed.summed(weight * at.residual**2) / LOST
-    free = np.maximum(observed.summed(weight) - VIEW_SIZE, 0.0)
-    noisier = (NOISE_TRUST + square) / (NOISE_TRUST + free)
-    by_view = at.by_view * weight
-    normals, _ = view_equations(observed, at, weight)
-    # Linearised at the same place as the rest: else errors would not cancel.
-    covs = inverse(normals + np.diag(1 / np.square(VIEW_SD)))
-    by_shared, by_offset = by_rig(observed, at, views), by_measure(observed, at)
     moved = motion(observed, at, views, away, np.array([s.index for s in seen]))
-    count = RIG_SIZE + len(shared.pieces)
+    common, own = _covariances(observed, at, views, piece, shared, times)
     identity, on_circle = piece_of(marks, ARC), marks.line < CIRCLES
-    rigs = np.tile(shared.rig, (len(seen), 1))
-    rigs[:, POSITION] += away
-    by_both = np.array([_parameters(*each, size) for each in zip(views, rigs, strict=True)])
-    both = np.zeros((len(seen), VIEW_SIZE + RIG_SIZE, count))
-    both[:, VIEW_SIZE:] = np.eye(RIG_SIZE, count)
-    for follows, part, cov in zip(both, observed.parts, covs, strict=True):
-        follows[:VIEW_SIZE] = sensitivity(
-            by_view[:, part], by_shared[:, part], by_offset[part], cov, piece[part], count
-        )
-    common = _spread_of(shared) ** 2 * shared.covariances(by_both @ both, times)
-    own = by_both[..., :VIEW_SIZE]
-    own = _spread_of(shared) ** 2 * noisier[:, None, None] * own @ covs @ np.swapaxes(own, 1, 2)
+    rigs = _rigs(shared, times)
     found = []
     for k, (s, fit, part, rig) in enumerate(zip(seen, fits, observed.parts, rigs, strict=True)):
         error = CameraError(
@@ -295,6 +281,60 @@ def fit_frames(
             )
         )  # fmt: skip
     return found, moved
+
+
+def _covariances(
+    observed: Observations, at: Linear, views: Array, piece: Index, shared: Bundle, times: Array
+) -> tuple[Array, Array]:
+    """Covariances of the parameters of cameras, each of shape (frames, 9, 9).
+
+    Parameters
+    ----------
+    observed, at : Observations, Linear
+        The marks, and their residuals in the end.
+    views : ndarray, shape (frames, 4)
+        As they were fitted.
+    piece : ndarray of int, shape (n,)
+        Which of the shared offsets is that of the paint under each mark; −1 for none.
+    shared : Bundle
+    times : ndarray, shape (frames,)
+        s.
+
+    Returns
+    -------
+    common, own : ndarray
+        By the errors of what all frames share, with which the views go; by those of a frame's own
+        marks.
+    """
+    weight = 1 / (1 + (at.residual / WIDTH) ** 2)
+    # A frame may be noisier than most: fewer marks, people, blur.
+    square = observed.summed(weight * at.residual**2) / LOST
+    free = np.maximum(observed.summed(weight) - VIEW_SIZE, 0.0)
+    noisier = (NOISE_TRUST + square) / (NOISE_TRUST + free)
+    # Linearised at the same place as the rest: else errors would not cancel.
+    normals, _ = view_equations(observed, at, weight)
+    covs = inverse(normals + np.diag(1 / np.square(FROM_PROVISIONAL_SD)))
+    by_view, by_shared = at.by_view * weight, by_rig(observed, at, views)
+    by_offset, count = by_measure(observed, at), RIG_SIZE + len(shared.pieces)
+    view_and_rig = np.zeros((len(times), VIEW_SIZE + RIG_SIZE, count))  # by rig and offsets
+    view_and_rig[:, VIEW_SIZE:] = np.eye(RIG_SIZE, count)
+    for follows, part, cov in zip(view_and_rig, observed.parts, covs, strict=True):
+        follows[:VIEW_SIZE] = sensitivity(
+            by_view[:, part], by_shared[:, part], by_offset[part], cov, piece[part], count
+        )
+    each = zip(views, _rigs(shared, times), strict=True)
+    by_both = np.array([_parameters(view, rig, observed.size) for view, rig in each])
+    common = _spread_of(shared) ** 2 * shared.covariances(by_both @ view_and_rig, times)
+    own = by_both[..., :VIEW_SIZE]
+    own = _spread_of(shared) ** 2 * noisier[:, None, None] * own @ covs @ np.swapaxes(own, 1, 2)
+    return common, own
+
+
+def _rigs(shared: Bundle, times: Array) -> Array:
+    """Give what frames share as it is at these times, shape (frames, 15): the camera may travel."""
+    rigs = np.tile(shared.rig, (len(times), 1))
+    rigs[:, POSITION] += shared.moved(times)
+    return rigs
 
 
 def _on_known(marks: Marks, shared: Bundle) -> Marks:
