@@ -14,7 +14,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from data.errors import InputError
-from data.results import SimulationScore
+from data.results import SimulatedHit, SimulationScore
 from data.sheet import STONE
 from physics.estimate import Estimates
 from physics.impact import Impact, PointMass, RigidBody
@@ -97,14 +97,11 @@ def simulate_measured(
     -------
     Hindcast
     """
-    warnings: list[str] = []
     if tracks.empty:
         return Hindcast({}, {}, ("no tracks to simulate",))
     if tracks["vx"].isna().all():
         return Hindcast({}, {}, ("no stone was seen twice: places only, nothing to simulate",))
     start = _start_time(tracks, estimates)
-    if not estimates.collisions:
-        warnings.append("simulation: no hit, the stones only glide")
     fit = estimates.whole
     told = {*fit.shots[0].traces} if fit is not None else set()
     # What may not have lain there, and nothing brings back in time, can't begin with the others.
@@ -112,46 +109,63 @@ def simulate_measured(
     stones = _states(tracks[~tracks["stone"].isin(late)], start, estimates, masses or {})
     laws = measured_laws(estimates, radius)
     models, notes = _models(laws, estimates, stones)
-    laws_used = ("restitution", "friction") if estimates.collisions else ("friction",)
-    warnings += [f"simulation: {laws.assumed[name]}" for name in laws_used if name in laws.assumed]
     clock = tracks.groupby("frame", sort=True)["t"].first()
     clock = clock[clock >= start]
     doubt = _doubt(tracks, start, estimates, laws)
     again = Shot(stones, laws.frictional, laws.ice, laws.curl, radius * (laws.size.value or 1.0))
-    may = _may_have_been(estimates.whole, again, doubt, start)
-    ends = explained_until(tracks, estimates, start)
-    warnings += [
-        f"simulation: {name} is compared until {end:.2f} s; neither ice nor a hit in view"
-        " explains how it moves then"
-        for name, end in ends.items()
-        if np.isfinite(end)
-    ]
-    ends = foreseen_until(ends, estimates.collisions, {stone.name for stone in stones})
+    may = _may_have_been(fit, again, doubt, start)
+    explained = explained_until(tracks, estimates, start)
+    ends = foreseen_until(explained, estimates.collisions, {stone.name for stone in stones})
     samples: dict[str, pd.DataFrame] = {}
     scores: dict[str, SimulationScore] = {}
     for name, impact in models.items():
         if impact is None:
             scores[name] = SimulationScore(None, {}, notes[name])
             continue
-        shots = may.by(impact)
         try:
-            run = simulate(shots.likely)
+            table, hits = _sampled(may.by(impact), clock)
         except InputError as error:
             scores[name] = SimulationScore(None, {}, f"cannot be simulated: {error}")
             continue
-        since = clock.to_numpy(float) - shots.start
-        others = simulated(shots.others)
-        table = run.sample(since).merge(path_spread(others, since), "left", ["stone", "t"])
-        table["frame"] = clock.index.to_numpy()[table["frame"].to_numpy()]
-        table["t"] = table["t"] + shots.start
         samples[name] = table
         found = score(tracks, table, start, ends, notes.get(name))
-        scores[name] = replace(
-            found,
-            hits=simulated_hits(run, others, shots.start),
-            rest_sd=_rest_sd(tracks, table, found),
-        )
-    return Hindcast(samples, scores, tuple(warnings), may.by(laws.frictional))
+        scores[name] = replace(found, hits=hits, rest_sd=_rest_sd(tracks, table, found))
+    warnings = _assumptions(estimates, laws, explained)
+    return Hindcast(samples, scores, warnings, may.by(laws.frictional))
+
+
+def _assumptions(
+    estimates: Estimates, laws: Laws, explained: Mapping[str, float]
+) -> tuple[str, ...]:
+    """Say what is assumed of a shot, and until when, s, its stones are compared."""
+    out = [] if estimates.collisions else ["simulation: no hit, the stones only glide"]
+    used = ("restitution", "friction") if estimates.collisions else ("friction",)
+    out += [f"simulation: {laws.assumed[name]}" for name in used if name in laws.assumed]
+    out += [
+        f"simulation: {name} is compared until {end:.2f} s; neither ice nor a hit in view"
+        " explains how it moves then"
+        for name, end in explained.items()
+        if np.isfinite(end)
+    ]
+    return tuple(out)
+
+
+def _sampled(
+    shots: Ensemble, clock: pd.Series[float]
+) -> tuple[pd.DataFrame, tuple[SimulatedHit, ...]]:
+    """Simulate a shot and its variants: table of `Hindcast.samples` at a clock of frames, hits.
+
+    Raises
+    ------
+    InputError
+        The likeliest shot cannot be simulated.
+    """
+    run, others = simulate(shots.likely), simulated(shots.others)
+    since = np.asarray(clock, float) - shots.start
+    table = run.sample(since).merge(path_spread(others, since), "left", ["stone", "t"])
+    table["frame"] = clock.index.to_numpy()[table["frame"].to_numpy()]
+    table["t"] = table["t"] + shots.start
+    return table, simulated_hits(run, others, shots.start)
 
 
 def _may_have_been(fit: GlobalFit | None, shot: Shot, doubt: Doubt, start: float) -> Ensemble:
