@@ -10,36 +10,20 @@ from typing import TYPE_CHECKING
 from data.errors import InputError, SceneError
 from data.progress import Progress, no_progress
 from data.sheet import House
+from work.cautions import cautions
 from work.measure import Measured
 from work.settings import Settings
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from data.results import Collision, Estimate, Input, Results
+    from data.results import Collision, Input, Results
     from physics.local_fit.contacts import Contact
     from physics.prediction.ensemble import Ensemble
     from physics.whole_shot.priors import Priors
 
 
-FEWEST = 4
-"""Frames in which stones must be seen to tell how they move: in three one that is hit looks like
-an outlier."""
-
-ICE = (0.004, 0.03)
-"""Frictions that stones have on curling ice, from the keenest to wet or frosted one."""
-
-SLIPPERIEST = 2e-4
-"""Friction below that of anything that glides: a twentieth of that of the keenest ice."""
-
-
-NO_SHEET = (
-    "the shot does not come along y within the sides of a sheet whose tee is the origin: no house"
-    " and no lines; put the origin on the tee and y along the sheet if there is one"
-)
-
-LISTED = 4
-"""Marks left out that are named one by one, the worst."""
+NO_SAMPLES = "no samples: the shot tells neither restitution nor friction"
 
 
 @dataclass(frozen=True)
@@ -91,7 +75,7 @@ def analyse(
     from physics.posterior import sample_posterior, summarise
     from physics.prediction.forecast import predict
     from physics.prediction.hindcast import simulate_measured
-    from physics.prediction.throws import along_sheet, first_hit, later_throws
+    from physics.prediction.throws import along_sheet, first_hit
     from vision.optics.camera import camera_table
 
     sightings, radius = measured.sightings, settings.radius
@@ -106,22 +90,21 @@ def analyse(
     timed = _timed(contacts, estimates.collisions)
     tracks = smooth(sightings, timed, radius=radius, masses=masses, unseen=measured.repeats)
     again = simulate_measured(tracks, estimates, radius=radius, masses=masses)
-    notes = again.warnings
     laws = _assumed_laws(settings)
     predictions = predict(sightings, tracks, estimates, radius=radius, masses=masses, laws=laws)
     of_team = teams(tracks)
     drawn = sample_posterior(estimates, settings.samples, np.random.default_rng(0))
-    if settings.samples and drawn is None:
-        notes = (*notes, "no samples: the shot tells neither restitution nor friction")
-    house = measured.house
-    placed = measured.clip is None and house is not None  # by hand, wherever the origin was put
-    if placed and not along_sheet(tracks, first_hit(estimates.collisions), radius):
-        house, notes = None, (*notes, NO_SHEET)
-    pace = _pace if measured.house is not None else _pace_anywhere
-    notes = (*notes, *pace(estimates.friction))
-    notes = (*notes, *_throws(later_throws(tracks)), *_few(sightings["frame"].nunique()))
-    if measured.clip is None:  # in a clip people cover stones in passing
-        notes = (*notes, *_left_out(sightings, tracks))
+    # Of a clip the house is seen; marked by hand, stones lie wherever the origin was put.
+    placed = measured.clip is None and measured.house is not None
+    sheet = not placed or along_sheet(tracks, first_hit(estimates.collisions), radius)
+    house = measured.house if sheet else None
+    warnings = (
+        *measured.warnings,
+        *estimates.warnings,
+        *again.warnings,
+        *((NO_SAMPLES,) if settings.samples and drawn is None else ()),
+        *cautions(measured, tracks, estimates.friction, sheet),
+    )
     results = Results(
         input=_input(measured),
         restitution=estimates.restitution,
@@ -129,7 +112,7 @@ def analyse(
         collisions=estimates.collisions,
         glides=estimates.glides,
         simulations=again.scores,
-        warnings=tuple(dict.fromkeys((*measured.warnings, *estimates.warnings, *notes))),
+        warnings=tuple(dict.fromkeys(warnings)),
         radius=radius,
         predictions=predictions,
         laws=estimates.laws,
@@ -168,86 +151,6 @@ def _input(measured: Measured) -> Input:
         frames=measured.frames,
         duration=float(times.max() - times.min()),
     )
-
-
-def _few(frames: int) -> tuple[str, ...]:
-    """Say so where too little is seen to tell a stone that moves from one that does not."""
-    if not 1 < frames < FEWEST:
-        return ()
-    return (
-        f"stones are seen in {frames} frames: too few to tell which of them move, what hits them"
-        f" and where they stop; it takes {FEWEST}",
-    )
-
-
-def _pace(friction: Estimate) -> tuple[str, ...]:
-    """Say so where stones slow as on no ice.
-
-    A clip that runs k times too slowly shows μ / k², tracks k times too long k μ.
-    """
-    from physics.whole_shot.priors import FRICTION
-
-    value, stderr = friction.value, friction.stderr
-    if value is None or stderr is None or value <= 0:
-        return ()
-    if ICE[0] < value + 2 * stderr and value - 2 * stderr < ICE[1]:
-        return ()
-    times, pace = (FRICTION / value) ** 0.5, "slow"
-    if times < 1:
-        times, pace = 1 / times, "fast"
-    return (
-        f"friction: {value:.2g} is not that of curling ice; a clip in {pace} motion"
-        f" (about {times:.2g} times) or tracks in another length unit would look so: then speeds"
-        " are not real ones, e is",
-    )
-
-
-def _pace_anywhere(friction: Estimate) -> tuple[str, ...]:
-    """Say so where discs slow as on no surface at all, of whatever they are made."""
-    value, stderr = friction.value, friction.stderr
-    if value is None or stderr is None or value <= 0 or value + 2 * stderr > SLIPPERIEST:
-        return ()
-    return (
-        f"friction: {value:.2g} is below that of any surface; a wrong number of"
-        " frames a second (--fps), slow motion or another length unit would look so: then speeds"
-        " are not real ones, e is",
-    )
-
-
-def _throws(later: Mapping[str, float]) -> tuple[str, ...]:
-    """Say so where more than one stone is thrown."""
-    if not later:
-        return ()
-    each = ", ".join(f"{name} at {when:.2f} s" for name, when in later.items())
-    return (
-        f"more than one throw: {each}, when all others have stopped; e and μ are of all,"
-        " predictions of the first hit; to measure one alone cut the table, or name its frames"
-        " (--frames)",
-    )
-
-
-def _left_out(sightings: pd.DataFrame, tracks: pd.DataFrame) -> tuple[str, ...]:
-    """Name the marks that are far off the ways of their stones, so that no track heeds them."""
-    import numpy as np
-
-    refused = tracks.loc[tracks["seen"] == 0, ["stone", "frame", "t", "x", "y"]]
-    both = refused.merge(sightings, on=["stone", "frame"], suffixes=("", "_marked"))
-    both["off"] = np.hypot(both["x"] - both["x_marked"], both["y"] - both["y_marked"])
-    both = both.dropna(subset="off")
-    if both.empty:
-        return ()
-    worst = both.nlargest(LISTED, "off").sort_values("t")
-    columns = (worst[name].tolist() for name in ("stone", "t", "off"))
-    each = ", ".join(
-        f"{stone} at {t:.2f} s ({_little(off)} off)" for stone, t, off in zip(*columns, strict=True)
-    )
-    more = f" and {len(both) - len(worst)} more" if len(both) > len(worst) else ""
-    return (f"marks that are off the ways of their stones are left out: {each}{more}",)
-
-
-def _little(length: float) -> str:
-    """Write a length of centimetres, m, or of less."""
-    return f"{100 * length:.0f} cm" if length > 0.0095 else f"{1000 * length:.1f} mm"
 
 
 def _way_out(settings: Settings) -> str:
