@@ -134,55 +134,63 @@ class HouseFollower:
     def _go_on(self) -> Sequence[tuple[Frame, Camera]]:
         """Place the next frame, or the next few."""
         piece, frames = self._piece, self._ahead[: self._stride]
-        frame = frames[0]
         if piece is not None:
             seen = piece.follow(frames)
-            if seen and (piece.lost or piece.leapt):
-                now = glimpse(frame.picture, seen[0].view, piece.rig, frame.t)
-                if self._is_elsewhere(piece, now):
-                    seen, piece.lost = [], PATIENCE
+            if seen and self._has_cut_away(piece, frames[0], seen[0]):
+                seen, piece.lost = [], PATIENCE
             if seen and piece.missed > FIND_EVERY:
                 # Carried on through a dissolve, say: what is fixed to the ice is not it.
-                house = self._find(frame)
+                house = self._find(frames[0])
                 if house is not None:
-                    del self._ahead[0]
-                    return self._start(frame, house)
+                    return self._start(self._ahead.pop(0), house)
                 if piece.missed > min(MOST_MISSED, _looked_back(self._size)):
                     seen, piece.lost = [], PATIENCE
             if seen:
                 del self._ahead[: len(seen)]
-                if piece.missed:  # they may be another's
-                    self._waiting.extend(frames[: len(seen)])
-                else:
-                    self._waiting.clear()
-                other = self._fuller(piece, frames[len(seen) - 1], seen)
-                if other is not None:
-                    self._pieces.remove(piece)
-                    self._piece = None
-                    self._waiting.extend(piece.taken_back())
-                    self._waiting.extend(frames[: len(seen) - 1])
-                    return self._start(frames[len(seen) - 1], other)
-                placed = piece.take(frames[: len(seen)], seen)
-                self._watch_for_cuts(piece)
-                return placed
-            piece.lost += 1
-            if piece.lost == 1:
-                self._since_find = self._between = FIND_EVERY
-            if piece.lost > PATIENCE:
-                piece.give_up_missed()
-                self._piece = None
-        del self._ahead[0]
+                return self._taken(piece, frames[: len(seen)], seen)
+            self._miss(piece)
+        frame = self._ahead.pop(0)
         house = self._find(frame)
         if house is not None:
             return self._start(frame, house)
         self._waiting.append(frame)
         return []
 
-    def _fuller(self, piece: Piece, frame: Frame, seen: Sequence[Seen]) -> HouseFit | None:
-        """Look once more where the house that was found is cut: there may be a fuller one.
+    def _has_cut_away(self, piece: Piece, frame: Frame, seen: Seen) -> bool:
+        """Whether a frame that a piece was lost before, or leapt to, is of something else."""
+        if not (piece.lost or piece.leapt):
+            return False
+        return self._is_elsewhere(piece, glimpse(frame.picture, seen.view, piece.rig, frame.t))
 
-        In the last of the frames that were followed.
-        """
+    def _taken(
+        self, piece: Piece, frames: Sequence[Frame], seen: Sequence[Seen]
+    ) -> Sequence[tuple[Frame, Camera]]:
+        """Take in frames that a piece has followed, or begin anew with a fuller house in them."""
+        if piece.missed:  # they may be another's
+            self._waiting.extend(frames)
+        else:
+            self._waiting.clear()
+        other = self._fuller(piece, frames[-1], seen)
+        if other is not None:
+            self._pieces.remove(piece)
+            self._piece = None
+            self._waiting.extend([*piece.taken_back(), *frames[:-1]])
+            return self._start(frames[-1], other)
+        placed = piece.take(frames, seen)
+        self._watch_for_cuts(piece)
+        return placed
+
+    def _miss(self, piece: Piece) -> None:
+        """Count a frame into which a piece could not be followed; give it up after a while."""
+        piece.lost += 1
+        if piece.lost == 1:
+            self._since_find = self._between = FIND_EVERY
+        if piece.lost > PATIENCE:
+            piece.give_up_missed()
+            self._piece = None
+
+    def _fuller(self, piece: Piece, frame: Frame, seen: Sequence[Seen]) -> HouseFit | None:
+        """Look for a fuller house in the last frame that was followed, if that found is cut."""
         if not piece.second_look_due(len(seen)):
             return None
         before, piece.in_view = piece.in_view, 1.0
