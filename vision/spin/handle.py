@@ -226,28 +226,15 @@ def handle_angles(
     seen, pictures = seen[clear], pictures[clear]
     if len(seen) < 2:  # an angle is against another picture of the same stone
         return nothing
-    by = _of_heights(times[seen], pictures, len(radii))
-    if _hardly_told(by.best):
-        within = len(radii) - RIM
-        rings = np.resize(np.arange(len(radii)) < within, pictures.shape[2])
-        inner = _of_heights(times[seen], pictures[:, :, rings], within)
-        if max(by.best.share, 2 * LEAST) < inner.best.share and _mostly_told(inner.best):
-            by, radii = inner, radii[:within]
+    by = _without_rim_if_better(times[seen], pictures, len(radii))
     del pictures
-    best = by.best
+    best, radii = by.best, radii[: by.rings]
+    if not _tells_angles(best):
+        return nothing
     good = best.likeness > TURNING.least_likeness
-    if good.sum() < max(0.5 * len(seen), 2):
-        # Most frames do not look like the mean: there is nothing on the cap to go by.
-        return nothing
-    if best.share < LEAST and _alike(best) < LITTLE * len(seen):
-        # What hardly any picture has in common, and what does not turn: light, not the cap.
-        return nothing
-    rows = seen[good]
+    rows, own = seen[good], best.pictures[good]
     aside = np.hypot(TURNING.shift, sd_centre[rows])
-    own = best.pictures[good]
     fit = align(own, best.angles[good], radii, aside)
-    unlike = np.maximum(1 - best.likeness[good] ** 2, ALIKE)
-    covered = np.clip((unlike / (BEFORE * np.median(unlike))) ** 2, 1.0, WORST)
     angle, risen = fit.angle, rise[rows]
     if slants is not None:
         uphill = rise_of_handle(own, fit.angle, radii, slants[rows], aside)
@@ -255,10 +242,7 @@ def handle_angles(
             own = inclined(own, fit.angle, radii, slants[rows], uphill)
             fit = align(own, fit.angle, radii, aside)
         angle, risen = levelled(own, fit.angle, radii, slants[rows])
-    odd = np.clip((1 - _alike(best) / len(seen)) / ODD, 1.0, ODDEST)
-    dim = np.clip(TURNS / max(best.share, 1e-6) - 1, 0.0, DIM)
-    odd += dim * max(odd - ODDER, 0.0)
-    error = np.hypot(LASTING * odd * covered * fit.sd, by.apart[good])
+    error = np.hypot(LASTING * _oddness(best) * _covered(best)[good] * fit.sd, by.apart[good])
     if np.median(np.hypot(error, np.sqrt((risen**2).sum(1).mean()))) > UNSURE:
         return nothing
     angle = angle - angle[0]
@@ -271,14 +255,28 @@ def handle_angles(
 class _ByHeight:
     """Pictures of the height that is believed, which one it is, and how they differ by height.
 
-    `apart` (n,) is how far apart their angles are, rad, and `unlike` (heights,) how many pictures'
-    worth of each height their mean does not explain.
+    `rings` is how many of the rings, from the innermost, they were matched by, `apart` (n,) how far
+    apart their angles are, rad, and `unlike` (heights,) how many pictures' worth of each height
+    their mean does not explain.
     """
 
     best: _Matched
     height: int
+    rings: int
     apart: Array
     unlike: Array
+
+
+def _without_rim_if_better(times: Array, pictures: Complex, rings: int) -> _ByHeight:
+    """Turn pictures onto their mean; by the rings within the rim if hardly anything tells else."""
+    by = _of_heights(times, pictures, rings)
+    if not _hardly_told(by.best):
+        return by
+    within = rings - RIM
+    inner = np.resize(np.arange(rings) < within, pictures.shape[2])
+    other = _of_heights(times, pictures[:, :, inner], within)
+    better = max(by.best.share, 2 * LEAST) < other.best.share and _mostly_told(other.best)
+    return other if better else by
 
 
 def _of_heights(times: Array, pictures: Complex, rings: int) -> _ByHeight:
@@ -294,7 +292,7 @@ def _of_heights(times: Array, pictures: Complex, rings: int) -> _ByHeight:
         best = both[which]
     else:
         best = _despite_light(times, heights[which], tried[which])
-    return _ByHeight(best, which, _apart(tried, unlike), unlike)
+    return _ByHeight(best, which, rings, _apart(tried, unlike), unlike)
 
 
 @dataclass(frozen=True)
@@ -308,6 +306,32 @@ class _Matched:
     angles: Array
     likeness: Array
     share: float = 1.0
+
+
+def _tells_angles(best: _Matched) -> bool:
+    """Whether there is something on the cap that tells how it is turned."""
+    count = len(best.angles)
+    if (best.likeness > TURNING.least_likeness).sum() < max(0.5 * count, 2):
+        return False  # most pictures do not look like their mean
+    # What hardly any picture has in common, and what does not turn: light, not the cap.
+    return best.share >= LEAST or _alike(best) >= LITTLE * count
+
+
+def _oddness(best: _Matched) -> float:
+    """How many times more angles err, for what their mean does not explain of the pictures."""
+    odd = float(np.clip((1 - _alike(best) / len(best.angles)) / ODD, 1.0, ODDEST))
+    dim = float(np.clip(TURNS / max(best.share, 1e-6) - 1, 0.0, DIM))
+    return odd + dim * max(odd - ODDER, 0.0)
+
+
+def _covered(best: _Matched) -> Array:
+    """How many times more the angle of each picture errs, for what lies before the cap, (n,).
+
+    Against the pictures that tell an angle.
+    """
+    unlike = np.maximum(1 - best.likeness**2, ALIKE)
+    usual = np.median(unlike[best.likeness > TURNING.least_likeness])
+    return np.asarray(np.clip((unlike / (BEFORE * usual)) ** 2, 1.0, WORST))
 
 
 def _hardly_told(matched: _Matched) -> bool:
