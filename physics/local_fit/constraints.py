@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physics.filter.slowing import at_speed, motion_state
-from physics.local_fit.shot_fit import Deceleration, Meeting, unknowns_of
+from physics.local_fit.shot_fit import POWER, Deceleration, Meeting, unknowns_of
 
 Floats = NDArray[np.float64]
 
@@ -96,7 +96,9 @@ def contact_constraints(
 
     def state(i: int) -> _State:
         own = unknowns_of(i, len(origins))
-        now = motion_state(theta[own[:6]].reshape(2, 3), t - origins[i], float(theta[own[6]]))
+        now = motion_state(
+            theta[own[:POWER]].reshape(2, 3), t - origins[i], float(theta[own[POWER]])
+        )
         by_place, by_speed = np.zeros((2, len(theta))), np.zeros((2, len(theta)))
         by_place[:, own], by_speed[:, own] = now.by_place, now.by_speed
         by_place[:, at], by_speed[:, at] = now.speed, now.change

@@ -295,7 +295,5 @@ def _contacts(fit: ShotFit) -> tuple[Contact, ...]:
         nx, ny = (float(value) for value in state.normal)
         if np.hypot(*state.before[1]) > np.hypot(*state.before[0]):
             first, second, nx, ny = second, first, -nx, -ny
-        at = 6 * len(fit.pieces) + k
-        stderr = float(np.sqrt(fit.cov[at, at]))
-        out.append(Contact(state.t, stderr, (first, second), (nx, ny)))
+        out.append(Contact(state.t, fit.stderr_time(k), (first, second), (nx, ny)))
     return tuple(sorted(out, key=lambda contact: contact.t))

@@ -18,7 +18,17 @@ from physics.filter.slowing import LEAST, MOST, course, power_prior, stop_after
 from physics.local_fit.breaks import FEWEST
 from physics.local_fit.constraints import acceleration_prior, contact_constraints
 from physics.local_fit.segments import Piece
-from physics.local_fit.shot_fit import Deceleration, Meeting, ShotFit, unknowns_of
+from physics.local_fit.shot_fit import (
+    ACCELERATION,
+    PLACE,
+    POWER,
+    VELOCITY,
+    Deceleration,
+    Meeting,
+    ShotFit,
+    times_of,
+    unknowns_of,
+)
 from physics.local_fit.traces import Trace
 from physics.statistics.normal_equations import eliminated, inverse_of_blocks
 from physics.statistics.residuals import huber_weights, inflation
@@ -68,11 +78,8 @@ def fit_shot(
     still : sequence of (n, 2) array
         Normalised residuals of stones that never move, for how alike errors are in time.
     """
-    solver = _Solver(
-        traces, pieces, meetings, radius, masses or {}, deceleration or Deceleration(), momentum
-    )
-    solver.still = [(residuals, 1) for residuals in still]
-    return solver.solve()
+    prior = deceleration or Deceleration()
+    return _Solver(traces, pieces, meetings, radius, masses or {}, prior, momentum, still).solve()
 
 
 class _Solver:
@@ -87,12 +94,15 @@ class _Solver:
         masses: Mapping[str, float],
         deceleration: Deceleration,
         momentum: bool,
+        still: Sequence[Floats],
     ) -> None:
         self.traces, self.pieces, self.meetings = traces, list(pieces), tuple(meetings)
         self.radius, self.masses = radius, masses
         self.prior, self.momentum = deceleration, momentum
-        self.still: list[tuple[Floats, int]] = []
+        self.still = [(residuals, 1) for residuals in still]
         self.inflation = 1.0
+        self.own = [unknowns_of(i, len(self.pieces)) for i in range(len(self.pieces))]
+        self.times = times_of(len(self.pieces), len(self.meetings))
         self.size = 7 * len(self.pieces) + len(self.meetings)
         opened = {(p.opens, p.stone): i for i, p in enumerate(pieces) if p.opens is not None}
         self.sides = {
@@ -106,12 +116,10 @@ class _Solver:
         self.blocks = self._blocks()
         self.origins = np.array([_origin(p, traces[p.stone], meetings) for p in pieces])
         self.theta = np.zeros(self.size)
-        for k, meeting in enumerate(self.meetings):
-            self.theta[6 * len(self.pieces) + k] = meeting.t
-        for i, piece in enumerate(self.pieces):
-            guess = _first_guess(piece, traces[piece.stone], self.origins[i])
-            self.theta[6 * i : 6 * i + 6] = guess.ravel()
-            self.theta[i - len(self.pieces)] = self._power_prior(guess[:, 1])[0]
+        self.theta[self.times] = [meeting.t for meeting in self.meetings]
+        for own, piece, origin in zip(self.own, self.pieces, self.origins, strict=True):
+            guess = _first_guess(piece, traces[piece.stone], origin)
+            self.theta[own] = [*guess.ravel(), self._power_prior(guess[:, 1])[0]]
 
     def _blocks(self) -> list[NDArray[np.int64]]:
         """Unknowns that depend on each other: pieces are tied to others by meetings alone."""
@@ -125,7 +133,7 @@ class _Solver:
         return np.split(order, np.flatnonzero(np.diff(unknowns[order])) + 1)
 
     def solve(self) -> ShotFit:
-        first, last = 6 * len(self.pieces), self.size - len(self.pieces)
+        states, powers = slice(self.times.start), slice(self.times.stop, None)
         settled = False
         for done in range(STEPS):
             self._assign()
@@ -134,10 +142,11 @@ class _Solver:
             cov = inverse_of_blocks(data + held, self.blocks)
             new = cov @ (right + held_right)
             step = new - self.theta
-            for k in range(len(self.meetings)):
-                step[first + k] = np.clip(step[first + k], *self._time_bounds(k))
-            step[:first] = np.clip(step[:first], -FARTHEST, FARTHEST)
-            step[last:] = np.clip(self.theta[last:] + step[last:], LEAST, MOST) - self.theta[last:]
+            bounds = [self._time_bounds(k) for k in range(len(self.meetings))]
+            step[self.times] = np.clip(step[self.times], *np.reshape(bounds, (-1, 2)).T)
+            step[states] = np.clip(step[states], -FARTHEST, FARTHEST)
+            power = self.theta[powers]
+            step[powers] = np.clip(power + step[powers], LEAST, MOST) - power
             scale = np.sqrt(np.maximum(np.diag(cov), 1e-24))
             settled = bool(np.all(np.abs(step) < 0.02 * scale))
             self.theta = self.theta + (0.5 if done >= USUAL else 1.0) * step
@@ -158,14 +167,14 @@ class _Solver:
     def _forget(self, step: Floats) -> None:
         """Let go of what is known of pieces that a step has moved, or that drift anew."""
         for i, piece in enumerate(self.pieces):
-            if not piece.rest or step[[6 * i, 6 * i + 3]].any():
+            if not piece.rest or step[self.own[i][PLACE]].any():
                 self.courses.pop(i, None)
                 self.left.pop(i, None)
 
     def _time_bounds(self, k: int) -> tuple[float, float]:
         """Least and most that the time of meeting k may move in one step."""
         meeting = self.meetings[k]
-        times = self.theta[6 * len(self.pieces) : self.size - len(self.pieces)]
+        times = self.theta[self.times]
         loose = meeting.looseness
         low = max(meeting.t - 3 * loose - times[k], -loose)
         high = min(meeting.t + 3 * loose - times[k], loose)
@@ -181,7 +190,7 @@ class _Solver:
     def _assign(self) -> None:
         """Give each sighting beside a hit to the side of it that it lies on."""
         for (k, stone), (i, j) in self.sides.items():
-            t = self.theta[6 * len(self.pieces) + k]
+            t = self.theta[self.times][k]
             both = np.concatenate([self.pieces[i].samples, self.pieces[j].samples])
             early = self.traces[stone].t[both] < t
             for rank, samples in ((i, both[early]), (j, both[~early])):
@@ -192,8 +201,8 @@ class _Solver:
 
     def _motion(self, i: int) -> tuple[Floats, float]:
         """State of a piece at its origin, shape (2, 3), and the power that slows it."""
-        own = self.theta[unknowns_of(i, len(self.pieces))]
-        return own[:6].reshape(2, 3), float(own[6])
+        own = self.theta[self.own[i]]
+        return own[:POWER].reshape(2, 3), float(own[POWER])
 
     def _course(self, i: int) -> tuple[Floats, Floats, Floats]:
         """Give times of a piece's sightings from its origin, s, its places, their derivatives.
@@ -206,7 +215,7 @@ class _Solver:
             tau = np.minimum(tau, 0.0 if piece.rest else stop_after(x, power))
             if piece.rest:
                 slopes = np.zeros((len(tau), 2, 7))
-                slopes[:, [0, 1], [0, 3]] = 1.0
+                slopes[:, [0, 1], PLACE] = 1.0
                 self.courses[i] = tau, np.tile(x[:, 0], (len(tau), 1)), slopes
             else:
                 self.courses[i] = tau, *course(x, tau, power)
@@ -216,7 +225,7 @@ class _Solver:
         if i not in self.left:
             piece = self.pieces[i]
             trace, (tau, fitted, _) = self.traces[piece.stone], self._course(i)
-            drift = self.further[i] @ np.append(-self.theta[unknowns_of(i, len(self.pieces))], 1.0)
+            drift = self.further[i] @ np.append(-self.theta[self.own[i]], 1.0)
             off = trace.xy[piece.samples] - fitted - tau[:, None] * drift
             self.left[i] = off / trace.sd[piece.samples]
         return self.left[i]
@@ -228,7 +237,7 @@ class _Solver:
             if not len(piece.samples):
                 continue
             trace = self.traces[piece.stone]
-            own = unknowns_of(i, len(self.pieces))
+            own = self.own[i]
             weights = huber_weights(self._residuals(i)) / trace.sd[piece.samples] ** 2
             normal[np.ix_(own, own)], right[own] = self._piece_equations(i, weights)
         return normal, right
@@ -239,15 +248,15 @@ class _Solver:
         Two further unknowns are eliminated at once: what the sightings say of the velocity is
         wrong by what they share, on either axis.
         """
-        piece, own = self.pieces[i], self.theta[unknowns_of(i, len(self.pieces))]
+        piece, own = self.pieces[i], self.theta[self.own[i]]
         places = self.traces[piece.stone].xy[piece.samples]
         if piece.rest:
-            of_place, normal, right = [0, 3], np.zeros((7, 7)), np.zeros(7)
-            normal[of_place, of_place], right[of_place] = weights.sum(0), (weights * places).sum(0)
+            normal, right = np.zeros((7, 7)), np.zeros(7)
+            normal[PLACE, PLACE], right[PLACE] = weights.sum(0), (weights * places).sum(0)
             return normal, right
         tau, fitted, slopes = self._course(i)
         seen = places - fitted + slopes @ own
-        speed = float(np.hypot(own[1], own[4]))
+        speed = float(np.hypot(*own[VELOCITY]))
         shared = tau[:, None, None] * np.eye(2)
         rows = np.concatenate([slopes, shared], axis=2).reshape(-1, 9)
         full = rows.T @ (weights.reshape(-1, 1) * rows)
@@ -260,10 +269,9 @@ class _Solver:
     def _constraints(self) -> tuple[Floats, Floats]:
         """Set up the normal equations of what is known besides the sightings."""
         normal, right = np.zeros((self.size, self.size)), np.zeros(self.size)
-        first = 6 * len(self.pieces)
-        for i, piece in enumerate(self.pieces):
-            place, speed, change = ([6 * i + k, 6 * i + 3 + k] for k in range(3))
-            power = unknowns_of(i, len(self.pieces))[6]
+        for own, piece in zip(self.own, self.pieces, strict=True):
+            place, speed, change = own[PLACE], own[VELOCITY], own[ACCELERATION]
+            power = own[POWER]
             usual, unsure = self._power_prior(self.theta[speed])
             normal[power, power] += unsure**-2
             right[power] += unsure**-2 * usual
@@ -281,7 +289,7 @@ class _Solver:
             ranks = [self.sides[k, stone] for stone in meeting.stones]
             masses = np.array([self.masses.get(stone, 1.0) for stone in meeting.stones])
             rows, values, sd = contact_constraints(
-                self.theta, first + k, self.origins, meeting, ranks, self.radius,
+                self.theta, self.times.start + k, self.origins, meeting, ranks, self.radius,
                 masses if self.momentum else None,
             )  # fmt: skip
             weighted = rows / sd[:, None] ** 2

@@ -22,7 +22,7 @@ from physics.filter.slowing import (
     speed_left,
 )
 from physics.local_fit.free_glides import are_free, is_pushed
-from physics.local_fit.shot_fit import Deceleration, ShotFit
+from physics.local_fit.shot_fit import ACCELERATION, POWER, Deceleration, ShotFit
 from physics.local_fit.traces import PLACE_REACH, Trace
 from physics.statistics.random_effects import random_effects, weighted_mean
 
@@ -208,13 +208,12 @@ def _told(
 
 def _acceleration(fit: ShotFit, rank: int, t: float, way: Floats) -> tuple[float, Floats]:
     """Acceleration of a piece in a direction, at a time, and its derivatives by `fit.theta`."""
-    own, power = fit.unknowns(rank), fit.power(rank)
-    x = fit.theta[own[:6]].reshape(2, 3)
+    own, x, power = fit.unknowns(rank), fit.state(rank), fit.power(rank)
     slower = -float(np.log(speed_left(x, t - fit.origins[rank], power)))
     slope = np.zeros(len(fit.theta))
-    slope[own[[2, 5]]] = change_by(t - fit.origins[rank], x, power, way)
+    slope[own[ACCELERATION]] = change_by(t - fit.origins[rank], x, power, way)
     value = float(slope @ fit.theta)
-    slope[own[6]] = value * slower
+    slope[own[POWER]] = value * slower
     return value, slope
 
 
@@ -245,12 +244,12 @@ def _shape(
     before = _density(misfit)
     for one in each:
         # What is known beforehand is in the power of each piece, and counts but once.
-        at = fit.unknowns(one.rank)
-        start = float(np.hypot(*fit.theta[at[[1, 4]]]))
+        power = fit.unknowns(one.rank)[POWER]
+        start = float(np.hypot(*fit.state(one.rank)[:, 1]))
         usual, sd = power_prior(start, law.share, law.sd_share)
-        told = 1 / fit.cov[at[6], at[6]] - sd**-2
+        told = 1 / fit.cov[power, power] - sd**-2
         if told > 0:
-            alone = usual + (fit.theta[at[6]] - usual) / (fit.cov[at[6], at[6]] * told)
+            alone = usual + (fit.theta[power] - usual) / (fit.cov[power, power] * told)
             misfit += (alone - power_at(one.speed, SHARES)) ** 2 / (1 / told + FORM_SD**2)
     if each:
         steep = [slowed.at_1_m_per_s(share, 0.0) for share in SHARES.tolist()]

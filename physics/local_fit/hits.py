@@ -100,11 +100,10 @@ def _collision(
     rubbing, why = Estimate(), note
     if note is None:
         rubbing, why = stone_friction(joint, k, spins, radius)
-    at = 6 * len(joint.pieces) + k
     nx, ny = (float(value) for value in state.normal)
     return Collision(
         t=state.t,
-        stderr_t=float(np.sqrt(joint.cov[at, at])),
+        stderr_t=joint.stderr_time(k),
         stones=joint.meetings[k].stones,
         normal=(nx, ny),
         restitution=restitution.value if note is None else None,

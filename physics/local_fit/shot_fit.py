@@ -64,12 +64,21 @@ def _motion(x: bytes, tau: float, power: float) -> tuple[Floats, Floats]:
     return place, speed
 
 
+PLACE, VELOCITY, ACCELERATION, POWER = [0, 3], [1, 4], [2, 5], 6
+"""Ranks among the unknowns of one piece, by axis: x, vx, ax, y, vy, ay and the power."""
+
+
 @lru_cache(maxsize=256)
 def unknowns_of(rank: int, pieces: int) -> NDArray[np.int64]:
     """Where among the unknowns of a fit those of one of its pieces are: its state, its power."""
     found = np.append(np.arange(6 * rank, 6 * rank + 6), rank - pieces)
     found.flags.writeable = False  # all who ask share them
     return found
+
+
+def times_of(pieces: int, meetings: int) -> slice:
+    """Where among the unknowns of a fit the times of its meetings are."""
+    return slice(6 * pieces, 6 * pieces + meetings)
 
 
 @dataclass(frozen=True)
@@ -105,28 +114,28 @@ class ShotFit:
 
     def motion(self, rank: int, t: float, theta: Floats | None = None) -> tuple[Floats, Floats]:
         """Place and velocity on piece `rank` at time t."""
-        values = self.theta if theta is None else theta
-        x, power = values[6 * rank : 6 * rank + 6], float(values[rank - len(self.pieces)])
-        return _motion(x.tobytes(), t - float(self.origins[rank]), power)
+        own = (self.theta if theta is None else theta)[self.unknowns(rank)]
+        return _motion(own[:6].tobytes(), t - float(self.origins[rank]), float(own[POWER]))
 
     def places(self, rank: int, t: Floats) -> Floats:
         """Places on piece `rank` at times t, shape (n, 2)."""
-        x = self.theta[6 * rank : 6 * rank + 6].reshape(2, 3)
-        return course(x, t - self.origins[rank], self.power(rank))[0]
+        return course(self.state(rank), t - self.origins[rank], self.power(rank))[0]
 
     def speeds(self, rank: int, t: Floats) -> Floats:
         """Velocities on piece `rank` at times t, shape (n, 2)."""
-        x = self.theta[6 * rank : 6 * rank + 6].reshape(2, 3)
-        return velocities(x, t - self.origins[rank], self.power(rank))
+        return velocities(self.state(rank), t - self.origins[rank], self.power(rank))
 
     def stop(self, rank: int) -> float:
         """Time at which the stone of piece `rank` stops, s."""
-        x = self.theta[6 * rank : 6 * rank + 6].reshape(2, 3)
-        return float(self.origins[rank]) + stop_after(x, self.power(rank))
+        return float(self.origins[rank]) + stop_after(self.state(rank), self.power(rank))
+
+    def state(self, rank: int) -> Floats:
+        """Place, velocity and acceleration of piece `rank` at its origin, shape (2, 3)."""
+        return self.theta[self.unknowns(rank)[:POWER]].reshape(2, 3)
 
     def power(self, rank: int) -> float:
         """Power of its speed with which the stone of piece `rank` is slowed less."""
-        return float(self.theta[rank - len(self.pieces)])
+        return float(self.theta[self.unknowns(rank)[POWER]])
 
     def unknowns(self, rank: int) -> NDArray[np.int64]:
         """Where in `theta` those of piece `rank` are: its state, then its power."""
@@ -134,8 +143,15 @@ class ShotFit:
 
     def time(self, k: int, theta: Floats | None = None) -> float:
         """Time of meeting k, s."""
-        values = self.theta if theta is None else theta
-        return float(values[6 * len(self.pieces) + k])
+        return float((self.theta if theta is None else theta)[self._times][k])
+
+    def stderr_time(self, k: int) -> float:
+        """Give the standard error of the time of meeting k, s."""
+        return float(np.sqrt(np.diag(self.cov)[self._times][k]))
+
+    @property
+    def _times(self) -> slice:
+        return times_of(len(self.pieces), len(self.meetings))
 
     def contact_state(self, k: int, theta: Floats | None = None) -> ContactState:
         """State of the two stones at meeting k."""
@@ -167,9 +183,10 @@ class ShotFit:
         cov : (m, m) array
         """
         ranks = sorted({r for k in hits for s in self.meetings[k].stones for r in self.sides[k, s]})
-        index = [6 * r + i for r in ranks for i in range(6)]
-        index += [6 * len(self.pieces) + k for k in hits]
-        index += [len(self.theta) - len(self.pieces) + r for r in ranks]
+        own = [self.unknowns(rank).tolist() for rank in ranks]
+        index = [i for each in own for i in each[:POWER]]
+        index += [self._times.start + k for k in hits]
+        index += [each[POWER] for each in own]
         value = np.atleast_1d(function([self.contact_state(k) for k in hits]))
         slopes = np.zeros((len(value), len(index)))
         for column, i in enumerate(index):

@@ -272,8 +272,8 @@ def _jumps(fit: ShotFit, one: int | None, two: int) -> bool:
         speeds.append(np.zeros(2) if piece.rest else fit.motion(rank, t)[1])
         row = np.array([0.0, 1.0, tau])
         for axis in range(2):
-            at = slice(6 * rank + 3 * axis, 6 * rank + 3 * axis + 3)
-            variance += float(row @ fit.cov[at, at] @ row)
+            at = fit.unknowns(rank)[3 * axis : 3 * axis + 3]
+            variance += float(row @ fit.cov[np.ix_(at, at)] @ row)
     change = float(np.hypot(*(speeds[1] - speeds[0])))
     return bool(change > SUDDEN + 4 * np.sqrt(variance))
 
@@ -292,7 +292,7 @@ def _state(
     """
     if not run or lies is not None:
         early = trace.xy if lies is None else trace.xy[trace.t < lies]
-        place = np.median(early, axis=0) if len(early) else fit.theta[[6 * run[0], 6 * run[0] + 3]]
+        place = np.median(early, axis=0) if len(early) else fit.state(run[0])[:, 0]
         return [Unknown(f"{name}.{key}", float(v)) for key, v in zip("xy", place, strict=True)]
     place, speed = fit.motion(run[0], start)
     values = (*place.tolist(), *speed.tolist())
