@@ -52,7 +52,6 @@ from vision.optics.rig import (
 )
 from vision.optics.robust import WIDTH, inverse
 from vision.optics.shared import Bundle, family, piece_of, sensitivity
-from vision.sheet.house_fit import SHARING
 from vision.sheet.outline import HALF_WAY, PaintEdge
 
 Array = NDArray[np.float64]
@@ -168,7 +167,7 @@ def fit_clip(
     shared, _ = bundle(marks, times, views, rig, size, prior)
     if shared.ragged > RAGGED:
         anywhere = ANYWHERE.at_height(prior.height)
-        lean = fit_leaning(marks, views, shared.rig, size, sharing=SHARING, prior=anywhere)
+        lean = fit_leaning(marks, views, shared.rig, size, prior=anywhere)
         other, _ = bundle(marks, times, lean.views, lean.rig, size, anywhere)
         if other.ragged < shared.ragged / 2:
             shared, prior = other, anywhere

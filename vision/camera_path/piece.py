@@ -24,7 +24,7 @@ from vision.camera_path.shutter import LEAST_SMEAR, more_light
 from vision.film.clip import Frame
 from vision.film.picture import Picture
 from vision.film.shelf import Kept, Shelf
-from vision.optics.adjust import Solution, solve
+from vision.optics.adjust import SHARING, Solution, solve
 from vision.optics.camera import Camera
 from vision.optics.lean import fit_leaning
 from vision.optics.linear import Observations
@@ -33,7 +33,7 @@ from vision.optics.pose import ROLL, View, camera
 from vision.optics.predict import MEMORY, predict
 from vision.optics.resection import solve_view, solve_views
 from vision.optics.rig import ANYWHERE, Prior
-from vision.sheet.house_fit import SHARING, TILT_GAIN, HouseFit
+from vision.sheet.house_fit import TILT_GAIN, HouseFit
 
 Array = NDArray[np.float64]
 
@@ -382,7 +382,7 @@ class Piece:
             anywhere = ANYWHERE.at_height(self.prior.height)
             lean = fit_leaning(
                 [s.marks.get() for s in spread], [s.view for s in spread], self.rig, self.size,
-                sharing=SHARING, prior=anywhere,
+                prior=anywhere,
             )  # fmt: skip
             if fit.cost - lean.cost > TILT_GAIN * SHARING:
                 self.rig, self.prior = lean.rig, anywhere
@@ -408,7 +408,7 @@ class Piece:
     def _joint(self, frames: Sequence[Seen]) -> Solution:
         return solve(
             [s.marks.get() for s in frames], [s.view for s in frames], self.rig, self.size,
-            prior=self.prior, iterations=10, sharing=SHARING,
+            prior=self.prior, iterations=10,
         )  # fmt: skip
 
     def explains(self, house: HouseFit) -> View | None:

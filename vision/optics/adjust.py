@@ -21,6 +21,9 @@ from vision.optics.robust import WIDTH, loss, spread
 
 Array = NDArray[np.float64]
 
+SHARING = 20.0
+"""Edge points of one frame that share an error of the paint, about 30° of a circle."""
+
 _DONE = 1e-4
 """Relative fall of the cost below which a fit has converged."""
 
@@ -57,7 +60,7 @@ def solve(
     size: tuple[int, int],
     *,
     prior: Prior,
-    sharing: float = 1.0,
+    sharing: float = SHARING,
     view_sd: ArrayLike = VIEW_SD,
     iterations: int = 12,
 ) -> Solution:

@@ -33,7 +33,6 @@ def fit_leaning(
     rig: Array,
     size: tuple[int, int],
     *,
-    sharing: float,
     prior: Prior = ANYWHERE,
     view_sd: ArrayLike = VIEW_SD,
     iterations: int = STEPS,
@@ -48,7 +47,7 @@ def fit_leaning(
     fits = [
         solve(
             frames, begin, shared, size,
-            prior=prior, sharing=sharing, view_sd=view_sd, iterations=iterations,
+            prior=prior, view_sd=view_sd, iterations=iterations,
         )
         for begin, shared in ((views, rig), *_aside(views, rig, prior))
     ]  # fmt: skip

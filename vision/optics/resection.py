@@ -18,6 +18,10 @@ Array = NDArray[np.float64]
 VIEW_SD = (np.inf, np.inf, 0.15, np.inf)
 """How far a view may lie from its start: the roll is free where no line is seen."""
 
+ROUND = (np.inf, np.inf, 0.01, np.inf)
+"""The same where circles alone are fitted, rad: they do not tell how it is rolled, and marks that
+slide along them leave the line in which they were measured."""
+
 _NEAR = 0.5
 """A step that lowers the cost by less is the last one."""
 

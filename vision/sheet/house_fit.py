@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 
 from data.sheet import HOUSE
 from vision.film.picture import Image
-from vision.optics.adjust import solve
+from vision.optics.adjust import SHARING, solve
 from vision.optics.camera import Camera
 from vision.optics.lean import fit_leaning
 from vision.optics.paint import TWELVE
 from vision.optics.pose import DOWN, View, aim, camera, rescaled, rotation_vector
+from vision.optics.resection import ROUND
 from vision.optics.rig import ANYWHERE, OVERHEAD, POSITION, Prior, start_rig
 from vision.sheet.lines import lesser_side_step, sides, upright
 from vision.sheet.marks import Evidence, measure_marks
@@ -32,18 +33,11 @@ Array = NDArray[np.float64]
 AS_WELL = 1.3
 """How many times as far off, r.m.s., the edges of a house may be that is explained as well."""
 
-SHARING = 20.0
-"""Edge points of one frame that share an error of the paint, about 30° of a circle."""
-
 ASIDE = 2.0
 """What a house loses when its centre is one picture's width aside: neighbours are at the sides."""
 
 ROUGH = 0.5
 """What a house loses per pixel of residual in the small picture."""
-
-ROUND = (np.inf, np.inf, 0.01, np.inf)
-"""How far a view may lie from its start where circles alone are fitted, rad: they do not tell how
-it is rolled, and marks that slide along them leave the line in which they were measured."""
 
 LEAST_MARKS = 30
 """Edge points without which there is no camera; three whole circles give hundreds."""
@@ -134,9 +128,7 @@ def fit_roughly(
         # Rings without any of a 12-ft circle once they were fitted are no house, and most are such.
         if len(evidence.marks) < LEAST_MARKS or (k > 0 and evidence.covered[TWELVE] == 0):
             return None
-        solution = solve(
-            [evidence.marks], [view], rig, size, prior=prior, sharing=SHARING, view_sd=ROUND
-        )
+        solution = solve([evidence.marks], [view], rig, size, prior=prior, view_sd=ROUND)
         view, rig, rms = solution.views[0], solution.rig, float(solution.rms[0])
     evidence = measure_marks(image, view.vector, rig, reach=5.0, spacing=4, lines=False)
     explained = worth(evidence)
@@ -154,7 +146,7 @@ def at_height(fit: HouseFit, prior: Prior) -> tuple[View, Array]:
     rig[POSITION] *= zoom  # along the line to the tee: the house stays about as it is
     view = View(fit.view.vector + np.array([0.0, 0.0, 0.0, np.log(zoom)]))
     size = fit.camera.size
-    near = solve([fit.evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
+    near = solve([fit.evidence.marks], [view], rig, size, prior=prior)
     if float(near.rms[0]) > AS_WELL * fit.rms_px:
         return fit.view, fit.rig
     return near.views[0], near.rig
@@ -203,19 +195,15 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
     if len(circles.marks) < LEAST_MARKS:
         return None
 
-    over = solve([circles.marks], [view], rig, size, prior=OVERHEAD, sharing=SHARING, view_sd=ROUND)
-    anywhere = fit_leaning(
-        [circles.marks], [view], rig, size, sharing=SHARING, view_sd=ROUND, iterations=12
-    )
+    over = solve([circles.marks], [view], rig, size, prior=OVERHEAD, view_sd=ROUND)
+    anywhere = fit_leaning([circles.marks], [view], rig, size, view_sd=ROUND, iterations=12)
     overhead = (over.cost - anywhere.cost) / SHARING < TILT_GAIN
     fit = over if overhead else anywhere
     view, rig = upright(image, fit.views[0], fit.rig)
     partly = bool(circles.visible[TWELVE] < PARTLY)
     vague = partly and lesser_side_step(image, view, rig) < LEAST
     if vague:
-        straight = by_sides(
-            image, circles.marks, anywhere, sharing=SHARING, most=TILT_GAIN * SHARING, view_sd=ROUND
-        )
+        straight = by_sides(image, circles.marks, anywhere, TILT_GAIN * SHARING)
         if straight is not None:
             view, rig = straight
             off = (rig - OVERHEAD.mean)[POSITION] / OVERHEAD.sd[POSITION]
@@ -227,7 +215,7 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
         evidence = measure_marks(image, view.vector, rig, reach=reach + edge.reach, edge=edge)
         if len(evidence.marks) < LEAST_MARKS:
             return None
-        fit = solve([evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
+        fit = solve([evidence.marks], [view], rig, size, prior=prior)
         view, rig = fit.views[0], fit.rig
         if any(edge.light):
             break

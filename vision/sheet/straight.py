@@ -10,12 +10,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from vision.film.picture import Image
 from vision.optics.adjust import Solution, solve
 from vision.optics.paint import Marks
 from vision.optics.pose import View, camera, turned
+from vision.optics.resection import ROUND
 from vision.optics.rig import ANYWHERE, POSITION
 from vision.sheet.lines import SURE_STEP, lesser_side_step, upright
 
@@ -38,9 +39,7 @@ LEAST = SURE_STEP / 2
 """Step at either side of the sheet that is proof of it, grey levels."""
 
 
-def by_sides(
-    image: Image, circles: Marks, fit: Solution, *, sharing: float, most: float, view_sd: ArrayLike
-) -> tuple[View, Array] | None:
+def by_sides(image: Image, circles: Marks, fit: Solution, most: float) -> tuple[View, Array] | None:
     """Fit a camera to what is seen of circles so that both sides of the sheet are straight.
 
     Parameters
@@ -50,12 +49,8 @@ def by_sides(
         Of the house in it.
     fit : Solution
         To begin with: the best fit of these.
-    sharing : float
-        As for `vision.optics.adjust.solve`.
     most : float
         By how much more than that fit one may cost.
-    view_sd : array_like, shape (4,)
-        As for `vision.optics.adjust.solve`.
 
     Returns
     -------
@@ -67,7 +62,7 @@ def by_sides(
 
     def tried(view: View, rig: Array, places: Array) -> Iterator[_Tried]:
         for place in places:
-            held = _held(marks, view, rig, size, float(place), sharing, view_sd)
+            held = _held(marks, view, rig, size, float(place))
             view, rig = held.views[0], held.rig
             if held.cost > fit.cost + most:
                 break
@@ -111,17 +106,9 @@ def _to_the_middle(
     return replace(circles, along=circles.along - turn), *turned(view, rig, turn)
 
 
-def _held(
-    circles: Marks,
-    view: View,
-    rig: Array,
-    size: tuple[int, int],
-    place: float,
-    sharing: float,
-    view_sd: ArrayLike,
-) -> Solution:
+def _held(circles: Marks, view: View, rig: Array, size: tuple[int, int], place: float) -> Solution:
     """Fit a camera that is so far from the tee along y, m."""
     mean, sd = ANYWHERE.mean.copy(), ANYWHERE.sd.copy()
     mean[POSITION][1], sd[POSITION][1] = place, HELD
     prior = replace(ANYWHERE, mean=mean, sd=sd)
-    return solve([circles], [view], rig, size, prior=prior, sharing=sharing, view_sd=view_sd)
+    return solve([circles], [view], rig, size, prior=prior, view_sd=ROUND)

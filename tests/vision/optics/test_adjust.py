@@ -9,8 +9,8 @@ from tests.vision.cameras import SD, SIZE, marks, true_rig, views
 from vision.optics.adjust import Solution, solve
 from vision.optics.paint import CIRCLES
 from vision.optics.pose import View, project
+from vision.optics.resection import ROUND
 from vision.optics.rig import K1, OVERHEAD, POSITION, R4, R8, start_rig
-from vision.sheet.house_fit import ROUND
 
 
 def test_what_frames_share_is_found_with_their_views() -> None:
@@ -18,7 +18,9 @@ def test_what_frames_share_is_found_with_their_views() -> None:
     for seed in range(6):
         rng = np.random.default_rng(seed)
         frames = [marks(rng, v.vector, rig, SD) for v in truth]
-        found = solve(frames, truth, start_rig(OVERHEAD), SIZE, prior=OVERHEAD, iterations=30)
+        found = solve(
+            frames, truth, start_rig(OVERHEAD), SIZE, prior=OVERHEAD, sharing=1.0, iterations=30
+        )
         assert np.abs(found.rig - rig)[POSITION].max() < 0.08
         assert np.abs(found.rig - rig)[[R8, R4]].max() < 0.0005
         np.testing.assert_allclose(found.rms, SD, rtol=0.15)
@@ -34,9 +36,7 @@ def test_circles_alone_are_fitted_without_a_slide_along_them() -> None:
     for seed in range(6):
         seen = marks(np.random.default_rng(seed), true.vector, rig, 0.1)
         seen = seen.pick(seen.line < CIRCLES)
-        found = solve(
-            [seen], [begin], start_rig(OVERHEAD), SIZE, prior=OVERHEAD, sharing=20.0, view_sd=ROUND
-        )
+        found = solve([seen], [begin], start_rig(OVERHEAD), SIZE, prior=OVERHEAD, view_sd=ROUND)
         # By their own linear residuals circles fitted with a free roll looked as good, 4 px off.
         radii = (HOUSE.twelve_foot, *found.rig[[R8, R4]])
         for line, radius in enumerate(radii):
@@ -55,7 +55,9 @@ def test_wrong_marks_are_told_and_do_not_pull() -> None:
         wrong.append(rng.random(len(good)) < 0.1)
         off = good.normal * (rng.uniform(4, 8, (len(good), 1)) * wrong[-1][:, None])
         frames.append(replace(good, pixel=good.pixel + off))
-    found = solve(frames, truth, start_rig(OVERHEAD), SIZE, prior=OVERHEAD, iterations=30)
+    found = solve(
+        frames, truth, start_rig(OVERHEAD), SIZE, prior=OVERHEAD, sharing=1.0, iterations=30
+    )
     assert np.abs(found.rig - rig)[POSITION].max() < 0.15
     for inliers, not_one in zip(found.inliers, wrong, strict=True):
         assert not inliers[not_one].any()

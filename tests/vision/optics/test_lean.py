@@ -25,7 +25,7 @@ def test_it_leans_as_the_camera_does_from_wherever_it_begins(
     above = (0.0, 0.0, 8.5)
     views = [aim(v.project([[0.0, 0.0, 0.0]])[0], v.scale(0, 0), above, SIZE) for v in true]
     rig = start_rig(OVERHEAD, above)
-    found = fit_leaning(frames, views, rig, SIZE, sharing=20.0)
+    found = fit_leaning(frames, views, rig, SIZE)
     np.testing.assert_allclose(found.rig[POSITION], place, atol=0.15)
-    alone = solve(frames, views, rig, SIZE, prior=ANYWHERE, sharing=20.0, iterations=40)
+    alone = solve(frames, views, rig, SIZE, prior=ANYWHERE, iterations=40)
     assert found.cost <= alone.cost
