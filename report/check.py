@@ -30,7 +30,7 @@ AVERAGE_SIZE = 484
 REACH = 2.2
 """Half width of the average ice, m."""
 
-HOUSE = (-REACH, REACH, -REACH, REACH)
+AROUND_TEE = (-REACH, REACH, -REACH, REACH)
 """The part of the ice that the average shows: x from and to, y from and to, m."""
 
 _RINGS, _LINES = (255, 255, 0), (0, 255, 255)  # BGR: on no common paint
@@ -152,7 +152,7 @@ def _show(ax: Axes, image: Image) -> None:
 
 def _average(ax: Axes, looks: Sequence[Look], rings: Sequence[float]) -> None:
     """Show the median of the frames seen from above: sharp if the camera was followed well."""
-    bounds = HOUSE if rings else _in_view(looks[0])
+    bounds = AROUND_TEE if rings else _in_view(looks[0])
     left, right, low, top = bounds
     scale = AVERAGE_SIZE / max(right - left, top - low)
     shape = round((top - low) * scale), round((right - left) * scale)
@@ -183,9 +183,9 @@ def _average(ax: Axes, looks: Sequence[Look], rings: Sequence[float]) -> None:
 
 def _in_view(look: Look) -> tuple[float, float, float, float]:
     """Give the part of the ice about the origin that a picture shows: x from and to, y, m."""
-    ice = rectify(look.frame.image, look.camera, HOUSE, scale=AVERAGE_SIZE / (2 * REACH))
+    ice = rectify(look.frame.image, look.camera, AROUND_TEE, scale=AVERAGE_SIZE / (2 * REACH))
     if ice is None or not ice.valid.any():
-        return HOUSE
+        return AROUND_TEE
     rows, columns = np.flatnonzero(ice.valid.any(1)), np.flatnonzero(ice.valid.any(0))
     ends = ice.place(columns[[0, -1]].astype(float), rows[[-1, 0]].astype(float))
     (x0, y0), (x1, y1) = np.clip(ends, -REACH, REACH).tolist()

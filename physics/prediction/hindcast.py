@@ -35,7 +35,7 @@ from physics.whole_shot.whole_fit import GlobalFit
 MOVED = 0.05
 """Distance by which a stone must move to count in the score, m."""
 
-STILL = 0.01
+AT_REST = 0.01
 """Speed below which a stone lies still before the first hit, m/s."""
 
 WITHIN = 0.1
@@ -230,7 +230,7 @@ def _doubt(tracks: pd.DataFrame, start: float, estimates: Estimates, laws: Laws)
     for name, group in tracks.groupby("stone", sort=True):
         early = group[group["t"] <= start]
         row = group.iloc[0] if early.empty else early.iloc[-1]
-        still = _or_zero(np.hypot(row["vx"], row["vy"])) < STILL
+        still = _or_zero(np.hypot(row["vx"], row["vy"])) < AT_REST
         errors = np.nan_to_num(row[[f"sd_{key}" for key in STATE]].to_numpy(float))
         if np.isnan(row["omega"]):
             errors[4] = SPIN.stderr

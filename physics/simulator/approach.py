@@ -24,7 +24,7 @@ Index = NDArray[np.intp]
 BEYOND = 1.02
 """Share of the time to a contact, were velocities kept, after which to look: stones are slowed."""
 SHORTEST = 1e-9
-"""Interval of time over which a graze counts as none, s."""
+"""Interval of time to which a crossing is found, and over which a graze counts as none, s."""
 
 
 def first_contact(

@@ -14,7 +14,7 @@ from data.errors import InputError
 from physics.curl import Curl
 from physics.ice import IceLaw
 from physics.impact import resolve
-from physics.simulator.approach import all_crossings, all_nearest, all_slack, velocity
+from physics.simulator.approach import SHORTEST, all_crossings, all_nearest, all_slack, velocity
 from physics.simulator.bounds import all_leave_at
 from physics.simulator.paths import CurveTable, Index, Paths
 from physics.simulator.simulate import PRESSED, SIMULTANEOUS, SLOW, TOUCHING, simulate
@@ -25,8 +25,8 @@ Mask = NDArray[np.bool_]
 
 FEW = 8
 """The last variants under way, each with more impulses than the others, go one by one."""
-LONGEST, SHORTEST = 4.0, 1e-9
-"""Steps to begin with and below which a graze counts as none, s."""
+LONGEST = 4.0
+"""Step to begin with, s."""
 AFTER_HIT = 0.01
 """Step after a hit, s."""
 LONGER, SHORTER = 4.0, 0.25

@@ -10,13 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from data.sheet import SHEET
+from physics.simulator.approach import SHORTEST
 from physics.simulator.motion import Path, Point
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
-
-SHORTEST = 1e-9
-"""Interval of time to which a crossing is found, s."""
 
 
 @dataclass(frozen=True)

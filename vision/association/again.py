@@ -16,7 +16,7 @@ from vision.detection.stones import Search
 
 Array = NDArray[np.float64]
 
-REACH = 1.4
+MOST_STEP = 1.4
 """Up to how far, in radii, a stone goes from one picture to the next: nearer there is no other."""
 
 
@@ -44,7 +44,7 @@ def measure_again(
         before, after = (
             places[j] if 0 <= j < len(views) else places[k][:0] for j in (k - 1, k + 1)
         )
-        drift = drifts(places[k], before, after, REACH * disc.radius)
+        drift = drifts(places[k], before, after, MOST_STEP * disc.radius)
         smeared = swept_share(view.drift_seen(places[k], drift)) > 0
         fast = [i for i in np.flatnonzero(smeared).tolist() if not view.sightings[i].swept]
         if fast:

@@ -30,7 +30,7 @@ WIDTH = 0.025
 """Width of a handle, m: where pixels are larger it hardly shows. Rendered ones with 12 and 18 at
 55 px/m have 9 and 14 at 40, 4 at 25; at 30 a thrown stone had 2.3, one at rest beside it 9.4."""
 
-ALIKE, OTHER = 0.4, 0.1
+OWN_TEAM, OTHER_TEAM = 0.4, 0.1
 """Share of what a team's handles show usually, and of what each of another team's does, below which
 there is none. Such real stones show 0.66 of the one at least and 0.37 of the other, drawn ones 0.6
 and, with handles in their caps' colour, 0.13; paint and icons 0.37 of the one, most 0.1. One
@@ -107,9 +107,9 @@ def bare(shown: Sequence[float], team: Sequence[int], moved: Sequence[bool]) -> 
         own = of == rank
         alike, others = values[handled & own], values[handled & ~own]
         if len(alike):
-            least = ALIKE * float(np.nanmedian(values[(handled | moves) & own]))
+            least = OWN_TEAM * float(np.nanmedian(values[(handled | moves) & own]))
         elif len(others) and not (moves & own).any():
-            least = OTHER * float(others.min())
+            least = OTHER_TEAM * float(others.min())
         else:
             least = 0.0
         out |= own & (values < np.minimum(np.where(moves, MOVING, 1.0) * least, BARE))

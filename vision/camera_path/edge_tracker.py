@@ -45,7 +45,7 @@ than the frame before could tell."""
 MARK_SD = 0.2
 """Least standard deviation of a mark, px."""
 
-WIDTH = 6.0
+PROVISIONAL_WIDTH = 6.0
 """Width of the robust loss, in standard deviations, while the shared part is provisional."""
 
 SETTLED, LEAST_SETTLED = 0.4, 0.1
@@ -305,7 +305,9 @@ class EdgeTracker:
         observed = Observations(joined(marks), self.size, counts=[len(m) for m in marks])
         start, lines = views[: len(marks)], all((m.line >= CIRCLES).any() for m in marks)
         view_sd = FREE if lines else HELD
-        return solve_views(observed, start, rig, view_sd=view_sd, width=WIDTH, iterations=6)
+        return solve_views(
+            observed, start, rig, view_sd=view_sd, width=PROVISIONAL_WIDTH, iterations=6
+        )
 
     def _is_settled(
         self, expected: View, evidence: Evidence, fit: ViewSolution, rig: Array

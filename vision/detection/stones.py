@@ -38,7 +38,7 @@ and less than this on all but a fifth of the rays."""
 WITHIN, BEYOND = 0.6, 1.15
 """Radii up to which, and from which on, samples are not of a rim, as shares of a disc's."""
 
-UNLIKE = 0.25
+LEAST_UNLIKE = 0.25
 """Share of the rays on which a disc is unlike what is around it: paint may be like it elsewhere."""
 
 
@@ -230,7 +230,7 @@ def _hollow(rays: Rays, disc: Stone) -> NDArray[np.bool_]:
     )
     unlike = np.linalg.norm(within - beyond, axis=2) > ALIKE
     seen = rays.inside[:, :, share > BEYOND].all(2)
-    return np.asarray((unlike & seen).sum(1) < UNLIKE * seen.sum(1))
+    return np.asarray((unlike & seen).sum(1) < LEAST_UNLIKE * seen.sum(1))
 
 
 def with_samples(found: Sighting, seen: Measures, index: int, disc: Stone) -> Sighting:
