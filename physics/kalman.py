@@ -115,19 +115,19 @@ def smoothed(
     times, first = np.unique(np.append(t, [*unseen.values()]), return_index=True)
     frames = np.append(np.asarray(rank, int), np.array([*unseen], int))[first]
     fit, model, noise = _fit_pieces(known, contacts, radius)
-    ways = {}
+    stones = {}
     for name, trace in known.items():
         inside = (times >= trace.t[0]) & (times <= trace.t[-1])
         hits = sorted((c for c in contacts if name in c.stones), key=lambda c: c.t)
         when = times[inside], frames[inside]
-        ways[name] = _way(trace, *when, hits, fit, model, noise[name], radius)
-    loss = spin_loss([glide for way in ways.values() for glide in way.glides])
+        stones[name] = _cut_at_hits(trace, *when, hits, fit, model, noise[name], radius)
+    loss = spin_loss([glide for stone in stones.values() for glide in stone.glides])
     model = replace(model, spin_loss=loss[0], sd_spin_loss=loss[1])
     each: dict[str, Columns] = {}
-    together: dict[str, Floats] = {}
-    for name, way in ways.items():
-        each[name], together[name] = _track(way, model, run)
-    share_spins(each, contacts, radius, masses, together)
+    shared: dict[str, Floats] = {}
+    for name, stone in stones.items():
+        each[name], shared[name] = _track(stone, model, run)
+    share_spins(each, contacts, radius, masses, shared)
     team, tables = teams(sightings), list(each.values())
     tracks = {name: np.concatenate([table[name] for table in tables]) for name in tables[0]}
     tracks["team"] = np.array([team[stone] for stone in tracks["stone"].tolist()])
@@ -150,7 +150,7 @@ def _fit_pieces(
 
 
 @dataclass(frozen=True)
-class _Way:
+class _Stone:
     """One stone all the time: its stretches from hit to hit, where it is seen in them at all.
 
     Attributes
@@ -179,7 +179,7 @@ class _Way:
         return [(stretch, self.trace.rise[self.row[at]]) for at, stretch in self.stretches]
 
 
-def _way(
+def _cut_at_hits(
     trace: Trace,
     t: Floats,
     frames: NDArray[np.int64],
@@ -188,17 +188,35 @@ def _way(
     model: Model,
     noise: Noise,
     radius: float,
-) -> _Way:
-    """Cut one stone's sightings at its hits; what begins one, or a rest, far off is left out."""
+) -> _Stone:
+    """Cut one stone's sightings at its hits; leave out what begins a stretch, or a rest, far off.
+
+    Parameters
+    ----------
+    trace : Trace
+        The sightings.
+    t, frames : (n,) array
+        Times at which states are wanted, s, and their frames.
+    hits : sequence of Contact
+        Of the stone, in order of time.
+    fit : ShotFit
+        Of the pieces of all stones, each by itself.
+    model : Model
+        How the ice slows it.
+    noise : Noise
+        Of the sightings.
+    radius : float
+        Of the discs, m.
+    """
     row = np.clip(np.searchsorted(trace.t, t), 0, len(trace.t) - 1)
     sighted = trace.t[row] == t
-    place, rest, idle, speed = _modes(trace.stone, t, fit)
+    piece, rest, idle, speed = _modes(trace.stone, t, fit)
     z = np.column_stack([trace.xy[row], trace.theta[row]])
     z[~sighted] = np.nan
     white, slow = noise.white[row], noise.slow[row]
-    off = _off(fit, place, t, z[:, :2]) / np.hypot(white, slow)[:, :2]
+    residual = _residuals(fit, piece, t, z[:, :2]) / np.hypot(white, slow)[:, :2]
     part = np.searchsorted(np.array([hit.t for hit in hits]), t, side="right")
-    motion = _motions(trace, place, rest, fit, radius)
+    motion = _motions(trace, piece, rest, fit, radius)
     stretches = []
     for k in np.unique(part):
         at = np.flatnonzero(part == k)
@@ -206,29 +224,29 @@ def _way(
             t[at], z[at], white[at], slow[at], motion[at], rest[at], idle[at], speed[at], model
         )
         for begin in (0, *(np.flatnonzero(stretch.moved) + 1).tolist()):
-            stretch.z[_slipped(at[begin:], off) - at[0]] = np.nan
+            stretch.z[_false_start(at[begin:], residual) - at[0]] = np.nan
         if np.isfinite(stretch.z[:, 0]).any():
             stretches.append((at, stretch))
-    return _Way(trace, t, frames, row, part, hits, stretches)
+    return _Stone(trace, t, frames, row, part, hits, stretches)
 
 
-def _track(way: _Way, model: Model, run: Filter) -> tuple[Columns, Floats]:
+def _track(stone: _Stone, model: Model, run: Filter) -> tuple[Columns, Floats]:
     """Run the filter over one stone, hit to hit.
 
-    Also tells what its spins are off by together, (n, 3), by the errors that its angles share and
-    by that of what spin the ice takes.
+    Also gives the errors that its spins share, (n, 3), rad/s: by one standard error each of what
+    its angles share along either axis of the cap, and of what spin the ice takes.
     """
-    trace, t, row, hits, part = way.trace, way.t, way.row, way.hits, way.part
+    trace, t, row, hits, part = stone.trace, stone.t, stone.row, stone.hits, stone.part
     mean, spread = np.full((len(t), 6), np.nan), np.full((len(t), 6), np.nan)
-    seen, together = np.zeros(len(t), dtype=int), np.zeros((len(t), 2, 3))
+    seen, shared = np.zeros(len(t), dtype=int), np.zeros((len(t), 2, 3))
     sighted = np.zeros(len(t), dtype=bool)
-    for at, cut in way.stretches:
+    for at, cut in stone.stretches:
         sighted[at] = np.isfinite(cut.z[:, 0])
         stretch = replace(cut, model=model)
         mean[at], spread[at], seen[at] = run(stretch)
         _carry(stretch, mean, spread, at)
-        together[at] = shared_response(stretch, trace.rise[row[at]])
-    spread[:, 4:] = np.hypot(spread[:, 4:], np.linalg.norm(together, axis=2))
+        shared[at] = shared_response(stretch, trace.rise[row[at]])
+    spread[:, 4:] = np.hypot(spread[:, 4:], np.linalg.norm(shared, axis=2))
     for k in np.unique(part):
         at = np.flatnonzero(part == k)
         if 0 < k < len(hits) and sighted[at].sum() < 2:
@@ -245,10 +263,10 @@ def _track(way: _Way, model: Model, run: Filter) -> tuple[Columns, Floats]:
         # One look tells a place and an angle, but nothing of motion.
         mean[:, [2, 3, 5]], spread[:, [2, 3, 5]] = np.nan, np.nan
     columns = ("x", "y", "vx", "vy", "theta", "omega")
-    table = {"stone": np.full(len(t), trace.stone), "frame": way.frames, "t": t, "seen": seen}
+    table = {"stone": np.full(len(t), trace.stone), "frame": stone.frames, "t": t, "seen": seen}
     table |= {name: mean[:, i] for i, name in enumerate(columns)}
     table |= {f"sd_{name}": spread[:, i] for i, name in enumerate(columns)}
-    return table, together[:, 1]
+    return table, shared[:, 1]
 
 
 def _carry(cut: Stretch, mean: Floats, spread: Floats, at: NDArray[np.intp]) -> None:
@@ -273,37 +291,37 @@ def _carry(cut: Stretch, mean: Floats, spread: Floats, at: NDArray[np.intp]) -> 
         mean[rows, 4:], spread[rows, 4:] = np.nan, np.nan
 
 
-def _off(fit: ShotFit, place: NDArray[np.int64], t: Floats, xy: Floats) -> Floats:
+def _residuals(fit: ShotFit, piece: NDArray[np.int64], t: Floats, xy: Floats) -> Floats:
     """How far sightings are from the fits of their pieces, (n, 2), m; NaN where there are none."""
     out = np.empty_like(xy)
-    for rank in np.unique(place):
-        own = place == rank
+    for rank in np.unique(piece):
+        own = piece == rank
         out[own] = xy[own] - fit.places(int(rank), t[own])
     return out
 
 
-def _slipped(at: NDArray[np.intp], off: Floats) -> NDArray[np.intp]:
-    """Tell which of the rows of a stretch begin it far off its fit, as the next ones do not.
+def _false_start(at: NDArray[np.intp], residual: Floats) -> NDArray[np.intp]:
+    """Tell which rows begin a stretch far off its fit, where those after them lie on it.
 
-    A filter believes what it begins with, and would refuse those.
+    A filter believes what it begins with, and would refuse the good ones that follow.
 
     Parameters
     ----------
     at : (m,) array of int
         The rows between two hits, or from where it lies elsewhere on.
-    off : (n, 2) array
+    residual : (n, 2) array
         How far all sightings are from their fits, in their standard deviations.
     """
-    seen = at[np.isfinite(off[at, 0])]
-    good = (off[seen[: PATIENCE + 1]] ** 2).sum(axis=1) < GATE
+    seen = at[np.isfinite(residual[at, 0])]
+    good = (residual[seen[: PATIENCE + 1]] ** 2).sum(axis=1) < GATE
     return np.asarray(seen[: int(good.argmax())] if good.any() else seen[:0])
 
 
 def _modes(
     stone: str, t: Floats, fit: ShotFit
 ) -> tuple[NDArray[np.int64], NDArray[np.bool_], NDArray[np.bool_], Floats]:
-    """Per time: its piece, whether the stone rests, whether its spin does too, rough velocity."""
-    place = np.zeros(len(t), dtype=int)
+    """Per time: rank of its piece, whether it rests, whether its spin does too, rough velocity."""
+    ranks = np.zeros(len(t), dtype=int)
     rest = np.ones(len(t), dtype=bool)
     idle = np.ones(len(t), dtype=bool)
     speed = np.zeros((len(t), 2))
@@ -311,26 +329,26 @@ def _modes(
         if piece.stone != stone:
             continue
         inside = np.flatnonzero((t >= piece.start) & (t < piece.end))
-        place[inside] = i
+        ranks[inside] = i
         if piece.rest:
             continue
         rest[inside] = t[inside] > fit.stop(i)
         idle[inside] = False  # it may spin on the spot for a while
         speed[inside] = fit.speeds(i, t[inside])
-    return place, rest, idle, speed
+    return ranks, rest, idle, speed
 
 
 def _motions(
-    trace: Trace, place: NDArray[np.int64], rest: NDArray[np.bool_], fit: ShotFit, radius: float
+    trace: Trace, piece: NDArray[np.int64], rest: NDArray[np.bool_], fit: ShotFit, radius: float
 ) -> NDArray[np.int64]:
     """Tell motions apart: pieces, but a rest that is kept apart for a hit is one with its stop."""
-    out = place.copy()
-    for k in np.flatnonzero(rest[:-1] & rest[1:] & (np.diff(place) != 0)).tolist():
-        before, after = fit.pieces[place[k]], fit.pieces[place[k + 1]]
-        lay = before.samples[before.rest | (trace.t[before.samples] > fit.stop(place[k]))]
+    out = piece.copy()
+    for k in np.flatnonzero(rest[:-1] & rest[1:] & (np.diff(piece) != 0)).tolist():
+        before, after = fit.pieces[piece[k]], fit.pieces[piece[k + 1]]
+        lay = before.samples[before.rest | (trace.t[before.samples] > fit.stop(piece[k]))]
         # One that was not seen to lie elsewhere lies where it came to rest.
         if lies_still(trace, replace(before, samples=lay), after, radius):
-            out[place == place[k + 1]] = out[k]
+            out[piece == piece[k + 1]] = out[k]
     return out
 
 
