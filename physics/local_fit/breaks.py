@@ -28,7 +28,7 @@ PRUNED_FROM, PRUNED_AFTER = 40.0, 8
 how many sightings it has before it may be."""
 
 PRUNED_EACH = 4
-"""Each how manieth sighting they are pruned: more often takes longer than to go on with them."""
+"""They are pruned at one sighting in so many: more often takes longer than to go on with them."""
 
 STILL = 25.0
 """Squared normalised shift of a mean place, two axes, below which it is no trace of a motion."""

@@ -93,7 +93,7 @@ class ShotFit:
         As given.
     theta : (7 P + M,) array
         Per piece x, vx, ax, y, vy, ay at `origins`; then the times of the meetings; then per
-        piece the power of its speed that slows it (`physics.filter.slowing`).
+        piece the exponent p of its deceleration (`physics.filter.slowing`).
     cov : (7 P + M, 7 P + M) array
         Covariance, enlarged for residuals that are too big or alike from frame to frame.
     origins : (P,) array
@@ -134,7 +134,7 @@ class ShotFit:
         return self.theta[self.unknowns(rank)[:POWER]].reshape(2, 3)
 
     def power(self, rank: int) -> float:
-        """Power of its speed with which the stone of piece `rank` is slowed less."""
+        """Exponent p of the deceleration on piece `rank`, which goes as v^(−p)."""
         return float(self.theta[self.unknowns(rank)[POWER]])
 
     def unknowns(self, rank: int) -> NDArray[np.int64]:

@@ -308,9 +308,16 @@ def _leaves(path: Trace, radius: float) -> tuple[float, bool] | None:
 
 
 def _away(path: Trace, place: Floats, radius: float) -> tuple[Floats, float, Floats]:
-    """How far a stone is from a place, m, by medians of a few sightings, more than what, and when.
+    """Tell how far a stone is from a place, by running medians of a few sightings.
 
-    Beyond the second of the three it is not there.
+    Returns
+    -------
+    off : (m,) array
+        Distance of each median, m.
+    least : float
+        Distance beyond which the stone is not at the place, m.
+    t : (m,) array
+        Times of the medians, s.
     """
     windows = np.lib.stride_tricks.sliding_window_view(path.xy, FEW, axis=0)
     off = np.hypot(*(np.median(windows, axis=-1) - place).T)

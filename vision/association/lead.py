@@ -34,10 +34,10 @@ SCORE_GAIN = 0.2
 bit, along the edge of paint as light as its granite, still falls below that."""
 
 DOUBTFUL = 0.85
-"""Share of a stone's usual evidence below which it may rather be beside where it is expected, as
-after a hit, and of what shows there, below which it is: on paint of its cap's colour, one that has
-been pushed 25 mm aside still shows 0.6 to 0.75 of it where it was; drawn aside by as much along
-paint as light as granite, 0.6 to 0.8."""
+"""A stone that shows less than this share of its usual evidence is looked for beside where it is
+expected, and is there if it shows less than this share of what is found there. Pushed 25 mm aside
+on paint of its cap's colour, one still shows 0.6 to 0.75 of its evidence where it was; drawn aside
+by as much along paint as light as granite, 0.6 to 0.8."""
 
 AHEAD = 1.5
 """How far ahead it is looked whether a stone comes near a place, s: for a handful of blocks."""

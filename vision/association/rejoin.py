@@ -42,7 +42,7 @@ PLACE_SD, SPEED_SD, SLOWING_SD = 0.2, 0.15, 0.2
 2 cm/s and 0.03 m/s², as much as ice differs."""
 
 MISSED = 12.0
-"""Two stones are not one whose ways miss each other by the root of this in standard deviations."""
+"""Squared distance of two ways, in its variances, from which on they are not of one stone."""
 
 TAPPED = 0.9 * MISSED
 """The same for one that rests here and then there, which tells no way: it was tapped, or pushed, if

@@ -54,8 +54,8 @@ HURRY = 8
 while none is seen of those that are known: they may come at any time."""
 
 LESSON, DOUBTFUL_LESSON = 8, 2
-"""Each how manieth of them is looked at to learn what the stones look like, and each how manieth
-where these show a stone, but none that convinces."""
+"""One in so many of them is looked at to learn what the stones look like, and one in so many where
+those show a stone, but none that convinces."""
 
 MOST_LESSONS = 200
 """After so many sightings that taught, none of another colour is learned from."""

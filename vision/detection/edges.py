@@ -105,7 +105,7 @@ class Edges:
     visible : ndarray, shape (n,)
         Share of the way around on which both are seen.
     light : ndarray, shape (n, 2)
-        Where the edge of the cap by its lightness alone has its middle, off the centre, m; NaN
+        Where the cap's centre lies by the lightness of its edge alone, less the centre, m; NaN
         where it was not found, or not sought.
     swept : ndarray of bool, shape (n,)
         Whether it was seen how far a fast stone's cap is smeared, and the centre goes by that.
@@ -330,7 +330,7 @@ def _moved(fit: Fits, exact: Fits, rows: Places, share: Array) -> Fits:
 def _by_light_alone(
     samples: Samples, rays: Rays, cap: Rim, views: Views, appearance: Appearance, effort: Effort
 ) -> Array:
-    """Where the middles of the caps' edges lie by lightness alone, (n, 2) m; NaN if not found."""
+    """Where caps' centres lie by the lightness of their edges, (n, 2), m; NaN if not found."""
     steps = by_lightness(samples.cap, samples.granite).astype(np.float32)[:, None, None]
     lit = fit_circles(
         rays, (replace(cap, fall=samples.falls[..., 0] * steps),), appearance.slack,

@@ -19,14 +19,14 @@ PALER = 3.0
 Under lamps thrown stones have 2.3; ice that letters of a cap's colour enclose 4 to 5."""
 
 ON_ONE_SIDE = 0.2, 0.5
-"""From how far around both edges of a stone are seen on one side that counts for it, and up to how
-far it counts more. On clothes edges like a stone's lie here and there, on 0.1 to 0.35 of the way
-around at one side; of a stone that somebody covers by half 0.35 to 0.5 shows them. Before colours
-are learned, paint would profit as well."""
+"""An arc on which both edges of a stone are seen counts for it from the first share of the way
+around on, and more and more up to the second. On clothes edges like a stone's lie here and there,
+on 0.1 to 0.35 of the way around at one side; of a stone that somebody covers by half 0.35 to 0.5
+shows them. Before colours are learned, paint would profit as well."""
 
 ENOUGH = 1.6
-"""Evidence that such an arc adds nothing to: what changes with it would look like a stone that has
-been pushed aside."""
+"""Evidence beyond which such an arc adds nothing: what changes with it would look like a stone that
+has been pushed aside."""
 
 
 def evidence_of(

@@ -70,7 +70,7 @@ class Measures:
         (`vision.detection.patch.Effort`): enough to follow what is known to be a stone, not to tell
         it is.
     light : ndarray, shape (n, 2)
-        Where the edge of the cap by its lightness alone has its middle, off the centre, m; NaN
+        Where the cap's centre lies by the lightness of its edge alone, less the centre, m; NaN
         where it was not found, or not sought.
     swept : ndarray of bool, shape (n,)
         Whether it was seen how far a fast stone's cap is smeared, and the centre goes by that.

@@ -48,7 +48,7 @@ class Effort:
     rounds : int
         How often the edges are chosen about the circle that they gave.
     light : bool
-        Whether it is told where the edge of the cap by its lightness alone has its middle.
+        Whether the cap's centre is also measured by the lightness of its edge alone.
     coarse : float
         How far the edge of the cap may lie aside all around, px, beside what is usual, if its hue
         alone tells it.

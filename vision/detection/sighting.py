@@ -46,7 +46,7 @@ class Sighting(NamedTuple):
     pixel_size : float
         How long a pixel is there by the camera at hand, m; NaN where it is not told yet.
     light : tuple of float
-        Where the edge of the cap by its lightness alone has its middle, off (x, y), m; NaN where
+        Where the cap's centre lies by the lightness of its edge alone, less (x, y), m; NaN where
         it was not found.
     cap_samples, granite_samples : ndarray, shape (n, 3)
         Colours of the cap and of the granite, for learning.
