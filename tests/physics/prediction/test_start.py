@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import astuple, replace
 
 import numpy as np
 import pytest
@@ -9,6 +9,7 @@ import pytest
 from data.errors import InputError
 from data.results import Estimate, Friction, SimulationScore
 from data.sheet import GRAVITY
+from physics.curl import FCV1Curl
 from physics.ice import Constant, IceLaw, Penner
 from physics.prediction.ensemble import Ensemble
 from physics.prediction.start import BACK, HOG_TO_TEE, measured_start, speed_before
@@ -43,6 +44,19 @@ def test_a_stone_that_was_seen_late_is_taken_back_to_have_room() -> None:
     assert (met.vx, met.vy) == pytest.approx((now.before["A"].vx, now.before["A"].vy), abs=1e-6)
     speeds = [other.stones[0].vy - begun.vy for other in start.others]
     assert speeds == pytest.approx([-0.002, -0.001, 0.001, 0.002], abs=2e-4)
+
+
+@pytest.mark.parametrize("spin", [-1.5, 0.004, 1e-200, 0.0])
+def test_a_stone_that_is_taken_back_comes_the_way_that_curls(spin: float) -> None:
+    close = replace(CLOSE, vx=-0.1, vy=-0.6, omega=spin, theta=0.3)
+    shot = replace(HIT, stones=(close, *HIT.stones[1:]), curl=FCV1Curl(0.03))
+    start = measured_start(*measured(shot))
+    assert start.shot.stones[0].y > close.y + 0.5
+    (hit,), (now,) = simulate(start.shot).hits, simulate(shot).hits
+    for stone in hit.stones:
+        assert astuple(hit.after[stone]) == pytest.approx(astuple(now.after[stone]), abs=1e-6)
+    ends, as_it_did = simulate(start.shot).rest["A"], simulate(shot).rest["A"]
+    assert ends.theta == pytest.approx(as_it_did.theta, abs=1e-6)
 
 
 def test_the_stone_is_not_taken_back_through_another() -> None:
