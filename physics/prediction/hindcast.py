@@ -23,7 +23,7 @@ from physics.local_fit.untold import OFTEN, SUDDEN
 from physics.local_fit.ways import SLOWING
 from physics.prediction.as_fitted import as_fitted, by_itself
 from physics.prediction.ensemble import Ensemble
-from physics.prediction.laws import Laws, measured_laws
+from physics.prediction.laws import Laws, assumed_of, measured_laws
 from physics.prediction.spread import Doubt, path_spread, simulated, simulated_hits
 from physics.prediction.throws import first_hit, foreseen_until, newcomers
 from physics.simulator.simulate import simulate
@@ -112,13 +112,14 @@ def simulate_measured(
     stones = _states(tracks[~tracks["stone"].isin(late)], start, estimates, masses or {})
     laws = measured_laws(estimates, radius)
     models, notes = _models(laws, estimates, stones)
-    laws_used = ("restitution", "friction") if estimates.collisions else ("friction",)
-    warnings += [f"simulation: {laws.assumed[name]}" for name in laws_used if name in laws.assumed]
     clock = tracks.groupby("frame", sort=True)["t"].first()
     clock = clock[clock >= start]
     doubt = _doubt(tracks, start, estimates, laws)
     again = Shot(stones, laws.frictional, laws.ice, laws.curl, radius * (laws.size.value or 1.0))
     may = _may_have_been(estimates.whole, again, doubt, start)
+    assumed = assumed_of(laws, may.likely)
+    laws_used = ("restitution", "friction") if estimates.collisions else ("friction",)
+    warnings += [f"simulation: {assumed[name]}" for name in laws_used if name in assumed]
     ends = explained_until(tracks, estimates, start)
     warnings += [
         f"simulation: {name} is compared until {end:.2f} s; neither ice nor a hit in view"

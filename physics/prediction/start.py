@@ -16,7 +16,7 @@ from data.sheet import SHEET, curling_size
 from physics.curl import NoCurl
 from physics.ice import IceLaw
 from physics.prediction.ensemble import Ensemble
-from physics.prediction.laws import measured_laws
+from physics.prediction.laws import assumed_of, measured_laws
 from physics.prediction.throws import first_hit, newcomers
 from physics.simulator.bounds import Bounds
 from physics.simulator.curve import Curve, curve_for
@@ -105,7 +105,7 @@ def measured_start(tracks: pd.DataFrame, results: Results, ensemble: Ensemble) -
         ahead = (stone.x * stone.vx + stone.y * stone.vy) / math.hypot(stone.vx, stone.vy)
         release = max(HOG_TO_TEE + ahead, 0.0)
         shots = [replace(shot, bounds=Bounds(1 if stone.vy > 0 else -1)) for shot in shots]
-    assumed = {**_laws(results), **_spins(tracks, shots), **_left_out(late)}
+    assumed = {**_laws(results, likely), **_spins(tracks, shots), **_left_out(late)}
     return Start(shots[0], thrown, tuple(shots[1:]), release, house, assumed)
 
 
@@ -124,9 +124,9 @@ def _without(shot: Shot, names: Collection[str]) -> Shot:
     return replace(shot, stones=tuple(s for s in shot.stones if s.name not in names))
 
 
-def _laws(results: Results) -> dict[str, str]:
+def _laws(results: Results, likely: Shot) -> dict[str, str]:
     """Say which laws the shot does not tell, and what is taken for them."""
-    assumed = dict(measured_laws(results, results.radius).assumed)
+    assumed = assumed_of(measured_laws(results, results.radius), likely)
     simulated = results.simulations.get("frictional")
     if "stone_friction" in assumed and simulated is not None and simulated.note:
         assumed["stone_friction"] = simulated.note

@@ -11,6 +11,7 @@ from data.results import Estimate, Friction, SimulationScore
 from data.sheet import GRAVITY
 from physics.curl import FCV1Curl
 from physics.ice import Constant, IceLaw, Penner
+from physics.impact import Frictional
 from physics.prediction.ensemble import Ensemble
 from physics.prediction.start import BACK, HOG_TO_TEE, measured_start, speed_before
 from physics.simulator.bounds import Bounds
@@ -69,7 +70,16 @@ def test_the_stone_is_not_taken_back_through_another() -> None:
 def test_what_was_not_measured_is_assumed_aloud() -> None:
     tracks, results, ensemble = measured()
     blind = replace(results, restitution=Estimate(), friction=Friction(), collisions=())
-    assert len(measured_start(tracks, blind, ensemble).assumed) == 3
+    assumed = measured_start(tracks, blind, ensemble).assumed
+    assert assumed == {
+        "restitution": "restitution not measured: 0.8, as in the fit of the whole shot",
+        "friction": f"friction not measured: {MU:.2g}, as in the fit of the whole shot",
+        "stone_friction": "friction between the stones assumed to be 0.05",
+    }
+    usual = replace(ensemble, likely=replace(HIT, impact=Frictional(0.83), ice=Constant(0.0109)))
+    assumed = measured_start(tracks, blind, usual).assumed
+    assert assumed["restitution"] == "restitution not measured, 0.83 assumed"
+    assert assumed["friction"] == "friction not measured, 0.0109 assumed"
     note = "friction between the stones not told: they stick"
     blind = replace(blind, simulations={"frictional": SimulationScore(0.001, note=note)})
     assert measured_start(tracks, blind, ensemble).assumed["stone_friction"] == note
