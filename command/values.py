@@ -21,8 +21,15 @@ def number(text: str, limits: Limits) -> float:
     except ValueError:
         value = float("nan")
     if not limits.allow(value):
-        raise argparse.ArgumentTypeError(f"{text!r} is not {limits.what}")
+        raise argparse.ArgumentTypeError(f"{text!r} is not {limits.what}{_with_point(text)}")
     return value
+
+
+def _with_point(text: str) -> str:
+    """Say how a number with a decimal comma is to be written; nothing of other texts."""
+    if re.fullmatch(r"[+-]?\d*,\d+x?", text) is None:
+        return ""
+    return f"; write {text.replace(',', '.')}, with a point"
 
 
 def within(limits: Limits) -> Callable[[str], float]:
@@ -59,6 +66,7 @@ def _or_factor(text: str, limits: Limits) -> tuple[float, bool]:
     except argparse.ArgumentTypeError:
         raise argparse.ArgumentTypeError(
             f"{text!r} is not {limits.what}, nor a factor such as 1.1x, at most {limits.high:g}x"
+            f"{_with_point(text)}"
         ) from None
 
 
@@ -95,7 +103,9 @@ def stick(text: str) -> tuple[float, float, float, float, float]:
     try:
         x1, y1, x2, y2, metres = (float(part) for part in text.split(","))
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not X1,Y1,X2,Y2,METRES") from None
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not X1,Y1,X2,Y2,METRES, e.g. 20,36,20,220,0.5"
+        ) from None
     ends = x1, y1, x2, y2, metres
     if not has_length(ends):
         raise argparse.ArgumentTypeError(f"{text!r}: the stick has no length")
