@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from data.errors import InputError
-from data.inputs import named
+from data.inputs import matching, named
 
 if TYPE_CHECKING:
     from data.results import Results
@@ -26,7 +26,7 @@ def apart(clips: Sequence[Path]) -> dict[str, Path]:
 
 
 def find_runs(names: str | Path | Sequence[str | Path]) -> dict[str, Results]:
-    """Read the results of runs: of their folders, of folders of such folders, or files.
+    """Read the results of runs: of their folders, of folders of such folders, files or globs.
 
     Raises
     ------
@@ -36,7 +36,9 @@ def find_runs(names: str | Path | Sequence[str | Path]) -> dict[str, Results]:
     from data.results_file import read_results
 
     found: list[Path] = []
-    for path in map(Path, named(names)):
+    given = [Path(name) for name in named(names)]
+    paths = [[path] if path.exists() else matching(path) or [path] for path in given]
+    for path in (path for some in paths for path in some):
         here = path / "results.json" if path.is_dir() else path
         below = sorted(path.glob("*/results.json")) if path.is_dir() else []
         if not here.exists() and not below:
