@@ -16,7 +16,7 @@ from command.again import again
 from command.arguments import out_folder, settings_of, what_if_folder
 from command.bars import Bars
 from command.garbage import collect_seldom
-from command.guard import guarded, one_line
+from command.guard import guarded, one_line, write_anywhere
 from command.parser import command_line
 from command.threads import use_one_thread
 from data.errors import CurlshotError, InputError
@@ -314,6 +314,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Entry point of the command; returns its exit code (0 well, 2 a person's mistake)."""
     use_one_thread()
     collect_seldom()
+    write_anywhere()
     arguments = command_line(VERSION).parse_args(argv)
     bars = Bars(quiet=arguments.quiet)
     return guarded(lambda: WORK[arguments.command](arguments, bars), bars)
