@@ -20,7 +20,7 @@ from data.files import write_text
 from data.sheet import HOUSE, STONE
 from data.tracks import write_table
 from physics.prediction.start import Start
-from report.figures import draw_house
+from report.figures import draw_house, name_stones
 from report.figures.parts import legend_below
 from report.numbers import count
 from report.style import BLACK, GREY, PNG_DPI, new_figure, plain_text, stone_colours, styled
@@ -35,6 +35,8 @@ FARTHEST, ANYWHERE = 6.4, 20.0
 """Most that the picture shows along and across, m from its centre, with a house and without."""
 FEW = 50
 """Throws; fewer are dots, for a map of them would show how it is smoothed."""
+BESIDE = 1.6
+"""Inches of the picture's width beside the sheet."""
 MOST_DOTS = 1000
 """Dots of one stone."""
 
@@ -62,6 +64,7 @@ def write_odds(folder: Path, start: Start, outcomes: pd.DataFrame, odds: Mapping
         f"{odds['thrown']} thrown {count(odds['samples'], 'time')}",
         start.shot.radius,
         house=start.house,
+        play=1 if start.shot.stones[start.thrown].vy > 0 else -1,
     )
     figure.savefig(folder / "spread.png", dpi=PNG_DPI)
 
@@ -74,6 +77,7 @@ def spread_figure(
     radius: float = STONE.radius,
     *,
     house: bool = True,
+    play: int = -1,
 ) -> Figure:
     """Draw where the stones come to rest, the thrown one as a heat map, others as dots.
 
@@ -94,6 +98,8 @@ def spread_figure(
         Radius of the stones, m.
     house : bool
         Whether places count from the tee of a house.
+    play : int
+        1 where stones are thrown up y, -1 where down: behind the tee is the back line.
     """
     own = outcomes["stone"] == thrown
     # A stone that nothing touched lies where it lay.
@@ -112,10 +118,10 @@ def spread_figure(
     wide, tall = high - low
     width = 7.0
     with styled():
-        figure = new_figure(width, min((width - 1.6) * tall / wide + 1.3, 10.0))
+        figure = new_figure(width, min((width - BESIDE) * tall / wide + 1.3, 10.0))
         ax = figure.subplots()
         if house:
-            draw_house(ax, HOUSE, low, high)
+            draw_house(ax, HOUSE, low, high, play)
         label = f"where {plain_text(thrown)} ends, % of throws on 10 cm × 10 cm"
         _draw_ends(ax, ends, throws, (low, high), radius, label)
         for name, struck in places.items():
@@ -123,11 +129,9 @@ def spread_figure(
             ax.plot(*dots.T, ".", color=colours[name], ms=2.5, alpha=0.6, mew=0, zorder=3)
         for name, place in lying.items():
             ax.add_patch(Circle(place, radius, fc="white", ec=colours[name], lw=1.4, zorder=4))
-            ax.text(
-                *place, plain_text(name), color=colours[name], weight="bold", fontsize=8,
-                ha="center", va="center", zorder=5, clip_on=True,
-            )  # fmt: skip
         ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
+        seen = {n: np.array(at) for n, at in lying.items() if _shows(low, high, np.array([at]))}
+        name_stones(ax, seen, colours, radius, (width - BESIDE) / wide)
         ax.set(xlabel="$x$ (m)", ylabel="$y$ (m)")
         ax.grid(False)
         figure.suptitle(plain_text(title), x=0.01, ha="left", fontsize=10, fontweight="bold")
