@@ -25,7 +25,7 @@ from report.style import (
     stone_colours,
     styled,
 )
-from report.tables import last_speed, moving_stones
+from report.tables import last_speed, moving_stones, play
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -86,7 +86,7 @@ def plan_figure(
         figure = new_figure(WIDTH, scale * (high[1] - low[1]) + 0.85 + 0.2 * rows_below)
         ax = figure.subplots()
         if house is not None:
-            draw_house(ax, house, low, high)
+            draw_house(ax, house, low, high, play(tracks, collisions, radius))
         for model, table in simulations.items():
             for stone in moved:
                 path = rows_of(table, stone)
