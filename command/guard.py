@@ -18,6 +18,9 @@ _ENDS = ("SIGTERM", "SIGHUP")
 """Signals that ask to end, where the platform has them."""
 
 
+NO_MEMORY = "not enough memory; try fewer or smaller pictures, or fewer clips at once"
+
+
 def guarded(work: Callable[[], str], bars: Bars) -> int:
     """Do some work and print its text.
 
@@ -43,7 +46,7 @@ def guarded(work: Callable[[], str], bars: Bars) -> int:
         return 2
     except MemoryError:
         bars.close()
-        print("curlshot: not enough memory; try fewer or smaller pictures", file=sys.stderr)
+        print(f"curlshot: {NO_MEMORY}", file=sys.stderr)
         return 2
     except KeyboardInterrupt as stop:
         with suppress(OSError):  # a terminal that was closed takes no more

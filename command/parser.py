@@ -21,6 +21,7 @@ from command.options import (
     units_option,
     what_if_options,
 )
+from work.limits import JOBS
 
 
 class _Parser(argparse.ArgumentParser):
@@ -105,6 +106,12 @@ def _run(commands: Any) -> None:
     units_option(parser)
     parser.add_argument(
         "--no-overlay", action="store_true", help="do not write the annotated clip overlay.mp4"
+    )
+    parser.add_argument(
+        "--jobs",
+        type=values.whole(JOBS),
+        metavar="N",
+        help="of many clips, how many at once (as many as there are processors)",
     )
 
 
