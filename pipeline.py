@@ -9,6 +9,7 @@ import argparse
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,7 @@ from command.arguments import out_folder, settings_of, what_if_folder
 from command.bars import Bars
 from command.garbage import collect_seldom
 from command.guard import guarded, one_line, write_anywhere
+from command.parallel import in_processes, processors
 from command.parser import command_line
 from command.threads import use_one_thread
 from data.errors import CurlshotError, InputError
@@ -119,8 +121,23 @@ def run_each(
     out: str | Path,
     settings: Settings = Settings(),
     progress: Progress = no_progress,
+    jobs: int = 1,
 ) -> tuple[dict[str, Run], dict[str, CurlshotError]]:
     """Run many clips, one folder of `out` for each; one that fails does not stop the others.
+
+    Parameters
+    ----------
+    clips : str or Path, or sequence of them
+        Videos.
+    out : str or Path
+        Folder for their folders.
+    settings : Settings
+        What to know about all of them.
+    progress : callable
+        Called as the work goes on; of more than one job when one more clip is done.
+    jobs : int
+        Clips at once. Of more than one each has a process of its own, so a script that asks for
+        it must not do so where it is imported (``if __name__ == "__main__":``).
 
     Returns
     -------
@@ -130,21 +147,38 @@ def run_each(
         Why the others could not be used.
     """
     folder = check_folder(out)
-    done: dict[str, Run] = {}
-    failed: dict[str, CurlshotError] = {}
     once = {path.resolve(): path for path in map(Path, named(clips))}
-    by_name = apart([*once.values()])
-    for name, clip in by_name.items():
-        number = f"{len(done) + len(failed) + 1}/{len(by_name)} "
-
-        def numbered(what: str, at: int, total: int | None, number: str = number) -> None:
-            progress(number + what, at, total)
-
-        try:
-            done[name] = run([clip], folder / name, settings, numbered)
-        except CurlshotError as error:
-            failed[name] = error
+    tasks = {name: (clip, folder / name) for name, clip in apart([*once.values()]).items()}
+    if min(jobs, len(tasks)) > 1:
+        outcomes = in_processes(partial(_attempt, settings), tasks, jobs, "clips", progress)
+    else:
+        outcomes = {
+            name: _attempt(settings, task, _numbered(progress, f"{number}/{len(tasks)} "))
+            for number, (name, task) in enumerate(tasks.items(), 1)
+        }
+    done = {name: one for name, one in outcomes.items() if isinstance(one, Run)}
+    failed = {name: one for name, one in outcomes.items() if isinstance(one, CurlshotError)}
     return done, failed
+
+
+def _attempt(
+    settings: Settings, task: tuple[Path, Path], progress: Progress = no_progress
+) -> Run | CurlshotError:
+    """Run a clip into a folder, or tell why it could not be used."""
+    clip, folder = task
+    try:
+        return run([clip], folder, settings, progress)
+    except CurlshotError as error:
+        return error
+
+
+def _numbered(progress: Progress, number: str) -> Progress:
+    """Say of which of many clips it is that the work goes on."""
+
+    def numbered(what: str, at: int, total: int | None) -> None:
+        progress(number + what, at, total)
+
+    return numbered
 
 
 def _write_run(
@@ -352,7 +386,8 @@ def _run_season(arguments: argparse.Namespace, clips: Sequence[Path], bars: Bars
     from report.summary import season_text
 
     folder = Path(arguments.out or "season")
-    done, failed = run_each(clips, folder, settings_of(arguments), bars)
+    jobs = arguments.jobs or processors()
+    done, failed = run_each(clips, folder, settings_of(arguments), bars, jobs)
     if not done:
         name, error = next(iter(failed.items()))
         raise InputError(f"none of {len(clips)} clips could be used; {name}: {error}")
@@ -453,12 +488,11 @@ def _convert_each(arguments: argparse.Namespace) -> str:
 def _do_simulate(arguments: argparse.Namespace, bars: Bars) -> str:
     import json
 
-    from data.tracks import write_table
     from physics.prediction.what_if import Changes, changed
     from physics.simulator.simulate import simulate
     from report.numbers import warned
     from report.summary import odds_text, simulation_json, simulation_text
-    from report.whatif import write_odds
+    from report.whatif import write_odds, write_simulated
 
     shot = shot_file(arguments.shot)
     folder = what_if_folder(arguments, shot)
@@ -477,10 +511,11 @@ def _do_simulate(arguments: argparse.Namespace, bars: Bars) -> str:
     if throws is None:
         throws = MEASURED_THROWS if measured_shot(shot) else 0
     outcome = simulation_json(simulation)
-    lines = [simulation_text(simulation, folder / "simulation.csv")]
+    written = [folder / name for name in ("simulation.csv", "plan.png")]
+    lines = [simulation_text(simulation, written)]
     warnings = [*start.assumed.values()]
     with staged(folder, replaces=WHAT_IF) as stage:
-        write_table(table, stage / "simulation.csv")
+        write_simulated(stage, start, simulation, table)
         if throws:
             outcomes, odds = throw_often(
                 start, changes, throws, arguments.throw_sd, shot.name, bars

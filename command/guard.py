@@ -46,6 +46,9 @@ def _spelled(error: UnicodeError) -> tuple[str, int]:
     return "".join(_SPELLED.get(letter, "?") for letter in letters), error.end
 
 
+NO_MEMORY = "not enough memory; try fewer or smaller pictures, or fewer clips at once"
+
+
 def guarded(work: Callable[[], str], bars: Bars) -> int:
     """Do some work and print its text.
 
@@ -68,7 +71,7 @@ def guarded(work: Callable[[], str], bars: Bars) -> int:
         return 2
     except MemoryError:
         bars.close()
-        print("curlshot: not enough memory; try fewer or smaller pictures", file=sys.stderr)
+        print(f"curlshot: {NO_MEMORY}", file=sys.stderr)
         return 2
     except KeyboardInterrupt as stop:
         with suppress(OSError):  # a terminal that was closed takes no more

@@ -21,6 +21,7 @@ from command.options import (
     units_option,
     what_if_options,
 )
+from work.limits import JOBS
 
 
 class _Parser(argparse.ArgumentParser):
@@ -105,6 +106,12 @@ def _run(commands: Any) -> None:
     units_option(parser)
     parser.add_argument(
         "--no-overlay", action="store_true", help="do not write the annotated clip overlay.mp4"
+    )
+    parser.add_argument(
+        "--jobs",
+        type=values.whole(JOBS),
+        metavar="N",
+        help="of many clips, how many at once (as many as there are processors)",
     )
 
 
@@ -212,7 +219,8 @@ def _simulate(commands: Any) -> None:
         "A measured shot (the folder of a run, or its results.json) begins as it did in the clip,\n"
         "and is written into NAME-whatif. Samples are drawn from what it may have been\n"
         "(ensemble.json) and from what players are off by. They give outcomes.csv (where each\n"
-        "stone ends in each sample), whatif.json and spread.png, a plan view.\n"
+        "stone ends in each sample), whatif.json and spread.png, a plan view.\n\n"
+        "Any shot gives simulation.csv (its stones in time) and plan.png, from above.\n"
         "\n"
         "SHOT.toml, all of [physics] optional, and of a stone all but name, x and y:\n"
         "  [physics]\n"

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from work.limits import POSITIVE, SAMPLES, Limits, has_length
+from work.limits import POSITIVE, Limits, has_length
 
 if TYPE_CHECKING:
     from physics.prediction.what_if import Amount
@@ -70,11 +70,15 @@ def _or_factor(text: str, limits: Limits) -> tuple[float, bool]:
         ) from None
 
 
-def samples(text: str) -> int:
-    """Read a number of samples."""
-    if not text.isdecimal() or not SAMPLES.allow(int(text)):
-        raise argparse.ArgumentTypeError(f"{text!r} is not {SAMPLES.what}")
-    return int(text)
+def whole(limits: Limits) -> Callable[[str], int]:
+    """Give what reads a whole number between two bounds."""
+
+    def read(text: str) -> int:
+        if not text.isdecimal() or not limits.allow(int(text)):
+            raise argparse.ArgumentTypeError(f"{text!r} is not {limits.what}")
+        return int(text)
+
+    return read
 
 
 def throw_sd(text: str) -> tuple[float, float]:

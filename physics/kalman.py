@@ -31,6 +31,7 @@ from physics.local_fit.fit import fit_shot
 from physics.local_fit.glides import free, measure_glides
 from physics.local_fit.noise import Noise, noises
 from physics.local_fit.off_centre import centred
+from physics.local_fit.segments import lies_still
 from physics.local_fit.shared_spin import share_spins
 from physics.local_fit.shot_fit import ShotFit
 from physics.local_fit.traces import Trace, traces
@@ -118,7 +119,8 @@ def smoothed(
     for name, trace in known.items():
         inside = (times >= trace.t[0]) & (times <= trace.t[-1])
         hits = sorted((c for c in contacts if name in c.stones), key=lambda c: c.t)
-        ways[name] = _way(trace, times[inside], frames[inside], hits, fit, model, noise[name])
+        when = times[inside], frames[inside]
+        ways[name] = _way(trace, *when, hits, fit, model, noise[name], radius)
     loss = spin_loss([glide for way in ways.values() for glide in way.glides])
     model = replace(model, spin_loss=loss[0], sd_spin_loss=loss[1])
     each: dict[str, Columns] = {}
@@ -185,8 +187,9 @@ def _way(
     fit: ShotFit,
     model: Model,
     noise: Noise,
+    radius: float,
 ) -> _Way:
-    """Cut one stone's sightings at its hits; what begins a stretch far off is left out."""
+    """Cut one stone's sightings at its hits; what begins one, or a rest, far off is left out."""
     row = np.clip(np.searchsorted(trace.t, t), 0, len(trace.t) - 1)
     sighted = trace.t[row] == t
     place, rest, idle, speed = _modes(trace.stone, t, fit)
@@ -195,14 +198,16 @@ def _way(
     white, slow = noise.white[row], noise.slow[row]
     off = _off(fit, place, t, z[:, :2]) / np.hypot(white, slow)[:, :2]
     part = np.searchsorted(np.array([hit.t for hit in hits]), t, side="right")
+    motion = _motions(trace, place, rest, fit, radius)
     stretches = []
     for k in np.unique(part):
         at = np.flatnonzero(part == k)
-        z[_slipped(at, off)] = np.nan
-        if np.isfinite(z[at, 0]).any():
-            stretch = Stretch(
-                t[at], z[at], white[at], slow[at], place[at], rest[at], idle[at], speed[at], model
-            )
+        stretch = Stretch(
+            t[at], z[at], white[at], slow[at], motion[at], rest[at], idle[at], speed[at], model
+        )
+        for begin in (0, *(np.flatnonzero(stretch.moved) + 1).tolist()):
+            stretch.z[_slipped(at[begin:], off) - at[0]] = np.nan
+        if np.isfinite(stretch.z[:, 0]).any():
             stretches.append((at, stretch))
     return _Way(trace, t, frames, row, part, hits, stretches)
 
@@ -253,8 +258,7 @@ def _carry(cut: Stretch, mean: Floats, spread: Floats, at: NDArray[np.intp]) -> 
     way, and move and turn at any speed.
     """
     sighted = np.flatnonzero(np.isfinite(cut.z[:, 0]))
-    moved = cut.rest[:-1] & cut.rest[1:] & (np.diff(cut.piece) != 0)
-    for row in np.flatnonzero(moved).tolist():
+    for row in np.flatnonzero(cut.moved).tolist():
         before, after = sighted[sighted <= row], sighted[sighted > row]
         if not (len(before) and len(after)):
             continue
@@ -286,7 +290,7 @@ def _slipped(at: NDArray[np.intp], off: Floats) -> NDArray[np.intp]:
     Parameters
     ----------
     at : (m,) array of int
-        The rows between two hits.
+        The rows between two hits, or from where it lies elsewhere on.
     off : (n, 2) array
         How far all sightings are from their fits, in their standard deviations.
     """
@@ -314,6 +318,20 @@ def _modes(
         idle[inside] = False  # it may spin on the spot for a while
         speed[inside] = fit.speeds(i, t[inside])
     return place, rest, idle, speed
+
+
+def _motions(
+    trace: Trace, place: NDArray[np.int64], rest: NDArray[np.bool_], fit: ShotFit, radius: float
+) -> NDArray[np.int64]:
+    """Tell motions apart: pieces, but a rest that is kept apart for a hit is one with its stop."""
+    out = place.copy()
+    for k in np.flatnonzero(rest[:-1] & rest[1:] & (np.diff(place) != 0)).tolist():
+        before, after = fit.pieces[place[k]], fit.pieces[place[k + 1]]
+        lay = before.samples[before.rest | (trace.t[before.samples] > fit.stop(place[k]))]
+        # One that was not seen to lie elsewhere lies where it came to rest.
+        if lies_still(trace, replace(before, samples=lay), after, radius):
+            out[place == place[k + 1]] = out[k]
+    return out
 
 
 def _interpolate(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from data.coach_units import METRES, Unit
@@ -87,11 +88,16 @@ def _hits(takeouts: pd.DataFrame, unit: Unit) -> Table:
 
 
 def _distances(apart: pd.DataFrame, unit: Unit) -> Table:
-    names = {"tee": "to the tee"} | {str(name): str(name) for name in apart.columns[2:]}
+    errors = [str(name) for name in apart.columns if str(name).startswith("sd_")]
+    worst = apart[errors].to_numpy(float)
+    worst = worst[np.isfinite(worst)]
+    within = f", each ± {unit.little(float(worst.max()))} or less" if len(worst) else ""
+    names = {name.removeprefix("sd_"): name.removeprefix("sd_") for name in errors}
+    names |= {"tee": "to the tee"}
     return Table(
         "coach_distances",
         "Distances between stones",
-        "From centre to centre.",
+        f"From centre to centre{within}.",
         (
             Column("stone", "stone", kind="word"),
             *(

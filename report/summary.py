@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
 from data.coach_units import METRES, Unit
-from data.results import Results
+from data.results import Results, SimulationScore
 from data.sheet import House
 from physics.prediction.forecast import AFTER
 from physics.simulator.simulation import Simulation
@@ -75,8 +75,8 @@ def simulation_json(simulation: Simulation) -> dict[str, Any]:
     }
 
 
-def simulation_text(simulation: Simulation, path: Path) -> str:
-    """Rest positions and hits of a simulation whose samples were written to `path`."""
+def simulation_text(simulation: Simulation, written: Sequence[Path]) -> str:
+    """Rest positions and hits of a simulation, and the files that have it."""
     lines = ["at rest:"]
     lines += [
         f"  {name}  x {rest.x:+8.3f} m   y {rest.y:+8.3f} m   after {rest.t:6.2f} s"
@@ -85,11 +85,11 @@ def simulation_text(simulation: Simulation, path: Path) -> str:
     ]
     lines.append("hits:" if simulation.hits else "no hits")
     lines += [f"  {hit.t:6.3f} s  {hit.stones[0]} on {hit.stones[1]}" for hit in simulation.hits]
-    return "\n".join([*lines, f"written: {path}"])
+    return "\n".join([*lines, f"written: {', '.join(map(str, written))}"])
 
 
 def season_text(shots: pd.DataFrame, pooled: Mapping[str, Pooled]) -> list[str]:
-    """One line per shot, and what all say together."""
+    """One line per shot, what it cannot tell and why below it, and what all say together."""
     cells = [
         (
             shot["shot"],
@@ -100,7 +100,10 @@ def season_text(shots: pd.DataFrame, pooled: Mapping[str, Pooled]) -> list[str]:
         for shot in shots.to_dict("records")
     ]
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-    lines = ["   ".join(map(str.ljust, row, widths)).rstrip() for row in cells]
+    lines = []
+    for row, why_not in zip(cells, shots["note"], strict=True):
+        lines.append("   ".join(map(str.ljust, row, widths)).rstrip())
+        lines += [f"{'':{widths[0]}s}   {why_not}"] if why_not else []
     for name, sign in (("restitution", "e"), ("friction", "μ")):
         mean = pooled[name]
         text = f"{name:<11s} {sign} = {plus_minus(mean.value, mean.stderr)}"
@@ -164,13 +167,13 @@ def summary(
         f"restitution e = {plus_minus(results.restitution.value, results.restitution.stderr)}",
         f"friction    μ = {plus_minus(results.friction.value, results.friction.stderr)}{law}",
     ]
-    for model, score in results.simulations.items():
+    for models, score in _alike(results.simulations):
         off = f"— ({score.note or 'nothing to compare'})"
         if score.rmse is not None:
             off = f"{unit.little(score.rmse)} RMS off"
         # Only a shot that was fitted as a whole begins with what fits it.
         how = "" if results.laws is None else ", as fitted"
-        lines.append(f"simulated   {model}{how}: {off}")
+        lines.append(f"simulated   {models}{how}: {off}")
         lines += _each("at the end", score.rest_error, score.rest_sd, unit)
     for model, guess in results.predictions.items():
         if guess.rmse is not None:
@@ -193,6 +196,19 @@ def summary(
         report = out / "report.html"
         lines.append(f"written     {report if report.exists() else out}")
     return "\n".join(lines)
+
+
+def _alike(
+    simulations: Mapping[str, SimulationScore],
+) -> Iterator[tuple[str, SimulationScore]]:
+    """Names of the models that came to the same, as they do without a hit, and what it is."""
+    left = dict(simulations)
+    while left:
+        score = next(iter(left.values()))
+        same = [model for model, other in left.items() if other == score]
+        yield ", ".join(same), score
+        for model in same:
+            del left[model]
 
 
 def _each(

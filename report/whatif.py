@@ -1,4 +1,4 @@
-"""Where a shot ends if it is thrown many times: the spread of the stones on the sheet."""
+"""A simulated shot, and where it ends if it is thrown many times, as files."""
 
 from __future__ import annotations
 
@@ -20,7 +20,8 @@ from data.files import write_text
 from data.sheet import HOUSE, STONE
 from data.tracks import write_table
 from physics.prediction.start import Start
-from report.figures import draw_house, name_stones
+from physics.simulator.simulation import Simulation
+from report.figures import draw_house, name_stones, simulated_figure
 from report.figures.parts import legend_below
 from report.numbers import count
 from report.style import BLACK, GREY, PNG_DPI, new_figure, plain_text, stone_colours, styled
@@ -39,6 +40,23 @@ BESIDE = 1.6
 """Inches of the picture's width beside the sheet."""
 MOST_DOTS = 1000
 """Dots of one stone."""
+
+
+def write_simulated(
+    folder: Path, start: Start, simulation: Simulation, table: pd.DataFrame
+) -> None:
+    """Write a simulated shot, sampled as `table`, as ``simulation.csv`` and ``plan.png``."""
+    write_table(table, folder / "simulation.csv")
+    house = HOUSE if start.house else None
+    figure = simulated_figure(
+        table,
+        simulation.hits,
+        gone=simulation.gone,
+        house=house,
+        radius=start.shot.radius,
+        play=_play(start),
+    )
+    figure.savefig(folder / "plan.png", dpi=PNG_DPI)
 
 
 def write_odds(folder: Path, start: Start, outcomes: pd.DataFrame, odds: Mapping[str, Any]) -> None:
@@ -64,9 +82,14 @@ def write_odds(folder: Path, start: Start, outcomes: pd.DataFrame, odds: Mapping
         f"{odds['thrown']} thrown {count(odds['samples'], 'time')}",
         start.shot.radius,
         house=start.house,
-        play=1 if start.shot.stones[start.thrown].vy > 0 else -1,
+        play=_play(start),
     )
     figure.savefig(folder / "spread.png", dpi=PNG_DPI)
+
+
+def _play(start: Start) -> int:
+    """Tell whether the thrown stone goes up y, 1, or down, -1."""
+    return 1 if start.shot.stones[start.thrown].vy > 0 else -1
 
 
 def spread_figure(

@@ -225,7 +225,7 @@ def test_what_if_of_a_measured_shot(
     text = capsys.readouterr().out
     for word in ("A on B", "A thrown 60 times", "in the house", "shot stone", "outcomes.csv"):
         assert word in text
-    names = {"simulation.csv", "outcomes.csv", "whatif.json", "spread.png"}
+    names = {"simulation.csv", "plan.png", "outcomes.csv", "whatif.json", "spread.png"}
     assert {item.name for item in out.iterdir()} == names
     outcomes = pd.read_csv(out / "outcomes.csv")
     assert outcomes["sample"].nunique() == 60
@@ -242,7 +242,7 @@ def test_what_if_of_a_measured_shot(
     assert told["changes"]["speed"] == {"value": 0.9, "relative": True}
     # What an earlier call left does not stay beside a shot without samples.
     assert pipeline.main([*words, "--samples", "0"]) == 0
-    assert {item.name for item in out.iterdir()} == {"simulation.csv"}
+    assert {item.name for item in out.iterdir()} == {"simulation.csv", "plan.png"}
     assert pipeline.main(["simulate", measured, "-o", str(sample.out)]) == 2
     assert "holds the run itself" in capsys.readouterr().err
 

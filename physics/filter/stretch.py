@@ -114,6 +114,11 @@ class Stretch:
     model: Model
 
     @property
+    def moved(self) -> Bools:
+        """Whether, in each of n - 1 steps, the stone was moved unseen from where it lay."""
+        return np.asarray(self.rest[:-1] & self.rest[1:] & (np.diff(self.piece) != 0))
+
+    @property
     def start(self) -> tuple[Floats, Floats]:
         """Places and angle to start from, and the standard deviations of the rates."""
         first = int(np.isfinite(self.z[:, 0]).argmax())
@@ -176,8 +181,8 @@ def _steps(stretch: Stretch, still: Bools, deviation: Floats, sudden: Floats, ki
     stopped = np.where(stretch.idle[1:], STILL_SD[kind], STOPPED_SD)
     # What was left of a motion ends somewhere in the step, be it stopped dead in full run.
     stop = np.where(was, 0.0, jump) * dt**2 / 12
-    # Where it lay before says nothing of where it lies once it was moved.
-    stop = np.where(was & (np.diff(stretch.piece) != 0), ANYWHERE_SD[kind] ** 2, stop)
+    # Where it lay before, and how it faced, say nothing of that once it was moved.
+    stop = np.where(stretch.moved, ANYWHERE_SD[kind] ** 2, stop)
     return Steps(
         reach=np.where(ends, np.where(was, 0.0, 0.5 * dt), dt),
         keep=np.where(ends, 0.0, 1.0),

@@ -166,7 +166,7 @@ def _slow(path: Trace, samples: NDArray[Any], radius: float) -> bool:
     return _speed(motion.velocity) < SLOW * radius + 2 * motion.stderr
 
 
-def _lies_still(path: Trace, before: Piece, after: Piece, radius: float) -> bool:
+def lies_still(path: Trace, before: Piece, after: Piece, radius: float) -> bool:
     """Whether a stone that rested lies where it lay, as far as noise tells: none may see it go."""
     last, first = before.samples[-BETWEEN:], after.samples[:BETWEEN]
     if not (len(last) and len(first)):
@@ -178,13 +178,15 @@ def _lies_still(path: Trace, before: Piece, after: Piece, radius: float) -> bool
 
 
 def _parted(path: Trace, before: Piece, after: Piece) -> tuple[Piece, Piece]:
-    """Part two rests where a stone is no longer nearer to the first of them."""
+    """Part two rests where a stone is no longer nearer to the first of them, but for strays."""
     samples = np.concatenate([before.samples, after.samples])
     there, here = (
         np.hypot(*(path.xy[samples] - np.median(path.xy[part], axis=0)).T)
         for part in (before.samples[-BETWEEN:], after.samples[:BETWEEN])
     )
-    k = int((there < here).sum())
+    nearer = np.cumsum(np.where(there < here, 1, -1))[:-1]
+    # Where a stray leaves two choices it was moved while nobody saw it for longer.
+    k = int(np.where(nearer == nearer.max(), np.diff(path.t[samples]), 0.0).argmax()) + 1
     time = float(path.t[samples[k - 1 : k + 1]].mean())
     return (
         replace(before, end=time, samples=samples[:k]),
@@ -200,7 +202,7 @@ def _with_stops(path: Trace, run: list[Piece], radius: float) -> list[Piece]:
         if out and piece.rest and (piece.closes is None or out[-1].rest):
             last = out[-1]
             if last.rest or last.stops:
-                joins = _lies_still(path, last, piece, radius)
+                joins = lies_still(path, last, piece, radius)
             else:
                 motion = _motion(path, last.samples)
                 joins = _speed(motion.last) < SLOW * radius + SLOW_END + 3 * motion.stderr

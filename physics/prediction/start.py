@@ -141,7 +141,8 @@ def _spins(tracks: pd.DataFrame, shots: Sequence[Shot]) -> dict[str, str]:
         if _moves(stone) and stone.name not in seen:
             sd = float(np.std([shot.stones[k].omega for shot in shots[1:] or shots]))
             spin = f"spin of {stone.name}"
-            said[spin] = f"{spin} not seen: {round(stone.omega, 3):.2g} ± {sd:.2g} rad/s taken"
+            likely = round(stone.omega, 3) + 0.0  # no -0
+            said[spin] = f"{spin} not seen: {likely:.2g} ± {sd:.2g} rad/s taken"
     return said
 
 

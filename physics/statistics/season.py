@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -12,7 +13,7 @@ from physics.statistics.pool import FRICTION_SCATTER, RESTITUTION_SCATTER, Poole
 
 SHOT_COLUMNS = (
     "shot", "hits", "restitution", "stderr_restitution", "friction", "stderr_friction", "law",
-    "warnings",
+    "warnings", "note",
 )  # fmt: skip
 HIT_COLUMNS = (
     "shot", "t", "first", "second", "restitution", "stderr", "closing_speed",
@@ -48,7 +49,10 @@ def _same(one: Results, two: Results) -> bool:
 
 
 def shots_table(season: Mapping[str, Results]) -> pd.DataFrame:
-    """One row per shot: e and μ with their errors (`SHOT_COLUMNS`), NaN where not known."""
+    """One row per shot: e and μ with their errors (`SHOT_COLUMNS`).
+
+    Where one is not known it is NaN, and ``note`` says why.
+    """
     rows = [
         (
             name,
@@ -59,10 +63,19 @@ def shots_table(season: Mapping[str, Results]) -> pd.DataFrame:
             shot.friction.stderr,
             shot.friction.law,
             len(shot.warnings),
+            _why_not(shot),
         )
         for name, shot in season.items()
     ]
-    return _numbers(rows, SHOT_COLUMNS, texts=("shot", "law"))
+    return _numbers(rows, SHOT_COLUMNS, texts=("shot", "law", "note"))
+
+
+def _why_not(shot: Results) -> str:
+    """Say why e or μ of a shot is not known: what its warnings have about it."""
+    missing = [name for name in SCATTER if getattr(shot, name).value is None]
+    # What is said of the friction between stones is not of the ice.
+    about = re.compile("|".join(rf"\b{name}\b(?! between)" for name in missing) or "(?!)")
+    return "; ".join(warning for warning in shot.warnings if about.search(warning))
 
 
 def hits_table(season: Mapping[str, Results]) -> pd.DataFrame:

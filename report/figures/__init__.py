@@ -14,6 +14,7 @@ from report.figures.motion import motion_figure, speed_figure, spin_figure
 from report.figures.plan import draw_house, plan_figure
 from report.figures.posterior import posterior_figure
 from report.figures.residuals import residuals_figure
+from report.figures.simulated import simulated_figure
 
 __all__ = [
     "comparison_figure",
@@ -25,6 +26,7 @@ __all__ = [
     "plan_figure",
     "posterior_figure",
     "residuals_figure",
+    "simulated_figure",
     "speed_figure",
     "spin_figure",
 ]

@@ -94,16 +94,24 @@ def distance_table(rest: pd.DataFrame) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        ``stone, tee`` and a column for each stone; only stones whose place is known.
+        ``stone, tee`` and a column for each stone, then their standard errors, ``sd_`` before the
+        name; only stones whose place is known.
     """
     known = rest[rest["x"].notna()]
-    xy = known[["x", "y"]].to_numpy(float)
-    apart = np.hypot(*(xy[:, None] - xy[None]).transpose(2, 0, 1)) if len(xy) else np.empty((0, 0))
-    np.fill_diagonal(apart, np.nan)
+    xy, sd = (known[list(names)].to_numpy(float) for names in (("x", "y"), ("sd_x", "sd_y")))
+    # The tee is known exactly; it stands before the stones.
+    xy, sd = (np.vstack([np.zeros(2), places]) for places in (xy, sd))
+    apart, error = magnitude(
+        *(xy[1:, None] - xy[None]).transpose(2, 0, 1),
+        *np.hypot(sd[1:, None], sd[None]).transpose(2, 0, 1),
+    )
+    own = np.arange(len(known))
+    apart[own, own + 1] = error[own, own + 1] = np.nan
     names = [str(name) for name in known["stone"]]
-    table = pd.DataFrame(apart, columns=[f"to {name}" for name in names])
+    columns = ["tee", *(f"to {name}" for name in names)]
+    table = pd.DataFrame(apart, columns=columns)
+    table[[f"sd_{name}" for name in columns]] = error
     table.insert(0, "stone", names)
-    table.insert(1, "tee", np.hypot(*xy.T) if len(xy) else [])
     return table
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from command.bars import Bars
-from command.guard import guarded, one_line, write_anywhere
+from command.guard import NO_MEMORY, guarded, one_line, write_anywhere
 from data.errors import InputError, SceneError
 from data.files import staged
 
@@ -36,7 +36,7 @@ class Watched(Bars):
         (InputError("a.mp4: not\na video"), 2, "curlshot: a.mp4: not a video\n"),
         (SceneError("no house"), 2, "curlshot: no house\n"),
         (OSError(errno.ENOSPC, "No space left", "out"), 2, "curlshot: out: No space left\n"),
-        (MemoryError(), 2, "curlshot: not enough memory; try fewer or smaller pictures\n"),
+        (MemoryError(), 2, f"curlshot: {NO_MEMORY}\n"),
         (KeyboardInterrupt(), 130, "curlshot: stopped; what was under way is not written\n"),
     ],
 )

@@ -313,3 +313,59 @@ def test_a_stone_at_rest_that_was_moved_unseen_lies_where_it_is_seen(run: Filter
     assert (np.abs(off) < 2 * sd + 1e-4)[hidden].all()
     assert sd[hidden].min() > 0.03 and sd[~hidden].max() < 0.001
     assert (tracks.loc[hidden, "sd_vy"] > 0.3).all()
+
+
+def stopped(hidden: tuple[float, float], **columns: np.ndarray) -> tuple[pd.DataFrame, np.ndarray]:
+    """B glides 0.8 m, turning, and lies there from 4 s on; other columns instead. Second when."""
+    rng = np.random.default_rng(0)
+    t = np.arange(0, 9, 1 / 25)
+    glided = np.minimum(t, 4.0)
+    table = pd.DataFrame({"stone": "B", "frame": np.arange(len(t)), "t": t, "x": 0.0})
+    table["y"], table["theta"] = 0.4 * glided - 0.05 * glided**2, 0.5 * glided
+    table = table.assign(**{name: table[name] + more for name, more in columns.items()})
+    table[["x", "y"]] += rng.normal(0, 0.001, (len(t), 2))
+    table["theta"] += rng.normal(0, 0.01, len(t))
+    return table[(t < hidden[0]) | (t > hidden[1])], t[(t >= hidden[0]) & (t <= hidden[1])]
+
+
+@pytest.mark.parametrize("run", [filtered, reference.filtered])
+def test_a_stone_that_stops_unseen_and_is_hit_later_was_not_moved(run: Filter) -> None:
+    """Its rest is kept apart from its glide, for a hit ends it, but at the same place."""
+    t = np.arange(0, 9, 1 / 25)
+    table, when = stopped((3.6, 4.6), x=1.4 * np.maximum(t - 7, 0))
+    hitting = pd.DataFrame({"stone": "A", "frame": np.arange(len(t)), "t": t, "y": 0.8})
+    hitting["x"] = np.where(t < 7, 1.5, 0.1) * (t - 7) - 2 * RADIUS
+    sightings = check_sightings(pd.concat([hitting, table]))
+    contacts = [Contact(7.0, 0.001, ("A", "B"), (1.0, 0.0))]
+    unseen = {round(25 * at): float(at) for at in when}
+    tracks = smooth(sightings, contacts, radius=RADIUS, run=run, unseen=unseen)
+    b = tracks[(tracks["stone"] == "B") & tracks["t"].between(3.6, 4.6)]
+    assert (np.abs(b["y"] - 0.8 + 0.05 * np.maximum(4 - b["t"], 0) ** 2) < 0.003).all()
+    assert b["omega"].notna().all()
+    assert (b.loc[b["t"] > 4.2, ["vy", "omega"]] == 0).all(axis=None)
+
+
+@pytest.mark.parametrize("run", [filtered, reference.filtered])
+def test_a_stone_that_stopped_and_was_turned_unseen_did_not_spin_before(run: Filter) -> None:
+    later = (np.arange(0, 9, 1 / 25) > 6).astype(float)
+    table, when = stopped((5.8, 6.4), y=0.3 * later, theta=2.5 * later)
+    unseen = {round(25 * at): float(at) for at in when}
+    tracks = smooth(check_sightings(table), (), radius=RADIUS, run=run, unseen=unseen)
+    before = tracks[tracks["t"].between(5.0, 5.79)]
+    assert (np.abs(before["omega"]) < 3 * before["sd_omega"]).all()
+    assert np.abs(tracks.loc[tracks["t"] > 6.41, "theta"] - 4.5).max() < 0.02
+    meanwhile = tracks.loc[tracks["seen"] == 0, ["theta", "omega", "sd_theta", "sd_omega"]]
+    assert len(meanwhile) == len(when) and meanwhile.isna().all(axis=None)
+
+
+@pytest.mark.parametrize("run", [filtered, reference.filtered])
+def test_a_stray_where_a_moved_stone_comes_back_has_no_say(run: Filter) -> None:
+    """It lies elsewhere from there on: the filter believed the stray and refused the others."""
+    later = (np.arange(0, 9, 1 / 25) > 6).astype(float)
+    table, _ = stopped((5.8, 6.4), y=0.3 * later)
+    back = table["t"].gt(6.4).idxmax()
+    table.loc[back, "y"] -= 0.15
+    tracks = smooth(check_sightings(table), (), radius=RADIUS, run=run)
+    after = tracks[tracks["t"] > 6.5]
+    assert (after["seen"] == 1).all()
+    assert (np.abs(after["y"] - 1.1) < 0.0005).all()

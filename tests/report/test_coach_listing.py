@@ -41,6 +41,7 @@ def test_every_stone_that_stopped_has_a_distance_to_every_other(shot):
     heads = [column.title for column in table.head]
     assert heads == ["stone", "to the tee", *(f"to {stone}" for stone in stones)]
     assert [row["stone"] for row in table.records] == stones
+    assert table.note == "From centre to centre, each ± 5.7 mm or less."  # √2 of 4 mm
 
 
 def test_the_note_says_who_lies_shot(shot):

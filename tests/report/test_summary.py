@@ -41,6 +41,15 @@ def test_the_summary_says_how_far_the_last_places_may_be_off(shot):
     assert "at the end" not in summary(unknown, shot.tracks)
 
 
+def test_models_that_come_to_the_same_are_said_together(shot):
+    """Without a hit all did, three times two lines of the same numbers."""
+    one = shot.results.simulations["frictional"]
+    scores = {"point-mass": one, "rigid-body": replace(one, rmse=0.5), "frictional": one}
+    lines = summary(replace(shot.results, simulations=scores), shot.tracks).splitlines()
+    said = [line.split(":")[0].removesuffix(", as fitted") for line in lines if "simulated" in line]
+    assert said == ["simulated   point-mass, frictional", "simulated   rigid-body"]
+
+
 def test_the_summary_of_many_stones_keeps_to_the_width_of_a_terminal(shot):
     off = dict.fromkeys("ABCDEFG", 0.1234)
     guess = Prediction(0.1, off, off, error_after=off, sd_after=off)

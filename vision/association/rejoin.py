@@ -10,7 +10,7 @@ back, those are one that together do so best.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -116,11 +116,8 @@ class _Stretch:
 
     @cached_property
     def colour(self) -> Array:
-        """Of its cap, L*a*b*: of one that goes out of sight a jersey may be seen in the end."""
-        seen = [self.track.sightings[k] for k in range(self.begin, self.end)]
-        return np.asarray(
-            np.average([s.colour for s in seen], axis=0, weights=[s.visible**2 for s in seen])
-        )
+        """Of its cap, L*a*b*."""
+        return _colour([self.track.sightings[k] for k in range(self.begin, self.end)])
 
     def _motion(self, order: Sequence[int]) -> _Motion:
         times = np.array([self.track.times[k] for k in order])
@@ -199,5 +196,11 @@ def _joined(stretches: Sequence[_Stretch]) -> Track:
         out.frames += part.track.frames[part.begin : part.end]
         out.times += part.track.times[part.begin : part.end]
         out.sightings.extend(part.track.sightings[part.begin : part.end])
-    out.colour = np.mean([sighting.colour for sighting in out.sightings], axis=0)
+    out.colour = _colour(out.sightings)
     return out
+
+
+def _colour(seen: Iterable[Sighting]) -> Array:
+    """Of a cap, L*a*b*: of one that goes out of sight a jersey may be seen in the end."""
+    colours, visible = zip(*((s.colour, s.visible) for s in seen), strict=True)
+    return np.asarray(np.average(colours, axis=0, weights=np.square(visible)))

@@ -31,7 +31,7 @@ from vision.optics.placed import Placed, nobody
 from vision.optics.pose import View
 from vision.optics.rig import ANYWHERE, OVERHEAD
 from vision.sheet.house import find_house
-from vision.sheet.house_fit import HouseFit
+from vision.sheet.house_fit import HouseFit, at_height
 
 Array = NDArray[np.float64]
 
@@ -252,8 +252,10 @@ class HouseFollower:
             edges = EdgeTracker(self._size, house.evidence.palette, house.edge, house.evidence)
             # One that is asked for needs no second look.
             in_view = 1.0 if self._first is not None else float(house.evidence.visible[TWELVE])
-            piece = Piece(self._size, house.rig, prior, edges, self._shelf, house.vague, in_view)
-            view = house.view
+            view, rig = house.view, house.rig
+            if prior.height is not None:
+                view, rig = at_height(house, prior)
+            piece = Piece(self._size, rig, prior, edges, self._shelf, house.vague, in_view)
             self._pieces.append(piece)
         if self._piece is not None and not (self._piece is piece and piece.goes_on_at(view)):
             self._piece.give_up_missed()

@@ -15,6 +15,7 @@ LNCS 1883.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -305,8 +306,10 @@ class _Problem:
         axis : ndarray, shape (2,)
             Where the axis then is, half diagonals from the middle.
         """
-        at = self.see(state)
-        matrix, right = self.normal(state, at, paint, noise)
+        at, free = self.see(state), copy(self)
+        # An axis aside would make up for a wrong height that somebody says.
+        free.prior = self.prior.as_found(float(state.rig[POSITION][2]))
+        matrix, right = free.normal(state, at, paint, noise)
         by_axis = self.observed.normal
         weighted = by_axis * self.weights(at, noise)
         by_shared, by_offset = self.by_shared(state, at), by_measure(self.observed, at)

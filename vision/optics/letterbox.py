@@ -21,6 +21,8 @@ from vision.optics.projection import middle
 
 Flags = NDArray[np.bool_]
 Shares = NDArray[np.float64]
+Shown = tuple[Shares, Shares, Shares]
+"""Share of each column and of each row that is not black, and how light the lightest part is."""
 
 BLACK_LUMA, BLACK = 24, 10
 """Up to which luma, and up to which blue, green and red, it is black; as coded, black is 16."""
@@ -30,6 +32,10 @@ SHARE, MARKED, FILLED = 0.05, 0.3, 0.6
 beside it has traces of it; up to which a title or somebody's mark may fill a bar (bold letters over
 two thirds of it); and from which on there is picture right beside such a bar. A sheet that goes
 aslant through a dark hall has no such edge."""
+
+DIM = 100
+"""Of a picture whose lightest twentieth is darker than this hardly more is to be seen than its ice:
+it fades in or out, and what is black in it need not be bars."""
 
 UNEVEN = 4
 """By how many px bars on either side may differ."""
@@ -81,13 +87,13 @@ def lit_clip(clip: Clip, progress: Progress = no_progress) -> Clip:
     """Give a clip without its black bars; itself where it has none.
 
     Pictures coded by themselves, at each cut and every few seconds, are asked, and all if those
-    are dark.
+    are dark or dim.
     """
     first = clip.peek()
     if first is None:
         return clip
     shown = _together(_shown(first), clip.key_pictures())
-    if not (shown[0] > SHARE).any():
+    if shown[2] < DIM:
         progress("black bars", 0, 1)
         shown = _together(shown, (frame.picture for frame in clip.every()))
     bars = _bar(shown[0]), _bar(shown[1])
@@ -117,10 +123,11 @@ def _inner(values: Image, aside: int, above: int) -> Image:
     return values[above : height - above, aside : width - aside]
 
 
-def _shown(picture: Picture) -> tuple[Shares, Shares]:
-    """Share of each column and of each row of a picture that is not black."""
-    lit = _lit(_values(picture))
-    return lit.mean(0), lit.mean(1)
+def _shown(picture: Picture) -> Shown:
+    """Tell how much of a picture is not black, and how light it is."""
+    values = _values(picture)
+    lit, light = _lit(values), values if values.ndim == 2 else values.max(2)
+    return lit.mean(0), lit.mean(1), np.percentile(light[::4, ::4], [95])
 
 
 def _values(picture: Picture) -> Image:
@@ -133,15 +140,15 @@ def _lit(values: Image) -> Flags:
     return np.asarray(values > BLACK_LUMA if values.ndim == 2 else values.max(2) > BLACK)
 
 
-def _together(shown: tuple[Shares, Shares], pictures: Iterable[Picture]) -> tuple[Shares, Shares]:
+def _together(shown: Shown, pictures: Iterable[Picture]) -> Shown:
     """Most that any picture shows in each column and row, till no bars are left at either end."""
     left = iter(pictures)
-    while any(lit[[0, -1]].max() <= MARKED for lit in shown):
+    while any(lit[[0, -1]].max() <= MARKED for lit in shown[:2]):
         more = next(left, None)
         if more is None:
             break
-        columns, rows = _shown(more)
-        shown = np.maximum(shown[0], columns), np.maximum(shown[1], rows)
+        columns, rows, light = map(np.maximum, shown, _shown(more))
+        shown = columns, rows, light
     return shown
 
 

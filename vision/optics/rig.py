@@ -44,9 +44,18 @@ class Prior:
         """Give that of a camera of which somebody says how high it hangs, m; itself if nobody."""
         if height is None:
             return self
+        return replace(self._with_height(height, HEIGHT_SD), height=height)
+
+    def as_found(self, height: float) -> Prior:
+        """Give that of a camera of which nobody says how high it hangs, m; itself if nobody did."""
+        if self.height is None:
+            return self
+        return replace(self._with_height(height, float(ANYWHERE.sd[POSITION][2])), height=None)
+
+    def _with_height(self, height: float, height_sd: float) -> Prior:
         mean, sd = self.mean.copy(), self.sd.copy()
-        mean[POSITION][2], sd[POSITION][2] = height, HEIGHT_SD
-        return replace(self, mean=mean, sd=sd, height=height)
+        mean[POSITION][2], sd[POSITION][2] = height, height_sd
+        return replace(self, mean=mean, sd=sd)
 
 
 _LENS = ((-0.015, 0.05), (0.0, 0.05), (0.01, 0.02))  # k1, k1 by zoom, k2: broadcast lenses

@@ -29,6 +29,9 @@ from vision.sheet.straight import LEAST, by_sides
 
 Array = NDArray[np.float64]
 
+AS_WELL = 1.3
+"""How many times as far off, r.m.s., the edges of a house may be that is explained as well."""
+
 SHARING = 20.0
 """Edge points of one frame that share an error of the paint, about 30° of a circle."""
 
@@ -140,6 +143,21 @@ def fit_roughly(
     aside = ASIDE * abs(centre / size[0] - 0.5)
     score = explained - aside - ROUGH * float(np.nan_to_num(rms, nan=9.0))
     return RoughFit(view, rig, score, evidence) if explained > 0 else None
+
+
+def at_height(fit: HouseFit, prior: Prior) -> tuple[View, Array]:
+    """Begin from a camera of a house that hangs as high as its prior says: view and rig.
+
+    Where it explains the house as well: from far away a fit may come to rest on the way.
+    """
+    zoom, rig = float(prior.mean[POSITION][2] / fit.rig[POSITION][2]), fit.rig.copy()
+    rig[POSITION] *= zoom  # along the line to the tee: the house stays about as it is
+    view = View(fit.view.vector + np.array([0.0, 0.0, 0.0, np.log(zoom)]))
+    size = fit.camera.size
+    near = solve([fit.evidence.marks], [view], rig, size, prior=prior, sharing=SHARING)
+    if float(near.rms[0]) > AS_WELL * fit.rms_px:
+        return fit.view, fit.rig
+    return near.views[0], near.rig
 
 
 def start(guess: Guess, size: tuple[int, int]) -> tuple[View, Array, Prior]:

@@ -63,6 +63,20 @@ def test_a_stone_that_rests_elsewhere_once_it_was_hidden_rests_twice(
     assert hidden[0] < before.end == after.start < hidden[1]
 
 
-def test_a_stone_that_light_moves_by_a_centimetre_rests_once() -> None:
-    (piece,) = cut(trace(T, np.where(T < 2, 0.0, 0.01), 0.001), [], 0.1455)
+@pytest.mark.parametrize("stray", [20, 52, 68, 100])
+def test_a_stray_does_not_shift_where_two_rests_part(stray: int) -> None:
+    """One sighting before, or one after, is taken for the stone and shows another at its place."""
+    y = np.where(T < 2, 0.0, 0.3)
+    y[stray] = 0.3 - y[stray]
+    seen = (T < 1.8) | (T > 2.2)
+    before, after = cut(trace(T[seen], y[seen], 0.001), [], 0.1455)
+    assert len(before.samples) == (T < 1.8).sum()
+    assert 1.8 < before.end == after.start < 2.2
+
+
+@pytest.mark.parametrize(("off", "sd"), [(0.01, 0.001), (0.07, 0.01)])
+def test_a_stone_that_is_seen_elsewhere_by_what_light_or_noise_does_rests_once(
+    off: float, sd: float
+) -> None:
+    (piece,) = cut(trace(T, np.where(T < 2, 0.0, off), sd), [], 0.1455)
     assert piece.rest

@@ -92,15 +92,16 @@ def test_where_nothing_moves_there_is_nothing_to_throw() -> None:
         measured_start(tracks, results, replace(ensemble, likely=still))
 
 
-def test_an_unseen_spin_is_named_with_its_error() -> None:
+@pytest.mark.parametrize(("likely", "said"), [(0.5, "0.5"), (-1e-28, "0")])
+def test_an_unseen_spin_is_named_with_its_error(likely: float, said: str) -> None:
     tracks, results, ensemble = measured()
     blind = tracks.assign(omega=np.nan)
-    others = [
+    shots = [
         replace(ensemble.likely, stones=(replace(HIT.stones[0], omega=spin), *HIT.stones[1:]))
-        for spin in (0.3, 0.7)
+        for spin in (likely, 0.3, 0.7)
     ]
-    start = measured_start(blind, results, replace(ensemble, others=others))
-    assert start.assumed == {"spin of A": "spin of A not seen: 0.5 ± 0.2 rad/s taken"}
+    start = measured_start(blind, results, replace(ensemble, likely=shots[0], others=shots[1:]))
+    assert start.assumed == {"spin of A": f"spin of A not seen: {said} ± 0.2 rad/s taken"}
 
 
 def test_without_a_sheet_no_stone_leaves_it() -> None:

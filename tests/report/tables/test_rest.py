@@ -87,6 +87,13 @@ def test_distances_are_symmetric_and_of_known_stones_only():
     assert tables.distance_table(lying({"A": 0.3}).iloc[:0]).empty
 
 
+def test_errors_of_distances_are_those_of_both_places():
+    table = lying({"A": 0.3, "B": -0.9}).assign(sd_x=[0.003, 0.004], sd_y=[0.003, 0.004])
+    apart = tables.distance_table(table)
+    np.testing.assert_allclose(apart["sd_tee"], [0.003, 0.004])
+    np.testing.assert_allclose(apart[["sd_to A", "sd_to B"]], [[np.nan, 0.005], [0.005, np.nan]])
+
+
 @pytest.mark.parametrize(
     ("speed", "last"), [(0.0, 0.0), (0.02, 0.0), (0.045, 0.045), (np.nan, 0.0)]
 )

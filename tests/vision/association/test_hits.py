@@ -37,6 +37,22 @@ def test_aslant_the_struck_stone_goes_along_the_line_of_centres() -> None:
     assert velocity + speed == pytest.approx([0, -2.0])  # equal masses
 
 
+def test_of_two_stones_in_its_way_it_hits_the_nearer_one() -> None:
+    places = np.array([(0.0, 1.0), (0.0, 0.2), (0.0, 0.6)])
+    velocities = np.array([(0.0, -2.0), (0.0, 0.0), (0.0, 0.0)])
+    assert struck(places, velocities, np.zeros(3), np.ones(3, bool), 0.3, R).keys() == {0, 2}
+
+
+def test_stones_that_were_seen_at_two_times_meet_as_if_seen_at_one() -> None:
+    velocities, told = np.array([(0.0, -2.0), (0.3, 0.5)]), np.ones(2, bool)
+    places, since = np.array([(0.0, 1.0), (-0.1, 0.3)]), np.array([0.0, 0.1])
+    out = struck(places, velocities, since, told, 0.4, R)
+    at_once = places - since[:, None] * velocities
+    for index, known in struck(at_once, velocities, np.zeros(2), told, 0.4, R).items():
+        assert np.array(out[index]) == pytest.approx(np.array(known))
+    assert out.keys() == {0, 1}
+
+
 @pytest.mark.parametrize(
     ("aside", "t", "told"),
     [

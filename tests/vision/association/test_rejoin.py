@@ -47,6 +47,26 @@ def test_what_comes_back_from_where_a_stone_was_lost_is_that_stone(start, colour
     assert all(track.times == sorted(track.times) for track in joined)
 
 
+def test_a_stone_that_was_covered_before_it_was_lost_keeps_its_colour() -> None:
+    """For half a second all that is seen of it is a jersey."""
+
+    def guard(t: float) -> Place | None:
+        return (0.2, 1.6) if t < LOST else None
+
+    frames = [
+        (
+            index,
+            t,
+            [s._replace(colour=YELLOW, visible=0.35) if 0.5 <= t < LOST else s for s in seen],
+        )
+        for index, t, seen in clip([guard, coming_back((0.2, 1.6))], seconds=BACK + 0.3)
+    ]
+    tracks = follow(frames, R)
+    assert len(tracks) == 2
+    (joined,) = rejoined(tracks, R)
+    assert np.hypot(*(joined.colour - RED)[1:]) < 0.2 * np.hypot(*(YELLOW - RED)[1:])
+
+
 @pytest.mark.parametrize(
     ("start", "hit", "stones"),
     [((0.2, 0.4), 2.0, 1), ((0.2, 0.4), 0.4, 2), ((0.9, 0.4), 2.0, 2)],

@@ -31,6 +31,13 @@ def scene(seed: int, light: float = 1.0, width: int = W) -> Image:
     return np.asarray(light * cv2.resize(random, (width, H)), np.uint8)
 
 
+def hall(light: float) -> Image:
+    """A sheet between boards that are black where it is dim."""
+    picture = np.full((H, W, 3), 60, np.uint8)
+    picture[:, 110:210] = 230
+    return np.asarray(light * picture, np.uint8)
+
+
 def barred(picture: Image, left: int, right: int, above: int = 0) -> Image:
     out = picture.copy()
     out[:, :left] = out[:, W - right :] = out[:above] = out[H - above :] = 0
@@ -129,6 +136,7 @@ def test_above_and_below_and_of_pictures(tmp_path: Path) -> None:
     [
         [scene(k) for k in range(4)],
         [scene(0, light) for light in (0.0, 0.03, 0.3, 1.0)],  # fades in
+        [hall(0.1 * k) for k in range(1, 11)],  # a dark hall fades in, begun with its ice alone
         [scene(0, 0.05)] * 4,  # hardly to be seen
         [*[barred(scene(0), 110, 110)] * 30, *[scene(1)] * 20],  # a title, say
         [barred(scene(k), 60, 160) for k in range(4)],  # the axis is who knows where
@@ -136,7 +144,7 @@ def test_above_and_below_and_of_pictures(tmp_path: Path) -> None:
         [barred(scene(k), 4, 4) for k in range(4)],
         [cv2.fillPoly(0 * scene(0), [SHEET], (230, 220, 210))] * 4,
     ],
-    ids=["none", "fade", "night", "title", "uneven", "one side", "narrow", "sheet"],
+    ids=["none", "fade", "hall", "night", "title", "uneven", "one side", "narrow", "sheet"],
 )
 def test_what_is_not_taken_for_bars(tmp_path: Path, pictures: list[Image]) -> None:
     clip = video(tmp_path / "clip.mp4", pictures)
