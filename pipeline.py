@@ -30,7 +30,7 @@ from work.analyse import Run, analyse
 from work.convert import convert, convert_each
 from work.film import film
 from work.measure import Measured, measure, refuse_clips
-from work.runs import apart, find_runs
+from work.runs import apart, find_results, find_runs
 from work.settings import Settings
 from work.simulate import measured_shot, read_start, sampled, shot_file, throw_often
 
@@ -56,7 +56,7 @@ WRITTEN = (
 WHAT_IF = ("outcomes.csv", "whatif.json", "spread.png")
 """All that samples of a simulation write beside it."""
 
-SEASON = ("shots.csv", "hits.csv", "season.json", "season.png")
+SEASON = ("season.html", "season.json", "season.png", "shots.csv", "hits.csv")
 """All that many shots together write."""
 
 CHECK_DPI = 110
@@ -252,7 +252,10 @@ def _write_estimates(stage: Path, done: Run) -> None:
 
 
 def season(
-    runs: Mapping[str, Results], out: str | Path | None = None
+    runs: Mapping[str, Results],
+    out: str | Path | None = None,
+    folders: Mapping[str, Path] | None = None,
+    left_out: Mapping[str, str] | None = None,
 ) -> tuple[pd.DataFrame, dict[str, Pooled]]:
     """Put many shots side by side, and say what all of them say of e and μ.
 
@@ -264,7 +267,11 @@ def season(
     runs : mapping of str to Results
         The shots by name.
     out : str or Path, optional
-        Folder for the tables and the picture; nothing is written without it.
+        Folder for the page, the tables and the picture; nothing is written without it.
+    folders : mapping of str to Path, optional
+        Where the shots' own reports are, for the page to lead to.
+    left_out : mapping of str to str, optional
+        Shots that are not among them, and why, for the page to say.
 
     Returns
     -------
@@ -283,9 +290,21 @@ def season(
     if folder is None:
         return shots, means
     from report.season import write_season
+    from report.season_page import season_page
+    from report.template import link
 
+    pages = {name: path / "report.html" for name, path in (folders or {}).items() if name in runs}
+    page = season_page(
+        folder.resolve().name,
+        shots,
+        hits,
+        means,
+        {name: link(path, folder) for name, path in pages.items() if path.exists()},
+        {name: _twice(one) for name, one in again.items()} | dict(left_out or {}),
+        VERSION,
+    )
     with staged(folder) as stage:
-        write_season(stage, shots, hits, means)
+        write_season(stage, shots, hits, means, page)
     return shots, means
 
 
@@ -383,8 +402,6 @@ def _do_run(arguments: argparse.Namespace, bars: Bars) -> str:
 
 
 def _run_season(arguments: argparse.Namespace, clips: Sequence[Path], bars: Bars) -> str:
-    from report.summary import season_text
-
     folder = Path(arguments.out or "season")
     jobs = arguments.jobs or processors()
     done, failed = run_each(clips, folder, settings_of(arguments), bars, jobs)
@@ -392,28 +409,39 @@ def _run_season(arguments: argparse.Namespace, clips: Sequence[Path], bars: Bars
         name, error = next(iter(failed.items()))
         raise InputError(f"none of {len(clips)} clips could be used; {name}: {error}")
     runs = {name: run.results for name, run in done.items()}
-    shots, means = season(runs, folder)
-    failures = [f"{name}   not used: {one_line(str(why))}" for name, why in failed.items()]
-    left_out = [*_counted_once(runs), *failures]
-    return "\n".join([*season_text(shots, means), *left_out, f"written     {folder}"])
-
-
-def _counted_once(runs: Mapping[str, Results]) -> list[str]:
-    """Say which shots are there twice."""
-    from physics.statistics.season import repeated
-
-    again = repeated(runs)
-    return [f"{name}   the same shot as {one}: counted once" for name, one in again.items()]
+    unused = {name: f"not used: {one_line(str(why))}" for name, why in failed.items()}
+    folders = {name: folder / name for name in runs}
+    shots, means = season(runs, folder, folders, unused)
+    return _season_summary(shots, means, runs, unused, folder)
 
 
 def _do_season(arguments: argparse.Namespace, _: Bars) -> str:
-    from report.summary import season_text
-
     folder = Path(arguments.out or "season")
     runs = find_runs(arguments.runs)
-    shots, means = season(runs, folder)
-    written = ", ".join(str(folder / name) for name in SEASON)
-    return "\n".join([*season_text(shots, means), *_counted_once(runs), f"written     {written}"])
+    folders = {name: path.parent for name, path in find_results(arguments.runs).items()}
+    shots, means = season(runs, folder, folders)
+    return _season_summary(shots, means, runs, {}, folder)
+
+
+def _season_summary(
+    shots: pd.DataFrame,
+    means: Mapping[str, Pooled],
+    runs: Mapping[str, Results],
+    unused: Mapping[str, str],
+    folder: Path,
+) -> str:
+    """Say what many shots tell, which do not count, and where the page is."""
+    from physics.statistics.season import repeated
+    from report.summary import season_text
+
+    left_out = {name: _twice(one) for name, one in repeated(runs).items()} | dict(unused)
+    lines = [*season_text(shots, means), *(f"{name}   {why}" for name, why in left_out.items())]
+    return "\n".join([*lines, f"written     {folder / 'season.html'}"])
+
+
+def _twice(other: str) -> str:
+    """Say of a shot that it is another one."""
+    return f"the same shot as {other}: counted once"
 
 
 def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:

@@ -169,7 +169,8 @@ def _season(commands: Any) -> None:
         "  curlshot season runs                             every run in this folder\n"
         "\n"
         "Shots differ by more than their errors: the mean comes with their scatter. Gives\n"
-        "shots.csv, hits.csv, season.json and season.png.\n",
+        "season.html (a page that leads to each shot), season.json, season.png, shots.csv and"
+        " hits.csv.\n",
         usual="season",
     )
     parser.add_argument("runs", nargs="+", metavar="RUN", help="folder of a run, or of runs")
