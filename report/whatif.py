@@ -23,7 +23,7 @@ from physics.prediction.start import Start
 from physics.simulator.simulation import Simulation
 from report.figures import draw_house, name_stones, simulated_figure
 from report.figures.parts import legend_below
-from report.numbers import count
+from report.numbers import count, significant
 from report.style import BLACK, GREY, PNG_DPI, new_figure, plain_text, stone_colours, styled
 
 Array = NDArray[np.float64]
@@ -79,12 +79,31 @@ def write_odds(folder: Path, start: Start, outcomes: pd.DataFrame, odds: Mapping
         outcomes,
         {stone.name: (stone.x, stone.y) for stone in start.shot.stones},
         odds["thrown"],
-        f"{odds['thrown']} thrown {count(odds['samples'], 'time')}",
+        ", ".join(
+            [f"{odds['thrown']} thrown {count(odds['samples'], 'time')}", *told(odds["changes"])]
+        ),
         start.shot.radius,
         house=start.house,
         play=_play(start),
     )
     figure.savefig(folder / "spread.png", dpi=PNG_DPI)
+
+
+def told(changes: Mapping[str, Any]) -> list[str]:
+    """Say in a few words each what was changed of a shot; `changes` as in ``whatif.json``."""
+    signs = {"restitution": ("e", ""), "friction": ("μ", ""), "speed": ("speed", " m/s"),
+             "spin": ("spin", " rad/s")}  # fmt: skip
+    words = []
+    for name, change in changes.items():
+        if name == "aim_offset":
+            side = "left" if change > 0 else "right"
+            words.append(f"aimed {significant(abs(change))} m to its {side}")
+            continue
+        sign, unit = signs[name]
+        amount = change if isinstance(change, Mapping) else {"value": change, "relative": False}
+        text = significant(amount["value"])
+        words.append(f"{sign} × {text}" if amount["relative"] else f"{sign} = {text}{unit}")
+    return words
 
 
 def _play(start: Start) -> int:

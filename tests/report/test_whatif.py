@@ -1,13 +1,16 @@
 from __future__ import annotations
 
+from dataclasses import asdict
+
 import numpy as np
 import pandas as pd
 import pytest
 from matplotlib.patches import Circle
 
 from data.sheet import SHEET, STONE
+from physics.prediction.what_if import Amount, Changes
 from report.style import render
-from report.whatif import spread_figure
+from report.whatif import spread_figure, told
 from tests.report.figures.drawn import check_layout
 
 
@@ -51,6 +54,14 @@ def test_a_stone_that_hits_nothing_and_one_that_always_leaves_are_told_of() -> N
     assert figure.axes[0].collections
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert {"median of A", r"\$C where hit (100% off the sheet)"} < {*labels}
+
+
+def test_what_was_changed_is_said_in_words() -> None:
+    changes = Changes(0.9, None, Amount(1.1, True), Amount(-1.5, False), -0.05)
+    as_written = {name: value for name, value in asdict(changes).items() if value is not None}
+    assert told(as_written) == [
+        "e = 0.900", "speed × 1.10", "spin = −1.50 rad/s", "aimed 0.0500 m to its right",
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize(("throws", "words"), [(1, []), (20, ["median of A"])])
