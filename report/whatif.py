@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from pathlib import Path
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,7 @@ from physics.prediction.start import Start
 from physics.simulator.simulation import Simulation
 from report.figures import draw_house, name_stones, simulated_figure
 from report.figures.parts import legend_below
-from report.numbers import count, significant
+from report.numbers import MINUS, count
 from report.style import BLACK, GREY, PNG_DPI, new_figure, plain_text, stone_colours, styled
 
 Array = NDArray[np.float64]
@@ -40,6 +41,8 @@ BESIDE = 1.6
 """Inches of the picture's width beside the sheet."""
 MOST_DOTS = 1000
 """Dots of one stone."""
+WIDEST = 80
+"""Letters of a line of the title."""
 
 
 def write_simulated(
@@ -79,8 +82,14 @@ def write_odds(folder: Path, start: Start, outcomes: pd.DataFrame, odds: Mapping
         outcomes,
         {stone.name: (stone.x, stone.y) for stone in start.shot.stones},
         odds["thrown"],
-        ", ".join(
-            [f"{odds['thrown']} thrown {count(odds['samples'], 'time')}", *told(odds["changes"])]
+        fill(
+            ", ".join(
+                [
+                    f"{odds['thrown']} thrown {count(odds['samples'], 'time')}",
+                    *told(odds["changes"]),
+                ]
+            ),
+            WIDEST,
         ),
         start.shot.radius,
         house=start.house,
@@ -97,13 +106,17 @@ def told(changes: Mapping[str, Any]) -> list[str]:
     for name, change in changes.items():
         if name == "aim_offset":
             side = "left" if change > 0 else "right"
-            words.append(f"aimed {significant(abs(change))} m to its {side}")
+            words.append(f"aimed {_plain(abs(change))} m to its {side}")
             continue
         sign, unit = signs[name]
         amount = change if isinstance(change, Mapping) else {"value": change, "relative": False}
-        text = significant(amount["value"])
+        text = _plain(amount["value"])
         words.append(f"{sign} × {text}" if amount["relative"] else f"{sign} = {text}{unit}")
     return words
+
+
+def _plain(value: float) -> str:
+    return f"{value:g}".replace("-", MINUS)
 
 
 def _play(start: Start) -> int:

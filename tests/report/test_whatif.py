@@ -60,7 +60,7 @@ def test_what_was_changed_is_said_in_words() -> None:
     changes = Changes(0.9, None, Amount(1.1, True), Amount(-1.5, False), -0.05)
     as_written = {name: value for name, value in asdict(changes).items() if value is not None}
     assert told(as_written) == [
-        "e = 0.900", "speed × 1.10", "spin = −1.50 rad/s", "aimed 0.0500 m to its right",
+        "e = 0.9", "speed × 1.1", "spin = −1.5 rad/s", "aimed 0.05 m to its right",
     ]  # fmt: skip
 
 
