@@ -9,6 +9,7 @@ import argparse
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,7 +17,8 @@ from command.again import again
 from command.arguments import out_folder, settings_of, what_if_folder
 from command.bars import Bars
 from command.garbage import collect_seldom
-from command.guard import guarded, one_line
+from command.guard import guarded, one_line, write_anywhere
+from command.parallel import in_processes, processors
 from command.parser import command_line
 from command.threads import use_one_thread
 from data.errors import CurlshotError, InputError
@@ -28,7 +30,7 @@ from work.analyse import Run, analyse
 from work.convert import convert, convert_each
 from work.film import film
 from work.measure import Measured, measure, refuse_clips
-from work.runs import apart, find_runs
+from work.runs import apart, find_results, find_runs
 from work.settings import Settings
 from work.simulate import measured_shot, read_start, sampled, shot_file, throw_often
 
@@ -54,7 +56,7 @@ WRITTEN = (
 WHAT_IF = ("outcomes.csv", "whatif.json", "spread.png")
 """All that samples of a simulation write beside it."""
 
-SEASON = ("shots.csv", "hits.csv", "season.json", "season.png")
+SEASON = ("season.html", "season.json", "season.png", "shots.csv", "hits.csv")
 """All that many shots together write."""
 
 CHECK_DPI = 110
@@ -119,8 +121,23 @@ def run_each(
     out: str | Path,
     settings: Settings = Settings(),
     progress: Progress = no_progress,
+    jobs: int = 1,
 ) -> tuple[dict[str, Run], dict[str, CurlshotError]]:
     """Run many clips, one folder of `out` for each; one that fails does not stop the others.
+
+    Parameters
+    ----------
+    clips : str or Path, or sequence of them
+        Videos.
+    out : str or Path
+        Folder for their folders.
+    settings : Settings
+        What to know about all of them.
+    progress : callable
+        Called as the work goes on; of more than one job when one more clip is done.
+    jobs : int
+        Clips at once. Of more than one each has a process of its own, so a script that asks for
+        it must not do so where it is imported (``if __name__ == "__main__":``).
 
     Returns
     -------
@@ -130,21 +147,38 @@ def run_each(
         Why the others could not be used.
     """
     folder = check_folder(out)
-    done: dict[str, Run] = {}
-    failed: dict[str, CurlshotError] = {}
     once = {path.resolve(): path for path in map(Path, named(clips))}
-    by_name = apart([*once.values()])
-    for name, clip in by_name.items():
-        number = f"{len(done) + len(failed) + 1}/{len(by_name)} "
-
-        def numbered(what: str, at: int, total: int | None, number: str = number) -> None:
-            progress(number + what, at, total)
-
-        try:
-            done[name] = run([clip], folder / name, settings, numbered)
-        except CurlshotError as error:
-            failed[name] = error
+    tasks = {name: (clip, folder / name) for name, clip in apart([*once.values()]).items()}
+    if min(jobs, len(tasks)) > 1:
+        outcomes = in_processes(partial(_attempt, settings), tasks, jobs, "clips", progress)
+    else:
+        outcomes = {
+            name: _attempt(settings, task, _numbered(progress, f"{number}/{len(tasks)} "))
+            for number, (name, task) in enumerate(tasks.items(), 1)
+        }
+    done = {name: one for name, one in outcomes.items() if isinstance(one, Run)}
+    failed = {name: one for name, one in outcomes.items() if isinstance(one, CurlshotError)}
     return done, failed
+
+
+def _attempt(
+    settings: Settings, task: tuple[Path, Path], progress: Progress = no_progress
+) -> Run | CurlshotError:
+    """Run a clip into a folder, or tell why it could not be used."""
+    clip, folder = task
+    try:
+        return run([clip], folder, settings, progress)
+    except CurlshotError as error:
+        return error
+
+
+def _numbered(progress: Progress, number: str) -> Progress:
+    """Say of which of many clips it is that the work goes on."""
+
+    def numbered(what: str, at: int, total: int | None) -> None:
+        progress(number + what, at, total)
+
+    return numbered
 
 
 def _write_run(
@@ -218,7 +252,10 @@ def _write_estimates(stage: Path, done: Run) -> None:
 
 
 def season(
-    runs: Mapping[str, Results], out: str | Path | None = None
+    runs: Mapping[str, Results],
+    out: str | Path | None = None,
+    folders: Mapping[str, Path] | None = None,
+    left_out: Mapping[str, str] | None = None,
 ) -> tuple[pd.DataFrame, dict[str, Pooled]]:
     """Put many shots side by side, and say what all of them say of e and μ.
 
@@ -230,7 +267,11 @@ def season(
     runs : mapping of str to Results
         The shots by name.
     out : str or Path, optional
-        Folder for the tables and the picture; nothing is written without it.
+        Folder for the page, the tables and the picture; nothing is written without it.
+    folders : mapping of str to Path, optional
+        Where the shots' own reports are, for the page to lead to.
+    left_out : mapping of str to str, optional
+        Shots that are not among them, and why, for the page to say.
 
     Returns
     -------
@@ -249,9 +290,21 @@ def season(
     if folder is None:
         return shots, means
     from report.season import write_season
+    from report.season_page import season_page
+    from report.template import link
 
+    pages = {name: path / "report.html" for name, path in (folders or {}).items() if name in runs}
+    page = season_page(
+        folder.resolve().name,
+        shots,
+        hits,
+        means,
+        {name: link(path, folder) for name, path in pages.items() if path.exists()},
+        {name: _twice(one) for name, one in again.items()} | dict(left_out or {}),
+        VERSION,
+    )
     with staged(folder) as stage:
-        write_season(stage, shots, hits, means)
+        write_season(stage, shots, hits, means, page)
     return shots, means
 
 
@@ -314,6 +367,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Entry point of the command; returns its exit code (0 well, 2 a person's mistake)."""
     use_one_thread()
     collect_seldom()
+    write_anywhere()
     arguments = command_line(VERSION).parse_args(argv)
     bars = Bars(quiet=arguments.quiet)
     return guarded(lambda: WORK[arguments.command](arguments, bars), bars)
@@ -348,36 +402,46 @@ def _do_run(arguments: argparse.Namespace, bars: Bars) -> str:
 
 
 def _run_season(arguments: argparse.Namespace, clips: Sequence[Path], bars: Bars) -> str:
-    from report.summary import season_text
-
     folder = Path(arguments.out or "season")
-    done, failed = run_each(clips, folder, settings_of(arguments), bars)
+    jobs = arguments.jobs or processors()
+    done, failed = run_each(clips, folder, settings_of(arguments), bars, jobs)
     if not done:
         name, error = next(iter(failed.items()))
         raise InputError(f"none of {len(clips)} clips could be used; {name}: {error}")
     runs = {name: run.results for name, run in done.items()}
-    shots, means = season(runs, folder)
-    failures = [f"{name}   not used: {one_line(str(why))}" for name, why in failed.items()]
-    left_out = [*_counted_once(runs), *failures]
-    return "\n".join([*season_text(shots, means), *left_out, f"written     {folder}"])
-
-
-def _counted_once(runs: Mapping[str, Results]) -> list[str]:
-    """Say which shots are there twice."""
-    from physics.statistics.season import repeated
-
-    again = repeated(runs)
-    return [f"{name}   the same shot as {one}: counted once" for name, one in again.items()]
+    unused = {name: f"not used: {one_line(str(why))}" for name, why in failed.items()}
+    folders = {name: folder / name for name in runs}
+    shots, means = season(runs, folder, folders, unused)
+    return _season_summary(shots, means, runs, unused, folder)
 
 
 def _do_season(arguments: argparse.Namespace, _: Bars) -> str:
-    from report.summary import season_text
-
     folder = Path(arguments.out or "season")
     runs = find_runs(arguments.runs)
-    shots, means = season(runs, folder)
-    written = ", ".join(str(folder / name) for name in SEASON)
-    return "\n".join([*season_text(shots, means), *_counted_once(runs), f"written     {written}"])
+    folders = {name: path.parent for name, path in find_results(arguments.runs).items()}
+    shots, means = season(runs, folder, folders)
+    return _season_summary(shots, means, runs, {}, folder)
+
+
+def _season_summary(
+    shots: pd.DataFrame,
+    means: Mapping[str, Pooled],
+    runs: Mapping[str, Results],
+    unused: Mapping[str, str],
+    folder: Path,
+) -> str:
+    """Say what many shots tell, which do not count, and where the page is."""
+    from physics.statistics.season import repeated
+    from report.summary import season_text
+
+    left_out = {name: _twice(one) for name, one in repeated(runs).items()} | dict(unused)
+    lines = [*season_text(shots, means), *(f"{name}   {why}" for name, why in left_out.items())]
+    return "\n".join([*lines, f"written     {folder / 'season.html'}"])
+
+
+def _twice(other: str) -> str:
+    """Say of a shot that it is another one."""
+    return f"the same shot as {other}: counted once"
 
 
 def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import io
 import os
 import signal
@@ -17,6 +18,36 @@ from data.errors import CurlshotError
 _ENDS = ("SIGTERM", "SIGHUP")
 """Signals that ask to end, where the platform has them."""
 
+_SPELLED = {
+    "μ": "mu",
+    "ω": "omega",
+    "σ": "sigma",
+    "±": "+-",
+    "−": "-",
+    "—": "-",
+    "×": "x",
+    "…": "...",
+}
+"""What a terminal gets that lacks such letters, and files in the encodings of Windows."""
+
+
+def write_anywhere() -> None:
+    """Spell out on the terminal what its encoding lacks, or put "?" for it, instead of failing."""
+    codecs.register_error("curlshot", _spelled)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="curlshot")
+
+
+def _spelled(error: UnicodeError) -> tuple[str, int]:
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    letters = error.object[error.start : error.end]
+    return "".join(_SPELLED.get(letter, "?") for letter in letters), error.end
+
+
+NO_MEMORY = "not enough memory; try fewer or smaller pictures, or fewer clips at once"
+
 
 def guarded(work: Callable[[], str], bars: Bars) -> int:
     """Do some work and print its text.
@@ -26,9 +57,6 @@ def guarded(work: Callable[[], str], bars: Bars) -> int:
     int
         The exit code: 0 well, 2 a person's mistake, 128 + n stopped by the signal n.
     """
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")  # a terminal without Greek letters gets "?"
     try:
         with _ends_as_an_interrupt():
             text = work()
@@ -43,7 +71,7 @@ def guarded(work: Callable[[], str], bars: Bars) -> int:
         return 2
     except MemoryError:
         bars.close()
-        print("curlshot: not enough memory; try fewer or smaller pictures", file=sys.stderr)
+        print(f"curlshot: {NO_MEMORY}", file=sys.stderr)
         return 2
     except KeyboardInterrupt as stop:
         with suppress(OSError):  # a terminal that was closed takes no more

@@ -9,7 +9,16 @@ from command import values
 from data.coach_units import UNITS
 from data.sheet import STONE
 from data.units import ANGLE_UNITS, LENGTH_UNITS
-from work.limits import FRACTION, FRICTION, HEIGHT, MOST_THROWS, POSITIVE, RADIUS, Limits
+from work.limits import (
+    FRACTION,
+    FRICTION,
+    HEIGHT,
+    MOST_THROWS,
+    POSITIVE,
+    RADIUS,
+    SAMPLES,
+    Limits,
+)
 
 OFFSETS = Limits(-5.0, 5.0, "a distance in metres, -5 to 5")
 
@@ -114,7 +123,7 @@ def what_if_options(parser: argparse.ArgumentParser) -> None:
     )
     change.add_argument(
         "--samples",
-        type=values.samples,
+        type=values.whole(SAMPLES),
         metavar="N",
         help=f"throw it N times, at most {MOST_THROWS} (1000 for a measured shot, else 0)",
     )
@@ -142,7 +151,7 @@ def assumption_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--samples",
-        type=values.samples,
+        type=values.whole(SAMPLES),
         metavar="N",
         help="draw e, μ and the friction between stones N times from what the shot tells:"
         " posterior.csv, quantiles in results.json",

@@ -21,6 +21,7 @@ from command.options import (
     units_option,
     what_if_options,
 )
+from work.limits import JOBS
 
 
 class _Parser(argparse.ArgumentParser):
@@ -106,6 +107,12 @@ def _run(commands: Any) -> None:
     parser.add_argument(
         "--no-overlay", action="store_true", help="do not write the annotated clip overlay.mp4"
     )
+    parser.add_argument(
+        "--jobs",
+        type=values.whole(JOBS),
+        metavar="N",
+        help="of many clips, how many at once (as many as there are processors)",
+    )
 
 
 def _track(commands: Any) -> None:
@@ -162,7 +169,8 @@ def _season(commands: Any) -> None:
         "  curlshot season runs                             every run in this folder\n"
         "\n"
         "Shots differ by more than their errors: the mean comes with their scatter. Gives\n"
-        "shots.csv, hits.csv, season.json and season.png.\n",
+        "season.html (a page that leads to each shot), season.json, season.png, shots.csv and"
+        " hits.csv.\n",
         usual="season",
     )
     parser.add_argument("runs", nargs="+", metavar="RUN", help="folder of a run, or of runs")

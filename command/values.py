@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from work.limits import POSITIVE, SAMPLES, Limits, has_length
+from work.limits import POSITIVE, Limits, has_length
 
 if TYPE_CHECKING:
     from physics.prediction.what_if import Amount
@@ -21,8 +21,15 @@ def number(text: str, limits: Limits) -> float:
     except ValueError:
         value = float("nan")
     if not limits.allow(value):
-        raise argparse.ArgumentTypeError(f"{text!r} is not {limits.what}")
+        raise argparse.ArgumentTypeError(f"{text!r} is not {limits.what}{_with_point(text)}")
     return value
+
+
+def _with_point(text: str) -> str:
+    """Say how a number with a decimal comma is to be written; nothing of other texts."""
+    if re.fullmatch(r"[+-]?\d*,\d+x?", text) is None:
+        return ""
+    return f"; write {text.replace(',', '.')}, with a point"
 
 
 def within(limits: Limits) -> Callable[[str], float]:
@@ -59,14 +66,19 @@ def _or_factor(text: str, limits: Limits) -> tuple[float, bool]:
     except argparse.ArgumentTypeError:
         raise argparse.ArgumentTypeError(
             f"{text!r} is not {limits.what}, nor a factor such as 1.1x, at most {limits.high:g}x"
+            f"{_with_point(text)}"
         ) from None
 
 
-def samples(text: str) -> int:
-    """Read a number of samples."""
-    if not text.isdecimal() or not SAMPLES.allow(int(text)):
-        raise argparse.ArgumentTypeError(f"{text!r} is not {SAMPLES.what}")
-    return int(text)
+def whole(limits: Limits) -> Callable[[str], int]:
+    """Give what reads a whole number between two bounds."""
+
+    def read(text: str) -> int:
+        if not text.isdecimal() or not limits.allow(int(text)):
+            raise argparse.ArgumentTypeError(f"{text!r} is not {limits.what}")
+        return int(text)
+
+    return read
 
 
 def throw_sd(text: str) -> tuple[float, float]:
@@ -95,7 +107,9 @@ def stick(text: str) -> tuple[float, float, float, float, float]:
     try:
         x1, y1, x2, y2, metres = (float(part) for part in text.split(","))
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not X1,Y1,X2,Y2,METRES") from None
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not X1,Y1,X2,Y2,METRES, e.g. 20,36,20,220,0.5"
+        ) from None
     ends = x1, y1, x2, y2, metres
     if not has_length(ends):
         raise argparse.ArgumentTypeError(f"{text!r}: the stick has no length")

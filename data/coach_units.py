@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 
@@ -40,6 +41,15 @@ class Unit:
         ):
             return f"{metres * self.fine_per_metre:.{self.fine_decimals}f} {self.fine}"
         return f"{metres * self.small_per_metre:.1f} {self.small}"
+
+    def told(self, text: str) -> str:
+        """Write a text's lengths in m and speeds in m/s in this unit, to as many decimals."""
+
+        def other(found: re.Match[str]) -> str:
+            decimals = len(found[1].partition(".")[2])
+            return f"{float(found[1]) * self.per_metre:.{decimals}f} {self.symbol}"
+
+        return re.sub(r"(\d+(?:\.\d+)?) m\b", other, text)
 
 
 METRES = Unit("m", 1.0, 2, "cm", 100.0, "mm", 1000.0, 1)

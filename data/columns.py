@@ -46,7 +46,7 @@ def written_unit(
     """
     found: list[str | None] = []
     for full, name in zip(table.names or plain, plain, strict=True):
-        words = set(re.split(r"[_ .\d]+", name))
+        words = {name, *re.split(r"[_ .\d]+", name)}
         if "sd" not in words and not words.isdisjoint(wanted):
             bracket = re.search(r"[(\[]\s*([^)\]]*?)\s*[)\]]", full[:100])
             found.append(abbreviated(bracket.group(1)) if bracket else None)

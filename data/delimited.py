@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from data.errors import InputError
 from data.text import NUMBER, plain_decimals, plain_digits, quoted, read_text
+from data.units import in_brackets
 
 Array = NDArray[np.float64]
 
@@ -38,7 +39,7 @@ class TextTable:
     path : Path
         The file it was read from.
     names : tuple of str or None
-        Names of the columns as written; None where the file has no header.
+        Names of the columns as written, units in brackets; None where the file has no header.
     title : str
         The line above the header (in Tracker's exports: the names of the tracks), or "".
     delimiter : str
@@ -189,7 +190,7 @@ def _header(
     for delimiter in [*candidates, " "]:
         if delimiter in line:
             cells = line.split() if delimiter == " " else _splitter(delimiter, line)(line)
-            names = [name.strip() for name in cells]
+            names = [in_brackets(name.strip()) for name in cells]
             while names and not names[-1]:
                 names.pop()
             if len(names) > 1 and names[0] and is_header(names):

@@ -52,18 +52,23 @@ def find_inputs(names: str | Path | Sequence[str | Path]) -> tuple[Path, ...]:
         elif path.exists():
             found.append(path)
         else:
-            # The folder may have brackets in its name; only if it is none, it is a pattern too.
-            matches = (
-                list(path.parent.glob(path.name))
-                if path.parent.is_dir()
-                else [Path(match) for match in glob.glob(str(name))]  # noqa: PTH207 - absolute too
-            )
+            matches = matching(name)
             if not matches:
                 raise InputError(f"{name}: no such file")
-            found += sorted(matches, key=_natural)
+            found += matches
     if not found:
         raise InputError("no input; name a clip, pictures or a table of tracks")
     return tuple(found)
+
+
+def matching(name: str | Path) -> list[Path]:
+    """Files and folders that match a pattern, in natural order: not every shell looks for them."""
+    path = Path(name)
+    # The folder may have brackets in its name; only if it is none, it is a pattern too.
+    there = path.parent.is_dir()
+    pattern = Path(glob.escape(str(path.parent)), path.name) if there else path
+    # Path.glob takes no absolute pattern, nor two stars within a name.
+    return sorted(map(Path, glob.glob(str(pattern))), key=_natural)  # noqa: PTH207
 
 
 def picture_times(paths: Sequence[Path]) -> list[float] | None:

@@ -70,7 +70,8 @@ def read_layout(path: Path, fps: float | None) -> TrackFile:
         file = read_wide(table, names, fps)
     file.warnings[:0] = table.warnings
     if table.names is not None and names is not None:
-        file.length_unit = written_unit(table, names, ("x", "y"), LENGTH_UNITS)
+        places = [names[k] for pair in pairs_of(names).values() for k in pair]  # as xa, redx
+        file.length_unit = written_unit(table, names, ("x", "y", *places), LENGTH_UNITS)
         written = written_unit(table, names, tuple(ANGLE_NAMES), ANGLE_UNITS)
         file.angle_unit = written or file.angle_unit
     return file

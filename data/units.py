@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from numbers import Real
 
 from data.errors import InputError
@@ -35,6 +36,12 @@ def abbreviated(unit: str) -> str:
     plain = unit.strip().lower().removesuffix(".")
     one = plain.removesuffix("s")
     return SPELLED.get(one, next((name for name in (plain, one) if name in _KNOWN), unit))
+
+
+def in_brackets(name: str) -> str:
+    """Put a unit that stands behind a name as in ``x / m`` or ``x in m`` into brackets."""
+    found = re.fullmatch(r"(\S.{0,80}?)(?:\s*/\s*| in )(\w+|°)", name)
+    return f"{found[1]} ({found[2]})" if found and abbreviated(found[2]) in _KNOWN else name
 
 
 def check_units(length_unit: str | None, angle_unit: str | None, fps: float | None) -> None:

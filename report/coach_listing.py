@@ -46,7 +46,7 @@ def _stones(rest: pd.DataFrame, unit: Unit) -> Table:
             Column("y", "y", stderr="sd_y", **length),
             Column("turns", "turns", stderr="sd_turns", decimals=3),
             Column("curl", "curl", stderr="sd_curl", **length),
-            Column("note", "note", kind="note"),
+            Column("note", "note", kind="note", lengths=unit),
         ),
         rest,
     )
@@ -62,7 +62,7 @@ def _speeds(speeds: pd.DataFrame, unit: Unit) -> Table:
             Column("at", "at", kind="word"),
             Column("time", "t", "s", decimals=2),
             Column("speed", "speed", stderr="sd", **_speed(unit)),
-            Column("note", "note", kind="note"),
+            Column("note", "note", kind="note", lengths=unit),
         ),
         speeds,
     )

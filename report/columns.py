@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 from markupsafe import Markup, escape
 
+from data.coach_units import METRES, Unit
 from report.cells import exact
 from report.numbers import fixed, parts, significant
 
@@ -38,6 +39,8 @@ class Column:
         Significant digits where neither `stderr` nor `decimals` says otherwise.
     factor : float
         From the frame's SI unit to `unit`.
+    lengths : Unit
+        In which notes name lengths and speeds; in the frame they are in m.
     """
 
     title: str
@@ -48,6 +51,7 @@ class Column:
     decimals: int | None = None
     digits: int = 3
     factor: float = 1.0
+    lengths: Unit = METRES
 
     @property
     def head(self) -> Markup:
@@ -69,7 +73,8 @@ class Column:
             # A rank turns into a float where one is missing.
             if isinstance(value, float) and value.is_integer():
                 value = int(value)
-            return ("" if value is None or value != value else str(value)), None
+            text = "" if value is None or value != value else str(value)
+            return (self.lengths.told(text) if self.kind == "note" else text), None
         number = self._number(row, self.key)
         if self.stderr is not None:
             return parts(number, self._number(row, self.stderr), self.decimals)

@@ -33,13 +33,15 @@ def circle(corners: int = _CORNERS) -> Array:
     return np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
 
-def ice_lines(rings: Sequence[float]) -> list[Array]:
+def ice_lines(rings: Sequence[float], play: int = -1) -> list[Array]:
     """Give the rings and the lines near the house as they should be painted, m.
 
     Parameters
     ----------
     rings : sequence of float
         Painted radii, m; without any there are no lines either.
+    play : int
+        -1 where stones come down y, 1 where up: the back line is behind the tee.
 
     Returns
     -------
@@ -50,8 +52,8 @@ def ice_lines(rings: Sequence[float]) -> list[Array]:
         return []
     lines = [ring * circle() for ring in rings]
     across = np.linspace(-1, 1, 41)[:, None] * [SHEET.half_width_min, 0]
-    lines += [np.add(across, [0, y]) for y in (0.0, -SHEET.back_line, SHEET.hog_line)]
-    along = np.linspace(-SHEET.back_line, SHEET.hog_line, 81)[:, None]
+    lines += [np.add(across, [0, y]) for y in (0.0, play * SHEET.back_line, -play * SHEET.hog_line)]
+    along = -play * np.linspace(-SHEET.back_line, SHEET.hog_line, 81)[:, None]
     return [*lines, along * [0, 1]]
 
 

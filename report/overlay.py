@@ -29,6 +29,7 @@ from report.drawing import (
 )  # fmt: skip
 from report.encode import Encoder
 from report.style import stone_colours, team_colour
+from report.tables import play
 from vision.film.clip import Clip, Frame, Image
 from vision.optics.camera import Camera
 
@@ -178,7 +179,7 @@ def _scene(
     rings: Sequence[float] | None,
     radius: float,
 ) -> Scene:
-    lines = [] if rings is None else ice_lines(rings)
+    lines = [] if rings is None else ice_lines(rings, play(tracks, collisions, radius))
     states: dict[int, list[State]] = {}
     paths = {}
     for name, rows in tracks.sort_values("t").groupby("stone", sort=True):

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import base64
 import json
-import os
 import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
-from urllib.parse import quote
 
 import numpy as np
 import pandas as pd
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from data.coach_units import METRES, Unit
@@ -22,18 +19,17 @@ from data.files import whole_file, write_text
 from data.results import Results
 from data.sheet import House
 from physics.prediction.ensemble import Ensemble
-from report.cells import data, data_parts, data_significant
 from report.gallery import pictures
 from report.listing import page_tables
-from report.numbers import assumed, count
+from report.numbers import count
 from report.playback import playback
 from report.provenance import UNKNOWN, Provenance, libraries
 from report.style import render, stone_colours
 from report.tables import moving_stones
+from report.template import environment, link, source
 from report.trial import sliders, trial
 from report.typeset import write_tables
 
-WEB = Path(__file__).parent / "web"
 SCRIPTS = ("motion.js", "simulate.js", "plan.js", "player.js", "whatif.js")
 """In the order in which the page needs them."""
 
@@ -115,7 +111,7 @@ def write_report(
     known = [(rmse, name) for name, rmse in scores if rmse is not None]
     what_if = _what_if(tracks, results, ensemble)
     page = (
-        _environment()
+        environment()
         .get_template("page.html")
         .render(
             title=clip_name or next((Path(name).name for name in results.input.files), "shot"),
@@ -131,7 +127,7 @@ def write_report(
             why_no_mu=_reason(results, r"μ|friction|glide"),
             why_no_simulation=_reason(results, "simulat"),
             cautions=_cautions(results),
-            clip=None if overlay is None else _link(overlay, folder),
+            clip=None if overlay is None else link(overlay, folder),
             clip_file="" if overlay is None else overlay.name,
             moving=_moving(tracks, results),
             rings=house is not None,
@@ -140,8 +136,8 @@ def write_report(
             pictures=shown,
             tables=tables,
             libraries=libraries(),
-            css=Markup(_source("page.css")),
-            scripts=[Markup(_source(name)) for name in SCRIPTS],
+            css=source("page.css"),
+            scripts=[source(name) for name in SCRIPTS],
             shot_data=_json(
                 {
                     **playback(results, tracks, simulations, house),
@@ -154,26 +150,6 @@ def write_report(
     path = folder / "report.html"
     write_text(path, page)
     return path
-
-
-def _environment() -> Environment:
-    environment = Environment(
-        loader=FileSystemLoader(WEB),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters["number"] = data
-    environment.filters["significant"] = data_significant
-    environment.globals["pair"] = data_parts
-    environment.globals["count"] = count
-    environment.globals["assumed"] = assumed
-    return environment
-
-
-def _source(name: str) -> str:
-    return (WEB / name).read_text(encoding="utf-8").rstrip()
 
 
 def _json(values: Any) -> Markup:
@@ -199,10 +175,6 @@ def _what_if(
 def _smaller(svg: bytes, png: bytes) -> str:
     kind, content = min((("svg+xml", svg), ("png", png)), key=lambda item: len(item[1]))
     return f"data:image/{kind};base64,{base64.b64encode(content).decode()}"
-
-
-def _link(path: Path, folder: Path) -> str:
-    return quote(Path(os.path.relpath(path, folder)).as_posix())
 
 
 def _remove_stale(folder: Path, names: set[str]) -> None:

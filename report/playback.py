@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from data.results import Results
 from data.sheet import SHEET, House
 from report.style import stone_colours, team_colour
+from report.tables import play
 
 STEPS: Mapping[str, float] = {
     "t": 1e-5, "x": 1e-4, "y": 1e-4, "theta": 1e-3, "speed": 1e-4, "omega": 1e-3,
@@ -64,10 +65,11 @@ def playback(
         }
         for name, group in tracks.sort_values("frame").groupby("stone", sort=True)
     ]
+    way = play(tracks, results.collisions, results.radius)
     return {
         "radius": results.radius,
         "rings": [] if house is None else list(asdict(house).values()),
-        "lines": {} if house is None else asdict(SHEET),
+        "lines": {} if house is None else asdict(SHEET) | {"play": way},
         "steps": dict(STEPS),
         "frame": _differences(clock.index),
         "t": differences(clock, "t"),

@@ -27,9 +27,9 @@ LONGEST = 28
 
 
 def write_season(
-    folder: Path, shots: pd.DataFrame, hits: pd.DataFrame, pooled: Mapping[str, Pooled]
+    folder: Path, shots: pd.DataFrame, hits: pd.DataFrame, pooled: Mapping[str, Pooled], page: str
 ) -> None:
-    """Write a season as two tables, in sum and as a picture; see `season_figure`."""
+    """Write a season as two tables, in sum, as a picture (`season_figure`) and as a page."""
     content = {
         "schema": 1,
         "shots": shots["shot"].tolist(),
@@ -38,6 +38,7 @@ def write_season(
     write_table(shots, folder / "shots.csv")
     write_table(hits, folder / "hits.csv")
     write_text(folder / "season.json", json.dumps(content, indent=1, ensure_ascii=False) + "\n")
+    write_text(folder / "season.html", page)
     season_figure(shots, hits, pooled).savefig(folder / "season.png", dpi=PNG_DPI)
 
 
@@ -91,6 +92,14 @@ def _forest(axes: Axes, shots: pd.DataFrame, name: str, mean: Pooled, label: str
     axes.set_xlabel(label)
     axes.set_title(f"{label.split()[1]} = {plus_minus(mean.value, mean.stderr)}")
     axes.grid(axis="y", visible=False)
+    if shots[name].isna().all():
+        _nothing(axes, "no shot tells it")
+
+
+def _nothing(axes: Axes, why: str) -> None:
+    """Say why there is nothing to see, in place of numbers that mean nothing."""
+    axes.set_xticks([])
+    axes.text(0.5, 0.5, why, color=GREY, ha="center", va="center", transform=axes.transAxes)
 
 
 def _against_speed(axes: Axes, hits: pd.DataFrame, mean: Pooled) -> None:
@@ -103,6 +112,9 @@ def _against_speed(axes: Axes, hits: pd.DataFrame, mean: Pooled) -> None:
     axes.set_xlabel("closing speed along the normal (m/s)")
     axes.set_ylabel("restitution e of the hit")
     axes.set_title("Each hit ± its standard error")
+    if hits["restitution"].isna().all():
+        axes.set_yticks([])
+        _nothing(axes, "no hit tells it")
 
 
 def _short(name: str) -> str:

@@ -113,14 +113,21 @@ def season_text(shots: pd.DataFrame, pooled: Mapping[str, Pooled]) -> list[str]:
         elif mean.shots:
             text += f"; from shot to shot it may scatter by {SCATTER[name]:g} or so, as assumed"
         lines.append(text)
+    return [*lines, *warned(impossible(shots))]
+
+
+def impossible(shots: pd.DataFrame) -> list[str]:
+    """Name the e and μ of a season's shots that cannot be."""
+    said = []
+    for name, sign in (("restitution", "e"), ("friction", "μ")):
         low, high = POSSIBLE[name]
-        lines += warned(
+        said += [
             f"{shot['shot']}: {sign} = {plus_minus(shot[name], shot[f'stderr_{name}'])}"
             " cannot be; it counts in the mean with its error"
             for shot in shots.to_dict("records")
             if shot[name] < low or shot[name] > high
-        )
-    return lines
+        ]
+    return said
 
 
 def _law(name: str) -> str:

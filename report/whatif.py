@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from pathlib import Path
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -21,9 +22,9 @@ from data.sheet import HOUSE, STONE
 from data.tracks import write_table
 from physics.prediction.start import Start
 from physics.simulator.simulation import Simulation
-from report.figures import draw_house, simulated_figure
+from report.figures import draw_house, name_stones, simulated_figure
 from report.figures.parts import legend_below
-from report.numbers import count
+from report.numbers import MINUS, count
 from report.style import BLACK, GREY, PNG_DPI, new_figure, plain_text, stone_colours, styled
 
 Array = NDArray[np.float64]
@@ -36,8 +37,12 @@ FARTHEST, ANYWHERE = 6.4, 20.0
 """Most that the picture shows along and across, m from its centre, with a house and without."""
 FEW = 50
 """Throws; fewer are dots, for a map of them would show how it is smoothed."""
+BESIDE = 1.6
+"""Inches of the picture's width beside the sheet."""
 MOST_DOTS = 1000
 """Dots of one stone."""
+WIDEST = 80
+"""Letters of a line of the title."""
 
 
 def write_simulated(
@@ -47,7 +52,12 @@ def write_simulated(
     write_table(table, folder / "simulation.csv")
     house = HOUSE if start.house else None
     figure = simulated_figure(
-        table, simulation.hits, gone=simulation.gone, house=house, radius=start.shot.radius
+        table,
+        simulation.hits,
+        gone=simulation.gone,
+        house=house,
+        radius=start.shot.radius,
+        play=_play(start),
     )
     figure.savefig(folder / "plan.png", dpi=PNG_DPI)
 
@@ -72,11 +82,46 @@ def write_odds(folder: Path, start: Start, outcomes: pd.DataFrame, odds: Mapping
         outcomes,
         {stone.name: (stone.x, stone.y) for stone in start.shot.stones},
         odds["thrown"],
-        f"{odds['thrown']} thrown {count(odds['samples'], 'time')}",
+        fill(
+            ", ".join(
+                [
+                    f"{odds['thrown']} thrown {count(odds['samples'], 'time')}",
+                    *told(odds["changes"]),
+                ]
+            ),
+            WIDEST,
+        ),
         start.shot.radius,
         house=start.house,
+        play=_play(start),
     )
     figure.savefig(folder / "spread.png", dpi=PNG_DPI)
+
+
+def told(changes: Mapping[str, Any]) -> list[str]:
+    """Say in a few words each what was changed of a shot; `changes` as in ``whatif.json``."""
+    signs = {"restitution": ("e", ""), "friction": ("μ", ""), "speed": ("speed", " m/s"),
+             "spin": ("spin", " rad/s")}  # fmt: skip
+    words = []
+    for name, change in changes.items():
+        if name == "aim_offset":
+            side = "left" if change > 0 else "right"
+            words.append(f"aimed {_plain(abs(change))} m to its {side}")
+            continue
+        sign, unit = signs[name]
+        amount = change if isinstance(change, Mapping) else {"value": change, "relative": False}
+        text = _plain(amount["value"])
+        words.append(f"{sign} × {text}" if amount["relative"] else f"{sign} = {text}{unit}")
+    return words
+
+
+def _plain(value: float) -> str:
+    return f"{value:g}".replace("-", MINUS)
+
+
+def _play(start: Start) -> int:
+    """Tell whether the thrown stone goes up y, 1, or down, -1."""
+    return 1 if start.shot.stones[start.thrown].vy > 0 else -1
 
 
 def spread_figure(
@@ -87,6 +132,7 @@ def spread_figure(
     radius: float = STONE.radius,
     *,
     house: bool = True,
+    play: int = -1,
 ) -> Figure:
     """Draw where the stones come to rest, the thrown one as a heat map, others as dots.
 
@@ -107,6 +153,8 @@ def spread_figure(
         Radius of the stones, m.
     house : bool
         Whether places count from the tee of a house.
+    play : int
+        1 where stones are thrown up y, -1 where down: behind the tee is the back line.
     """
     own = outcomes["stone"] == thrown
     # A stone that nothing touched lies where it lay.
@@ -125,10 +173,10 @@ def spread_figure(
     wide, tall = high - low
     width = 7.0
     with styled():
-        figure = new_figure(width, min((width - 1.6) * tall / wide + 1.3, 10.0))
+        figure = new_figure(width, min((width - BESIDE) * tall / wide + 1.3, 10.0))
         ax = figure.subplots()
         if house:
-            draw_house(ax, HOUSE, low, high)
+            draw_house(ax, HOUSE, low, high, play)
         label = f"where {plain_text(thrown)} ends, % of throws on 10 cm × 10 cm"
         _draw_ends(ax, ends, throws, (low, high), radius, label)
         for name, struck in places.items():
@@ -136,11 +184,9 @@ def spread_figure(
             ax.plot(*dots.T, ".", color=colours[name], ms=2.5, alpha=0.6, mew=0, zorder=3)
         for name, place in lying.items():
             ax.add_patch(Circle(place, radius, fc="white", ec=colours[name], lw=1.4, zorder=4))
-            ax.text(
-                *place, plain_text(name), color=colours[name], weight="bold", fontsize=8,
-                ha="center", va="center", zorder=5, clip_on=True,
-            )  # fmt: skip
         ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
+        seen = {n: np.array(at) for n, at in lying.items() if _shows(low, high, np.array([at]))}
+        name_stones(ax, seen, colours, radius, (width - BESIDE) / wide)
         ax.set(xlabel="$x$ (m)", ylabel="$y$ (m)")
         ax.grid(False)
         figure.suptitle(plain_text(title), x=0.01, ha="left", fontsize=10, fontweight="bold")

@@ -63,6 +63,9 @@ def test_simulate(capsys: pytest.CaptureFixture[str]) -> None:
 def test_coach(sample: pipeline.Run, capsys: pytest.CaptureFixture[str]) -> None:
     assert sample.out is not None
     text = said("coach", capsys, sample.out)
+    assert "ft/s" in text
+    assert " m/s" not in text
+    assert "first seen 12.8 ft past it" in text
     assert "shot stone: B" in text
     assert "B: 2.2 ft from the tee" in text
     assert "nan" not in text

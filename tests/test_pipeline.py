@@ -266,6 +266,12 @@ def test_help_has_examples_everywhere() -> None:
         assert "example" in done.stdout
 
 
+def test_help_goes_into_a_file_without_greek_letters() -> None:
+    done = curlshot("run", "--help", env={"PYTHONIOENCODING": "ascii"})
+    assert done.returncode == 0
+    assert "e, mu, simulation" in done.stdout
+
+
 def test_help_loads_nothing_heavy() -> None:
     code = (
         "import sys, pipeline\npipeline.command_line('').format_help()\nprint(sorted(sys.modules))"

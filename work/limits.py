@@ -39,6 +39,7 @@ FRICTION = Limits(1e-3, 0.1, "a friction of ice, 0.001 to 0.1")
 HEIGHT = Limits(1.0, 100.0, "a height in metres, 1 to 100")
 RADIUS = Limits(1e-3, 1.0, "a radius in metres, 0.001 to 1")
 SAMPLES = Limits(0, MOST_THROWS, f"a number of samples, 0 to {MOST_THROWS}", Integral)
+JOBS = Limits(1, 1000, "a number of clips at once, 1 to 1000", Integral)
 FRAME = Limits(0, sys.maxsize, "a number of a frame", Integral)
 ANY = Limits(-sys.float_info.max, sys.float_info.max, "a number")
 

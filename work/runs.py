@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from data.errors import InputError
-from data.inputs import named
+from data.inputs import matching, named
 
 if TYPE_CHECKING:
     from data.results import Results
@@ -25,18 +25,23 @@ def apart(clips: Sequence[Path]) -> dict[str, Path]:
     return named
 
 
-def find_runs(names: str | Path | Sequence[str | Path]) -> dict[str, Results]:
-    """Read the results of runs: of their folders, of folders of such folders, or files.
+def find_results(names: str | Path | Sequence[str | Path]) -> dict[str, Path]:
+    """Find the results of runs: of their folders, of folders of such folders, files or globs.
+
+    Returns
+    -------
+    dict of str to Path
+        Each ``results.json``, by the name of its folder.
 
     Raises
     ------
     InputError
-        Where there are none, one is no results.json, or not all are of discs of one size.
+        Where there are none.
     """
-    from data.results_file import read_results
-
     found: list[Path] = []
-    for path in map(Path, named(names)):
+    given = [Path(name) for name in named(names)]
+    paths = [[path] if path.exists() else matching(path) or [path] for path in given]
+    for path in (path for some in paths for path in some):
         here = path / "results.json" if path.is_dir() else path
         below = sorted(path.glob("*/results.json")) if path.is_dir() else []
         if not here.exists() and not below:
@@ -46,7 +51,20 @@ def find_runs(names: str | Path | Sequence[str | Path]) -> dict[str, Results]:
         raise InputError("no runs given; name their folders")
     unique = dict.fromkeys(path.resolve() for path in found)
     folders = apart([path.parent.with_name(f"{path.parent.name}.run") for path in unique])
-    runs = {name: read_results(path) for name, path in zip(folders, unique, strict=True)}
+    return dict(zip(folders, unique, strict=True))
+
+
+def find_runs(names: str | Path | Sequence[str | Path]) -> dict[str, Results]:
+    """Read the results of runs, found as `find_results` does.
+
+    Raises
+    ------
+    InputError
+        Where there are none, one is no results.json, or not all are of discs of one size.
+    """
+    from data.results_file import read_results
+
+    runs = {name: read_results(path) for name, path in find_results(names).items()}
     first, *others = runs
     for name in others:
         if runs[name].radius != runs[first].radius:

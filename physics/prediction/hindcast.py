@@ -23,7 +23,7 @@ from physics.local_fit.untold import OFTEN, SUDDEN
 from physics.local_fit.ways import SLOWING
 from physics.prediction.as_fitted import as_fitted, by_itself
 from physics.prediction.ensemble import Ensemble
-from physics.prediction.laws import Laws, measured_laws
+from physics.prediction.laws import Laws, assumed_of, measured_laws
 from physics.prediction.spread import Doubt, path_spread, simulated, simulated_hits
 from physics.prediction.throws import first_hit, foreseen_until, newcomers
 from physics.simulator.simulate import simulate
@@ -130,17 +130,17 @@ def simulate_measured(
         samples[name] = table
         found = score(tracks, table, start, ends, notes.get(name))
         scores[name] = replace(found, hits=hits, rest_sd=_rest_sd(tracks, table, found))
-    warnings = _assumptions(estimates, laws, explained)
+    warnings = _assumptions(estimates, assumed_of(laws, may.likely), explained)
     return Hindcast(samples, scores, warnings, may.by(laws.frictional))
 
 
 def _assumptions(
-    estimates: Estimates, laws: Laws, explained: Mapping[str, float]
+    estimates: Estimates, assumed: Mapping[str, str], explained: Mapping[str, float]
 ) -> tuple[str, ...]:
-    """Say what is assumed of a shot, and until when, s, its stones are compared."""
+    """Say what is assumed of the laws of a shot, and until when, s, its stones are compared."""
     out = [] if estimates.collisions else ["simulation: no hit, the stones only glide"]
     used = ("restitution", "friction") if estimates.collisions else ("friction",)
-    out += [f"simulation: {laws.assumed[name]}" for name in used if name in laws.assumed]
+    out += [f"simulation: {assumed[name]}" for name in used if name in assumed]
     out += [
         f"simulation: {name} is compared until {end:.2f} s; neither ice nor a hit in view"
         " explains how it moves then"

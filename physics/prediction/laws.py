@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from math import isclose
 
 import numpy as np
 
 from data.results import Collision, Estimate, Friction, Joint, Results
-from data.sheet import STONE, curling_size
+from data.sheet import GRAVITY, STONE, curling_size
 from physics.curl import Curl, FCV1Curl, NoCurl
 from physics.estimate import Estimates
 from physics.ice import Constant, Fit, IceLaw
 from physics.impact import Frictional
+from physics.simulator.simulation import Shot
 from physics.whole_shot.priors import LITERATURE, STONE_FRICTION, literature
 
 UNSCALED = Estimate(1.0, 0.0)
@@ -97,6 +99,25 @@ def measured_laws(shot: Estimates | Results, radius: float) -> Laws:
         _value(shot.laws, "inertia", STONE.inertia),
         assumed,
     )
+
+
+def assumed_of(laws: Laws, shot: Shot) -> dict[str, str]:
+    """Say what was assumed of the laws of a shot: where the fit of the whole of it tells, that."""
+    usual = {"restitution": laws.frictional.restitution, "friction": _at_1(laws.ice)}
+    own = {
+        "restitution": getattr(shot.impact, "restitution", usual["restitution"]),
+        "friction": _at_1(shot.ice),
+    }
+    said = dict(laws.assumed)
+    for name in own.keys() & said.keys():
+        if not isclose(own[name], usual[name], rel_tol=1e-6):
+            said[name] = f"{name} not measured: {own[name]:.2g}, as in the fit of the whole shot"
+    return said
+
+
+def _at_1(ice: IceLaw) -> float:
+    """Friction at 1 m/s."""
+    return float(ice.deceleration(1.0)) / GRAVITY
 
 
 def between_stones(laws: Joint | None, collisions: Sequence[Collision]) -> Estimate:

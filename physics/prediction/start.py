@@ -16,12 +16,12 @@ from data.sheet import SHEET, curling_size
 from physics.curl import NoCurl
 from physics.ice import IceLaw
 from physics.prediction.ensemble import Ensemble
-from physics.prediction.laws import measured_laws
+from physics.prediction.laws import assumed_of, measured_laws
 from physics.prediction.throws import first_hit, newcomers
 from physics.simulator.bounds import Bounds
 from physics.simulator.curve import Curve, curve_for
 from physics.simulator.simulate import simulate
-from physics.simulator.simulation import Shot, StoneStart
+from physics.simulator.simulation import FASTEST, Shot, StoneStart
 
 Array = NDArray[np.float64]
 
@@ -105,7 +105,7 @@ def measured_start(tracks: pd.DataFrame, results: Results, ensemble: Ensemble) -
         ahead = (stone.x * stone.vx + stone.y * stone.vy) / math.hypot(stone.vx, stone.vy)
         release = max(HOG_TO_TEE + ahead, 0.0)
         shots = [replace(shot, bounds=Bounds(1 if stone.vy > 0 else -1)) for shot in shots]
-    assumed = {**_laws(results), **_spins(tracks, shots), **_left_out(late)}
+    assumed = {**_laws(results, likely), **_spins(tracks, shots), **_left_out(late)}
     return Start(shots[0], thrown, tuple(shots[1:]), release, house, assumed)
 
 
@@ -124,9 +124,9 @@ def _without(shot: Shot, names: Collection[str]) -> Shot:
     return replace(shot, stones=tuple(s for s in shot.stones if s.name not in names))
 
 
-def _laws(results: Results) -> dict[str, str]:
+def _laws(results: Results, likely: Shot) -> dict[str, str]:
     """Say which laws the shot does not tell, and what is taken for them."""
-    assumed = dict(measured_laws(results, results.radius).assumed)
+    assumed = assumed_of(measured_laws(results, results.radius), likely)
     simulated = results.simulations.get("frictional")
     if "stone_friction" in assumed and simulated is not None and simulated.note:
         assumed["stone_friction"] = simulated.note
@@ -201,16 +201,30 @@ def _way_back(shot: Shot, thrown: int) -> float:
 
 
 def _taken_back(shot: Shot, thrown: int, way: float) -> Shot:
-    """Return the shot with the thrown stone a distance before, on its straight way."""
+    """Return the shot with the thrown stone a distance before, from where it comes as it was."""
     stone = shot.stones[thrown]
     speed = math.hypot(stone.vx, stone.vy)
     if not (way and speed):
         return shot
-    ux, uy = stone.vx / speed, stone.vy / speed
     then = float(speed_before(np.array([speed]), way, shot.ice)[0])
+    curve = curve_for(shot.ice, shot.curl, then)
+    took = float(np.diff(np.interp([speed, then], curve.speed, curve.tau))[0])
+    # Thrown along x it tells how the way turns. It keeps spin: what is lost does not hang on it.
+    spun = math.copysign(FASTEST, stone.omega) if stone.omega else 0.0
+    lone = StoneStart(stone.name, 0.0, 0.0, then, 0.0, spun)
+    end = simulate(replace(shot, stones=(lone,), bounds=None), until=took).state(lone.name, took)
+    turn = math.atan2(stone.vy, stone.vx) - math.atan2(end.vy, end.vx)
+    ux, uy = math.cos(turn), math.sin(turn)
+    omega = stone.omega + (spun - end.omega)
     stones = list(shot.stones)
     stones[thrown] = replace(
-        stone, x=stone.x - way * ux, y=stone.y - way * uy, vx=then * ux, vy=then * uy
+        stone,
+        x=stone.x - ux * end.x + uy * end.y,
+        y=stone.y - uy * end.x - ux * end.y,
+        vx=then * ux,
+        vy=then * uy,
+        omega=omega,
+        theta=stone.theta - end.theta + (spun - omega) * took,
     )
     return replace(shot, stones=tuple(stones))
 

@@ -9,6 +9,7 @@ the last line of a notebook's cell.
 from report.figures.comparison import comparison_figure
 from report.figures.friction import friction_figure
 from report.figures.hit import hit_figure
+from report.figures.labels import name_stones
 from report.figures.motion import motion_figure, speed_figure, spin_figure
 from report.figures.plan import draw_house, plan_figure
 from report.figures.posterior import posterior_figure
@@ -21,6 +22,7 @@ __all__ = [
     "friction_figure",
     "hit_figure",
     "motion_figure",
+    "name_stones",
     "plan_figure",
     "posterior_figure",
     "residuals_figure",

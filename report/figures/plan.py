@@ -25,7 +25,7 @@ from report.style import (
     stone_colours,
     styled,
 )
-from report.tables import last_speed, moving_stones
+from report.tables import last_speed, moving_stones, play
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -86,7 +86,7 @@ def plan_figure(
         figure = new_figure(WIDTH, scale * (high[1] - low[1]) + 0.85 + 0.2 * rows_below)
         ax = figure.subplots()
         if house is not None:
-            draw_house(ax, house, low, high)
+            draw_house(ax, house, low, high, play(tracks, collisions, radius))
         for model, table in simulations.items():
             for stone in moved:
                 path = rows_of(table, stone)
@@ -140,15 +140,16 @@ def _handles(
     return handles
 
 
-def draw_house(ax: Axes, house: House, low: Array, high: Array) -> None:
-    """Draw rings and lines where they lie between two corners, m."""
+def draw_house(ax: Axes, house: House, low: Array, high: Array, play: int = -1) -> None:
+    """Draw rings and lines where they lie between two corners, m; stones come down y, or up."""
     radii = (house.twelve_foot, house.eight_foot, house.four_foot, house.button)
     for ring, fill in zip(radii, RING_FILLS, strict=True):
         ax.add_patch(Circle((0, 0), ring, facecolor=fill, edgecolor="#b8c4d0", lw=0.6, zorder=0))
     painted: dict[str, Any] = {"color": "#b8c4d0", "lw": 0.7, "zorder": 0.5}
-    ax.plot([0, 0], [max(low[1], -house.twelve_foot), min(high[1], SHEET.far_tee)], **painted)
+    centre = np.sort([play * house.twelve_foot, -play * SHEET.far_tee])
+    ax.plot([0, 0], [max(low[1], centre[0]), min(high[1], centre[1])], **painted)
     ax.plot([low[0], high[0]], [0, 0], **painted)
-    for y in (-SHEET.back_line, SHEET.hog_line):
+    for y in (play * SHEET.back_line, -play * SHEET.hog_line):
         if low[1] < y < high[1]:
             ax.plot([low[0], high[0]], [y, y], **painted)
 

@@ -32,6 +32,7 @@ def simulated_figure(
     gone: Collection[str] = (),
     house: House | None,
     radius: float = STONE.radius,
+    play: int = -1,
 ) -> Figure:
     """Draw a simulated shot from above.
 
@@ -49,6 +50,8 @@ def simulated_figure(
         The rings to draw; None where places do not count from a tee.
     radius : float
         Radius of the stones, m.
+    play : int
+        1 where stones are thrown up y, -1 where down: behind the tee is the back line.
     """
     paths = {
         str(name): rows_of(table, str(name))[["x", "y"]].to_numpy(float)
@@ -66,7 +69,7 @@ def simulated_figure(
         figure = new_figure(WIDTH, scale * (high[1] - low[1]) + 0.85 + 0.2 * rows_below)
         ax = figure.subplots()
         if house is not None:
-            draw_house(ax, house, low, high)
+            draw_house(ax, house, low, high, play)
         for name, path in paths.items():
             ax.add_patch(
                 Circle(_pair(path[0]), radius, fc="none", ec=colours[name], lw=0.8, ls=":")

@@ -11,6 +11,7 @@ from data.results import Collision, Glide, Prediction, SimulationScore
 from data.sheet import STONE
 from physics.local_fit.off_centre import centred
 from physics.local_fit.traces import traces
+from physics.prediction.throws import thrown
 
 
 def moving_stones(
@@ -28,6 +29,17 @@ def moving_stones(
         if name in hit or np.ptp(calm, axis=0).max() > radius / 3:
             moved.append(str(name))
     return tuple(moved)
+
+
+def play(
+    tracks: pd.DataFrame, collisions: Sequence[Collision] = (), radius: float = STONE.radius
+) -> int:
+    """Tell which way stones are thrown: 1 if up y, -1 if down or if none is seen to come."""
+    for name in moving_stones(tracks, collisions, radius):
+        track = tracks[tracks["stone"] == name].sort_values("t")
+        if thrown(track):
+            return 1 if float(track["vy"].head(5).mean()) > 0 else -1
+    return -1
 
 
 def stone_table(tracks: pd.DataFrame) -> pd.DataFrame:

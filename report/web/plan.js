@@ -30,7 +30,7 @@ class PlanView {
   #paint(ice, lines, x0, y0, x1, y1) {
     const line = (a, b, c, d) => svgElement("line", { class: "line", x1: a, y1: -b, x2: c, y2: -d }, ice);
     const s = this.scale;
-    for (const y of [0, -lines.back_line, lines.hog_line]) line(x0, y * s, x1, y * s);
+    for (const y of [0, lines.play * lines.back_line, -lines.play * lines.hog_line]) line(x0, y * s, x1, y * s);
     line(0, y0, 0, y1);
   }
 

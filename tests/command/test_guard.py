@@ -1,8 +1,10 @@
 from __future__ import annotations
 
 import errno
+import io
 import os
 import signal
+import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -12,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from command.bars import Bars
-from command.guard import guarded, one_line
+from command.guard import NO_MEMORY, guarded, one_line, write_anywhere
 from data.errors import InputError, SceneError
 from data.files import staged
 
@@ -34,7 +36,7 @@ class Watched(Bars):
         (InputError("a.mp4: not\na video"), 2, "curlshot: a.mp4: not a video\n"),
         (SceneError("no house"), 2, "curlshot: no house\n"),
         (OSError(errno.ENOSPC, "No space left", "out"), 2, "curlshot: out: No space left\n"),
-        (MemoryError(), 2, "curlshot: not enough memory; try fewer or smaller pictures\n"),
+        (MemoryError(), 2, f"curlshot: {NO_MEMORY}\n"),
         (KeyboardInterrupt(), 130, "curlshot: stopped; what was under way is not written\n"),
     ],
 )
@@ -109,3 +111,16 @@ def test_work_in_another_thread_takes_no_signals() -> None:
 
 def test_one_line() -> None:
     assert one_line(" a\n  b\tc ") == "a b c"
+
+
+@pytest.mark.parametrize("encoding", ["cp1252", "ascii"])
+def test_a_terminal_without_greek_letters_gets_them_spelled_out(
+    encoding: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As a file does in Windows into which help or an answer goes."""
+    for name in ("stdout", "stderr"):
+        monkeypatch.setattr(sys, name, io.TextIOWrapper(io.BytesIO(), encoding=encoding))
+    write_anywhere()
+    print("μ = 0.0109 ± 0.0001, − 1 m, 日", flush=True)
+    said = sys.stdout.buffer.getvalue().decode(encoding).strip()
+    assert said.replace("±", "+-") == "mu = 0.0109 +- 0.0001, - 1 m, ?"

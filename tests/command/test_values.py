@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from command import values
 from command.options import OFFSETS
 from physics.prediction.what_if import Amount
-from work.limits import FRACTION, FRICTION, POSITIVE, RADIUS
+from work.limits import FRACTION, FRICTION, POSITIVE, RADIUS, SAMPLES
 
 
 @pytest.mark.parametrize(
@@ -24,7 +24,7 @@ from work.limits import FRACTION, FRICTION, POSITIVE, RADIUS
         (values.amount, "1.5", Amount(1.5, False)),
         (values.amount, "-0.5x", Amount(-0.5, True)),
         (values.speed, "1.1x", Amount(1.1, True)),
-        (values.samples, "0", 0),
+        (values.whole(SAMPLES), "0", 0),
         (values.throw_sd, "0.0076,0.0018", (0.0076, 0.0018)),
         (values.frame_range, "2:31", (2, 31)),
         (values.frame_range, "10:", (10, None)),
@@ -51,15 +51,19 @@ def test_what_is_meant_is_read(read, text: str, value) -> None:
         (values.within(RADIUS), "14.55", "a radius in metres"),
         (values.within(RADIUS), "-1", "a radius in metres"),
         (values.within(OFFSETS), "far", "a distance in metres"),
+        (values.within(OFFSETS), "-0,05", r"-5 to 5; write -0\.05, with a point"),
+        (values.speed, "1,1x", r"at most 10x; write 1\.1x, with a point"),
+        (values.mass, "A=19,1", r"a positive number; write 19\.1, with a point"),
         (values.speed, "0", "nor a factor such as 1.1x"),
         (values.speed, "11x", "at most 10x"),
-        (values.samples, "-1", "a number of samples"),
-        (values.samples, "1e3", "a number of samples"),
-        (values.samples, "100001", "a number of samples"),
+        (values.whole(SAMPLES), "-1", "a number of samples"),
+        (values.whole(SAMPLES), "1e3", "a number of samples"),
+        (values.whole(SAMPLES), "100001", "a number of samples"),
         (values.throw_sd, "0.1", "not V,A"),
         (values.throw_sd, "0.1,2", "a standard deviation in rad"),
         (values.frame_range, "5", "not FIRST:LAST"),
         (values.stick, "1,2,3,4", "not X1,Y1,X2,Y2,METRES"),
+        (values.stick, "20,36,20,220,0,5", r"METRES, e\.g\. 20,36,20,220,0\.5"),
         (values.stick, "1,2,1,2,3", "the stick has no length"),
         (values.stick, "1,2,3,4,-5", "the stick has no length"),
         (values.house, "a:1,2,3,4,5,6", "not FRAME:XC"),
@@ -74,8 +78,8 @@ def test_what_makes_no_sense_is_refused_with_what_was_expected(read, text: str, 
 
 @given(
     st.sampled_from(
-        [values.within(POSITIVE), values.amount, values.speed, values.samples, values.throw_sd,
-         values.frame_range, values.stick, values.house, values.mass, values.pair]
+        [values.within(POSITIVE), values.amount, values.speed, values.whole(SAMPLES),
+         values.throw_sd, values.frame_range, values.stick, values.house, values.mass, values.pair]
     ),
     st.text(alphabet="0123456789.,:=x-+eEnaif ²٣", max_size=12),
 )  # fmt: skip

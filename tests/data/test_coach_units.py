@@ -25,3 +25,11 @@ def test_less_than_a_centimetre_is_in_millimetres():
 
 def test_units_are_found_by_their_symbols():
     assert UNITS == {"m": METRES, "ft": FEET}
+
+
+def test_a_text_is_told_in_feet() -> None:
+    text = "first seen 3.9 m past it at 0.48 m/s, 3 mm off after 2.0 s, 10 more"
+    assert (
+        FEET.told(text) == "first seen 12.8 ft past it at 1.57 ft/s, 3 mm off after 2.0 s, 10 more"
+    )
+    assert METRES.told(text) == text

@@ -49,6 +49,20 @@ def test_a_row_of_units_joins_the_names(tmp_path: Path) -> None:
     assert read(tmp_path, "t;x\n;\n0;1\n").names == ("t", "x")
 
 
+@pytest.mark.parametrize(
+    "text", ["t / s;x / cm;y / cm", "t/s\tx/cm\ty/cm", "t in s,x in cm,y in cm"]
+)
+def test_units_behind_a_stroke_or_in_words(tmp_path: Path, text: str) -> None:
+    mark = next(mark for mark in "\t;," if mark in text)
+    path = tmp_path / "table.txt"
+    path.write_text(f"{text}\n" + "".join(f"0.{k}{mark}{k}{mark}200\n" for k in range(5)))
+    table = read_text_table(path, lambda names: names[0] == "t (s)")
+    assert table.names == ("t (s)", "x (cm)", "y (cm)")
+    tracks = read_table([path]).sightings
+    assert tracks["y"].tolist() == [2.0] * 5
+    assert tracks["t"].tolist() == pytest.approx([0, 0.1, 0.2, 0.3, 0.4])
+
+
 def test_blanks_hide_what_is_missing(tmp_path: Path) -> None:
     # One blank per cell, as Tracker writes, leaves no doubt; runs of blanks do.
     table = read(tmp_path, "t x y \n0  2\n1 3 \n")

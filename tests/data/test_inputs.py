@@ -25,6 +25,7 @@ def test_a_glob_is_sorted_and_files_keep_their_order(tmp_path: Path) -> None:
     made(tmp_path, "b2.csv", "b10.csv", "a.txt")
     found = find_inputs([tmp_path / "a.txt", str(tmp_path / "b*.csv")])
     assert [path.name for path in found] == ["a.txt", "b2.csv", "b10.csv"]
+    assert find_inputs(str(tmp_path / "b**.csv")) == found[1:]
 
 
 def test_one_name_alone_is_no_list_of_letters(tmp_path: Path) -> None:

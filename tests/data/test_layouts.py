@@ -2,6 +2,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from tests.data.reading import read, stones, xy
 
 
@@ -26,3 +28,8 @@ def test_decimals_of_the_times(tmp_path: Path) -> None:
 def test_comment_sign_before_the_header(tmp_path: Path) -> None:
     file = read(tmp_path, "# made with numpy\n# t x y\n0.0 1.0 2.0\n0.5 1.0 2.5\n")
     assert xy(file, "shot") == [[1, 2], [1, 2.5]]
+
+
+@pytest.mark.parametrize("head", ["xB (cm),yB (cm)", "redx (cm),redy (cm)", "B x (cm),B y (cm)"])
+def test_a_unit_behind_a_name_of_one_word_counts(tmp_path: Path, head: str) -> None:
+    assert read(tmp_path, f"t (s),{head}\n0,1,2\n0.1,2,3\n").length_unit == "cm"

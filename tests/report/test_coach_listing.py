@@ -23,6 +23,18 @@ def test_feet_are_metres_by_another_name(shot):
     assert float(tee.parts(row)[0]) == pytest.approx(row["tee"] / 0.3048, abs=0.06)
 
 
+def test_notes_name_lengths_in_the_unit_of_the_table(shot):
+    metres, feet = by_name(shot), by_name(shot, FEET)
+
+    def notes(table):
+        (column,) = (column for column in table.head if column.key == "note")
+        return " ".join(column.parts(row)[0] for row in table.records)
+
+    for name in ("coach_stones", "coach_speeds"):
+        said = notes(metres[name])
+        assert notes(feet[name]) == FEET.told(said) != said
+
+
 def test_every_stone_that_stopped_has_a_distance_to_every_other(shot):
     table = by_name(shot)["coach_distances"]
     stones = ["A", "B", "D"]  # C still moves as the clip ends

@@ -32,6 +32,9 @@ def test_lines_lie_where_the_rulebook_puts_them():
     np.testing.assert_allclose(np.hypot(*lines[1].T), 0.61)
     assert [float(line[0, 1]) for line in lines[2:5]] == [0.0, -SHEET.back_line, SHEET.hog_line]
     assert (lines[5][:, 0] == 0).all()
+    up = ice_lines((1.829,), play=1)
+    assert [float(line[0, 1]) for line in up[1:4]] == [0.0, SHEET.back_line, -SHEET.hog_line]
+    assert up[4][:, 1].max() == SHEET.back_line
     assert ice_lines(()) == []
 
 

@@ -146,6 +146,11 @@ def test_the_answer_comes_first(written, tmp_path, shot):
     assert "over 1 glide Hits" in " ".join(short)
 
 
+def test_speeds_are_shown_where_something_moves(written):
+    (speeds,) = (div for div in Page(written).all("div") if div.get("class") == "panel speeds")
+    assert "hidden" not in speeds
+
+
 def test_names_of_files_are_no_markup(written):
     page = Page(written)
     assert 'take 7 <best> & "last".mp4' in page.said
@@ -193,6 +198,8 @@ def test_what_is_not_known_is_said_with_its_reason(tmp_path, shot):
         (tmp_path / "figures" / name).write_text("old")
     still = shot.tracks[shot.tracks["frame"] == 0]
     page = Page(write(tmp_path, shot, results=results, tracks=still, simulations={}, house=None))
+    (speeds,) = (div for div in page.all("div") if div.get("class") == "panel speeds")
+    assert "hidden" in speeds  # an empty chart says nothing
     assert page.said.count("no hit was seen: no restitution") == 2
     assert page.said.count("no glide is long enough: no friction") == 2
     assert "—" in page.said

@@ -241,6 +241,15 @@ def test_laws_and_models_are_those_of_python(tab, start):
     assert_alike(tab.value(OUTCOME), rest(rigid))
 
 
+def test_no_line_breaks_within_what_is_to_be_typed(tab):
+    tab.value("document.body.style.maxWidth = '360px', null")
+    pieces = tab.value(
+        "[...document.querySelectorAll('p code')].map(c => c.getClientRects().length)"
+    )
+    tab.value("document.body.style.maxWidth = '', null")
+    assert set(pieces) == {1}
+
+
 def test_the_throw_runs_and_comes_back(tab, start):
     y = "-whatIf.drawn[0].start.group.transform.baseVal.consolidate().matrix.f"
     scale = 14.55 / start.shot.radius

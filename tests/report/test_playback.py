@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import dataclasses
 import json
 
 import numpy as np
@@ -38,6 +39,13 @@ def test_simulated_stones_at_rest_take_one_row(shot):
     rows = {s["name"]: len(s["x"]) for s in data["simulations"]["frictional"]}
     assert rows["D"] == 1
     assert rows["A"] == shot.tracks["frame"].nunique()
+
+
+def test_lines_lie_as_the_stones_come(shot):
+    up = shot.tracks.assign(y=-shot.tracks["y"], vy=-shot.tracks["vy"])
+    for tracks, way in ((shot.tracks, -1), (up, 1)):
+        bare = dataclasses.replace(shot.results, collisions=())
+        assert playback(bare, tracks, {}, HOUSE)["lines"]["play"] == way
 
 
 def test_without_a_house_there_are_no_rings(shot):

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from data.errors import InputError
 from data.results import Collision, Estimate, Friction, Input, MeasuredState, Results
 from data.results_file import write_results
 from physics.statistics.season import hits_table, pooled, shots_table
-from pipeline import find_runs, main, season
+from pipeline import Settings, find_runs, main, season
 from report.season import season_figure
 
 HIT = Collision(
@@ -177,12 +178,29 @@ def test_one_bad_clip_does_not_stop_the_others(
     for name in ("good.mp4", "bad.mp4", "other.mp4"):
         (tmp_path / name).touch()
     clips = [str(tmp_path / name) for name in ("good.mp4", "bad.mp4", "other.mp4")]
-    assert main(["run", *clips, "-o", str(tmp_path / "out"), "-q"]) == 0
+    # In another process nothing is replaced.
+    assert main(["run", *clips, "-o", str(tmp_path / "out"), "-q", "--jobs", "1"]) == 0
     said = capsys.readouterr().out
     assert "bad" in said and "not a video" in said and "2 shots" in said
     assert main(["run", clips[1], clips[1], "-o", str(tmp_path / "none"), "-q"]) == 2
     assert "none of 2 clips" in capsys.readouterr().err
     assert not (tmp_path / "none").exists()
+
+
+def test_two_clips_at_once_come_to_what_one_after_the_other_does(tmp_path: Path) -> None:
+    for name in ("one.mp4", "two.mp4"):
+        shutil.copy(pipeline.sample_clip(), tmp_path / name)
+    clips = [*sorted(tmp_path.glob("*.mp4")), tmp_path / "none.mp4"]
+    settings = Settings(frames=(0, 12), overlay=False)
+    found = {}
+    for jobs in (1, 2):
+        done, failed = pipeline.run_each(clips, tmp_path / str(jobs), settings, jobs=jobs)
+        assert list(done) == ["one", "two"] and list(failed) == ["none"]
+        assert all((tmp_path / str(jobs) / name / "report.html").exists() for name in done)
+        found[jobs] = done
+    for name in ("one", "two"):
+        pd.testing.assert_frame_equal(found[1][name].tracks, found[2][name].tracks)
+        assert found[1][name].results == found[2][name].results
 
 
 def test_dots_in_names_of_folders_stay(tmp_path: Path) -> None:

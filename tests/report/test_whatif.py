@@ -1,12 +1,16 @@
 from __future__ import annotations
 
+from dataclasses import asdict
+
 import numpy as np
 import pandas as pd
 import pytest
 from matplotlib.patches import Circle
 
+from data.sheet import SHEET, STONE
+from physics.prediction.what_if import Amount, Changes
 from report.style import render
-from report.whatif import spread_figure
+from report.whatif import spread_figure, told
 from tests.report.figures.drawn import check_layout
 
 
@@ -50,6 +54,14 @@ def test_a_stone_that_hits_nothing_and_one_that_always_leaves_are_told_of() -> N
     assert figure.axes[0].collections
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert {"median of A", r"\$C where hit (100% off the sheet)"} < {*labels}
+
+
+def test_what_was_changed_is_said_in_words() -> None:
+    changes = Changes(0.9, None, Amount(1.1, True), Amount(-1.5, False), -0.05)
+    as_written = {name: value for name, value in asdict(changes).items() if value is not None}
+    assert told(as_written) == [
+        "e = 0.9", "speed × 1.1", "spin = −1.5 rad/s", "aimed 0.05 m to its right",
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize(("throws", "words"), [(1, []), (20, ["median of A"])])
@@ -106,3 +118,20 @@ def test_the_names_of_all_that_leave_the_sheet_are_in_the_picture() -> None:
     figure = spread_figure(table, before, "mass 0", "thrown 50 times")
     check_layout(figure)
     assert sum("40% off the sheet" in text.get_text() for text in figure.legends[0].texts) == 6
+
+
+@pytest.mark.parametrize("play", [-1, 1])
+def test_the_back_line_lies_behind_the_tee(play: int) -> None:
+    before = {"A": (0.0, -5.0 * play), "B": (0.5, 0.5), "$C": (0.0, 1.0)}
+    ax = spread_figure(outcomes((0, 0)), before, "A", "t", play=play).axes[0]
+    across = [line.get_ydata()[0] for line in ax.lines if np.ptp(line.get_ydata()) == 0]
+    assert SHEET.back_line * play in across
+    assert -SHEET.back_line * play not in across
+
+
+def test_long_names_stand_beside_their_stones() -> None:
+    table = outcomes((0, 0)).replace({"stone": {"B": "Gelber Stein"}})
+    before = {"A": (0.0, -5.0), "Gelber Stein": (0.5, 0.5), "$C": (0.0, 1.0)}
+    figure = spread_figure(table, before, "A", "t")
+    (name,) = (text for text in figure.axes[0].texts if text.get_text() == "Gelber Stein")
+    assert np.hypot(*np.subtract(name.get_position(), before["Gelber Stein"])) > STONE.radius

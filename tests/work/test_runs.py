@@ -29,6 +29,8 @@ def test_runs_are_found_in_folders_of_folders(tmp_path: Path) -> None:
     assert list(find_runs([tmp_path / "season"])) == ["one", "two"]
     assert list(find_runs(str(one))) == ["one"]
     assert list(find_runs([two, one / "results.json", two])) == ["two", "one"]
+    # Not every shell looks for what matches a pattern.
+    assert list(find_runs(str(tmp_path / "sea*" / "*o*"))) == ["one", "two"]
 
 
 def test_a_run_without_results_is_named(tmp_path: Path) -> None:

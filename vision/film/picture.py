@@ -13,7 +13,7 @@ from typing import Any
 import av
 import cv2
 import numpy as np
-from av.video.reformatter import ColorRange, Colorspace
+from av.video.reformatter import ColorRange
 from numpy.typing import NDArray
 
 Image = NDArray[np.uint8]
@@ -22,12 +22,9 @@ Floats = NDArray[np.float32]
 TO_CHROMA = np.array([[0.114, 0.587, 0.299], [0.5, -0.331, -0.169], [-0.081, -0.419, 0.5]])
 """Luma and the two chromas of blue, green and red (ITU-R BT.601)."""
 
-_WEIGHTS = {
-    int(Colorspace.ITU709): (0.2126, 0.0722),
-    int(Colorspace.BT2020): (0.2627, 0.0593),
-    int(Colorspace.SMPTE240M): (0.212, 0.087),
-}
-"""Weights of red and blue in luma (ITU-R BT.709, BT.2020, SMPTE 240M); else those of BT.601."""
+_WEIGHTS = {1: (0.2126, 0.0722), 9: (0.2627, 0.0593), 7: (0.212, 0.087)}
+"""Weights of red and blue in luma by the number of the matrix in ITU-T H.273 (BT.709, BT.2020 and
+SMPTE 240M; not all releases of PyAV have names for them); else those of BT.601."""
 
 
 @dataclass(frozen=True)

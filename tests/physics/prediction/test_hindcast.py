@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from data.results import SimulationScore
+from data.results import Estimate, SimulationScore
 from physics.estimate import Estimates, estimate
 from physics.kalman import smooth
 from physics.local_fit.contacts import find_contacts
@@ -158,6 +158,20 @@ def test_stones_that_grip_each_other_are_simulated_so() -> None:
     tracks = smooth(seen, find_contacts(seen, RADIUS), radius=RADIUS)
     scores = simulate_measured(tracks, local, radius=RADIUS).scores
     assert "at least" in (scores["frictional"].note or "")
+
+
+def test_what_the_fit_of_the_whole_shot_tells_is_not_said_to_be_assumed() -> None:
+    seen = watch(hit_motion(1.2, 0.08), np.random.default_rng(41), sd=0.002)
+    hits = find_contacts(seen, RADIUS)
+    tracks = smooth(seen, hits, radius=RADIUS)
+    found = replace(estimate(seen, hits, radius=RADIUS), restitution=Estimate())
+    assert found.whole is not None
+    e = found.whole["restitution"].value or 0.0
+    done = simulate_measured(tracks, found, radius=RADIUS)
+    said = f"simulation: restitution not measured: {e:.2g}, as in the fit of the whole shot"
+    assert done.warnings == (said,)
+    done = simulate_measured(tracks, replace(found, whole=None), radius=RADIUS)
+    assert done.warnings == ("simulation: restitution not measured, 0.83 assumed",)
 
 
 def test_a_stone_counts_beyond_where_it_was_hidden() -> None:

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import astuple, replace
 
 import numpy as np
 import pytest
@@ -9,7 +9,9 @@ import pytest
 from data.errors import InputError
 from data.results import Estimate, Friction, SimulationScore
 from data.sheet import GRAVITY
+from physics.curl import FCV1Curl
 from physics.ice import Constant, IceLaw, Penner
+from physics.impact import Frictional
 from physics.prediction.ensemble import Ensemble
 from physics.prediction.start import BACK, HOG_TO_TEE, measured_start, speed_before
 from physics.simulator.bounds import Bounds
@@ -45,6 +47,19 @@ def test_a_stone_that_was_seen_late_is_taken_back_to_have_room() -> None:
     assert speeds == pytest.approx([-0.002, -0.001, 0.001, 0.002], abs=2e-4)
 
 
+@pytest.mark.parametrize("spin", [-1.5, 0.004, 1e-200, 0.0])
+def test_a_stone_that_is_taken_back_comes_the_way_that_curls(spin: float) -> None:
+    close = replace(CLOSE, vx=-0.1, vy=-0.6, omega=spin, theta=0.3)
+    shot = replace(HIT, stones=(close, *HIT.stones[1:]), curl=FCV1Curl(0.03))
+    start = measured_start(*measured(shot))
+    assert start.shot.stones[0].y > close.y + 0.5
+    (hit,), (now,) = simulate(start.shot).hits, simulate(shot).hits
+    for stone in hit.stones:
+        assert astuple(hit.after[stone]) == pytest.approx(astuple(now.after[stone]), abs=1e-6)
+    ends, as_it_did = simulate(start.shot).rest["A"], simulate(shot).rest["A"]
+    assert ends.theta == pytest.approx(as_it_did.theta, abs=1e-6)
+
+
 def test_the_stone_is_not_taken_back_through_another() -> None:
     shot = replace(HIT, stones=(CLOSE, *HIT.stones[1:], StoneStart("G", 0.25, 1.65)))
     begun = measured_start(*measured(shot)).shot.stones
@@ -55,7 +70,16 @@ def test_the_stone_is_not_taken_back_through_another() -> None:
 def test_what_was_not_measured_is_assumed_aloud() -> None:
     tracks, results, ensemble = measured()
     blind = replace(results, restitution=Estimate(), friction=Friction(), collisions=())
-    assert len(measured_start(tracks, blind, ensemble).assumed) == 3
+    assumed = measured_start(tracks, blind, ensemble).assumed
+    assert assumed == {
+        "restitution": "restitution not measured: 0.8, as in the fit of the whole shot",
+        "friction": f"friction not measured: {MU:.2g}, as in the fit of the whole shot",
+        "stone_friction": "friction between the stones assumed to be 0.05",
+    }
+    usual = replace(ensemble, likely=replace(HIT, impact=Frictional(0.83), ice=Constant(0.0109)))
+    assumed = measured_start(tracks, blind, usual).assumed
+    assert assumed["restitution"] == "restitution not measured, 0.83 assumed"
+    assert assumed["friction"] == "friction not measured, 0.0109 assumed"
     note = "friction between the stones not told: they stick"
     blind = replace(blind, simulations={"frictional": SimulationScore(0.001, note=note)})
     assert measured_start(tracks, blind, ensemble).assumed["stone_friction"] == note

@@ -5,7 +5,7 @@ import pytest
 from matplotlib.patches import Circle, Ellipse
 from matplotlib.text import Annotation
 
-from data.sheet import HOUSE
+from data.sheet import HOUSE, SHEET
 from report import figures
 from report.figures.parts import rows_of
 from tests.report.figures.drawn import check_layout
@@ -23,6 +23,16 @@ def test_plan_shows_every_stone_to_scale(shot, house):
     assert radii.count(0.1455) == 4 + 9
     assert radii.count(1.829) == (house is not None)
     assert ax.get_aspect() == 1
+
+
+def test_the_back_line_lies_behind_the_tee(shot):
+    down = bool(shot.tracks.loc[shot.tracks["stone"] == "A", "vy"].iloc[0] < 0)
+    other = shot.tracks.assign(y=-shot.tracks["y"], vy=-shot.tracks["vy"])
+    for tracks, sign in ((shot.tracks, -1 if down else 1), (other, 1 if down else -1)):
+        (ax,) = figures.plan_figure(tracks, house=HOUSE).axes
+        across = [line.get_ydata()[0] for line in ax.lines if np.ptp(line.get_ydata()) == 0]
+        assert SHEET.back_line * sign in across
+        assert -SHEET.back_line * sign not in across
 
 
 def test_ellipses_are_enlarged_as_the_legend_says(shot):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from matplotlib.patches import Circle
 
-from data.sheet import HOUSE
+from data.sheet import HOUSE, SHEET
 from physics.simulator.bounds import Bounds
 from physics.simulator.simulate import simulate
 from physics.simulator.simulation import Shot, Simulation, StoneStart
@@ -23,6 +23,15 @@ def sampled(simulation: Simulation):
 
 def discs(figure) -> list[tuple[float, float]]:
     return [p.center for p in figure.axes[0].patches if isinstance(p, Circle) and p.get_lw() > 1]
+
+
+@pytest.mark.parametrize("play", [-1, 1])
+def test_the_back_line_lies_behind_the_tee(play: int) -> None:
+    simulation = thrown(1.1)
+    (ax,) = simulated_figure(sampled(simulation), house=HOUSE, play=play).axes
+    across = [line.get_ydata()[0] for line in ax.lines if np.ptp(line.get_ydata()) == 0]
+    assert SHEET.back_line * play in across
+    assert -SHEET.back_line * play not in across
 
 
 def test_stones_are_drawn_where_they_come_to_rest_and_hits_where_they_touch() -> None:

@@ -53,3 +53,9 @@ def test_a_cap_that_is_taken_out_for_the_tracks_is_no_residual():
     assert np.abs(rest[["dx", "dy"]]).to_numpy().max() < 0.001
     shown = tables.residual_table(seen.assign(theta=np.nan), centre)
     assert np.abs(shown[["dx", "dy"]]).to_numpy().max() > 0.003
+
+
+def test_stones_come_down_or_up_as_the_thrown_one_does(shot):
+    up = shot.tracks.assign(y=-shot.tracks["y"], vy=-shot.tracks["vy"])
+    assert (tables.play(shot.tracks), tables.play(up)) == (-1, 1)
+    assert tables.play(shot.tracks[shot.tracks["frame"] == 0]) == -1
