@@ -145,12 +145,7 @@ def fit_circles(
     n, circles = len(rays.inside), len(rims)
     expected = np.array([rim.radius for rim in rims])
     design = _Design.of(rims)
-    size = 3 + circles
-    prior = np.zeros((n, size, size))
-    prior[:, range(size), range(size)] = 1e-9
-    for k, radius in enumerate(expected.tolist()):
-        prior[:, 2 + k, 2 + k] += (noise / (slack * radius)) ** 2
-    prior[:, -1, -1] += (noise / wall[1]) ** 2
+    prior = _held(expected, noise, slack, wall[1])
     bands = Bands.of(rims, rays)
     strong = np.array([rim.strength for rim in rims])[:, None]
     inside = np.concatenate([rim.inside for rim in rims], 1)
@@ -159,7 +154,7 @@ def fit_circles(
     scale = np.full(n, 0.10 * float(expected[-1]))
     usual = np.repeat(expected, len(rays.angle)) + wall[0] * design.lean
     change: Array = np.zeros_like(design.lean)
-    solution: Array = np.zeros((n, size))
+    solution: Array = np.zeros(prior.shape[:2])
     for _ in range(rounds):
         edge, strength = bands.edges((usual + change).reshape(n, circles, -1))
         target = edge.reshape(n, -1) - usual
@@ -172,29 +167,53 @@ def fit_circles(
             solution = design.solve(w, target, prior)
             change = design.edges(solution)
             residual = target - change
-    agree = (base > 0) & (np.abs(residual) < 0.75 * scale[:, None]) & inside
-    agree = agree.reshape(n, circles, -1)
+    agree = (_inlying(base, residual, scale) & inside).reshape(n, circles, -1)
     shares = agree.sum(-1) / np.maximum(inside.reshape(n, circles, -1).sum(-1), 1)
     # From here on circles that are known to lie aside have less of a say.
     base *= np.repeat([rim.say for rim in rims], len(rays.angle))
     for _ in range(2):
         solution = design.solve(base * _likely(residual, scale), target, prior)
         residual = target - design.edges(solution)
-    fits = (base > 0) & (np.abs(residual) < 0.75 * scale[:, None])
+    fits = _inlying(base, residual, scale)
     count = fits.sum(1)
     rms = np.sqrt((residual**2 * fits).sum(1) / np.maximum(count, 1))
-    normal = design.normal(base * fits)
-    # What is held near its usual value errs, but not anew in each picture.
+    innermost = slice(len(rays.angle))
+    return Fits(
+        ok=count >= 8,
+        shift=solution[:, :2],
+        radii=expected + solution[:, 2:-1],
+        wall=wall[0] + solution[:, -1],
+        covariance=_covariance(design.normal(base * fits), prior, np.maximum(rms, noise)),
+        bends=_bends(residual[:, innermost], fits[:, innermost]),
+        shares=shares,
+        unbroken=_unbroken(agree.all(1)),
+    )
+
+
+def _held(radii: Array, noise: Array, slack: float, wall_sd: float | Array) -> Array:
+    """Weights that hold radii and wall near what is expected, shape (n, unknowns, unknowns)."""
+    size = 3 + len(radii)
+    prior = np.zeros((len(noise), size, size))
+    prior[:, range(size), range(size)] = 1e-9
+    for k, radius in enumerate(radii.tolist()):
+        prior[:, 2 + k, 2 + k] += (noise / (slack * radius)) ** 2
+    prior[:, -1, -1] += (noise / wall_sd) ** 2
+    return prior
+
+
+def _inlying(weight: Array, residual: Array, scale: Array) -> Flags:
+    """Which of the edges that count lie on the circles, shape (n, edges)."""
+    return np.asarray((weight > 0) & (np.abs(residual) < 0.75 * scale[:, None]))
+
+
+def _covariance(normal: Array, prior: Array, sd: Array) -> Array:
+    """Covariance of the centres, (n, 2, 2), m², where each edge errs by `sd`, (n,).
+
+    What is held near its usual value errs, but not anew in each picture.
+    """
     spread = np.linalg.inv(normal + prior)
     covariance = (spread @ normal @ spread)[:, :2, :2]
-    covariance *= (np.maximum(rms, noise) ** 2)[:, None, None]
-    radii = expected + solution[:, 2:-1]
-    first = slice(len(rays.angle))
-    bends = _bends(residual[:, first], fits[:, first])
-    return Fits(
-        count >= 8, solution[:, :2], radii, wall[0] + solution[:, -1], covariance, bends, shares,
-        _unbroken(agree.all(1)),
-    )  # fmt: skip
+    return np.asarray(covariance * (sd**2)[:, None, None])
 
 
 def _likely(residual: Array, scale: Array) -> Array:
