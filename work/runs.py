@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from data.errors import InputError
 from data.inputs import matching, named
+from data.text import printable
 
 if TYPE_CHECKING:
     from data.results import Results
@@ -16,11 +17,10 @@ if TYPE_CHECKING:
 def apart(clips: Sequence[Path]) -> dict[str, Path]:
     """Name clips by their stems, by those of their folders too where stems are shared."""
     named: dict[str, Path] = {}
-    stems = [clip.stem for clip in clips]
-    for number, clip in enumerate(clips):
-        name = clip.stem
+    stems = [printable(clip.stem) for clip in clips]
+    for number, (clip, name) in enumerate(zip(clips, stems, strict=True)):
         if stems.count(name) > 1:
-            name = f"{clip.resolve().parent.name}-{name}"
+            name = f"{printable(clip.resolve().parent.name)}-{name}"
         named[name if name not in named else f"{name}-{number + 1}"] = clip
     return named
 

@@ -24,6 +24,11 @@ def test_clips_of_one_name_are_told_apart_by_their_folders(tmp_path: Path) -> No
     assert list(apart(again)) == ["a-shot", "a-shot-2"]
 
 
+def test_names_that_are_no_text_are_told_as_far_as_they_are(tmp_path: Path) -> None:
+    clips = [tmp_path / f"\udcff{folder}" / "\udcfc.mp4" for folder in "ab"]
+    assert list(apart(clips)) == ["?a-?", "?b-?"]
+
+
 def test_runs_are_found_in_folders_of_folders(tmp_path: Path) -> None:
     one, two = written(tmp_path / "season" / "one"), written(tmp_path / "season" / "two")
     assert list(find_runs([tmp_path / "season"])) == ["one", "two"]
