@@ -7,6 +7,7 @@ import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
@@ -104,9 +105,9 @@ def in_processes(
 
 
 class _Here:
-    """Of this process: whether it works on an item, and whether it was told to end."""
+    """Of this process: whether it works on an item, was told to end, and lost the first one."""
 
-    working = stopped = False
+    working = stopped = alone = False
 
 
 def _killed(processes: Iterable[BaseProcess]) -> bool:
@@ -125,6 +126,18 @@ def _begin(heeded: Iterable[int]) -> None:
     for number in heeded:
         signal.signal(number, _stop)
     collect_seldom()
+    threading.Thread(target=_end_with_the_first, daemon=True).start()
+
+
+def _end_with_the_first() -> None:
+    """End this process if the first one was killed, which tells nobody."""
+    first = multiprocessing.parent_process()
+    if first is not None:
+        first.join()
+    _Here.alone = True
+    while True:  # once for the work, once for the process
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(1)
 
 
 def _stop(_: int, __: FrameType | None) -> None:
@@ -136,6 +149,8 @@ def _stop(_: int, __: FrameType | None) -> None:
     again, _Here.stopped = _Here.stopped, True
     if _Here.working and not again:
         raise KeyboardInterrupt
+    if _Here.alone and not _Here.working:
+        raise SystemExit
 
 
 def _interruptible(work: Callable[[Item], Outcome], item: Item) -> Outcome:

@@ -3,6 +3,8 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import subprocess
+import sys
 import time
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
@@ -108,6 +110,7 @@ def test_one_that_is_told_to_end_cleans_up_undisturbed_and_begins_no_more(
     handled = signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)
     before = {number: signal.getsignal(number) for number in handled}
     monkeypatch.setattr(parallel, "collect_seldom", lambda: None)
+    monkeypatch.setattr(parallel, "_end_with_the_first", lambda: None)
     monkeypatch.setattr(parallel._Here, "stopped", False)
     done: list[str] = []
 
@@ -146,6 +149,35 @@ def test_what_is_ignored_as_under_nohup_stays_so() -> None:
 def hung_up(number: int) -> int:
     signal.raise_signal(signal.SIGHUP)
     return number
+
+
+ALONE = """
+import sys
+from pathlib import Path
+from command.parallel import in_processes
+from tests.command.test_parallel import fails_beside
+if __name__ == "__main__":
+    folder = Path(sys.argv[1])
+    in_processes(fails_beside, {role: (folder, role) for role in ("slow", "other")}, 2, "things")
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="Windows ends them without cleaning")
+def test_no_process_is_left_where_the_first_one_is_killed(tmp_path: Path) -> None:
+    script = tmp_path / "alone.py"
+    script.write_text(ALONE, "utf-8")
+    root = str(Path(__file__).resolve().parents[2])
+    # Its output is at an end when none of them has it open any more.
+    with subprocess.Popen(
+        [sys.executable, str(script), str(tmp_path)],
+        env={**os.environ, "PYTHONPATH": root}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+    ) as first:  # fmt: skip
+        begun = time.monotonic()
+        while len(list(tmp_path.glob("* begun"))) < 2 and time.monotonic() - begun < 30:
+            time.sleep(0.02)
+        first.kill()
+        first.communicate(timeout=20)
+    assert len(list(tmp_path.glob("* cleaned up"))) == 2
 
 
 def test_there_is_a_processor() -> None:
