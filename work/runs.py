@@ -18,10 +18,15 @@ def apart(clips: Sequence[Path]) -> dict[str, Path]:
     """Name clips by their stems, by those of their folders too where stems are shared."""
     named: dict[str, Path] = {}
     stems = [printable(clip.stem) for clip in clips]
+    # Windows and macOS take Shot and shot for one folder.
+    same, taken = [stem.casefold() for stem in stems], set[str]()
     for number, (clip, name) in enumerate(zip(clips, stems, strict=True)):
-        if stems.count(name) > 1:
+        if same.count(name.casefold()) > 1:
             name = f"{printable(clip.resolve().parent.name)}-{name}"
-        named[name if name not in named else f"{name}-{number + 1}"] = clip
+        if name.casefold() in taken:
+            name = f"{name}-{number + 1}"
+        taken.add(name.casefold())
+        named[name] = clip
     return named
 
 
