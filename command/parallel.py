@@ -5,11 +5,16 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
-from collections.abc import Callable, Mapping
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from functools import partial
-from threading import Event
+from multiprocessing.process import BaseProcess
+from types import FrameType
 from typing import TypeVar
 
 from command.garbage import collect_seldom
@@ -17,6 +22,15 @@ from data.progress import Progress, no_progress
 
 Item = TypeVar("Item")
 Outcome = TypeVar("Outcome")
+
+_ENDS = ("SIGINT", "SIGHUP")
+"""Signals of a terminal that ask to end, where the platform has them."""
+
+_KILLED = 9
+"""The signal by which a system ends a process when memory runs out."""
+
+_MOST = 61 if sys.platform == "win32" else sys.maxsize
+"""Processes at once: for so many Windows can wait."""
 
 
 def processors() -> int:
@@ -57,53 +71,107 @@ def in_processes(
     ------
     MemoryError
         Where a process was killed, as systems do that run out of memory.
+    BrokenProcessPool
+        Where a process ended by itself, as where a script has no ``__main__`` guard.
     Exception
         Whatever `work` raises; the others are stopped.
     """
     # A forked process may hang in libraries that had threads; a new one begins afresh.
     fresh = multiprocessing.get_context("spawn")
-    workers = min(jobs, len(items))
-    with ProcessPoolExecutor(workers, mp_context=fresh, initializer=_begin) as pool:
-        running: dict[Future[Outcome], str] = {
-            pool.submit(partial(_interruptible, work), item): name for name, item in items.items()
-        }
+    workers = min(jobs, len(items), _MOST)
+    others, own = {*multiprocessing.active_children()}, set[BaseProcess]()
+    done: dict[str, Outcome] = {}
+    pool = ProcessPoolExecutor(workers, mp_context=fresh, initializer=_begin, initargs=(_heeded(),))
+    try:
+        with _deaf():
+            running: dict[Future[Outcome], str] = {
+                pool.submit(partial(_interruptible, work), item): name
+                for name, item in items.items()
+            }
+        own |= {*multiprocessing.active_children()} - others
         progress(what, 0, len(items))
-        done: dict[str, Outcome] = {}
-        try:
-            for future in as_completed(running):
-                done[running[future]] = future.result()
-                progress(what, len(done), len(items))
-        except BaseException as stopped:
-            pool.shutdown(wait=False, cancel_futures=True)
-            for process in multiprocessing.active_children():
-                process.terminate()
-            if isinstance(stopped, BrokenProcessPool):
-                raise MemoryError from stopped
-            raise
+        for future in as_completed(running):
+            done[running[future]] = future.result()
+            progress(what, len(done), len(items))
+    except BaseException as stopped:
+        for process in {*multiprocessing.active_children()} - others:
+            process.terminate()
+        pool.shutdown(cancel_futures=True)
+        if isinstance(stopped, BrokenProcessPool) and _killed(own):
+            raise MemoryError from stopped
+        raise
+    pool.shutdown()
     return {name: done[name] for name in items}
 
 
-def _begin() -> None:
-    """Leave it to the first process what becomes of Ctrl-C while there is no work."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+class _Here:
+    """Of this process: whether it works on an item, was told to end, and lost the first one."""
+
+    working = stopped = alone = False
+
+
+def _killed(processes: Iterable[BaseProcess]) -> bool:
+    """Tell whether one was killed, and did not fail by itself."""
+    return any(process.exitcode == -_KILLED for process in processes)
+
+
+def _heeded() -> list[int]:
+    """Signals that end the work: of those of a terminal not what is ignored, as under nohup."""
+    numbers = [getattr(signal, name) for name in _ENDS if hasattr(signal, name)]
+    return [signal.SIGTERM, *(n for n in numbers if signal.getsignal(n) != signal.SIG_IGN)]
+
+
+def _begin(heeded: Iterable[int]) -> None:
+    """Let signals that ask to end unwind the work, so that it is cleaned up."""
+    for number in heeded:
+        signal.signal(number, _stop)
     collect_seldom()
+    threading.Thread(target=_end_with_the_first, daemon=True).start()
 
 
-_STOPPED = Event()
-"""Whether this process was told to end: there may be more work in its queue."""
+def _end_with_the_first() -> None:
+    """End this process if the first one was killed, which tells nobody."""
+    first = multiprocessing.parent_process()
+    if first is not None:
+        first.join()
+    _Here.alone = True
+    while True:  # once for the work, once for the process
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(1)
+
+
+def _stop(_: int, __: FrameType | None) -> None:
+    """Stop the work, once: a terminal and the first process both tell, and cleaning goes on.
+
+    A process without work waits until the first one lets it go: it may hold the lock of the
+    queue, without which no other ever ends.
+    """
+    again, _Here.stopped = _Here.stopped, True
+    if _Here.working and not again:
+        raise KeyboardInterrupt
+    if _Here.alone and not _Here.working:
+        raise SystemExit
 
 
 def _interruptible(work: Callable[[Item], Outcome], item: Item) -> Outcome:
-    """Do some work that Ctrl-C, or being told to end, unwinds, so that it is cleaned up."""
-    if _STOPPED.is_set():
-        raise KeyboardInterrupt
-    handled = signal.SIGINT, signal.SIGTERM
-    before = [signal.signal(number, signal.default_int_handler) for number in handled]
+    """Do some work, unless this process was told to end: there may be more in its queue."""
+    _Here.working = True
     try:
+        if _Here.stopped:
+            raise KeyboardInterrupt
         return work(item)
-    except KeyboardInterrupt:
-        _STOPPED.set()
-        raise
     finally:
-        for number, handler in zip(handled, before, strict=True):
-            signal.signal(number, handler)
+        _Here.working = False
+
+
+@contextmanager
+def _deaf() -> Iterator[None]:
+    """Begin processes to which Ctrl-C means nothing, until `_begin` says what it does."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)

@@ -36,5 +36,9 @@ def source(name: str) -> Markup:
 
 
 def link(path: Path, folder: Path) -> str:
-    """Give the address of a file for a page in a folder."""
-    return quote(Path(os.path.relpath(path, folder)).as_posix())
+    """Give the address of a file for a page in a folder; the whole one from another drive."""
+    try:
+        way = os.path.relpath(path, folder)
+    except ValueError:
+        return path.resolve().as_uri()
+    return quote(os.fsencode(Path(way).as_posix()))

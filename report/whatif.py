@@ -23,7 +23,7 @@ from data.tracks import write_table
 from physics.prediction.start import Start
 from physics.simulator.simulation import Simulation
 from report.figures import draw_house, name_stones, simulated_figure
-from report.figures.parts import legend_below
+from report.figures.parts import legend_below, short
 from report.numbers import MINUS, count
 from report.style import BLACK, GREY, PNG_DPI, new_figure, plain_text, stone_colours, styled
 
@@ -177,7 +177,7 @@ def spread_figure(
         ax = figure.subplots()
         if house:
             draw_house(ax, HOUSE, low, high, play)
-        label = f"where {plain_text(thrown)} ends, % of throws on 10 cm × 10 cm"
+        label = f"where {short(thrown)} ends,\n% of throws on 10 cm × 10 cm"
         _draw_ends(ax, ends, throws, (low, high), radius, label)
         for name, struck in places.items():
             dots = struck[:MOST_DOTS]
@@ -260,7 +260,8 @@ def _corners(
     reach = FARTHEST if house else ANYWHERE
     rim = radius + (HOUSE.twelve_foot if house else 0.0)
     parts = [np.array([[-rim, -rim], [rim, rim]]) + centre, np.array(lying).reshape(-1, 2)]
-    parts += [np.quantile(places, [1 - SHARE, SHARE], axis=0) for places in ends if len(places)]
+    near = [places[(np.abs(places - centre) < reach).all(axis=1)] for places in ends]
+    parts += [np.quantile(places, [1 - SHARE, SHARE], axis=0) for places in near if len(places)]
     shown = np.clip(np.concatenate(parts), centre - reach, centre + reach)
     return shown.min(axis=0) - 2 * radius, shown.max(axis=0) + 2 * radius
 
@@ -271,11 +272,13 @@ def _shows(low: Array, high: Array, places: Array) -> bool:
 
 
 def _density(ends: Array, low: Array, high: Array, throws: int) -> tuple[Array, Array, Array]:
-    """Percentage of the throws on 0.1 m × 0.1 m, smoothed, and the edges of its cells."""
-    from scipy.ndimage import gaussian_filter
+    """Percentage of the throws on 0.1 m × 0.1 m about each cell, smoothed, and edges of cells."""
+    from scipy.ndimage import convolve1d, gaussian_filter
 
     across, along = (np.arange(low[k], high[k] + CELL, CELL) for k in range(2))
     count = np.histogram2d(ends[:, 1], ends[:, 0], bins=(along, across))[0]
     sharpness = np.clip(4 * len(ends) ** (-1 / 3), 0.5, 4)  # fewer samples, a smoother map
     share = gaussian_filter(count, sharpness, mode="constant") / throws
-    return np.asarray(100 * share * (0.1 / CELL) ** 2), across, along
+    for axis in range(2):  # a cell and half of either next one are 0.1 m wide
+        share = convolve1d(share, [0.5, 1, 0.5], axis=axis, mode="constant")
+    return np.asarray(100 * share), across, along

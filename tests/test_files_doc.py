@@ -12,6 +12,7 @@ import pytest
 from data import results
 from data.tracks import SEEN_AS, TRACK_COLUMNS
 from physics.prediction.what_if import Odds
+from physics.simulator.simulation import Shot
 from physics.statistics.pool import Pooled
 from physics.statistics.season import HIT_COLUMNS, SHOT_COLUMNS
 from vision.optics.camera import CAMERA_COLUMNS
@@ -46,9 +47,10 @@ WRITTEN = {
     "tracks.csv": {*TRACK_COLUMNS, *SEEN_AS},
     "camera.csv": {*CAMERA_COLUMNS},
     "results.json": fields_of(results.Results),
+    "ensemble.json": {field.name for field in dataclasses.fields(Shot)},
     "outcomes.csv": {"sample", "stone", "x", "y", "hits", "in_play"},
     "whatif.json": fields_of(Odds)
-    | {"input", "thrown", "changes", "samples", "throw_sd", "stones", "warnings"},
+    | {"schema", "input", "thrown", "changes", "samples", "throw_sd", "stones", "warnings"},
     "shots.csv": {*SHOT_COLUMNS},
     "hits.csv": {*HIT_COLUMNS},
     "season.json": fields_of(Pooled),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from data.errors import InputError
 from data.inputs import matching, named
+from data.text import printable
 
 if TYPE_CHECKING:
     from data.results import Results
@@ -16,12 +17,16 @@ if TYPE_CHECKING:
 def apart(clips: Sequence[Path]) -> dict[str, Path]:
     """Name clips by their stems, by those of their folders too where stems are shared."""
     named: dict[str, Path] = {}
-    stems = [clip.stem for clip in clips]
-    for number, clip in enumerate(clips):
-        name = clip.stem
-        if stems.count(name) > 1:
-            name = f"{clip.resolve().parent.name}-{name}"
-        named[name if name not in named else f"{name}-{number + 1}"] = clip
+    stems = [printable(clip.stem) for clip in clips]
+    # Windows and macOS take Shot and shot for one folder.
+    same, taken = [stem.casefold() for stem in stems], set[str]()
+    for number, (clip, name) in enumerate(zip(clips, stems, strict=True)):
+        if same.count(name.casefold()) > 1:
+            name = f"{printable(clip.resolve().parent.name)}-{name}"
+        if name.casefold() in taken:
+            name = f"{name}-{number + 1}"
+        taken.add(name.casefold())
+        named[name] = clip
     return named
 
 

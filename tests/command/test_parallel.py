@@ -1,12 +1,17 @@
 from __future__ import annotations
 
+import multiprocessing
 import os
 import signal
+import subprocess
+import sys
 import time
+from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 
 import pytest
 
+from command import parallel
 from command.parallel import in_processes, processors
 
 
@@ -29,7 +34,7 @@ def fails_beside(marks: tuple[Path, str]) -> None:
 
 
 def killed(_: int) -> None:
-    os.kill(os.getpid(), signal.SIGKILL if hasattr(signal, "SIGKILL") else signal.SIGTERM)
+    os.kill(os.getpid(), signal.SIGKILL)
 
 
 def test_each_item_is_worked_on_in_another_process_and_they_stay_in_their_order() -> None:
@@ -59,9 +64,120 @@ def test_what_fails_stops_the_others_and_they_clean_up(tmp_path: Path) -> None:
     assert "slow cleaned up" in left and "last begun" not in left
 
 
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="nothing is killed so on Windows")
 def test_a_process_that_is_killed_is_told_of_as_too_little_memory() -> None:
     with pytest.raises(MemoryError):
         in_processes(killed, {"one": 1, "two": 2}, 2, "things")
+
+
+def ended(_: int) -> None:
+    os._exit(3)
+
+
+def test_a_process_that_ends_by_itself_is_not_told_of_as_too_little_memory() -> None:
+    with pytest.raises(BrokenProcessPool):
+        in_processes(ended, {"one": 1, "two": 2}, 2, "things")
+
+
+def test_processes_of_others_are_left_alone() -> None:
+    other = multiprocessing.get_context("spawn").Process(target=time.sleep, args=(60,))
+    other.start()
+    try:
+        with pytest.raises(ZeroDivisionError):
+            in_processes(divided, {"one": 1, "two": 0}, 2, "things")
+        other.join(0.5)
+        assert other.is_alive()
+    finally:
+        other.kill()
+        other.join()
+
+
+def divided(number: int) -> float:
+    return 1 / number
+
+
+def test_there_are_no_more_processes_than_a_system_can_wait_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(parallel, "_MOST", 1)
+    done = in_processes(squared, {"two": 2, "three": 3}, 2, "numbers")
+    assert len({maker for _, maker in done.values()}) == 1
+
+
+def test_one_that_is_told_to_end_cleans_up_undisturbed_and_begins_no_more(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    handled = signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)
+    before = {number: signal.getsignal(number) for number in handled}
+    monkeypatch.setattr(parallel, "collect_seldom", lambda: None)
+    monkeypatch.setattr(parallel, "_end_with_the_first", lambda: None)
+    monkeypatch.setattr(parallel._Here, "stopped", False)
+    done: list[str] = []
+
+    def work(item: str) -> None:
+        try:
+            signal.raise_signal(signal.SIGTERM)
+        finally:
+            for number in handled:
+                signal.raise_signal(number)
+            done.append(item)
+
+    try:
+        parallel._begin(handled)
+        for item in ("one", "two"):
+            with pytest.raises(KeyboardInterrupt):
+                parallel._interruptible(work, item)
+        assert done == ["one"]
+        # Without work it lives on: it may hold the lock for which others wait.
+        signal.raise_signal(signal.SIGTERM)
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="Windows tells of no closed terminal")
+def test_what_is_ignored_as_under_nohup_stays_so() -> None:
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        assert in_processes(hung_up, {"one": 1, "two": 2}, 2, "things") == {"one": 1, "two": 2}
+    finally:
+        signal.signal(signal.SIGHUP, before)
+    with pytest.raises(KeyboardInterrupt):
+        in_processes(hung_up, {"one": 1, "two": 2}, 2, "things")
+
+
+def hung_up(number: int) -> int:
+    signal.raise_signal(signal.SIGHUP)
+    return number
+
+
+ALONE = """
+import sys
+from pathlib import Path
+from command.parallel import in_processes
+from tests.command.test_parallel import fails_beside
+if __name__ == "__main__":
+    folder = Path(sys.argv[1])
+    in_processes(fails_beside, {role: (folder, role) for role in ("slow", "other")}, 2, "things")
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="Windows ends them without cleaning")
+def test_no_process_is_left_where_the_first_one_is_killed(tmp_path: Path) -> None:
+    script = tmp_path / "alone.py"
+    script.write_text(ALONE, "utf-8")
+    root = str(Path(__file__).resolve().parents[2])
+    # Its output is at an end when none of them has it open any more.
+    with subprocess.Popen(
+        [sys.executable, str(script), str(tmp_path)],
+        env={**os.environ, "PYTHONPATH": root}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+    ) as first:  # fmt: skip
+        begun = time.monotonic()
+        while len(list(tmp_path.glob("* begun"))) < 2 and time.monotonic() - begun < 30:
+            time.sleep(0.02)
+        first.kill()
+        first.communicate(timeout=20)
+    assert len(list(tmp_path.glob("* cleaned up"))) == 2
 
 
 def test_there_is_a_processor() -> None:

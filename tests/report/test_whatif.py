@@ -86,6 +86,22 @@ def test_a_house_is_drawn_where_there_is_one() -> None:
     assert circles[0] - circles[1] == 4
 
 
+def test_no_more_than_all_throws_end_on_a_place() -> None:
+    table = outcomes((0.0, 0.5))
+    table.loc[table["stone"] == "A", ["x", "y"]] = 0.02, 0.51
+    before = {"A": (0.0, -5.0), "B": (0.5, 0.5), "$C": (0.0, 1.0)}
+    ax = spread_figure(table, before, "A", "A thrown 300 times").axes[0]
+    assert 50 < ax.collections[0].get_array().max() <= 100
+
+
+def test_the_picture_leaves_no_room_for_what_ends_far_off() -> None:
+    table = outcomes((0.0, 0.5))
+    before = {"A": (0.0, -5.0), "B": (0.5, 0.5), "$C": (0.0, 1.0)}
+    table.loc[table["stone"] == "$C", ["x", "y"]] = 4.0, -20.0
+    ax = spread_figure(table, before, "A", "A thrown 300 times").axes[0]
+    assert ax.get_xlim()[1] < 2.5 and ax.get_ylim()[1] < 2.5
+
+
 @pytest.mark.parametrize("off", [0.4, 1.0])
 def test_stones_that_leave_the_sheet_are_counted_not_drawn_where_they_leave_it(off: float) -> None:
     table, before = outcomes((0.0, 0.5)), {"A": (0.0, -5.0), "B": (0.5, 0.5), "$C": (0.0, 1.0)}
@@ -135,3 +151,11 @@ def test_long_names_stand_beside_their_stones() -> None:
     figure = spread_figure(table, before, "A", "t")
     (name,) = (text for text in figure.axes[0].texts if text.get_text() == "Gelber Stein")
     assert np.hypot(*np.subtract(name.get_position(), before["Gelber Stein"])) > STONE.radius
+
+
+def test_the_map_of_a_long_name_is_told_within_the_picture() -> None:
+    name = "Gelber Stein der Mannschaft vom anderen Ufer des Sees"
+    table = outcomes((0, 0)).replace({"stone": {"A": name}})
+    figure = spread_figure(table, {name: (0, -5), "B": (0.5, 0.5), "$C": (0, 1)}, name, "t")
+    check_layout(figure)
+    assert "Mannschaft vom" not in figure.axes[1].get_ylabel()

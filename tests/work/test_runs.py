@@ -22,6 +22,14 @@ def test_clips_of_one_name_are_told_apart_by_their_folders(tmp_path: Path) -> No
     assert list(apart(clips)) == ["a-shot", "b-shot", "c"]
     again = [tmp_path / "a" / "shot.mp4", tmp_path / "a" / "shot.mov"]
     assert list(apart(again)) == ["a-shot", "a-shot-2"]
+    # Names that differ by case alone are one on some systems.
+    cased = [tmp_path / "a" / "Shot.mp4", tmp_path / "b" / "shot.mp4", tmp_path / "A" / "SHOT.mp4"]
+    assert list(apart(cased)) == ["a-Shot", "b-shot", "A-SHOT-3"]
+
+
+def test_names_that_are_no_text_are_told_as_far_as_they_are(tmp_path: Path) -> None:
+    clips = [tmp_path / f"\udcff{folder}" / "\udcfc.mp4" for folder in "ab"]
+    assert list(apart(clips)) == ["?a-?", "?b-?"]
 
 
 def test_runs_are_found_in_folders_of_folders(tmp_path: Path) -> None:
