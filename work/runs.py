@@ -48,7 +48,8 @@ def find_results(names: str | Path | Sequence[str | Path]) -> dict[str, Path]:
     paths = [[path] if path.exists() else matching(path) or [path] for path in given]
     for path in (path for some in paths for path in some):
         here = path / "results.json" if path.is_dir() else path
-        below = sorted(path.glob("*/results.json")) if path.is_dir() else []
+        inside = matching(path / "*") if path.is_dir() else []
+        below = [file for one in inside if (file := one / "results.json").exists()]
         if not here.exists() and not below:
             raise InputError(f"{here}: no such file; name the folders of runs")
         found += [here] if here.exists() else below

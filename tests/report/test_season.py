@@ -203,6 +203,13 @@ def test_two_clips_at_once_come_to_what_one_after_the_other_does(tmp_path: Path)
         assert found[1][name].results == found[2][name].results
 
 
+def test_runs_of_a_folder_are_in_their_natural_order(tmp_path: Path) -> None:
+    names = ["end 1 [red]", "end 2", "end 10"]
+    for name in names:
+        write_results(SHOT, tmp_path / "season [a]" / name / "results.json")
+    assert list(find_runs([tmp_path / "season [a]"])) == names
+
+
 def test_dots_in_names_of_folders_stay(tmp_path: Path) -> None:
     for name in ("2026.01.05", "2026.01.06"):
         (tmp_path / name).mkdir()
