@@ -165,8 +165,10 @@ def draw(frame: Frame, camera: Camera, scene: Scene) -> Image:
             rim.append(state.place + scene.radius * np.array([[0.4], [1.0]]) * tip)
         width = thick if state.seen else thin
         draw_lines(image, camera, rim, scene.colours[state.stone], width, scene.height)
+    _flash(image, camera, frame.t, scene, thick)
+    # Words come last: a ring across a name would hide it.
     _label(image, camera, states, scene, unit)
-    _flash(image, camera, frame.t, scene, unit, thick)
+    _say(image, frame.t, scene, unit)
     return image
 
 
@@ -283,18 +285,18 @@ def _cost(image: Image, place: Box, taken: Sequence[Box]) -> float:
     return hidden if inside(image, place) else hidden + 1e6
 
 
-def _flash(
-    image: Image, camera: Camera, t: float, scene: Scene, unit: float, thickness: int
-) -> None:
-    """Write the time; after a hit its name and, for a moment, a ring that grows from it."""
-    lines: list[str] = []
-    for when, place, text in scene.hits:
+def _flash(image: Image, camera: Camera, t: float, scene: Scene, thickness: int) -> None:
+    """Draw for a moment after a hit a ring that grows from it."""
+    for when, place, _ in scene.hits:
         if 0 <= t - when < _FLASH:
             growth = 0.5 + 2.5 * (t - when) / _FLASH
             ring = place + growth * scene.radius * _RIM
             draw_lines(image, camera, [ring], WHITE, thickness, scene.height)
-        if 0 <= t - when < _SAID:
-            lines.append(text)
+
+
+def _say(image: Image, t: float, scene: Scene, unit: float) -> None:
+    """Write the time, and of hits a while ago their names."""
+    lines = [text for when, _, text in scene.hits if 0 <= t - when < _SAID]
     if len(lines) > _MOST_SAID:  # a broken rack
         lines = [*lines[:_MOST_SAID], f"and {len(lines) - _MOST_SAID} more"]
     for row, text in enumerate([f"t = {t:.2f} s", *lines]):

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
+from report import overlay
 from report.overlay import _scene, draw, write_overlay
 from tests.report.browser import needs_chromium
 from vision.film.clip import Frame, open_clip
@@ -224,6 +225,26 @@ def test_the_name_of_a_hit_stays_until_it_can_be_read(shot):
     name, ice = slice(30, 50), slice(60, 240)
     assert [changed(s, name) for s in (0.0, 0.3, 1.0, 1.9, 2.1)] == [True] * 4 + [False]
     assert [changed(s, ice) for s in (0.0, 0.3, 1.0)] == [True, True, False]
+
+
+def test_the_ring_of_a_hit_hides_no_name(shot, monkeypatch):
+    hit = shot.results.collisions[0]
+    state = hit.before[hit.stones[0]]
+    still = shot.tracks[shot.tracks["stone"] == "D"].assign(x=state.x, y=state.y)
+    blank = np.full((240, 320, 3), GREY, np.uint8)
+    index = int(still["frame"].iloc[0])
+
+    def shown(since: float) -> np.ndarray:
+        return draw(Frame(index, hit.t + since, blank), camera(index), scene)[60:]
+
+    scene = _scene(still, [hit], None, 0.1455)
+    times = np.arange(0, 0.5, 0.04)
+    without, rings = shown(-0.5), [shown(since) for since in times]
+    monkeypatch.setattr(overlay, "_label", lambda *_: None)
+    letters = (without != shown(-0.5)).any(-1) & (without > 200).all(-1)
+    assert letters.sum() > 8
+    assert any((ring[letters] < 60).any() for ring in map(shown, times))
+    assert all((ring[letters] > 200).all() for ring in rings)
 
 
 def test_of_a_broken_rack_a_few_names_are_written(shot):
