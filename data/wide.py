@@ -54,14 +54,13 @@ def pairs_of(names: Sequence[str]) -> dict[str, tuple[int, int]]:
     places = {
         k: name for k, name in enumerate(names) if name.split("_")[0] not in {*ANGLE_NAMES, "sd"}
     }
-    pairs = _halves((name[:1], name[1:], k) for k, name in places.items())
-    used = {k for pair in pairs.values() for k in pair}
-    rest = ((name[-1:], name[:-1], k) for k, name in places.items() if k not in used)
-    pairs = _halves(rest) | pairs
-    pairs.pop("", None)
-    # vx, vy, ax, ay and so on are no stones; but ax, ay beside bx, by are.
-    dull = _DERIVED if set(pairs) <= _DERIVED else _DERIVED - {"a"}
-    return {stem: pair for stem, pair in pairs.items() if stem not in dull}
+    named = _halves((name[:1], name[1:], k) for k, name in places.items())
+    used = {k for pair in named.values() for k in pair}
+    others = _halves((name[-1:], name[:-1], k) for k, name in places.items() if k not in used)
+    # vx, vy, ax, ay and so on are no stones; but xA, yA are, and ax, ay beside bx, by.
+    alone = {*others, *named} <= _DERIVED
+    dull = {"", *(_DERIVED if alone else _DERIVED - {"a"})} - ({"a"} & named.keys())
+    return {stem: pair for stem, pair in (others | named).items() if stem not in dull}
 
 
 def _halves(names: Iterable[tuple[str, str, int]]) -> dict[str, tuple[int, int]]:
@@ -81,9 +80,6 @@ def read_wide(table: TextTable, names: Sequence[str], fps: float | None) -> Trac
             raise InputError(
                 f"{table.path}: only angles about the origin, no x and y; export x and y too"
             )
-        twice = [name for name, n in Counter(names).items() if n > 1 and name[:1] in ("x", "y")]
-        if twice:
-            raise InputError(f"{table.path}: two columns named {twice[0]}; rename one")
         raise InputError(
             f"{table.path}: no columns x and y (there are {', '.join(names)[:80]}); needs t, x, y"
         )
@@ -154,6 +150,9 @@ def _named_pairs(table: TextTable, names: Sequence[str]) -> list[Place]:
     pairs = pairs_of(names)
     frame = names.index("frame") if "frame" in names else None
     for stem, (x, y) in pairs.items():
+        twice = [names[k] for k in (x, y) if names.count(names[k]) > 1]
+        if twice:
+            raise InputError(f"{table.path}: two columns named {twice[0]}; rename one")
         words = re.split(r"[_ .]+", stem)
         stone = stem
         if words[0] in _CENTRE and len(words) > 1:

@@ -28,6 +28,13 @@ def test_pairs_of_columns_are_stones(tmp_path: Path, columns: str, names: list[s
     assert xy(file, names[1]) == [[3, 4], [3, 5]]
 
 
+@pytest.mark.parametrize("columns", ["xA,yA,vx,vy", "xA (m),yA (m),ax,ay"])
+def test_the_only_stone_may_be_called_a(tmp_path: Path, columns: str) -> None:
+    file = read(tmp_path, f"t,{columns}\n0,1,2,3,4\n1,1,2,3,5\n")
+    assert stones(file) == ["A"]
+    assert xy(file, "A") == [[1, 2], [1, 2]]
+
+
 @pytest.mark.parametrize("columns", ["vx,vy", "ax,ay", "vx,vy,ax,ay", "px,py", "pixelx,pixely"])
 def test_derived_columns_are_no_stones(tmp_path: Path, columns: str) -> None:
     with pytest.raises(InputError, match="no columns x and y"):
@@ -61,9 +68,10 @@ def test_empty_cells_at_the_end_may_be_left_off(tmp_path: Path, columns: str, ro
     assert xy(file, "2") == [[1, 1]]
 
 
-def test_columns_of_one_name_are_told(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="two columns named x_a; rename one"):
-        read(tmp_path, "t,x_A,y_A,x_A,y_A\n0,1,2,3,4\n")
+@pytest.mark.parametrize("name", ["a", "red"])
+def test_columns_of_one_name_are_told(tmp_path: Path, name: str) -> None:
+    with pytest.raises(InputError, match=f"two columns named x_{name}; rename one"):
+        read(tmp_path, f"t,x_{name},y_{name},x_{name},y_{name}\n0,1,2,3,4\n")
 
 
 def test_the_one_pair_of_centres_is_named_after_the_file(tmp_path: Path) -> None:
