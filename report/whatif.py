@@ -78,19 +78,12 @@ def write_odds(folder: Path, start: Start, outcomes: pd.DataFrame, odds: Mapping
     """
     write_table(outcomes, folder / "outcomes.csv")
     write_text(folder / "whatif.json", json.dumps(odds, indent=1, ensure_ascii=False) + "\n")
+    thrown = f"{odds['thrown']} thrown {count(odds['samples'], 'time')}"
     figure = spread_figure(
         outcomes,
         {stone.name: (stone.x, stone.y) for stone in start.shot.stones},
         odds["thrown"],
-        fill(
-            ", ".join(
-                [
-                    f"{odds['thrown']} thrown {count(odds['samples'], 'time')}",
-                    *told(odds["changes"]),
-                ]
-            ),
-            WIDEST,
-        ),
+        fill(", ".join([thrown, *told(odds["changes"])]), WIDEST),
         start.shot.radius,
         house=start.house,
         play=_play(start),

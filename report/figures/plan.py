@@ -13,6 +13,7 @@ from matplotlib.patches import Circle, Ellipse
 
 from data.results import Collision
 from data.sheet import SHEET, STONE, House
+from physics.simulator.simulation import Hit
 from report.figures.labels import name_stones
 from report.figures.parts import WIDTH, Array, legend_below, line, rows_of, title
 from report.style import (
@@ -81,10 +82,8 @@ def plan_figure(
     last = {name: _last_place(rows_of(tracks, name)) for name in stones}
     low, high = _extent(tracks, simulations, moved, last, house, radius)
     rows_below = 1 + (4 + len(lines)) // 3
-    scale = min((WIDTH - 0.75) / (high[0] - low[0]), _TALLEST / (high[1] - low[1]))
     with styled():
-        figure = new_figure(WIDTH, scale * (high[1] - low[1]) + 0.85 + 0.2 * rows_below)
-        ax = figure.subplots()
+        figure, ax, scale = new_sheet(low, high, rows_below)
         if house is not None:
             draw_house(ax, house, low, high, play(tracks, collisions, radius))
         for model, table in simulations.items():
@@ -97,17 +96,14 @@ def plan_figure(
             ax.plot(x, y, color=colours[stone], lw=2, alpha=0.85, zorder=3, solid_capstyle="round")
         for stone in stones:
             ax.add_patch(
-                Circle(_pair(last[stone]), radius, fc="white", ec=colours[stone], lw=1.6, zorder=4)
+                Circle(pair(last[stone]), radius, fc="white", ec=colours[stone], lw=1.6, zorder=4)
             )
         for stone in under_way:
             _draw_arrow(ax, rows_of(tracks, stone), colours[stone], radius)
         factor = _draw_ellipses(ax, tracks, last, colours, radius)
         for collision in collisions:
-            ax.plot(*_contact(collision, radius), "x", color=BLACK, ms=6, mew=1.6, zorder=6)
-        ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
+            ax.plot(*contact_place(collision, radius), "x", color=BLACK, ms=6, mew=1.6, zorder=6)
         name_stones(ax, last, colours, radius, scale)
-        ax.set(xlabel="$x$ (m)", ylabel="$y$ (m)")
-        ax.grid(False)
         title(figure, "Plan view")
         handles = _handles(bool(moved), lines, bool(collisions), bool(under_way), factor)
         if handles:
@@ -140,6 +136,27 @@ def _handles(
     return handles
 
 
+def new_sheet(low: Array, high: Array, rows_below: int) -> tuple[Figure, Axes, float]:
+    """Give a figure of the ice between two corners, m, over so many rows of legend, and inches a m.
+
+    For use within `report.style.styled`.
+    """
+    scale = min((WIDTH - 0.75) / (high[0] - low[0]), _TALLEST / (high[1] - low[1]))
+    figure = new_figure(WIDTH, scale * (high[1] - low[1]) + 0.85 + 0.2 * rows_below)
+    ax = figure.subplots()
+    ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
+    ax.set(xlabel="$x$ (m)", ylabel="$y$ (m)")
+    ax.grid(False)
+    return figure, ax, float(scale)
+
+
+def thickened(low: Array, high: Array) -> tuple[Array, Array]:
+    """Move two corners apart where what is between them would be a strip."""
+    width, height = high - low
+    thin = max(height / _NARROWEST - width, 0) / 2, max(0.35 * width - height, 0) / 2
+    return low - thin, high + thin
+
+
 def draw_house(ax: Axes, house: House, low: Array, high: Array, play: int = -1) -> None:
     """Draw rings and lines where they lie between two corners, m; stones come down y, or up."""
     radii = (house.twelve_foot, house.eight_foot, house.four_foot, house.button)
@@ -156,7 +173,7 @@ def draw_house(ax: Axes, house: House, low: Array, high: Array, play: int = -1) 
 
 def _draw_simulated(ax: Axes, path: pd.DataFrame, colour: str, dash: Any, radius: float) -> None:
     ax.plot(path["x"], path["y"], color=colour, linestyle=dash, lw=1.1)
-    end = Circle(_pair(_last_place(path)), radius, fill=False, ec=colour, lw=0.9)
+    end = Circle(pair(_last_place(path)), radius, fill=False, ec=colour, lw=0.9)
     end.set_linestyle(dash)
     ax.add_patch(end)
 
@@ -168,7 +185,7 @@ def _draw_arrow(ax: Axes, track: pd.DataFrame, colour: str, radius: float) -> No
     along = velocity / np.hypot(*velocity)
     tail = _last_place(track) + 1.1 * radius * along
     arrow = {"arrowstyle": "->", "color": colour, "lw": 1.6, "shrinkA": 0, "shrinkB": 0}
-    ax.annotate("", _pair(tail + 0.8 * radius * along), _pair(tail), arrowprops=arrow, zorder=4)
+    ax.annotate("", pair(tail + 0.8 * radius * along), pair(tail), arrowprops=arrow, zorder=4)
 
 
 def _draw_ellipses(
@@ -188,9 +205,9 @@ def _draw_ellipses(
     room = min(0.9 * radius / float(np.median(sizes)), 2 * radius / max(sizes))
     factor = max((f for f in _ENLARGED if f <= room), default=1)
     for name, sd in known.items():
-        wide, tall = _pair(2 * factor * sd)
+        wide, tall = pair(2 * factor * sd)
         ax.add_patch(
-            Ellipse(_pair(last[name]), wide, tall, fc=colours[name], alpha=0.25, lw=0, zorder=5)
+            Ellipse(pair(last[name]), wide, tall, fc=colours[name], alpha=0.25, lw=0, zorder=5)
         )
     return factor
 
@@ -208,7 +225,8 @@ def _way(track: pd.DataFrame, stone: str, collisions: Sequence[Collision]) -> Ar
     )
 
 
-def _contact(collision: Collision, radius: float) -> Array:
+def contact_place(collision: Collision | Hit, radius: float) -> Array:
+    """Where two stones touched, m; NaN where neither's place is told."""
     first, second = collision.stones
     n = np.array(collision.normal)
     places = []
@@ -219,7 +237,8 @@ def _contact(collision: Collision, radius: float) -> Array:
     return np.mean(places, axis=0) if places else np.full(2, np.nan)
 
 
-def _pair(place: Array) -> tuple[float, float]:
+def pair(place: Array) -> tuple[float, float]:
+    """Give a place as matplotlib takes it."""
     return float(place[0]), float(place[1])
 
 
@@ -263,6 +282,4 @@ def _extent(
         core_high = max(float(ends[:, 1].max()), house.twelve_foot) + edge
         high[1] = max(core_high, min(high[1], core_low + room))
         low[1] = min(core_low, max(low[1], high[1] - room))
-    width, height = high - low
-    thin = max(height / _NARROWEST - width, 0) / 2, max(0.35 * width - height, 0) / 2
-    return low - thin, high + thin
+    return thickened(low, high)

@@ -13,16 +13,13 @@ from matplotlib.patches import Circle
 from data.sheet import STONE, House
 from physics.simulator.simulation import Hit
 from report.figures.labels import name_stones
-from report.figures.parts import WIDTH, Array, legend_below, line, rows_of, title
-from report.figures.plan import draw_house
+from report.figures.parts import Array, legend_below, line, rows_of, title
+from report.figures.plan import contact_place, draw_house, new_sheet, pair, thickened
 from report.numbers import count, fixed
-from report.style import BLACK, GREY, new_figure, plain_text, stone_colours, styled
+from report.style import BLACK, GREY, plain_text, stone_colours, styled
 
 FAR = 6.4
 """How far from the tee, or from where a stone began, a place still is in view, m."""
-
-TALLEST, NARROWEST = 7.4, 2.2
-"""Height of the sheet at most: in the figure, inches, and over its width."""
 
 
 def simulated_figure(
@@ -63,29 +60,19 @@ def simulated_figure(
     low, high = _extent([*starts.values(), *shown.values()], centre, house, radius)
     far = [name for name, end in ends.items() if not ((low < end) & (end < high)).all()]
     colours = stone_colours(paths)
-    scale = min((WIDTH - 0.75) / (high[0] - low[0]), TALLEST / (high[1] - low[1]))
     with styled():
-        rows_below = 1 + (2 + len(far)) // 2
-        figure = new_figure(WIDTH, scale * (high[1] - low[1]) + 0.85 + 0.2 * rows_below)
-        ax = figure.subplots()
+        figure, ax, scale = new_sheet(low, high, 1 + (2 + len(far)) // 2)
         if house is not None:
             draw_house(ax, house, low, high, play)
         for name, path in paths.items():
-            ax.add_patch(
-                Circle(_pair(path[0]), radius, fc="none", ec=colours[name], lw=0.8, ls=":")
-            )
+            ax.add_patch(Circle(pair(path[0]), radius, fc="none", ec=colours[name], lw=0.8, ls=":"))
             ax.plot(*path.T, color=colours[name], lw=1.6, alpha=0.85, zorder=3)
         for name, end in shown.items():
             rim: dict[str, Any] = {"ls": "--" if name in gone else "-", "ec": colours[name]}
-            ax.add_patch(Circle(_pair(end), radius, fc="white", lw=1.6, zorder=4, **rim))
+            ax.add_patch(Circle(pair(end), radius, fc="white", lw=1.6, zorder=4, **rim))
         for hit in hits:
-            first = hit.before[hit.stones[0]]
-            place = np.array([first.x, first.y]) + radius * np.array(hit.normal)
-            ax.plot(*place, "x", color=BLACK, ms=6, mew=1.6, zorder=6)
-        ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
+            ax.plot(*contact_place(hit, radius), "x", color=BLACK, ms=6, mew=1.6, zorder=6)
         name_stones(ax, shown, colours, radius, scale)
-        ax.set(xlabel="$x$ (m)", ylabel="$y$ (m)")
-        ax.grid(False)
         title(figure, f"Simulated: {count(len(paths), 'stone')}, {count(len(hits), 'hit')}")
         handles = [line("where it began", color=GREY, marker="o", mfc="none", ls="none", ms=8)]
         if hits:
@@ -120,10 +107,4 @@ def _extent(
     if house is not None:
         low = np.minimum(low, -house.twelve_foot - radius)
         high = np.maximum(high, house.twelve_foot + radius)
-    width, height = high - low
-    thin = max(height / NARROWEST - width, 0) / 2, max(0.35 * width - height, 0) / 2
-    return low - thin, high + thin
-
-
-def _pair(place: Array) -> tuple[float, float]:
-    return float(place[0]), float(place[1])
+    return thickened(low, high)
