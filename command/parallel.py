@@ -23,7 +23,7 @@ from data.progress import Progress, no_progress
 Item = TypeVar("Item")
 Outcome = TypeVar("Outcome")
 
-_ENDS = ("SIGINT", "SIGHUP")
+_OF_A_TERMINAL = ("SIGINT", "SIGHUP")
 """Signals of a terminal that ask to end, where the platform has them."""
 
 _KILLED = 9
@@ -117,7 +117,7 @@ def _killed(processes: Iterable[BaseProcess]) -> bool:
 
 def _heeded() -> list[int]:
     """Signals that end the work: of those of a terminal not what is ignored, as under nohup."""
-    numbers = [getattr(signal, name) for name in _ENDS if hasattr(signal, name)]
+    numbers = [getattr(signal, name) for name in _OF_A_TERMINAL if hasattr(signal, name)]
     return [signal.SIGTERM, *(n for n in numbers if signal.getsignal(n) != signal.SIG_IGN)]
 
 
