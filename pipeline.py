@@ -18,7 +18,6 @@ from command.arguments import out_folder, settings_of, what_if_folder
 from command.bars import Bars
 from command.garbage import collect_seldom
 from command.guard import guarded, one_line, write_anywhere
-from command.parallel import in_processes, processors
 from command.parser import command_line
 from command.threads import use_one_thread
 from data.errors import CurlshotError, InputError
@@ -30,7 +29,7 @@ from work.analyse import Run, analyse
 from work.convert import convert, convert_each
 from work.film import film
 from work.measure import Measured, measure, refuse_clips
-from work.runs import apart, find_results, find_runs
+from work.runs import apart, find_results, find_runs, read_runs
 from work.settings import Settings
 from work.simulate import measured_shot, read_start, sampled, shot_file, throw_often
 
@@ -150,6 +149,8 @@ def run_each(
     once = {path.resolve(): path for path in map(Path, named(clips))}
     tasks = {name: (clip, folder / name) for name, clip in apart([*once.values()]).items()}
     if min(jobs, len(tasks)) > 1:
+        from command.parallel import in_processes
+
         outcomes = in_processes(partial(_attempt, settings), tasks, jobs, "clips", progress)
     else:
         outcomes = {
@@ -280,32 +281,45 @@ def season(
     pooled : dict
         ``restitution`` and ``friction``; see `physics.statistics.pool.Pooled`.
     """
+    shots, means, _ = _put_together(runs, out, folders or {}, left_out or {})
+    return shots, means
+
+
+def _put_together(
+    runs: Mapping[str, Results],
+    out: str | Path | None,
+    folders: Mapping[str, Path],
+    left_out: Mapping[str, str],
+) -> tuple[pd.DataFrame, dict[str, Pooled], dict[str, str]]:
+    """As `season`, and which shots do not count and why, those that are there twice among them."""
     from physics.statistics.season import hits_table, pooled, repeated, shots_table
 
     folder = None if out is None else check_folder(out)
     again = repeated(runs)
+    unused = {name: f"the same shot as {one}: counted once" for name, one in again.items()}
+    unused |= left_out
     runs = {name: run for name, run in runs.items() if name not in again}
     shots, hits = shots_table(runs), hits_table(runs)
     means = pooled(shots)
     if folder is None:
-        return shots, means
+        return shots, means, unused
     from report.season import write_season
     from report.season_page import season_page
     from report.template import link
 
-    pages = {name: path / "report.html" for name, path in (folders or {}).items() if name in runs}
+    pages = {name: path / "report.html" for name, path in folders.items() if name in runs}
     page = season_page(
         folder.resolve().name,
         shots,
         hits,
         means,
         {name: link(path, folder) for name, path in pages.items() if path.exists()},
-        {name: _twice(one) for name, one in again.items()} | dict(left_out or {}),
+        unused,
         VERSION,
     )
     with staged(folder) as stage:
         write_season(stage, shots, hits, means, page)
-    return shots, means
+    return shots, means, unused
 
 
 def check(
@@ -402,6 +416,8 @@ def _do_run(arguments: argparse.Namespace, bars: Bars) -> str:
 
 
 def _run_season(arguments: argparse.Namespace, clips: Sequence[Path], bars: Bars) -> str:
+    from command.parallel import processors
+
     folder = Path(arguments.out or "season")
     jobs = arguments.jobs or processors()
     done, failed = run_each(clips, folder, settings_of(arguments), bars, jobs)
@@ -410,38 +426,27 @@ def _run_season(arguments: argparse.Namespace, clips: Sequence[Path], bars: Bars
         raise InputError(f"none of {len(clips)} clips could be used; {name}: {error}")
     runs = {name: run.results for name, run in done.items()}
     unused = {name: f"not used: {one_line(str(why))}" for name, why in failed.items()}
-    folders = {name: folder / name for name in runs}
-    shots, means = season(runs, folder, folders, unused)
-    return _season_summary(shots, means, runs, unused, folder)
+    return _season_summary(runs, folder, {name: folder / name for name in runs}, unused)
 
 
 def _do_season(arguments: argparse.Namespace, _: Bars) -> str:
-    folder = Path(arguments.out or "season")
-    runs = find_runs(arguments.runs)
-    folders = {name: path.parent for name, path in find_results(arguments.runs).items()}
-    shots, means = season(runs, folder, folders)
-    return _season_summary(shots, means, runs, {}, folder)
+    files = find_results(arguments.runs)
+    folders = {name: file.parent for name, file in files.items()}
+    return _season_summary(read_runs(files), Path(arguments.out or "season"), folders, {})
 
 
 def _season_summary(
-    shots: pd.DataFrame,
-    means: Mapping[str, Pooled],
     runs: Mapping[str, Results],
-    unused: Mapping[str, str],
     folder: Path,
+    folders: Mapping[str, Path],
+    unused: Mapping[str, str],
 ) -> str:
     """Say what many shots tell, which do not count, and where the page is."""
-    from physics.statistics.season import repeated
     from report.summary import season_text
 
-    left_out = {name: _twice(one) for name, one in repeated(runs).items()} | dict(unused)
+    shots, means, left_out = _put_together(runs, folder, folders, unused)
     lines = [*season_text(shots, means), *(f"{name}   {why}" for name, why in left_out.items())]
     return "\n".join([*lines, f"written     {folder / 'season.html'}"])
-
-
-def _twice(other: str) -> str:
-    """Say of a shot that it is another one."""
-    return f"the same shot as {other}: counted once"
 
 
 def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:

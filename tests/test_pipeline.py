@@ -277,7 +277,7 @@ def test_help_loads_nothing_heavy() -> None:
         "import sys, pipeline\npipeline.command_line('').format_help()\nprint(sorted(sys.modules))"
     )
     done = in_python(code)
-    for heavy in ("numpy", "pandas", "cv2", "scipy", "matplotlib", "av"):
+    for heavy in ("numpy", "pandas", "cv2", "scipy", "matplotlib", "av", "multiprocessing"):
         assert f"'{heavy}'" not in done.stdout
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -61,16 +61,21 @@ def find_results(names: str | Path | Sequence[str | Path]) -> dict[str, Path]:
 
 
 def find_runs(names: str | Path | Sequence[str | Path]) -> dict[str, Results]:
-    """Read the results of runs, found as `find_results` does.
+    """Read the results of runs, found as `find_results` does; see `read_runs`."""
+    return read_runs(find_results(names))
+
+
+def read_runs(files: Mapping[str, Path]) -> dict[str, Results]:
+    """Read the results of runs, by name.
 
     Raises
     ------
     InputError
-        Where there are none, one is no results.json, or not all are of discs of one size.
+        Where one is no results.json, or not all are of discs of one size.
     """
     from data.results_file import read_results
 
-    runs = {name: read_results(path) for name, path in find_results(names).items()}
+    runs = {name: read_results(path) for name, path in files.items()}
     first, *others = runs
     for name in others:
         if runs[name].radius != runs[first].radius:
