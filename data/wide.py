@@ -31,6 +31,7 @@ COMPANIONS = ("theta", *ERRORS, "frame")
 
 _CENTRE = {"c", "cm", "com", "centre", "center", "pos", "position"}
 _DERIVED = {"v", "a", "p", "pixel", "px", "vel", "velocity", "acc", "acceleration", "sd"}
+_QUANTITY = "|".join(sorted(_DERIVED, key=len, reverse=True))
 
 
 @dataclass(frozen=True)
@@ -57,10 +58,26 @@ def pairs_of(names: Sequence[str]) -> dict[str, tuple[int, int]]:
     named = _halves((name[:1], name[1:], k) for k, name in places.items())
     used = {k for pair in named.values() for k in pair}
     others = _halves((name[-1:], name[:-1], k) for k, name in places.items() if k not in used)
-    # vx, vy, ax, ay and so on are no stones; but xA, yA are, and ax, ay beside bx, by.
-    alone = {*others, *named} <= _DERIVED
-    dull = {"", *(_DERIVED if alone else _DERIVED - {"a"})} - ({"a"} & named.keys())
-    return {stem: pair for stem, pair in (others | named).items() if stem not in dull}
+    return _stones(others, rf"[_ .]*({_QUANTITY})$", set()) | _stones(
+        named, rf"^({_QUANTITY})([_ .]+|$)", {"a"}
+    )
+
+
+def _stones(
+    pairs: Mapping[str, tuple[int, int]], quantity: str, always: set[str]
+) -> dict[str, tuple[int, int]]:
+    """Leave out what is no place: ``vx, vy`` and ``ax, ay``, and of a stone ``red_vx, red_vy``.
+
+    But ``xA, yA`` are of a stone A, and ``ax, ay`` of one beside ``bx, by``.
+    """
+    lettered = any(len(stem) == 1 and stem not in _DERIVED for stem in pairs)
+    known = {"a", "p"} if lettered else always  # the first of sixteen and the last
+    whose = {stem: re.sub(quantity, "", stem) for stem in pairs}
+    return {
+        stem: pair
+        for stem, pair in pairs.items()
+        if stem in known or (stem and (whose[stem] == stem or whose[stem] not in {"", *pairs}))
+    }
 
 
 def _halves(names: Iterable[tuple[str, str, int]]) -> dict[str, tuple[int, int]]:

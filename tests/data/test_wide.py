@@ -19,6 +19,7 @@ from tests.data.reading import read, stones, xy
         ("c_a_x,c_a_y,c_b_x,c_b_y", ["a", "b"]),
         ("ax,ay,bx,by", ["a", "b"]),
         ("XA,YA,XB,YB", ["A", "B"]),
+        ("xO,yO,xP,yP", ["O", "P"]),
     ],
 )
 def test_pairs_of_columns_are_stones(tmp_path: Path, columns: str, names: list[str]) -> None:
@@ -39,6 +40,20 @@ def test_the_only_stone_may_be_called_a(tmp_path: Path, columns: str) -> None:
 def test_derived_columns_are_no_stones(tmp_path: Path, columns: str) -> None:
     with pytest.raises(InputError, match="no columns x and y"):
         read(tmp_path, f"t,{columns}\n0,1,2,3,4\n")
+
+
+@pytest.mark.parametrize("columns", ["vx,vy,ax,ay", "ax,ay"])
+def test_nor_do_they_stand_beside_one(tmp_path: Path, columns: str) -> None:
+    file = read(tmp_path, f"t,x,y,{columns}\n0,1,2{',9' * (columns.count(',') + 1)}\n")
+    assert stones(file) == ["shot"]
+    assert not file.warnings
+
+
+@pytest.mark.parametrize(
+    "columns", ["red_x,red_y,red_vx,red_vy", "x_red,y_red,x_v_red,y_v_red", "redx,redy,ax,ay"]
+)
+def test_nor_are_those_of_stones(tmp_path: Path, columns: str) -> None:
+    assert stones(read(tmp_path, f"t,{columns}\n0,1,2,3,4\n1,1,2,3,5\n")) == ["red"]
 
 
 @pytest.mark.parametrize("row", ["0.1,1,2,3", "1,2,3,4", "0.1,1,,3"])
