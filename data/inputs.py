@@ -28,7 +28,9 @@ def named(names: str | Path | Iterable[str | Path]) -> tuple[str | Path, ...]:
 
 
 def find_inputs(names: str | Path | Sequence[str | Path]) -> tuple[Path, ...]:
-    """Files behind what a person names: files, globs, folders of pictures in natural order.
+    """Files behind what a person names: files, globs, folders of pictures.
+
+    Pictures and clips come in natural order, tables as they are named.
 
     Raises
     ------
@@ -48,7 +50,7 @@ def find_inputs(names: str | Path | Sequence[str | Path]) -> tuple[Path, ...]:
                 raise InputError(
                     f"{path}: no pictures in this folder; clips are named as {path / '*.mp4'}"
                 )
-            found += sorted(pictures, key=_natural)
+            found += pictures
         elif path.exists():
             found.append(path)
         else:
@@ -58,7 +60,15 @@ def find_inputs(names: str | Path | Sequence[str | Path]) -> tuple[Path, ...]:
             found += matches
     if not found:
         raise InputError("no input; name a clip, pictures or a table of tracks")
-    return tuple(found)
+    tables = any(path.suffix.lower() in TABLE_SUFFIXES for path in found)
+    return tuple(found if tables else in_order(found))
+
+
+def in_order(paths: Iterable[Path]) -> list[Path]:
+    """Put files or folders that lie together in natural order: shells name 10 before 9."""
+    given = list(paths)
+    rank = {folder: k for k, folder in enumerate(dict.fromkeys(path.parent for path in given))}
+    return sorted(given, key=lambda path: (rank[path.parent], _natural(path.name)))
 
 
 def matching(name: str | Path) -> list[Path]:
@@ -68,7 +78,8 @@ def matching(name: str | Path) -> list[Path]:
     there = path.parent.is_dir()
     pattern = Path(glob.escape(str(path.parent)), path.name) if there else path
     # Path.glob takes no absolute pattern, nor two stars within a name.
-    return sorted(map(Path, glob.glob(str(pattern))), key=_natural)  # noqa: PTH207
+    found = map(Path, glob.glob(str(pattern)))  # noqa: PTH207
+    return sorted(found, key=lambda path: [_natural(part) for part in path.parts])
 
 
 def picture_times(paths: Sequence[Path]) -> list[float] | None:
@@ -96,7 +107,7 @@ def picture_times(paths: Sequence[Path]) -> list[float] | None:
     return [(number - numbers[0]) / usual for number in numbers]
 
 
-def _natural(path: Path) -> list[tuple[int, str]]:
+def _natural(name: str) -> list[tuple[int, str]]:
     """Sort key by which picture 9 comes before picture 10."""
-    parts = re.findall(r"\d+|\D+", path.name)
+    parts = re.findall(r"\d+|\D+", name)
     return [(int(p), "") if p.isdecimal() else (-1, p) for p in parts]

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from data.errors import InputError
-from data.inputs import matching, named
+from data.inputs import in_order, matching, named
 from data.text import printable
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ def find_results(names: str | Path | Sequence[str | Path]) -> dict[str, Path]:
     Returns
     -------
     dict of str to Path
-        Each ``results.json``, by the name of its folder.
+        Each ``results.json``, by the name of its folder, in natural order.
 
     Raises
     ------
@@ -44,7 +44,7 @@ def find_results(names: str | Path | Sequence[str | Path]) -> dict[str, Path]:
         Where there are none.
     """
     found: list[Path] = []
-    given = [Path(name) for name in named(names)]
+    given = in_order(Path(name) for name in named(names))
     paths = [[path] if path.exists() else matching(path) or [path] for path in given]
     for path in (path for some in paths for path in some):
         here = path / "results.json" if path.is_dir() else path

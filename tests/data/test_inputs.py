@@ -21,11 +21,23 @@ def test_pictures_of_a_folder_come_in_natural_order(tmp_path: Path) -> None:
     assert [path.name for path in find_inputs([tmp_path / "f"])] == ["1a.jpg", "9.PNG", "10.png"]
 
 
+@pytest.mark.parametrize("kind", ["png", "mp4"])
+def test_so_do_those_that_a_shell_has_named(tmp_path: Path, kind: str) -> None:
+    by_shell = made(tmp_path / "b", f"f1.{kind}", f"f10.{kind}", f"f9.{kind}")
+    other = made(tmp_path / "a", f"f2.{kind}")
+    found = find_inputs([*by_shell, *other])
+    assert [path.stem for path in found] == ["f1", "f9", "f10", "f2"]
+
+
 def test_a_glob_is_sorted_and_files_keep_their_order(tmp_path: Path) -> None:
     made(tmp_path, "b2.csv", "b10.csv", "a.txt")
     found = find_inputs([tmp_path / "a.txt", str(tmp_path / "b*.csv")])
     assert [path.name for path in found] == ["a.txt", "b2.csv", "b10.csv"]
     assert find_inputs(str(tmp_path / "b**.csv")) == found[1:]
+    for folder in ("end 2", "end 10"):
+        made(tmp_path / folder, "a.csv")
+    found = find_inputs(str(tmp_path / "end*" / "a.csv"))
+    assert [path.parent.name for path in found] == ["end 2", "end 10"]
 
 
 def test_one_name_alone_is_no_list_of_letters(tmp_path: Path) -> None:

@@ -208,6 +208,8 @@ def test_runs_of_a_folder_are_in_their_natural_order(tmp_path: Path) -> None:
     for name in names:
         write_results(SHOT, tmp_path / "season [a]" / name / "results.json")
     assert list(find_runs([tmp_path / "season [a]"])) == names
+    by_shell = sorted((tmp_path / "season [a]").iterdir())
+    assert list(find_runs(by_shell)) == names
 
 
 def test_dots_in_names_of_folders_stay(tmp_path: Path) -> None:
