@@ -99,7 +99,7 @@ def read_angles(path: Path, angle_unit: str | None = None, fps: float | None = N
     if "stone" in names or len(doubled) > len(set(doubled)):
         raise InputError(f"{path}: several tracks; an angle needs one export per stone")
     clock = clock_column(table, names, fps)
-    values = values_of(table, {clock, *columns.values()})
+    values = values_of(table, columns.values(), clock)
     times, _, warnings = times_of(table, values, clock, fps)
     refuse_disorder(table, times)
     theta = values[columns["θ"]] if "θ" in columns else None

@@ -80,11 +80,13 @@ def times_of(
         return np.arange(len(table.rows)) / (fps or 1.0), None, []
     times = values[column]
     written = "" if table.names is None else table.names[column]
+    (cells,) = table.cells([column])
     if fps is not None and plain_name(written) == "frame":
         return times / fps, None, []
-    bracket = re.search(r"[(\[]\s*(\w+)\s*[)\]]", written[:100])
-    if bracket and bracket.group(1).lower() in TIME_NAMES:
-        bracket = None  # as in time (t)
+    bracket = re.search(r"[(\[]\s*([^)\]]+?)\s*[)\]]", written[:100])
+    minutes = ":" in "".join(cells)  # as in 0:01.25
+    if bracket and (minutes or bracket.group(1).lower() in TIME_NAMES):
+        bracket = None  # nor does time (t) tell a unit
     told = abbreviated(bracket.group(1)) if bracket else "s"
     if told not in TIME_UNITS:
         raise InputError(
@@ -94,8 +96,8 @@ def times_of(
     unit = TIME_UNITS[told]
     different = np.unique(times)
     whole = bool((different == np.floor(different)).all()) and len(different) > 2
-    decimals = _decimals(table, column)
-    if whole and not bracket and (fps is not None or decimals == 0):
+    decimals = _decimals(table, cells)
+    if whole and not (bracket or minutes) and (fps is not None or decimals == 0):
         if fps is None:
             raise InputError(
                 f"{table.path}: the times are whole numbers: frames? give their rate (--fps), 1 if"
@@ -108,9 +110,9 @@ def times_of(
     return times * unit, decimals if unit == 1.0 else None, warnings
 
 
-def _decimals(table: TextTable, column: int) -> int | None:
-    """How many decimals a column is printed to; None where an exponent leaves it open."""
-    (cells,) = plain_decimals(table.cells([column]), str(table.path))
+def _decimals(table: TextTable, written: list[str]) -> int | None:
+    """How many decimals cells are printed to; None where an exponent leaves it open."""
+    (cells,) = plain_decimals([written], str(table.path))
     if any("E" in cell or "e" in cell for cell in cells):
         return None
     return max((len(cell.partition(".")[2]) for cell in cells), default=None)
@@ -133,7 +135,7 @@ def refuse_disorder(table: TextTable, times: Array) -> None:
         )
 
 
-def values_of(table: TextTable, columns: Iterable[int | None]) -> dict[int, Array]:
-    """Numbers of some columns, by column; read at once, for one decimal sign."""
-    wanted = sorted(column for column in columns if column is not None)
-    return dict(zip(wanted, table.numbers(wanted).T, strict=True))
+def values_of(table: TextTable, columns: Iterable[int], clock: int | None) -> dict[int, Array]:
+    """Numbers of some columns and the times, by column; read at once, for one decimal sign."""
+    wanted = sorted({*columns} if clock is None else {*columns, clock})
+    return dict(zip(wanted, table.numbers(wanted, clock).T, strict=True))

@@ -26,7 +26,12 @@ _PREFACE = 10
 _SPREADSHEET = re.compile('"?sep=.?"?', re.IGNORECASE)
 """What spreadsheets take for the delimiter of what follows, and no name of a track."""
 
-_UNIT = re.compile(r"[(\[]?(m?s|sec|[cm]?m|in|ft|px|kg|rad|deg|°|(m|rad|deg|°)/s[²2]?)?[)\]]?")
+_UNIT = re.compile(
+    r"[(\[]?(m?s|sec|min(:sec)?|h|[cm]?m|in|ft|yd|px|kg|rad|deg|°|(m|rad|deg|°)/s[²2]?)?[)\]]?"
+)
+_CLOCK = re.compile(r"(?:(\d{1,9}):)?(\d{1,9}):([0-5]?\d(?:\.\d*)?)")
+"""Hours, minutes and seconds."""
+
 _MISSING = frozenset({"", "nan", "na", "n/a", "#n/a", "#nv", "null", "none", "-"})
 
 
@@ -88,8 +93,10 @@ class TextTable:
                 cells.append(fields[column].strip() if column < len(fields) else "")
         return picked
 
-    def numbers(self, columns: Sequence[int]) -> Array:
+    def numbers(self, columns: Sequence[int], clock: int | None = None) -> Array:
         """Numbers of the given columns, shape (rows, columns); NaN where a cell is empty.
+
+        In the column of times, `clock`, 1:02.5 is 62.5 s.
 
         Raises
         ------
@@ -99,6 +106,8 @@ class TextTable:
         picked = self.cells(columns)
         out = np.empty((len(self.rows), len(columns)))
         for k, cells in enumerate(plain_decimals(picked, str(self.path))):
+            if columns[k] == clock and ":" in "".join(cells):
+                cells = _in_seconds(cells, self.path)
             for row, cell in enumerate(cells):
                 try:
                     # Python's float also takes 1_000, which nobody means.
@@ -136,6 +145,29 @@ class TextTable:
     def _split_rows(self) -> Iterator[tuple[list[str], int]]:
         for row, line in zip(self.rows, self.line_numbers, strict=True):
             yield self.split(row), line
+
+
+def _in_seconds(cells: Sequence[str], path: Path) -> list[str]:
+    """Write minutes and seconds with decimals, as 0:01.25 or 0:00:01.25, as seconds.
+
+    Raises
+    ------
+    InputError
+        Where seconds have no decimals: then 0:01:25 may end in seconds, hundredths or frames.
+    """
+    told = {cell: _CLOCK.fullmatch(cell) for cell in cells if ":" in cell}
+    odd = [cell for cell, parts in told.items() if parts is None]
+    if odd or not any("." in cell for cell in told):
+        raise InputError(
+            f"{path}: a time as {quoted((odd or [*told])[0])} may end in seconds, hundredths or"
+            " frames; write seconds (1.25), or minutes and seconds with decimals (0:01.25)"
+        )
+    return [
+        str(3600 * int(parts[1] or 0) + 60 * int(parts[2]) + float(parts[3]))
+        if (parts := told.get(cell))
+        else cell
+        for cell in cells
+    ]
 
 
 def read_text_table(

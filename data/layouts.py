@@ -94,7 +94,7 @@ def _tidy(table: TextTable, names: Sequence[str], fps: float | None) -> TrackFil
         raise InputError(f"{table.path}: no column t; needs stone, t, x, y")
     clock = clock_column(table, names, fps)
     wanted = {n: names.index(n) for n in ("x", "y", "seen", *COMPANIONS, *SEEN_AS) if n in names}
-    values = values_of(table, {clock, *wanted.values()})
+    values = values_of(table, wanted.values(), clock)
     times, decimals, warnings = times_of(table, values, clock, fps)
     stones = [stone.strip("\"'") for stone in table.cells([names.index("stone")])[0]]
     tracks = pd.DataFrame({"stone": stones, "t": times} | {n: values[k] for n, k in wanted.items()})
@@ -123,8 +123,9 @@ def _without_header(table: TextTable, fps: float | None) -> TrackFile:
             f"{table.path}: {width} columns without a header; needs t, x, y (and x, y of each"
             " further stone), or the frame rate (--fps) where there is no t"
         )
-    values = values_of(table, range(width))
-    times, decimals, warnings = times_of(table, values, None if timeless else 0, fps)
+    clock = None if timeless else 0
+    values = values_of(table, range(width), clock)
+    times, decimals, warnings = times_of(table, values, clock, fps)
     refuse_disorder(table, times)
     starts = range(0 if timeless else 1, width, 2)
     numbers = np.column_stack(list(values.values()))

@@ -53,8 +53,8 @@ def read_text(path: Path) -> str:
         raise InputError(f"{path}: a folder, not a table of tracks") from None
     except (OSError, ValueError) as error:
         raise InputError(f"{path}: cannot be read ({error})") from None
-    if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
-        text = raw.decode("utf-16", errors="replace")
+    if (wide := _utf_16(raw)) is not None:
+        text = raw.decode(wide, errors="replace")
     elif b"\0" in raw or raw.startswith(b"PK\x03\x04"):
         raise InputError(f"{path}: not text, so no table of tracks; {_EXPORT}")
     else:
@@ -70,6 +70,18 @@ def read_text(path: Path) -> str:
     if len(text) > LONGEST_LINE and max(map(len, text.split("\n"))) > LONGEST_LINE:
         raise InputError(f"{path}: a line of over {LONGEST_LINE} characters is no row of a table")
     return text
+
+
+def _utf_16(raw: bytes) -> str | None:
+    """Tell which UTF-16 a text is in, with a mark at its beginning or without one."""
+    if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return "utf-16"
+    # Digits and Latin letters have one zero each, all at odd or all at even places.
+    halves = {"utf-16-be": raw[::2], "utf-16-le": raw[1::2]}
+    zeros = {name: half.count(0) for name, half in halves.items()}
+    found = max(zeros, key=lambda name: zeros[name])
+    told = 2 * zeros[found] > len(halves[found]) and not min(zeros.values())
+    return found if told and len(raw) % 2 == 0 else None
 
 
 def plain_digits(text: str) -> str:

@@ -106,11 +106,11 @@ def read_wide(table: TextTable, names: Sequence[str], fps: float | None) -> Trac
             f"{table.path}: two stones with one name, {doubled[0]}; rename one in the line of names"
         )
     clock = clock_column(table, names, fps)
-    columns = {clock} | {k for place in places for k in place.columns.values()}
-    values = values_of(table, columns)
+    columns = {k for place in places for k in place.columns.values()}
+    values = values_of(table, columns, clock)
     times, decimals, warnings = times_of(table, values, clock, fps)
     others = [k for k, name in enumerate(names) if name in TIME_NAMES and k != clock]
-    if any(not np.array_equal(table.numbers([k])[:, 0], values[clock or 0]) for k in others):
+    if any(not np.array_equal(table.numbers([k], k)[:, 0], values[clock or 0]) for k in others):
         raise InputError(f"{table.path}: two columns of times that differ; one file per stone")
     unread = [stem for stem, (x, _) in pairs_of(names).items() if x not in columns]
     if unread:

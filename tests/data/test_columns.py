@@ -31,7 +31,7 @@ def read_head(tmp_path: Path, head: str) -> TextTable:
 
 def times(tmp_path: Path, head: str, cells: list[str], fps: float | None = None):
     read = table(tmp_path, f"{head},x\n" + "".join(f"{cell},0.5\n" for cell in cells))
-    return times_of(read, {0: read.numbers([0])[:, 0]}, 0, fps)
+    return times_of(read, {0: read.numbers([0], 0)[:, 0]}, 0, fps)
 
 
 @pytest.mark.parametrize(
@@ -83,6 +83,33 @@ def test_other_units_of_time_become_seconds(
     found, decimals, warnings = times(tmp_path, head, cells)
     np.testing.assert_allclose(found, expected)
     assert (decimals, warnings) == (None, [])
+
+
+@pytest.mark.parametrize("head", ["t", "t [min:sec]", "time (hh:mm:ss.000)", "t (min)"])
+@pytest.mark.parametrize("hours", ["", "0:", "00:0"])
+def test_times_of_minutes_and_seconds_become_seconds(tmp_path: Path, head: str, hours: str) -> None:
+    found, decimals, _ = times(tmp_path, head, [f"{hours}0:59.50", f"{hours}1:00.25"])
+    np.testing.assert_allclose(found, [59.5, 60.25])
+    assert decimals == 2
+    whole = [f"{hours}0:0{second}.0" for second in range(3)]
+    assert times(tmp_path, head, whole, 25.0)[0].tolist() == [0.0, 1.0, 2.0]
+
+
+@pytest.mark.parametrize("cells", [["0:01:25", "0:01:29"], ["0:00:01:25"], ["0:61.5"], ["1:2:"]])
+def test_what_a_time_ends_in_is_not_guessed(tmp_path: Path, cells: list[str]) -> None:
+    with pytest.raises(InputError, match=f"a time as “{cells[0]}” .*write seconds"):
+        times(tmp_path, "t", cells)
+
+
+def test_only_times_have_colons(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"“0:01\.5” is not a number in column x"):
+        table(tmp_path, "t,x\n0,0:01.5\n").numbers([0, 1], 0)
+
+
+@pytest.mark.parametrize("unit", ["min:sec", "1/25 s"])
+def test_a_unit_that_is_no_word_is_not_taken_for_seconds(tmp_path: Path, unit: str) -> None:
+    with pytest.raises(InputError, match=f"time unit is “{unit}”, which is unknown here"):
+        times(tmp_path, f"t ({unit})", ["0.5", "1.25"])
 
 
 def test_a_time_in_no_unit_that_is_known_is_refused(tmp_path: Path) -> None:

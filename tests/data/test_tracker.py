@@ -39,7 +39,7 @@ def test_every_delimiter_and_decimal_sign(
     assert bool(found.warnings) == (delimiter == decimal == ",")
 
 
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"])
 @pytest.mark.parametrize("line_end", ["\n", "\r\n", "\r"])
 def test_swedish_numbers_line_ends_and_encodings(
     tmp_path: Path, line_end: str, encoding: str
