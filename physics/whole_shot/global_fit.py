@@ -44,6 +44,10 @@ FINER, LESS = 3, 2.0
 """How often noise is told anew at most, where with what it was the fit has come to a better place:
 one with so many times less of it."""
 
+NEAR = 1e-6
+"""Share of its prior's error within which an unknown is what is known of it beforehand: nothing
+that is seen tells of it, and every step takes it nearer, as spins to 1e-265 rad/s."""
+
 GOOD = 0.5
 """Share of what a step was to gain that it gains where the next may be longer."""
 
@@ -145,6 +149,8 @@ class _Problem:
                 noise = self._noise(at, residuals)
             if noise > self.noise / LESS:
                 break
+        untold = np.abs(at - self.mean) < NEAR * np.nan_to_num(self.sd, posinf=0.0)
+        at = np.where(untold, self.mean, at)
         slopes = self._slopes(at, residuals)
         normal, _ = self._normal(at, residuals, slopes)
         cov = inverse(normal)

@@ -52,6 +52,15 @@ def test_held_unknowns_stay_and_shared_ones_are_one() -> None:
         fit_shots(shots, fixed={"nonsense": 1.0})
 
 
+def test_a_spin_of_which_nothing_tells_is_none() -> None:
+    motion = simulate([Start(0, -3, 0, 1.5, 0.3, 1.0)], 4, ice=Ice(b=0.0109), keep_every=4)
+    seen = watch(motion, np.random.default_rng(3), sd=0.003).assign(theta=np.nan)
+    whole = estimate(seen, (), radius=RADIUS).whole
+    assert whole is not None
+    found = fit_shots(whole.shots, fixed=STRAIGHT, start={"A.omega": 1.5})["A.omega"]
+    assert (found.value, found.stderr) == (0.0, pytest.approx(3.0))
+
+
 def test_a_fit_that_comes_to_where_another_ended_is_that_one() -> None:
     shots = [whole().shots[0]]
     fixed = {"friction": 0.0109, "loss": 0.0125, "inertia": 0.5, **STRAIGHT}
