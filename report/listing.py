@@ -10,6 +10,7 @@ import pandas as pd
 from data.coach_units import METRES, Unit
 from data.results import Prediction, Results, SimulationScore
 from data.sheet import House
+from physics.local_fit.glides import WORST
 from report import tables
 from report.coach_listing import coach_tables
 from report.columns import Column, Table
@@ -153,7 +154,8 @@ def page_tables(
         Table(
             "glides",
             "Glides",
-            "Friction of each free glide.",
+            f"Friction of each free glide that tells it to {WORST:g} or better. Shorter ones are"
+            " left out, as are those slower than a radius a second, which hardly go on.",
             _GLIDES,
             tables.glide_table(results.glides),
         ),

@@ -57,3 +57,7 @@ def test_why_a_hit_tells_no_friction_between_stones(shot):
     made = {t.name: t for t in page_tables(replace(shot.results, collisions=hits), shot.tracks)}
     column = next(c for c in made["hits"].head if c.title == "note on that friction")
     assert column.parts(made["hits"].records[0])[0] == "no spin"
+
+
+def test_which_glides_are_left_out_is_said(made):
+    assert "to 0.02 or better. Shorter ones are left out" in made["glides"].note
