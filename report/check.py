@@ -14,12 +14,14 @@ from numpy.typing import NDArray
 
 from data.sheet import STONE
 from report.drawing import circle, draw_lines, ice_lines
-from report.looks import COLUMNS, Look, numbered
+from report.looks import COLUMNS, Look, numbered, way_of_play
 from report.style import BLUE, GREY, ORANGE, SKY, VERMILLION, new_figure, plain_text, styled
 from vision.detection.ice_map import rectify
 from vision.film.clip import Image
 
 Array = NDArray[np.float64]
+Paint = tuple[Sequence[Array], Sequence[Array]]
+"""Rings and lines as they should be painted, each the places along it, m."""
 
 PICTURE_WIDTH = 640
 """Width of a frame on the sheet, px."""
@@ -69,26 +71,28 @@ def check_figure(
         has no panel.
     """
     reasons = sorted({place.reason for look in looks for place in look.refused})
+    lines = ice_lines(rings, way_of_play(looks, radius))
+    paint = lines[: len(rings)], lines[len(rings) :]
     with styled():
         if len(cameras) == 1:
             figure = new_figure(16, 6.0)
             parts: Any = figure.subfigures(1, 2, width_ratios=(1.9, 1))
             upper, right = parts
-            _frames(upper, looks, rings, radius, reasons, columns=1)
-            _average(right.subplots(), looks, rings)
+            _frames(upper, looks, paint, radius, reasons, columns=1)
+            _average(right.subplots(), looks, paint)
         else:
             columns = min(len(looks), COLUMNS)
             tall = 2.45 * COLUMNS / columns * -(-len(looks) // columns)
             figure = new_figure(16, tall + 4.6)
             parts = figure.subfigures(2, 1, height_ratios=(tall, 4.6))
             upper, foot = parts
-            _frames(upper, looks, rings, radius, reasons, columns)
+            _frames(upper, looks, paint, radius, reasons, columns)
             courses = _courses(cameras)
             if courses:
                 foot, right = foot.subfigures(1, 2, width_ratios=(1, 2.2))
                 axes = right.subplots(len(courses), 1, sharex=True, squeeze=False)[:, 0]
                 _residuals(axes, cameras, courses)
-            _average(foot.subplots(), looks, rings)
+            _average(foot.subplots(), looks, paint)
         figure.suptitle(plain_text(title), x=0.01, ha="left", weight="bold", fontsize=12)
     return figure
 
@@ -96,7 +100,7 @@ def check_figure(
 def _frames(
     part: SubFigure,
     looks: Sequence[Look],
-    rings: Sequence[float],
+    paint: Paint,
     radius: float,
     reasons: Sequence[str],
     columns: int,
@@ -105,7 +109,7 @@ def _frames(
     width = PICTURE_WIDTH * min(COLUMNS // columns, 2)
     axes = part.subplots(-(-len(looks) // columns), columns, squeeze=False).ravel()
     for ax, look in zip(axes, looks, strict=False):
-        _show(ax, _drawn(look, rings, radius, reasons, width))
+        _show(ax, _drawn(look, paint, radius, reasons, width))
         where = "" if look.camera.found else ", carried"
         ax.set_title(f"frame {look.frame.index}, {look.frame.t:.2f} s{where}", fontsize=8)
     for ax in axes[len(looks) :]:
@@ -115,15 +119,12 @@ def _frames(
     part.supxlabel(f"stones taken: green{refused}", fontsize=9)
 
 
-def _drawn(
-    look: Look, rings: Sequence[float], radius: float, reasons: Sequence[str], width: int
-) -> Image:
+def _drawn(look: Look, paint: Paint, radius: float, reasons: Sequence[str], width: int) -> Image:
     """Draw the model on a copy of the frame, reduced to a width on the sheet, px."""
     image = look.frame.image.copy()
     thickness = max(round(image.shape[1] / width), 1)
-    lines = ice_lines(rings)
-    for colour, some in ((_RINGS, lines[: len(rings)]), (_LINES, lines[len(rings) :])):
-        draw_lines(image, look.camera, some, colour, thickness, edge=False)
+    for colour, lines in zip((_RINGS, _LINES), paint, strict=True):
+        draw_lines(image, look.camera, lines, colour, thickness, edge=False)
     height = STONE.cap_height * radius / STONE.radius
     for stone in look.stones:
         outline = np.array([stone.x, stone.y]) + radius * _CIRCLE
@@ -150,9 +151,9 @@ def _show(ax: Axes, image: Image) -> None:
     ax.axis("off")
 
 
-def _average(ax: Axes, looks: Sequence[Look], rings: Sequence[float]) -> None:
+def _average(ax: Axes, looks: Sequence[Look], paint: Paint) -> None:
     """Show the median of the frames seen from above: sharp if the camera was followed well."""
-    bounds = AROUND_TEE if rings else _in_view(looks[0])
+    bounds = AROUND_TEE if paint[0] else _in_view(looks[0])
     left, right, low, top = bounds
     scale = AVERAGE_SIZE / max(right - left, top - low)
     shape = round((top - low) * scale), round((right - left) * scale)
@@ -174,8 +175,9 @@ def _average(ax: Axes, looks: Sequence[Look], rings: Sequence[float]) -> None:
         shown = np.isfinite(stack).any(0)
         middle = np.nanmedian(np.where(shown, stack, 0.0), axis=0)
         ax.imshow(np.clip(middle[..., ::-1], 0, 255).astype(np.uint8), extent=bounds)
-    for rank, line in enumerate(ice_lines(rings)):
-        ax.plot(*line.T, color=SKY if rank < len(rings) else ORANGE, lw=0.5)
+    for colour, lines in zip((SKY, ORANGE), paint, strict=True):
+        for line in lines:
+            ax.plot(*line.T, color=colour, lw=0.5)
     ax.set(xlim=bounds[:2], ylim=bounds[2:], aspect="equal")
     ax.set(xlabel="$x$ (m)", ylabel="$y$ (m)")
     ax.grid(False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import pandas as pd
@@ -125,6 +126,22 @@ def check_lines(
     most = max(len(look.stones) for look in looks)
     lines.append(f"stones      {most} at most in one of {count(len(looks), 'frame')} looked at")
     return lines + warned(warnings)
+
+
+def way_of_play(looks: Sequence[Look], radius: float) -> int:
+    """Tell which way stones are thrown, as `report.tables.play` does of tracks: 1 up y, -1 down.
+
+    All that moves goes that way on the whole; between two looks those have moved that are not where
+    one was.
+    """
+    along = 0.0
+    places = [np.array([(s.x, s.y) for s in look.stones]).reshape(-1, 2) for look in looks]
+    for before, after in pairwise(places):
+        apart = np.linalg.norm(before[:, None] - after, axis=2) > radius / 3
+        gone, come = before[apart.all(1), 1], after[apart.all(0), 1]
+        if len(gone) == len(come):  # else one came into view or was covered
+            along += float(come.sum() - gone.sum())
+    return 1 if along > 0 else -1
 
 
 def numbered(refused: Sequence[Refusal], apart: float) -> list[Refusal]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
+from vision.detection.sighting import Sighting
 from vision.optics.camera import Camera
 
 SIZE = (320, 240)
@@ -13,6 +14,12 @@ SIZE = (320, 240)
 def camera(frame: int, **kwargs) -> Camera:
     homography = np.array([[50.0, 0, 160], [0, -50.0, 120], [0, 0, 1]])
     return Camera(frame, frame / 25, homography, SIZE, **kwargs)
+
+
+def stone(x: float, y: float) -> Sighting:
+    return Sighting(
+        x, y, 1e-3, 1e-3, 0.0, np.zeros(3), 1.0, 2.5, (1.0, 1.0), 0.0, (), (160.0, 120.0), 0.02
+    )
 
 
 def table(count: int, worst: int) -> pd.DataFrame:

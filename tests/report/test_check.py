@@ -7,7 +7,7 @@ import pytest
 from pipeline import main, sample_clip
 from report.check import check_figure
 from report.looks import Look
-from tests.report.looking import SIZE, camera, table
+from tests.report.looking import SIZE, camera, stone, table
 from vision.detection.sighting import Refusal
 from vision.film.clip import Frame
 from vision.optics.camera import Camera
@@ -36,6 +36,15 @@ def test_the_model_is_drawn_where_the_camera_puts_it() -> None:
     assert ((refused[..., 2] > 150) & (refused[..., 0] < 120)).any()
     words = " ".join(part.get_supxlabel() for part in figure.subfigs)
     assert "a broom" in words
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_back_line_is_behind_the_tee_as_stones_come(sign: int) -> None:
+    frames = (Frame(k, k / 25, house_picture()) for k in range(2))
+    looks = [Look(f, camera(f.index), [stone(0.0, 0.5 * sign * f.index)]) for f in frames]
+    above = check_figure(looks, table(2, 0), (1.829,)).subfigs[1].subfigs[0].axes[0]
+    _, tee, back, *_ = (float(np.mean(line.get_ydata())) for line in above.lines)
+    assert (tee, back) == pytest.approx((0.0, sign * 1.829), abs=1e-3)
 
 
 def test_a_single_picture_is_large_and_has_no_course_in_time() -> None:

@@ -3,17 +3,18 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from report.looks import Look, check_lines, check_table, frames_to_show, numbered
-from tests.report.looking import camera, table
-from vision.detection.sighting import Refusal, Sighting
+from report.looks import (
+    Look,
+    check_lines,
+    check_table,
+    frames_to_show,
+    numbered,
+    way_of_play,
+)
+from tests.report.looking import camera, stone, table
+from vision.detection.sighting import Refusal
 from vision.film.clip import Frame
 from vision.optics.camera import CameraError
-
-
-def _stone(x: float, y: float) -> Sighting:
-    return Sighting(
-        x, y, 1e-3, 1e-3, 0.0, np.zeros(3), 1.0, 2.5, (1.0, 1.0), 0.0, (), (160.0, 120.0), 0.02
-    )
 
 
 @pytest.mark.parametrize("worst", [0, 17, 59])
@@ -37,6 +38,21 @@ def test_numbers_of_reasons_do_not_lie_on_one_another() -> None:
     assert chosen == [close[0], *other]
 
 
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_way_of_play_is_that_of_what_moves(sign: int) -> None:
+    """One comes into view, goes on, and hits another; a third rests, a fourth is covered once."""
+    thrown = [None, -2.0, -1.0, -0.6, -0.5]
+    looks = []
+    for k, y in enumerate(thrown):
+        places = [(1.0, 0.9 + 0.01 * (k % 2)), (0.0, 0.5 * max(k - 2, 0))]
+        places += [(0.1, y)] if y is not None else []
+        places += [(-1.0, 1.5)] if k != 3 else []
+        stones = [stone(x, sign * y) for x, y in places]
+        looks.append(Look(Frame(k, k / 25, np.zeros((2, 2, 3), np.uint8)), camera(k), stones))
+    assert way_of_play(looks, 0.1455) == sign
+    assert way_of_play(looks[:1], 0.1455) == -1
+
+
 def test_the_error_at_the_rim_is_that_of_the_ring() -> None:
     """A scale that is 1 % off puts a point of the ring 1 % of its radius off, along one axis."""
     error = CameraError(np.zeros((9, 9)), np.zeros((9, 9)), scale=0.01)
@@ -46,8 +62,8 @@ def test_the_error_at_the_rim_is_that_of_the_ring() -> None:
 
 
 def test_the_lines_say_what_is_known_and_what_is_not() -> None:
-    black, stone = np.zeros((2, 2, 3), np.uint8), _stone(0.0, 1.0)
-    looks = [Look(Frame(k, k / 25, black), camera(k), [stone] * k) for k in range(3)]
+    black, one = np.zeros((2, 2, 3), np.uint8), stone(0.0, 1.0)
+    looks = [Look(Frame(k, k / 25, black), camera(k), [one] * k) for k in range(3)]
     lines = check_lines("a.mp4", 70, table(60, 17), looks, ["the picture shakes"])
     said = "\n".join(lines)
     assert "a.mp4: 70 frames" in said
