@@ -128,6 +128,9 @@ def smoothed(
     for name, stone in stones.items():
         each[name], shared[name] = _track(stone, model, run)
     share_spins(each, contacts, radius, masses, shared)
+    for name, stone in stones.items():
+        for column, alike in zip(("sd_x", "sd_y"), stone.trace.sd_place[stone.row].T, strict=True):
+            each[name][column] = np.hypot(each[name][column], alike)
     team, tables = teams(sightings), list(each.values())
     tracks = {name: np.concatenate([table[name] for table in tables]) for name in tables[0]}
     tracks["team"] = np.array([team[stone] for stone in tracks["stone"].tolist()])
@@ -231,7 +234,7 @@ def _cut_at_hits(
 
 
 def _track(stone: _Stone, model: Model, run: Filter) -> tuple[Columns, Floats]:
-    """Run the filter over one stone, hit to hit.
+    """Run the filter over one stone, hit to hit; errors of places without what these share.
 
     Also gives the errors that its spins share, (n, 3), rad/s: by one standard error each of what
     its angles share along either axis of the cap, and of what spin the ice takes.
@@ -256,7 +259,6 @@ def _track(stone: _Stone, model: Model, run: Filter) -> tuple[Columns, Floats]:
         untold[:] = True
     mean[untold, 4:], spread[untold, 4:] = np.nan, np.nan
     _widen(hits, part, t, mean, spread)
-    spread[:, :2] = np.hypot(spread[:, :2], trace.sd_place[row])
     size = np.hypot(mean[:, 2], mean[:, 3])
     spread[:, 2:4] = np.hypot(spread[:, 2:4], UNSEEN_SCALE * trace.sd_scale[row] * size[:, None])
     if len(trace.t) == 1:

@@ -295,6 +295,17 @@ def test_what_sightings_share_is_not_averaged_out() -> None:
     assert (tracks["sd_y"].between(0.006, 0.0064)).all()
 
 
+def test_what_places_share_does_not_turn_the_line_on_which_stones_hit() -> None:
+    """Velocities tell spins of poorly seen handles as well wherever all of it happens."""
+    seen = watch(hit_motion(), np.random.default_rng(5), sd=0.001, sd_theta=0.3)
+    hits = find_contacts(seen, RADIUS)
+    alike = seen.assign(sd_place_x=0.006, sd_place_y=0.006)
+    sure, shared = (smooth(table, hits, radius=RADIUS) for table in (seen, alike))
+    turning = sure["sd_omega"] > 0.05
+    assert turning.sum() > 20
+    assert (shared["sd_omega"] < 1.1 * sure["sd_omega"])[turning].all()
+
+
 @pytest.mark.parametrize("run", [filtered, reference.filtered])
 def test_a_stone_at_rest_that_was_moved_unseen_lies_where_it_is_seen(run: Filter) -> None:
     """Between its two places nobody knows where it is, and the errors say so."""

@@ -6,7 +6,7 @@ import pytest
 from data.sheet import STONE
 from data.tracks import Columns
 from physics.local_fit.contacts import Contact
-from physics.local_fit.shared_spin import share_spins
+from physics.local_fit.shared_spin import MAKES, share_spins
 
 PUCK = 0.03
 FIRST = Contact(1.0, 0.001, ("A", "B"), (0.0, -1.0))
@@ -188,15 +188,20 @@ def test_a_hit_tells_but_once(told: tuple[float, float, float]) -> None:
     assert all(0.85 < pull < 1.15 for pull in each[np.isfinite(each)])
 
 
-def turned_by(seen: tuple[float, float], alike: tuple[float, float], other: float) -> Columns:
-    """A's rows whose spins are off together by so much before and after a hit, and turned B."""
+def turned_by(
+    seen: tuple[float, float], alike: tuple[float, float], other: float, *, rise: bool = False
+) -> Columns:
+    """A's rows whose spins are off together by so much before and after a hit, and turned B.
+
+    They are for a `rise` of its handle, or else for what the ice takes.
+    """
     (before, after), own = seen, 0.02
     tables = {
         "A": rows((0.0, before, np.hypot(own, alike[0])), (1.0, after, np.hypot(own, alike[1]))),
         "B": rows((0.0, 0.0, 0.001), (1.0, other, 0.01)),
     }
     size = np.where(tables["A"]["t"] > 1.0, alike[1], alike[0])
-    together = {"A": np.column_stack([0 * size, size])}
+    together = {"A": np.column_stack([size * rise, size * (not rise)])}
     share_spins(tables, [FIRST], STONE.radius, together=together)
     return tables["A"]
 
@@ -214,3 +219,37 @@ def test_a_hit_tells_nothing_of_what_is_the_same_on_either_side_of_it() -> None:
     told = turned_by((2.2, 1.2), (0.2, 0.2), -0.9)
     assert told["omega"][[10, 40]] == pytest.approx([2.2, 1.2], abs=0.015)
     assert told["sd_omega"][[10, 40]] == pytest.approx(0.2, abs=0.005)
+
+
+def test_handles_of_a_shot_whose_hits_fit_its_spins_are_taken_to_be_level() -> None:
+    fits, does_not = ((1.0 + off, 2.0 - off) for off in (0.01, 0.3))
+    for seen, better in ((fits, True), (does_not, False)):
+        of_ice, of_rise = (turned_by(seen, (0.2, -0.2), 1.0, rise=rise) for rise in (False, True))
+        less = of_rise["sd_omega"] / of_ice["sd_omega"]
+        assert (less < 0.8).all() if better else (less > 0.95).all()
+    assert of_rise["omega"][[10, 40]] == pytest.approx(of_ice["omega"][[10, 40]], abs=0.05)
+
+
+def test_spins_are_as_sure_as_they_say_with_handles_of_any_make() -> None:
+    """Two stones of one make, each with a steepness of its own, and spins off by that together."""
+    rng = np.random.default_rng(7)
+    sizes, own, off = {"A": (0.3, -0.1), "B": (0.0, 0.2)}, 0.03, []
+    for make in np.tile(MAKES, 100):
+        turn = rng.normal(0, 1)
+        true = {"A": (1.5, 1.5 + turn), "B": (0.0, turn * rng.normal(1, 0.05))}
+        tables, together = {}, {}
+        for name, spins in true.items():
+            size = np.array(sizes[name])
+            sd = np.where(size == 0, 0.001, np.hypot(own, size))
+            error = make * rng.normal() * size + rng.normal(0, np.where(size == 0, 0.001, own))
+            told = np.array(spins) + error
+            tables[name] = rows((0.0, told[0], sd[0]), (1.0, told[1], sd[1]))
+            each = np.where(tables[name]["t"] > 1.0, size[1], size[0])
+            together[name] = np.column_stack([each, 0 * each])
+        share_spins(tables, [FIRST], STONE.radius, together=together)
+        for name, k, side in (("A", 10, 0), ("A", 40, 1), ("B", 40, 1)):
+            error = tables[name]["omega"][k] - true[name][side]
+            off.append(error / tables[name]["sd_omega"][k])
+    pulls = np.reshape(off, (-1, 3))
+    assert np.sqrt(np.mean(pulls**2, axis=0)) == pytest.approx(np.ones(3), abs=0.15)
+    assert np.mean(np.abs(pulls) < 2) == pytest.approx(0.95, abs=0.025)
