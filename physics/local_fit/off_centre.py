@@ -50,7 +50,7 @@ a2 T² P4 / 140 and a3 T² P5 / 252, by what a parabola takes up, and by -a3 T²
 than a1's and left out."""
 
 MOST = 3.0
-"""Farthest that a cap is beside its stone's centre, in `Trace.sd_place`."""
+"""Farthest that a cap is beside its stone's centre, in `Trace.sd_off_centre`."""
 
 NEAR = 0.5
 """Time, s, within which an angle is to be told for what the cap is beside the centre by to be
@@ -71,9 +71,9 @@ def centred(
 
     On each axis of every stretch of motion between hits a polynomial of the fifth degree, and a
     place in the stone's frame for all of them, are fitted to the sightings (linear least squares;
-    the place is known before to `Trace.sd_place`, what is more than a parabola by `OTHER_SLOWING`).
-    Other stones stay as they are: such without angles for a while, without a stated error that
-    their places share, or hardly turning.
+    the place is known before to `Trace.sd_off_centre`, what is more than a parabola by
+    `OTHER_SLOWING`). Other stones stay as they are: such without angles for a while, without a
+    stated error that their places share, or hardly turning.
 
     Parameters
     ----------
@@ -96,11 +96,11 @@ def centred(
 
 def _centred(trace: Trace, hits: Sequence[tuple[int, float]], radius: float) -> Trace:
     pieces = _joined(cut(trace, hits, radius))
-    over = trace
+    over, sd = trace, trace.sd_off_centre(radius)
     for _ in range(1 + ROUNDS):
-        beside, normal = _beside(trace, _stretches(over, pieces, radius))
+        beside, normal = _beside(trace, _stretches(over, pieces, radius), sd)
         size = float(np.hypot(*beside))
-        if beside @ normal @ beside < SHOWN or size > MOST * trace.usual_sd_place:
+        if beside @ normal @ beside < SHOWN or size > MOST * sd:
             return trace
         over = moved(trace, beside)
         pieces = cut(over, hits, radius)
@@ -147,9 +147,11 @@ def _stretches(trace: Trace, pieces: Sequence[Piece], radius: float) -> list[NDA
     ]
 
 
-def _beside(trace: Trace, stretches: Sequence[NDArray[np.int64]]) -> tuple[Floats, Floats]:
+def _beside(
+    trace: Trace, stretches: Sequence[NDArray[np.int64]], sd: float
+) -> tuple[Floats, Floats]:
     """By how much the cap is beside the centre, in the stone's frame, m; its normal matrix."""
-    normal = np.eye(2) / trace.usual_sd_place**2
+    normal = np.eye(2) / sd**2
     right = np.zeros(2)
     # As often as sightings err alike they say the same once more.
     alike = max(ALIKE, trace.lasting * 2 * PLACE_MEMORY / trace.step)

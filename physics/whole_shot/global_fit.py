@@ -237,7 +237,7 @@ class _Problem:
         shot = self.shots[rank]
         simulation = shot.replay(self._values(rank, at))
         runs = zip(shot.traces.values(), shot.residuals(simulation), strict=True)
-        left = (centred(trace, run, self.noise, shot.off_centre) for trace, run in runs)
+        left = (centred(trace, run, self.noise, shot.sd_off_centre(trace)) for trace, run in runs)
         places, beside = zip(*left, strict=True)
         return list(places), np.concatenate([shot.spin_residuals(simulation), *beside])
 

@@ -95,7 +95,7 @@ def misfits(shot: Watched, fit: GlobalFit, level: float | None = None) -> tuple[
     traces = {name: shot.traces[name].until(end) for name in fit.shots[0].traces}
     given = replace(shot, traces=traces).residuals(simulation)
     runs = {
-        name: centred(trace, run, fit.inflation, shot.off_centre)[0]
+        name: centred(trace, run, fit.inflation, shot.sd_off_centre(trace))[0]
         for (name, trace), run in zip(traces.items(), given, strict=True)
     }
     larger = {

@@ -15,37 +15,33 @@ from physics.whole_shot.whole_fit import GlobalFit
 Floats = NDArray[np.float64]
 
 
-def centred(
-    trace: Trace, residuals: Floats, noise: float, share: float = 1.0
-) -> tuple[Floats, Floats]:
+def centred(trace: Trace, residuals: Floats, noise: float, sd: float) -> tuple[Floats, Floats]:
     """Take out of residuals what the stone's cap is beside its centre by, as far as it shows.
 
-    The cap stays where it is in the stone's frame. It is known to be in the middle to `sd_place`,
-    the error that all its places have in common, or to a part of that, on either axis.
+    The cap stays where it is in the stone's frame.
 
     Parameters
     ----------
     trace : Trace
-        Sightings of the stone; without angles, or without `sd_place`, nothing is taken out.
+        Sightings of the stone; without angles nothing is taken out.
     residuals : (n, 2) array
         Sighted less fitted places over their standard deviations.
     noise : float
         Factor on the stated variances of the places.
-    share : float
-        What part of `sd_place`.
+    sd : float
+        By how much the cap may be beside the centre, m; where that is 0, unknown, nothing is taken
+        out.
 
     Returns
     -------
     residuals : (n, 2) array
         Those that are left.
     beside : (2,) array
-        By how much the cap is beside the centre, in its own standard deviations (`_sd_aside`): a
-        residual too.
+        By how much the cap is beside the centre, in `sd` on either axis: a residual too.
     """
-    size = _sd_aside(trace, share)
-    if not size or not np.isfinite(trace.theta).any():
+    if not sd or not np.isfinite(trace.theta).any():
         return residuals, np.zeros(2)
-    rows = (size * trace.rotations / trace.sd[:, :, None]).reshape(-1, 2)
+    rows = (sd * trace.rotations / trace.sd[:, :, None]).reshape(-1, 2)
     weighted = rows * np.repeat(huber_weights(residuals), 2)[:, None] / noise
     normal = np.eye(2) + weighted.T @ rows
     beside = np.asarray(np.linalg.solve(normal, weighted.T @ residuals.ravel()), float)
@@ -70,14 +66,9 @@ def centred_traces(known: Mapping[str, Trace], fit: GlobalFit) -> Mapping[str, T
     shot, out = fit.shots[0], dict(known)
     runs = shot.residuals(fit.simulation())
     for (stone, trace), run in zip(shot.traces.items(), runs, strict=True):
-        _, beside = centred(trace, run, fit.inflation, shot.off_centre)
+        sd = shot.sd_off_centre(trace)
+        _, beside = centred(trace, run, fit.inflation, sd)
         if beside.any():
             whole = known[stone]
-            beside *= _sd_aside(trace, shot.off_centre)
-            out[stone] = moved(whole, beside)
+            out[stone] = moved(whole, sd * beside)
     return known if all(out[stone] is known[stone] for stone in known) else out
-
-
-def _sd_aside(trace: Trace, share: float) -> float:
-    """By how much a cap may be beside its stone's centre on either axis, m; 0 if not known."""
-    return share * trace.usual_sd_place

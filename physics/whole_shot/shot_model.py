@@ -107,9 +107,9 @@ class Watched:
         Of the discs, m.
     masses : mapping
         Stone to mass in any unit; equal where absent.
-    off_centre : float
+    off_centre : float, optional
         How far caps may be off the centres of their stones, as a part of `sd_place`, the error
-        that all places of a stone have in common.
+        that all places of a stone have in common; else as `Trace.sd_off_centre` has it.
     ice : callable
         From values of the unknowns to the law of the ice: `ice` or `penner`.
     """
@@ -122,13 +122,19 @@ class Watched:
     times: tuple[float, ...] = ()
     radius: float = STONE.radius
     masses: Mapping[str, float] = field(default_factory=dict)
-    off_centre: float = 1.0
+    off_centre: float | None = None
     ice: Callable[[Mapping[str, float]], IceLaw] = ice
 
     @property
     def end(self) -> float:
         """Time of the last sighting, s."""
         return max(float(trace.t[-1]) for trace in self.traces.values())
+
+    def sd_off_centre(self, trace: Trace) -> float:
+        """By how much a stone's cap may be beside its centre on either axis, m; 0 if unknown."""
+        if self.off_centre is None:
+            return trace.sd_off_centre(self.radius)
+        return self.off_centre * trace.usual_sd_place
 
     def spinning(self, prior: Estimate) -> Watched:
         """Expect a spin, rad/s, of the stones that come with one that nobody saw.

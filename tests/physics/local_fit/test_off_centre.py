@@ -61,6 +61,13 @@ def test_a_cap_that_goes_round_is_taken_out_and_no_break_of_the_glide(seed: int)
     assert np.sqrt(np.mean((over.xy - truth) ** 2)) < 0.0012
 
 
+def test_it_is_taken_out_however_little_places_err_together() -> None:
+    truth = glide(T)
+    trace = beside(seen(truth, place=0.0008))
+    over = centred({"A": trace}, [], RADIUS)["A"]
+    assert np.sqrt(np.mean((over.xy - truth) ** 2)) < 0.0012
+
+
 def test_it_is_told_from_before_and_after_a_hit_together() -> None:
     at = 2.5
     after = np.maximum(T - at, 0)[:, None] * [0.5, -0.4]

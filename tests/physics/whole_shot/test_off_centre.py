@@ -12,7 +12,7 @@ SD, PLACE = 0.0005, 0.002
 COUNT = 200
 
 
-def trace(turned: float, place: float = PLACE, known: bool = True) -> Trace:
+def trace(turned: float, known: bool = True) -> Trace:
     """Sightings of a stone that turns by so many radians."""
     t = np.linspace(0.0, 4.0, COUNT)
     theta = 0.3 + turned * t / 4.0 if known else np.full(COUNT, np.nan)
@@ -24,7 +24,7 @@ def trace(turned: float, place: float = PLACE, known: bool = True) -> Trace:
         np.full_like(xy, SD),
         theta,
         np.full(COUNT, 0.01),
-        np.full_like(xy, place),
+        np.full_like(xy, PLACE),
         0 * xy,
     )
 
@@ -38,7 +38,7 @@ def wobble(seen: Trace, ahead: float, left: float) -> np.ndarray:
 
 def test_a_cap_off_centre_is_found_by_its_turning() -> None:
     seen = trace(5.0)
-    left, beside = centred(seen, wobble(seen, 0.003, -0.001), 1.0)
+    left, beside = centred(seen, wobble(seen, 0.003, -0.001), 1.0, PLACE)
     assert beside * PLACE == pytest.approx([0.003, -0.001], rel=0.01)
     assert np.abs(left).max() < 0.1
 
@@ -47,31 +47,23 @@ def test_outliers_do_not_move_it() -> None:
     seen = trace(5.0)
     residuals = wobble(seen, 0.003, -0.001)
     residuals[::20] += 500.0
-    _, beside = centred(seen, residuals, 1.0)
+    _, beside = centred(seen, residuals, 1.0, PLACE)
     assert beside * PLACE == pytest.approx([0.003, -0.001], abs=0.0005)
 
 
-def test_it_is_known_beforehand_to_what_places_share() -> None:
+def test_it_is_known_beforehand() -> None:
     seen = trace(5.0)
     residuals = wobble(seen, 0.003, 0.0)
     # As many sightings' noise as this leaves half of what is known beforehand.
     noise = COUNT * (PLACE / SD) ** 2
-    assert centred(seen, residuals / 10, noise)[1] == pytest.approx([0.15 / 2, 0.0], abs=1e-9)
+    _, beside = centred(seen, residuals / 10, noise, PLACE)
+    assert beside == pytest.approx([0.15 / 2, 0.0], abs=1e-9)
 
 
-def test_a_share_of_what_places_share_is_as_if_they_shared_less() -> None:
-    residuals = wobble(trace(0.2), 0.003, -0.001)
-    left, beside = centred(trace(0.2), residuals, 20.0, 0.25)
-    expected = centred(trace(0.2, place=PLACE / 4), residuals, 20.0)
-    assert left == pytest.approx(expected[0])
-    assert beside == pytest.approx(expected[1])
-    assert beside != pytest.approx(centred(trace(0.2), residuals, 20.0)[1], rel=0.1)
-
-
-@pytest.mark.parametrize("seen", [trace(5.0, place=0.0), trace(5.0, known=False)])
-def test_nothing_is_taken_out_without_angles_or_a_stated_error(seen: Trace) -> None:
+@pytest.mark.parametrize(("seen", "sd"), [(trace(5.0), 0.0), (trace(5.0, known=False), PLACE)])
+def test_nothing_is_taken_out_without_angles_or_a_stated_error(seen: Trace, sd: float) -> None:
     residuals = np.random.default_rng(1).normal(size=(COUNT, 2))
-    left, beside = centred(seen, residuals, 1.0)
+    left, beside = centred(seen, residuals, 1.0, sd)
     assert left is residuals
     assert not beside.any()
 
@@ -83,7 +75,7 @@ def test_sightings_are_put_over_the_centre_by_as_much_as_the_fit_allows(share: f
     residuals = wobble(seen, 0.003, 0.0) / 10
     shot = SimpleNamespace(
         traces={"A": seen, "B": trace(5.0, known=False)},
-        off_centre=share,
+        sd_off_centre=lambda _: share * PLACE,
         residuals=lambda _: [residuals, residuals],
     )
     fit = SimpleNamespace(shots=[shot], simulation=lambda: None, inflation=noise)
@@ -101,7 +93,7 @@ def test_angles_beyond_what_was_fitted_are_those_that_were_seen() -> None:
     seen = trace(5.0)
     shot = SimpleNamespace(
         traces={"A": seen.until(2.0)},
-        off_centre=1.0,
+        sd_off_centre=lambda _: PLACE,
         residuals=lambda _: [wobble(seen, 0.003, -0.001)[seen.t < 2.0]],
     )
     fit = SimpleNamespace(shots=[shot], simulation=lambda: None, inflation=1.0)
@@ -110,7 +102,8 @@ def test_angles_beyond_what_was_fitted_are_those_that_were_seen() -> None:
 
 
 def test_where_no_cap_is_told_all_stays_as_it_is() -> None:
-    known = {"A": trace(5.0, place=0.0)}
-    shot = SimpleNamespace(traces=known, off_centre=1.0, residuals=lambda _: [np.ones((COUNT, 2))])
+    known = {"A": trace(5.0)}
+    ones = [np.ones((COUNT, 2))]
+    shot = SimpleNamespace(traces=known, sd_off_centre=lambda _: 0.0, residuals=lambda _: ones)
     fit = SimpleNamespace(shots=[shot], simulation=lambda: None, inflation=1.0)
     assert centred_traces(known, fit) is known  # type: ignore[arg-type]

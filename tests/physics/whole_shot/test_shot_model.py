@@ -33,6 +33,19 @@ def watched(hits: tuple[tuple[str, str], ...] = (), times: tuple[float, ...] = (
     return Watched(traces(check_sightings(seen)), 2.0, laws, spins, hits, times, RADIUS)
 
 
+@pytest.mark.parametrize(
+    ("place", "share", "sd"),
+    [(0.0, None, 0.0), (1e-6, None, 0.002), (0.0015, None, 0.0025), (0.0015, 0.5, 0.00075)],
+)
+def test_caps_are_in_the_middle_to_what_places_share_and_some_of_their_size(
+    place: float, share: float | None, sd: float
+) -> None:
+    shot = replace(watched(), off_centre=share)
+    trace = shot.traces["A"]
+    known = replace(trace, sd_place=np.full_like(trace.xy, place))
+    assert shot.sd_off_centre(known) == pytest.approx(sd, rel=0.02)
+
+
 def test_the_right_values_leave_nothing() -> None:
     shot = watched()
     simulation = shot.replay(VALUES)
