@@ -27,6 +27,18 @@ def test_so_do_those_that_a_shell_has_named(tmp_path: Path, kind: str) -> None:
     other = made(tmp_path / "a", f"f2.{kind}")
     found = find_inputs([*by_shell, *other])
     assert [path.stem for path in found] == ["f1", "f9", "f10", "f2"]
+    alphabet = made(tmp_path / "c", f"1_a.{kind}", f"10_a.{kind}", f"2_a.{kind}", f"20_a.{kind}")
+    assert [path.stem for path in find_inputs(alphabet)] == ["1_a", "2_a", "10_a", "20_a"]
+    two = made(tmp_path / "d", *(f"{n} {c}.{kind}" for n in (1, 10, 2) for c in ("blue", "red")))
+    assert [path.stem[:2] for path in find_inputs(two)] == ["1 ", "1 ", "2 ", "2 ", "10", "10"]
+    ends = [made(tmp_path / f"end {n}", f"a.{kind}")[0] for n in (1, 10, 2)]
+    assert [path.parent.name for path in find_inputs(ends)] == ["end 1", "end 2", "end 10"]
+
+
+@pytest.mark.parametrize("kind", ["png", "mp4"])
+def test_an_order_that_no_shell_makes_is_a_person_s_own(tmp_path: Path, kind: str) -> None:
+    chosen = made(tmp_path, *(f"{name}.{kind}" for name in ("start", "middle", "end 10", "end")))
+    assert list(find_inputs(chosen)) == chosen
 
 
 def test_a_glob_is_sorted_and_files_keep_their_order(tmp_path: Path) -> None:
