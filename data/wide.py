@@ -31,7 +31,7 @@ COMPANIONS = ("theta", *ERRORS, "frame")
 
 _CENTRE = {"c", "cm", "com", "centre", "center", "pos", "position"}
 _DERIVED = {"v", "a", "p", "pixel", "px", "vel", "velocity", "acc", "acceleration", "sd"}
-_QUANTITY = "|".join(sorted(_DERIVED, key=len, reverse=True))
+_QUANTITY = "|".join(_DERIVED)
 
 
 @dataclass(frozen=True)
