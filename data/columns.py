@@ -85,6 +85,12 @@ def times_of(
         return times / fps, None, []
     bracket = re.search(r"[(\[]\s*([^)\]]+?)\s*[)\]]", written[:100])
     minutes = ":" in "".join(cells)  # as in 0:01.25
+    if bracket and minutes and not all(":" in cell for cell in cells):
+        said = abbreviated(bracket.group(1))
+        if TIME_UNITS.get(said, 1.0) != 1.0:
+            raise InputError(
+                f"{table.path}: some times are in {said}, others as 0:01.25; write all in one way"
+            )
     if bracket and (minutes or bracket.group(1).lower() in TIME_NAMES):
         bracket = None  # nor does time (t) tell a unit
     told = abbreviated(bracket.group(1)) if bracket else "s"

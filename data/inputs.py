@@ -30,7 +30,7 @@ def named(names: str | Path | Iterable[str | Path]) -> tuple[str | Path, ...]:
 def find_inputs(names: str | Path | Sequence[str | Path]) -> tuple[Path, ...]:
     """Files behind what a person names: files, globs, folders of pictures.
 
-    Pictures and clips come in natural order, tables as they are named.
+    Where a shell named pictures and clips they come in natural order, tables as they are named.
 
     Raises
     ------
@@ -50,7 +50,7 @@ def find_inputs(names: str | Path | Sequence[str | Path]) -> tuple[Path, ...]:
                 raise InputError(
                     f"{path}: no pictures in this folder; clips are named as {path / '*.mp4'}"
                 )
-            found += pictures
+            found += sorted(pictures, key=_natural)
         elif path.exists():
             found.append(path)
         else:
@@ -65,10 +65,18 @@ def find_inputs(names: str | Path | Sequence[str | Path]) -> tuple[Path, ...]:
 
 
 def in_order(paths: Iterable[Path]) -> list[Path]:
-    """Put files or folders that lie together in natural order: shells name 10 before 9."""
-    given = list(paths)
-    rank = {folder: k for k, folder in enumerate(dict.fromkeys(path.parent for path in given))}
-    return sorted(given, key=lambda path: (rank[path.parent], _natural(path.name)))
+    """Put names of a shell in natural order, which has 10 before 9; a person's own order stays.
+
+    A shell's go up the alphabet, or differ in numbers alone, whatever alphabet its country has.
+    """
+    runs: list[list[Path]] = []
+    for path in paths:
+        before = runs[-1][-1] if runs else None
+        if before is not None and (before <= path or _numberless(before) == _numberless(path)):
+            runs[-1].append(path)
+        else:
+            runs.append([path])
+    return [path for run in runs for path in sorted(run, key=_natural)]
 
 
 def matching(name: str | Path) -> list[Path]:
@@ -79,7 +87,7 @@ def matching(name: str | Path) -> list[Path]:
     pattern = Path(glob.escape(str(path.parent)), path.name) if there else path
     # Path.glob takes no absolute pattern, nor two stars within a name.
     found = map(Path, glob.glob(str(pattern)))  # noqa: PTH207
-    return sorted(found, key=lambda path: [_natural(part) for part in path.parts])
+    return sorted(found, key=_natural)
 
 
 def picture_times(paths: Sequence[Path]) -> list[float] | None:
@@ -107,7 +115,12 @@ def picture_times(paths: Sequence[Path]) -> list[float] | None:
     return [(number - numbers[0]) / usual for number in numbers]
 
 
-def _natural(name: str) -> list[tuple[int, str]]:
-    """Sort key by which picture 9 comes before picture 10."""
-    parts = re.findall(r"\d+|\D+", name)
-    return [(int(p), "") if p.isdecimal() else (-1, p) for p in parts]
+def _numberless(path: Path) -> str:
+    """Give a name with all numbers alike."""
+    return re.sub(r"\d+", "0", str(path))
+
+
+def _natural(path: Path) -> list[list[tuple[int, str]]]:
+    """Sort key by which picture 9 comes before picture 10, and folder 9 before folder 10."""
+    parts = [re.findall(r"\d+|\D+", part) for part in path.parts]
+    return [[(int(p), "") if p.isdecimal() else (-1, p) for p in part] for part in parts]

@@ -80,8 +80,9 @@ def _utf_16(raw: bytes) -> str | None:
     halves = {"utf-16-be": raw[::2], "utf-16-le": raw[1::2]}
     zeros = {name: half.count(0) for name, half in halves.items()}
     found = max(zeros, key=lambda name: zeros[name])
-    told = 2 * zeros[found] > len(halves[found]) and not min(zeros.values())
-    return found if told and len(raw) % 2 == 0 else None
+    told = 2 * zeros[found] > len(halves[found]) and len(raw) % 2 == 0
+    # A letter as 一 has its zero where digits have none, but no letter has two.
+    return found if told and "\0" not in raw.decode(found, errors="replace") else None
 
 
 def plain_digits(text: str) -> str:

@@ -31,7 +31,7 @@ COMPANIONS = ("theta", *ERRORS, "frame")
 
 _CENTRE = {"c", "cm", "com", "centre", "center", "pos", "position"}
 _DERIVED = {"v", "a", "p", "pixel", "px", "vel", "velocity", "acc", "acceleration", "sd"}
-_QUANTITY = "|".join(sorted(_DERIVED, key=len, reverse=True))
+_QUANTITY = "|".join(_DERIVED)
 
 
 @dataclass(frozen=True)
@@ -68,11 +68,12 @@ def _stones(
 ) -> dict[str, tuple[int, int]]:
     """Leave out what is no place: ``vx, vy`` and ``ax, ay``, and of a stone ``red_vx, red_vy``.
 
-    But ``xA, yA`` are of a stone A, and ``ax, ay`` of one beside ``bx, by``.
+    But ``xA, yA`` are of a stone A, and ``ax, ay`` of one beside ``bx, by`` or ``avx, avy``.
     """
     lettered = any(len(stem) == 1 and stem not in _DERIVED for stem in pairs)
-    known = {"a", "p"} if lettered else always  # the first of sixteen and the last
     whose = {stem: re.sub(quantity, "", stem) for stem in pairs}
+    known = {"a", "p"} if lettered else always  # the first of sixteen and the last
+    known = known | {whose[stem] for stem in pairs if whose[stem] not in {"", stem}}
     return {
         stem: pair
         for stem, pair in pairs.items()

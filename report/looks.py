@@ -131,17 +131,14 @@ def check_lines(
 def way_of_play(looks: Sequence[Look], radius: float) -> int:
     """Tell which way stones are thrown, as `report.tables.play` does of tracks: 1 up y, -1 down.
 
-    All that moves goes that way on the whole; between two looks those have moved that are not where
-    one was.
+    All that moves goes that way on the whole. Where more or fewer are seen than just before, one
+    came into view or was covered.
     """
     along = 0.0
-    places = [np.array([(s.x, s.y) for s in look.stones]).reshape(-1, 2) for look in looks]
-    for before, after in pairwise(places):
-        apart = np.linalg.norm(before[:, None] - after, axis=2) > radius / 3
-        gone, come = before[apart.all(1), 1], after[apart.all(0), 1]
-        if len(gone) == len(come):  # else one came into view or was covered
-            along += float(come.sum() - gone.sum())
-    return 1 if along > 0 else -1
+    for before, after in pairwise([stone.y for stone in look.stones] for look in looks):
+        if len(before) == len(after):
+            along += sum(after) - sum(before)
+    return 1 if along > radius else -1
 
 
 def numbered(refused: Sequence[Refusal], apart: float) -> list[Refusal]:

@@ -36,7 +36,7 @@ def find_results(names: str | Path | Sequence[str | Path]) -> dict[str, Path]:
     Returns
     -------
     dict of str to Path
-        Each ``results.json``, by the name of its folder, in natural order.
+        Each ``results.json``, by the name of its folder; in natural order as a shell names them.
 
     Raises
     ------

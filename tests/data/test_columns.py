@@ -91,8 +91,26 @@ def test_times_of_minutes_and_seconds_become_seconds(tmp_path: Path, head: str, 
     found, decimals, _ = times(tmp_path, head, [f"{hours}0:59.50", f"{hours}1:00.25"])
     np.testing.assert_allclose(found, [59.5, 60.25])
     assert decimals == 2
+    assert times(tmp_path, head, ["1:59:59.5", "2:00:00.5"])[0].tolist() == [7199.5, 7200.5]
     whole = [f"{hours}0:0{second}.0" for second in range(3)]
     assert times(tmp_path, head, whole, 25.0)[0].tolist() == [0.0, 1.0, 2.0]
+
+
+@pytest.mark.parametrize("head", ["t", "t (s)", "t [min:sec]"])
+def test_seconds_may_come_before_minutes(tmp_path: Path, head: str) -> None:
+    assert times(tmp_path, head, ["59.5", "1:00.5"])[0].tolist() == [59.5, 60.5]
+
+
+@pytest.mark.parametrize("unit", ["min", "ms", "minutes"])
+def test_seconds_in_another_unit_do_not(tmp_path: Path, unit: str) -> None:
+    with pytest.raises(InputError, match=f"some times are in {unit[:3]}, others as 0:01.25"):
+        times(tmp_path, f"t ({unit})", ["0.5", "1:00.5"])
+
+
+@pytest.mark.parametrize("unit", ["min:sec", "[min:sec]", "min", "h"])
+def test_a_line_of_units_may_say_minutes(tmp_path: Path, unit: str) -> None:
+    read = table(tmp_path, f"t,x\n{unit},yd\n0:59.5,1\n1:00.5,2\n")
+    assert times_of(read, {0: read.numbers([0], 0)[:, 0]}, 0, None)[0].tolist() == [59.5, 60.5]
 
 
 @pytest.mark.parametrize("cells", [["0:01:25", "0:01:29"], ["0:00:01:25"], ["0:61.5"], ["1:2:"]])

@@ -19,6 +19,9 @@ def made(folder: Path, *names: str) -> list[Path]:
 def test_pictures_of_a_folder_come_in_natural_order(tmp_path: Path) -> None:
     made(tmp_path / "f", "10.png", "9.PNG", "1a.jpg", "notes.txt")
     assert [path.name for path in find_inputs([tmp_path / "f"])] == ["1a.jpg", "9.PNG", "10.png"]
+    names = [f"{letter}{number}.png" for letter in "abcdefgh" for number in (9, 10)]
+    made(tmp_path / "g", *reversed(names))
+    assert [path.name for path in find_inputs([tmp_path / "g"])] == names
 
 
 @pytest.mark.parametrize("kind", ["png", "mp4"])
@@ -27,6 +30,20 @@ def test_so_do_those_that_a_shell_has_named(tmp_path: Path, kind: str) -> None:
     other = made(tmp_path / "a", f"f2.{kind}")
     found = find_inputs([*by_shell, *other])
     assert [path.stem for path in found] == ["f1", "f9", "f10", "f2"]
+    # Many a country's alphabet has the line before digits, but in bytes it comes after them.
+    numbers = (1, 10, 11, 2, 20, 3)
+    alphabet = made(tmp_path / "c", *(f"{number}_a.{kind}" for number in numbers))
+    assert [path.stem for path in find_inputs(alphabet)] == [f"{n}_a" for n in sorted(numbers)]
+    two = made(tmp_path / "d", *(f"{n} {c}.{kind}" for n in (1, 10, 2) for c in ("blue", "red")))
+    assert [path.stem[:2] for path in find_inputs(two)] == ["1 ", "1 ", "2 ", "2 ", "10", "10"]
+    ends = [made(tmp_path / f"end {n}", f"a.{kind}")[0] for n in (1, 10, 2)]
+    assert [path.parent.name for path in find_inputs(ends)] == ["end 1", "end 2", "end 10"]
+
+
+@pytest.mark.parametrize("kind", ["png", "mp4"])
+def test_an_order_that_no_shell_makes_is_a_person_s_own(tmp_path: Path, kind: str) -> None:
+    chosen = made(tmp_path, *(f"{name}.{kind}" for name in ("start", "middle", "end 10", "end")))
+    assert list(find_inputs(chosen)) == chosen
 
 
 def test_a_glob_is_sorted_and_files_keep_their_order(tmp_path: Path) -> None:

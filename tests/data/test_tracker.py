@@ -48,6 +48,12 @@ def test_swedish_numbers_line_ends_and_encodings(
     assert_same(read(tmp_path, text.encode(encoding)).sightings, truth(), 5.1e-7)
 
 
+@pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
+def test_a_letter_with_a_zero_of_its_own_is_text(tmp_path: Path, encoding: str) -> None:
+    text = "t,一_x,一_y\n0.0,1.5,2.5\n0.5,2.5,3.5\n"
+    assert list(read(tmp_path, text.encode(encoding)).sightings["stone"]) == ["一", "一"]
+
+
 def test_native_digits(tmp_path: Path) -> None:
     digits = str.maketrans("0123456789", "۰۱۲۳۴۵۶۷۸۹")
     header, body = export(truth(), ";", "full", ",", columns=("x", "y")).split("y;\n", 1)
@@ -268,6 +274,7 @@ NONSENSE = {
     "<?xml version='1.0'?><object/>": "no Tracker project",
     "PK\x03\x04": "damaged",
     "a\0b": "not text",
+    "a\0b\0\0\0": "not text",
 }
 
 

@@ -49,6 +49,15 @@ def test_nor_do_they_stand_beside_one(tmp_path: Path, columns: str) -> None:
     assert not file.warnings
 
 
+def test_what_has_velocities_is_a_stone(tmp_path: Path) -> None:
+    assert stones(read(tmp_path, "t,A_x,A_y,A_vx,A_vy\n0,1,2,3,4\n1,1,2,3,5\n")) == ["A"]
+
+
+def test_times_of_each_stone_may_be_minutes_and_seconds(tmp_path: Path) -> None:
+    file = read(tmp_path, "t,x,y,t,x,y\n0:59.5,1,1,0:59.5,2,2\n1:00.5,1,1,1:00.5,2,2\n")
+    assert file.tracks["t"].tolist() == [59.5, 60.5] * 2
+
+
 @pytest.mark.parametrize(
     "columns", ["red_x,red_y,red_vx,red_vy", "x_red,y_red,x_v_red,y_v_red", "redx,redy,ax,ay"]
 )

@@ -293,6 +293,9 @@ def test_what_sightings_share_is_not_averaged_out() -> None:
     tracks = smooth(check_sightings(table), (), radius=0.1455)
     assert (tracks["sd_x"].between(0.003, 0.0036)).all()
     assert (tracks["sd_y"].between(0.006, 0.0064)).all()
+    far = table.assign(sd_place_x=0.003 * (1 + np.arange(50)))
+    tracks = smooth(check_sightings(far), (), radius=0.1455)
+    assert tracks["sd_x"].to_numpy() == pytest.approx(far["sd_place_x"].to_numpy(), abs=0.0006)
 
 
 def test_what_places_share_does_not_turn_the_line_on_which_stones_hit() -> None:

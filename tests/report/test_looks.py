@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -41,16 +43,19 @@ def test_numbers_of_reasons_do_not_lie_on_one_another() -> None:
 @pytest.mark.parametrize("sign", [1, -1])
 def test_the_way_of_play_is_that_of_what_moves(sign: int) -> None:
     """One comes into view, goes on, and hits another; a third rests, a fourth is covered once."""
-    thrown = [None, -2.0, -1.0, -0.6, -0.5]
+    thrown = [None, -2.0, -1.0, -0.9, -0.8]
     looks = []
     for k, y in enumerate(thrown):
-        places = [(1.0, 0.9 + 0.01 * (k % 2)), (0.0, 0.5 * max(k - 2, 0))]
+        places = [(1.0, 0.9 + 0.01 * (k % 2)), (0.0, 0.2 * max(k - 2, 0))]
         places += [(0.1, y)] if y is not None else []
         places += [(-1.0, 1.5)] if k != 3 else []
         stones = [stone(x, sign * y) for x, y in places]
         looks.append(Look(Frame(k, k / 25, np.zeros((2, 2, 3), np.uint8)), camera(k), stones))
     assert way_of_play(looks, 0.1455) == sign
     assert way_of_play(looks[:1], 0.1455) == -1
+    still = [[stone(0.0, 0.01 * k), stone(1.0, 0.02 * k)] for k in range(3)]
+    rests = [replace(look, stones=lie) for look, lie in zip(looks, still, strict=False)]
+    assert way_of_play(rests, 0.1455) == -1
 
 
 def test_the_error_at_the_rim_is_that_of_the_ring() -> None:

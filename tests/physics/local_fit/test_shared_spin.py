@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -228,6 +230,32 @@ def test_handles_of_a_shot_whose_hits_fit_its_spins_are_taken_to_be_level() -> N
         less = of_rise["sd_omega"] / of_ice["sd_omega"]
         assert (less < 0.8).all() if better else (less > 0.95).all()
     assert of_rise["omega"][[10, 40]] == pytest.approx(of_ice["omega"][[10, 40]], abs=0.05)
+
+
+@pytest.mark.parametrize("off", [0.05, 0.1, 0.2, 0.4, 0.6, 0.8])
+def test_a_hit_that_contradicts_level_handles_tells_that_they_are_steep(off: float) -> None:
+    """What it asks of them is beyond the 0.02 rad/s which seeing level ones errs by."""
+    found = turned_by((1.0 + off, 2.0 - off), (0.2, -0.2), 1.0, rise=True)
+    left = found["omega"][[10, 40]] - [1.0, 2.0]
+    assert (np.abs(left) < found["sd_omega"][[10, 40]]).all()
+    if off < 0.5:
+        assert left == pytest.approx(np.zeros(2), abs=0.02)
+        assert (found["sd_omega"] < 0.08).all()
+
+
+def test_a_hit_that_contradicts_handles_of_any_make_tells_of_none() -> None:
+    found = turned_by((3.0, 0.0), (0.2, -0.2), 1.0, rise=True)
+    assert found["omega"][[10, 40]] == pytest.approx([3.0, 0.0], abs=1e-3)
+    stated = np.hypot(0.02, 0.2 * np.sqrt(np.mean(np.square(MAKES))))
+    assert found["sd_omega"] == pytest.approx(np.full(60, stated), abs=1e-3)
+
+
+def test_velocities_at_a_hit_of_which_the_time_is_unknown_tell_nothing() -> None:
+    tables, change = hit_by_law(0.05), 0.05 / (0.5 * STONE.radius)
+    share_spins(tables, [replace(FIRST, stderr_t=np.inf, normal=(0.1, -0.995))], STONE.radius)
+    # Half-way between what is seen of either: both turn by the same amount.
+    assert tables["B"]["omega"][40] == pytest.approx(change - 0.05, abs=0.02)
+    assert tables["B"]["sd_omega"][40] == pytest.approx(0.5 / np.sqrt(2), abs=0.02)
 
 
 def test_spins_are_as_sure_as_they_say_with_handles_of_any_make() -> None:
