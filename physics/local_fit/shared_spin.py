@@ -50,8 +50,8 @@ does, by 1 rad/s or so, whatever the make of the handles."""
 MAKES = (0.0, 0.5, 1.0, 1.5)
 """How steep handles of a clip may be, in standard deviations of one of which nothing is known
 (`vision.spin.pitch.STEEP`): level ones to goose-necks, alike probable beforehand, 0.94 r.m.s. In 34
-clips drawn 50 degrees aslant with level handles spins are .047 rad/s off, .062 with 1.0 alone; in
-seven whose handles rise by .15 .055 and .058, in ten by .3 .138 and .132."""
+clips drawn 50 degrees aslant with level handles spins are .047 rad/s off, .063 with 1.0 alone; in
+seven whose handles rise by .15 .043 and .031, in ten by .3 .137 and .133."""
 
 
 End = tuple[str, int, bool]

@@ -34,8 +34,8 @@ from vision.spin.cover import uncovered
 from vision.spin.facing import angle_between, angles_between
 from vision.spin.glints import course, unlit
 from vision.spin.half_turns import unfolded
-from vision.spin.inclined import inclined, rise_of_handle
-from vision.spin.pitch import levelled
+from vision.spin.inclined import TOLD, inclined, rise_of_handle
+from vision.spin.pitch import STEEP, levelled
 from vision.spin.shade import parts, unturned, upright_mean
 
 ODD, ODDEST = 0.2, 3.0
@@ -235,13 +235,13 @@ def handle_angles(
     rows, own = seen[good], best.pictures[good]
     aside = np.hypot(TURNING.shift, sd_centre[rows])
     fit = align(own, best.angles[good], radii, aside)
-    angle, risen = fit.angle, rise[rows]
+    angle, risen, steep = fit.angle, rise[rows], STEEP
     if slants is not None:
-        uphill = rise_of_handle(own, fit.angle, radii, slants[rows], aside)
+        uphill = rise_of_handle(times[rows], own, fit.angle, radii, slants[rows], aside)
         if uphill is not None:
             own = inclined(own, fit.angle, radii, slants[rows], uphill)
-            fit = align(own, fit.angle, radii, aside)
-        angle, risen = levelled(own, fit.angle, radii, slants[rows])
+            fit, steep = align(own, fit.angle, radii, aside), TOLD
+        angle, risen = levelled(own, fit.angle, radii, slants[rows], steep)
     error = np.hypot(LASTING * _oddness(best) * _covered(best)[good] * fit.sd, by.apart[good])
     if np.median(np.hypot(error, np.sqrt((risen**2).sum(1).mean()))) > UNSURE:
         return nothing

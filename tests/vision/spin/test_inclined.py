@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 
 from tests.vision.spin.test_handle import RADII
-from tests.vision.spin.test_pitch import TIMES, TRUE, pictures, spin_off
+from tests.vision.spin.test_pitch import TIMES, TRUE, pictures, spin_off, turning
 from vision.spin.align import Complex, align
 from vision.spin.handle import handle_angles
 from vision.spin.inclined import ASLANT, inclined, rise_of_handle
@@ -24,7 +24,14 @@ def unlike(shown: Complex) -> float:
 
 
 def told(shown: Complex, slants: Array = SLANTS) -> complex | None:
-    return rise_of_handle(shown, align(shown, TRUE, RADII, SD).angle, RADII, slants, SD)
+    return rise_of_handle(TIMES, shown, align(shown, TRUE, RADII, SD).angle, RADII, slants, SD)
+
+
+def spoilt(shown: Complex) -> Complex:
+    """Pictures that show more of their own, by light or codecs, than of the handle."""
+    rng = np.random.default_rng(3)
+    own = rng.normal(0, 1, (2, *shown.shape))
+    return np.asarray(shown + 2.0 * np.abs(shown).mean() * (own[0] + 1j * own[1]), np.complex64)
 
 
 @pytest.mark.parametrize("steep", [0.4, -0.3])
@@ -61,13 +68,35 @@ def test_a_handle_tells_how_steep_it_is(steep: float) -> None:
     assert abs(found.imag) < 0.1
 
 
+@pytest.mark.parametrize("steep", [0.3, -0.3])
+def test_steady_spins_tell_it_where_pictures_are_little_alike(steep: float) -> None:
+    found = told(spoilt(pictures(steep, SLANTS)))
+    assert found is not None
+    assert found.real == pytest.approx(steep, abs=0.1)
+    assert told(spoilt(pictures(0.0, SLANTS))) is None
+
+
+@pytest.mark.parametrize("spin", [-2.5, 3.0])
+def test_spins_that_a_hit_changes_tell_it_too(spin: float) -> None:
+    hit = TIMES[len(TIMES) // 2]
+    after = np.maximum(TIMES - hit, 0)
+    true = TRUE + (spin - 1.3) * after
+    slants = SLANTS + after[:, None] * [0.05, 0.06]
+    for steep in (0.0, 0.35):
+        shown = turning(true, slants, steep)
+        angles = align(shown, true, RADII, SD).angle
+        found = rise_of_handle(TIMES, shown, angles, RADII, slants, SD)
+        assert (0.0 if found is None else found.real) == pytest.approx(steep, abs=0.1)
+
+
 def test_level_handles_and_views_that_tell_nothing_have_none() -> None:
     steep = pictures(0.4, SLANTS)
     assert told(pictures(0.0, SLANTS)) is None
     assert told(steep, 0.9 * ASLANT * SLANTS / np.median(np.hypot(*SLANTS.T))) is None
     few = slice(0, 20)  # hardly turned
-    assert rise_of_handle(steep[few], TRUE[few], RADII, SLANTS[few], SD[few]) is None
-    assert rise_of_handle(0 * steep, TRUE, RADII, SLANTS, SD) is None
+    hardly = rise_of_handle(TIMES[few], steep[few], TRUE[few], RADII, SLANTS[few], SD[few])
+    assert hardly is None
+    assert rise_of_handle(TIMES, 0 * steep, TRUE, RADII, SLANTS, SD) is None
     noise = np.random.default_rng(1).normal(0, 1, (2, *steep.shape))
     assert told(np.asarray(noise[0] + 1j * noise[1], np.complex64)) is None
 
