@@ -50,7 +50,7 @@ class Search:
     ----------
     x_max, y_min, y_max : float
         Stones are sought on |x| ≤ x_max, y_min ≤ y ≤ y_max, m; on −y_max ≤ y ≤ −y_min where the
-        middle of the picture is below the tee.
+        picture shows more of the ice there, as where stones come up.
     radius_px : float
         Radius of a disc on the rectified map, px.
     least_score : float
@@ -194,8 +194,10 @@ def whole_ice(camera: Camera, disc: Stone, search: Search) -> Bounds:
     width, height = camera.size
     if not is_plain(disc):
         # Guards lie where the picture shows more of the ice: below the house where stones come up.
-        _, y = camera.ice(np.array([[(width - 1) / 2, (height - 1) / 2]]))[0].tolist()
-        y0, y1 = (search.y_min, search.y_max) if y >= 0 else (-search.y_max, -search.y_min)
+        shown = np.array([[(width - 1) / 2, (height - 1) / 2], [(width - 1) / 2, height - 1]])
+        middle, bottom = camera.ice(shown)[:, 1].tolist()
+        up = middle < 0 and bottom < search.y_min
+        y0, y1 = (-search.y_max, -search.y_min) if up else (search.y_min, search.y_max)
         return -search.x_max, search.x_max, y0, y1
     corners = camera.ice(np.array([[0, 0], [width, 0], [0, height], [width, height]], float))
     (x0, y0), (x1, y1) = corners.min(0).tolist(), corners.max(0).tolist()

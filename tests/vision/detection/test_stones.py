@@ -16,7 +16,14 @@ from tests.synthetic.scene import Colour, Graphic, Person, Scene, Stone
 from tests.synthetic.scenes import PAINTS
 from vision.detection.appearance import BY_SHAPE, colour_difference, convincing, learn
 from vision.detection.sighting import Sighting
-from vision.detection.stones import FOLLOWING, SEARCH, Search, plain_disc, search_picture
+from vision.detection.stones import (
+    FOLLOWING,
+    SEARCH,
+    Search,
+    plain_disc,
+    search_picture,
+    whole_ice,
+)
 from vision.film.clip import open_clip
 from vision.optics.camera import Camera, CameraError
 from vision.optics.stick import stick_camera
@@ -256,3 +263,17 @@ def test_a_disc_half_on_paint_of_its_colour_is_one() -> None:
     cv2.circle(image, (160 * 16 + 6, 120 * 16), 16 * 16, (20, 20, 20), 3, cv2.LINE_AA, 4)
     camera = stick_camera((0, 239, 100, 239, 0.5), (320, 240))
     assert len(search_picture(image, camera, None, plain_disc(0.085)).stones) == 1
+
+
+@pytest.mark.parametrize(
+    ("tee", "y0", "y1"),
+    [(150.0, -9.0, 4.5), (820.0, -4.5, 9.0), (470.0, -4.5, 9.0)],
+    ids=["at the top", "at the bottom", "in the middle"],
+)
+def test_guards_are_sought_where_the_picture_shows_more_of_the_ice(
+    tee: float, y0: float, y1: float
+) -> None:
+    """Where stones come up the picture, two of three guards were not looked for."""
+    homography = np.array([[120.0, 0.0, 300.0], [0.0, -120.0, tee], [0.0, 0.0, 1.0]])
+    camera = Camera(0, 0.0, homography, (600, 960))
+    assert whole_ice(camera, STONE, SEARCH)[2:] == (y0, y1)
