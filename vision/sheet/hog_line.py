@@ -44,8 +44,8 @@ NEAR = 0.15
 ACROSS = np.arange(-2.0, 2.01, 0.05)
 """Where it is looked at, m."""
 
-LEAST_SHOWN = 0.4
-"""Share of these that the picture must show."""
+ENOUGH = int(0.4 * len(ACROSS))
+"""How many of these must show it."""
 
 EACH = 5
 """Of these are looked at together where its edge is measured."""
@@ -157,13 +157,17 @@ def _line_at(image: Image, view: View, rig: Array, down: bool) -> tuple[float, f
     best = 0.0, 0.0
     for k in range(BESIDE + 1, len(ABOUT) - BESIDE):
         whole = within[:, [k - BESIDE, k, k + BESIDE]].all(1)
-        if whole.mean() < LEAST_SHOWN:
+        if whole.sum() < ENOUGH:
             continue
         line = colour[whole, k - ON : k + ON + 1].mean(1)
         one, two = line - colour[whole, k - BESIDE], line - colour[whole, k + BESIDE]
         both = np.where(one * two > 0, np.sign(one) * np.minimum(np.abs(one), np.abs(two)), 0.0)
-        contrast = float(np.linalg.norm(np.median(both, axis=0)))
-        unlike = float(np.linalg.norm(np.median(one - two, axis=0)))
+        # Sweepers may cover half of it: where it stands out most it does by one colour.
+        most = np.argsort(-np.linalg.norm(both, axis=1))[:ENOUGH]
+        way = np.median(both[most], axis=0)
+        along = both[most] @ way / max(float(np.linalg.norm(way)), 1e-9)
+        contrast = float(np.quantile(along, 0.1))
+        unlike = float(np.linalg.norm(np.median((one - two)[most], axis=0)))
         if contrast > best[0] and unlike < MOST_UNLIKE * contrast:
             best = contrast, float(ABOUT[k])
     return best

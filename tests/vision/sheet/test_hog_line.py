@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 
@@ -21,9 +22,15 @@ def club(k1: float, k2: float, y: float = -0.3, size: tuple[int, int] = (440, 77
     return CameraPath(size, (0.03, y, 6.0), (key,))
 
 
-def guards_off(path: CameraPath, *, turned: bool) -> tuple[float, float]:
+def guards_off(
+    path: CameraPath, *, turned: bool, covered: tuple[tuple[float, float], ...] = ()
+) -> tuple[float, float]:
     """How far off guards would be, m, and where the hog line was seen, y, m."""
-    image = np.asarray(render_still(SCENE, path), np.uint8)
+    image = np.array(render_still(SCENE, path), np.uint8)
+    for left, right in covered:
+        around = [(left, 5.7, 0), (right, 5.7, 0), (right, 6.9, 0), (left, 6.9, 0)]
+        corners = path.at(0.0).project(np.array(around, float))
+        cv2.fillConvexPoly(image, np.round(corners).astype(np.int32), (20, 20, 25))
     pixels, ice = path.at(0.0).project(np.c_[GUARDS, np.zeros(len(GUARDS))]), GUARDS
     if turned:
         image, pixels, ice = np.rot90(image, 2), np.array(path.size) - 1 - pixels, -GUARDS
@@ -40,6 +47,11 @@ def test_the_hog_line_tells_a_wide_lens(k1: float, k2: float, turned: bool) -> N
     off, hog = guards_off(club(k1, k2), turned=turned)
     assert off < 0.05
     assert hog == pytest.approx(-6.4 if turned else 6.4, abs=0.06)
+
+
+def test_sweepers_over_half_of_it_do_not_hide_it() -> None:
+    sweepers = (-1.5, -0.6), (0.3, 1.3)
+    assert guards_off(club(-0.19, 0.036), turned=True, covered=sweepers)[0] < 0.05
 
 
 def test_a_usual_lens_stays_one() -> None:
