@@ -180,15 +180,20 @@ def _edge(image: Image, seen: _Tried) -> Marks:
     at = int(np.abs(ABOUT - seen.off).argmin())
     part, end = slice(at - BESIDE, at + 1), -1.0 if seen.down else 1.0
     whole = np.asarray(within[:, part].all(1), bool)
-    usual = np.median(colour[whole][:, part], axis=0)
+    rises = np.linalg.norm(colour[:, at] - colour[:, at - BESIDE], axis=1)
+    most = np.argsort(-np.where(whole, rises, 0.0))[:ENOUGH]
+    usual = np.median(colour[most][:, part], axis=0)
     step = usual[-1] - usual[0]
+    length = max(float(step @ step), 1e-9)
     found = []
     for first in range(0, len(ACROSS) - EACH + 1, EACH):
         some = np.flatnonzero(whole[first : first + EACH]) + first
         if len(some) < EACH:
             continue
         profile = np.median(colour[some, part], axis=0)
-        share = (profile - usual[0]) @ step / (step @ step)
+        share = (profile - usual[0]) @ step / length
+        if not (abs(share[0]) < 0.5 < share[-1] < 1.5):
+            continue  # somebody covers it
         below = np.flatnonzero((share[:-1] < 0.5) & (share[1:] >= 0.5))
         if len(below):
             k = int(below[-1])

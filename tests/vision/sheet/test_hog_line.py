@@ -50,7 +50,7 @@ def test_the_hog_line_tells_a_wide_lens(k1: float, k2: float, turned: bool) -> N
 
 
 def test_sweepers_over_half_of_it_do_not_hide_it() -> None:
-    sweepers = (-1.5, -0.6), (0.3, 1.3)
+    sweepers = (-1.7, -0.6), (0.2, 1.4)
     assert guards_off(club(-0.19, 0.036), turned=True, covered=sweepers)[0] < 0.05
 
 
