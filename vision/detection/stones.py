@@ -48,8 +48,9 @@ class Search:
 
     Attributes
     ----------
-    x_max, y_min, y_max : float
-        Stones are sought on |x| ≤ x_max, y_min ≤ y ≤ y_max, m.
+    x_max, y_max : float
+        Stones are sought on |x| ≤ x_max, |y| ≤ y_max, m: y is up in the picture, and cameras stand
+        at either end of the sheet.
     radius_px : float
         Radius of a disc on the rectified map, px.
     least_score : float
@@ -65,7 +66,6 @@ class Search:
     """
 
     x_max: float = 2.40
-    y_min: float = -4.5
     y_max: float = 9.0
     radius_px: float = 11.6
     least_score: float = 0.45
@@ -191,7 +191,7 @@ def measured(look: Look, sought: Candidates, disc: Stone, search: Search) -> Fin
 def whole_ice(camera: Camera, disc: Stone, search: Search) -> Bounds:
     """Part of the ice on which to look: x0, x1, y0, y1, m."""
     if not is_plain(disc):
-        return -search.x_max, search.x_max, search.y_min, search.y_max
+        return -search.x_max, search.x_max, -search.y_max, search.y_max
     width, height = camera.size
     corners = camera.ice(np.array([[0, 0], [width, 0], [0, height], [width, height]], float))
     (x0, y0), (x1, y1) = corners.min(0).tolist(), corners.max(0).tolist()

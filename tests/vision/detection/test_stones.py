@@ -140,6 +140,13 @@ def test_stones_of_the_neighbouring_sheet_are_left_out() -> None:
     assert [(round(s.x, 1), round(s.y, 1)) for s in found] == [(0.0, 1.0)]
 
 
+@pytest.mark.parametrize("y", [-6.2, 6.2])
+def test_guards_are_found_whichever_end_of_the_sheet_is_up_in_the_picture(y: float) -> None:
+    scene = scene_of([(0.3, y, RED), (-0.7, 0.9 * y, YELLOW)])
+    found = look(scene, still_camera(px_per_m=140.0, target=(0.0, 0.9 * y)))
+    assert len(found) == 2 and misses(found, scene).max() < 0.01
+
+
 @pytest.mark.parametrize("search", [SEARCH, FOLLOWING], ids=["one picture", "a clip"])
 @pytest.mark.parametrize("inside", [0.02, 0.0])
 def test_a_stone_cut_by_the_edge_of_the_picture_is_found_in_its_place(
