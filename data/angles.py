@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 
 from data.columns import (
     clock_column,
-    plain_name,
     refuse_disorder,
     times_of,
     values_of,
@@ -25,6 +24,7 @@ from data.columns import (
 )
 from data.delimited import TextTable, read_text_table
 from data.errors import InputError
+from data.headers import plain_name
 from data.units import ANGLE_UNITS
 
 Array = NDArray[np.float64]

@@ -1,4 +1,4 @@
-"""Columns of a text table: their names and units, their numbers, and the times of the rows."""
+"""Columns of a text table: their units, their numbers, and the times of the rows."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from data.delimited import TextTable
 from data.errors import InputError
+from data.headers import TIME_NAMES, plain_name
 from data.text import plain_decimals
 from data.tracks import LATEST
 from data.units import LENGTH_UNITS, TIME_UNITS, abbreviated
@@ -19,16 +20,6 @@ Array = NDArray[np.float64]
 UNIT_SAID = "another length unit than the file says, or another calibration"
 UNIT_NOT_SAID = f"another length unit (--length-unit: {', '.join(LENGTH_UNITS)})"
 """What may be wrong with lengths, where the file says their unit and where it does not."""
-
-TIME_NAMES = {"t", "time", "zeit", "temps", "tiempo", "tempo", "tijd", "czas"}
-"""What a column of times is called; spreadsheets are written by hand, in any language.
-``tid`` (in Scandinavia) is none of them: it is a usual name for the number of a track, too."""
-
-
-def plain_name(name: str) -> str:
-    """Name of a column without unit, TeX and case: ``v_{x} (m/s)`` becomes ``vx``."""
-    bare = re.sub(r"\(.*?\)|\[.*?\]|°", "", name[:100])
-    return bare.replace("_{", "").replace("}", "").strip(" \"'").casefold()
 
 
 def written_unit(

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data.errors import InputError
+from data.headers import with_units
 from data.text import NUMBER, plain_decimals, plain_digits, quoted, read_text
-from data.units import in_brackets
 
 Array = NDArray[np.float64]
 
@@ -222,7 +222,7 @@ def _header(
     for delimiter in [*candidates, " "]:
         if delimiter in line:
             cells = line.split() if delimiter == " " else _splitter(delimiter, line)(line)
-            names = [in_brackets(name.strip()) for name in cells]
+            names = with_units(cells)
             while names and not names[-1]:
                 names.pop()
             if len(names) > 1 and names[0] and is_header(names):

@@ -15,9 +15,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from data.columns import (
-    TIME_NAMES,
     clock_column,
-    plain_name,
     refuse_disorder,
     times_of,
     values_of,
@@ -25,11 +23,11 @@ from data.columns import (
 )
 from data.delimited import TextTable, read_text_table
 from data.errors import InputError
+from data.headers import ANGLE_NAMES, TIME_NAMES, plain_name
 from data.track_file import TrackFile
 from data.tracks import SEEN_AS, stone_name
 from data.units import ANGLE_UNITS, LENGTH_UNITS
 from data.wide import (
-    ANGLE_NAMES,
     COMPANIONS,
     Place,
     pairs_of,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from numbers import Real
 
 from data.errors import InputError
@@ -28,20 +27,14 @@ TIME_UNITS = {"s": 1.0, "ms": 0.001, "min": 60.0, "h": 3600.0}
 ANGLE_UNITS = {"rad": 1.0, "deg": math.pi / 180}
 """Radians in one of each."""
 
-_KNOWN = {*LENGTH_UNITS, *TIME_UNITS, *ANGLE_UNITS}
+KNOWN_UNITS = {*LENGTH_UNITS, *TIME_UNITS, *ANGLE_UNITS}
 
 
 def abbreviated(unit: str) -> str:
     """Give a unit as it is known here, whether written out or not; others as they are."""
     plain = unit.strip().lower().removesuffix(".")
     one = plain.removesuffix("s")
-    return SPELLED.get(one, next((name for name in (plain, one) if name in _KNOWN), unit))
-
-
-def in_brackets(name: str) -> str:
-    """Put a unit that stands behind a name as in ``x / m`` or ``x in m`` into brackets."""
-    found = re.fullmatch(r"(\S.{0,80}?)(?:\s*/\s*| in )(\w+|°)", name)
-    return f"{found[1]} ({found[2]})" if found and abbreviated(found[2]) in _KNOWN else name
+    return SPELLED.get(one, next((name for name in (plain, one) if name in KNOWN_UNITS), unit))
 
 
 def check_units(length_unit: str | None, angle_unit: str | None, fps: float | None) -> None:

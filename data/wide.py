@@ -11,17 +11,15 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from data.columns import TIME_NAMES, clock_column, refuse_disorder, times_of, values_of
+from data.columns import clock_column, refuse_disorder, times_of, values_of
 from data.delimited import TextTable
 from data.errors import InputError
+from data.headers import ANGLE_NAMES, RATE, RATES, TIME_NAMES
 from data.track_file import TrackFile
 from data.tracks import stone_name
 from data.units import ANGLE_UNITS
 
 Array = NDArray[np.float64]
-
-ANGLE_NAMES = {"ang", "angle", "theta"}
-"""What a column of angles is called."""
 
 ERRORS = ("sd_x", "sd_y", "sd_theta", "sd_place_x", "sd_place_y", "rise_a", "rise_b")
 """Errors that a table may tell."""
@@ -30,8 +28,9 @@ COMPANIONS = ("theta", *ERRORS, "frame")
 """What else a table may tell of a place."""
 
 _CENTRE = {"c", "cm", "com", "centre", "center", "pos", "position"}
-_DERIVED = {"v", "a", "p", "pixel", "px", "vel", "velocity", "acc", "acceleration", "sd"}
+_DERIVED = {"v", "a", "p", "pixel", "px", *RATES, "sd"}
 _QUANTITY = "|".join(_DERIVED)
+_PLACED = re.compile(rf"[_ .]+(?:{'|'.join(_CENTRE)})$")
 
 
 @dataclass(frozen=True)
@@ -69,7 +68,9 @@ def _stones(
     """Leave out what is no place: ``vx, vy`` and ``ax, ay``, and of a stone ``red_vx, red_vy``.
 
     But ``xA, yA`` are of a stone A, and ``ax, ay`` of one beside ``bx, by`` or ``avx, avy``.
+    ``red_pos_x`` is a place of red, beside ``red_vel_x``.
     """
+    stones = {"", *pairs, *(_PLACED.sub("", stem) for stem in pairs)}
     lettered = any(len(stem) == 1 and stem not in _DERIVED for stem in pairs)
     whose = {stem: re.sub(quantity, "", stem) for stem in pairs}
     known = {"a", "p"} if lettered else always  # the first of sixteen and the last
@@ -77,7 +78,8 @@ def _stones(
     return {
         stem: pair
         for stem, pair in pairs.items()
-        if stem in known or (stem and (whose[stem] == stem or whose[stem] not in {"", *pairs}))
+        if not RATE.search(stem)
+        and (stem in known or (stem and (whose[stem] == stem or whose[stem] not in stones)))
     }
 
 
@@ -175,6 +177,8 @@ def _named_pairs(table: TextTable, names: Sequence[str]) -> list[Place]:
         stone = stem
         if words[0] in _CENTRE and len(words) > 1:
             stone = stem[len(words[0]) + 1 :]
+        elif words[-1] in _CENTRE and len(words) > 1:
+            stone = _PLACED.sub("", stem)
         elif words[0] in _CENTRE and len(pairs) == 1:
             stone = title_of(table)
         others = {} if frame is None else {"frame": frame}

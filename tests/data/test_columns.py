@@ -7,13 +7,13 @@ import pytest
 
 from data.columns import (
     clock_column,
-    plain_name,
     refuse_disorder,
     times_of,
     written_unit,
 )
 from data.delimited import TextTable, read_text_table
 from data.errors import InputError
+from data.headers import plain_name
 from data.units import LENGTH_UNITS
 
 
@@ -32,14 +32,6 @@ def read_head(tmp_path: Path, head: str) -> TextTable:
 def times(tmp_path: Path, head: str, cells: list[str], fps: float | None = None):
     read = table(tmp_path, f"{head},x\n" + "".join(f"{cell},0.5\n" for cell in cells))
     return times_of(read, {0: read.numbers([0], 0)[:, 0]}, 0, fps)
-
-
-@pytest.mark.parametrize(
-    ("written", "plain"),
-    [("v_{x} (m/s)", "vx"), (' "X" [cm]', "x"), ("θ_{r} (°)", "θr"), ("Time", "time")],
-)
-def test_names_lose_units_and_dress(written: str, plain: str) -> None:
-    assert plain_name(written) == plain
 
 
 @pytest.mark.parametrize(

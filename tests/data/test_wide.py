@@ -49,6 +49,11 @@ def test_nor_do_they_stand_beside_one(tmp_path: Path, columns: str) -> None:
     assert not file.warnings
 
 
+def test_velocities_alone_are_no_places(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no columns x and y"):
+        read(tmp_path, "t,red_velocity_x,red_velocity_y\n0,1,2\n")
+
+
 def test_what_has_velocities_is_a_stone(tmp_path: Path) -> None:
     assert stones(read(tmp_path, "t,A_x,A_y,A_vx,A_vy\n0,1,2,3,4\n1,1,2,3,5\n")) == ["A"]
 
@@ -59,7 +64,15 @@ def test_times_of_each_stone_may_be_minutes_and_seconds(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "columns", ["red_x,red_y,red_vx,red_vy", "x_red,y_red,x_v_red,y_v_red", "redx,redy,ax,ay"]
+    "columns",
+    [
+        "red_x,red_y,red_vx,red_vy",
+        "x_red,y_red,x_v_red,y_v_red",
+        "redx,redy,ax,ay",
+        "red_pos_x,red_pos_y,red_vel_x,red_vel_y",
+        "red_position_x,red_position_y,red_v_x,red_v_y",
+        "pos_red_x,pos_red_y,vel_red_x,vel_red_y",
+    ],
 )
 def test_nor_are_those_of_stones(tmp_path: Path, columns: str) -> None:
     assert stones(read(tmp_path, f"t,{columns}\n0,1,2,3,4\n1,1,2,3,5\n")) == ["red"]

@@ -95,12 +95,15 @@ class Motion:
     hits: tuple[Hit, ...]
 
     def at(self, t: ArrayLike) -> Array:
-        """States at times t (s), shape (..., stones, 6); the state after a hit at its instant."""
+        """States at times t (s), shape (..., stones, 6); the state after a hit at its instant.
+
+        Before the first time stones move as they do at it: its exposure begins before it.
+        """
         moment = np.asarray(t, float)
         after = np.clip(np.searchsorted(self.times, moment, side="right"), 1, len(self.times) - 1)
         t0, t1 = self.times[after - 1], self.times[after]
         span = np.where(t1 > t0, t1 - t0, 1.0)
-        w = np.clip((moment - t0) / span, 0, 1)[..., None, None]
+        w = np.clip((moment - t0) / span, np.where(after == 1, -np.inf, 0), 1)[..., None, None]
         return np.asarray((1 - w) * self.states[after - 1] + w * self.states[after])
 
 

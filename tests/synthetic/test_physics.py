@@ -38,6 +38,13 @@ def test_curl_goes_to_the_side_of_the_spin() -> None:
     assert np.allclose(left[:2] * [-1, 1], right[:2])
 
 
+def test_an_exposure_that_begins_before_the_first_time_is_of_a_stone_on_its_way() -> None:
+    motion = simulate([Start(0, 0, vx=-0.3, vy=1.2, omega=1.0)], 1.0)
+    early, late = motion.at([-0.005, 0.005])[:, 0]
+    assert np.allclose((early + late)[:3] / 2, 0, atol=1e-5)
+    assert early[1] == pytest.approx(-0.006, abs=1e-5)
+
+
 @given(speeds, speeds, spins, spins, st.floats(0, 6.28), st.floats(0, 1), st.floats(0, 1))
 def test_impact_keeps_what_must_be_kept(
     vx: float, vy: float, w1: float, w2: float, angle: float, e: float, mu: float

@@ -18,10 +18,13 @@ from vision.association.follow import Track
 from vision.association.naming import first_motion
 from vision.detection.appearance import Appearance
 from vision.detection.patch import is_plain
-from vision.detection.relief import BARE, contrast, contrast_turned
+from vision.detection.relief import BARE, contrast, contrast_turned, without_handle
 
 Complex = NDArray[np.complex64]
 Flags = NDArray[np.bool_]
+
+TOLD = 3
+"""Pictures from which on they tell together what they share; of fewer each counts by itself."""
 
 MOST_PAIRS = 40
 """Pictures that are compared with the next one, spread over a track: more say the same."""
@@ -55,7 +58,9 @@ def with_handles(
         contrast_of(track, contrast_turned if moves else contrast)
         for track, moves in zip(tracks, moved, strict=True)
     ]
-    without = bare(shown, team, moved)
+    brief = [len(track.frames) < TOLD for track in tracks]
+    alone = without_handle([track.sightings[0] for track in tracks])
+    without = bare(shown, team, moved) | (alone & brief)
     return [track for track, out in zip(tracks, without, strict=True) if not out]
 
 
@@ -71,10 +76,10 @@ def contrast_of(track: Track, shared: Callable[[Complex, Complex], float]) -> fl
     Returns
     -------
     float
-        NaN where fewer than three pictures show the cap, or where they are too coarse.
+        NaN where fewer than `TOLD` pictures show the cap, or where they are too coarse.
     """
     shown = [kept for kept in track.sightings.spectra if kept is not None]
-    if len(shown) < 3 or np.median(track.sightings.columns("pixel_size")) > WIDTH:
+    if len(shown) < TOLD or np.median(track.sightings.columns("pixel_size")) > WIDTH:
         return nan
     some = np.unique(np.linspace(0, len(shown) - 2, MOST_PAIRS).astype(int)).tolist()
     # What covers a cap for some time has contrast of its own.

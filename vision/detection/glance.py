@@ -13,6 +13,7 @@ from vision.detection.balance import brightening
 from vision.detection.measure import measure_discs
 from vision.detection.patch import is_plain
 from vision.detection.rays import Look
+from vision.detection.relief import without_handle
 from vision.detection.sighting import Refusal, Sighting
 from vision.detection.stones import NEAREST, SEARCH, Findings, search_picture
 from vision.detection.strangers import by_shape, strangers, weighed
@@ -45,14 +46,32 @@ def glance(pictures: Sequence[tuple[Image, Camera]], disc: Stone = STONE) -> lis
         pictures = [(_lit(image, camera), camera) for image, camera in pictures]
     looks = [Look(image, camera, nothing) for image, camera in pictures]
     first, disc = strangers(looks, disc, SEARCH)
+    first = _with_handles(first)
     appearance = learn(convincing(stone for found in first for stone in found.stones))
     if appearance is None:
         return first
     again = [search_picture(image, camera, appearance, disc) for image, camera in pictures]
-    return [
-        _with_strangers(image, camera, known, other, appearance, disc)
-        for (image, camera), known, other in zip(pictures, again, first, strict=True)
-    ]
+    return _with_handles(
+        [
+            _with_strangers(image, camera, known, other, appearance, disc)
+            for (image, camera), known, other in zip(pictures, again, first, strict=True)
+        ]
+    )
+
+
+def _with_handles(found: Sequence[Findings]) -> list[Findings]:
+    """Refuse what has no handle, as paint, where others have."""
+    bare = iter(without_handle([stone for one in found for stone in one.stones]).tolist())
+    out = []
+    for one in found:
+        stones, refused = [], [*one.refused]
+        for stone in one.stones:
+            if next(bare):
+                refused.append(Refusal(stone.x, stone.y, stone.score, "no handle on it"))
+            else:
+                stones.append(stone)
+        out.append(Findings(tuple(stones), tuple(refused)))
+    return out
 
 
 def _lit(image: Image, camera: Camera) -> Image:

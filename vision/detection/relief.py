@@ -5,16 +5,19 @@ A handle is seen as contrast: of colour, or of shades where it is of the cap's o
 
 from __future__ import annotations
 
-from math import sqrt
+from collections.abc import Sequence
+from math import nan, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from data.sheet import STONE
 from vision.detection.patch import handle_radii
+from vision.detection.sighting import Sighting
 from vision.spin.align import ORDERS, ring_weights
 
 Complex = NDArray[np.complex64]
+Flags = NDArray[np.bool_]
 
 COARSE = (ORDERS >= 2) & (ORDERS <= 5)
 """Angular harmonics that a bar has most of. Of more there is but noise of films; a lamp on one side
@@ -34,6 +37,11 @@ BARE = 4.0
 """Contrast, L*a*b* units, below which there may be no handle. In 40 clips 63 discs of paint and
 icons have 0.5 to 4.4 (the median is 1.1; those with rings within them have most), 239 stones 2.6
 to 45; some 560 stones in 127 real pictures 2.8 and more."""
+
+BARE_ALONE, FINE = 2.2, 0.0125
+"""Contrast of one picture with itself, L*a*b* units, below which there is no handle beside stones
+that show theirs, where pixels are so fine, m: 561 stones in 127 real pictures have 2.8 and more,
+squares of a house that is painted as a tartan 0.9 to 1.8."""
 
 
 def contrast(here: Complex, there: Complex) -> float:
@@ -61,6 +69,23 @@ def contrast_turned(here: Complex, there: Complex) -> float:
     Half as much of the noise of each picture adds to it as if they were the same one.
     """
     return sqrt(2 * float(np.abs(_shared(here, there)).sum()) / _WEIGHT)
+
+
+def without_handle(seen: Sequence[Sighting]) -> Flags:
+    """Tell which of several things have no handle, by one picture of each, shape (n,).
+
+    None has where no handle is seen at all: that is how stones here look.
+    """
+    shown = np.array([_own_contrast(sighting) for sighting in seen])
+    return np.asarray((shown < BARE_ALONE) & (shown >= BARE).any())
+
+
+def _own_contrast(seen: Sighting) -> float:
+    """Contrast of a sighting with itself; NaN where it does not tell whether there is a handle."""
+    if seen.spectrum is None or not seen.pixel_size <= FINE:
+        return nan
+    spectrum = seen.spectrum.get()
+    return contrast(spectrum, spectrum)
 
 
 def _shared(here: Complex, there: Complex) -> Complex:

@@ -42,6 +42,10 @@ TINY = 1e-30
 WILD = 4.0
 """Jerks of the way, in root mean squares, beyond which they say nothing of the scatter: hits."""
 
+FREE = 50.0, 25.0
+"""Percentage of the jerks that are of no hit, at least, from picture to picture and over longer: of
+those over `SLOWLY` it may be in three of five of a way of some seconds."""
+
 
 class Lightness(NamedTuple):
     """What the lightness of its cap says of the way of one stone.
@@ -82,7 +86,8 @@ def lightness_of(times: Sequence[float], seen: Iterable[Sighting]) -> Lightness:
     slow = SLOWLY / float(np.median(np.diff(at)))
     lag = max(min(round(slow), len(told) // JERK), 1)
     lags = (1, lag) if 2 * lag >= slow else (1,)
-    return Lightness(told, aside, tuple(_jerks(at, places[told], aside, each) for each in lags))
+    jerks = (_jerks(at, places[told], aside, *each) for each in zip(lags, FREE, strict=False))
+    return Lightness(told, aside, tuple(jerks))
 
 
 def common_share(stones: Iterable[Lightness]) -> float:
@@ -135,7 +140,9 @@ def _lasting(times: Array, values: Array) -> Array:
     return np.asarray((total[end] - total[first]) / (end - first)[:, None])
 
 
-def _jerks(times: Array, places: Array, aside: Array, lag: int) -> tuple[float, float, float]:
+def _jerks(
+    times: Array, places: Array, aside: Array, lag: int, free: float
+) -> tuple[float, float, float]:
     """Powers of third divided differences at a lag, of a unit weight each, but for those of hits.
 
     A glide does not show in them, be the times even or not.
@@ -146,6 +153,7 @@ def _jerks(times: Array, places: Array, aside: Array, lag: int) -> tuple[float, 
     weight /= np.linalg.norm(weight, axis=1)[:, None]
     way, offer = (np.einsum("nk,nkc->nc", weight, z[four]) for z in (places, aside))
     size = np.hypot(*way.T)
-    near = size <= WILD * np.sqrt(np.mean(np.minimum(size, 3 * np.median(size)) ** 2))
+    some = size[size <= 3 * np.percentile(size, free)]
+    near = size <= WILD * np.sqrt(np.mean(some**2))
     way, offer = way[near], offer[near]
     return float((way**2).sum()), float((way * offer).sum()), float((offer**2).sum())

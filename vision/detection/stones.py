@@ -48,9 +48,9 @@ class Search:
 
     Attributes
     ----------
-    x_max, y_min, y_max : float
-        Stones are sought on |x| ≤ x_max, y_min ≤ y ≤ y_max, m; on −y_max ≤ y ≤ −y_min where the
-        picture shows more of the ice there, as where stones come up.
+    x_max, y_max : float
+        Stones are sought on |x| ≤ x_max, |y| ≤ y_max, m: y is up in the picture, and cameras stand
+        at either end of the sheet.
     radius_px : float
         Radius of a disc on the rectified map, px.
     least_score : float
@@ -66,7 +66,6 @@ class Search:
     """
 
     x_max: float = 2.40
-    y_min: float = -4.5
     y_max: float = 9.0
     radius_px: float = 11.6
     least_score: float = 0.45
@@ -191,14 +190,9 @@ def measured(look: Look, sought: Candidates, disc: Stone, search: Search) -> Fin
 
 def whole_ice(camera: Camera, disc: Stone, search: Search) -> Bounds:
     """Part of the ice on which to look: x0, x1, y0, y1, m."""
-    width, height = camera.size
     if not is_plain(disc):
-        # Guards lie where the picture shows more of the ice: below the house where stones come up.
-        shown = np.array([[(width - 1) / 2, (height - 1) / 2], [(width - 1) / 2, height - 1]])
-        middle, bottom = camera.ice(shown)[:, 1].tolist()
-        up = middle < 0 and bottom < search.y_min
-        y0, y1 = (-search.y_max, -search.y_min) if up else (search.y_min, search.y_max)
-        return -search.x_max, search.x_max, y0, y1
+        return -search.x_max, search.x_max, -search.y_max, search.y_max
+    width, height = camera.size
     corners = camera.ice(np.array([[0, 0], [width, 0], [0, height], [width, height]], float))
     (x0, y0), (x1, y1) = corners.min(0).tolist(), corners.max(0).tolist()
     return x0, x1, y0, y1

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from physics.filter.stretch import ANGLE_MEMORY, PLACE_MEMORY
 from physics.local_fit.contacts import cut_all, find_contacts
 from physics.local_fit.fit import fit_shot
-from physics.local_fit.noise import Noise, _square, noises
+from physics.local_fit.noise import BRIEF, FEWEST, Noise, Run, _square, noises
 from physics.local_fit.shot_fit import Deceleration
-from physics.local_fit.traces import traces
+from physics.local_fit.traces import local_residuals, traces
 from tests.physics.watch import RADIUS, hit_motion, lasting, watch
 
 Floats = NDArray[np.float64]
@@ -64,6 +64,37 @@ def test_errors_that_last_are_told(given: bool) -> None:
     assert white == pytest.approx([0.004, 0.004, 0.02], rel=0.25)
     # Stretches last a few memories only.
     assert np.all((slow > [0.005, 0.005, 0.02]) & (slow < [0.013, 0.013, 0.08]))
+
+
+@pytest.mark.parametrize("fps", [50.0, 60.0])
+def test_what_angles_of_neighbouring_pictures_have_in_common_does_not_last(fps: float) -> None:
+    each = []
+    for seed in range(SHOTS):
+        rng = np.random.default_rng([73, seed])
+        seen = watch(hit_motion(1.2, 0.08, after=1.5), rng, fps=fps, sd_theta=1e-5)
+        for _, group in seen.groupby("stone"):
+            seen.loc[group.index, "theta"] += lasting(rng, group["t"].to_numpy(), 0.02, 0.016)
+        each.append(seen.assign(sd_theta=0.02))
+    white, slow = usual(each)
+    assert white[2] == pytest.approx(0.02, rel=0.2)
+    assert slow[2] < 0.018
+
+
+def test_a_brief_glide_at_many_pictures_a_second_tells_how_it_errs() -> None:
+    t = np.arange(40) / 500
+    off = np.random.default_rng(5).normal(0, 1, len(t))
+    means = Run("A", np.arange(len(t)), t, off, 3.0).means(BRIEF)
+    assert means.each == 3
+    assert means.off[1] == pytest.approx(off[3:6].mean())
+    assert means.t[1] == pytest.approx(t[4])
+    assert means.samples[:3].tolist() == [0, 3, 6]
+    assert len(local_residuals(means.t, means.off[:, None])) >= FEWEST
+
+
+def test_pictures_that_are_far_enough_apart_count_each() -> None:
+    t = np.arange(40) / 30
+    run = Run("A", np.arange(len(t)), t, np.zeros(len(t)), 3.0)
+    assert run.means(BRIEF) is run
 
 
 def test_what_is_stated_is_lasting_where_it_does_not_scatter() -> None:

@@ -116,3 +116,11 @@ def test_of_hardly_seen_and_of_tiny_caps_nothing_is_told() -> None:
         small = track_of([cap(bar(30))] * 20, pixel=pixel)
         assert np.isfinite(contrast_of(small, contrast)) == told
     assert contrast_of(track_of([None, *[cap(bar(30))] * 3]), contrast) > 5
+
+
+def test_of_a_track_of_one_picture_that_picture_tells() -> None:
+    stone, paint = track_of([cap(bar(30), 1.0)]), track_of([cap(bar(0), 1.0)], YELLOW)
+    long = track_of([cap(bar(30, 0.1 * k), 1.0, k) for k in range(20)])
+    assert with_handles([stone, paint], TEAMS, STONE) == [stone]
+    assert with_handles([long, paint], TEAMS, STONE) == [long]
+    assert with_handles([paint], TEAMS, STONE) == [paint]

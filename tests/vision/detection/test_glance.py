@@ -8,9 +8,12 @@ import pytest
 
 from tests.synthetic.clip import render_still
 from tests.vision.association.test_follow import sighting
+from tests.vision.detection import test_relief as relief
 from tests.vision.detection.test_stones import CAMERA, YELLOW, camera_of, scene_of
 from tests.vision.detection.test_stones import RED as SCARLET
+from vision.detection import appearance
 from vision.detection import glance as module
+from vision.detection.appearance import Appearance
 from vision.detection.glance import glance
 from vision.detection.rays import Look
 from vision.detection.sighting import Refusal, Sighting
@@ -82,6 +85,29 @@ def test_shapes_that_colours_miss_stay_if_they_convince_and_colours_do_not_speak
     evidence = {1.0: 0.8, 1.5: 0.8, -0.5: 2.0, 0.55: 2.0, -1.0: 2.0}
     found = seen_twice(monkeypatch, first, Findings(first), evidence, tuple(shapes))
     assert [s.x for s in found.stones] == [0.0, 0.5, 1.0]
+
+
+def test_a_square_of_a_painted_pattern_is_no_stone_beside_stones(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    with_handle, without = (relief.seen(height).spectrum for height in (30.0, 0.0))
+    first = (
+        stone(0.0, RED, 2.0)._replace(spectrum=with_handle, pixel_size=0.005),
+        stone(0.6, BLUE, 2.4)._replace(spectrum=without, pixel_size=0.005),
+    )
+    learned: list[int] = []
+
+    def learn(sightings: Sequence[Sighting]) -> Appearance | None:
+        look = appearance.learn(sightings)
+        assert look is not None
+        learned.append(len(look.caps))
+        return look
+
+    monkeypatch.setattr(module, "learn", learn)
+    found = seen_twice(monkeypatch, first, Findings(first), {0.6: 2.4})
+    assert learned == [1]
+    assert [s.x for s in found.stones] == [0.0]
+    assert [(place.x, place.reason) for place in found.refused] == [(0.6, "no handle on it")]
 
 
 @pytest.mark.parametrize("share", [1.0, 0.4, 0.2])

@@ -8,7 +8,9 @@ from numpy.typing import NDArray
 
 from data.sheet import STONE
 from vision.detection.patch import handle_radii
-from vision.detection.relief import contrast, contrast_turned
+from vision.detection.relief import contrast, contrast_turned, without_handle
+from vision.detection.sighting import Sighting
+from vision.film.shelf import Kept
 from vision.spin.handle import cap_spectrum
 
 RADII = handle_radii(STONE)
@@ -71,3 +73,20 @@ def test_noise_adds_half_as_much_to_turned_pictures_as_to_one() -> None:
     noisy = [cap(bar(0), 8.0, seed) for seed in range(41)]
     own = np.median([contrast(a, a) for a in noisy])
     assert np.median([contrast_turned(*pair) for pair in pairwise(noisy)]) < 0.55 * own
+
+
+def seen(height: float, pixel: float = 0.01) -> Sighting:
+    """A stone whose handle is so much lighter than its cap."""
+    return Sighting(
+        0.0, 0.0, 0.002, 0.002, (0.0, 0.0), np.array([120.0, 190.0, 165.0]), 1.0, 2.0,
+        (1.0, 0.98), 0.0, (0.0,) * 6, (0.0, 0.0), pixel, spectrum=Kept(cap(bar(height), 1.0)),
+    )  # fmt: skip
+
+
+def test_one_picture_tells_paint_beside_stones_and_not_where_no_handle_is_seen() -> None:
+    stones, paint = [seen(30.0), seen(-15.0)], [seen(0.0), seen(2.0)]
+    assert without_handle([*stones, *paint]).tolist() == [False, False, True, True]
+    assert not without_handle(paint).any()
+    assert not without_handle([*stones, seen(0.0, pixel=0.02)]).any()  # too coarse to show it
+    assert not without_handle([*stones, paint[0]._replace(spectrum=None)]).any()
+    assert without_handle([]).shape == (0,)

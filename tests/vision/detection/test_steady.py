@@ -127,6 +127,18 @@ def test_what_is_half_covered_few_or_dark_all_over_stays() -> None:
     assert alone(times.tolist(), alike) == alike
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_a_stone_that_is_struck_halfway_is_steadied_as_others_are(seed: int) -> None:
+    # The hit is in three of five of its jerks over half a second.
+    times, rng = np.arange(240) / 60.0, np.random.default_rng(seed)
+    after_hit = np.maximum(times - 2.31, 0)
+    way = np.column_stack([0.4 * after_hit, -0.9 * after_hit + 0.05 * after_hit**2])
+    hue = waves(rng, times, 6e-4) + rng.normal(0, 3e-4, way.shape)
+    seen = seen_by(hue, rng.normal(0, 2e-4, way.shape), way)
+    before, after = errors(seen, way), errors(alone(times.tolist(), seen), way)
+    assert after.std() < 0.6 * before.std()
+
+
 def test_like_caps_tell_together_by_how_much_lightness_steadies() -> None:
     rng = np.random.default_rng(6)
 
