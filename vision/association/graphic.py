@@ -68,9 +68,25 @@ def is_graphic(track: Track, cameras: Sequence[Camera], disc: Stone) -> bool:
     )
     rms = np.array([by_frame[frame].rms_px for frame in track.frames])
     sd = np.hypot(np.sqrt(sd_x * sd_y) * by.scale_at(places), np.fmax(rms, LEAST_SD))
-    off = [((seen - where) ** 2).sum(1) / sd**2 for where in (np.median(seen, 0), *on_ice)]
+    away = [((seen - where) ** 2).sum(1) for where in (np.median(seen, 0), *on_ice)]
+    faint = bool(np.percentile(score, 75) <= IN_THE_OPEN)
+    if not _stays(away, sd, faint):
+        return False
+    # A still camera is astray by more where people cover much of what tells it: stones at rest
+    # then seem to move on the ice, and stay in the picture.
+    own = [
+        by_frame[frame].own_place_cov(place)
+        for frame, place in zip(track.frames, places, strict=True)
+    ]
+    own_sd = np.sqrt(np.trace(own, axis1=1, axis2=2) / 2) * by.scale_at(places)
+    return _stays(away, np.hypot(sd, own_sd), faint)
+
+
+def _stays(away: list[Array], sd: Array, faint: bool) -> bool:
+    """Whether squares of residuals, px², bear out the picture rather than rest or glide on ice."""
+    off = [squares / sd**2 for squares in away]
     stays, rests, glides = (float(np.mean(np.minimum(squares, ASTRAY))) for squares in off)
-    if np.percentile(score, 75) <= IN_THE_OPEN:
+    if faint:
         glides = np.inf
     return bool(np.median(off[0]) < ASTRAY) and min(rests, glides) - stays > TOLD
 

@@ -29,7 +29,6 @@ from vision.optics.camera import Camera
 from vision.optics.paint import TWELVE
 from vision.optics.placed import Placed, nobody
 from vision.optics.pose import View
-from vision.optics.rig import ANYWHERE, OVERHEAD
 from vision.sheet.house import find_house
 from vision.sheet.house_fit import HouseFit, at_height
 
@@ -256,7 +255,7 @@ class HouseFollower:
         """Begin a piece, or go on with one that shows the same; then follow it back."""
         piece, view = self._same(house, frame)
         if piece is None:
-            prior = (OVERHEAD if house.overhead else ANYWHERE).at_height(self._height)
+            prior = house.prior.at_height(self._height)
             edges = EdgeTracker(self._size, house.evidence.palette, house.edge, house.evidence)
             # One that is asked for needs no second look.
             in_view = 1.0 if self._first is not None else float(house.evidence.visible[TWELVE])

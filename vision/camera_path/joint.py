@@ -38,7 +38,6 @@ from vision.optics.projection import PARAMETERS
 from vision.optics.quality import ARC, edges_off, quality, warnings
 from vision.optics.resection import solve_views
 from vision.optics.rig import (
-    ANYWHERE,
     K1,
     K1_BEND,
     K1_ZOOM,
@@ -166,7 +165,7 @@ def fit_clip(
     marks, views = [s.marks.get() for s in chosen], [s.view for s in chosen]
     shared, _ = bundle(marks, times, views, rig, size, prior)
     if shared.ragged > RAGGED:
-        anywhere = ANYWHERE.at_height(prior.height)
+        anywhere = prior.anywhere()
         lean = fit_leaning(marks, views, shared.rig, size, prior=anywhere)
         other, _ = bundle(marks, times, lean.views, lean.rig, size, anywhere)
         if other.ragged < shared.ragged / 2:

@@ -32,7 +32,7 @@ from vision.optics.paint import CENTRE_LINE, CIRCLES, EIGHT, FOUR, TEE_LINE, TWE
 from vision.optics.pose import ROLL, View, camera
 from vision.optics.predict import MEMORY, predict
 from vision.optics.resection import solve_view, solve_views
-from vision.optics.rig import ANYWHERE, Prior
+from vision.optics.rig import Prior
 from vision.sheet.house_fit import TILT_GAIN, HouseFit
 
 Array = NDArray[np.float64]
@@ -379,7 +379,7 @@ class Piece:
         spread = self._spread()
         fit = self._joint(spread)
         if self.vague:
-            anywhere = ANYWHERE.at_height(self.prior.height)
+            anywhere = self.prior.anywhere()
             lean = fit_leaning(
                 [s.marks.get() for s in spread], [s.view for s in spread], self.rig, self.size,
                 prior=anywhere,

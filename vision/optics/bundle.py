@@ -77,6 +77,9 @@ CROOKED = 0.005
 """How ragged no sheet's lines are, m: of some 140 clips by 0.4 to 3.6 mm. In a cropped picture
 straight ones seem to be, for they do not fit the circles."""
 
+PIXELATED = 0.5
+"""The same in pixels: of a line that is far away or in a small picture no more is made out."""
+
 HIGHEST = 20.0
 """From what height on a picture is rather stretched, and so looks tilted, than taken from there, m:
 broadcast cameras hang at 6 to 11."""
@@ -154,7 +157,8 @@ def _is_cropped(problem: _Problem, state: _State, paint: Array, noise: Array) ->
     gain, axis = problem.aside(state, straight, noise)
     far = float(np.hypot(*axis))
     aside = any(far > least and gain > rise for least, rise in ASIDE)
-    return aside or float(paint[1]) > CROOKED or float(state.rig[POSITION][2]) > HIGHEST
+    crooked = float(paint[1]) > max(CROOKED, PIXELATED * problem.pixel(state))
+    return aside or crooked or float(state.rig[POSITION][2]) > HIGHEST
 
 
 @dataclass(frozen=True)
@@ -228,6 +232,12 @@ class _Problem:
         value += float((self.hold * (state.views - self.start) ** 2).sum())
         value += 2 * float(loss(at.residual / noise[self.kind], WIDTH).sum())
         return value / 2
+
+    def pixel(self, state: _State) -> float:
+        """Tell how much of the ice a pixel usually shows across lines, m; 0 without any."""
+        lines = self.kind == 1
+        by = by_measure(self.observed, self.see(state))[lines] * self.observed.sd[lines]
+        return float(np.median(1 / np.maximum(np.abs(by), 1.0))) if lines.any() else 0.0
 
     def weights(self, at: Linear, noise: Array) -> Array:
         """Give each residual's weight under Cauchy's loss, shape (n,)."""

@@ -52,6 +52,19 @@ class Prior:
             return self
         return replace(self._with_height(height, float(ANYWHERE.sd[POSITION][2])), height=None)
 
+    def anywhere(self) -> Prior:
+        """Give that of a camera with such a lens, over such a house, that may be anywhere."""
+        mean, sd = ANYWHERE.mean.copy(), ANYWHERE.sd.copy()
+        own = [K1, K2, BACK_Y, HOG_Y]
+        mean[own], sd[own] = self.mean[own], self.sd[own]
+        return Prior(mean, sd).at_height(self.height)
+
+    def downwards(self) -> Prior:
+        """Give that of a house whose hog line is towards −y: stones come up the picture."""
+        mean = self.mean.copy()
+        mean[[BACK_Y, HOG_Y]] *= -1
+        return replace(self, mean=mean)
+
     def _with_height(self, height: float, height_sd: float) -> Prior:
         mean, sd = self.mean.copy(), self.sd.copy()
         mean[POSITION][2], sd[POSITION][2] = height, height_sd
@@ -76,6 +89,18 @@ OVERHEAD = _prior((0.0, 0.35), (0.0, 0.35), (8.5, 1.5))
 
 ANYWHERE = _prior((0.0, 8.0), (0.0, 12.0), (7.0, 5.0))
 """A camera of which nothing is known but that it is above the ice."""
+
+
+WIDE = _prior((0.0, 8.0), (0.0, 12.0), (6.0, 2.0))
+"""A camera with a wide lens, as clubs have them under the roof: k1 of five was −0.15 to −0.28."""
+WIDE.mean[[K1, K2]], WIDE.sd[[K1, K2]] = (-0.15, 0.03), (0.1, 0.03)
+
+
+def with_lens(prior: Prior, k1: float) -> Prior:
+    """Give that of a camera with a lens that bends so much; wide ones have a k2 of some k1²."""
+    mean, sd = prior.mean.copy(), prior.sd.copy()
+    mean[[K1, K2]], sd[[K1, K2]] = (k1, k1 * k1), (0.004, 0.015)
+    return replace(prior, mean=mean, sd=sd)
 
 
 def distortion(rig: Array, log_f: float, size: tuple[int, int]) -> tuple[float, float]:

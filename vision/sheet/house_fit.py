@@ -19,7 +19,14 @@ from vision.optics.lean import fit_leaning
 from vision.optics.paint import TWELVE
 from vision.optics.pose import DOWN, View, aim, camera, rescaled, rotation_vector
 from vision.optics.resection import ROUND
-from vision.optics.rig import ANYWHERE, OVERHEAD, POSITION, Prior, start_rig
+from vision.optics.rig import (
+    ANYWHERE,
+    OVERHEAD,
+    POSITION,
+    Prior,
+    start_rig,
+)
+from vision.sheet.hog_line import by_hog_line
 from vision.sheet.lines import lesser_side_step, sides, upright
 from vision.sheet.marks import Evidence, measure_marks
 from vision.sheet.mixing import lit
@@ -71,6 +78,8 @@ class HouseFit:
     evidence : Evidence
         The marks it rests on.
     rms_px : float
+    prior : Prior
+        What was known of the rig beforehand.
     overhead : bool
         Whether it looks like a camera that hangs over the tee.
     edge : PaintEdge
@@ -84,6 +93,7 @@ class HouseFit:
     rig: Array
     evidence: Evidence
     rms_px: float
+    prior: Prior
     overhead: bool
     edge: PaintEdge
     vague: bool = False
@@ -208,8 +218,14 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
             view, rig = straight
             off = (rig - OVERHEAD.mean)[POSITION] / OVERHEAD.sd[POSITION]
             overhead = bool(np.abs(off).max() < USUAL)
-    rig = sides(image, view, rig)
     prior = OVERHEAD if overhead else ANYWHERE
+    if not vague:
+        circles = measure_marks(image, view.vector, rig, reach=6.0, lines=False)
+        told = by_hog_line(image, circles.marks, view, rig, prior)
+        if told is not None and (told.wide or told.down):
+            view, rig, prior = told.view, told.rig, told.prior
+            overhead = overhead and not told.wide
+    rig = sides(image, view, rig)
     edge = HALF_WAY
     for reach in (8.0, *ROUNDS * (6.0,)):
         evidence = measure_marks(image, view.vector, rig, reach=reach + edge.reach, edge=edge)
@@ -228,4 +244,4 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
     found = camera(view, rig, size, frame=frame, t=t, rms_px=rms)
     if worth(evidence) == 0:
         return None
-    return HouseFit(found, view, rig, evidence, rms, overhead, edge, vague)
+    return HouseFit(found, view, rig, evidence, rms, prior, overhead, edge, vague)

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from vision.optics.paint import CIRCLES, HOG_LINE, LEFT, RIGHT, ice_frame, measures
 from vision.optics.pose import project
-from vision.sheet.stations import BLOCK, ON_ALL, ON_CIRCLES, THIN, Stations
+from vision.optics.rig import HOG_Y
+from vision.sheet.stations import BLOCK, ON_ALL, ON_ALL_DOWN, ON_CIRCLES, THIN, Stations
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -173,7 +174,7 @@ def lay_out(
     lines : bool
         Whether the lines are laid out beside the circles.
     """
-    on = ON_ALL if lines else ON_CIRCLES
+    on = (ON_ALL if rig[HOG_Y] > 0 else ON_ALL_DOWN) if lines else ON_CIRCLES
     measure = measures(rig)[on.line]
     place = project((on.foot + on.way * measure).T, view, rig, size).T
     across, down = place[:, on.ahead] - place[:, on.behind]

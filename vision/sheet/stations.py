@@ -116,15 +116,20 @@ _ON_CIRCLES = [(kind, _ANGLE) for kind in range(CIRCLES)]
 ON_CIRCLES = Stations.on(_ON_CIRCLES)
 """Those on the three circles."""
 
-ON_ALL = Stations.on(
-    [
-        *_ON_CIRCLES,
-        (LEFT, _LENGTHWISE[::3]),
-        (RIGHT, _LENGTHWISE[::3]),
-        (HOG_LINE, _ACROSS[::2]),
-        (CENTRE_LINE, _blocks(_LENGTHWISE)),
-        (TEE_LINE, _blocks(_ACROSS)),
-        (BACK_LINE, np.concatenate([-_BESIDE[::-1], _BESIDE])),
-    ]
-)
-"""Those on all lines, thin ones last."""
+
+def _on_all(lengthwise: Array) -> Stations:
+    return Stations.on(
+        [
+            *_ON_CIRCLES,
+            (LEFT, lengthwise[::3]),
+            (RIGHT, lengthwise[::3]),
+            (HOG_LINE, _ACROSS[::2]),
+            (CENTRE_LINE, _blocks(lengthwise)),
+            (TEE_LINE, _blocks(_ACROSS)),
+            (BACK_LINE, np.concatenate([-_BESIDE[::-1], _BESIDE])),
+        ]
+    )
+
+
+ON_ALL, ON_ALL_DOWN = _on_all(_LENGTHWISE), _on_all(-_LENGTHWISE[::-1])
+"""Those on all lines, thin ones last; where the hog line is towards −y."""

@@ -12,7 +12,7 @@ from data.sheet import STONE
 from tests.vision.association.test_follow import sighting
 from vision.association.follow import Track
 from vision.association.graphic import glide, is_graphic
-from vision.optics.camera import Camera
+from vision.optics.camera import Camera, CameraError
 
 Array = NDArray[np.float64]
 
@@ -162,3 +162,21 @@ def test_cameras_are_known_as_well_as_edges_fit(px: float, rms: float, graphic: 
     off = px / 100 * np.sin(3 * times)
     cameras = [replace(each, rms_px=rms) for each in cameras_of(times, off)]
     assert is_graphic(track_of(times, np.column_stack([off, 0 * off])), cameras, STONE) == graphic
+
+
+@pytest.mark.parametrize(("own", "graphic"), [(0.0, True), (0.0006, False)])
+def test_a_stone_under_a_still_camera_that_people_cover_is_no_graphic(
+    own: float, graphic: bool
+) -> None:
+    """The views go astray by half a pixel, as they say; the stone stays in the picture."""
+    times = np.arange(60) / 30
+    astray = np.random.default_rng(4).normal(0, 0.004, 60)
+    places = np.column_stack([1.0 + astray, np.full(60, 0.5)])
+    cov = np.diag([own**2] * 3 + [0.0] * 6)
+    cameras = [
+        replace(
+            camera, f_px=800.0, position=np.array([x, 0.0, 8.0]), error=CameraError(0 * cov, cov)
+        )
+        for camera, x in zip(cameras_of(times, astray), astray, strict=True)
+    ]
+    assert is_graphic(track_of(times, places), cameras, STONE) == graphic

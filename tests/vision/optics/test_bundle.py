@@ -119,6 +119,24 @@ def test_an_axis_is_aside_if_it_is_far_enough_and_sure_enough(
 ) -> None:
     rig = np.zeros(RIG_SIZE)
     rig[POSITION] = 0.0, 0.0, 8.0
-    problem = SimpleNamespace(aside=lambda *_: (gain, far * np.array([0.6, -0.8])))
+    problem = SimpleNamespace(
+        aside=lambda *_: (gain, far * np.array([0.6, -0.8])), pixel=lambda *_: 0.005
+    )
     state = SimpleNamespace(rig=rig)
     assert _is_cropped(problem, state, PAINT_SD, np.ones(FAMILIES)) is cropped  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("ragged", "pixel", "cropped"),
+    [(0.004, 0.005, False), (0.006, 0.005, True), (0.006, 0.016, False), (0.009, 0.016, True)],
+)
+def test_lines_are_crooked_by_more_than_a_pixel_tells(
+    ragged: float, pixel: float, cropped: bool
+) -> None:
+    """The hog line of a club's small picture was ragged by 7 mm, 0.4 px."""
+    rig = np.zeros(RIG_SIZE)
+    rig[POSITION] = 0.0, 0.0, 6.0
+    problem = SimpleNamespace(aside=lambda *_: (0.0, np.zeros(2)), pixel=lambda *_: pixel)
+    paint = np.array([0.001, ragged, 1.0])
+    state = SimpleNamespace(rig=rig)
+    assert _is_cropped(problem, state, paint, np.ones(FAMILIES)) is cropped  # type: ignore[arg-type]

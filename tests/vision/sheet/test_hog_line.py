@@ -1,0 +1,65 @@
+"""Wide lenses, as fixed cameras of clubs have them: the hog line tells them, at either end."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+
+from tests.synthetic import PAINTS, CameraPath, Key, render_still, sample_scene
+from vision.optics.rig import HOG_Y
+from vision.sheet.house import find_house
+
+SCENE = replace(sample_scene(), paint=PAINTS["navy-orange"])
+GUARDS = np.array([(x, y) for x in (-1.0, 0.0, 1.0) for y in (2.5, 4.0, 5.5)])
+
+
+def club(k1: float, k2: float, y: float = -0.3, size: tuple[int, int] = (440, 770)) -> CameraPath:
+    """A camera that stands, pictures upright, and shows the ice up to the hog line."""
+    key = Key(0.0, 0.05, 1.7, size[0] / 4.4, k1=k1, k2=k2)
+    return CameraPath(size, (0.03, y, 6.0), (key,))
+
+
+def guards_off(
+    path: CameraPath, *, turned: bool, covered: tuple[tuple[float, float], ...] = ()
+) -> tuple[float, float]:
+    """How far off guards would be, m, and where the hog line was seen, y, m."""
+    image = np.array(render_still(SCENE, path), np.uint8)
+    for left, right in covered:
+        around = [(left, 5.7, 0), (right, 5.7, 0), (right, 6.9, 0), (left, 6.9, 0)]
+        corners = path.at(0.0).project(np.array(around, float))
+        cv2.fillConvexPoly(image, np.round(corners).astype(np.int32), (20, 20, 25))
+    pixels, ice = path.at(0.0).project(np.c_[GUARDS, np.zeros(len(GUARDS))]), GUARDS
+    if turned:
+        image, pixels, ice = np.rot90(image, 2), np.array(path.size) - 1 - pixels, -GUARDS
+    house = find_house(np.ascontiguousarray(image))
+    assert house is not None
+    off = np.linalg.norm(house.camera.ice(pixels) - ice, axis=1)
+    return float(off.max()), float(house.rig[HOG_Y])
+
+
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize(("k1", "k2"), [(-0.19, 0.036), (-0.28, 0.07)])
+def test_the_hog_line_tells_a_wide_lens(k1: float, k2: float, turned: bool) -> None:
+    """By the circles alone guards are up to a metre from where they are."""
+    off, hog = guards_off(club(k1, k2), turned=turned)
+    assert off < 0.05
+    assert hog == pytest.approx(-6.4 if turned else 6.4, abs=0.06)
+
+
+def test_sweepers_over_half_of_it_do_not_hide_it() -> None:
+    sweepers = (-1.7, -0.6), (0.2, 1.4)
+    assert guards_off(club(-0.19, 0.036), turned=True, covered=sweepers)[0] < 0.05
+
+
+def test_a_usual_lens_stays_one() -> None:
+    for turned in (False, True):
+        assert guards_off(club(-0.02, 0.0), turned=turned)[0] < 0.05
+
+
+def test_a_house_without_a_hog_line_in_view_is_found_as_before() -> None:
+    path = CameraPath((770, 440), (0.03, 0.0, 9.0), (Key(0.0, 0.0, 0.2, 90.0),))
+    house = find_house(np.asarray(render_still(SCENE, path), np.uint8))
+    assert house is not None and house.overhead and house.rig[HOG_Y] == pytest.approx(6.401)

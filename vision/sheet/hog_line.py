@@ -1,0 +1,221 @@
+"""A lens told by the hog line: circles alone hardly tell how much a wide one bends.
+
+Cameras of clubs have wide lenses, and show a sheet from behind the house to the hog line. Of the
+circles a lens that bends less, a higher camera and another tilt make nearly the same, and guards
+come to lie metres from where they are. One of these lenses has a straight line across the ice where
+the rules have the hog line, and be it at the other end: where stones come up the picture.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from data.sheet import SHEET
+from vision.film.picture import Image
+from vision.optics.adjust import SHARING, Solution, solve
+from vision.optics.paint import HOG_LINE, Marks, joined
+from vision.optics.pose import View, pictured, project
+from vision.optics.resection import ROUND
+from vision.optics.rig import BACK_Y, HOG_Y, K1, WIDE, Prior, with_lens
+from vision.sheet.marks import EDGE_SD
+
+Array = NDArray[np.float64]
+
+LENSES, FINER = np.arange(-0.40, 0.11, 0.02), 0.005 * np.arange(-3.0, 4.0)
+"""k1 of the lenses tried, and steps about the best; k2 goes with it (`vision.optics.rig`)."""
+
+BENT = -0.1
+"""k1 from which on a lens is a wide one: of those of broadcasts it was −0.11 to 0.06."""
+
+MIDDLE = SHEET.hog_line + 0.05
+"""Where the middle of the line is, m: the rules have its inner edge, and 10 cm for its width."""
+
+ABOUT = np.arange(-0.30, 0.301, 0.015)
+"""How far from there it is looked for, m."""
+
+NEAR = 0.15
+"""How far from there it may be with the lens that is nearest, m: half of what one step moves it."""
+
+ACROSS = np.arange(-2.0, 2.01, 0.05)
+"""Where it is looked at, m."""
+
+ENOUGH = int(0.4 * len(ACROSS))
+"""How many of these must show it."""
+
+EACH = 5
+"""Of these are looked at together where its edge is measured."""
+
+ON, BESIDE = 2, 7
+"""Steps of `ABOUT` on the line, about its middle, and how far aside the ice beside it is."""
+
+LEAST_CONTRAST, MOST_UNLIKE = 12.0, 0.5
+"""Grey levels by which it differs from the ice on either side, and how much these may differ from
+each other, as a share of that: boards and borders have ice on one side."""
+
+MOST_COST = 4.0
+"""By how much more than the best lens one may cost, in the circles' log likelihood."""
+
+
+@dataclass(frozen=True)
+class Told:
+    """A camera whose lens the hog line tells.
+
+    Attributes
+    ----------
+    view, rig : View, ndarray
+    prior : Prior
+        What is known of it beforehand.
+    wide : bool
+        Whether it has a wide lens.
+    down : bool
+        Whether the hog line is towards −y.
+    """
+
+    view: View
+    rig: Array
+    prior: Prior
+    wide: bool
+    down: bool
+
+
+@dataclass(frozen=True)
+class _Tried:
+    """A lens, the camera that fits circles best with it, and the line seen with it."""
+
+    k1: float
+    fit: Solution
+    contrast: float
+    off: float
+    down: bool
+
+
+def by_hog_line(image: Image, circles: Marks, view: View, rig: Array, prior: Prior) -> Told | None:
+    """Fit a camera to circles so that the hog line lies where it is on every sheet.
+
+    Parameters
+    ----------
+    image : ndarray of uint8, shape (h, w, 3)
+    circles : Marks
+        Of the house in it.
+    view, rig : View, ndarray
+        A camera that explains them; the ice's axes are upright.
+    prior : Prior
+        What is known of it beforehand, if its lens is none of the wide ones.
+
+    Returns
+    -------
+    Told or None
+        None where no lens has a line there.
+    """
+    fits = list(_family(image, circles, view, rig, LENSES))
+    least = min(one.fit.cost for one in fits) + MOST_COST * SHARING
+    seen = [one for one in fits if one.fit.cost < least and abs(one.off) < NEAR]
+    best = max(seen, key=lambda one: one.contrast, default=None)
+    if best is None or best.contrast < LEAST_CONTRAST:
+        return None
+    near = _family(image, circles, best.fit.views[0], best.fit.rig, best.k1 + FINER)
+    shown = [one for one in near if one.down == best.down and one.contrast > best.contrast / 2]
+    best = min([best, *shown], key=lambda one: abs(one.off))
+    wide = best.k1 < BENT
+    known = WIDE if wide else prior
+    known = known.downwards() if best.down else known
+    rig = best.fit.rig.copy()
+    rig[[BACK_Y, HOG_Y]] = known.mean[[BACK_Y, HOG_Y]]
+    marks = joined([circles, _edge(image, best)])
+    size = (image.shape[1], image.shape[0])
+    fit = solve([marks], list(best.fit.views), rig, size, prior=known, view_sd=ROUND)
+    return Told(fit.views[0], fit.rig, known, wide, best.down)
+
+
+def _family(
+    image: Image, circles: Marks, view: View, rig: Array, lenses: Array
+) -> Iterator[_Tried]:
+    """Fit cameras with one lens after another, from that of the rig to both sides."""
+    size = (image.shape[1], image.shape[0])
+    middle = int(np.abs(lenses - rig[K1]).argmin())
+    for some in (lenses[middle:], lenses[:middle][::-1]):
+        now, shared = view, rig
+        for k1 in some.tolist():
+            prior = with_lens(WIDE, k1)
+            fit = solve([circles], [now], shared, size, prior=prior, view_sd=ROUND)
+            now, shared = fit.views[0], fit.rig
+            for down in (False, True):
+                yield _Tried(k1, fit, *_line_at(image, now, shared, down), down)
+
+
+def _line_at(image: Image, view: View, rig: Array, down: bool) -> tuple[float, float]:
+    """Tell how much a line stands out near the hog line's place, and how far from there it is.
+
+    At the upper end of the ice or the lower one; grey levels and m.
+    """
+    colour, within = _across(image, view, rig, down)
+    best = 0.0, 0.0
+    for k in range(BESIDE + 1, len(ABOUT) - BESIDE):
+        whole = within[:, [k - BESIDE, k, k + BESIDE]].all(1)
+        if whole.sum() < ENOUGH:
+            continue
+        line = colour[whole, k - ON : k + ON + 1].mean(1)
+        one, two = line - colour[whole, k - BESIDE], line - colour[whole, k + BESIDE]
+        both = np.where(one * two > 0, np.sign(one) * np.minimum(np.abs(one), np.abs(two)), 0.0)
+        # Sweepers may cover half of it: where it stands out most it does by one colour.
+        most = np.argsort(-np.linalg.norm(both, axis=1))[:ENOUGH]
+        way = np.median(both[most], axis=0)
+        along = both[most] @ way / max(float(np.linalg.norm(way)), 1e-9)
+        contrast = float(np.quantile(along, 0.1))
+        unlike = float(np.linalg.norm(np.median((one - two)[most], axis=0)))
+        if contrast > best[0] and unlike < MOST_UNLIKE * contrast:
+            best = contrast, float(ABOUT[k])
+    return best
+
+
+def _edge(image: Image, seen: _Tried) -> Marks:
+    """Mark a line's edge towards the tee, half-way from it to the ice, where it was seen."""
+    view, rig = seen.fit.views[0], seen.fit.rig
+    colour, within = _across(image, view, rig, seen.down)
+    at = int(np.abs(ABOUT - seen.off).argmin())
+    part, end = slice(at - BESIDE, at + 1), -1.0 if seen.down else 1.0
+    whole = np.asarray(within[:, part].all(1), bool)
+    rises = np.linalg.norm(colour[:, at] - colour[:, at - BESIDE], axis=1)
+    most = np.argsort(-np.where(whole, rises, 0.0))[:ENOUGH]
+    usual = np.median(colour[most][:, part], axis=0)
+    step = usual[-1] - usual[0]
+    length = max(float(step @ step), 1e-9)
+    found = []
+    for first in range(0, len(ACROSS) - EACH + 1, EACH):
+        some = np.flatnonzero(whole[first : first + EACH]) + first
+        if len(some) < EACH:
+            continue
+        profile = np.median(colour[some, part], axis=0)
+        share = (profile - usual[0]) @ step / length
+        if not (abs(share[0]) < 0.5 < share[-1] < 1.5):
+            continue  # somebody covers it
+        below = np.flatnonzero((share[:-1] < 0.5) & (share[1:] >= 0.5))
+        if len(below):
+            k = int(below[-1])
+            aside = k + (0.5 - share[k]) / (share[k + 1] - share[k])
+            off = ABOUT[at - BESIDE] + aside * (ABOUT[1] - ABOUT[0])
+            found.append((float(ACROSS[some].mean()), end * (MIDDLE + float(off))))
+    ice = np.array(found).reshape(-1, 2)
+    size = (image.shape[1], image.shape[0])
+    place, ahead = (project(ice + way, view.vector, rig, size) for way in np.diag((0.0, 0.01)))
+    normal = (ahead - place) / np.linalg.norm(ahead - place, axis=1, keepdims=True)
+    line = np.full(len(ice), HOG_LINE)
+    return Marks(line, ice[:, 0], place, normal, np.full(len(ice), EDGE_SD))
+
+
+def _across(image: Image, view: View, rig: Array, down: bool) -> tuple[Array, NDArray[np.bool_]]:
+    """Colours across the hog line's place, from the tee on, and which lie in the picture."""
+    size = (image.shape[1], image.shape[0])
+    end = -1.0 if down else 1.0
+    ice = np.stack(np.broadcast_arrays(ACROSS[:, None], end * (MIDDLE + ABOUT)), axis=-1)
+    place, within = pictured(ice, view.vector, rig, size)
+    # Far beyond what it was made for a lens folds back into the picture.
+    tee, rim = project(np.array([[0.0, 0.0], [0.0, end]]), view.vector, rig, size)
+    within[:, 1:] &= np.diff(place, axis=1) @ (rim - tee) > 0
+    at = np.where(within[..., None], place, -1.0).astype(np.float32)
+    return cv2.remap(image, at[..., 0], at[..., 1], cv2.INTER_LINEAR).astype(np.float64), within
