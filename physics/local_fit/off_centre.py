@@ -109,8 +109,10 @@ def _centred(trace: Trace, hits: Sequence[tuple[int, float]], radius: float) -> 
 
 def moved(trace: Trace, beside: Floats) -> Trace:
     """Put sightings over the centre of a stone whose cap is so far beside it, m, in its frame."""
-    sd = np.nan_to_num(trace.sd_theta)[:, None] * np.hypot(*beside)
-    return replace(trace, xy=trace.xy - trace.rotations @ beside, sd=np.hypot(trace.sd, sd))
+    told = np.isfinite(trace.theta)
+    sd_theta = np.interp(trace.t, trace.t[told], trace.sd_theta[told])  # as `Trace.rotations`
+    sd = np.hypot(trace.sd, sd_theta[:, None] * np.hypot(*beside))
+    return replace(trace, xy=trace.xy - trace.rotations @ beside, sd=sd)
 
 
 def _told_throughout(trace: Trace) -> bool:
@@ -156,7 +158,7 @@ def _beside(
     # As often as sightings err alike they say the same once more.
     alike = max(ALIKE, trace.lasting * 2 * PLACE_MEMORY / trace.step)
     for samples in stretches:
-        sd = np.sqrt(np.mean(trace.sd[samples] ** 2, axis=1))
+        noise = np.sqrt(np.mean(trace.sd[samples] ** 2, axis=1))
         t = trace.t[samples]
         tau = (2 * t - t[0] - t[-1]) / (t[-1] - t[0])
         curve = legendre.legvander(tau, 5)
@@ -165,7 +167,7 @@ def _beside(
         before = normal * (1 + alike), right * (1 + alike)
         weight = np.ones(len(tau))
         for _ in range(REWEIGHTED):
-            size = (np.sqrt(weight) / sd)[:, None]
+            size = (np.sqrt(weight) / noise)[:, None]
             basis = np.linalg.qr(np.concatenate([curve * size, held]))[0][: len(t)]
             cap = trace.rotations[samples] * size[:, :, None]
             own = _without(basis, trace.xy[samples] * size)

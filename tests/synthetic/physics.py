@@ -103,7 +103,7 @@ class Motion:
         after = np.clip(np.searchsorted(self.times, moment, side="right"), 1, len(self.times) - 1)
         t0, t1 = self.times[after - 1], self.times[after]
         span = np.where(t1 > t0, t1 - t0, 1.0)
-        w = np.clip((moment - t0) / span, np.where(after == 1, -np.inf, 0), 1)[..., None, None]
+        w = np.minimum((moment - t0) / span, 1)[..., None, None]
         return np.asarray((1 - w) * self.states[after - 1] + w * self.states[after])
 
 

@@ -23,7 +23,7 @@ from vision.detection.relief import BARE, contrast, contrast_turned, without_han
 Complex = NDArray[np.complex64]
 Flags = NDArray[np.bool_]
 
-TOLD = 3
+FEWEST = 3
 """Pictures from which on they tell together what they share; of fewer each counts by itself."""
 
 MOST_PAIRS = 40
@@ -58,8 +58,9 @@ def with_handles(
         contrast_of(track, contrast_turned if moves else contrast)
         for track, moves in zip(tracks, moved, strict=True)
     ]
-    brief = [len(track.frames) < TOLD for track in tracks]
-    alone = without_handle([track.sightings[0] for track in tracks])
+    brief = [len(track.frames) < FEWEST for track in tracks]
+    ends = ([track.sightings[k] for track in tracks] for k in (0, -1))
+    alone = np.all([without_handle(seen) for seen in ends], axis=0)
     without = bare(shown, team, moved) | (alone & brief)
     return [track for track, out in zip(tracks, without, strict=True) if not out]
 
@@ -76,10 +77,10 @@ def contrast_of(track: Track, shared: Callable[[Complex, Complex], float]) -> fl
     Returns
     -------
     float
-        NaN where fewer than `TOLD` pictures show the cap, or where they are too coarse.
+        NaN where fewer than `FEWEST` pictures show the cap, or where they are too coarse.
     """
     shown = [kept for kept in track.sightings.spectra if kept is not None]
-    if len(shown) < TOLD or np.median(track.sightings.columns("pixel_size")) > WIDTH:
+    if len(shown) < FEWEST or np.median(track.sightings.columns("pixel_size")) > WIDTH:
         return nan
     some = np.unique(np.linspace(0, len(shown) - 2, MOST_PAIRS).astype(int)).tolist()
     # What covers a cap for some time has contrast of its own.

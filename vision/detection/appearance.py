@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from math import inf
+from math import inf, isnan
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vision.detection.circles import WALL
 from vision.detection.contrast import worth_of
-from vision.detection.relief import BARE, contrast
+from vision.detection.relief import BARE, own_contrast
 from vision.detection.sighting import Sighting
 from vision.film.clip import Image
 from vision.film.lab import bgr_of, chroma, lab_of
@@ -211,10 +211,8 @@ def by_colour(sightings: Iterable[Sighting]) -> list[list[Sighting]]:
 
 def _handled(sighting: Sighting) -> float:
     """How much of a handle a sighting shows, 0 to 1; 1 where it is not told."""
-    if sighting.spectrum is None:
-        return 1.0
-    spectrum = sighting.spectrum.get()
-    return min(contrast(spectrum, spectrum) / BARE, 1.0)
+    shown = own_contrast(sighting)
+    return 1.0 if isnan(shown) else min(shown / BARE, 1.0)
 
 
 def _of_one_set(groups: list[list[Sighting]]) -> list[list[Sighting]]:

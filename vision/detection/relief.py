@@ -76,13 +76,13 @@ def without_handle(seen: Sequence[Sighting]) -> Flags:
 
     None has where no handle is seen at all: that is how stones here look.
     """
-    shown = np.array([_own_contrast(sighting) for sighting in seen])
+    shown = np.array([own_contrast(one) if one.pixel_size <= FINE else nan for one in seen])
     return np.asarray((shown < BARE_ALONE) & (shown >= BARE).any())
 
 
-def _own_contrast(seen: Sighting) -> float:
-    """Contrast of a sighting with itself; NaN where it does not tell whether there is a handle."""
-    if seen.spectrum is None or not seen.pixel_size <= FINE:
+def own_contrast(seen: Sighting) -> float:
+    """Contrast of the picture of a sighting with itself; NaN where its cap is not seen well."""
+    if seen.spectrum is None:
         return nan
     spectrum = seen.spectrum.get()
     return contrast(spectrum, spectrum)

@@ -43,10 +43,10 @@ unlike alone mostly differs by a tenth or less, and in some favours the other se
 TOLD = 0.1
 """How well steepnesses are told, a standard error."""
 
-A_WHILE, PUSHED, FEWEST, SURE = 0.25, 0.1, 6, 0.005
+A_WHILE, PUSHED, STANDS, FEWEST, SURE = 0.25, 0.1, 0.05, 6, 0.005
 """Time over which a speed is told, s; by which share of its greatest speed a stone that is hit
-changes its velocity; pictures of a glide from which on its spin is asked how steady it is; and what
-angles are off by at least, rad."""
+changes its velocity, and below which it stands; pictures of a glide from which on its spin is asked
+how steady it is; and what angles are off by at least, rad."""
 
 RAYS, FINER = 64, 4
 """Directions, and places from ring to ring, between which pictures are interpolated."""
@@ -94,14 +94,17 @@ def rise_of_handle(
     complex or None
         How steep it is, and in which direction, of a cap at angle 0; None where nothing is told.
     """
-    if np.median(np.hypot(*slants.T)) < ASLANT or np.ptp(angles) < WIDELY:
+    glide = _glides(times, slants)
+    # A stone that stands has no steady spin, and its pictures are alike at any steepness.
+    goes = np.flatnonzero(glide >= 0)
+    if np.median(np.hypot(*slants[goes].T)) < ASLANT or np.ptp(angles[goes]) < WIDELY:
         return None
     shown = rings_seen(pictures)[:, None, :, None]
     direction = bearing(upright_mean(pictures, angles, shown))
     if direction is None:
         return None
-    along, glide = np.exp(1j * direction), _glides(times, slants)
-    some = np.linspace(0, len(pictures) - 1, min(len(pictures), MOST)).astype(int)
+    along = np.exp(1j * direction)
+    some = goes[np.linspace(0, len(goes) - 1, min(len(goes), MOST)).astype(int)]
     pictures, angles, slants, sd_shift = pictures[some], angles[some], slants[some], sd_shift[some]
     times, glide = times[some], glide[some]
     fine, seen, uphill = _finely(pictures, radii), rings_seen(pictures), along * np.exp(1j * angles)
@@ -147,7 +150,10 @@ def _unsteady(times: Array, angles: Array, glide: NDArray[np.intp]) -> float:
 
 
 def _glides(times: Array, slants: Array) -> NDArray[np.intp]:
-    """Tell which glide pictures are of, from hit to hit, by how the slant goes: numbers, (n,)."""
+    """Tell which glide pictures are of, from hit to hit, by how the slant goes: numbers, (n,).
+
+    Of a stone that stands they are -1.
+    """
     when = times + A_WHILE * np.array([[-1.0], [0.0], [1.0]])
     ways = np.diff([np.interp(when, times, along) for along in slants.T], axis=1)
     before, after = ways.swapaxes(0, 1)
@@ -159,7 +165,8 @@ def _glides(times: Array, slants: Array) -> NDArray[np.intp]:
         hit = int(change.argmax())
         hits[hit] = 1
         change[np.abs(times - times[hit]) < A_WHILE] = 0.0
-    return np.cumsum(hits)
+    way = np.hypot(*(before + after))
+    return np.where(way < STANDS * way.max(), -1, np.cumsum(hits))
 
 
 def _finely(pictures: Complex, radii: Array) -> Array:

@@ -126,6 +126,25 @@ def test_where_the_angle_is_not_told_for_long_nothing_is_taken_out(half: slice) 
     assert centred({"A": trace}, [], RADIUS)["A"] is trace
 
 
+def test_where_the_angle_is_not_told_in_between_nothing_is_taken_out_either() -> None:
+    trace = beside(seen(glide(T)))
+    trace.theta[60:95] = np.nan
+    assert centred({"A": trace}, [], RADIUS)["A"] is trace
+
+
+def test_what_lies_farther_out_than_a_cap_may_is_none() -> None:
+    trace = seen(glide(T))
+    far = replace(trace, xy=trace.xy + 3 * wobble(trace.theta))
+    assert centred({"A": far}, [], RADIUS)["A"] is far
+
+
+def test_hits_of_other_stones_cut_no_way() -> None:
+    trace = beside(seen(glide(T)))
+    hits = [Meeting(at, ("B", "C"), 1 / FPS) for at in np.arange(0.3, 5, 0.3).tolist()]
+    over = centred({"A": trace}, hits, RADIUS)["A"]
+    np.testing.assert_array_equal(over.xy, centred({"A": trace}, [], RADIUS)["A"].xy)
+
+
 def test_places_far_off_do_not_tell_of_the_cap() -> None:
     truth = glide(T)
     trace = beside(seen(truth))
@@ -140,6 +159,15 @@ def test_what_the_angle_is_off_by_is_in_the_errors() -> None:
     over = centred({"A": trace}, [], RADIUS)["A"]
     expected = np.hypot(trace.sd, 0.02 * np.hypot(AHEAD, LEFT))
     assert over.sd == pytest.approx(expected, rel=0.05)
+
+
+def test_angles_that_are_told_by_those_beside_them_err_as_these_do() -> None:
+    trace = beside(seen(glide(T)))
+    trace.sd_theta[:] = 0.2
+    trace.theta[1::2] = trace.sd_theta[1::2] = np.nan
+    over = centred({"A": trace}, [], RADIUS)["A"]
+    assert over.sd.min() > 1.5 * trace.sd.max()
+    assert over.sd[1::2] == pytest.approx(over.sd[::2])
 
 
 @pytest.mark.parametrize(

@@ -124,3 +124,11 @@ def test_of_a_track_of_one_picture_that_picture_tells() -> None:
     assert with_handles([stone, paint], TEAMS, STONE) == [stone]
     assert with_handles([long, paint], TEAMS, STONE) == [long]
     assert with_handles([paint], TEAMS, STONE) == [paint]
+
+
+@pytest.mark.parametrize("clear", [0, 1])
+def test_a_stone_that_is_covered_in_one_of_two_pictures_stays(clear: int) -> None:
+    stone, paint = track_of([cap(bar(30), 1.0)] * 2), track_of([cap(bar(0), 1.0)] * 2, YELLOW)
+    shown = [cap(bar(30 * (k == clear)), 1.0) for k in range(2)]
+    covered = track_of(shown, YELLOW)
+    assert with_handles([stone, covered, paint], TEAMS, STONE) == [stone, covered]

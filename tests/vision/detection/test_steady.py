@@ -134,9 +134,33 @@ def test_a_stone_that_is_struck_halfway_is_steadied_as_others_are(seed: int) -> 
     after_hit = np.maximum(times - 2.31, 0)
     way = np.column_stack([0.4 * after_hit, -0.9 * after_hit + 0.05 * after_hit**2])
     hue = waves(rng, times, 6e-4) + rng.normal(0, 3e-4, way.shape)
-    seen = seen_by(hue, rng.normal(0, 2e-4, way.shape), way)
-    before, after = errors(seen, way), errors(alone(times.tolist(), seen), way)
-    assert after.std() < 0.6 * before.std()
+    light = rng.normal(0, 2e-4, way.shape)
+    struck, other = (
+        errors(alone(times.tolist(), seen_by(hue, light, own)), own) for own in (way, 0 * way)
+    )
+    assert struck.std() < 1.03 * other.std() < 0.63 * hue.std()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_hit_in_each_jerk_of_a_stone_does_not_hide_what_others_tell(seed: int) -> None:
+    rng, times = np.random.default_rng(seed), np.arange(65) / RATE
+    ways = np.zeros((4, len(times), 2))
+    ways[0] = [0.1, -1.4] * times[:, None] + [0.4, 0.9] * np.maximum(times - 1.3, 0)[:, None]
+    stones = []
+    for way in ways:
+        hue = waves(rng, times, 6e-4) + rng.normal(0, 3e-4, way.shape)
+        stones.append(seen_by(hue, rng.normal(0, 2e-4, way.shape), way))
+    lights = [lightness_of(times.tolist(), seen) for seen in stones]
+    assert common_share(lights) == pytest.approx(common_share(lights[1:]), abs=0.1)
+
+
+def test_where_its_jerks_tell_nothing_the_errors_of_a_stone_stay() -> None:
+    times, rng = np.arange(100) / RATE, np.random.default_rng(5)
+    still = np.zeros((100, 2))
+    seen = seen_by(rng.normal(0, 1e-3, still.shape), still, still)
+    seen = [s._replace(light=(0.0, 0.0)) for s in seen]
+    steady = steadied(seen, lightness_of(times.tolist(), seen), 0.7)
+    assert [(s.sd_x, s.sd_y) for s in steady] == [(s.sd_x, s.sd_y) for s in seen]
 
 
 def test_like_caps_tell_together_by_how_much_lightness_steadies() -> None:

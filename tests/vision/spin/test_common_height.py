@@ -78,6 +78,7 @@ def test_nothing_is_told_where_no_stone_turned_or_heights_are_about_as_good() ->
     assert common_height([told(4.0, 1.0, 0.9 * DOUBT), told(0.8, 1.0, 9.0)]) is None
     assert common_height([told(4.0, 1.0, 1.1 * DOUBT)]) == 0
     assert common_height([told(-4.0, 9.0, 1.0), told(4.0, 1.0, 3.0)]) == 1
+    assert common_height([told(4.0, 1.0, 3.0), told(-4.0, 9.0, 1.0)]) == 1
     assert common_height([told(4.0, 1.0)]) is None  # a disc that is flat
 
 

@@ -68,6 +68,13 @@ def test_a_handle_tells_how_steep_it_is(steep: float) -> None:
     assert abs(found.imag) < 0.1
 
 
+def test_its_direction_is_told_as_angles_count() -> None:
+    shown = pictures(0.3, SLANTS)
+    angles = align(shown, TRUE - 1.0, RADII, SD).angle
+    found = rise_of_handle(TIMES, shown, angles, RADII, SLANTS, SD)
+    assert found == pytest.approx(0.3 * np.exp(1j), abs=0.05)
+
+
 @pytest.mark.parametrize("steep", [0.3, -0.3])
 def test_steady_spins_tell_it_where_pictures_are_little_alike(steep: float) -> None:
     found = told(spoilt(pictures(steep, SLANTS)))
@@ -87,6 +94,31 @@ def test_spins_that_a_hit_changes_tell_it_too(spin: float) -> None:
         angles = align(shown, true, RADII, SD).angle
         found = rise_of_handle(TIMES, shown, angles, RADII, slants, SD)
         assert (0.0 if found is None else found.real) == pytest.approx(steep, abs=0.1)
+
+
+@pytest.mark.parametrize("rate", [25, 60])
+@pytest.mark.parametrize("steep", [0.3, -0.3])
+def test_a_stone_that_comes_to_rest_tells_it_while_it_goes(steep: float, rate: int) -> None:
+    times = np.arange(6 * rate) / rate
+    way = np.minimum(times, 2.8) - np.minimum(times, 2.8) ** 2 / 5.6
+    slants = np.column_stack([0.1 + 0 * times, 0.85 - 0.25 * way])
+    true, sd = 0.4 + 1.3 * np.minimum(times, 2.8), np.full(len(times), 0.005)
+    shown = spoilt(turning(true, slants, steep))
+    angles = align(shown, true, RADII, sd).angle
+    found = rise_of_handle(times, shown, angles, RADII, slants, sd)
+    assert found is not None
+    assert found.real == pytest.approx(steep, abs=0.05)
+
+
+def test_a_handle_that_hardly_rises_is_left_as_it_is() -> None:
+    assert told(pictures(0.1, SLANTS)) is None
+
+
+def test_spins_that_are_unsteady_by_themselves_do_not_tell_a_rise() -> None:
+    true = TRUE + 0.2 * np.sin(4 * TIMES + 0.5)
+    shown = spoilt(turning(true, SLANTS, 0.0))
+    angles = align(shown, true, RADII, SD).angle
+    assert rise_of_handle(TIMES, shown, angles, RADII, SLANTS, SD) is None
 
 
 def test_level_handles_and_views_that_tell_nothing_have_none() -> None:

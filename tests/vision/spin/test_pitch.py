@@ -102,6 +102,22 @@ def test_many_pictures_are_levelled_alike_part_by_part(monkeypatch: pytest.Monke
     assert parts == pytest.approx(whole, abs=2e-3)
 
 
+def test_what_is_left_is_by_the_axes_of_the_cap_in_each_part_of_a_way() -> None:
+    shown = pictures(0.35)
+    for part in (slice(40), slice(30, None)):
+        ahead, aside = levelled(shown[part], TRUE[part], RADII, SLANTS[part])[1].std(0)
+        assert ahead > 0.006 and aside < 0.1 * ahead
+
+
+def test_dim_pictures_say_as_much_of_the_rise_as_bright_ones() -> None:
+    shown = pictures(0.35)
+    dim = np.where(np.arange(len(TIMES)) % 2, 1.0, 0.4).astype(np.float32)
+    angles, whole = (
+        levelled(p, TRUE, RADII, SLANTS)[0] for p in (shown, shown * dim[:, None, None, None])
+    )
+    assert angles == pytest.approx(whole, abs=0.003)
+
+
 def test_angles_of_a_stone_are_levelled() -> None:
     shown = [*pictures(0.35)]
     sd = np.full(len(TIMES), 0.0005)
