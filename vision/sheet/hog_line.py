@@ -44,6 +44,10 @@ NEAR = 0.15
 ACROSS = np.arange(-2.0, 2.01, 0.05)
 """Where it is looked at, m."""
 
+IN_VIEW = 4.8
+"""How far the ice must seem to be seen for the line to be in view, m: with a lens that is told by
+circles alone, what is at 6.4 m may seem to be a metre and more aside."""
+
 ENOUGH = int(0.4 * len(ACROSS))
 """How many of these must show it."""
 
@@ -110,11 +114,15 @@ def by_hog_line(image: Image, circles: Marks, view: View, rig: Array, prior: Pri
     Returns
     -------
     Told or None
-        None where no lens has a line there.
+        None where it cannot be in view, or no lens has a line there.
     """
+    size = (image.shape[1], image.shape[0])
+    ends = np.stack(np.broadcast_arrays(ACROSS[:, None], [-IN_VIEW, IN_VIEW]), axis=-1)
+    if pictured(ends, view.vector, rig, size)[1].sum(0).max() < ENOUGH:
+        return None
     fits = list(_family(image, circles, view, rig, LENSES))
-    least = min(one.fit.cost for one in fits) + MOST_COST * SHARING
-    seen = [one for one in fits if one.fit.cost < least and abs(one.off) < NEAR]
+    most = min(one.fit.cost for one in fits) + MOST_COST * SHARING
+    seen = [one for one in fits if one.fit.cost < most and abs(one.off) < NEAR]
     best = max(seen, key=lambda one: one.contrast, default=None)
     if best is None or best.contrast < LEAST_CONTRAST:
         return None
@@ -127,7 +135,6 @@ def by_hog_line(image: Image, circles: Marks, view: View, rig: Array, prior: Pri
     rig = best.fit.rig.copy()
     rig[[BACK_Y, HOG_Y]] = known.mean[[BACK_Y, HOG_Y]]
     marks = joined([circles, _edge(image, best)])
-    size = (image.shape[1], image.shape[0])
     fit = solve([marks], list(best.fit.views), rig, size, prior=known, view_sd=ROUND)
     return Told(fit.views[0], fit.rig, known, wide, best.down)
 
@@ -135,14 +142,20 @@ def by_hog_line(image: Image, circles: Marks, view: View, rig: Array, prior: Pri
 def _family(
     image: Image, circles: Marks, view: View, rig: Array, lenses: Array
 ) -> Iterator[_Tried]:
-    """Fit cameras with one lens after another, from that of the rig to both sides."""
+    """Fit cameras with one lens after another, from that of the rig to both sides.
+
+    As far as they may be: the farther from the best, the more a lens costs.
+    """
     size = (image.shape[1], image.shape[0])
-    middle = int(np.abs(lenses - rig[K1]).argmin())
+    middle, least = int(np.abs(lenses - rig[K1]).argmin()), np.inf
     for some in (lenses[middle:], lenses[:middle][::-1]):
         now, shared = view, rig
         for k1 in some.tolist():
             prior = with_lens(WIDE, k1)
             fit = solve([circles], [now], shared, size, prior=prior, view_sd=ROUND)
+            least = min(least, fit.cost)
+            if fit.cost > least + MOST_COST * SHARING:
+                break
             now, shared = fit.views[0], fit.rig
             for down in (False, True):
                 yield _Tried(k1, fit, *_line_at(image, now, shared, down), down)
@@ -154,7 +167,7 @@ def _line_at(image: Image, view: View, rig: Array, down: bool) -> tuple[float, f
     At the upper end of the ice or the lower one; grey levels and m.
     """
     colour, within = _across(image, view, rig, down)
-    best = 0.0, 0.0
+    best, least = (0.0, 0.0), LEAST_CONTRAST / 2
     for k in range(BESIDE + 1, len(ABOUT) - BESIDE):
         whole = within[:, [k - BESIDE, k, k + BESIDE]].all(1)
         if whole.sum() < ENOUGH:
@@ -163,7 +176,10 @@ def _line_at(image: Image, view: View, rig: Array, down: bool) -> tuple[float, f
         one, two = line - colour[whole, k - BESIDE], line - colour[whole, k + BESIDE]
         both = np.where(one * two > 0, np.sign(one) * np.minimum(np.abs(one), np.abs(two)), 0.0)
         # Sweepers may cover half of it: where it stands out most it does by one colour.
-        most = np.argsort(-np.linalg.norm(both, axis=1))[:ENOUGH]
+        stands_out = np.linalg.norm(both, axis=1)
+        most = np.argsort(-stands_out)[:ENOUGH]
+        if stands_out[most[-2 - ENOUGH // 10]] < max(best[0], least):
+            continue  # nor does it by one colour
         way = np.median(both[most], axis=0)
         along = both[most] @ way / max(float(np.linalg.norm(way)), 1e-9)
         contrast = float(np.quantile(along, 0.1))
