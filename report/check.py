@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from data.sheet import STONE
 from report.drawing import circle, draw_lines, ice_lines
-from report.looks import COLUMNS, Look, numbered, way_of_play
+from report.looks import COLUMNS, UPRIGHT_COLUMNS, Look, numbered, way_of_play
 from report.style import BLUE, GREY, ORANGE, SKY, VERMILLION, new_figure, plain_text, styled
 from vision.detection.ice_map import rectify
 from vision.film.clip import Image
@@ -81,8 +81,9 @@ def check_figure(
             _frames(upper, looks, paint, radius, reasons, columns=1)
             _average(right.subplots(), looks, paint)
         else:
-            columns = min(len(looks), COLUMNS)
-            tall = 2.45 * COLUMNS / columns * -(-len(looks) // columns)
+            high, wide = looks[0].frame.image.shape[:2]
+            columns = min(len(looks), COLUMNS if wide >= high else UPRIGHT_COLUMNS)
+            tall = (16 / columns * high / wide + 0.2) * -(-len(looks) // columns)
             figure = new_figure(16, tall + 4.6)
             parts = figure.subfigures(2, 1, height_ratios=(tall, 4.6))
             upper, foot = parts
@@ -106,7 +107,7 @@ def _frames(
     columns: int,
 ) -> None:
     """Show the frames with the model on them, and what the numbers at refused places mean."""
-    width = PICTURE_WIDTH * min(COLUMNS // columns, 2)
+    width = round(PICTURE_WIDTH * min(COLUMNS / columns, 2))
     axes = part.subplots(-(-len(looks) // columns), columns, squeeze=False).ravel()
     for ax, look in zip(axes, looks, strict=False):
         _show(ax, _drawn(look, paint, radius, reasons, width))

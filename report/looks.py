@@ -14,8 +14,8 @@ from vision.detection.sighting import Refusal, Sighting
 from vision.film.clip import Frame
 from vision.optics.camera import Camera, camera_table
 
-COLUMNS = 4
-"""Frames beside one another on the sheet."""
+COLUMNS, UPRIGHT_COLUMNS = 4, 6
+"""Frames beside one another on the sheet; of clips that are higher than wide."""
 
 MOST = 3 * COLUMNS
 """Frames on the sheet: as many as a person takes in at one look."""

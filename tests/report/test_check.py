@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -54,6 +56,18 @@ def test_a_single_picture_is_large_and_has_no_course_in_time() -> None:
     figure.draw_without_rendering()
     assert picture.get_window_extent().width > 1.5 * above.get_window_extent().width
     assert above.get_title("left") == "from above"
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_frames_fill_the_width_of_the_sheet_whichever_side_is_longer(turned: bool) -> None:
+    image = np.ascontiguousarray(np.rot90(house_picture())) if turned else house_picture()
+    high, wide = image.shape[:2]
+    seen = [replace(camera(k), size=(wide, high)) for k in range(12)]
+    looks = [Look(Frame(k, k / 25, image), seen[k], ()) for k in range(12)]
+    figure = check_figure(looks, table(12, 0), (1.829,))
+    figure.draw_without_rendering()
+    frames = [ax.get_window_extent() for ax in figure.subfigs[0].axes]
+    assert sum(frame.width for frame in frames) > 0.85 * figure.bbox.width * 12 / (4 + 2 * turned)
 
 
 def test_without_a_house_the_sheet_shows_the_table_and_no_empty_panel() -> None:
