@@ -58,7 +58,7 @@ def with_handles(
         contrast_of(track, contrast_turned if moves else contrast)
         for track, moves in zip(tracks, moved, strict=True)
     ]
-    brief = [len(track.frames) < FEWEST for track in tracks]
+    brief = np.array([len(track.frames) < FEWEST for track in tracks], bool)
     ends = ([track.sightings[k] for track in tracks] for k in (0, -1))
     alone = np.all([without_handle(seen) for seen in ends], axis=0)
     without = bare(shown, team, moved) | (alone & brief)

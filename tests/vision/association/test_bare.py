@@ -89,6 +89,7 @@ def test_a_disc_of_paint_among_stones_is_left_out() -> None:
     alone = track_of([cap(bar(0), 3.0, k) for k in range(20)], YELLOW)
     assert with_handles([*stones, paint, alone], TEAMS, STONE) == stones
     assert with_handles([paint, alone], TEAMS, STONE) == [paint, alone]
+    assert with_handles([], TEAMS, STONE) == []
     assert with_handles([*stones, paint], TEAMS, plain_disc(0.05)) == [*stones, paint]
     assert with_handles([*stones, paint], None, STONE) == [*stones, paint]
     faint = track_of([cap(bar(0), 3.0, k) for k in range(20)], YELLOW, step=0.02)
