@@ -8,7 +8,7 @@ the rules have the hog line, and be it at the other end: where stones come up th
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -22,6 +22,7 @@ from vision.optics.paint import HOG_LINE, Marks, joined
 from vision.optics.pose import View, pictured, project
 from vision.optics.resection import ROUND
 from vision.optics.rig import BACK_Y, HOG_Y, K1, WIDE, Prior, with_lens
+from vision.sheet.lines import back_end
 from vision.sheet.marks import EDGE_SD
 
 Array = NDArray[np.float64]
@@ -117,19 +118,26 @@ def by_hog_line(image: Image, circles: Marks, view: View, rig: Array, prior: Pri
         None where it cannot be in view, or no lens has a line there.
     """
     size = (image.shape[1], image.shape[0])
-    ends = np.stack(np.broadcast_arrays(ACROSS[:, None], [-IN_VIEW, IN_VIEW]), axis=-1)
-    if pictured(ends, view.vector, rig, size)[1].sum(0).max() < ENOUGH:
+    back = back_end(image, view, rig)
+    downs = [down for down in (False, True) if back != (-1 if down else 1)]
+    ends = [-IN_VIEW if down else IN_VIEW for down in downs]
+    ice = np.stack(np.broadcast_arrays(ACROSS[:, None], ends), axis=-1)
+    if pictured(ice, view.vector, rig, size)[1].sum(0).max() < ENOUGH:
         return None
-    fits = list(_family(image, circles, view, rig, LENSES))
+    fits = list(_family(image, circles, view, rig, LENSES, downs))
     most = min(one.fit.cost for one in fits) + MOST_COST * SHARING
     seen = [one for one in fits if one.fit.cost < most and abs(one.off) < NEAR]
-    best = max(seen, key=lambda one: one.contrast, default=None)
-    if best is None or best.contrast < LEAST_CONTRAST:
+    clear = max((one.contrast for one in seen), default=0.0)
+    if clear < LEAST_CONTRAST:
         return None
-    near = _family(image, circles, best.fit.views[0], best.fit.rig, best.k1 + FINER)
-    shown = [one for one in near if one.down == best.down and one.contrast > best.contrast / 2]
+    seen = [one for one in seen if one.contrast > clear / 2]
+    # Seen from aside the line is at about the same place with any lens: it tells of none.
+    usual = [one for one in seen if one.k1 >= BENT]
+    wide = not usual
+    best = max(usual or seen, key=lambda one: one.contrast)
+    near = _family(image, circles, best.fit.views[0], best.fit.rig, best.k1 + FINER, [best.down])
+    shown = [one for one in near if one.contrast > best.contrast / 2]
     best = min([best, *shown], key=lambda one: abs(one.off))
-    wide = best.k1 < BENT
     known = WIDE if wide else prior
     known = known.downwards() if best.down else known
     rig = best.fit.rig.copy()
@@ -140,11 +148,12 @@ def by_hog_line(image: Image, circles: Marks, view: View, rig: Array, prior: Pri
 
 
 def _family(
-    image: Image, circles: Marks, view: View, rig: Array, lenses: Array
+    image: Image, circles: Marks, view: View, rig: Array, lenses: Array, downs: Sequence[bool]
 ) -> Iterator[_Tried]:
     """Fit cameras with one lens after another, from that of the rig to both sides.
 
-    As far as they may be: the farther from the best, the more a lens costs.
+    As far as they may be: the farther from the best, the more a lens costs. A line is looked for
+    towards −y, y, or both.
     """
     size = (image.shape[1], image.shape[0])
     middle, least = int(np.abs(lenses - rig[K1]).argmin()), np.inf
@@ -157,7 +166,7 @@ def _family(
             if fit.cost > least + MOST_COST * SHARING:
                 break
             now, shared = fit.views[0], fit.rig
-            for down in (False, True):
+            for down in downs:
                 yield _Tried(k1, fit, *_line_at(image, now, shared, down), down)
 
 

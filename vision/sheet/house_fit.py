@@ -19,13 +19,7 @@ from vision.optics.lean import fit_leaning
 from vision.optics.paint import TWELVE
 from vision.optics.pose import DOWN, View, aim, camera, rescaled, rotation_vector
 from vision.optics.resection import ROUND
-from vision.optics.rig import (
-    ANYWHERE,
-    OVERHEAD,
-    POSITION,
-    Prior,
-    start_rig,
-)
+from vision.optics.rig import ANYWHERE, OVERHEAD, POSITION, Prior, start_rig
 from vision.sheet.hog_line import by_hog_line
 from vision.sheet.lines import lesser_side_step, sides, upright
 from vision.sheet.marks import Evidence, measure_marks

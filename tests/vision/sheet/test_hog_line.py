@@ -7,10 +7,13 @@ from dataclasses import replace
 import cv2
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from tests.synthetic import PAINTS, CameraPath, Key, render_still, sample_scene
-from vision.optics.rig import HOG_Y
+from vision.optics.rig import HOG_Y, K1, POSITION
 from vision.sheet.house import find_house
+
+Picture = NDArray[np.uint8]
 
 SCENE = replace(sample_scene(), paint=PAINTS["navy-orange"])
 GUARDS = np.array([(x, y) for x in (-1.0, 0.0, 1.0) for y in (2.5, 4.0, 5.5)])
@@ -22,15 +25,19 @@ def club(k1: float, k2: float, y: float = -0.3, size: tuple[int, int] = (440, 77
     return CameraPath(size, (0.03, y, 6.0), (key,))
 
 
+def fill(image: Picture, path: CameraPath, x: tuple[float, float], y: tuple[float, float]) -> None:
+    """Fill a dark rectangle on the ice."""
+    corners = path.at(0.0).project([(x[k], y[m], 0.0) for k, m in ((0, 0), (1, 0), (1, 1), (0, 1))])
+    cv2.fillConvexPoly(image, np.round(corners).astype(np.int32), (20, 20, 25))
+
+
 def guards_off(
     path: CameraPath, *, turned: bool, covered: tuple[tuple[float, float], ...] = ()
 ) -> tuple[float, float]:
     """How far off guards would be, m, and where the hog line was seen, y, m."""
     image = np.array(render_still(SCENE, path), np.uint8)
     for left, right in covered:
-        around = [(left, 5.7, 0), (right, 5.7, 0), (right, 6.9, 0), (left, 6.9, 0)]
-        corners = path.at(0.0).project(np.array(around, float))
-        cv2.fillConvexPoly(image, np.round(corners).astype(np.int32), (20, 20, 25))
+        fill(image, path, (left, right), (5.7, 6.9))
     pixels, ice = path.at(0.0).project(np.c_[GUARDS, np.zeros(len(GUARDS))]), GUARDS
     if turned:
         image, pixels, ice = np.rot90(image, 2), np.array(path.size) - 1 - pixels, -GUARDS
@@ -63,3 +70,22 @@ def test_a_house_without_a_hog_line_in_view_is_found_as_before() -> None:
     path = CameraPath((770, 440), (0.03, 0.0, 9.0), (Key(0.0, 0.0, 0.2, 90.0),))
     house = find_house(np.asarray(render_still(SCENE, path), np.uint8))
     assert house is not None and house.overhead and house.rig[HOG_Y] == pytest.approx(6.401)
+
+
+@pytest.mark.parametrize("y", [-6.4, -6.2, -6.0])
+def test_a_stripe_behind_the_house_is_no_hog_line(y: float) -> None:
+    """The back line tells at which end it is; such a stripe had a camera 1.8 m too low."""
+    path = CameraPath((1280, 720), (0.05, 0.1, 8.5), (Key(0.0, 0.0, -1.5, 65.0, k1=-0.02),))
+    image = np.array(render_still(SCENE, path), np.uint8)
+    fill(image, path, (-2.3, 2.3), (y, y + 0.1))
+    house = find_house(image)
+    assert house is not None and house.overhead and house.rig[HOG_Y] == pytest.approx(6.401)
+    assert house.rig[POSITION][2] == pytest.approx(8.5, abs=0.2)
+
+
+def test_from_aside_the_hog_line_tells_of_no_wide_lens() -> None:
+    """It lies about where it should with each: one had a k1 of −0.09 there."""
+    path = CameraPath((1280, 720), (0.3, 4.6, 8.0), (Key(0.0, 0.0, 2.0, 60.0),))
+    house = find_house(np.ascontiguousarray(np.rot90(render_still(SCENE, path), 2)))
+    assert house is not None and house.rig[HOG_Y] == pytest.approx(-6.4, abs=0.06)
+    assert house.rig[K1] == pytest.approx(0.0, abs=0.03)
