@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from tests.synthetic import PAINTS, CameraPath, Key, render_still, sample_scene
-from vision.optics.rig import HOG_Y, K1, POSITION
+from vision.optics.rig import HOG_Y, K1, OVERHEAD, POSITION
 from vision.sheet.house import find_house
 
 Picture = NDArray[np.uint8]
@@ -19,10 +19,9 @@ SCENE = replace(sample_scene(), paint=PAINTS["navy-orange"])
 GUARDS = np.array([(x, y) for x in (-1.0, 0.0, 1.0) for y in (2.5, 4.0, 5.5)])
 
 
-def club(k1: float, k2: float, y: float = -0.3, size: tuple[int, int] = (440, 770)) -> CameraPath:
+def club(k1: float, k2: float, y: float = -0.3, z: float = 6.0) -> CameraPath:
     """A camera that stands, pictures upright, and shows the ice up to the hog line."""
-    key = Key(0.0, 0.05, 1.7, size[0] / 4.4, k1=k1, k2=k2)
-    return CameraPath(size, (0.03, y, 6.0), (key,))
+    return CameraPath((440, 770), (0.03, y, z), (Key(0.0, 0.05, 1.7, 100.0, k1=k1, k2=k2),))
 
 
 def fill(image: Picture, path: CameraPath, x: tuple[float, float], y: tuple[float, float]) -> None:
@@ -56,6 +55,22 @@ def test_the_hog_line_tells_a_wide_lens(k1: float, k2: float, turned: bool) -> N
     assert hog == pytest.approx(-6.4 if turned else 6.4, abs=0.06)
 
 
+def test_a_camera_that_leans_the_other_way_is_found() -> None:
+    """Without a wide lens circles had one 14 m up, 3.8 m to the wrong side of the tee."""
+    assert guards_off(club(-0.19, 0.036, y=-1.0, z=7.5), turned=True)[0] < 0.05
+
+
+@pytest.mark.parametrize("y", [None, (6.4, 9.0), (6.1, 6.8)])
+def test_no_line_is_none(y: tuple[float, float] | None) -> None:
+    """Nor are the edge of the ice, or what is as wide as letters."""
+    path, plain = club(-0.19, 0.036), replace(SCENE.sheet, hog_line=SCENE.sheet.ice)
+    image = np.array(render_still(replace(SCENE, sheet=plain), path), np.uint8)
+    if y is not None:
+        fill(image, path, (-2.5, 2.5), y)
+    house = find_house(np.ascontiguousarray(np.rot90(image, 2)))
+    assert house is not None and house.rig[HOG_Y] == pytest.approx(6.401)
+
+
 def test_sweepers_over_half_of_it_do_not_hide_it() -> None:
     sweepers = (-1.7, -0.6), (0.2, 1.4)
     assert guards_off(club(-0.19, 0.036), turned=True, covered=sweepers)[0] < 0.05
@@ -63,13 +78,14 @@ def test_sweepers_over_half_of_it_do_not_hide_it() -> None:
 
 def test_a_usual_lens_stays_one() -> None:
     for turned in (False, True):
-        assert guards_off(club(-0.02, 0.0), turned=turned)[0] < 0.05
+        assert guards_off(club(-0.02, 0.0), turned=turned)[0] < 0.005
 
 
 def test_a_house_without_a_hog_line_in_view_is_found_as_before() -> None:
     path = CameraPath((770, 440), (0.03, 0.0, 9.0), (Key(0.0, 0.0, 0.2, 90.0),))
     house = find_house(np.asarray(render_still(SCENE, path), np.uint8))
-    assert house is not None and house.overhead and house.rig[HOG_Y] == pytest.approx(6.401)
+    assert house is not None and house.prior is OVERHEAD
+    assert house.rig[HOG_Y] == pytest.approx(6.401)
 
 
 @pytest.mark.parametrize("y", [-6.4, -6.2, -6.0])
@@ -79,7 +95,8 @@ def test_a_stripe_behind_the_house_is_no_hog_line(y: float) -> None:
     image = np.array(render_still(SCENE, path), np.uint8)
     fill(image, path, (-2.3, 2.3), (y, y + 0.1))
     house = find_house(image)
-    assert house is not None and house.overhead and house.rig[HOG_Y] == pytest.approx(6.401)
+    assert house is not None and house.prior is OVERHEAD
+    assert house.rig[HOG_Y] == pytest.approx(6.401)
     assert house.rig[POSITION][2] == pytest.approx(8.5, abs=0.2)
 
 
