@@ -24,10 +24,16 @@ def club(k1: float, k2: float, y: float = -0.3, z: float = 6.0) -> CameraPath:
     return CameraPath((440, 770), (0.03, y, z), (Key(0.0, 0.05, 1.7, 100.0, k1=k1, k2=k2),))
 
 
-def fill(image: Picture, path: CameraPath, x: tuple[float, float], y: tuple[float, float]) -> None:
-    """Fill a dark rectangle on the ice."""
+def fill(
+    image: Picture,
+    path: CameraPath,
+    x: tuple[float, float],
+    y: tuple[float, float],
+    grey: int = 20,
+) -> None:
+    """Fill a rectangle on the ice, dark if not otherwise said."""
     corners = path.at(0.0).project([(x[k], y[m], 0.0) for k, m in ((0, 0), (1, 0), (1, 1), (0, 1))])
-    cv2.fillConvexPoly(image, np.round(corners).astype(np.int32), (20, 20, 25))
+    cv2.fillConvexPoly(image, np.round(corners).astype(np.int32), (grey, grey, grey))
 
 
 def guards_off(
@@ -60,13 +66,16 @@ def test_a_camera_that_leans_the_other_way_is_found() -> None:
     assert guards_off(club(-0.19, 0.036, y=-1.0, z=7.5), turned=True)[0] < 0.05
 
 
-@pytest.mark.parametrize("y", [None, (6.4, 9.0), (6.1, 6.8)])
-def test_no_line_is_none(y: tuple[float, float] | None) -> None:
-    """Nor are the edge of the ice, or what is as wide as letters."""
+@pytest.mark.parametrize(
+    "fills",
+    [(), ((6.4, 9.0, 20),), ((6.1, 6.8, 20),), ((6.4, 9.0, 120), (6.4, 6.5, 20))],
+)
+def test_no_line_is_none(fills: tuple[tuple[float, float, int], ...]) -> None:
+    """Nor are the edge of the ice, what is as wide as letters, or a border along what is no ice."""
     path, plain = club(-0.19, 0.036), replace(SCENE.sheet, hog_line=SCENE.sheet.ice)
     image = np.array(render_still(replace(SCENE, sheet=plain), path), np.uint8)
-    if y is not None:
-        fill(image, path, (-2.5, 2.5), y)
+    for near, far, grey in fills:
+        fill(image, path, (-2.5, 2.5), (near, far), grey)
     house = find_house(np.ascontiguousarray(np.rot90(image, 2)))
     assert house is not None and house.rig[HOG_Y] == pytest.approx(6.401)
 
