@@ -113,6 +113,9 @@ def by_hog_line(image: Image, circles: Marks, view: View, rig: Array, prior: Pri
         None where it cannot be in view, or no lens has a line there.
     """
     size = (image.shape[1], image.shape[0])
+    ends = np.stack(np.broadcast_arrays(ACROSS[:, None], [-IN_VIEW, IN_VIEW]), axis=-1)
+    if pictured(ends, view.vector, rig, size)[1].sum(0).max() < ENOUGH:
+        return None
     free = solve([circles], [view], rig, size, prior=WIDE, view_sd=ROUND)
     if free.cost > MOST_COST * SHARING:
         # What no usual lens explains may have come to rest leaning the other way.
@@ -120,10 +123,6 @@ def by_hog_line(image: Image, circles: Marks, view: View, rig: Array, prior: Pri
         view, rig = upright(image, free.views[0], free.rig)
     back = back_end(image, view, rig)
     downs = [down for down in (False, True) if back != (-1 if down else 1)]
-    ends = [-IN_VIEW if down else IN_VIEW for down in downs]
-    ice = np.stack(np.broadcast_arrays(ACROSS[:, None], ends), axis=-1)
-    if pictured(ice, view.vector, rig, size)[1].sum(0).max() < ENOUGH:
-        return None
     fits = list(_family(image, circles, view, rig, downs))
     most = min(one.fit.cost for one in fits) + MOST_COST * SHARING
     seen = [one for one in fits if one.fit.cost < most and abs(one.off) < NEAR]
