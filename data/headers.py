@@ -19,7 +19,10 @@ RATES = ("velocity", "vel", "acceleration", "acc")
 
 RATE = re.compile(rf"(?:^|[_ .])(?:{'|'.join(RATES)})(?:$|[_ .])")
 
-_PLACE = re.compile(r"(?:.*[_ .])?[xy]|[xy]\d*(?:[_ .].*)?")
+_PLACE = re.compile(r"(?:.*[_ .])?[xy]|[xy](?:\d*|[a-z]|pos)(?:[_ .].*)?")
+_NO_PLACE = re.compile(
+    rf"(?:.*[_ .])?(?:{'|'.join(RATES)}|v|pixel|px|sd)(?:[_ .].*)?|a[_ .][xy]"  # x_a: of stone a
+)
 _ANGLE = re.compile(rf"(?:.*[_ .])?(?:{'|'.join(sorted(ANGLE_NAMES))})(?:[_ .].*)?")
 
 
@@ -38,9 +41,11 @@ def in_brackets(name: str) -> str:
 def with_units(names: Sequence[str]) -> list[str]:
     """Put units that names end in into brackets: ``t_s``, ``x_cm``, ``red_theta_deg``.
 
-    Those of places only if all of these have one: ``x_m`` beside ``x_a`` is of a stone m.
+    Those of places only if all of these have one: ``x_m`` beside ``x_a`` is of a stone m, and so it
+    is beside ``theta_m``. Those of times only if there are no others: ``t_ms`` beside ``t``.
     """
     written = [in_brackets(name.strip()) for name in names]
+    plain = [plain_name(name) for name in written]
     ends = [re.fullmatch(r"(.{1,80}?)_([a-z]+)", name.casefold()) for name in written]
 
     def ending(units: Mapping[str, float], called: re.Pattern[str]) -> list[int]:
@@ -50,12 +55,20 @@ def with_units(names: Sequence[str]) -> list[str]:
             if end and abbreviated(end[2]) in units and called.fullmatch(end[1])
         ]
 
-    places = ending(LENGTH_UNITS, _PLACE)
-    others = [plain_name(name) for k, name in enumerate(written) if k not in places]
-    if any(_PLACE.fullmatch(name) and not RATE.search(name) for name in others):
+    places, angles = ending(LENGTH_UNITS, _PLACE), ending(ANGLE_UNITS, _ANGLE)
+    others = [name for k, name in enumerate(plain) if k not in places]
+    if ending(LENGTH_UNITS, _ANGLE) or any(
+        _PLACE.fullmatch(name) and not _NO_PLACE.fullmatch(name) for name in others
+    ):
         places = []
+    if ending(ANGLE_UNITS, _PLACE):
+        angles = []
     times = ending({"s": 1.0, "ms": 0.001}, re.compile("|".join(TIME_NAMES)))
-    for k in {*places, *times, *ending(ANGLE_UNITS, _ANGLE)}:
+    if TIME_NAMES.isdisjoint(plain):
+        times = [k for k in times if plain[k] == plain[times[0]]]
+    else:
+        times = []
+    for k in {*places, *angles, *times}:
         stem, _, unit = written[k].rpartition("_")
         written[k] = f"{stem} ({unit})"
     return written

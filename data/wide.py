@@ -175,10 +175,10 @@ def _named_pairs(table: TextTable, names: Sequence[str]) -> list[Place]:
             raise InputError(f"{table.path}: two columns named {twice[0]}; rename one")
         words = re.split(r"[_ .]+", stem)
         stone = stem
-        if words[0] in _CENTRE and len(words) > 1:
+        if words[0] in _CENTRE and len(words) > 1 and words[-1] not in _CENTRE - {"c"}:
             stone = stem[len(words[0]) + 1 :]
         elif words[-1] in _CENTRE and len(words) > 1:
-            stone = _PLACED.sub("", stem)
+            stone = _PLACED.sub("", stem)  # c_pos is that of a stone c
         elif words[0] in _CENTRE and len(pairs) == 1:
             stone = title_of(table)
         others = {} if frame is None else {"frame": frame}

@@ -27,6 +27,15 @@ def test_names_lose_units_and_dress(written: str, plain: str) -> None:
         ("t / s,x in cm,y in cm", "t (s),x (cm),y (cm)"),
         ("t,x_m,y_m,x_a,y_a", "t,x_m,y_m,x_a,y_a"),  # stones m and a
         ("t,x (m),y (m),x_s,y_s", "t,x (m),y (m),x_s,y_s"),
+        ("t,xA_cm,yA_cm,xB_cm,yB_cm", "t,xA (cm),yA (cm),xB (cm),yB (cm)"),
+        ("t,xpos_cm,ypos_cm", "t,xpos (cm),ypos (cm)"),
+        ("t,x_cm,y_cm,v_x,v_y,a_x,a_y", "t,x (cm),y (cm),v_x,v_y,a_x,a_y"),
+        ("t,x_cm,y_cm,x_px,y_px,sd_x,sd_y", "t,x (cm),y (cm),x_px,y_px,sd_x,sd_y"),
+        ("t,x_m,y_m,theta_m", "t,x_m,y_m,theta_m"),  # no angle is in metres: of a stone m
+        ("t,x_rad,y_rad,theta_rad", "t,x_rad,y_rad,theta_rad"),
+        ("t,t_ms,x,y", "t,t_ms,x,y"),  # one column of times is enough
+        ("t_s,t_ms,x_cm,y_cm", "t (s),t_ms,x (cm),y (cm)"),
+        ("t_s,xA,yA,t_s,xB,yB", "t (s),xA,yA,t (s),xB,yB"),
         ("t_min,x,y,mass_m", "t_min,x,y,mass_m"),
     ],
 )

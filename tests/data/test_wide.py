@@ -49,6 +49,13 @@ def test_nor_do_they_stand_beside_one(tmp_path: Path, columns: str) -> None:
     assert not file.warnings
 
 
+@pytest.mark.parametrize(
+    "columns", ["b_pos_x,b_pos_y,c_pos_x,c_pos_y", "x_cm_b,y_cm_b,x_cm_c,y_cm_c"]
+)
+def test_a_stone_c_is_no_centre(tmp_path: Path, columns: str) -> None:
+    assert stones(read(tmp_path, f"t,{columns}\n0,1,2,3,4\n1,1,2,3,5\n")) == ["b", "c"]
+
+
 def test_velocities_alone_are_no_places(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no columns x and y"):
         read(tmp_path, "t,red_velocity_x,red_velocity_y\n0,1,2\n")

@@ -72,6 +72,7 @@ class Prior:
 
 
 _LENS = ((-0.015, 0.05), (0.0, 0.05), (0.01, 0.02))  # k1, k1 by zoom, k2: broadcast lenses
+_WIDE_LENS = ((-0.15, 0.1), (0.0, 0.05), (0.03, 0.03))  # of five cameras of clubs
 _RADII = ((1.2135, 0.005), (0.619, 0.006))  # measured on fourteen painted houses
 _SIDES = ((-2.35, 0.1), (2.35, 0.1))
 _CROSS = ((0.0, 0.008), (0.0, 0.008))  # a line may be two stripes, of which one is measured
@@ -79,8 +80,8 @@ _ACROSS = ((-SHEET.back_line, 0.015), (SHEET.hog_line, 0.06))  # of a wide line 
 _BEND = (0.0, 0.03)  # half the change by zoom, if k1 goes with the focal length itself
 
 
-def _prior(*position: tuple[float, float]) -> Prior:
-    rows = np.array([*position, *_LENS, *_RADII, *_SIDES, *_CROSS, *_ACROSS, _BEND])
+def _prior(*position: tuple[float, float], lens: tuple[tuple[float, float], ...] = _LENS) -> Prior:
+    rows = np.array([*position, *lens, *_RADII, *_SIDES, *_CROSS, *_ACROSS, _BEND])
     return Prior(rows[:, 0].copy(), rows[:, 1].copy())
 
 
@@ -90,10 +91,8 @@ OVERHEAD = _prior((0.0, 0.35), (0.0, 0.35), (8.5, 1.5))
 ANYWHERE = _prior((0.0, 8.0), (0.0, 12.0), (7.0, 5.0))
 """A camera of which nothing is known but that it is above the ice."""
 
-
-WIDE = _prior((0.0, 8.0), (0.0, 12.0), (6.0, 2.0))
+WIDE = _prior((0.0, 8.0), (0.0, 12.0), (6.0, 2.0), lens=_WIDE_LENS)
 """A camera with a wide lens, as clubs have them under the roof: k1 of five was −0.15 to −0.28."""
-WIDE.mean[[K1, K2]], WIDE.sd[[K1, K2]] = (-0.15, 0.03), (0.1, 0.03)
 
 
 def with_lens(prior: Prior, k1: float) -> Prior:

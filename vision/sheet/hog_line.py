@@ -8,7 +8,7 @@ the rules have the hog line, and be it at the other end: where stones come up th
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -18,16 +18,18 @@ from numpy.typing import NDArray
 from data.sheet import SHEET
 from vision.film.picture import Image
 from vision.optics.adjust import SHARING, Solution, solve
+from vision.optics.lean import fit_leaning
 from vision.optics.paint import HOG_LINE, Marks, joined
 from vision.optics.pose import View, pictured, project
 from vision.optics.resection import ROUND
 from vision.optics.rig import BACK_Y, HOG_Y, K1, WIDE, Prior, with_lens
+from vision.sheet.lines import back_end, upright
 from vision.sheet.marks import EDGE_SD
 
 Array = NDArray[np.float64]
 
-LENSES, FINER = np.arange(-0.40, 0.11, 0.02), 0.005 * np.arange(-3.0, 4.0)
-"""k1 of the lenses tried, and steps about the best; k2 goes with it (`vision.optics.rig`)."""
+LENSES = np.arange(-0.40, 0.11, 0.02)
+"""k1 of the lenses tried; k2 goes with it (`vision.optics.rig`)."""
 
 BENT = -0.1
 """k1 from which on a lens is a wide one: of those of broadcasts it was −0.11 to 0.06."""
@@ -74,17 +76,11 @@ class Told:
     view, rig : View, ndarray
     prior : Prior
         What is known of it beforehand.
-    wide : bool
-        Whether it has a wide lens.
-    down : bool
-        Whether the hog line is towards −y.
     """
 
     view: View
     rig: Array
     prior: Prior
-    wide: bool
-    down: bool
 
 
 @dataclass(frozen=True)
@@ -120,35 +116,43 @@ def by_hog_line(image: Image, circles: Marks, view: View, rig: Array, prior: Pri
     ends = np.stack(np.broadcast_arrays(ACROSS[:, None], [-IN_VIEW, IN_VIEW]), axis=-1)
     if pictured(ends, view.vector, rig, size)[1].sum(0).max() < ENOUGH:
         return None
-    fits = list(_family(image, circles, view, rig, LENSES))
+    free = solve([circles], [view], rig, size, prior=WIDE, view_sd=ROUND)
+    if free.cost > MOST_COST * SHARING:
+        # What no usual lens explains may have come to rest leaning the other way.
+        free = fit_leaning([circles], [view], rig, size, prior=WIDE, view_sd=ROUND)
+        view, rig = upright(image, free.views[0], free.rig)
+    back = back_end(image, view, rig)
+    downs = [down for down in (False, True) if back != (-1 if down else 1)]
+    fits = list(_family(image, circles, view, rig, downs))
     most = min(one.fit.cost for one in fits) + MOST_COST * SHARING
     seen = [one for one in fits if one.fit.cost < most and abs(one.off) < NEAR]
-    best = max(seen, key=lambda one: one.contrast, default=None)
-    if best is None or best.contrast < LEAST_CONTRAST:
+    clear = max((one.contrast for one in seen), default=0.0)
+    if clear < LEAST_CONTRAST:
         return None
-    near = _family(image, circles, best.fit.views[0], best.fit.rig, best.k1 + FINER)
-    shown = [one for one in near if one.down == best.down and one.contrast > best.contrast / 2]
-    best = min([best, *shown], key=lambda one: abs(one.off))
-    wide = best.k1 < BENT
-    known = WIDE if wide else prior
+    seen = [one for one in seen if one.contrast > clear / 2]
+    # Seen from aside the line is at about the same place with any lens: it tells of none.
+    usual = [one for one in seen if one.k1 >= BENT]
+    best = min(usual or seen, key=lambda one: abs(one.off))
+    known = prior if usual else WIDE
     known = known.downwards() if best.down else known
     rig = best.fit.rig.copy()
     rig[[BACK_Y, HOG_Y]] = known.mean[[BACK_Y, HOG_Y]]
     marks = joined([circles, _edge(image, best)])
     fit = solve([marks], list(best.fit.views), rig, size, prior=known, view_sd=ROUND)
-    return Told(fit.views[0], fit.rig, known, wide, best.down)
+    return Told(fit.views[0], fit.rig, known)
 
 
 def _family(
-    image: Image, circles: Marks, view: View, rig: Array, lenses: Array
+    image: Image, circles: Marks, view: View, rig: Array, downs: Sequence[bool]
 ) -> Iterator[_Tried]:
     """Fit cameras with one lens after another, from that of the rig to both sides.
 
-    As far as they may be: the farther from the best, the more a lens costs.
+    As far as they may be: the farther from the best, the more a lens costs. A line is looked for
+    towards −y, y, or both.
     """
     size = (image.shape[1], image.shape[0])
-    middle, least = int(np.abs(lenses - rig[K1]).argmin()), np.inf
-    for some in (lenses[middle:], lenses[:middle][::-1]):
+    middle, least = int(np.abs(LENSES - rig[K1]).argmin()), np.inf
+    for some in (LENSES[middle:], LENSES[:middle][::-1]):
         now, shared = view, rig
         for k1 in some.tolist():
             prior = with_lens(WIDE, k1)
@@ -157,7 +161,7 @@ def _family(
             if fit.cost > least + MOST_COST * SHARING:
                 break
             now, shared = fit.views[0], fit.rig
-            for down in (False, True):
+            for down in downs:
                 yield _Tried(k1, fit, *_line_at(image, now, shared, down), down)
 
 
@@ -179,7 +183,7 @@ def _line_at(image: Image, view: View, rig: Array, down: bool) -> tuple[float, f
         stands_out = np.linalg.norm(both, axis=1)
         most = np.argsort(-stands_out)[:ENOUGH]
         if stands_out[most[-2 - ENOUGH // 10]] < max(best[0], least):
-            continue  # nor does it by one colour
+            continue  # less than before, whatever its colour
         way = np.median(both[most], axis=0)
         along = both[most] @ way / max(float(np.linalg.norm(way)), 1e-9)
         contrast = float(np.quantile(along, 0.1))

@@ -19,13 +19,7 @@ from vision.optics.lean import fit_leaning
 from vision.optics.paint import TWELVE
 from vision.optics.pose import DOWN, View, aim, camera, rescaled, rotation_vector
 from vision.optics.resection import ROUND
-from vision.optics.rig import (
-    ANYWHERE,
-    OVERHEAD,
-    POSITION,
-    Prior,
-    start_rig,
-)
+from vision.optics.rig import ANYWHERE, OVERHEAD, POSITION, Prior, start_rig
 from vision.sheet.hog_line import by_hog_line
 from vision.sheet.lines import lesser_side_step, sides, upright
 from vision.sheet.marks import Evidence, measure_marks
@@ -80,8 +74,6 @@ class HouseFit:
     rms_px : float
     prior : Prior
         What was known of the rig beforehand.
-    overhead : bool
-        Whether it looks like a camera that hangs over the tee.
     edge : PaintEdge
         Where the circles are in the profiles across them.
     vague : bool
@@ -94,7 +86,6 @@ class HouseFit:
     evidence: Evidence
     rms_px: float
     prior: Prior
-    overhead: bool
     edge: PaintEdge
     vague: bool = False
 
@@ -222,9 +213,8 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
     if not vague:
         circles = measure_marks(image, view.vector, rig, reach=6.0, lines=False)
         told = by_hog_line(image, circles.marks, view, rig, prior)
-        if told is not None and (told.wide or told.down):
+        if told is not None:
             view, rig, prior = told.view, told.rig, told.prior
-            overhead = overhead and not told.wide
     rig = sides(image, view, rig)
     edge = HALF_WAY
     for reach in (8.0, *ROUNDS * (6.0,)):
@@ -244,4 +234,4 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
     found = camera(view, rig, size, frame=frame, t=t, rms_px=rms)
     if worth(evidence) == 0:
         return None
-    return HouseFit(found, view, rig, evidence, rms, prior, overhead, edge, vague)
+    return HouseFit(found, view, rig, evidence, rms, prior, edge, vague)

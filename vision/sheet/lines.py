@@ -94,10 +94,16 @@ def upright(image: Image, view: View, rig: Array) -> tuple[View, Array]:
     level = turned(view, rig, turn)
     sideways = _upwards(image, *turned(*level, QUARTER))
     if _strength(image, *sideways) > _strength(image, *level) + SURE_STEP:
-        backwards = turned(*sideways, np.pi)
-        clearer = _back_line(image, *backwards) > 2 * _back_line(image, *sideways) + LEAST_BACK
-        return backwards if clearer else sideways
+        return turned(*sideways, np.pi) if back_end(image, *sideways) > 0 else sideways
     return level
+
+
+def back_end(image: Image, view: View, rig: Array) -> int:
+    """Tell the end at which the back line is: 1 towards y, −1 towards −y, 0 if that is not seen."""
+    below, above = _back_line(image, view, rig), _back_line(image, *turned(view, rig, np.pi))
+    if above > 2 * below + LEAST_BACK:
+        return 1
+    return -1 if below > 2 * above + LEAST_BACK else 0
 
 
 def y_up(view: View, rig: Array, size: tuple[int, int]) -> tuple[View, Array]:

@@ -20,6 +20,7 @@ from vision.optics.rig import (
     RIG_SIZE,
     SIDE_L,
     SIDE_R,
+    WIDE,
     distortion,
     start_rig,
     zoom,
@@ -28,7 +29,7 @@ from vision.optics.rig import (
 SIZE = (1280, 720)
 
 
-@pytest.mark.parametrize("prior", [OVERHEAD, ANYWHERE])
+@pytest.mark.parametrize("prior", [OVERHEAD, ANYWHERE, WIDE])
 def test_a_prior_says_something_of_each_number(prior) -> None:
     assert prior.mean.shape == prior.sd.shape == (RIG_SIZE,)
     assert (prior.sd > 0).all()
@@ -55,6 +56,19 @@ def test_the_first_radial_term_goes_with_the_zoom() -> None:
     assert distortion(rig, wide, SIZE) == pytest.approx((-0.05, 0.01))
     twice = -0.05 + 0.02 * math.log(2) + 0.005 * math.log(2) ** 2
     assert distortion(rig, long, SIZE) == pytest.approx((twice, 0.01))
+
+
+def test_a_wide_lens_over_a_house_upside_down_may_be_anywhere() -> None:
+    """Its lens and its lines stay; where it is does not."""
+    down = WIDE.downwards()
+    assert down.mean[BACK_Y] == -WIDE.mean[BACK_Y] > 0 > down.mean[HOG_Y] == -WIDE.mean[HOG_Y]
+    free = down.at_height(6.5).anywhere()
+    own = [K1, K2, BACK_Y, HOG_Y]
+    np.testing.assert_array_equal(free.mean[own], down.mean[own])
+    np.testing.assert_array_equal(free.sd[own], down.sd[own])
+    assert free.height == free.mean[POSITION][2] == 6.5
+    np.testing.assert_array_equal(down.anywhere().sd[POSITION], ANYWHERE.sd[POSITION])
+    np.testing.assert_array_equal(WIDE.mean[POSITION], down.mean[POSITION])
 
 
 def test_a_start_does_not_change_the_prior() -> None:

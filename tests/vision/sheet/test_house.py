@@ -22,6 +22,7 @@ from tests.synthetic import (
 from tests.synthetic.scene import Paint
 from tests.vision.places import RINGS
 from vision.optics.camera import Camera
+from vision.optics.rig import OVERHEAD
 from vision.sheet import house
 from vision.sheet.house import find_house, fit_house
 from vision.sheet.house_fit import HouseFit, RoughFit, fit_roughly
@@ -85,7 +86,7 @@ def test_found_from_a_tilted_camera(tilt: float, bar: float) -> None:
     fit = find_house(render_still(scene, path, 1.0))
     assert rms(errors(fit, path)) < bar
     if tilt >= 30:
-        assert fit is not None and not fit.overhead
+        assert fit is not None and fit.prior is not OVERHEAD
         np.testing.assert_allclose(fit.camera.position, path.position, atol=0.5)
 
 

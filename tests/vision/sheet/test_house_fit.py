@@ -53,7 +53,7 @@ def test_a_rough_fit_is_refined_to_millimetres(path: CameraPath) -> None:
     fit = refine(image, rough, 1.0, 7, 0.28)
     assert fit is not None
     assert (fit.camera.frame, fit.camera.t) == (7, 0.28)
-    assert fit.overhead == (path is OVER)
+    assert (fit.prior is OVERHEAD) == (path is OVER)
     pixels = path.at(0.0).project(np.c_[RINGS, np.zeros(len(RINGS))])
     off = np.linalg.norm(fit.camera.ice(pixels) - RINGS, axis=1)
     assert np.sqrt((off**2).mean()) < 0.006
@@ -79,7 +79,7 @@ def test_a_camera_10_to_15_degrees_aslant_is_told_where_the_tee_is_off_the_middl
     path = still_camera(size=(1280, 720), position=position, target=target, px_per_m=115)
     image = render_still(SCENE, path)
     found = find_house(image)
-    assert found is not None and not found.overhead
+    assert found is not None and found.prior is not OVERHEAD
     ice = np.array([[x, y] for x in (-1.5, 0.0, 1.5) for y in (-3.0, -1.5, 0.0, 1.0)])
     pixels = path.at(0.0).project(np.c_[ice, np.zeros(len(ice))])
     off = np.linalg.norm(found.camera.ice(pixels) - ice, axis=1)

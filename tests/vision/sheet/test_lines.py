@@ -8,7 +8,7 @@ from tests.synthetic import PAINTS, Scene, render_still, still_camera
 from vision.optics.pose import View, project, turned
 from vision.optics.rig import OVERHEAD, SIDE_L, SIDE_R, start_rig
 from vision.sheet.house import find_house
-from vision.sheet.lines import sides, upright
+from vision.sheet.lines import back_end, sides, upright
 
 SIZE = (960, 540)
 SCALE = 90.0
@@ -91,6 +91,13 @@ def test_from_beside_the_sheet_y_points_away_from_the_back_line(ahead: float) ->
     across, down = path.at(0.0).project(np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])).T
     seen = np.stack([SIZE[0] - 1 - down, across], axis=-1)
     np.testing.assert_allclose(found.camera.ice(seen), [[0.0, 1.0], [1.0, 0.0]], atol=0.02)
+
+
+def test_the_back_line_is_at_one_end() -> None:
+    view, rig = level()
+    assert back_end(picture("teal-red"), view, rig) == -1
+    assert back_end(picture("teal-red"), *turned(view, rig, np.pi)) == 1
+    assert back_end(np.full((SIZE[1], SIZE[0], 3), 220, np.uint8), view, rig) == 0
 
 
 @pytest.mark.parametrize("turn", [-0.2, 0.01, 0.4])

@@ -5,9 +5,9 @@ import pytest
 
 from data.sheet import HOUSE
 from tests.vision.cameras import ice_points
-from vision.optics.paint import CIRCLES, LEFT, RIGHT, TEE_LINE, TWELVE
+from vision.optics.paint import CENTRE_LINE, CIRCLES, LEFT, RIGHT, TEE_LINE, TWELVE
 from vision.optics.pose import aim, project
-from vision.optics.rig import ANYWHERE, OVERHEAD, start_rig
+from vision.optics.rig import ANYWHERE, HOG_Y, OVERHEAD, start_rig
 from vision.optics.rig import POSITION as PLACE
 from vision.sheet.normals import OUTSIDE, lay_out
 from vision.sheet.stations import BLOCK, THIN
@@ -52,6 +52,15 @@ def test_there_are_as_many_as_wanted_evenly_spread() -> None:
             along = normals.along[normals.kinds[kind]].reshape(-1, BLOCK)
             assert np.ptp(along, axis=1).max() < BLOCK * 0.05
     assert (lay_out(view(), rig(), SIZE, reach=REACH, lines=False).kinds.keys()) == {0, 1, 2}
+
+
+@pytest.mark.parametrize("end", [1.0, -1.0])
+def test_lines_along_the_sheet_reach_to_the_hog_line(end: float) -> None:
+    shared = rig()
+    shared[HOG_Y] *= end
+    normals = lay_out(view((640.0, 360.0), 40.0), shared, SIZE, reach=REACH, lines=True)
+    for kind in (CENTRE_LINE, LEFT, RIGHT):
+        assert (end * normals.along[normals.kinds[kind]]).max() > 6.4
 
 
 def test_thin_lines_are_looked_at_closely_where_they_leave_the_house() -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.synthetic import PAINTS, CameraPath, Key, render_still, sample_scene
+from vision.optics.rig import OVERHEAD
 from vision.sheet.house import find_house
 
 FAR = np.array([(x, y) for x in (-1.5, 0.0, 1.5) for y in (2.0, 4.0, 5.5)])
@@ -23,7 +24,7 @@ def test_a_sliver_of_the_house_between_straight_sides_tells_where_the_camera_is(
     path = CameraPath((960, 540), (0.3, up, height), (Key(0.0, 0.1, target, 100),))
     image = np.rot90(np.asarray(render_still(SCENE, path), np.uint8), quarters)
     house = find_house(np.ascontiguousarray(image))
-    assert house is not None and house.evidence.visible[0] < 0.45 and not house.overhead
+    assert house is not None and house.evidence.visible[0] < 0.45 and house.prior is not OVERHEAD
     pixels = path.at(0.0).project(np.c_[FAR, np.zeros(len(FAR))])
     seen = ((pixels > 0) & (pixels < path.size)).all(axis=1)
     assert seen.sum() >= 4
@@ -41,4 +42,4 @@ def test_a_sliver_of_the_house_between_straight_sides_tells_where_the_camera_is(
 def test_a_camera_overhead_is_one_though_the_sides_have_told_it() -> None:
     path = CameraPath((960, 540), (0.3, 0.3, 7.2), (Key(0.0, 0.1, 3.4, 100, roll=0.1),))
     house = find_house(np.asarray(render_still(SCENE, path), np.uint8))
-    assert house is not None and house.overhead
+    assert house is not None and house.prior is OVERHEAD
