@@ -94,6 +94,12 @@ class _Tried:
     down: bool
 
 
+def may_be_in_view(view: View, rig: Array, size: tuple[int, int]) -> bool:
+    """Tell whether a camera may show the line, at either end."""
+    ends = np.stack(np.broadcast_arrays(ACROSS[:, None], [-IN_VIEW, IN_VIEW]), axis=-1)
+    return bool(pictured(ends, view.vector, rig, size)[1].sum(0).max() >= ENOUGH)
+
+
 def by_hog_line(image: Image, circles: Marks, view: View, rig: Array, prior: Prior) -> Told | None:
     """Fit a camera to circles so that the hog line lies where it is on every sheet.
 
@@ -110,12 +116,9 @@ def by_hog_line(image: Image, circles: Marks, view: View, rig: Array, prior: Pri
     Returns
     -------
     Told or None
-        None where it cannot be in view, or no lens has a line there.
+        None where no lens has a line there.
     """
     size = (image.shape[1], image.shape[0])
-    ends = np.stack(np.broadcast_arrays(ACROSS[:, None], [-IN_VIEW, IN_VIEW]), axis=-1)
-    if pictured(ends, view.vector, rig, size)[1].sum(0).max() < ENOUGH:
-        return None
     free = solve([circles], [view], rig, size, prior=WIDE, view_sd=ROUND)
     if free.cost > MOST_COST * SHARING:
         # What no usual lens explains may have come to rest leaning the other way.

@@ -20,7 +20,7 @@ from vision.optics.paint import TWELVE
 from vision.optics.pose import DOWN, View, aim, camera, rescaled, rotation_vector
 from vision.optics.resection import ROUND
 from vision.optics.rig import ANYWHERE, OVERHEAD, POSITION, Prior, start_rig
-from vision.sheet.hog_line import by_hog_line
+from vision.sheet.hog_line import by_hog_line, may_be_in_view
 from vision.sheet.lines import lesser_side_step, sides, upright
 from vision.sheet.marks import Evidence, measure_marks
 from vision.sheet.mixing import lit
@@ -210,7 +210,7 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
             off = (rig - OVERHEAD.mean)[POSITION] / OVERHEAD.sd[POSITION]
             overhead = bool(np.abs(off).max() < USUAL)
     prior = OVERHEAD if overhead else ANYWHERE
-    if not vague:
+    if not vague and may_be_in_view(view, rig, size):
         circles = measure_marks(image, view.vector, rig, reach=6.0, lines=False)
         told = by_hog_line(image, circles.marks, view, rig, prior)
         if told is not None:
