@@ -7,15 +7,14 @@ import os
 import signal
 import sys
 import threading
-import time
+import traceback
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from functools import partial
-from multiprocessing.process import BaseProcess
+from multiprocessing.connection import Connection, wait
+from multiprocessing.context import SpawnProcess
 from types import FrameType
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from command.garbage import collect_seldom
 from data.progress import Progress, no_progress
@@ -71,48 +70,56 @@ def in_processes(
     ------
     MemoryError
         Where a process was killed, as systems do that run out of memory.
-    BrokenProcessPool
+    RuntimeError
         Where a process ended by itself, as where a script has no ``__main__`` guard.
     Exception
-        Whatever `work` raises; the others are stopped.
+        Whatever `work` raises; the others are stopped, and have cleaned up.
     """
     # A forked process may hang in libraries that had threads; a new one begins afresh.
     fresh = multiprocessing.get_context("spawn")
-    workers = min(jobs, len(items), _MOST)
-    others, own = {*multiprocessing.active_children()}, set[BaseProcess]()
+    waiting, heeded, most = deque(items), _heeded(), min(jobs, _MOST)
+    running: dict[Connection, tuple[str, SpawnProcess]] = {}
     done: dict[str, Outcome] = {}
-    pool = ProcessPoolExecutor(workers, mp_context=fresh, initializer=_begin, initargs=(_heeded(),))
+    progress(what, 0, len(items))
     try:
-        with _deaf():
-            running: dict[Future[Outcome], str] = {
-                pool.submit(partial(_interruptible, work), item): name
-                for name, item in items.items()
-            }
-        own |= {*multiprocessing.active_children()} - others
-        progress(what, 0, len(items))
-        for future in as_completed(running):
-            done[running[future]] = future.result()
-            progress(what, len(done), len(items))
-    except BaseException as stopped:
-        for process in {*multiprocessing.active_children()} - others:
+        while waiting or running:
+            while waiting and len(running) < most:
+                name = waiting.popleft()
+                end, its_end = fresh.Pipe(duplex=False)
+                process = fresh.Process(target=_begin, args=(its_end, heeded, work, items[name]))
+                with _deaf():
+                    process.start()
+                    running[end] = name, process
+                its_end.close()  # its process has the only one, whose death is an end of file
+            ready = wait(list(running))
+            for end in [one for one in running if one in ready]:
+                name, process = running.pop(end)
+                done[name] = _outcome(end, process)
+                progress(what, len(done), len(items))
+    finally:
+        for end, (_, process) in running.items():
             process.terminate()
-        pool.shutdown(cancel_futures=True)
-        if isinstance(stopped, BrokenProcessPool) and _killed(own):
-            raise MemoryError from stopped
-        raise
-    pool.shutdown()
+            end.close()  # nobody waits for its outcome any more
+        for _, process in running.values():
+            process.join()
     return {name: done[name] for name in items}
 
 
-class _Here:
-    """Of this process: whether it works on an item, was told to end, and lost the first one."""
-
-    working = stopped = alone = False
-
-
-def _killed(processes: Iterable[BaseProcess]) -> bool:
-    """Tell whether one was killed, and did not fail by itself."""
-    return any(process.exitcode == -_KILLED for process in processes)
+def _outcome(end: Connection, process: SpawnProcess) -> Any:
+    """Return what became of an item, or raise what its work raised."""
+    try:
+        failed, outcome = end.recv()
+    except (EOFError, OSError):
+        process.join()
+        if process.exitcode == -_KILLED:
+            raise MemoryError from None
+        raise RuntimeError("a process ended before its work was done") from None
+    finally:
+        end.close()
+    process.join()
+    if failed:
+        raise outcome
+    return outcome
 
 
 def _heeded() -> list[int]:
@@ -121,12 +128,29 @@ def _heeded() -> list[int]:
     return [signal.SIGTERM, *(n for n in numbers if signal.getsignal(n) != signal.SIG_IGN)]
 
 
-def _begin(heeded: Iterable[int]) -> None:
-    """Let signals that ask to end unwind the work, so that it is cleaned up."""
+class _Here:
+    """Of this process: whether it was told to end."""
+
+    stopped = False
+
+
+def _begin(
+    end: Connection, heeded: Iterable[int], work: Callable[[Item], object], item: Item
+) -> None:
+    """Work on an item and send what becomes of it, in a process that signals unwind."""
     for number in heeded:
         signal.signal(number, _stop)
     collect_seldom()
     threading.Thread(target=_end_with_the_first, daemon=True).start()
+    try:
+        try:
+            outcome = False, work(item)
+        except BaseException as error:
+            error.add_note(traceback.format_exc())
+            outcome = True, error
+        end.send(outcome)
+    except (KeyboardInterrupt, BrokenPipeError):
+        sys.exit(1)  # nobody waits for it any more
 
 
 def _end_with_the_first() -> None:
@@ -134,34 +158,14 @@ def _end_with_the_first() -> None:
     first = multiprocessing.parent_process()
     if first is not None:
         first.join()
-    _Here.alone = True
-    while True:  # once for the work, once for the process
-        os.kill(os.getpid(), signal.SIGTERM)
-        time.sleep(1)
+    os.kill(os.getpid(), signal.SIGTERM)
 
 
 def _stop(_: int, __: FrameType | None) -> None:
-    """Stop the work, once: a terminal and the first process both tell, and cleaning goes on.
-
-    A process without work waits until the first one lets it go: it may hold the lock of the
-    queue, without which no other ever ends.
-    """
+    """Stop the work, once: a terminal and the first process both tell, and cleaning goes on."""
     again, _Here.stopped = _Here.stopped, True
-    if _Here.working and not again:
+    if not again:
         raise KeyboardInterrupt
-    if _Here.alone and not _Here.working:
-        raise SystemExit
-
-
-def _interruptible(work: Callable[[Item], Outcome], item: Item) -> Outcome:
-    """Do some work, unless this process was told to end: there may be more in its queue."""
-    _Here.working = True
-    try:
-        if _Here.stopped:
-            raise KeyboardInterrupt
-        return work(item)
-    finally:
-        _Here.working = False
 
 
 @contextmanager

@@ -6,7 +6,6 @@ import signal
 import subprocess
 import sys
 import time
-from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 
 import pytest
@@ -37,6 +36,15 @@ def killed(_: int) -> None:
     os.kill(os.getpid(), signal.SIGKILL)
 
 
+def killed_beside(marks: tuple[Path, str]) -> None:
+    folder, role = marks
+    if role == "slow":
+        fails_beside(marks)
+    while not (folder / "slow begun").exists():
+        time.sleep(0.01)
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
 def test_each_item_is_worked_on_in_another_process_and_they_stay_in_their_order() -> None:
     told: list[tuple[str, int, int | None]] = []
     items = {f"n{number}": number for number in (1, 2, 3, 4)}
@@ -46,7 +54,7 @@ def test_each_item_is_worked_on_in_another_process_and_they_stay_in_their_order(
     }  # fmt: skip
     assert list(done) == list(items)
     makers = {maker for _, maker in done.values()}
-    assert 1 <= len(makers) <= 2 and os.getpid() not in makers
+    assert len(makers) == 4 and os.getpid() not in makers
     assert told == [("numbers", number, 4) for number in range(5)]
 
 
@@ -56,10 +64,6 @@ def test_what_fails_stops_the_others_and_they_clean_up(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="as it must"):
         in_processes(fails_beside, items, 2, "things")
     assert time.monotonic() - begun < 30
-    for _ in range(500):
-        if (tmp_path / "slow cleaned up").exists():
-            break
-        time.sleep(0.01)
     left = {path.name for path in tmp_path.iterdir()}
     assert "slow cleaned up" in left and "last begun" not in left
 
@@ -70,12 +74,20 @@ def test_a_process_that_is_killed_is_told_of_as_too_little_memory() -> None:
         in_processes(killed, {"one": 1, "two": 2}, 2, "things")
 
 
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="nothing is killed so on Windows")
+def test_beside_one_that_is_killed_the_others_clean_up(tmp_path: Path) -> None:
+    begun = time.monotonic()
+    with pytest.raises(MemoryError):
+        in_processes(killed_beside, {r: (tmp_path, r) for r in ("slow", "killed")}, 2, "things")
+    assert (tmp_path / "slow cleaned up").exists() and time.monotonic() - begun < 30
+
+
 def ended(_: int) -> None:
     os._exit(3)
 
 
 def test_a_process_that_ends_by_itself_is_not_told_of_as_too_little_memory() -> None:
-    with pytest.raises(BrokenProcessPool):
+    with pytest.raises(RuntimeError, match="before its work"):
         in_processes(ended, {"one": 1, "two": 2}, 2, "things")
 
 
@@ -97,16 +109,22 @@ def divided(number: int) -> float:
 
 
 def test_there_are_no_more_processes_than_a_system_can_wait_for(
-    monkeypatch: pytest.MonkeyPatch,
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(parallel, "_MOST", 1)
-    done = in_processes(squared, {"two": 2, "three": 3}, 2, "numbers")
-    assert len({maker for _, maker in done.values()}) == 1
+    assert not any(in_processes(beside, {n: tmp_path / n for n in "abc"}, 3, "things").values())
 
 
-def test_one_that_is_told_to_end_cleans_up_undisturbed_and_begins_no_more(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def beside(mark: Path) -> int:
+    """Tell how many others are worked on meanwhile."""
+    mark.touch()
+    time.sleep(0.2)
+    others = len(list(mark.parent.iterdir())) - 1
+    mark.unlink()
+    return others
+
+
+def test_one_that_is_told_to_end_cleans_up_undisturbed(monkeypatch: pytest.MonkeyPatch) -> None:
     handled = signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)
     before = {number: signal.getsignal(number) for number in handled}
     monkeypatch.setattr(parallel, "collect_seldom", lambda: None)
@@ -122,17 +140,36 @@ def test_one_that_is_told_to_end_cleans_up_undisturbed_and_begins_no_more(
                 signal.raise_signal(number)
             done.append(item)
 
+    end, its_end = multiprocessing.Pipe(duplex=False)
     try:
-        parallel._begin(handled)
-        for item in ("one", "two"):
-            with pytest.raises(KeyboardInterrupt):
-                parallel._interruptible(work, item)
+        parallel._begin(its_end, handled, work, "one")
         assert done == ["one"]
-        # Without work it lives on: it may hold the lock for which others wait.
-        signal.raise_signal(signal.SIGTERM)
+        failed, outcome = end.recv()
+        assert failed and isinstance(outcome, KeyboardInterrupt)
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+def large(mark: Path) -> bytes:
+    """Go on when told to end, with more to send than a pipe holds."""
+    if mark.name == "fails":
+        while not mark.with_name("large").exists():
+            time.sleep(0.01)
+        raise ValueError("as it must")
+    try:
+        mark.touch()
+        time.sleep(60)
+    except KeyboardInterrupt:
+        pass
+    return bytes(10_000_000)
+
+
+def test_one_that_goes_on_when_it_is_told_to_end_is_not_waited_for_for_ever(tmp_path: Path) -> None:
+    begun = time.monotonic()
+    with pytest.raises(ValueError, match="as it must"):
+        in_processes(large, {name: tmp_path / name for name in ("large", "fails")}, 2, "things")
+    assert time.monotonic() - begun < 30
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="Windows tells of no closed terminal")
