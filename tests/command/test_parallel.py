@@ -177,10 +177,11 @@ def test_what_is_ignored_as_under_nohup_stays_so() -> None:
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:
         assert in_processes(hung_up, {"one": 1, "two": 2}, 2, "things") == {"one": 1, "two": 2}
+        signal.signal(signal.SIGHUP, signal.SIG_DFL)
+        with pytest.raises(KeyboardInterrupt):
+            in_processes(hung_up, {"one": 1, "two": 2}, 2, "things")
     finally:
         signal.signal(signal.SIGHUP, before)
-    with pytest.raises(KeyboardInterrupt):
-        in_processes(hung_up, {"one": 1, "two": 2}, 2, "things")
 
 
 def hung_up(number: int) -> int:

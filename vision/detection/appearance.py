@@ -250,7 +250,7 @@ def learn(sightings: Sequence[Sighting]) -> Appearance | None:
     shown = np.concatenate([s.granite_samples for group in groups for s in group])
     granite = _colour(shown, (15.0, 9.0, 9.0))
     lab = _lab_of_table()
-    to_cap = np.min([cap.distance(lab) for cap in caps], axis=0)
+    to_cap = np.asarray(np.min([cap.distance(lab) for cap in caps], axis=0), np.float32)
     to_granite = granite.distance(lab)
     worth = worth_of(to_cap, to_granite)
     chosen = [(*s.outline, s.wall) for group in groups for s in group if s.visible > 0.8]

@@ -230,7 +230,8 @@ def _round_response(ice: IceMap, radii: Sequence[float]) -> Floats:
     xx, xy, yy = ((u * v).sum(2) * weight for u, v in ((gx, gx), (gx, gy), (gy, gy)))
     outer = [radius * ice.scale for radius in radii]
     size = int(np.ceil(outer[-1] + 2))
-    ring = sum(_annulus(radius - 1.3, radius + 1.3, size) for radius in outer) / len(outer)
+    annuli = [_annulus(radius - 1.3, radius + 1.3, size) for radius in outer]
+    ring = np.asarray(sum(annuli) / len(outer), np.float32)
     offset = np.arange(-size, size + 1, dtype=np.float32)
     twice = 2 * np.arctan2(offset[:, None], offset[None, :])
     # Radial energy counts for a circle, energy along the circle against it.

@@ -149,7 +149,7 @@ def middles(
 
 def _fitted(
     signal: Floats, rays: Rays, disc: Stone, along: Array, usual: Array
-) -> tuple[Array, Array, Array]:
+) -> tuple[NDArray[np.int_], Array, Array]:
     """Fit what caps cover on their ways: samples that tell it, middles, (n, 2), and ways, m.
 
     By least squares, robust by reweighting (Tukey's biweight).

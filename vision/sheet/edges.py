@@ -135,4 +135,4 @@ def crossings(value: Profiles) -> tuple[Array, Array, Flags]:
     best = best[..., 0, :]
     good = (low < 0) & (high >= 0)
     rise = np.where(good, high - low, 1.0)
-    return best - (low / rise).astype(np.float64), rise, good
+    return np.asarray(best - (low / rise), np.float64), rise, good

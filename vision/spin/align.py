@@ -88,7 +88,8 @@ def align(spectra: Complex, angles: Array, radii: Array, sd_shift: Array) -> Ali
     sd = np.full(len(angles), np.nan)
     parts = [slice(begin, begin + TOGETHER) for begin in range(0, len(angles), TOGETHER)]
     for _ in range(_ROUNDS):
-        mean = np.sum([turned(spectra[k], -angle[k]).sum(0) for k in parts], axis=0) / often
+        sums = [turned(spectra[k], -angle[k]).sum(0) for k in parts]
+        mean = np.asarray(np.sum(sums, axis=0) / often, np.complex64)
         ways = slopes(mean, radii, weight)
         most = 0.0
         for k in parts:

@@ -103,4 +103,4 @@ def angles_between(
         angle = angle + np.clip(step, -0.05, 0.05)
     likeness = (cross * np.exp(_TURN * angle[:, None])).real.sum(1)
     likeness = np.where(blank, 0.0, likeness / np.where(blank, 1.0, energy))
-    return np.where(blank, np.nan, angle), likeness
+    return np.where(blank, np.nan, angle), np.asarray(likeness, np.float64)
