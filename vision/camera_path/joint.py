@@ -38,7 +38,6 @@ from vision.optics.projection import PARAMETERS
 from vision.optics.quality import ARC, edges_off, quality, warnings
 from vision.optics.resection import solve_views
 from vision.optics.rig import (
-    BENT,
     K1,
     K1_BEND,
     K1_ZOOM,
@@ -47,6 +46,7 @@ from vision.optics.rig import (
     R4,
     R8,
     RIG_SIZE,
+    SURELY_BENT,
     Prior,
     distortion,
     zoom,
@@ -171,7 +171,7 @@ def fit_clip(
     shared, _ = bundle(marks, times, views, rig, size, prior)
     for _ in range(LENS_ROUNDS):
         k1, _ = distortion(shared.rig, float(views[-1].vector[3]), size)
-        if k1 > BENT:
+        if k1 > SURELY_BENT:
             break
         prior = prior.wide(k1)
         shared, _ = bundle(marks, times, views, shared.rig, size, prior)

@@ -19,7 +19,7 @@ from vision.optics.lean import fit_leaning
 from vision.optics.paint import TWELVE, Marks
 from vision.optics.pose import DOWN, View, aim, camera, rescaled, rotation_vector
 from vision.optics.resection import ROUND
-from vision.optics.rig import ANYWHERE, OVERHEAD, POSITION, Prior, distortion, start_rig
+from vision.optics.rig import ANYWHERE, BENT, OVERHEAD, POSITION, Prior, distortion, start_rig
 from vision.sheet.hog_line import by_hog_line, may_be_in_view
 from vision.sheet.lines import lesser_side_step, sides, upright
 from vision.sheet.marks import Evidence, measure_marks
@@ -186,7 +186,8 @@ def _with_wide_lens(
         k1, _ = distortion(fit.rig, float(view.vector[3]), size)
         prior = prior.wide(k1)
         fit = solve([circles], [view], fit.rig, size, prior=prior, view_sd=ROUND)
-    return (fit, prior) if fit.cost < anywhere.cost else None
+    k1, _ = distortion(fit.rig, float(fit.views[0].vector[3]), size)
+    return (fit, prior) if k1 < BENT and fit.cost < anywhere.cost else None
 
 
 def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) -> HouseFit | None:
