@@ -46,7 +46,9 @@ from vision.optics.rig import (
     R4,
     R8,
     RIG_SIZE,
+    SURELY_BENT,
     Prior,
+    distortion,
     zoom,
 )
 from vision.optics.robust import WIDTH, inverse
@@ -70,6 +72,9 @@ LONG_RANGE = 1.4
 pieces and marks tell: so much larger than these say are the standard errors, as clips with truth
 show."""
 
+
+LENS_ROUNDS = 2
+"""Fits with a wide lens, if it is one: k2 is expected to go with the k1 of the fit before."""
 
 RAGGED = 0.002
 """How ragged circles are from which on the camera may lean to another side than it was thought to,
@@ -164,6 +169,12 @@ def fit_clip(
     times = [s.t for s in chosen]
     marks, views = [s.marks.get() for s in chosen], [s.view for s in chosen]
     shared, _ = bundle(marks, times, views, rig, size, prior)
+    for _ in range(LENS_ROUNDS):
+        k1, _ = distortion(shared.rig, float(views[-1].vector[3]), size)
+        if k1 > SURELY_BENT:
+            break
+        prior = prior.wide(k1)
+        shared, _ = bundle(marks, times, views, shared.rig, size, prior)
     if shared.ragged > RAGGED:
         anywhere = prior.anywhere()
         lean = fit_leaning(marks, views, shared.rig, size, prior=anywhere)

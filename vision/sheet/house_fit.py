@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from data.sheet import HOUSE
 from vision.film.picture import Image
-from vision.optics.adjust import SHARING, solve
+from vision.optics.adjust import SHARING, Solution, solve
 from vision.optics.camera import Camera
 from vision.optics.lean import fit_leaning
-from vision.optics.paint import TWELVE
+from vision.optics.paint import TWELVE, Marks
 from vision.optics.pose import DOWN, View, aim, camera, rescaled, rotation_vector
 from vision.optics.resection import ROUND
-from vision.optics.rig import ANYWHERE, OVERHEAD, POSITION, Prior, start_rig
+from vision.optics.rig import ANYWHERE, BENT, OVERHEAD, POSITION, Prior, distortion, start_rig
 from vision.sheet.hog_line import by_hog_line, may_be_in_view
 from vision.sheet.lines import lesser_side_step, sides, upright
 from vision.sheet.marks import Evidence, measure_marks
@@ -50,6 +50,9 @@ TILT_GAIN = 3.0
 """By how much the log likelihood must rise for a camera that does not hang over the tee: odds of
 twenty. Lens and paint can make up for 10 to 15° of tilt but for so little; in no real still from
 overhead does it rise by as much."""
+
+LENS_ROUNDS = 3
+"""Fits with a wide lens: k2 is expected to go with the k1 of the fit before."""
 
 PARTLY = 0.6
 """Share of the 12-ft circle in view below which it hardly tells to which side a camera leans: some
@@ -173,6 +176,20 @@ def _aimed(guess: Guess, position: Array, size: tuple[int, int]) -> View:
     return View(np.append(vector, level.vector[3]))
 
 
+def _with_wide_lens(
+    circles: Marks, anywhere: Solution, size: tuple[int, int]
+) -> tuple[Solution, Prior] | None:
+    """Fit a camera with a wide lens, and give its prior; None where a usual one explains more."""
+    fit, prior = anywhere, ANYWHERE
+    for _ in range(LENS_ROUNDS):
+        view = fit.views[0]
+        k1, _ = distortion(fit.rig, float(view.vector[3]), size)
+        prior = prior.wide(k1)
+        fit = solve([circles], [view], fit.rig, size, prior=prior, view_sd=ROUND)
+    k1, _ = distortion(fit.rig, float(fit.views[0].vector[3]), size)
+    return (fit, prior) if k1 < BENT and fit.cost < anywhere.cost else None
+
+
 def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) -> HouseFit | None:
     """Fit at full resolution: the circles, then with the lines.
 
@@ -200,6 +217,9 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
     anywhere = fit_leaning([circles.marks], [view], rig, size, view_sd=ROUND, iterations=12)
     overhead = (over.cost - anywhere.cost) / SHARING < TILT_GAIN
     fit = over if overhead else anywhere
+    wide = None if overhead else _with_wide_lens(circles.marks, anywhere, size)
+    if wide is not None:
+        fit = wide[0]
     view, rig = upright(image, fit.views[0], fit.rig)
     partly = bool(circles.visible[TWELVE] < PARTLY)
     vague = partly and lesser_side_step(image, view, rig) < LEAST
@@ -214,7 +234,9 @@ def refine(image: Image, best: RoughFit, factor: float, frame: int, t: float) ->
         circles = measure_marks(image, view.vector, rig, reach=6.0, lines=False)
         told = by_hog_line(image, circles.marks, view, rig, prior)
         if told is not None:
-            view, rig, prior = told.view, told.rig, told.prior
+            view, rig, prior, wide = told.view, told.rig, told.prior, None
+    if wide is not None and prior is ANYWHERE:
+        prior = wide[1]
     rig = sides(image, view, rig)
     edge = HALF_WAY
     for reach in (8.0, *ROUNDS * (6.0,)):

@@ -15,7 +15,7 @@ from vision.camera_path.keyframe import Keyframe
 from vision.film.clip import open_clip
 from vision.film.shelf import Kept
 from vision.optics.camera import Camera
-from vision.optics.paint import FIXED, HOG_LINE, TEE_LINE, TWELVE, Marks, joined
+from vision.optics.paint import FIXED, HOG_LINE, LEFT, RIGHT, TEE_LINE, TWELVE, Marks, joined
 from vision.optics.pose import View
 from vision.optics.resection import solve_view
 from vision.optics.rig import OVERHEAD, start_rig
@@ -63,6 +63,35 @@ def clip(
         start = View(np.array([-0.1, 0.0, 0.0, np.log(true.focal)]))
         found.append(Seen(k, k / 25, start, Kept(seen_marks(true, rng, kinds, noise)), True))
     return found
+
+
+def side_marks(true: TrueView, rng: np.random.Generator) -> Marks:
+    """Points of both sides of a sheet, measured with noise."""
+    y = np.linspace(-1.5, 5.0, 120)
+    found = []
+    for side, x in ((LEFT, -2.38), (RIGHT, 2.33)):
+        pixel = true.project(np.stack([np.full_like(y, x), y, 0 * y], axis=-1))
+        ahead = true.project(np.stack([np.full_like(y, x), y + 1e-4, 0 * y], axis=-1)) - pixel
+        normal = np.stack([ahead[:, 1], -ahead[:, 0]], axis=-1)
+        normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+        pixel = pixel + normal * rng.normal(0, 0.3, (len(y), 1))
+        found.append(Marks(np.full(len(y), side), y, pixel, normal, np.full(len(y), 0.45)))
+    return joined(found)
+
+
+def test_a_wide_lens_hangs_where_clubs_have_theirs() -> None:
+    """What hangs straight above was 6.7 m up, as if it were for a broadcast: it is at 4.6 m."""
+    size = (720, 1280)
+    lens = Lens(size, -0.24, 0.058)
+    true = TrueView(np.array([0.05, 0.1, 4.6]), np.diag([1.0, -1.0, -1.0]), 432.0, lens)
+    for seed in range(3):
+        rng = np.random.default_rng(seed)
+        marks = joined([seen_marks(true, rng, 5, 0.3), side_marks(true, rng)])
+        seen = [Seen(0, 0.0, View(np.array([0.0, 0.0, 0.0, np.log(432.0)])), Kept(marks), True)]
+        (camera,) = fit_clip(seen, start_rig(OVERHEAD), OVERHEAD, size).cameras
+        assert camera.position is not None and abs(camera.position[2] - 4.6) < 1.5
+        assert camera.k1 == pytest.approx(-0.24, abs=0.01)
+        assert camera.k2 == pytest.approx(0.058, abs=0.01)
 
 
 @pytest.mark.parametrize("height", [0.0, 0.12])

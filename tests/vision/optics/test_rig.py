@@ -77,3 +77,11 @@ def test_a_start_does_not_change_the_prior() -> None:
     assert rig[POSITION].tolist() == [1.0, 2.0, 3.0]
     np.testing.assert_array_equal(rig[K1:], before[K1:])
     np.testing.assert_array_equal(OVERHEAD.mean, before)
+
+
+def test_a_wide_lens_keeps_the_ends_and_what_somebody_says() -> None:
+    known = OVERHEAD.downwards().at_height(5.2).wide(-0.2)
+    assert known.mean[K1] == WIDE.mean[K1] and known.mean[K2] == pytest.approx(0.04)
+    assert known.mean[HOG_Y] == -OVERHEAD.mean[HOG_Y]
+    assert known.mean[POSITION][2] == known.height == 5.2
+    assert OVERHEAD.wide(-0.2).mean[POSITION][2] == WIDE.mean[POSITION][2]

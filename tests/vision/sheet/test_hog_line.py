@@ -109,6 +109,19 @@ def test_a_stripe_behind_the_house_is_no_hog_line(y: float) -> None:
     assert house.rig[POSITION][2] == pytest.approx(8.5, abs=0.2)
 
 
+@pytest.mark.parametrize("y", [5.6, 5.7])
+def test_letters_in_a_row_are_no_hog_line(y: float) -> None:
+    """A sponsor's name, twice across the sheet, had a camera of a broadcast 1.8 m too low."""
+    path = CameraPath((1280, 720), (-0.06, -0.05, 7.5), (Key(0.0, 0.0, 3.4, 140.0, k1=-0.09),))
+    plain = replace(SCENE.sheet, hog_line=SCENE.sheet.ice)
+    image = np.array(render_still(replace(SCENE, sheet=plain), path), np.uint8)
+    for x in (*np.arange(-1.75, -0.4, 0.14), *np.arange(0.45, 1.8, 0.14)):
+        fill(image, path, (x, x + 0.08), (y, y + 0.12), 60)
+    house = find_house(image)
+    assert house is not None and house.prior is OVERHEAD
+    assert house.rig[POSITION][2] == pytest.approx(7.5, abs=0.2)
+
+
 def test_from_aside_the_hog_line_tells_of_no_wide_lens() -> None:
     """It lies about where it should with each: one had a k1 of −0.09 there."""
     path = CameraPath((1280, 720), (0.3, 4.6, 8.0), (Key(0.0, 0.0, 2.0, 60.0),))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.synthetic import PAINTS, Scene, render_still, still_camera, tilted_camera
-from tests.synthetic.camera import CameraPath
+from tests.synthetic.camera import CameraPath, Key
 from tests.vision.places import RINGS
 from vision.optics.pose import ROLL, camera
 from vision.optics.rig import ANYWHERE, OVERHEAD
@@ -84,6 +84,18 @@ def test_a_camera_10_to_15_degrees_aslant_is_told_where_the_tee_is_off_the_middl
     pixels = path.at(0.0).project(np.c_[ice, np.zeros(len(ice))])
     off = np.linalg.norm(found.camera.ice(pixels) - ice, axis=1)
     assert off.max() < 0.02
+
+
+@pytest.mark.parametrize(("k1", "k2", "y"), [(-0.24, 0.055, -0.8), (-0.2, 0.04, -1.2)])
+def test_a_wide_lens_is_told_without_a_hog_line(k1: float, k2: float, y: float) -> None:
+    """With what is expected of broadcasts' lenses guards were 60 to 150 mm off."""
+    path = CameraPath((480, 760), (0.03, y, 4.5), (Key(0.0, 0.05, 1.2, 100.0, k1=k1, k2=k2),))
+    sheet = replace(SCENE.sheet, hog_line=SCENE.sheet.ice)
+    found = find_house(np.asarray(render_still(replace(SCENE, sheet=sheet), path), np.uint8))
+    assert found is not None
+    guards = np.array([(x, y) for x in (-1.0, 0.0, 1.0) for y in (2.5, 3.5, 4.5)])
+    pixels = path.at(0.0).project(np.c_[guards, np.zeros(len(guards))])
+    assert np.linalg.norm(found.camera.ice(pixels) - guards, axis=1).max() < 0.02
 
 
 def test_circles_alone_do_not_roll_a_view() -> None:
