@@ -55,9 +55,6 @@ WRITTEN = (
 WHAT_IF = ("outcomes.csv", "whatif.json", "spread.png")
 """All that samples of a simulation write beside it."""
 
-SEASON = ("season.html", "season.json", "season.png", "shots.csv", "hits.csv")
-"""All that many shots together write."""
-
 CHECK_DPI = 110
 
 MEASURED_THROWS = 1000

@@ -195,6 +195,8 @@ def spin_rate(t: Array, theta: Array) -> float:
 
 def _is_header(cells: Sequence[str]) -> bool:
     names = [plain_name(cell) for cell in cells]
+    if not names[0]:
+        return False
     if names[0] in ("t", "time") or {"stone", "t"} <= set(names):  # a track may be named stone
         return True
     return any(name in (*_CONTINUOUS, *_WRAPPED) for name in names)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from data.delimited import TextTable
 from data.errors import InputError
-from data.headers import TIME_NAMES, plain_name
+from data.headers import TIME_NAMES, bracketed, plain_name
 from data.text import plain_decimals
 from data.tracks import LATEST
 from data.units import LENGTH_UNITS, TIME_UNITS, abbreviated
@@ -39,8 +39,8 @@ def written_unit(
     for full, name in zip(table.names or plain, plain, strict=True):
         words = {name, *re.split(r"[_ .\d]+", name)}
         if "sd" not in words and not words.isdisjoint(wanted):
-            bracket = re.search(r"[(\[]\s*([^)\]]*?)\s*[)\]]", full[:100])
-            found.append(abbreviated(bracket.group(1)) if bracket else None)
+            bracket = bracketed(full)
+            found.append(None if bracket is None else abbreviated(bracket))
     known = sorted({unit for unit in found if unit in units})
     if len(known) > 1:
         raise InputError(
@@ -74,17 +74,17 @@ def times_of(
     (cells,) = table.cells([column])
     if fps is not None and plain_name(written) == "frame":
         return times / fps, None, []
-    bracket = re.search(r"[(\[]\s*([^)\]]+?)\s*[)\]]", written[:100])
+    bracket = bracketed(written)
     minutes = ":" in "".join(cells)  # as in 0:01.25
     if bracket and minutes and not all(":" in cell for cell in cells):
-        said = abbreviated(bracket.group(1))
+        said = abbreviated(bracket)
         if TIME_UNITS.get(said, 1.0) != 1.0:
             raise InputError(
                 f"{table.path}: some times are in {said}, others as 0:01.25; write all in one way"
             )
-    if bracket and (minutes or bracket.group(1).lower() in TIME_NAMES):
+    if bracket and (minutes or bracket.lower() in TIME_NAMES):
         bracket = None  # nor does time (t) tell a unit
-    told = abbreviated(bracket.group(1)) if bracket else "s"
+    told = abbreviated(bracket) if bracket else "s"
     if told not in TIME_UNITS:
         raise InputError(
             f"{table.path}: its time unit is “{told[:20]}”, which is unknown here; known are"

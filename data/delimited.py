@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from data.errors import InputError
 from data.headers import with_units
 from data.text import NUMBER, plain_decimals, plain_digits, quoted, read_text
+from data.units import KNOWN_UNITS, abbreviated
 
 Array = NDArray[np.float64]
 
@@ -32,7 +33,8 @@ _UNIT = re.compile(
 _CLOCK = re.compile(r"(?:(\d{1,9}):)?(\d{1,9}):([0-5]?\d(?:\.\d*)?)")
 """Hours, minutes and seconds."""
 
-_MISSING = frozenset({"", "nan", "na", "n/a", "#n/a", "#nv", "null", "none", "-"})
+_MISSING = re.compile(r"nan|n/?a|null|none|n\.? ?[av]\.?|[-—]*|\?|\.{1,3}|…|#.*", re.IGNORECASE)
+"""What stands for no number; of spreadsheets #N/A, #DIV/0! and what else begins so."""
 
 
 @dataclass(frozen=True)
@@ -113,7 +115,7 @@ class TextTable:
                     # Python's float also takes 1_000, which nobody means.
                     out[row, k] = float(cell) if "_" not in cell else float("")
                 except ValueError:
-                    if cell.lower() not in _MISSING:
+                    if not _MISSING.fullmatch(cell):
                         column = f" in column {self.names[columns[k]]}" if self.names else ""
                         raise InputError(
                             f"{self.path}: line {self.line_numbers[row]}: {quoted(cell)} is not a"
@@ -225,7 +227,7 @@ def _header(
             names = with_units(cells)
             while names and not names[-1]:
                 names.pop()
-            if len(names) > 1 and names[0] and is_header(names):
+            if len(names) > 1 and is_header(names):
                 return delimiter, tuple(names)
     return None
 
@@ -242,7 +244,7 @@ def _with_header(
     split = _splitter(delimiter, header + "".join(rows[:1]))
     width = len(names)
     units = [cell.strip() for cell in split(rows[0])] if rows else []
-    if any(units) and all(not unit or _UNIT.fullmatch(unit) for unit in units):
+    if any(units) and all(not unit or _is_unit(unit) for unit in units):
         named = zip(names, units, strict=False)
         labels = (f"{name} ({unit.strip('()[]')})" for name, unit in named)
         names = (*labels, *names[len(units) :])
@@ -254,6 +256,10 @@ def _with_header(
         split = _joined_decimals(path, names)
         warnings = (f"{path}: commas both between and in the numbers; read in pairs",)
     return TextTable(path, names, title, delimiter, width, rows, numbers, split, warnings)
+
+
+def _is_unit(cell: str) -> bool:
+    return bool(_UNIT.fullmatch(cell)) or abbreviated(cell.strip("()[]")) in KNOWN_UNITS
 
 
 def _without_header(

@@ -68,7 +68,7 @@ def read_layout(path: Path, fps: float | None) -> TrackFile:
         file = read_wide(table, names, fps)
     file.warnings[:0] = table.warnings
     if table.names is not None and names is not None:
-        places = [names[k] for pair in pairs_of(names).values() for k in pair]  # as xa, redx
+        places = [names[k] for pair in pairs_of(table.names).values() for k in pair]  # as xa, redx
         file.length_unit = written_unit(table, names, ("x", "y", *places), LENGTH_UNITS)
         written = written_unit(table, names, tuple(ANGLE_NAMES), ANGLE_UNITS)
         file.angle_unit = written or file.angle_unit
@@ -77,7 +77,10 @@ def read_layout(path: Path, fps: float | None) -> TrackFile:
 
 def _is_header(cells: Sequence[str]) -> bool:
     names = [plain_name(cell) for cell in cells]
-    return names[0] in TIME_NAMES or ("x" in names and "y" in names) or bool(pairs_of(names))
+    placed = ("x" in names and "y" in names) or bool(pairs_of(cells))
+    if not names[0]:  # rows are numbered before them; else it is a line of names of tracks
+        return placed and not TIME_NAMES.isdisjoint(names)
+    return names[0] in TIME_NAMES or placed
 
 
 def _tidy(table: TextTable, names: Sequence[str], fps: float | None) -> TrackFile:

@@ -134,7 +134,10 @@ def _tabs(path: Path) -> dict[str, _Tab]:
         if not zipfile.is_zipfile(path):
             if path.stat().st_size > LARGEST:
                 raise InputError(f"{path}: too large for a Tracker project")
-            root = parse(path.read_bytes(), str(path))
+            raw = path.read_bytes()
+            if raw.startswith(_ARCHIVE):
+                raise InputError(f"{path}: damaged archive (its end is missing)")
+            root = parse(raw, str(path))
             if root.cls == "TFrame":
                 return _linked(path, root)
             return {path.stem: _Tab(root, path.parent)}

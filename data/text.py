@@ -26,6 +26,7 @@ NUMBER = re.compile(
 """A number as written in any locale, with plain digits."""
 
 _BIDI_MARKS = dict.fromkeys(map(ord, "\u200e\u200f\u061c\u2066\u2067\u2068\u2069"))
+_SIGNS = {0x066B: ".", 0xFF0E: ".", 0xFF0C: ",", 0xFF0B: "+"}
 _MINUS = dict.fromkeys(map(ord, "\u2212\u2010\u2011\u2012\u2013\ufe63\uff0d"), "-")
 
 
@@ -61,10 +62,11 @@ def read_text(path: Path) -> str:
         try:
             text = raw.decode("utf-8-sig")
         except UnicodeDecodeError:
-            text = raw.decode("latin-1")
+            text = raw.decode("cp1252", errors="replace")
     if text.lstrip()[:1] == "<":
         raise InputError(f"{path}: XML, not a table of tracks; {_EXPORT}")
     text = text.replace("\r\n", "\n").replace("\r", "\n").replace("\0", "\ufffd")
+    text = text.removesuffix("\x1a")  # the end of a file, of old
     if (lines := text.count("\n")) > MOST_LINES:
         raise InputError(f"{path}: {lines} lines are too many for a table of tracks")
     if len(text) > LONGEST_LINE and max(map(len, text.split("\n"))) > LONGEST_LINE:
@@ -86,13 +88,14 @@ def _utf_16(raw: bytes) -> str | None:
 
 
 def plain_digits(text: str) -> str:
-    """Write digits, minus signs and exponents as ASCII: ``−2,6×10^−2`` becomes ``-2,6E-2``."""
+    """Write digits, signs and exponents as ASCII: ``−2,6×10^−2`` becomes ``-2,6E-2``."""
     if text.isascii():
         return text
-    signs: dict[int, str | None] = {**_BIDI_MARKS, **_MINUS, ord("\u066b"): "."}
+    signs: dict[int, str | None] = {**_BIDI_MARKS, **_MINUS, **_SIGNS}
     for character in set(text):
         if not character.isascii() and character.isdecimal():
             signs[ord(character)] = str(unicodedata.decimal(character))
+    text = re.sub(r"(?<=\d)[\xa0\u2009\u202f](?=\d{3}(?!\d))", "", text)  # thousands
     plain = text.translate(signs).replace("أس", "E").replace("اس", "E")
     return re.sub(r"[ \xa0]?[×·⋅][ \xa0]?10\^(?=[+-]?\d)", "E", plain)
 

@@ -48,6 +48,9 @@ SMALLEST = 0.001
 SLOWEST_RATE = 1.0
 """1/s; a glide of some seconds is not told by fewer rows."""
 
+LONGEST_GLIDE = 60.0
+"""s; a stone comes to rest within half of it. What takes longer is in milliseconds."""
+
 
 @dataclass(frozen=True)
 class Imported:
@@ -140,6 +143,8 @@ def read_table(
     warnings += notes
     if names:
         paths, files = chosen(paths, files, names)
+    if length_unit is None:
+        _refuse_partly(paths, files)
     for path, file in zip(paths, files, strict=True):
         warnings += _to_si(path, file, length_unit, angle_unit)
         file.tracks, notes = as_measured(file.tracks, str(path))
@@ -153,7 +158,7 @@ def read_table(
     table = check_sightings(table, source)
     said = all(abbreviated(file.length_unit or "") in LENGTH_UNITS for file in files)
     advice = UNIT_SAID if said else UNIT_NOT_SAID
-    warnings += _check_scale(table, source, advice) + _check_rate(rate, source)
+    warnings += _check_scale(table, source, advice) + _check_rate(rate, table, source)
     for stone, path in (angles or {}).items():
         track = read_angles(path, angle_unit, fps)
         table, notes = attach(table, stone, track, str(path))
@@ -186,6 +191,18 @@ def _set_masses(
             " taken as equal (--mass to say otherwise)"
         ]
     return known, []
+
+
+def _refuse_partly(paths: Sequence[Path], files: Sequence[TrackFile]) -> None:
+    """Refuse a length unit in some files and none in others, if that is not the usual one."""
+    units = (abbreviated(file.length_unit or "") for file in files)
+    told = dict(zip(paths, units, strict=True))
+    said = next((path for path, unit in told.items() if unit and unit != "m"), None)
+    silent = next((path for path, unit in told.items() if not unit), None)
+    if said is not None and silent is not None:
+        raise InputError(
+            f"{silent}: tells no length unit, but {said} is in {told[said]}; write it in the header"
+        )
 
 
 def _to_si(
@@ -268,8 +285,23 @@ def _check_scale(table: pd.DataFrame, source: str, advice: str) -> list[str]:
     return []
 
 
-def _check_rate(rate: float | None, source: str) -> list[str]:
-    """Warn of rows so far apart in time that no motion shows."""
+def _check_rate(rate: float | None, table: pd.DataFrame, source: str) -> list[str]:
+    """Refuse, or warn of, rows so far apart in time that no motion shows.
+
+    Raises
+    ------
+    InputError
+        Where a stone is on its way from each row to the next for longer than any stone glides.
+    """
     if rate is None or rate >= SLOWEST_RATE:
         return []
+    for stone, rows in table.groupby("stone", sort=False):
+        t, way = rows["t"].to_numpy(float), np.diff(rows[["x", "y"]].to_numpy(float), axis=0)
+        rests = np.flatnonzero(np.hypot(*way.T) < SMALLEST)
+        longest = float((t[np.append(rests, -1)] - t[np.insert(rests + 1, 0, 0)]).max())
+        if longest > LONGEST_GLIDE:
+            raise InputError(
+                f"{source}: rows are {1 / rate:.3g} s apart, and {stone} moves for {longest:.0f} s"
+                " without a rest: for milliseconds name the column t (ms)"
+            )
     return [f"{source}: rows are {1 / rate:.3g} s apart; for milliseconds name the column t (ms)"]

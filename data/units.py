@@ -15,11 +15,14 @@ SPELLED = {
     "millimetre": "mm", "inch": "in", "inche": "in", "foot": "ft", "feet": "ft", "yard": "yd",
     "second": "s", "sec": "s", "millisecond": "ms", "msec": "ms", "minute": "min", "hour": "h",
     "hr": "h", "sekunde": "s", "sekunden": "s", "sek": "s", "seconde": "s", "seconden": "s",
-    "segundo": "s", "secondi": "s", "sekundy": "s",
+    "segundo": "s", "secondi": "s", "sekundy": "s", "с": "s", "мс": "ms", "秒": "s",
+    "zentimeter": "cm", "mètre": "m", "centimètre": "cm", "millimètre": "mm", "metro": "m",
+    "centímetro": "cm", "milímetro": "mm", "centimetro": "cm", "millimetro": "mm",
+    "м": "m", "см": "cm", "мм": "mm",
     "radian": "rad", "degree": "deg", "°": "deg",
 }  # fmt: skip
-"""Units written out, without an s at their end; seconds in all languages that times are known in
-(`data.columns.TIME_NAMES`)."""
+"""Units written out, without an s at their end, and in other letters; seconds in all languages
+that times are known in (`data.headers.TIME_NAMES`)."""
 
 TIME_UNITS = {"s": 1.0, "ms": 0.001, "min": 60.0, "h": 3600.0}
 """Seconds in one of each."""

@@ -14,10 +14,18 @@ from numpy.typing import NDArray
 from data.columns import clock_column, refuse_disorder, times_of, values_of
 from data.delimited import TextTable
 from data.errors import InputError
-from data.headers import ANGLE_NAMES, RATE, RATES, TIME_NAMES
+from data.headers import (
+    ANGLE_NAMES,
+    RATE,
+    RATES,
+    TIME_NAMES,
+    bracketed,
+    is_place,
+    plain_name,
+)
 from data.track_file import TrackFile
 from data.tracks import stone_name
-from data.units import ANGLE_UNITS
+from data.units import ANGLE_UNITS, LENGTH_UNITS, abbreviated
 
 Array = NDArray[np.float64]
 
@@ -48,8 +56,9 @@ class Place:
         return {"x": self.x, "y": self.y, **self.others}
 
 
-def pairs_of(names: Sequence[str]) -> dict[str, tuple[int, int]]:
+def pairs_of(written: Sequence[str]) -> dict[str, tuple[int, int]]:
     """Columns of x and y by what their names share: ``x1, y1`` or ``red_x, red_y``."""
+    names = [plain_name(name) for name in written]
     # An angle of a stone named x, or the error of a place, is no place.
     places = {
         k: name for k, name in enumerate(names) if name.split("_")[0] not in {*ANGLE_NAMES, "sd"}
@@ -57,7 +66,10 @@ def pairs_of(names: Sequence[str]) -> dict[str, tuple[int, int]]:
     named = _halves((name[:1], name[1:], k) for k, name in places.items())
     used = {k for pair in named.values() for k in pair}
     others = _halves((name[-1:], name[:-1], k) for k, name in places.items() if k not in used)
-    return _stones(others, rf"[_ .]*({_QUANTITY})$", set()) | _stones(
+    only = [k for pair in (named | others).values() for k in pair]
+    # By itself A_x is no acceleration, which Tracker calls ax.
+    first = {"a"} if len(only) == 2 and all(written[k].startswith("A") for k in only) else set()
+    return _stones(others, rf"[_ .]*({_QUANTITY})$", first) | _stones(
         named, rf"^({_QUANTITY})([_ .]+|$)", {"a"}
     )
 
@@ -115,10 +127,28 @@ def read_wide(table: TextTable, names: Sequence[str], fps: float | None) -> Trac
     others = [k for k, name in enumerate(names) if name in TIME_NAMES and k != clock]
     if any(not np.array_equal(table.numbers([k], k)[:, 0], values[clock or 0]) for k in others):
         raise InputError(f"{table.path}: two columns of times that differ; one file per stone")
-    unread = [stem for stem, (x, _) in pairs_of(names).items() if x not in columns]
+    _refuse_partly(table, places)
+    pairs = pairs_of(table.names or names)
+    unread = [stem for stem, (x, _) in pairs.items() if x not in columns]
     if unread:
         warnings.append(f"{table.path}: x and y of {', '.join(unread)} beside x and y; left out")
+    used = columns.union(*pairs.values())
+    lone = [name for k, name in enumerate(names) if k not in used and is_place(name)]
+    if lone:
+        warnings.append(f"{table.path}: {', '.join(lone)} without the other axis; left out")
     return side_by_side(table, values, places, times, decimals, warnings)
+
+
+def _refuse_partly(table: TextTable, places: Sequence[Place]) -> None:
+    """Refuse places of which some have a unit and others none, if that is not the usual one."""
+    written = table.names or ()
+    units = [{abbreviated(bracketed(written[k]) or "") for k in (p.x, p.y)} for p in places]
+    told = [not pair.isdisjoint(LENGTH_UNITS) for pair in units]
+    if any(told) and not all(told) and "m" not in set().union(*units):
+        one, other = (written[places[told.index(so)].x] for so in (True, False))
+        raise InputError(
+            f"{table.path}: {one} has a length unit and {other} has none; write it behind all"
+        )
 
 
 def _blocks(table: TextTable, names: Sequence[str]) -> list[Place]:
@@ -167,7 +197,7 @@ def title_of(table: TextTable) -> str:
 def _named_pairs(table: TextTable, names: Sequence[str]) -> list[Place]:
     """Places whose columns carry the stone's name: ``x1, y1``; ``c_a_x, c_a_y, ang_a``."""
     places = []
-    pairs = pairs_of(names)
+    pairs = pairs_of(table.names or names)
     frame = names.index("frame") if "frame" in names else None
     for stem, (x, y) in pairs.items():
         twice = [names[k] for k in (x, y) if names.count(names[k]) > 1]

@@ -316,9 +316,12 @@ def test_what_does_not_move_is_warned_about(tmp_path: Path) -> None:
     assert "within 0.2 mm" in found.warnings[0]
 
 
-def test_times_that_may_be_milliseconds_are_warned_about(tmp_path: Path) -> None:
+def test_times_that_must_be_milliseconds_are_told(tmp_path: Path) -> None:
     text = "stone,t,x,y\n" + "".join(f"A,{40 * k + 0.5},0.0,{0.05 * k}\n" for k in range(20))
-    (warning,) = read(tmp_path, text).warnings
+    with pytest.raises(InputError, match="rows are 40 s apart, and A moves for 760 s without a"):
+        read(tmp_path, text)
+    seldom = "stone,t,x,y\n" + "".join(f"A,{40 * k + 0.5},0.0,{k // 5}\n" for k in range(20))
+    (warning,) = read(tmp_path, seldom).warnings
     assert "rows are 40 s apart" in warning
     right = read(tmp_path, text.replace(",t,", ",t (ms),"))
     assert right.fps == pytest.approx(25.0)
