@@ -200,6 +200,9 @@ def read_text_table(
     for k, (_, line) in enumerate(lines[:_PREFACE]):
         header = _header(line.lstrip("# "), is_header)
         if header is not None:
+            below = _header(lines[k + 1][1], is_header) if k + 1 < len(lines) else None
+            if below is not None and below[0] == header[0] and _is_unit(below[1][0]):
+                return _below_stones(path, line, header, below[1], lines[k + 1 :])
             return _with_header(path, title, line, *header, lines[k + 1 :])
         if line.startswith("#") or _SPREADSHEET.fullmatch(line.strip()):
             continue
@@ -256,6 +259,24 @@ def _with_header(
         split = _joined_decimals(path, names)
         warnings = (f"{path}: commas both between and in the numbers; read in pairs",)
     return TextTable(path, names, title, delimiter, width, rows, numbers, split, warnings)
+
+
+def _below_stones(
+    path: Path,
+    stones: str,
+    upper: tuple[str, tuple[str, ...]],
+    lower: Sequence[str],
+    lines: Sequence[tuple[int, str]],
+) -> TextTable:
+    """Read a table whose header is a row of stones, and of the time, above one of their axes."""
+    delimiter, above = upper
+    names = [
+        f"{one} ({name.strip('()[]')})" if _is_unit(name) else name
+        for one, name in zip(above, lower, strict=False)
+    ]
+    title = delimiter + stones.partition(delimiter)[2]
+    header = (*names, *lower[len(names) :])
+    return _with_header(path, title, lines[0][1], delimiter, header, lines[1:])
 
 
 def _is_unit(cell: str) -> bool:

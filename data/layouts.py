@@ -79,7 +79,7 @@ def _is_header(cells: Sequence[str]) -> bool:
     names = [plain_name(cell) for cell in cells]
     placed = ("x" in names and "y" in names) or bool(pairs_of(cells))
     if not names[0]:  # rows are numbered before them; else it is a line of names of tracks
-        return placed and not TIME_NAMES.isdisjoint(names)
+        return placed and (all(names[1:]) or not TIME_NAMES.isdisjoint(names))
     return names[0] in TIME_NAMES or placed
 
 

@@ -158,6 +158,25 @@ def test_a_header_of_merged_cells_above_units(tmp_path: Path) -> None:
     assert is_true(imported(tmp_path, text), rot=A, gelb=B)
 
 
+@pytest.mark.parametrize(
+    "head",
+    [
+        "Time,Stone A,,Stone B,\ns,x (cm),y (cm),x (cm),y (cm)\n",
+        "Shot 4,,,,\nTime (s),Stone A,,Stone B,\n,x [cm],y [cm],x [cm],y [cm]\n",
+        "t,Stone A,Stone A,Stone B,Stone B\n(sec),x,y,x,y\n,cm,cm,cm,cm\n",
+    ],
+)
+def test_stones_and_the_time_above_axes(tmp_path: Path, head: str) -> None:
+    table = imported(tmp_path, head + rows(*CM))
+    assert is_true(table, **{"Stone A": A, "Stone B": B})
+
+
+def test_rows_of_a_program_that_numbers_them(tmp_path: Path) -> None:
+    lines = [f"{k},412,{row},{k}" for k, row in enumerate(rows(A).splitlines(), 1)]
+    table = imported(tmp_path, "\n".join([" ,Area,X,Y,Slice", *lines]), fps=25.0)
+    assert is_true(table, shot=A)
+
+
 def test_what_old_systems_end_a_file_with(tmp_path: Path) -> None:
     assert is_true(imported(tmp_path, f"t,A_x,A_y\n{rows(T, A)}\x1a"), A=A)
 
