@@ -16,8 +16,9 @@ from matplotlib.figure import Figure
 from data.files import write_text
 from data.tracks import write_table
 from physics.statistics.pool import Pooled
+from report.figures.parts import short
 from report.numbers import plus_minus
-from report.style import BLACK, BLUE, GREY, PNG_DPI, SKY, new_figure, plain_text, styled
+from report.style import BLACK, BLUE, GREY, PNG_DPI, SKY, new_figure, styled
 
 ROW = 0.24
 """Height of a shot's row, inches."""
@@ -87,7 +88,7 @@ def _forest(axes: Axes, shots: pd.DataFrame, name: str, mean: Pooled, label: str
         ):
             if half is not None:
                 axes.axvspan(mean.value - half, mean.value + half, label=what, **look)
-    axes.set_yticks(rows, [plain_text(_short(shot)) for shot in shots["shot"]])
+    axes.set_yticks(rows, [short(shot, LONGEST) for shot in shots["shot"]])
     axes.set_ylim(-0.7, len(shots) - 0.3)
     axes.set_xlabel(label)
     axes.set_title(f"{label.split()[1]} = {plus_minus(mean.value, mean.stderr)}")
@@ -115,7 +116,3 @@ def _against_speed(axes: Axes, hits: pd.DataFrame, mean: Pooled) -> None:
     if hits["restitution"].isna().all():
         axes.set_yticks([])
         _nothing(axes, "no hit tells it")
-
-
-def _short(name: str) -> str:
-    return name if len(name) <= LONGEST else f"{name[: LONGEST - 1]}…"

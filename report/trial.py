@@ -10,10 +10,10 @@ from typing import Any
 import pandas as pd
 
 from data.results import Results
-from data.sheet import GRAVITY
 from physics.prediction.ensemble import Ensemble
+from physics.prediction.laws import friction_at_1
 from physics.prediction.start import measured_start
-from physics.registry import models
+from physics.registry import model, models
 from physics.simulator.simulation import StoneStart
 from physics.simulator.values import shot_values
 
@@ -69,7 +69,7 @@ def sliders(what_if: Mapping[str, Any]) -> list[Slider]:
     shot = what_if["shot"]
     stone, impact = shot["stones"][what_if["thrown"]], shot["impact"]
     name, speed = stone["name"], math.hypot(stone["vx"], stone["vy"])
-    friction = _friction(shot["ice"])
+    friction = friction_at_1(model("ice", **shot["ice"]))
     spin = 1.5 * abs(stone["omega"])
     return [
         _slider("restitution", "Restitution e", "", 3, 0.0, 1.0, impact["restitution"]),
@@ -91,12 +91,6 @@ def _slider(
     first, last = math.floor(ends[0] / step) * step, math.ceil(ends[1] / step) * step
     texts = (f"{number:.{decimals}f}" for number in (first, last, step, value))
     return Slider(key, label, unit, decimals, *texts)
-
-
-def _friction(ice: Mapping[str, Any]) -> float:
-    """Friction at 1 m/s of a law given by its values."""
-    values = {key: value for key, value in ice.items() if key != "name"}
-    return float(models("ice")[ice["name"]](**values).deceleration(1.0)) / GRAVITY
 
 
 def _spins_after(stone: StoneStart, results: Results) -> tuple[float, ...]:

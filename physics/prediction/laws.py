@@ -103,10 +103,10 @@ def measured_laws(shot: Estimates | Results, radius: float) -> Laws:
 
 def assumed_of(laws: Laws, shot: Shot) -> dict[str, str]:
     """Say what was assumed of the laws of a shot: where the fit of the whole of it tells, that."""
-    usual = {"restitution": laws.frictional.restitution, "friction": _at_1(laws.ice)}
+    usual = {"restitution": laws.frictional.restitution, "friction": friction_at_1(laws.ice)}
     own = {
         "restitution": getattr(shot.impact, "restitution", usual["restitution"]),
-        "friction": _at_1(shot.ice),
+        "friction": friction_at_1(shot.ice),
     }
     said = dict(laws.assumed)
     for name in own.keys() & said.keys():
@@ -115,8 +115,8 @@ def assumed_of(laws: Laws, shot: Shot) -> dict[str, str]:
     return said
 
 
-def _at_1(ice: IceLaw) -> float:
-    """Friction at 1 m/s."""
+def friction_at_1(ice: IceLaw) -> float:
+    """Friction of a law of the ice at 1 m/s."""
     return float(ice.deceleration(1.0)) / GRAVITY
 
 
@@ -161,10 +161,15 @@ def _ice(friction: Friction, usual: Estimate, assumed: dict[str, str]) -> tuple[
         assumed["friction"] = f"friction came out as {value:.4f}, 0 used"
         return Constant(LEAST_FRICTION), 0.0
     sd = (friction.stderr or 0.0) / value
+    return law_of(friction), sd
+
+
+def law_of(friction: Friction) -> IceLaw:
+    """Return the law of the ice that a friction, which is told, belongs to."""
     a, v_c, b = friction.a, friction.v_c, friction.b
     if friction.law == "fit" and a is not None and v_c is not None and b is not None:
-        return Fit(a, v_c, b), sd
-    return Constant(value), sd
+        return Fit(a, v_c, b)
+    return Constant(friction.value or 0.0)
 
 
 def _rub(hit: Collision) -> float:

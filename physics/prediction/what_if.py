@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from data.errors import InputError
 from data.progress import Progress, no_progress
-from data.sheet import GRAVITY, HOUSE
+from data.sheet import HOUSE
+from physics.prediction.laws import friction_at_1
 from physics.prediction.start import Start, speed_before
 from physics.simulator.many import simulate_many
 from physics.simulator.simulation import Shot, States
@@ -229,7 +230,7 @@ def _changed(shot: Shot, thrown: int, changes: Changes) -> Shot:
         impact: Any = replace(shot.impact, restitution=changes.restitution)  # type: ignore[type-var]
         shot = replace(shot, impact=impact)
     if changes.friction is not None:
-        present = float(shot.ice.deceleration(1.0)) / GRAVITY
+        present = friction_at_1(shot.ice)
         shot = replace(shot, ice=shot.ice.scaled(changes.friction / present))
     stones = list(shot.stones)
     stone = stones[thrown]

@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 
 from data.results import Friction, Glide
 from data.sheet import GRAVITY
-from physics.ice import FCV1, Constant, Fit, IceLaw, Penner
+from physics.ice import FCV1, IceLaw, Penner
+from physics.prediction.laws import law_of
 from report.figures.parts import WIDTH, Array, legend_below, line, rows_of, short, speeds, title
 from report.numbers import plus_minus
 from report.style import BLACK, GREY, PALE, new_figure, stone_colours, styled
@@ -83,7 +84,7 @@ def friction_figure(
         if len(telling) < len(known):
             handles.append(line("poorly known (▴▾ beyond)", color=GREY, alpha=FAINT, lw=2.2))
         if friction.value is not None:
-            mu = _friction(_law(friction), v)
+            mu = _friction(law_of(friction), v)
             error = 2 * (friction.stderr or 0.0)
             ax.fill_between(v, mu - error, mu + error, color=BLACK, alpha=0.12, lw=0, zorder=1)
             ax.plot(v, mu, color=BLACK, zorder=3)
@@ -132,12 +133,6 @@ def _draw_glide(
     else:
         edge, sign = (limits[0], "v") if mu <= limits[0] else (limits[1], "^")
         ax.plot(middle, edge, sign, ms=7, mew=0, clip_on=False, **look)
-
-
-def _law(friction: Friction) -> IceLaw:
-    if friction.law == "fit" and None not in (friction.a, friction.v_c, friction.b):
-        return Fit(float(friction.a or 0), float(friction.v_c or 0), float(friction.b or 0))
-    return Constant(float(friction.value or 0.0))
 
 
 def _friction(law: IceLaw, speed: Array) -> Array:
