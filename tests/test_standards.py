@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -66,6 +67,19 @@ def test_imports_within_a_room_point_one_way(room: str) -> None:
         within = {name.split(".")[1] for name in imported(path) if name.startswith(f"{room}.")}
         wrong = within - set(order[: order.index(place) + 1])
         assert not wrong, f"{path.relative_to(ROOT)} imports {', '.join(sorted(wrong))}"
+
+
+@pytest.mark.parametrize("room", sorted(MAY_IMPORT))
+def test_what_a_docstring_refers_to_is_there(room: str) -> None:
+    name = re.compile(rf"(?<!`)`((?:{'|'.join(MAY_IMPORT)})(?:\.\w+)+)`(?!`)")
+    for path in modules(room):
+        for dotted in name.findall(path.read_text(encoding="utf-8")):
+            place, rest = ROOT, dotted.split(".")
+            while rest and ((place / rest[0]).is_dir() or (place / f"{rest[0]}.py").exists()):
+                place /= rest.pop(0)
+            module = place / "__init__.py" if place.is_dir() else place.with_suffix(".py")
+            there = not rest or re.search(rf"\b{rest[0]}\b", module.read_text(encoding="utf-8"))
+            assert there, f"{path.relative_to(ROOT)} refers to {dotted}"
 
 
 def test_renderer_shares_no_code_with_what_it_tests() -> None:

@@ -130,7 +130,7 @@ def drawn(shot: Shot, doubt: Doubt, rng: np.random.Generator) -> Shot:
     """Return a shot with all that is doubtful drawn from normal distributions.
 
     What is drawn is independent but for what places share: stones near each other move together
-    (`physics.local_fit.traces.alike`).
+    (`physics.local_fit.traces.shared_correlation`).
     """
     together = _together(shot, doubt, rng)
     stones = tuple(

@@ -179,7 +179,7 @@ class Batch:
         self._hit(shots, pair // self.stones, pair % self.stones, self.t[shots])
 
     def _hit(self, shots: Index, i: Index, j: Index, t: Array) -> None:
-        """Resolve the contact of stones i and j at the times t, as `simulator.simulate` does."""
+        """Resolve contacts of stones i and j at times t, as `physics.simulator.simulate` does."""
         every = (shots[:, None] * self.stones + np.arange(self.stones)).ravel()
         self.now[shots] = self._points(every, np.repeat(t, self.stones)).reshape(-1, self.stones, 4)
         self.t[shots], self.step[shots] = t, AFTER_HIT
