@@ -15,7 +15,7 @@ from command.parser import command_line
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = sorted((ROOT / "docs").glob("*.md"))
-OF_A_RUN = ("coach", "figures", "from_tracks", "what_if")
+OF_A_RUN = ("coach", "figures", "from_tracks", "shared", "what_if")
 
 
 def said(name: str, capsys: pytest.CaptureFixture[str], *words: Path) -> str:
@@ -53,6 +53,17 @@ def test_from_tracks(sample: pipeline.Run, capsys: pytest.CaptureFixture[str]) -
         text = said("from_tracks", capsys, *words)
         assert "('A', 'B')" in text
         assert "B leaves with" in text
+
+
+def test_shared(sample: pipeline.Run, capsys: pytest.CaptureFixture[str]) -> None:
+    assert sample.out is not None
+    number = r"e = Estimate\(value=(\S+), stderr=(\S+)\)"
+    for words, true, shots in (((), 0.83, 2), ((sample.out,), 0.8345, 1)):
+        found = re.findall(number, said("shared", capsys, *words))
+        *alone, (e, sd) = [(float(value), float(stderr)) for value, stderr in found]
+        assert len(alone) == shots
+        assert abs(e - true) < 3 * sd
+        assert sd < 1.05 * min(stderr for _, stderr in alone)
 
 
 def test_simulate(capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,0 +1,53 @@
+"""One e, and one friction between stones, for several shots of the same stones.
+
+Run it as ``python examples/shared.py [RUN ...]``, with the folders of runs. Without any, two shots
+are made up. All sightings of all shots are fitted at once through the simulator, where e and the
+friction between stones are the same in all of them and what is left is each shot's own.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+import pipeline
+from data.sheet import STONE
+from data.tracks import check_sightings
+from physics.estimate import estimate
+from physics.impact.frictional import Frictional
+from physics.local_fit.contacts import find_contacts
+from physics.simulator.simulate import simulate
+from physics.simulator.simulation import Shot, StoneStart
+from physics.whole_shot.global_fit import fit_shots
+
+RADIUS = STONE.radius  # of the discs, m
+
+
+def made_up(speed: float, aside: float) -> pd.DataFrame:
+    """Give a hit as a camera sees it that is 3 mm off in every frame."""
+    stones = (StoneStart("A", 0.0, 2.0, 0.0, -speed), StoneStart("B", aside, 0.0))
+    shot = Shot(stones, impact=Frictional(0.83))
+    seen = simulate(shot).sample(np.arange(0.0, 3.0, 1 / 30))
+    seen[["x", "y"]] += np.random.default_rng(1).normal(0.0, 0.003, (len(seen), 2))
+    return check_sightings(seen[["stone", "t", "x", "y"]])
+
+
+runs = [pipeline.measure(Path(run) / "tracks.csv").sightings for run in sys.argv[1:]]
+fits = []
+for sightings in runs or [made_up(1.5, 0.05), made_up(2.0, -0.08)]:
+    found = estimate(sightings, find_contacts(sightings, RADIUS), radius=RADIUS)
+    if found.whole is None:
+        sys.exit(f"a shot that cannot be fitted as a whole: {found.by_whole.note}")
+    fits.append(found.whole)
+    print("by itself: e =", found.whole["restitution"], " μ =", found.whole["friction"])
+
+held = {name: value for fit in fits for name, value in fit.fixed.items()}
+shots = [shot for fit in fits for shot in fit.shots]
+together = fit_shots(shots, fixed=held, shared=["restitution", "stone_friction"])
+print("together:  e =", together["restitution"])
+for rank in range(len(shots)):
+    name = f"{rank}:friction" if len(shots) > 1 else "friction"
+    print(f"shot {rank}:    μ =", together[name])
