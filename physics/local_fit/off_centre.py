@@ -34,7 +34,8 @@ SHOWN = 9.0
 """Squared normalised distance of a cap from the middle, two axes, from which it is taken out."""
 
 TURNED = 2.0
-"""Least turn of a stone, rad: by less, its cap goes round too little to tell it from a motion."""
+"""Least turn of a stone, rad: by less, its cap goes round too little to tell it from a motion, and
+no path need be fitted."""
 
 FEWEST = 12
 """Sightings of a stretch from which it tells of its cap."""
