@@ -29,6 +29,7 @@ from physics.filter.stretch import GATE, PATIENCE, START_SD, Filter, Model, Stre
 from physics.local_fit.contacts import Contact, cut_all
 from physics.local_fit.fit import fit_shot
 from physics.local_fit.glides import free, measure_glides
+from physics.local_fit.last_pictures import widen_last
 from physics.local_fit.noise import Noise, noises
 from physics.local_fit.off_centre import centred
 from physics.local_fit.segments import lies_still
@@ -131,6 +132,7 @@ def smoothed(
     for name, stone in stones.items():
         for column, alike in zip(("sd_x", "sd_y"), stone.trace.sd_place[stone.row].T, strict=True):
             each[name][column] = np.hypot(each[name][column], alike)
+    widen_last(each, contacts, radius)
     team, tables = teams(sightings), list(each.values())
     tracks = {name: np.concatenate([table[name] for table in tables]) for name in tables[0]}
     tracks["team"] = np.array([team[stone] for stone in tracks["stone"].tolist()])

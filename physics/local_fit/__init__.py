@@ -12,7 +12,8 @@ From a fit with the hits known, `glides` measures the friction, `hits` the resti
 the spins and the friction between stones, with the `noise` of the sightings as the shot shows it;
 `off_centre` takes out what caps are beside the centres of stones by, where their turning shows it;
 `local` puts them together. `shared_error` and `shared_spin` are of errors that sightings, and
-stones in a hit, have in common. `finite_differences` is the method of the study, for comparison.
+stones in a hit, have in common; `last_pictures` is of hits too late to be told.
+`finite_differences` is the method of the study, for comparison.
 
 A *sighting* is a measured place (and angle) of a stone, a *piece* a stretch of one stone's path
 without a hit, a *meeting* of two stones what may be a hit, a *contact* one that is.

@@ -34,7 +34,8 @@ SHOWN = 9.0
 """Squared normalised distance of a cap from the middle, two axes, from which it is taken out."""
 
 TURNED = 2.0
-"""Least turn of a stone, rad: by less, its cap goes round too little to tell it from a motion."""
+"""Least turn of a stone, rad: by less, its cap goes round too little to tell it from a motion, and
+no path need be fitted."""
 
 FEWEST = 12
 """Sightings of a stretch from which it tells of its cap."""
@@ -51,10 +52,6 @@ than a1's and left out."""
 
 MOST = 3.0
 """Farthest that a cap is beside its stone's centre, in `Trace.sd_off_centre`."""
-
-NEAR = 0.5
-"""Time, s, within which an angle is to be told for what the cap is beside the centre by to be
-known: a third of a turn or less."""
 
 ROUNDS = 2
 """How often a path is cut and its cap told anew: once it is over its stone, breaks that the cap
@@ -88,7 +85,7 @@ def centred(
     for name, trace in known.items():
         theta = trace.theta[np.isfinite(trace.theta)]
         turned = theta.size and np.ptp(theta) > TURNED
-        if turned and trace.usual_sd_place > 0 and _told_throughout(trace):
+        if turned and trace.usual_sd_place > 0 and trace.faced.all():
             own = [(k, hit.t) for k, hit in enumerate(hits) if name in hit.stones]
             out[name] = _centred(trace, sorted(own, key=lambda hit: hit[1]), radius)
     return out
@@ -108,19 +105,15 @@ def _centred(trace: Trace, hits: Sequence[tuple[int, float]], radius: float) -> 
 
 
 def moved(trace: Trace, beside: Floats) -> Trace:
-    """Put sightings over the centre of a stone whose cap is so far beside it, m, in its frame."""
-    told = np.isfinite(trace.theta)
+    """Put sightings over the centre of a stone whose cap is so far beside it, m, in its frame.
+
+    Where it is not known how it is turned they stay, and err by that.
+    """
+    told, faced = np.isfinite(trace.theta), trace.faced[:, None]
     sd_theta = np.interp(trace.t, trace.t[told], trace.sd_theta[told])  # as `Trace.rotations`
-    sd = np.hypot(trace.sd, sd_theta[:, None] * np.hypot(*beside))
-    return replace(trace, xy=trace.xy - trace.rotations @ beside, sd=sd)
-
-
-def _told_throughout(trace: Trace) -> bool:
-    """Whether an angle is told near each of the sightings."""
-    told = trace.t[np.isfinite(trace.theta)]
-    after = np.searchsorted(told, trace.t).clip(1, len(told) - 1)
-    near = np.minimum(np.abs(told[after] - trace.t), np.abs(trace.t - told[after - 1]))
-    return bool(near.max() < NEAR)
+    sd_turn = np.where(faced, sd_theta[:, None], 1.0)
+    sd = np.hypot(trace.sd, sd_turn * np.hypot(*beside))
+    return replace(trace, xy=trace.xy - faced * (trace.rotations @ beside), sd=sd)
 
 
 def _joined(pieces: Sequence[Piece]) -> list[Piece]:

@@ -23,7 +23,7 @@ def centred(trace: Trace, residuals: Floats, noise: float, sd: float) -> tuple[F
     Parameters
     ----------
     trace : Trace
-        Sightings of the stone; without angles nothing is taken out.
+        Sightings of the stone; where no angle is told for a while nothing is taken out.
     residuals : (n, 2) array
         Sighted less fitted places over their standard deviations.
     noise : float
@@ -41,7 +41,8 @@ def centred(trace: Trace, residuals: Floats, noise: float, sd: float) -> tuple[F
     """
     if not sd or not np.isfinite(trace.theta).any():
         return residuals, np.zeros(2)
-    rows = (sd * trace.rotations / trace.sd[:, :, None]).reshape(-1, 2)
+    known = sd * trace.faced[:, None, None] * trace.rotations
+    rows = (known / trace.sd[:, :, None]).reshape(-1, 2)
     weighted = rows * np.repeat(huber_weights(residuals), 2)[:, None] / noise
     normal = np.eye(2) + weighted.T @ rows
     beside = np.asarray(np.linalg.solve(normal, weighted.T @ residuals.ravel()), float)

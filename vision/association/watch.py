@@ -27,15 +27,15 @@ from vision.detection.appearance import (
     convincing,
     learn,
 )
-from vision.detection.balance import Balance, brightening
+from vision.detection.balance import Balance, brightening, tones
 from vision.detection.patch import is_plain
 from vision.detection.placing import placed_by
 from vision.detection.rays import Look
 from vision.detection.sighting import Sighting
 from vision.detection.stones import FOLLOWING, SEARCH, Search
 from vision.detection.strangers import strangers
-from vision.film.clip import Frame
-from vision.film.picture import brightened
+from vision.film.clip import Frame, Image
+from vision.film.picture import brightened, toned
 from vision.film.shelf import Kept, Shelf
 from vision.optics.camera import Camera
 
@@ -91,6 +91,7 @@ class Watch:
         self._shelf = Shelf(ROOM)
         self._balance: Balance | None = None
         self._gain = np.ones(3)
+        self._tones: Image | None = None
         self._before: Camera | None = None
         self._leads: list[Lead] = []
         self._since = self._most = MEMORY
@@ -102,7 +103,8 @@ class Watch:
         self._most = pictures_kept(camera.size)
         if not self._knows:
             self._gain = np.full(3, brightening(frame.picture, camera))
-        frame = replace(frame, picture=brightened(frame.picture, self._gain))
+        lit = brightened(frame.picture, self._gain)
+        frame = replace(frame, picture=toned(lit, self._tones))
         if self._balance is not None:
             if not self._waiting:
                 self._balance.look(frame.picture, camera)
@@ -164,6 +166,8 @@ class Watch:
         if self._waiting and not self._knows:
             self._recent.clear()
             self._learn(self._waiting)
+            if self.appearance is not None and self._tones is None:
+                self._lift(self.appearance)
             if self._knows:
                 self._balance = Balance(self._waiting[-1].frame.picture, self._waiting[-1].camera)
         for begin in range(0, len(self._waiting), BLOCK):
@@ -183,6 +187,19 @@ class Watch:
             found = self._of_any_colour(views[1::DOUBTFUL_LESSON])
         self._lessons += convincing(found)
         self.appearance = learn(self._lessons)
+
+    def _lift(self, learned: Appearance) -> None:
+        """Lift dark tones if what was learned shows that they are too dark, and learn anew."""
+        last = self._waiting[-1]
+        self._tones = tones(last.frame.picture, last.camera, learned.granite)
+        if self._tones is None:
+            return
+        self._waiting = [
+            replace(view, frame=replace(frame, picture=toned(frame.picture, self._tones)))
+            for view, frame in ((view, view.frame) for view in self._waiting)
+        ]
+        self._lessons = []
+        self._learn(self._waiting)
 
     def _of_any_colour(
         self, views: Iterable[StoneView], radius_px: float = SEARCH.radius_px

@@ -9,7 +9,7 @@ import numpy as np
 
 from data.sheet import STONE, Stone
 from vision.detection.appearance import MOST_COLOURS, UNLIKE, Appearance, convincing, learn
-from vision.detection.balance import brightening
+from vision.detection.balance import brightening, tones
 from vision.detection.measure import measure_discs
 from vision.detection.patch import is_plain
 from vision.detection.rays import Look
@@ -18,7 +18,7 @@ from vision.detection.sighting import Refusal, Sighting
 from vision.detection.stones import NEAREST, SEARCH, Findings, search_picture
 from vision.detection.strangers import by_shape, strangers, weighed
 from vision.film.clip import Image
-from vision.film.picture import brightened, image_of
+from vision.film.picture import brightened, image_of, toned
 from vision.optics.camera import Camera
 
 BOTH_MEASURES = 1.2
@@ -41,22 +41,34 @@ def glance(pictures: Sequence[tuple[Image, Camera]], disc: Stone = STONE) -> lis
     list of Findings
         One per picture, with the places that were refused and why.
     """
-    nothing = np.empty((0, 2))
     if not is_plain(disc):
         pictures = [(_lit(image, camera), camera) for image, camera in pictures]
-    looks = [Look(image, camera, nothing) for image, camera in pictures]
-    first, disc = strangers(looks, disc, SEARCH)
-    first = _with_handles(first)
-    appearance = learn(convincing(stone for found in first for stone in found.stones))
+    first, appearance, made = _first(pictures, disc)
+    if appearance is not None:
+        image, camera = pictures[0]
+        table = tones(image, camera, appearance.granite)
+        if table is not None:  # what was found is in tones too dark to tell all of it
+            pictures = [(image_of(toned(image, table)), camera) for image, camera in pictures]
+            first, appearance, made = _first(pictures, disc)
     if appearance is None:
         return first
-    again = [search_picture(image, camera, appearance, disc) for image, camera in pictures]
+    again = [search_picture(image, camera, appearance, made) for image, camera in pictures]
     return _with_handles(
         [
-            _with_strangers(image, camera, known, other, appearance, disc)
+            _with_strangers(image, camera, known, other, appearance, made)
             for (image, camera), known, other in zip(pictures, again, first, strict=True)
         ]
     )
+
+
+def _first(
+    pictures: Sequence[tuple[Image, Camera]], disc: Stone
+) -> tuple[list[Findings], Appearance | None, Stone]:
+    """Search pictures for unknown stones; learn what these look like and how they are made."""
+    looks = [Look(image, camera, np.empty((0, 2))) for image, camera in pictures]
+    first, made = strangers(looks, disc, SEARCH)
+    first = _with_handles(first)
+    return first, learn(convincing(stone for found in first for stone in found.stones)), made
 
 
 def _with_handles(found: Sequence[Findings]) -> list[Findings]:

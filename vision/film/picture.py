@@ -211,6 +211,15 @@ def brightened(picture: Picture, gain: NDArray[np.float64]) -> Picture:
     return np.asarray(cv2.transform(picture, np.diag(gain)), np.uint8)
 
 
+def toned(picture: Picture, table: Image | None) -> Picture:
+    """Give a picture with other tones: for each code, 0 to 255, another one, shape (256,)."""
+    if table is None:
+        return picture
+    if isinstance(picture, Planes):
+        picture = replace(picture, frame=None)
+    return np.asarray(cv2.LUT(image_of(picture), table), np.uint8)
+
+
 def image_of(picture: Picture) -> Image:
     """Give the whole picture in colour (BGR), shape (h, w, 3)."""
     return picture.image if isinstance(picture, Planes) else picture

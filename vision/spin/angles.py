@@ -18,6 +18,7 @@ from vision.film.shelf import Kept
 from vision.spin.align import TOGETHER, Array, Complex, turned
 from vision.spin.facing import angles_between
 from vision.spin.handle import HandleAngles, handle_angles
+from vision.spin.pitch import of_axes
 
 MOST = 1000
 """Pictures that are looked at together at most: some 20 MB. Parts that are seen in different slants
@@ -85,6 +86,7 @@ def angles_in_parts(
             aside = float(angles_between(first, mean[None], np.zeros(1), pi)[0][0])
             turns = (theta[last] - angle[seen[0]] - aside) / (2 * pi)
             angle = angle + aside + 2 * pi * round(float(turns))
+            rise[part] = of_axes(told.rise, aside)  # it is one cap
         theta[part], last = angle, int(part[seen[-1]])
     unlike = np.sum([told.unlike for told in parts], axis=0)
     heights = frozenset().union(*(told.heights for told in parts))

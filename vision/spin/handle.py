@@ -35,7 +35,7 @@ from vision.spin.facing import angle_between, angles_between
 from vision.spin.glints import course, unlit
 from vision.spin.half_turns import unfolded
 from vision.spin.inclined import TOLD, inclined, rise_of_handle
-from vision.spin.pitch import STEEP, levelled
+from vision.spin.pitch import STEEP, levelled, of_axes
 from vision.spin.shade import parts, unturned, upright_mean
 
 ODD, ODDEST = 0.2, 3.0
@@ -245,9 +245,10 @@ def handle_angles(
     error = np.hypot(LASTING * _oddness(best) * _covered(best)[good] * fit.sd, by.apart[good])
     if np.median(np.hypot(error, np.sqrt((risen**2).sum(1).mean()))) > UNSURE:
         return nothing
-    angle = angle - angle[0]
+    begin, angle = float(angle[0]), angle - angle[0]
     upright = upright_mean(own, angle, rings_seen(own)[:, None, :, None])
-    theta[rows], sd[rows], rise[rows] = angle + (bearing(upright) or 0.0), error, risen
+    zero = bearing(upright) or 0.0
+    theta[rows], sd[rows], rise[rows] = angle + zero, error, of_axes(risen, zero - begin)
     return HandleAngles(theta, sd, rise, by.unlike, frozenset({by.height}))
 
 

@@ -43,10 +43,9 @@ unlike alone mostly differs by a tenth or less, and in some favours the other se
 TOLD = 0.1
 """How well steepnesses are told, a standard error."""
 
-A_WHILE, PUSHED, STANDS, FEWEST, SURE = 0.25, 0.1, 0.05, 6, 0.005
+A_WHILE, PUSHED, STANDS, SURE = 0.25, 0.1, 0.05, 0.005
 """Time over which a speed is told, s; by which share of its greatest speed a stone that is hit
-changes its velocity, and below which it stands; pictures of a glide from which on its spin is asked
-how steady it is; and what angles are off by at least, rad."""
+changes its velocity, and below which it stands; and what angles are off by at least, rad."""
 
 RAYS, FINER = 64, 4
 """Directions, and places from ring to ring, between which pictures are interpolated."""
@@ -143,9 +142,8 @@ def _unsteady(times: Array, angles: Array, glide: NDArray[np.intp]) -> float:
     out = len(angles) * SURE**2
     for k in np.unique(glide):
         own = glide == k
-        if own.sum() >= FEWEST:
-            line = np.stack([np.ones(own.sum()), times[own]], axis=1)
-            out += float(np.linalg.lstsq(line, angles[own], rcond=None)[1].sum())
+        line = np.stack([np.ones(own.sum()), times[own]], axis=1)
+        out += float(np.linalg.lstsq(line, angles[own], rcond=None)[1].sum())  # 0 of two pictures
     return out
 
 

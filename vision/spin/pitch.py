@@ -91,6 +91,12 @@ def levelled(
     return angles - turns @ share @ np.linalg.solve(known, pull), rise
 
 
+def of_axes(rise: Array, turn: float) -> Array:
+    """Give what `levelled` leaves by axes that are turned by so much, rad, on the cap."""
+    cos, sin = np.cos(turn), np.sin(turn)
+    return np.asarray(rise @ np.array([[cos, -sin], [sin, cos]]))
+
+
 def _normal_equations(
     here: Complex, seen: NDArray[np.bool_], free: Complex, steep: Complex
 ) -> tuple[Array, Array, Array]:

@@ -154,6 +154,30 @@ def test_places_far_off_do_not_tell_of_the_cap() -> None:
     assert np.sqrt(np.mean((over.xy - truth)[good] ** 2)) < 0.0012
 
 
+def test_places_far_off_that_go_round_with_the_stone_do_not_tell_of_it_either() -> None:
+    """As where something else is taken for the cap now and then: weights are told in rounds."""
+    truth = glide(T)
+    trace = beside(seen(truth))
+    trace.xy[::9] += 6 * (wobble(trace.theta) @ np.array([[0.0, 1.0], [-1.0, 0.0]]))[::9]
+    over = centred({"A": trace}, [], RADIUS)["A"]
+    good = np.arange(len(T)) % 9 > 0
+    assert np.sqrt(np.mean((over.xy - truth)[good] ** 2)) < 0.001
+
+
+def test_a_cap_that_shows_by_two_or_three_errors_stays_where_it_is() -> None:
+    for seed in range(20):
+        trace = seen(glide(T), seed=seed)
+        near = replace(trace, xy=trace.xy + 0.4 * wobble(trace.theta))
+        assert centred({"A": near}, [], RADIUS)["A"] is near
+
+
+def test_no_path_is_fitted_of_a_stone_that_hardly_turns(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It would tell nothing, and takes time: most stones of a clip lie still."""
+    monkeypatch.setattr("physics.local_fit.off_centre.cut", None)
+    trace = seen(glide(T), omega=0.38)
+    assert centred({"A": trace}, [], RADIUS)["A"] is trace
+
+
 def test_what_the_angle_is_off_by_is_in_the_errors() -> None:
     trace = beside(seen(glide(T)))
     over = centred({"A": trace}, [], RADIUS)["A"]

@@ -107,3 +107,21 @@ def test_where_no_cap_is_told_all_stays_as_it_is() -> None:
     shot = SimpleNamespace(traces=known, sd_off_centre=lambda _: 0.0, residuals=lambda _: ones)
     fit = SimpleNamespace(shots=[shot], simulation=lambda: None, inflation=1.0)
     assert centred_traces(known, fit) is known  # type: ignore[arg-type]
+
+
+def test_what_was_seen_without_an_angle_for_a_while_has_no_say() -> None:
+    """Its last angle holds no longer: taken for that of a stone that stands it spoils all."""
+    turns, seen = trace(5.0), trace(5.0)
+    seen.theta[seen.t > 2.0] = np.nan
+    residuals = wobble(turns, 0.003, -0.001)
+    left, beside = centred(seen, residuals, 1.0, PLACE)
+    assert beside * PLACE == pytest.approx([0.003, -0.001], abs=0.0003)
+    late = seen.t > 2.6
+    assert (left[late] == residuals[late]).all()
+    shot = SimpleNamespace(
+        traces={"A": seen}, sd_off_centre=lambda _: PLACE, residuals=lambda _: [residuals]
+    )
+    fit = SimpleNamespace(shots=[shot], simulation=lambda: None, inflation=1.0)
+    moved = centred_traces({"A": seen}, fit)["A"]  # type: ignore[arg-type]
+    assert (moved.xy[late] == seen.xy[late]).all()
+    assert moved.sd[late] == pytest.approx(np.hypot(0.0032, SD), rel=0.1)

@@ -342,3 +342,16 @@ def test_caps_are_known_in_a_light_that_has_wandered_and_after_a_fade() -> None:
         watch.look(Frame(index, index / 25, lit), camera)
     counts = [len(sightings) for _, _, sightings in watch.finish(lasting(camera))]
     assert counts[16:] == [3] * 84
+
+
+def test_stones_of_a_dark_recording_are_learned_and_followed_with_its_tones_lifted() -> None:
+    image, camera = picture(AT_REST), camera_of(CAMERA, scene_of(AT_REST))
+    dark = np.round(255 * (image / 255) ** 2.2).astype(np.uint8)
+    usual, lifted = Watch(), Watch()
+    for index in range(30):
+        usual.look(Frame(index, index / 25, image), camera)
+        lifted.look(Frame(index, index / 25, dark), camera)
+    assert [len(seen) for _, _, seen in lifted.finish(lasting(camera))] == [3] * 30
+    assert usual.appearance is not None and lifted.appearance is not None
+    for cap in usual.appearance.caps:
+        assert lifted.appearance.nearest(cap.mean)[1] < 25

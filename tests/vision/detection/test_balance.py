@@ -7,8 +7,19 @@ from numpy.typing import NDArray
 
 from tests.synthetic.clip import render_still
 from tests.vision.detection.test_stones import CAMERA, RED, YELLOW, camera_of, scene_of
-from vision.detection.balance import BRIGHT, CHANGED, DIM, MOST_BRIGHTENED, Balance, brightening
-from vision.film.picture import Image, image_of
+from vision.detection.appearance import Colour
+from vision.detection.balance import (
+    BRIGHT,
+    CHANGED,
+    DIM,
+    GRANITE,
+    MOST_BRIGHTENED,
+    Balance,
+    brightening,
+    tones,
+)
+from vision.film.lab import lab_of
+from vision.film.picture import Image, image_of, toned
 from vision.optics.camera import Camera
 
 SCENE = scene_of([(0.3, 0.2, RED), (-0.8, 1.0, YELLOW)])
@@ -107,3 +118,28 @@ def test_a_bright_picture_is_left_and_a_black_one_hardly_brightened(
 ) -> None:
     assert brightening(picture, camera) == 1.0
     assert brightening(np.zeros_like(picture), camera) == MOST_BRIGHTENED
+
+
+def granite_of(code: int) -> Colour:
+    lab = lab_of(np.full((1, 1, 3), code, np.uint8))[0, 0].astype(float)
+    return Colour(lab, np.eye(3))
+
+
+def test_dark_tones_are_lifted_to_where_they_were(picture: Image, camera: Camera) -> None:
+    """As of a recording whose tones are linear: granite stands for all of them."""
+    white = float(np.percentile(picture, 95))
+    was = round(GRANITE * white)
+    dark = np.round(255 * (np.arange(256) / 255) ** 2.2).astype(np.uint8)
+    darkened = toned(picture, dark)
+    table = tones(darkened, camera, granite_of(int(dark[was])))
+    assert table is not None
+    # All but how light the picture is as a whole, which stays.
+    share = image_of(toned(darkened, table)) / float(dark[round(white)])
+    assert np.abs(share - picture / white)[picture > 60].max() < 0.08
+
+
+def test_usual_tones_stay_as_they_are(picture: Image, camera: Camera) -> None:
+    white = float(np.percentile(picture, 95))
+    assert tones(picture, camera, granite_of(round(0.4 * white))) is None
+    assert tones(picture, camera, None) is None
+    assert toned(picture, None) is picture

@@ -90,3 +90,8 @@ def test_one_picture_tells_paint_beside_stones_and_not_where_no_handle_is_seen()
     assert not without_handle([*stones, seen(0.0, pixel=0.02)]).any()  # too coarse to show it
     assert not without_handle([*stones, paint[0]._replace(spectrum=None)]).any()
     assert without_handle([]).shape == (0,)
+
+
+def test_beside_clear_handles_a_faint_one_is_still_one() -> None:
+    """Real stones have 2.8 and more, squares of a house that is painted as a tartan 0.9 to 1.8."""
+    assert without_handle([seen(30.0), seen(8.0), seen(5.0)]).tolist() == [False, False, True]

@@ -1,0 +1,81 @@
+"""Hits just before the end, of which too few pictures are left to tell them.
+
+A stone that is hit between the last two pictures is seen aside once: that may be an outlier too, so
+it is said to lie where it lay, and the other one to go on. Where both come to touch on their ways
+the errors of what is said of these pictures hold what a hit would have changed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import combinations
+from math import erf, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.tracks import Columns
+from physics.filter.stretch import JUMP_SD
+from physics.local_fit.contacts import Contact
+
+Floats = NDArray[np.float64]
+
+LAST = 2
+"""Pictures after a hit, by less of which it may not be told."""
+
+CHANGE = 0.92
+"""What a hit changes velocities by along its line, as a share of the closing speed: (1 + e) / 2 for
+stones of one mass, with e = 0.84."""
+
+
+def widen_last(tracks: Mapping[str, Columns], hits: Sequence[Contact], radius: float) -> None:
+    """Widen the errors in the last pictures of stones that may have hit each other in them.
+
+    With the probability p that a row comes after the hit, p times the square of what it would
+    change there is added to the variances.
+
+    Parameters
+    ----------
+    tracks : mapping of str to Columns
+        Stone to its rows (`data.tracks.TRACK_COLUMNS`); standard deviations are changed.
+    hits : sequence of Contact
+        Those that are told.
+    radius : float
+        Of the discs, m.
+    """
+    for first, second in combinations(tracks, 2):
+        pair = tracks[first], tracks[second]
+        if min(len(rows["t"]) for rows in pair) <= LAST or pair[0]["t"][-1] != pair[1]["t"][-1]:
+            continue
+        t = pair[0]["t"][-1 - LAST :]
+        if not any(hit.t > t[0] and {*hit.stones} & {first, second} for hit in hits):
+            _widen(pair, t, radius)
+
+
+def _widen(pair: tuple[Columns, Columns], t: Floats, radius: float) -> None:
+    """Widen the errors of two stones at the last times t, s, as from before them they go on."""
+    state, sd = (
+        [np.array([rows[name][-1 - LAST] for name in names]) for rows in pair]
+        for names in (("x", "y", "vx", "vy"), ("sd_x", "sd_y"))
+    )
+    apart, drift = np.split(state[1] - state[0], 2)
+    towards, speed = -float(apart @ drift), float(np.hypot(*drift))
+    left = towards**2 - speed**2 * (float(apart @ apart) - 4 * radius**2)
+    if not towards > 0 or not left > 0:
+        return  # they part, or pass each other, or one was seen once alone
+    wait = (towards - sqrt(left)) / speed**2
+    normal = (apart + wait * drift) / (2 * radius)
+    closing = -float(drift @ normal)
+    sd_wait = float(np.hypot(*(np.hypot(*sd) * normal))) / closing
+    along = CHANGE * closing * np.abs(normal)
+    for k in range(1, LAST + 1):
+        since = float(t[k] - t[0]) - wait
+        after = sqrt(0.5 + 0.5 * erf(since / (sqrt(2) * sd_wait)))
+        for rows in pair:
+            at = k - LAST - 1
+            for axis, change in zip("xy", (after * along).tolist(), strict=True):
+                way = change * max(since, sd_wait)
+                rows[f"sd_{axis}"][at] = np.hypot(rows[f"sd_{axis}"][at], way)
+                rows[f"sd_v{axis}"][at] = np.hypot(rows[f"sd_v{axis}"][at], change)
+            spin = JUMP_SD[1] * after * CHANGE * closing
+            rows["sd_omega"][at] = np.hypot(rows["sd_omega"][at], spin)
