@@ -77,7 +77,8 @@ def rendered_clips(count: int = 6) -> Iterator[Case]:
             for name, columns in sample["stones"].items()
         ]
     )
-    cameras = cameras_of_table(pd.DataFrame(sample["camera"]), (width, height))
+    table = pd.DataFrame(sample["camera"]).assign(t=sample["t"])
+    cameras = cameras_of_table(table, (width, height))
     yield "sample", ROOT / "data" / "sample.mp4", cameras, tracks
     for number in range(count):
         scene = random_scene(np.random.default_rng(number), resting=8)

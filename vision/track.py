@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 from data.sheet import STONE, Stone
 from data.tracks import SIGHTING_COLUMNS, Columns, no_rows
 from vision.association.bare import with_handles
-from vision.association.follow import OTHER, Track, follow
+from vision.association.follow import Track, follow
 from vision.association.graphic import is_graphic
 from vision.association.late import seen_late
 from vision.association.naming import named_by_motion
 from vision.association.rejoin import rejoined
 from vision.association.strays import without_strays
 from vision.association.watch import Watch
-from vision.detection.appearance import Appearance
+from vision.detection.appearance import Appearance, other_stone
 from vision.detection.patch import HANDLE_HEIGHT_SD, handle_radii, is_plain
 from vision.detection.roundness import edge_errors
 from vision.detection.sighting import Sighting
@@ -123,7 +123,7 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
     disc = watch.disc
     least = PLAIN if is_plain(disc) else TOLD
     seen = watch.finish(cameras)
-    other = OTHER if watch.appearance is None else min(OTHER, watch.appearance.other_team)
+    other = other_stone(watch.appearance)
     tracks = rejoined(follow(seen, disc.radius, *least, other), disc.radius, other)
     tracks = without_strays(tracks, disc.radius)
     tracks = [track for track in tracks if not is_graphic(track, cameras, disc)]

@@ -18,17 +18,14 @@ from numpy.typing import NDArray
 
 from vision.association.assign import assign
 from vision.association.hits import MOTION_TOLD, struck
-from vision.association.lead import DECELERATION
+from vision.association.lead import COLOUR_GAIN, DECELERATION
 from vision.association.rows import Rows
-from vision.detection.appearance import colour_differences
+from vision.detection.appearance import OTHER_STONE, colour_differences
 from vision.detection.sighting import Sighting
 
 Array = NDArray[np.float64]
 
 Pair = tuple[float, float]
-
-COLOUR_GAIN = 0.1
-"""Weight of the last sighting, seen in whole, in the colour of a cap."""
 
 SIGHTING_SD = 0.004
 """What sightings err by beside what they say, radii: half a millimetre."""
@@ -52,9 +49,6 @@ _FORBIDDEN = 1e6
 REACH, GROWTH, MOST_REACH = 1.25, 2.0, 3.5
 """Largest distance from where a stone seen in the frame before is expected, how much that grows per
 second out of sight, and what it grows to at most, all in radii."""
-
-OTHER = 45.0
-"""Difference of cap colours, L*a*b* units, that says: another stone, where no teams are known."""
 
 PATIENCE = 3.0
 """Seconds for which a moving stone is waited for."""
@@ -155,7 +149,7 @@ def follow(
     radius: float,
     least_score: float = 0.0,
     least_open: float = 0.0,
-    other: float = OTHER,
+    other: float = OTHER_STONE,
 ) -> list[Track]:
     """Join the sightings of a clip to tracks.
 

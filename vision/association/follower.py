@@ -20,7 +20,7 @@ from vision.association.expected import ON_COURSE, SETTLED, look_beside, look_on
 from vision.association.hits import MOTION_TOLD, struck
 from vision.association.lead import DOUBTFUL, Lead
 from vision.association.still import portraits, unchanged
-from vision.detection.appearance import Appearance
+from vision.detection.appearance import Appearance, colour_difference, other_stone
 from vision.detection.rays import Look
 from vision.detection.seek import Bounds
 from vision.detection.sighting import Sighting
@@ -287,13 +287,19 @@ class Follower:
         return leads
 
     def _near(self, view: StoneView, lead: Lead) -> Sighting | None:
-        """Seek a stone that is not where it is expected about there and about its last place."""
+        """Seek a stone that is not where it is expected about there and about its last place.
+
+        What is there in another colour is no such stone, but another one, or a jersey's sleeve.
+        """
         either = np.array([lead.at(view.frame.t), lead.place])
         reach = REACH * self.disc.radius
         low = either.min(0) - reach - self.disc.radius
         high = either.max(0) + reach + self.disc.radius
         bounds = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
         found = self.sought(view, bounds)
+        if lead.colour is not None:
+            other, known = other_stone(self.appearance), lead.colour
+            found = [one for one in found if colour_difference(one.colour, known) < other]
         away = [min(float(np.hypot(*(place - e))) for e in either) for place in _places(found)]
         if not away or min(away) > reach:
             return None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import hypot
 
 import numpy as np
@@ -39,6 +39,9 @@ expected, and is there if it shows less than this share of what is found there. 
 on paint of its cap's colour, one still shows 0.6 to 0.75 of its evidence where it was; drawn aside
 by as much along paint as light as granite, 0.6 to 0.8."""
 
+COLOUR_GAIN = 0.1
+"""Weight of the last sighting, seen in whole, in the colour of a cap."""
+
 AHEAD = 1.5
 """How far ahead it is looked whether a stone comes near a place, s: for a handful of blocks."""
 
@@ -70,6 +73,8 @@ class Lead:
         Its picture when it was last measured, if it rests.
     along : int
         How many sightings on its course it is known by, up to `MEMORY`.
+    colour : ndarray, shape (3,), optional
+        Running mean of its cap's colour, L*a*b*.
     """
 
     place: tuple[float, float]
@@ -82,12 +87,16 @@ class Lead:
     steady: int = 0
     portrait: Portrait | None = None
     along: int = 1
+    colour: Array | None = field(default=None, compare=False)
 
     @classmethod
     def to(cls, sighting: Sighting, t: float) -> Lead:
         """Lead to a stone of which nothing is known but one sighting."""
         place = sighting.x, sighting.y
-        return cls(place, (0.0, 0.0), t, place, sighting.score, facing=sighting.spectrum)
+        return cls(
+            place, (0.0, 0.0), t, place, sighting.score,
+            facing=sighting.spectrum, colour=sighting.colour,
+        )  # fmt: skip
 
     def if_rested(self, others: Iterable[Lead]) -> Lead:
         """Lead to a stone at rest if one of others, which began at its place, says that it is."""
@@ -139,7 +148,10 @@ class Lead:
         # What covers a stone by half draws it aside, or shows it turned.
         clear = sighting.score >= DOUBTFUL * self.score
         if clear and (left >= still or self._turned(sighting)):
-            return Lead(place, velocity, t, (x, y), score, facing=sighting.spectrum, along=along)
+            return Lead(
+                place, velocity, t, (x, y), score,
+                facing=sighting.spectrum, along=along, colour=self._coloured(sighting),
+            )  # fmt: skip
         return Lead(
             place,
             velocity,
@@ -150,7 +162,15 @@ class Lead:
             steady=self.steady + clear,
             portrait=None if sighting.measured else self.portrait,
             along=along,
+            colour=self._coloured(sighting),
         )
+
+    def _coloured(self, sighting: Sighting) -> Array:
+        """Colour of its cap after a sighting: what covers much of it says little."""
+        if self.colour is None:
+            return sighting.colour
+        gain = COLOUR_GAIN * sighting.visible
+        return np.asarray(self.colour + gain * (sighting.colour - self.colour))
 
     def _updated(
         self, x: float, y: float, t: float, near: float
@@ -175,7 +195,7 @@ class Lead:
     def pushed(self, place: Array, velocity: Array, t: float) -> Lead:
         """Lead to where a hit that nobody saw would have the stone at a time, and how it moves."""
         (x, y), (vx, vy) = place.tolist(), velocity.tolist()
-        return Lead((x, y), (vx, vy), t, (x, y), self.score)
+        return Lead((x, y), (vx, vy), t, (x, y), self.score, colour=self.colour)
 
     def _turned(self, sighting: Sighting) -> bool:
         """Whether the cap faces elsewhere than when it came to its place, as far as is seen."""

@@ -19,9 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vision.association.assign import assign
-from vision.association.follow import BIRTHS, OTHER, PATIENCE, Track
+from vision.association.follow import BIRTHS, PATIENCE, Track
 from vision.association.lead import DECELERATION
-from vision.detection.appearance import colour_difference
+from vision.detection.appearance import OTHER_STONE, colour_difference
 from vision.detection.sighting import Sighting
 
 Array = NDArray[np.float64]
@@ -125,7 +125,7 @@ class _Stretch:
         return _Motion.of(times[:count], [self.track.sightings[k] for k in order[:count]])
 
 
-def rejoined(tracks: Sequence[Track], radius: float, other: float = OTHER) -> list[Track]:
+def rejoined(tracks: Sequence[Track], radius: float, other: float = OTHER_STONE) -> list[Track]:
     """Join the stretches in which stones are seen to the tracks of these stones.
 
     Parameters

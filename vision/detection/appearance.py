@@ -37,6 +37,9 @@ teal paint has 2.1, on red jerseys 4.7 (0.16, 73 and 25 off)."""
 UNLIKE = 30.0
 """Difference of cap colours (L*a*b* units) from which they are two."""
 
+OTHER_STONE = 45.0
+"""Difference of cap colours, L*a*b* units, that says: another stone, where no teams are known."""
+
 MOSTLY = 0.75
 """Share of the difference of two teams' colours by which no stone's changes on its way."""
 
@@ -143,6 +146,11 @@ class Appearance:
 
 BY_SHAPE = Appearance(None, own=True)
 """Stones of which no colour is known."""
+
+
+def other_stone(appearance: Appearance | None) -> float:
+    """Difference of cap colours, L*a*b* units, that says: another stone. None for plain discs."""
+    return OTHER_STONE if appearance is None else min(OTHER_STONE, appearance.other_team)
 
 
 @lru_cache(maxsize=1)

@@ -87,6 +87,20 @@ def test_a_stone_that_is_gone_is_waited_for_and_then_given_up(follower: Follower
     assert all(len(shown.sightings) == 2 for shown in views)
 
 
+def test_what_is_beside_a_hidden_stone_in_another_colour_is_not_that_stone(
+    follower: Follower,
+) -> None:
+    """As a sleeve in the other team's colour over it: only a disc of its own may be it."""
+    leads = [Lead.to(s, 0.0) for s in follower.sought(view(START, 0)) if s.x < 0]
+    (x, y) = START[1]  # a yellow one
+    for cap, aside in ((RED, 0.2), (YELLOW, 0.2)):
+        scene = scene_of([(x + aside, y, cap)])
+        image = np.asarray(render_still(scene, CAMERA), np.uint8)
+        shown = StoneView(Frame(1, 0.1, image), camera_of(CAMERA, scene))
+        follower.follow([shown], leads)
+        assert len(shown.sightings) == (cap == YELLOW)
+
+
 def test_a_stone_that_was_hit_unseen_is_looked_for_where_the_hit_sends_it(
     follower: Follower,
 ) -> None:
