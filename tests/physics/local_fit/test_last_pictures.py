@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -22,7 +24,12 @@ def paths(t: np.ndarray, aside: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def tracks(
-    end: float, *, aside: float = 0.0, hits: tuple[Contact, ...] | None = None, seed: int = 0
+    end: float,
+    *,
+    aside: float = 0.0,
+    hits: tuple[Contact, ...] | None = None,
+    seed: int = 0,
+    masses: Mapping[str, float] | None = None,
 ) -> pd.DataFrame:
     """What the filter makes of sightings up to so many seconds after the hit; true `y` beside."""
     rng, t = np.random.default_rng(seed), HIT + end - np.arange(50)[::-1] / 25
@@ -34,7 +41,7 @@ def tracks(
         parts.append(pd.DataFrame({**seen, "sd_x": SD, "sd_y": SD, "true": y}))
     table = pd.concat(parts, ignore_index=True)
     found = find_contacts(table, RADIUS) if hits is None else hits
-    return smooth(table, found, radius=RADIUS).assign(true=table["true"])
+    return smooth(table, found, radius=RADIUS, masses=masses).assign(true=table["true"])
 
 
 @pytest.mark.parametrize("end", [0.006, 0.02, 0.035])
@@ -60,3 +67,17 @@ def test_neither_a_hit_to_come_nor_one_that_is_told_nor_a_miss_widens_them() -> 
         assert both[both["stone"] == "B"]["sd_vy"].max() < 0.01
     told = tracks(0.075)
     assert told[told["stone"] == "B"]["sd_vy"].iloc[-1] < 0.05
+
+
+def test_of_stones_of_unlike_masses_the_light_one_may_have_changed_the_more() -> None:
+    """Beside one three times as heavy it gains three times what that loses, three halves of usual.
+
+    All that counts is their ratio.
+    """
+    usual = tracks(0.035, hits=())
+    for masses in ({"A": 3.0}, {"A": 57.0, "B": 19.0}):
+        table = tracks(0.035, hits=(), masses=masses)
+        for name, share in (("A", 0.5), ("B", 1.5)):
+            own, known = (rows[rows["stone"] == name].iloc[-1] for rows in (table, usual))
+            for column in ("sd_vy", "sd_omega"):
+                assert own[column] == pytest.approx(share * known[column], rel=0.05)
