@@ -9,8 +9,10 @@ import pandas as pd
 import pytest
 
 from data.sheet import STONE
+from data.tracks import Columns
 from physics.kalman import smooth
 from physics.local_fit.contacts import Contact, find_contacts
+from physics.local_fit.last_pictures import widen_last
 
 RADIUS, SD, SPEED, HIT = STONE.radius, 0.0006, 0.3, 2.0
 RESTITUTION = 0.84
@@ -81,3 +83,27 @@ def test_of_stones_of_unlike_masses_the_light_one_may_have_changed_the_more() ->
             own, known = (rows[rows["stone"] == name].iloc[-1] for rows in (table, usual))
             for column in ("sd_vy", "sd_omega"):
                 assert own[column] == pytest.approx(share * known[column], rel=0.05)
+
+
+def column(speed: float, place: float, steps: int = 5) -> Columns:
+    """Rows of a stone that goes on along y as it has come, well known."""
+    t = np.arange(steps) / 25
+    zero, small = np.zeros(steps), np.full(steps, 0.0001)
+    rows = {"t": t, "x": zero, "y": place + speed * t, "vx": zero, "vy": zero + speed}
+    return rows | {f"sd_{name}": small.copy() for name in ("x", "y", "vx", "vy", "omega")}
+
+
+@pytest.mark.parametrize(("hit", "wide"), [(0.17, 0), (0.13, 1), (0.09, 2), (0.07, 2)])
+def test_what_is_widened_are_the_rows_after_the_hit_but_the_last_two_at_most(
+    hit: float, wide: int
+) -> None:
+    both = {"A": column(-1.0, 2 * RADIUS + hit), "B": column(0.0, 0.0)}
+    widen_last(both, (), RADIUS)
+    for rows in both.values():
+        assert ((rows["sd_vy"] > 0.5).sum(), (rows["sd_vx"] > 0.001).sum()) == (wide, 0)
+
+
+def test_one_that_is_gone_before_the_other_is_hit_by_nobody() -> None:
+    both = {"A": column(-1.0, 2 * RADIUS + 0.09), "B": column(0.0, 0.0, 6)}
+    widen_last(both, (), RADIUS)
+    assert max(rows["sd_vy"].max() for rows in both.values()) < 0.001
