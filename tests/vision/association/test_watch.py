@@ -352,7 +352,16 @@ def test_stones_of_a_dark_recording_are_learned_and_followed_with_its_tones_lift
     for index in range(30):
         usual.look(Frame(index, index / 25, image), camera)
         lifted.look(Frame(index, index / 25, dark), camera)
-    assert [len(seen) for _, _, seen in lifted.finish(lasting(camera))] == [3] * 30
+    found = [seen for _, _, seen in lifted.finish(lasting(camera))]
+    assert [len(seen) for seen in found] == [3] * 30
+    for place in AT_REST:  # those pictures that come once the stones are learned, too
+        same = [
+            stone
+            for seen in found
+            for stone in seen
+            if np.hypot(stone.x - place[0], stone.y - place[1]) < 0.1
+        ]
+        assert np.ptp([stone.colour for stone in same], axis=0).max() < 10
     assert usual.appearance is not None and lifted.appearance is not None
     for cap in usual.appearance.caps:
         assert lifted.appearance.nearest(cap.mean)[1] < 25
