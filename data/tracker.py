@@ -48,6 +48,9 @@ SMALLEST = 0.001
 SLOWEST_RATE = 1.0
 """1/s; a glide of some seconds is not told by fewer rows."""
 
+SMALLEST_STEP = 0.01
+"""m; by less from row to row places marked by hand may scatter while a stone lies still."""
+
 LONGEST_GLIDE = 60.0
 """s; a stone comes to rest within half of it. What takes longer is in milliseconds."""
 
@@ -297,7 +300,7 @@ def _check_rate(rate: float | None, table: pd.DataFrame, source: str) -> list[st
         return []
     for stone, rows in table.groupby("stone", sort=False):
         t, way = rows["t"].to_numpy(float), np.diff(rows[["x", "y"]].to_numpy(float), axis=0)
-        rests = np.flatnonzero(np.hypot(*way.T) < SMALLEST)
+        rests = np.flatnonzero(np.hypot(*way.T) < SMALLEST_STEP)
         longest = float((t[np.append(rests, -1)] - t[np.insert(rests + 1, 0, 0)]).max())
         if longest > LONGEST_GLIDE:
             raise InputError(

@@ -132,7 +132,7 @@ def smoothed(
     for name, stone in stones.items():
         for column, alike in zip(("sd_x", "sd_y"), stone.trace.sd_place[stone.row].T, strict=True):
             each[name][column] = np.hypot(each[name][column], alike)
-    widen_last(each, contacts, radius)
+    widen_last(each, contacts, radius, masses)
     team, tables = teams(sightings), list(each.values())
     tracks = {name: np.concatenate([table[name] for table in tables]) for name in tables[0]}
     tracks["team"] = np.array([team[stone] for stone in tracks["stone"].tolist()])

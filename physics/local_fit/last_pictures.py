@@ -23,12 +23,17 @@ Floats = NDArray[np.float64]
 LAST = 2
 """Pictures after a hit, by less of which it may not be told."""
 
-CHANGE = 0.92
-"""What a hit changes velocities by along its line, as a share of the closing speed: (1 + e) / 2 for
-stones of one mass, with e = 0.84."""
+CHANGE = 1.84
+"""By what share of the closing speed a hit changes that at which two stones part: 1 + e, with
+e = 0.84. Each has as much of it as the other one's mass has of both."""
 
 
-def widen_last(tracks: Mapping[str, Columns], hits: Sequence[Contact], radius: float) -> None:
+def widen_last(
+    tracks: Mapping[str, Columns],
+    hits: Sequence[Contact],
+    radius: float,
+    masses: Mapping[str, float] | None = None,
+) -> None:
     """Widen the errors in the last pictures of stones that may have hit each other in them.
 
     With the probability p that a row comes after the hit, p times the square of what it would
@@ -42,17 +47,22 @@ def widen_last(tracks: Mapping[str, Columns], hits: Sequence[Contact], radius: f
         Those that are told.
     radius : float
         Of the discs, m.
+    masses : mapping, optional
+        Stone to mass in any unit; 1 where absent.
     """
+    masses = masses or {}
     for first, second in combinations(tracks, 2):
         pair = tracks[first], tracks[second]
         if min(len(rows["t"]) for rows in pair) <= LAST or pair[0]["t"][-1] != pair[1]["t"][-1]:
             continue
         t = pair[0]["t"][-1 - LAST :]
         if not any(hit.t > t[0] and {*hit.stones} & {first, second} for hit in hits):
-            _widen(pair, t, radius)
+            _widen(pair, t, radius, (masses.get(first, 1.0), masses.get(second, 1.0)))
 
 
-def _widen(pair: tuple[Columns, Columns], t: Floats, radius: float) -> None:
+def _widen(
+    pair: tuple[Columns, Columns], t: Floats, radius: float, mass: tuple[float, float]
+) -> None:
     """Widen the errors of two stones at the last times t, s, as from before them they go on."""
     state, sd = (
         [np.array([rows[name][-1 - LAST] for name in names]) for rows in pair]
@@ -67,15 +77,15 @@ def _widen(pair: tuple[Columns, Columns], t: Floats, radius: float) -> None:
     normal = (apart + wait * drift) / (2 * radius)
     closing = -float(drift @ normal)
     sd_wait = float(np.hypot(*(np.hypot(*sd) * normal))) / closing
-    along = CHANGE * closing * np.abs(normal)
+    changes = [CHANGE * closing * other / sum(mass) for other in mass[::-1]]
     for k in range(1, LAST + 1):
         since = float(t[k] - t[0]) - wait
         after = sqrt(0.5 + 0.5 * erf(since / (sqrt(2) * sd_wait)))
-        for rows in pair:
+        for rows, most in zip(pair, changes, strict=True):
             at = k - LAST - 1
-            for axis, change in zip("xy", (after * along).tolist(), strict=True):
+            for axis, change in zip("xy", (after * most * np.abs(normal)).tolist(), strict=True):
                 way = change * max(since, sd_wait)
                 rows[f"sd_{axis}"][at] = np.hypot(rows[f"sd_{axis}"][at], way)
                 rows[f"sd_v{axis}"][at] = np.hypot(rows[f"sd_v{axis}"][at], change)
-            spin = JUMP_SD[1] * after * CHANGE * closing
+            spin = JUMP_SD[1] * after * most
             rows["sd_omega"][at] = np.hypot(rows["sd_omega"][at], spin)

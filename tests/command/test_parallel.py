@@ -95,8 +95,9 @@ def test_processes_of_others_are_left_alone() -> None:
     other = multiprocessing.get_context("spawn").Process(target=time.sleep, args=(60,))
     other.start()
     try:
-        with pytest.raises(ZeroDivisionError):
+        with pytest.raises(ZeroDivisionError) as told:
             in_processes(divided, {"one": 1, "two": 0}, 2, "things")
+        assert "in divided" in told.value.__notes__[0]  # where it was, there
         other.join(0.5)
         assert other.is_alive()
     finally:

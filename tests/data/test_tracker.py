@@ -323,6 +323,11 @@ def test_times_that_must_be_milliseconds_are_told(tmp_path: Path) -> None:
     seldom = "stone,t,x,y\n" + "".join(f"A,{40 * k + 0.5},0.0,{k // 5}\n" for k in range(20))
     (warning,) = read(tmp_path, seldom).warnings
     assert "rows are 40 s apart" in warning
+    by_hand = "stone,t,x,y\n" + "".join(
+        f"A,{2 * k + 0.5},0.0,{0.003 * (k % 2)}\nB,{2 * k + 0.5},1.0,{k // 5}\n" for k in range(60)
+    )
+    (warning,) = read(tmp_path, by_hand).warnings
+    assert "rows are 2 s apart" in warning
     right = read(tmp_path, text.replace(",t,", ",t (ms),"))
     assert right.fps == pytest.approx(25.0)
     assert not right.warnings

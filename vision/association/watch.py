@@ -194,12 +194,16 @@ class Watch:
         self._tones = tones(last.frame.picture, last.camera, learned.granite)
         if self._tones is None:
             return
+        as_they_are = self._waiting, self._lessons
         self._waiting = [
             replace(view, frame=replace(frame, picture=toned(frame.picture, self._tones)))
             for view, frame in ((view, view.frame) for view in self._waiting)
         ]
         self._lessons = []
         self._learn(self._waiting)
+        if self.appearance is None:  # what seemed to be granite belongs to no stone
+            self._tones, self.appearance = None, learned
+            self._waiting, self._lessons = as_they_are
 
     def _of_any_colour(
         self, views: Iterable[StoneView], radius_px: float = SEARCH.radius_px

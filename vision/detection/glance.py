@@ -48,8 +48,10 @@ def glance(pictures: Sequence[tuple[Image, Camera]], disc: Stone = STONE) -> lis
         image, camera = pictures[0]
         table = tones(image, camera, appearance.granite)
         if table is not None:  # what was found is in tones too dark to tell all of it
-            pictures = [(image_of(toned(image, table)), camera) for image, camera in pictures]
-            first, appearance, made = _first(pictures, disc)
+            lifted = [(image_of(toned(image, table)), camera) for image, camera in pictures]
+            anew = _first(lifted, disc)
+            if anew[1] is not None:  # else what seemed to be granite belongs to no stone
+                pictures, (first, appearance, made) = lifted, anew
     if appearance is None:
         return first
     again = [search_picture(image, camera, appearance, made) for image, camera in pictures]

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 import pandas as pd
 import pytest
 
 from data.sheet import STONE
+from data.tracks import Columns
 from physics.kalman import smooth
 from physics.local_fit.contacts import Contact, find_contacts
+from physics.local_fit.last_pictures import widen_last
 
 RADIUS, SD, SPEED, HIT = STONE.radius, 0.0006, 0.3, 2.0
 RESTITUTION = 0.84
@@ -22,7 +26,12 @@ def paths(t: np.ndarray, aside: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def tracks(
-    end: float, *, aside: float = 0.0, hits: tuple[Contact, ...] | None = None, seed: int = 0
+    end: float,
+    *,
+    aside: float = 0.0,
+    hits: tuple[Contact, ...] | None = None,
+    seed: int = 0,
+    masses: Mapping[str, float] | None = None,
 ) -> pd.DataFrame:
     """What the filter makes of sightings up to so many seconds after the hit; true `y` beside."""
     rng, t = np.random.default_rng(seed), HIT + end - np.arange(50)[::-1] / 25
@@ -34,7 +43,7 @@ def tracks(
         parts.append(pd.DataFrame({**seen, "sd_x": SD, "sd_y": SD, "true": y}))
     table = pd.concat(parts, ignore_index=True)
     found = find_contacts(table, RADIUS) if hits is None else hits
-    return smooth(table, found, radius=RADIUS).assign(true=table["true"])
+    return smooth(table, found, radius=RADIUS, masses=masses).assign(true=table["true"])
 
 
 @pytest.mark.parametrize("end", [0.006, 0.02, 0.035])
@@ -60,3 +69,41 @@ def test_neither_a_hit_to_come_nor_one_that_is_told_nor_a_miss_widens_them() -> 
         assert both[both["stone"] == "B"]["sd_vy"].max() < 0.01
     told = tracks(0.075)
     assert told[told["stone"] == "B"]["sd_vy"].iloc[-1] < 0.05
+
+
+def test_of_stones_of_unlike_masses_the_light_one_may_have_changed_the_more() -> None:
+    """Beside one three times as heavy it gains three times what that loses, three halves of usual.
+
+    All that counts is their ratio.
+    """
+    usual = tracks(0.035, hits=())
+    for masses in ({"A": 3.0}, {"A": 57.0, "B": 19.0}):
+        table = tracks(0.035, hits=(), masses=masses)
+        for name, share in (("A", 0.5), ("B", 1.5)):
+            own, known = (rows[rows["stone"] == name].iloc[-1] for rows in (table, usual))
+            for column in ("sd_vy", "sd_omega"):
+                assert own[column] == pytest.approx(share * known[column], rel=0.05)
+
+
+def column(speed: float, place: float, steps: int = 5) -> Columns:
+    """Rows of a stone that goes on along y as it has come, well known."""
+    t = np.arange(steps) / 25
+    zero, small = np.zeros(steps), np.full(steps, 0.0001)
+    rows = {"t": t, "x": zero, "y": place + speed * t, "vx": zero, "vy": zero + speed}
+    return rows | {f"sd_{name}": small.copy() for name in ("x", "y", "vx", "vy", "omega")}
+
+
+@pytest.mark.parametrize(("hit", "wide"), [(0.17, 0), (0.13, 1), (0.09, 2), (0.07, 2)])
+def test_what_is_widened_are_the_rows_after_the_hit_but_the_last_two_at_most(
+    hit: float, wide: int
+) -> None:
+    both = {"A": column(-1.0, 2 * RADIUS + hit), "B": column(0.0, 0.0)}
+    widen_last(both, (), RADIUS)
+    for rows in both.values():
+        assert ((rows["sd_vy"] > 0.5).sum(), (rows["sd_vx"] > 0.001).sum()) == (wide, 0)
+
+
+def test_one_that_is_gone_before_the_other_is_hit_by_nobody() -> None:
+    both = {"A": column(-1.0, 2 * RADIUS + 0.09), "B": column(0.0, 0.0, 6)}
+    widen_last(both, (), RADIUS)
+    assert max(rows["sd_vy"].max() for rows in both.values()) < 0.001

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import cv2
@@ -19,6 +19,7 @@ from vision.detection.appearance import Appearance
 from vision.detection.placing import placed_by
 from vision.detection.rays import Look
 from vision.detection.seek import Candidates
+from vision.detection.sighting import Sighting
 from vision.detection.stones import (
     FOLLOWING,
     SEARCH,
@@ -351,7 +352,37 @@ def test_stones_of_a_dark_recording_are_learned_and_followed_with_its_tones_lift
     for index in range(30):
         usual.look(Frame(index, index / 25, image), camera)
         lifted.look(Frame(index, index / 25, dark), camera)
-    assert [len(seen) for _, _, seen in lifted.finish(lasting(camera))] == [3] * 30
+    found = [seen for _, _, seen in lifted.finish(lasting(camera))]
+    assert [len(seen) for seen in found] == [3] * 30
+    for place in AT_REST:  # those pictures that come once the stones are learned, too
+        same = [
+            stone
+            for seen in found
+            for stone in seen
+            if np.hypot(stone.x - place[0], stone.y - place[1]) < 0.1
+        ]
+        assert np.ptp([stone.colour for stone in same], axis=0).max() < 10
     assert usual.appearance is not None and lifted.appearance is not None
     for cap in usual.appearance.caps:
         assert lifted.appearance.nearest(cap.mean)[1] < 25
+
+
+def test_tones_stay_where_no_stone_shows_once_they_are_lifted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Then it was something else that seemed to be too dark: stones are followed all the same."""
+    image, camera = picture(AT_REST), camera_of(CAMERA, scene_of(AT_REST))
+    lifted = np.arange(256, dtype=np.uint8) // 2
+    monkeypatch.setattr("vision.association.watch.tones", lambda *_: lifted)
+    watch = Watch()
+    of_any_colour = watch._of_any_colour
+
+    def none_in_lifted(views: Iterable[StoneView], *radius_px: float) -> list[Sighting]:
+        views = list(views)
+        seen = [view for view in views if np.max(view.frame.picture) > 128]  # type: ignore[arg-type]
+        return of_any_colour(seen, *radius_px) if seen else []
+
+    monkeypatch.setattr(watch, "_of_any_colour", none_in_lifted)
+    for index in range(30):
+        watch.look(Frame(index, index / 25, image), camera)
+    assert [len(seen) for _, _, seen in watch.finish(lasting(camera))] == [3] * 30

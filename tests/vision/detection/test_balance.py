@@ -140,6 +140,6 @@ def test_dark_tones_are_lifted_to_where_they_were(picture: Image, camera: Camera
 
 def test_usual_tones_stay_as_they_are(picture: Image, camera: Camera) -> None:
     white = float(np.percentile(picture, 95))
-    assert tones(picture, camera, granite_of(round(0.4 * white))) is None
+    assert tones(picture, camera, granite_of(round(0.3 * white))) is None
     assert tones(picture, camera, None) is None
     assert toned(picture, None) is picture
