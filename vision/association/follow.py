@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from vision.association.assign import assign
 from vision.association.hits import MOTION_TOLD, struck
-from vision.association.lead import COLOUR_GAIN, DECELERATION
+from vision.association.lead import DECELERATION, coloured
 from vision.association.rows import Rows
 from vision.detection.appearance import OTHER_STONE, colour_differences
 from vision.detection.sighting import Sighting
@@ -112,7 +112,7 @@ class Track:
             step = t - self.times[-1]
             self._predict(step, radius)
             self._update(x, y, noise, step, radius)
-            self.colour += COLOUR_GAIN * sighting.visible * (sighting.colour - self.colour)
+            self.colour = coloured(self.colour, sighting)
         self.frames.append(frame)
         self.times.append(t)
         self.sightings.append(sighting)

@@ -49,6 +49,13 @@ TURNED = 0.06
 """A cap that has turned by more spins on the spot, rad."""
 
 
+def coloured(known: Array | None, sighting: Sighting) -> Array:
+    """Colour of a cap, L*a*b*, shape (3,), after a sighting: what covers much of it says little."""
+    if known is None:
+        return sighting.colour
+    return np.asarray(known + COLOUR_GAIN * sighting.visible * (sighting.colour - known))
+
+
 @dataclass(frozen=True)
 class Lead:
     """Where a stone was at the time t, and how it moved: the state of an alpha-beta filter.
@@ -150,7 +157,7 @@ class Lead:
         if clear and (left >= still or self._turned(sighting)):
             return Lead(
                 place, velocity, t, (x, y), score,
-                facing=sighting.spectrum, along=along, colour=self._coloured(sighting),
+                facing=sighting.spectrum, along=along, colour=coloured(self.colour, sighting),
             )  # fmt: skip
         return Lead(
             place,
@@ -162,15 +169,8 @@ class Lead:
             steady=self.steady + clear,
             portrait=None if sighting.measured else self.portrait,
             along=along,
-            colour=self._coloured(sighting),
+            colour=coloured(self.colour, sighting),
         )
-
-    def _coloured(self, sighting: Sighting) -> Array:
-        """Colour of its cap after a sighting: what covers much of it says little."""
-        if self.colour is None:
-            return sighting.colour
-        gain = COLOUR_GAIN * sighting.visible
-        return np.asarray(self.colour + gain * (sighting.colour - self.colour))
 
     def _updated(
         self, x: float, y: float, t: float, near: float
