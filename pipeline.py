@@ -13,32 +13,32 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from command.again import again
-from command.arguments import out_folder, settings_of, what_if_folder
-from command.bars import Bars
-from command.garbage import collect_seldom
-from command.guard import guarded, one_line, write_anywhere
-from command.parser import command_line
-from command.threads import use_one_thread
-from data.errors import CurlshotError, InputError
-from data.files import check_folder, staged
-from data.inputs import IMAGE_SUFFIXES, TABLE_SUFFIXES, find_inputs, named
-from data.progress import Progress, no_progress
-from data.sheet import House
-from work.analyse import Run, analyse
-from work.convert import convert, convert_each
-from work.film import film
-from work.measure import Measured, measure, refuse_clips
-from work.runs import apart, find_results, find_runs, read_runs
-from work.settings import Settings
-from work.simulate import measured_shot, read_start, sampled, shot_file, throw_often
+from curlshot.cli.again import again
+from curlshot.cli.arguments import out_folder, settings_of, what_if_folder
+from curlshot.cli.bars import Bars
+from curlshot.cli.garbage import collect_seldom
+from curlshot.cli.guard import guarded, one_line, write_anywhere
+from curlshot.cli.parser import command_line
+from curlshot.cli.threads import use_one_thread
+from curlshot.data.errors import CurlshotError, InputError
+from curlshot.data.files import check_folder, staged
+from curlshot.data.inputs import IMAGE_SUFFIXES, TABLE_SUFFIXES, find_inputs, named
+from curlshot.data.progress import Progress, no_progress
+from curlshot.data.sheet import House
+from curlshot.work.analyse import Run, analyse
+from curlshot.work.convert import convert, convert_each
+from curlshot.work.film import film
+from curlshot.work.measure import Measured, measure, refuse_clips
+from curlshot.work.runs import apart, find_results, find_runs, read_runs
+from curlshot.work.settings import Settings
+from curlshot.work.simulate import measured_shot, read_start, sampled, shot_file, throw_often
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-    from data.results import Results
-    from physics.statistics.pool import Pooled
+    from curlshot.data.results import Results
+    from curlshot.physics.statistics.pool import Pooled
 
 __all__ = [
     "Measured", "Run", "Settings", "analyse", "check", "convert", "convert_each", "find_runs",
@@ -47,8 +47,8 @@ __all__ = [
 
 VERSION = "0.1.0"
 WRITTEN = (
-    "tracks.csv", "camera.csv", "results.json", "simulation.csv", "report.html", "overlay.mp4",
-    "figures", "tables", "posterior.csv", "ensemble.json",
+    "tracks.csv", "camera.csv", "results.json", "simulation.csv", "report.html",
+    "overlay.mp4", "figures", "tables", "posterior.csv", "ensemble.json",
 )  # fmt: skip
 """All that a run may write into its folder."""
 
@@ -93,7 +93,7 @@ def run(
 
     Raises
     ------
-    data.errors.CurlshotError
+    curlshot.data.errors.CurlshotError
         Where the input cannot be used; then nothing is written.
     """
     folder = None if out is None else check_folder(out)
@@ -146,7 +146,7 @@ def run_each(
     once = {path.resolve(): path for path in map(Path, named(clips))}
     tasks = {name: (clip, folder / name) for name, clip in apart([*once.values()]).items()}
     if min(jobs, len(tasks)) > 1:
-        from command.parallel import in_processes
+        from curlshot.cli.parallel import in_processes
 
         outcomes = in_processes(partial(_attempt, settings), tasks, jobs, "clips", progress)
     else:
@@ -182,11 +182,11 @@ def _numbered(progress: Progress, number: str) -> Progress:
 def _write_run(
     stage: Path, measured: Measured, done: Run, settings: Settings, progress: Progress
 ) -> None:
-    from data.coach_units import UNITS
-    from data.tracks import write_table, write_tracks
-    from report.page import write_report
-    from report.provenance import Provenance, sources
-    from report.tables import residual_table
+    from curlshot.data.coach_units import UNITS
+    from curlshot.data.tracks import write_table, write_tracks
+    from curlshot.report.page import write_report
+    from curlshot.report.provenance import Provenance, sources
+    from curlshot.report.tables import residual_table
 
     write_tracks(done.tracks, stage / "tracks.csv", measured.table)
     write_table(done.simulations, stage / "simulation.csv")
@@ -197,7 +197,7 @@ def _write_run(
     overlay: Path | None = None
     clip_start = 0.0
     if measured.clip is not None and settings.overlay:
-        from report.overlay import write_overlay
+        from curlshot.report.overlay import write_overlay
 
         overlay = stage / "overlay.mp4"
         clip_start = write_overlay(
@@ -238,9 +238,9 @@ def _write_run(
 
 def _write_estimates(stage: Path, done: Run) -> None:
     """Write what is told of a shot, and what it may have been."""
-    from data.results_file import write_results
-    from data.tracks import write_table
-    from physics.prediction.ensemble import write_ensemble
+    from curlshot.data.results_file import write_results
+    from curlshot.data.tracks import write_table
+    from curlshot.physics.prediction.ensemble import write_ensemble
 
     write_results(done.results, stage / "results.json")
     if done.posterior is not None:
@@ -258,7 +258,7 @@ def season(
     """Put many shots side by side, and say what all of them say of e and μ.
 
     One that is there twice, as of a copied run, counts once
-    (`physics.statistics.season.repeated`).
+    (`curlshot.physics.statistics.season.repeated`).
 
     Parameters
     ----------
@@ -274,9 +274,9 @@ def season(
     Returns
     -------
     shots : DataFrame
-        See `physics.statistics.season.shots_table`.
+        See `curlshot.physics.statistics.season.shots_table`.
     pooled : dict
-        ``restitution`` and ``friction``; see `physics.statistics.pool.Pooled`.
+        ``restitution`` and ``friction``; see `curlshot.physics.statistics.pool.Pooled`.
     """
     shots, means, _ = _put_together(runs, out, folders or {}, left_out or {})
     return shots, means
@@ -289,7 +289,7 @@ def _put_together(
     left_out: Mapping[str, str],
 ) -> tuple[pd.DataFrame, dict[str, Pooled], dict[str, str]]:
     """As `season`, and which shots do not count and why, those that are there twice among them."""
-    from physics.statistics.season import hits_table, pooled, repeated, shots_table
+    from curlshot.physics.statistics.season import hits_table, pooled, repeated, shots_table
 
     folder = None if out is None else check_folder(out)
     again = repeated(runs)
@@ -300,9 +300,9 @@ def _put_together(
     means = pooled(shots)
     if folder is None:
         return shots, means, unused
-    from report.season import write_season
-    from report.season_page import season_page
-    from report.template import link
+    from curlshot.report.season import write_season
+    from curlshot.report.season_page import season_page
+    from curlshot.report.template import link
 
     pages = {name: path / "report.html" for name, path in folders.items() if name in runs}
     page = season_page(
@@ -329,19 +329,19 @@ def check(
     Returns
     -------
     Figure
-        The contact sheet (see `report.check.check_figure`).
+        The contact sheet (see `curlshot.report.check.check_figure`).
     list of str
         The same in a few lines.
 
     Raises
     ------
-    data.errors.CurlshotError
+    curlshot.data.errors.CurlshotError
         Where the input cannot be used; one line says why.
     """
-    from report.check import check_figure
-    from report.looks import Look, check_lines, check_table, frames_to_show
-    from vision.detection.glance import glance
-    from vision.optics.placed import nobody
+    from curlshot.report.check import check_figure
+    from curlshot.report.looks import Look, check_lines, check_table, frames_to_show
+    from curlshot.vision.detection.glance import glance
+    from curlshot.vision.optics.placed import nobody
 
     files = find_inputs(inputs)
     seen = film(files, settings, progress, nobody)
@@ -393,8 +393,8 @@ def _stale(folder: Path, inputs: Sequence[Path]) -> tuple[str, ...]:
 
 
 def _summary(done: Run, folder: Path, units: str) -> str:
-    from data.coach_units import UNITS
-    from report.summary import summary
+    from curlshot.data.coach_units import UNITS
+    from curlshot.report.summary import summary
 
     marked = done.cameras is None
     return summary(done.results, done.tracks, folder, done.house, UNITS[units], marked=marked)
@@ -413,7 +413,7 @@ def _do_run(arguments: argparse.Namespace, bars: Bars) -> str:
 
 
 def _run_season(arguments: argparse.Namespace, clips: Sequence[Path], bars: Bars) -> str:
-    from command.parallel import processors
+    from curlshot.cli.parallel import processors
 
     folder = Path(arguments.out or "season")
     jobs = arguments.jobs or processors()
@@ -439,7 +439,7 @@ def _season_summary(
     unused: Mapping[str, str],
 ) -> str:
     """Say what many shots tell, which do not count, and where the page is."""
-    from report.summary import season_text
+    from curlshot.report.summary import season_text
 
     shots, means, left_out = _put_together(runs, folder, folders, unused)
     lines = [*season_text(shots, means), *(f"{name}   {why}" for name, why in left_out.items())]
@@ -447,11 +447,11 @@ def _season_summary(
 
 
 def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:
-    from data.tracks import write_table, write_tracks
-    from physics.kalman import smoothed
-    from physics.local_fit.contacts import find_contacts
-    from report.numbers import count, warned
-    from vision.optics.camera import camera_columns
+    from curlshot.data.tracks import write_table, write_tracks
+    from curlshot.physics.kalman import smoothed
+    from curlshot.physics.local_fit.contacts import find_contacts
+    from curlshot.report.numbers import count, warned
+    from curlshot.vision.optics.camera import camera_columns
 
     settings, folder = settings_of(arguments), out_folder(arguments, arguments.inputs[0])
     measured = measure(arguments.inputs, replace(settings, clip=True), bars)
@@ -487,7 +487,7 @@ def _do_estimate(arguments: argparse.Namespace, bars: Bars) -> str:
 
 
 def _do_convert(arguments: argparse.Namespace, _: Bars) -> str:
-    from report.numbers import count, warned
+    from curlshot.report.numbers import count, warned
 
     if Path(arguments.out).suffix == "" and Path(arguments.out).name.startswith("."):
         return _convert_each(arguments)
@@ -498,7 +498,7 @@ def _do_convert(arguments: argparse.Namespace, _: Bars) -> str:
 
 
 def _convert_each(arguments: argparse.Namespace) -> str:
-    from report.numbers import count, warned
+    from curlshot.report.numbers import count, warned
 
     if arguments.over is not None:
         raise InputError("--over: one clip cannot be behind many projects; convert one at a time")
@@ -518,11 +518,11 @@ def _convert_each(arguments: argparse.Namespace) -> str:
 def _do_simulate(arguments: argparse.Namespace, bars: Bars) -> str:
     import json
 
-    from physics.prediction.what_if import Changes, changed
-    from physics.simulator.simulate import simulate
-    from report.numbers import warned
-    from report.summary import odds_text, simulation_json, simulation_text
-    from report.whatif import write_odds, write_simulated
+    from curlshot.physics.prediction.what_if import Changes, changed
+    from curlshot.physics.simulator.simulate import simulate
+    from curlshot.report.numbers import warned
+    from curlshot.report.summary import odds_text, simulation_json, simulation_text
+    from curlshot.report.whatif import write_odds, write_simulated
 
     shot = shot_file(arguments.shot)
     folder = what_if_folder(arguments, shot)

@@ -3,9 +3,9 @@
     python -m benchmarks.camera [SHARED] [--kinds NAME ...] [--size 720 1080]
         [--seeds N ...] [--repeat N]
 
-Rendered clips with truth (`benchmarks.views`): ice points of the house, seen at their true
+Rendered clips with truth (`curlshot.benchmarks.views`): ice points of the house, seen at their true
 pixels, mapped to the ice by the camera found; in mm. Then real stills and real ice set in motion
-(`benchmarks.stills`), where SHARED is there. A figure with a ! misses its bar.
+(`curlshot.benchmarks.stills`), where SHARED is there. A figure with a ! misses its bar.
 
 Columns: `rms`, `95 %`, `max` of points in the house; `high` the rms of points 0.12 m above it;
 `guards` that of the ice 4 to 6 m before the tee; `carried` that of points in the house where the
@@ -28,18 +28,18 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks import stills
-from benchmarks.camera_scores import HEAD, Score, line, rms, summary
-from benchmarks.drawn_views import named
-from benchmarks.views import HEIGHT, Clip, enlarged
-from data.sheet import HOUSE, STONE
-from tests.synthetic import View
-from tests.synthetic.people import hidden
-from vision.camera_path.follow_house import HouseFollower
-from vision.film.clip import open_clip
-from vision.optics.camera import Camera
-from vision.sheet.house import find_house
-from vision.sheet.house_fit import HouseFit
+from curlshot.benchmarks import stills
+from curlshot.benchmarks.camera_scores import HEAD, Score, line, rms, summary
+from curlshot.benchmarks.drawn_views import named
+from curlshot.benchmarks.views import HEIGHT, Clip, enlarged
+from curlshot.data.sheet import HOUSE, STONE
+from curlshot.synthetic import View
+from curlshot.synthetic.people import hidden
+from curlshot.vision.camera_path.follow_house import HouseFollower
+from curlshot.vision.film.clip import open_clip
+from curlshot.vision.optics.camera import Camera
+from curlshot.vision.sheet.house import find_house
+from curlshot.vision.sheet.house_fit import HouseFit
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.views import Clip
+from curlshot.benchmarks.views import Clip
 
 Array = NDArray[np.float64]
 

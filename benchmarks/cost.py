@@ -30,25 +30,25 @@ import cv2
 import numpy as np
 import pandas as pd
 
-import pipeline
-from command.threads import LIMITS, use_one_thread
-from report.encode import Encoder
-from tests.synthetic.camera import broadcast_camera
-from tests.synthetic.clip import cached_clip
-from tests.synthetic.scenes import random_scene, sweepers
-from vision.film.clip import Image, open_clip
+from curlshot import pipeline
+from curlshot.cli.threads import LIMITS, use_one_thread
+from curlshot.report.encode import Encoder
+from curlshot.synthetic.camera import broadcast_camera
+from curlshot.synthetic.clip import cached_clip
+from curlshot.synthetic.scenes import random_scene, sweepers
+from curlshot.vision.film.clip import Image, open_clip
 
 FPS = 30.0
 
 PARTS = {
-    "camera, frame by frame": "vision.camera_path.follow_house.HouseFollower.look",
-    "camera, in the end": "vision.camera_path.follow_house.HouseFollower.finish",
-    "stones, frame by frame": "vision.association.watch.Watch.look",
-    "stones, placed in the end": "vision.association.watch.Watch.finish",
-    "association": "vision.track.follow",
-    "angles": "vision.track.angles_in_parts",
-    "hits": "physics.local_fit.contacts.find_contacts",
-    "filter": "physics.kalman.smoothed",
+    "camera, frame by frame": "curlshot.vision.camera_path.follow_house.HouseFollower.look",
+    "camera, in the end": "curlshot.vision.camera_path.follow_house.HouseFollower.finish",
+    "stones, frame by frame": "curlshot.vision.association.watch.Watch.look",
+    "stones, placed in the end": "curlshot.vision.association.watch.Watch.finish",
+    "association": "curlshot.vision.track.follow",
+    "angles": "curlshot.vision.track.angles_in_parts",
+    "hits": "curlshot.physics.local_fit.contacts.find_contacts",
+    "filter": "curlshot.physics.kalman.smoothed",
 }
 """Parts of the work and the functions that do it; none calls another."""
 
@@ -60,7 +60,8 @@ while capture.read()[0]:
 """
 
 TRACK = """
-import sys, pipeline
+import sys
+from curlshot import pipeline
 assert pipeline.main(["track", *sys.argv[1:]]) == 0
 """
 

@@ -1,4 +1,4 @@
-"""Views of a house drawn by chance, beside those that are fixed (`benchmarks.views`)."""
+"""Views of a house drawn by chance, beside those that are fixed (`curlshot.benchmarks.views`)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from benchmarks.views import (
+from curlshot.benchmarks.views import (
     OBLIQUE,
     OVERHEAD,
     TILTED,
@@ -19,7 +19,7 @@ from benchmarks.views import (
     plain_clips,
     scene,
 )
-from tests.synthetic import PAINTS, Key, sweepers
+from curlshot.synthetic import PAINTS, Key, sweepers
 
 
 def random_clip(seed: int) -> Clip:

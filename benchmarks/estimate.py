@@ -20,15 +20,16 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from benchmarks.simulate import house, peer_rates, seconds, single, thrown_often
-from physics.estimate import Estimates, estimate
-from physics.local_fit.contacts import find_contacts
-from physics.local_fit.local import Local, estimate_locally
-from physics.simulator.many import simulate_many
-from physics.simulator.simulate import simulate
-from tests.physics.watch import hit_motion, watch
-from tests.synthetic.physics import Ice, Impact, Motion, Start
-from tests.synthetic.physics import simulate as move
+from curlshot.benchmarks.simulate import house, peer_rates, seconds, single, thrown_often
+from curlshot.data.tracks import check_sightings
+from curlshot.physics.estimate import Estimates, estimate
+from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.local import Local, estimate_locally
+from curlshot.physics.simulator.many import simulate_many
+from curlshot.physics.simulator.simulate import simulate
+from curlshot.synthetic.detections import hit_motion, noisy_detections
+from curlshot.synthetic.physics import Ice, Impact, Motion, Start
+from curlshot.synthetic.physics import simulate as move
 
 Floats = NDArray[np.float64]
 
@@ -70,7 +71,7 @@ def draws(count: int, first: int = 0) -> Iterable[Draw]:
             impact = Impact(rng.uniform(0.7, 0.95), rng.uniform(0.0, 0.15))
             motion = chain(hits, span, ice, impact, rng)
         noise, rate = float(rng.choice([0.003, 0.01])), float(rng.choice([25.0, 30.0, 60.0]))
-        seen = watch(motion, rng, fps=rate, sd=noise)
+        seen = _watch(motion, rng, fps=rate, sd=noise)
         yield Draw(impact.restitution, friction, hits, seen)
 
 
@@ -189,10 +190,10 @@ def sharpness(count: int = 12) -> list[Row]:
     rng = np.random.default_rng(3)
     errors, off = [], []
     for _ in range(count):
-        seen = watch(short, rng, sd=0.01)
+        seen = _watch(short, rng, sd=0.01)
         done = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
         errors.append((done.local.restitution.stderr, done.restitution.stderr))
-        long = estimate_locally(watch(glide, rng, sd=0.01), (), radius=RADIUS)
+        long = estimate_locally(_watch(glide, rng, sd=0.01), (), radius=RADIUS)
         off.append(abs((long.friction.value or np.nan) / 0.0109 - 1))
     local, whole = np.nanmedian(np.array(errors, float), axis=0)
     worst = 100 * float(np.max(off))
@@ -207,7 +208,7 @@ def sharpness(count: int = 12) -> list[Row]:
 
 def speed() -> list[Row]:
     """Processor time, least of some repeats."""
-    seen = watch(hit_motion(1.5, 0.06, others=[Start(0.02, 0.8)]), np.random.default_rng(2))
+    seen = _watch(hit_motion(1.5, 0.06, others=[Start(0.02, 0.8)]), np.random.default_rng(2))
     contacts = find_contacts(seen, RADIUS)
     fit = seconds(lambda: estimate(seen, contacts, radius=RADIUS), 2)
     houses = [house(seed) for seed in range(10)]
@@ -243,6 +244,10 @@ def table(rows: Iterable[Row]) -> str:
         "  ".join(cell.ljust(width) for cell, width in zip(line, wide, strict=True)).rstrip()
         for line in lines
     )
+
+
+def _watch(motion: Motion, rng: np.random.Generator, **how: float) -> pd.DataFrame:
+    return check_sightings(noisy_detections(motion, rng, **how))
 
 
 def main() -> int:

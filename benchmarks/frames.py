@@ -19,16 +19,16 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from data.errors import CurlshotError
-from data.progress import no_progress
-from data.sheet import STONE
-from vision.detection.glance import glance
-from vision.detection.stones import SEARCH
-from vision.film.clip import Image
-from vision.optics.camera import Camera
-from vision.optics.placed import nobody
-from work.film import film
-from work.settings import Settings
+from curlshot.data.errors import CurlshotError
+from curlshot.data.progress import no_progress
+from curlshot.data.sheet import STONE
+from curlshot.vision.detection.glance import glance
+from curlshot.vision.detection.stones import SEARCH
+from curlshot.vision.film.clip import Image
+from curlshot.vision.optics.camera import Camera
+from curlshot.vision.optics.placed import nobody
+from curlshot.work.film import film
+from curlshot.work.settings import Settings
 
 Array = NDArray[np.float64]
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from data.sheet import STONE
-from tests.synthetic import (
+from curlshot.data.sheet import STONE
+from curlshot.synthetic import (
     CameraPath,
     Scene,
     Start,
@@ -26,8 +26,8 @@ from tests.synthetic import (
     sweepers,
     tilted_camera,
 )
-from tests.synthetic.stones import HEIGHT
-from vision.film.clip import Clip, open_clip
+from curlshot.synthetic.stones import HEIGHT
+from curlshot.vision.film.clip import Clip, open_clip
 
 SECONDS = 2.6
 RED, YELLOW, BLUE = (44, 26, 178), (38, 208, 226), (150, 70, 20)

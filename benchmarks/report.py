@@ -14,10 +14,10 @@ from typing import Any
 
 import cv2
 
-import pipeline
-from report.overlay import write_overlay
-from report.page import write_report
-from vision.optics.camera import camera_table
+from curlshot import pipeline
+from curlshot.report.overlay import write_overlay
+from curlshot.report.page import write_report
+from curlshot.vision.optics.camera import camera_table
 
 
 def timed(work: Callable[[], Any]) -> tuple[Any, float]:

@@ -21,12 +21,12 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from physics.kalman import smooth
-from physics.local_fit.contacts import find_contacts
-from vision.detection.stones import plain_disc
-from vision.film.clip import open_clip
-from vision.optics.stick import stick_cameras
-from vision.track import track_stones
+from curlshot.physics.kalman import smooth
+from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.vision.detection.stones import plain_disc
+from curlshot.vision.film.clip import open_clip
+from curlshot.vision.optics.stick import stick_cameras
+from curlshot.vision.track import track_stones
 
 Floats = NDArray[np.float64]
 Picture = NDArray[np.float64]

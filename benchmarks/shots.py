@@ -13,9 +13,9 @@ import tempfile
 import time
 from pathlib import Path
 
-import pipeline
-from tests.scoring import read_truth, score_tracks
-from vision.film.clip import open_clip
+from curlshot import pipeline
+from curlshot.synthetic.scoring import read_truth, score_tracks
+from curlshot.vision.film.clip import open_clip
 
 ROOT = Path(__file__).resolve().parents[1]
 

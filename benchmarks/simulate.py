@@ -19,14 +19,14 @@ from importlib import import_module
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from physics.curl import FCV1Curl
-from physics.ice import FCV1
-from physics.impact import Frictional
-from physics.simulator.curve import CELLS, curve
-from physics.simulator.many import simulate_many
-from physics.simulator.motion import Motion, Path
-from physics.simulator.simulate import simulate
-from physics.simulator.simulation import Shot, States, StoneStart
+from curlshot.physics.curl import FCV1Curl
+from curlshot.physics.ice import FCV1
+from curlshot.physics.impact import Frictional
+from curlshot.physics.simulator.curve import CELLS, curve
+from curlshot.physics.simulator.many import simulate_many
+from curlshot.physics.simulator.motion import Motion, Path
+from curlshot.physics.simulator.simulate import simulate
+from curlshot.physics.simulator.simulation import Shot, States, StoneStart
 
 
 def single() -> Shot:

@@ -21,13 +21,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import HOUSE
-from vision.camera_path.follow_house import follow_house
-from vision.film.clip import open_clip
-from vision.optics.camera import Camera
-from vision.optics.projection import apply_homography
-from vision.sheet.house import find_house
-from vision.sheet.house_fit import HouseFit
+from curlshot.data.sheet import HOUSE
+from curlshot.vision.camera_path.follow_house import follow_house
+from curlshot.vision.film.clip import open_clip
+from curlshot.vision.optics.camera import Camera
+from curlshot.vision.optics.projection import apply_homography
+from curlshot.vision.sheet.house import find_house
+from curlshot.vision.sheet.house_fit import HouseFit
 
 ROOT = Path(__file__).resolve().parents[1]
 

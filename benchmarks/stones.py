@@ -18,17 +18,17 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from benchmarks.frames import stone_boxes
-from data.sheet import STONE
-from tests.scoring import score_tracks
-from tests.synthetic.camera import broadcast_camera, tilted_camera
-from tests.synthetic.clip import cached_clip
-from tests.synthetic.scenes import random_scene, sweepers
-from vision.detection.glance import glance
-from vision.detection.stones import SEARCH
-from vision.film.clip import open_clip
-from vision.optics.camera import Camera
-from vision.track import track_stones
+from curlshot.benchmarks.frames import stone_boxes
+from curlshot.data.sheet import STONE
+from curlshot.synthetic.camera import broadcast_camera, tilted_camera
+from curlshot.synthetic.clip import cached_clip
+from curlshot.synthetic.scenes import random_scene, sweepers
+from curlshot.synthetic.scoring import score_tracks
+from curlshot.vision.detection.glance import glance
+from curlshot.vision.detection.stones import SEARCH
+from curlshot.vision.film.clip import open_clip
+from curlshot.vision.optics.camera import Camera
+from curlshot.vision.track import track_stones
 
 ROOT = Path(__file__).resolve().parents[1]
 SHARED = ROOT.parent / "shared"

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from data.tracker import read_table
+from curlshot.data.tracker import read_table
 
 ROWS = 100_000
 

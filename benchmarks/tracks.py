@@ -1,10 +1,10 @@
 """How true the tracks of rendered clips are: ``python -m benchmarks.tracks`` from the root.
 
-Each kind of shot that occurs (`benchmarks.kinds`), rendered with a known truth and followed from
-the picture to the filter. One row per kind, pooled over its clips: stone-frames found of those in
-view, switched stones, false tracks, errors of place, speed and spin, and how many true values lie
-within two stated standard errors. A star marks what misses its bar; a column is empty where the
-clips have nothing to tell, as spins of stones that are drawn without handles.
+Each kind of shot that occurs (`curlshot.benchmarks.kinds`), rendered with a known truth and
+followed from the picture to the filter. One row per kind, pooled over its clips: stone-frames found
+of those in view, switched stones, false tracks, errors of place, speed and spin, and how many true
+values lie within two stated standard errors. A star marks what misses its bar; a column is empty
+where the clips have nothing to tell, as spins of stones that are drawn without handles.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from benchmarks.kinds import KINDS, Kind, clip_of
-from benchmarks.stones import cameras_of_table
-from data.sheet import STONE
-from physics.kalman import smooth
-from physics.local_fit.contacts import find_contacts
-from tests.scoring import score_tracks
-from tests.synthetic import Truth
-from vision.camera_path.follow_house import follow_house
-from vision.film.clip import Clip
-from vision.optics.camera import Camera
-from vision.track import track_stones
+from curlshot.benchmarks.kinds import KINDS, Kind, clip_of
+from curlshot.benchmarks.stones import cameras_of_table
+from curlshot.data.sheet import STONE
+from curlshot.physics.kalman import smooth
+from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.synthetic import Truth
+from curlshot.synthetic.scoring import score_tracks
+from curlshot.vision.camera_path.follow_house import follow_house
+from curlshot.vision.film.clip import Clip
+from curlshot.vision.optics.camera import Camera
+from curlshot.vision.track import track_stones
 
 SLOW, IDLE = 0.05, 0.05
 """Below these a stone does not count as moving (m/s) or turning (rad/s)."""

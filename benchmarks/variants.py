@@ -3,7 +3,7 @@
     python -m benchmarks.variants [--first 0] [--count 6]
 
 Each variant is rendered from a seed of its own (other restitution, frictions, throw, spins,
-camera, rate and size of the picture: `tests.synthetic.scenes.sample_variant`), run as a clip,
+camera, rate and size of the picture: `curlshot.synthetic.scenes.sample_variant`), run as a clip,
 and laid beside its truth. Last places are those of the model `frictional`, in cm, their stated
 errors in brackets: of the shot again, with the start and the laws that fit the whole of it; as
 predicted from what was seen before the first hit, with the laws as measured; and as predicted with
@@ -20,16 +20,16 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-import pipeline
-from data.results import Estimate, Prediction
-from physics.estimate import Estimates, estimate
-from physics.local_fit.contacts import find_contacts
-from physics.prediction.forecast import predict
-from physics.prediction.laws import measured_laws
-from physics.whole_shot.priors import Priors, literature
-from tests.synthetic.clip import Truth, cached_clip
-from tests.synthetic.scenes import sample_variant
-from work.analyse import Run
+from curlshot import pipeline
+from curlshot.data.results import Estimate, Prediction
+from curlshot.physics.estimate import Estimates, estimate
+from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.prediction.forecast import predict
+from curlshot.physics.prediction.laws import measured_laws
+from curlshot.physics.whole_shot.priors import Priors, literature
+from curlshot.synthetic.clip import Truth, cached_clip
+from curlshot.synthetic.scenes import sample_variant
+from curlshot.work.analyse import Run
 
 DURATION = 6.0
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from tests.synthetic import (
+from curlshot.synthetic import (
     PAINTS,
     CameraPath,
     Cut,
@@ -28,7 +28,7 @@ from tests.synthetic import (
     random_scene,
     sweepers,
 )
-from tests.synthetic.travelling import Travelling
+from curlshot.synthetic.travelling import Travelling
 
 OVERHEAD, TILTED, OBLIQUE = 2.0, 5.0, 10.0
 """Largest RMS error of ice points in the house, mm: from overhead, at 30°, at 50°."""

@@ -15,17 +15,17 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from data.columns import (
+from curlshot.data.columns import (
     clock_column,
     refuse_disorder,
     times_of,
     values_of,
     written_unit,
 )
-from data.delimited import TextTable, read_text_table
-from data.errors import InputError
-from data.headers import plain_name
-from data.units import ANGLE_UNITS
+from curlshot.data.delimited import TextTable, read_text_table
+from curlshot.data.errors import InputError
+from curlshot.data.headers import plain_name
+from curlshot.data.units import ANGLE_UNITS
 
 Array = NDArray[np.float64]
 
@@ -137,7 +137,7 @@ def attach(
     Parameters
     ----------
     sightings : DataFrame
-        `data.tracks.SIGHTING_COLUMNS`.
+        `curlshot.data.tracks.SIGHTING_COLUMNS`.
     stone : str
         Whose angle it is.
     track : AngleTrack

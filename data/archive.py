@@ -8,7 +8,7 @@ import zlib
 from collections.abc import Sequence
 from pathlib import Path, PurePath, PurePosixPath
 
-from data.errors import InputError
+from curlshot.data.errors import InputError
 
 LARGEST_CLIP = 2_000_000_000
 """Bytes, of all files of a clip together; an hour of high definition."""

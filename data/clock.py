@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from data.tracks import LATEST
+from curlshot.data.tracks import LATEST
 
 Array = NDArray[np.float64]
 

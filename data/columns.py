@@ -8,12 +8,12 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from data.delimited import TextTable
-from data.errors import InputError
-from data.headers import TIME_NAMES, bracketed, plain_name
-from data.text import plain_decimals
-from data.tracks import LATEST
-from data.units import LENGTH_UNITS, TIME_UNITS, abbreviated
+from curlshot.data.delimited import TextTable
+from curlshot.data.errors import InputError
+from curlshot.data.headers import TIME_NAMES, bracketed, plain_name
+from curlshot.data.text import plain_decimals
+from curlshot.data.tracks import LATEST
+from curlshot.data.units import LENGTH_UNITS, TIME_UNITS, abbreviated
 
 Array = NDArray[np.float64]
 

@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from data.errors import InputError
-from data.headers import with_units
-from data.text import NUMBER, plain_decimals, plain_digits, quoted, read_text
-from data.units import KNOWN_UNITS, abbreviated
+from curlshot.data.errors import InputError
+from curlshot.data.headers import with_units
+from curlshot.data.text import NUMBER, plain_decimals, plain_digits, quoted, read_text
+from curlshot.data.units import KNOWN_UNITS, abbreviated
 
 Array = NDArray[np.float64]
 

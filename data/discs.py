@@ -8,9 +8,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from data.columns import UNIT_NOT_SAID
-from data.errors import InputError
-from data.sheet import curling_size
+from curlshot.data.columns import UNIT_NOT_SAID
+from curlshot.data.errors import InputError
+from curlshot.data.sheet import curling_size
 
 OVERLAP = 0.8
 """Share of their width to which centres may seem to come: nobody marks them exactly."""
@@ -33,7 +33,7 @@ def refuse_no_discs(
     Parameters
     ----------
     sightings : DataFrame
-        `data.tracks.SIGHTING_COLUMNS`.
+        `curlshot.data.tracks.SIGHTING_COLUMNS`.
     radius : float
         Of the discs, m.
     source : str

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from data.errors import InputError
-from data.files import check_folder, whole_file
-from data.trk import TEXT_COLUMNS
+from curlshot.data.errors import InputError
+from curlshot.data.files import check_folder, whole_file
+from curlshot.data.trk import TEXT_COLUMNS
 
 _WHERE_TOLD = ("sd_place_x", "sd_place_y", "rise_a", "rise_b", "team")
 """Columns of a CSV only where there is something in them."""
@@ -23,7 +23,7 @@ def write_text(sightings: pd.DataFrame, path: Path) -> None:
     Parameters
     ----------
     sightings : DataFrame
-        `data.tracks.SIGHTING_COLUMNS`.
+        `curlshot.data.tracks.SIGHTING_COLUMNS`.
     path : Path
         File to write, whole or not at all.
 

@@ -10,8 +10,8 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from data.errors import InputError
-from data.text import printable
+from curlshot.data.errors import InputError
+from curlshot.data.text import printable
 
 FILES = (".csv", ".json", ".html", ".mp4", ".png", ".txt", ".trk", ".trz", ".parquet")
 """Endings by which a person means a file, not a folder that is to be made."""

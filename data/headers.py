@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 
-from data.units import ANGLE_UNITS, KNOWN_UNITS, LENGTH_UNITS, abbreviated
+from curlshot.data.units import ANGLE_UNITS, KNOWN_UNITS, LENGTH_UNITS, abbreviated
 
 TIME_NAMES = {
     "t", "time", "zeit", "temps", "tiempo", "tempo", "tijd", "czas", "время", "час", "時間", "时间",

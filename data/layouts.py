@@ -14,20 +14,20 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from data.columns import (
+from curlshot.data.columns import (
     clock_column,
     refuse_disorder,
     times_of,
     values_of,
     written_unit,
 )
-from data.delimited import TextTable, read_text_table
-from data.errors import InputError
-from data.headers import ANGLE_NAMES, TIME_NAMES, plain_name
-from data.track_file import TrackFile
-from data.tracks import SEEN_AS, stone_name
-from data.units import ANGLE_UNITS, LENGTH_UNITS
-from data.wide import (
+from curlshot.data.delimited import TextTable, read_text_table
+from curlshot.data.errors import InputError
+from curlshot.data.headers import ANGLE_NAMES, TIME_NAMES, plain_name
+from curlshot.data.track_file import TrackFile
+from curlshot.data.tracks import SEEN_AS, stone_name
+from curlshot.data.units import ANGLE_UNITS, LENGTH_UNITS
+from curlshot.data.wide import (
     COMPANIONS,
     Place,
     pairs_of,

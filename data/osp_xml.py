@@ -15,7 +15,7 @@ from xml.parsers import expat
 import numpy as np
 from numpy.typing import NDArray
 
-from data.errors import InputError
+from curlshot.data.errors import InputError
 
 Array = NDArray[np.float64]
 

@@ -8,12 +8,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePath, PurePosixPath
 
-from data.archive import UNREADABLE, unpack
-from data.errors import InputError
-from data.inputs import SPREADSHEET, TABLE_SUFFIXES
-from data.osp_xml import LARGEST, Thing, parse
-from data.trk import Project
-from data.trk_read import project_of
+from curlshot.data.archive import UNREADABLE, unpack
+from curlshot.data.errors import InputError
+from curlshot.data.inputs import SPREADSHEET, TABLE_SUFFIXES
+from curlshot.data.osp_xml import LARGEST, Thing, parse
+from curlshot.data.trk import Project
+from curlshot.data.trk_read import project_of
 
 MOST_ENTRIES = 100_000
 """Files in an archive; a clip of single pictures has thousands."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from data.tracks import LENGTHS, SEEN_AS
+from curlshot.data.tracks import LENGTHS, SEEN_AS
 
 MOVED, FAR, SCATTERS = 0.02, 0.1, 6.0
 """How far from what was measured a filter leaves no stone's places on the whole, m, and none by
@@ -24,8 +24,8 @@ def as_measured(tracks: pd.DataFrame, source: str) -> tuple[pd.DataFrame, list[s
     Parameters
     ----------
     tracks : DataFrame
-        ``stone, x, y`` (m), and what else there is of `data.tracks.TRACK_COLUMNS` and `SEEN_AS`
-        (m, rad); all with a place.
+        ``stone, x, y`` (m), and what else there is of `curlshot.data.tracks.TRACK_COLUMNS` and
+        `SEEN_AS` (m, rad); all with a place.
     source : str
         What to call the table in warnings.
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from data.estimates import Estimate as Estimate
-from data.estimates import Friction as Friction
-from data.estimates import Glide as Glide
-from data.sheet import STONE
+from curlshot.data.estimates import Estimate as Estimate
+from curlshot.data.estimates import Friction as Friction
+from curlshot.data.estimates import Glide as Glide
+from curlshot.data.sheet import STONE
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,9 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any, TypeVar, get_type_hints
 
-from data.errors import InputError
-from data.files import write_text
-from data.results import (
+from curlshot.data.errors import InputError
+from curlshot.data.files import write_text
+from curlshot.data.results import (
     Collision,
     Estimate,
     Friction,

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from data.errors import InputError
-from data.track_file import TrackFile
+from curlshot.data.errors import InputError
+from curlshot.data.track_file import TrackFile
 
 
 def chosen(

@@ -7,7 +7,7 @@ import unicodedata
 from collections.abc import Sequence
 from pathlib import Path
 
-from data.errors import InputError
+from curlshot.data.errors import InputError
 
 LARGEST = 64_000_000
 """Bytes; a larger file is no table of tracks."""

@@ -3,7 +3,7 @@
 Tracker's layouts follow its source (versions 4 to 6.3): an optional line ``#multi:``, a
 line with the names of the tracks, a header whose first column is t, one block of columns
 per track. Its θ, ω and α belong to the place about the origin, not to the spin, and its
-velocities can be stale: both are left out. Projects are read by `data.project`.
+velocities can be stale: both are left out. Projects are read by `curlshot.data.project`.
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from data.angles import FASTEST_SPIN, attach, read_angles, spin_rate
-from data.clock import with_clock
-from data.columns import UNIT_NOT_SAID, UNIT_SAID
-from data.discs import moment, top_speed
-from data.errors import InputError
-from data.export import read_parquet
-from data.layouts import read_layout
-from data.project import is_project, read_project
-from data.read_back import as_measured
-from data.stone_names import chosen, named_by_file, refuse_shared_names
-from data.track_file import TrackFile
-from data.tracks import ANGLES, LENGTHS, SEEN_AS, check_sightings
-from data.units import (
+from curlshot.data.angles import FASTEST_SPIN, attach, read_angles, spin_rate
+from curlshot.data.clock import with_clock
+from curlshot.data.columns import UNIT_NOT_SAID, UNIT_SAID
+from curlshot.data.discs import moment, top_speed
+from curlshot.data.errors import InputError
+from curlshot.data.export import read_parquet
+from curlshot.data.layouts import read_layout
+from curlshot.data.project import is_project, read_project
+from curlshot.data.read_back import as_measured
+from curlshot.data.stone_names import chosen, named_by_file, refuse_shared_names
+from curlshot.data.track_file import TrackFile
+from curlshot.data.tracks import ANGLES, LENGTHS, SEEN_AS, check_sightings
+from curlshot.data.units import (
     ANGLE_UNITS,
     LENGTH_UNITS,
     abbreviated,
@@ -62,7 +62,7 @@ class Imported:
     Attributes
     ----------
     sightings : DataFrame
-        `data.tracks.SIGHTING_COLUMNS`; m, s, rad; stones are named as in the files.
+        `curlshot.data.tracks.SIGHTING_COLUMNS`; m, s, rad; stones are named as in the files.
     warnings : tuple of str
         What was decided on evidence, or left out.
     fps : float or None
@@ -109,7 +109,7 @@ def read_table(
         Names of stones to names of tracks in the files; tracks that are not named are left
         out. If not given, every track is a stone of the same name.
     angles : mapping, optional
-        Files with the angles of stones (see `data.angles.read_angles`).
+        Files with the angles of stones (see `curlshot.data.angles.read_angles`).
 
     Returns
     -------

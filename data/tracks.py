@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from data.errors import InputError
-from data.files import whole_file
-from data.text import printable
+from curlshot.data.errors import InputError
+from curlshot.data.files import whole_file
+from curlshot.data.text import printable
 
 if TYPE_CHECKING:
     import pandas as pd

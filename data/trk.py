@@ -14,10 +14,10 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
-from data.errors import InputError
-from data.track_file import TrackFile
-from data.tracks import LENGTHS
-from data.units import LENGTH_UNITS, abbreviated
+from curlshot.data.errors import InputError
+from curlshot.data.track_file import TrackFile
+from curlshot.data.tracks import LENGTHS
+from curlshot.data.units import LENGTH_UNITS, abbreviated
 
 Array = NDArray[np.float64]
 Frames = NDArray[np.int64]

@@ -8,10 +8,19 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from data.errors import InputError
-from data.osp_xml import Thing
-from data.tracks import LATEST
-from data.trk import MEASURED, TEXT_COLUMNS, Array, Coordinates, Frames, PointMass, Project, Timing
+from curlshot.data.errors import InputError
+from curlshot.data.osp_xml import Thing
+from curlshot.data.tracks import LATEST
+from curlshot.data.trk import (
+    MEASURED,
+    TEXT_COLUMNS,
+    Array,
+    Coordinates,
+    Frames,
+    PointMass,
+    Project,
+    Timing,
+)
 
 _MOVES_PIXELS = {
     "PerspectiveFilter": "perspective",

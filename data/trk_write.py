@@ -2,7 +2,7 @@
 
 Tracker draws with one similarity per frame, a tilted camera needs a perspective: what Tracker
 shows as x and y differs away from the tee. So every point mass also carries its exact times,
-places and angles in a property `measured`, which Tracker passes over and `data.trk` reads.
+places and angles in a property `measured`, which Tracker passes over and `curlshot.data.trk` reads.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from data.files import whole_file, write_text
-from data.inputs import IMAGE_SUFFIXES
-from data.osp_write import (
+from curlshot.data.files import whole_file, write_text
+from curlshot.data.inputs import IMAGE_SUFFIXES
+from curlshot.data.osp_write import (
     STRINGS,
     array,
     collection,
@@ -29,8 +29,8 @@ from data.osp_write import (
     strings,
     thing,
 )
-from data.sheet import STONE
-from data.trk import MEASURED, TEXT_COLUMNS, Coordinates
+from curlshot.data.sheet import STONE
+from curlshot.data.trk import MEASURED, TEXT_COLUMNS, Coordinates
 
 Array = NDArray[np.float64]
 
@@ -103,7 +103,7 @@ def project_xml(
     Parameters
     ----------
     sightings : DataFrame
-        `data.tracks.SIGHTING_COLUMNS`.
+        `curlshot.data.tracks.SIGHTING_COLUMNS`.
     view : View
         What the tracks are shown over.
     marks : ndarray, shape (n, 2)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from numbers import Real
 
-from data.errors import InputError
+from curlshot.data.errors import InputError
 
 LENGTH_UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048, "yd": 0.9144}
 """Metres in one of each."""
@@ -22,7 +22,7 @@ SPELLED = {
     "radian": "rad", "degree": "deg", "°": "deg",
 }  # fmt: skip
 """Units written out, without an s at their end, and in other letters; seconds in all languages
-that times are known in (`data.headers.TIME_NAMES`)."""
+that times are known in (`curlshot.data.headers.TIME_NAMES`)."""
 
 TIME_UNITS = {"s": 1.0, "ms": 0.001, "min": 60.0, "h": 3600.0}
 """Seconds in one of each."""

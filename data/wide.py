@@ -11,10 +11,10 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from data.columns import clock_column, refuse_disorder, times_of, values_of
-from data.delimited import TextTable
-from data.errors import InputError
-from data.headers import (
+from curlshot.data.columns import clock_column, refuse_disorder, times_of, values_of
+from curlshot.data.delimited import TextTable
+from curlshot.data.errors import InputError
+from curlshot.data.headers import (
     ANGLE_NAMES,
     RATE,
     RATES,
@@ -23,9 +23,9 @@ from data.headers import (
     is_place,
     plain_name,
 )
-from data.track_file import TrackFile
-from data.tracks import stone_name
-from data.units import ANGLE_UNITS, LENGTH_UNITS, abbreviated
+from curlshot.data.track_file import TrackFile
+from curlshot.data.tracks import stone_name
+from curlshot.data.units import ANGLE_UNITS, LENGTH_UNITS, abbreviated
 
 Array = NDArray[np.float64]
 

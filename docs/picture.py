@@ -15,11 +15,11 @@ import numpy as np
 import pandas as pd
 from PIL import Image
 
-from data.results_file import read_results
-from data.sheet import HOUSE
-from data.tracks import read_tracks
-from report.figures import plan_figure
-from report.style import render
+from curlshot.data.results_file import read_results
+from curlshot.data.sheet import HOUSE
+from curlshot.data.tracks import read_tracks
+from curlshot.report.figures import plan_figure
+from curlshot.report.style import render
 
 WHEN = 3.2  # s in the clip, after both hits
 HEIGHT = 720  # px of the picture, as of the clip

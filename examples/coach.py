@@ -8,10 +8,10 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from data.coach_units import FEET
-from data.results_file import read_results
-from data.tracks import read_tracks
-from report.tables import rest_table, shot_stone, speed_table, takeout_table
+from curlshot.data.coach_units import FEET
+from curlshot.data.results_file import read_results
+from curlshot.data.tracks import read_tracks
+from curlshot.report.tables import rest_table, shot_stone, speed_table, takeout_table
 
 if not sys.argv[1:]:
     print("usage: python examples/coach.py RUN", file=sys.stderr)

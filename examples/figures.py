@@ -12,11 +12,11 @@ from pathlib import Path
 
 import pandas as pd
 
-from data.results_file import read_results
-from data.sheet import HOUSE
-from data.tracks import read_tracks
-from report.figures import comparison_figure, hit_figure, motion_figure, plan_figure
-from report.tables import measured_table
+from curlshot.data.results_file import read_results
+from curlshot.data.sheet import HOUSE
+from curlshot.data.tracks import read_tracks
+from curlshot.report.figures import comparison_figure, hit_figure, motion_figure, plan_figure
+from curlshot.report.tables import measured_table
 
 if not sys.argv[1:]:
     print("usage: python examples/figures.py RUN [OUT]", file=sys.stderr)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sys
 
-import pipeline
+from curlshot import pipeline
 
 clips = sys.argv[1:]
 settings = pipeline.Settings() if clips else pipeline.Settings(frames=(0, 49))

@@ -13,12 +13,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from data.sheet import STONE
-from data.tracks import check_sightings
-from physics.estimate import estimate
-from physics.local_fit.contacts import find_contacts
-from physics.simulator.simulate import simulate
-from physics.simulator.simulation import Shot, StoneStart
+from curlshot.data.sheet import STONE
+from curlshot.data.tracks import check_sightings
+from curlshot.physics.estimate import estimate
+from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.simulator.simulate import simulate
+from curlshot.physics.simulator.simulation import Shot, StoneStart
 
 
 def made_up() -> pd.DataFrame:

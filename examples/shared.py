@@ -13,15 +13,15 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-import pipeline
-from data.sheet import STONE
-from data.tracks import check_sightings
-from physics.estimate import estimate
-from physics.impact.frictional import Frictional
-from physics.local_fit.contacts import find_contacts
-from physics.simulator.simulate import simulate
-from physics.simulator.simulation import Shot, StoneStart
-from physics.whole_shot.global_fit import fit_shots
+from curlshot import pipeline
+from curlshot.data.sheet import STONE
+from curlshot.data.tracks import check_sightings
+from curlshot.physics.estimate import estimate
+from curlshot.physics.impact.frictional import Frictional
+from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.simulator.simulate import simulate
+from curlshot.physics.simulator.simulation import Shot, StoneStart
+from curlshot.physics.whole_shot.global_fit import fit_shots
 
 RADIUS = STONE.radius  # of the discs, m
 

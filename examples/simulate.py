@@ -5,9 +5,9 @@ Run it as ``python examples/simulate.py``.
 
 from __future__ import annotations
 
-from physics.impact import Frictional, PointMass
-from physics.simulator.simulate import simulate
-from physics.simulator.simulation import Shot, StoneStart
+from curlshot.physics.impact import Frictional, PointMass
+from curlshot.physics.simulator.simulate import simulate
+from curlshot.physics.simulator.simulation import Shot, StoneStart
 
 stones = (
     StoneStart("A", x=0.3, y=6.0, vx=0.0, vy=-2.2, omega=1.5),

@@ -8,11 +8,11 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from data.results_file import read_results
-from data.tracks import read_tracks
-from physics.prediction.ensemble import read_ensemble
-from physics.prediction.start import measured_start
-from physics.prediction.what_if import Amount, Changes, changed, odds, sample
+from curlshot.data.results_file import read_results
+from curlshot.data.tracks import read_tracks
+from curlshot.physics.prediction.ensemble import read_ensemble
+from curlshot.physics.prediction.start import measured_start
+from curlshot.physics.prediction.what_if import Amount, Changes, changed, odds, sample
 
 if not sys.argv[1:]:
     print("usage: python examples/what_if.py RUN", file=sys.stderr)

@@ -1,8 +1,8 @@
 """Restitution and friction from tracks, each with a standard error.
 
-Twice: from the paths beside the hits (`physics.local_fit.local`), and from one fit of the whole
-shot through the simulator (`physics.whole_shot.global_fit`), which is the sharper where the
-simulator can follow the shot. The first is what the second is checked against.
+Twice: from the paths beside the hits (`curlshot.physics.local_fit.local`), and from one fit of the
+whole shot through the simulator (`curlshot.physics.whole_shot.global_fit`), which is the sharper
+where the simulator can follow the shot. The first is what the second is checked against.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from data.errors import InputError
-from data.results import (
+from curlshot.data.errors import InputError
+from curlshot.data.results import (
     Collision,
     Estimate,
     Friction,
@@ -26,18 +26,18 @@ from data.results import (
     StoneResult,
     Told,
 )
-from physics.local_fit.contacts import Contact
-from physics.local_fit.finite_differences import by_finite_differences
-from physics.local_fit.local import Local, estimate_from_traces, estimate_locally
-from physics.statistics.by_stone import results_by_stone
-from physics.statistics.random_effects import random_effects
-from physics.whole_shot.followed import fit_followed, followed
-from physics.whole_shot.misfit import misfits
-from physics.whole_shot.off_centre import centred_traces
-from physics.whole_shot.priors import loose_priors
-from physics.whole_shot.shot_model import ice
-from physics.whole_shot.watched import watch
-from physics.whole_shot.whole_fit import GlobalFit
+from curlshot.physics.local_fit.contacts import Contact
+from curlshot.physics.local_fit.finite_differences import by_finite_differences
+from curlshot.physics.local_fit.local import Local, estimate_from_traces, estimate_locally
+from curlshot.physics.statistics.by_stone import results_by_stone
+from curlshot.physics.statistics.random_effects import random_effects
+from curlshot.physics.whole_shot.followed import fit_followed, followed
+from curlshot.physics.whole_shot.misfit import misfits
+from curlshot.physics.whole_shot.off_centre import centred_traces
+from curlshot.physics.whole_shot.priors import loose_priors
+from curlshot.physics.whole_shot.shot_model import ice
+from curlshot.physics.whole_shot.watched import watch
+from curlshot.physics.whole_shot.whole_fit import GlobalFit
 
 POOR_FIT = 30.0
 """Mean square of residuals against errors from which a simulated shot is not the one seen."""
@@ -151,9 +151,9 @@ def estimate(
     Parameters
     ----------
     sightings : DataFrame
-        `data.tracks.SIGHTING_COLUMNS`.
+        `curlshot.data.tracks.SIGHTING_COLUMNS`.
     contacts : sequence of Contact
-        The hits, as `physics.local_fit.contacts.find_contacts` gives them.
+        The hits, as `curlshot.physics.local_fit.contacts.find_contacts` gives them.
     radius : float
         Of the discs, m.
     masses : mapping, optional

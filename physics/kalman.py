@@ -6,9 +6,10 @@ deceleration is taken out of the measurements before the filter and put back aft
 that the filter itself stays linear and the backward pass (Rauch, Tung and Striebel, 1965,
 AIAA J. 3, 1445) exact. A filter never runs across a hit.
 
-The noise of sightings is estimated from the shot itself (`physics.local_fit.noise`): its white part
-is the filter's measurement noise, its correlated part a further state of each pair. The error that
-all places share is added in the end, to places and, as an error of the scale, to velocities.
+The noise of sightings is estimated from the shot itself (`curlshot.physics.local_fit.noise`): its
+white part is the filter's measurement noise, its correlated part a further state of each pair. The
+error that all places share is added in the end, to places and, as an error of the scale, to
+velocities.
 """
 
 from __future__ import annotations
@@ -22,20 +23,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from data.tracks import TRACK_COLUMNS, Columns, Table, no_rows, teams
-from physics.filter.rate_filter import filtered, shared_response
-from physics.filter.spin_loss import spin_loss
-from physics.filter.stretch import GATE, PATIENCE, START_SD, Filter, Model, Stretch
-from physics.local_fit.contacts import Contact, cut_all
-from physics.local_fit.fit import fit_shot
-from physics.local_fit.glides import free, measure_glides
-from physics.local_fit.last_pictures import widen_last
-from physics.local_fit.noise import Noise, noises
-from physics.local_fit.off_centre import centred
-from physics.local_fit.segments import lies_still
-from physics.local_fit.shared_spin import share_spins
-from physics.local_fit.shot_fit import ShotFit
-from physics.local_fit.traces import Trace, traces
+from curlshot.data.tracks import TRACK_COLUMNS, Columns, Table, no_rows, teams
+from curlshot.physics.filter.rate_filter import filtered, shared_response
+from curlshot.physics.filter.spin_loss import spin_loss
+from curlshot.physics.filter.stretch import GATE, PATIENCE, START_SD, Filter, Model, Stretch
+from curlshot.physics.local_fit.contacts import Contact, cut_all
+from curlshot.physics.local_fit.fit import fit_shot
+from curlshot.physics.local_fit.glides import free, measure_glides
+from curlshot.physics.local_fit.last_pictures import widen_last
+from curlshot.physics.local_fit.noise import Noise, noises
+from curlshot.physics.local_fit.off_centre import centred
+from curlshot.physics.local_fit.segments import lies_still
+from curlshot.physics.local_fit.shared_spin import share_spins
+from curlshot.physics.local_fit.shot_fit import ShotFit
+from curlshot.physics.local_fit.traces import Trace, traces
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -83,8 +84,8 @@ def smoothed(
     Parameters
     ----------
     sightings : Table
-        Of `data.tracks.SIGHTING_COLUMNS` at least ``stone, t, x, y``; standard deviations are
-        estimated where missing, frames without a number are counted.
+        Of `curlshot.data.tracks.SIGHTING_COLUMNS` at least ``stone, t, x, y``; standard deviations
+        are estimated where missing, frames without a number are counted.
     contacts : sequence of Contact
         The hits. The filter never runs across one. What both sides share is put right besides:
         their spins, by how hits change them; caps beside centres; and where a stone was seen once
@@ -94,15 +95,15 @@ def smoothed(
     masses : mapping, optional
         Stone to mass in any unit; all are equal if not given.
     run : Filter
-        Filters one stone from hit to hit; `physics.filter.reference_filter.filtered` does it with
-        matrices.
+        Filters one stone from hit to hit; `curlshot.physics.filter.reference_filter.filtered` does
+        it with matrices.
     unseen : mapping of int to float
         Frames with their times, s, at which nothing was measured but states are wanted.
 
     Returns
     -------
     Columns
-        `data.tracks.TRACK_COLUMNS`. ``seen`` is 0 in rows at which other stones were seen
+        `curlshot.data.tracks.TRACK_COLUMNS`. ``seen`` is 0 in rows at which other stones were seen
         but not this one, at frames `unseen`, or at which its sighting was refused as an outlier.
         Angles and spins are NaN where the stone's angle was not seen from one hit to the next,
         velocities where it was seen once. The standard deviations of places include what the

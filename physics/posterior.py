@@ -6,9 +6,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from data.errors import InputError
-from data.results import Estimate, Posterior
-from physics.estimate import LAWS, Estimates
+from curlshot.data.errors import InputError
+from curlshot.data.results import Estimate, Posterior
+from curlshot.physics.estimate import LAWS, Estimates
 
 Floats = NDArray[np.float64]
 

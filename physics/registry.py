@@ -1,6 +1,6 @@
 """Models found by name: each module of a family's package holds one, and that is all it takes.
 
-A family is a package such as `physics.ice`. A model is a frozen dataclass with a class
+A family is a package such as `curlshot.physics.ice`. A model is a frozen dataclass with a class
 attribute ``name``; its fields are its parameters. To add one, add a file.
 """
 
@@ -43,7 +43,7 @@ def models(family: str) -> dict[str, type[Any]]:
     """
     if family not in FAMILIES:
         raise ValueError(f"no family {family!r}; there are {', '.join(FAMILIES)}")
-    package = import_module(f"physics.{family}")
+    package = import_module(f"curlshot.physics.{family}")
     found: dict[str, type[Any]] = {}
     for info in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
         module = import_module(info.name)

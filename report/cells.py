@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from markupsafe import Markup
 
-from report.numbers import DASH, fixed, parts, significant
+from curlshot.report.numbers import DASH, fixed, parts, significant
 
 
 def data(value: float | None, decimals: int = 3, factor: float = 1.0) -> Markup:

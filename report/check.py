@@ -12,12 +12,21 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 from numpy.typing import NDArray
 
-from data.sheet import STONE
-from report.drawing import circle, draw_lines, ice_lines
-from report.looks import COLUMNS, UPRIGHT_COLUMNS, Look, numbered, way_of_play
-from report.style import BLUE, GREY, ORANGE, SKY, VERMILLION, new_figure, plain_text, styled
-from vision.detection.ice_map import rectify
-from vision.film.clip import Image
+from curlshot.data.sheet import STONE
+from curlshot.report.drawing import circle, draw_lines, ice_lines
+from curlshot.report.looks import COLUMNS, UPRIGHT_COLUMNS, Look, numbered, way_of_play
+from curlshot.report.style import (
+    BLUE,
+    GREY,
+    ORANGE,
+    SKY,
+    VERMILLION,
+    new_figure,
+    plain_text,
+    styled,
+)
+from curlshot.vision.detection.ice_map import rectify
+from curlshot.vision.film.clip import Image
 
 Array = NDArray[np.float64]
 Paint = tuple[Sequence[Array], Sequence[Array]]
@@ -55,7 +64,7 @@ def check_figure(
     looks : sequence of Look
         The frames to show.
     cameras : DataFrame
-        One row per frame, as `report.looks.check_table` gives it.
+        One row per frame, as `curlshot.report.looks.check_table` gives it.
     rings : sequence of float
         Painted radii, m; none where there is no house.
     title : str

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from data.coach_units import METRES, Unit
-from data.results import Results
-from data.sheet import House
-from report import tables
-from report.columns import Column, Table
+from curlshot.data.coach_units import METRES, Unit
+from curlshot.data.results import Results
+from curlshot.data.sheet import House
+from curlshot.report import tables
+from curlshot.report.columns import Column, Table
 
 
 def coach_tables(

@@ -12,9 +12,9 @@ import numpy as np
 import pandas as pd
 from markupsafe import Markup, escape
 
-from data.coach_units import METRES, Unit
-from report.cells import exact
-from report.numbers import fixed, parts, significant
+from curlshot.data.coach_units import METRES, Unit
+from curlshot.report.cells import exact
+from curlshot.report.numbers import fixed, parts, significant
 
 
 @dataclass(frozen=True)

@@ -8,10 +8,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import SHEET
-from vision.film.clip import Image
-from vision.optics.camera import Camera
-from vision.optics.projection import apply_homography
+from curlshot.data.sheet import SHEET
+from curlshot.vision.film.clip import Image
+from curlshot.vision.optics.camera import Camera
+from curlshot.vision.optics.projection import apply_homography
 
 Array = NDArray[np.float64]
 Colour = tuple[int, int, int]

@@ -10,9 +10,9 @@ from functools import partial
 import pandas as pd
 from matplotlib.figure import Figure
 
-from data.results import Results
-from data.sheet import House, curling_size
-from report import figures, tables
+from curlshot.data.results import Results
+from curlshot.data.sheet import House, curling_size
+from curlshot.report import figures, tables
 
 
 @dataclass(frozen=True)
@@ -42,13 +42,13 @@ def pictures(
     results : Results
         What the run found out.
     tracks : DataFrame
-        With `data.tracks.TRACK_COLUMNS`.
+        With `curlshot.data.tracks.TRACK_COLUMNS`.
     simulations : mapping of str to DataFrame
         Sampled simulation of each model.
     house : House or None
         Rings of the plan view; None where the scene has no house.
     residuals : DataFrame, optional
-        As `report.tables.residual_table` makes it; without it there is no figure of them.
+        As `curlshot.report.tables.residual_table` makes it; without it there is no figure of them.
     posterior : DataFrame, optional
         Samples of ``restitution, friction, stone_friction``; the figure of what is known of
         them needs these or the results' ``laws``.

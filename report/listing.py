@@ -7,14 +7,14 @@ from collections.abc import Mapping
 
 import pandas as pd
 
-from data.coach_units import METRES, Unit
-from data.results import Prediction, Results, SimulationScore
-from data.sheet import House
-from physics.local_fit.glides import WORST
-from report import tables
-from report.coach_listing import coach_tables
-from report.columns import Column, Table
-from report.numbers import assumed
+from curlshot.data.coach_units import METRES, Unit
+from curlshot.data.results import Prediction, Results, SimulationScore
+from curlshot.data.sheet import House
+from curlshot.physics.local_fit.glides import WORST
+from curlshot.report import tables
+from curlshot.report.coach_listing import coach_tables
+from curlshot.report.columns import Column, Table
+from curlshot.report.numbers import assumed
 
 _STATES = (
     Column("hit", "hit", kind="word"),
@@ -99,7 +99,7 @@ def page_tables(
     results : Results
         What the run found out.
     tracks : DataFrame
-        With `data.tracks.TRACK_COLUMNS` and, where known, a column ``team``.
+        With `curlshot.data.tracks.TRACK_COLUMNS` and, where known, a column ``team``.
     house : House, optional
         The rings; without a house there are no tables for coaches.
     unit : Unit
@@ -109,7 +109,7 @@ def page_tables(
     -------
     list of Table
         The page shows their ``title``, ``note``, ``head`` and ``rows``;
-        `report.typeset.write_tables` writes them as files.
+        `curlshot.report.typeset.write_tables` writes them as files.
     """
     hits = tables.hit_table(results.collisions)
     if len(hits):

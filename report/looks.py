@@ -9,10 +9,10 @@ from itertools import pairwise
 import numpy as np
 import pandas as pd
 
-from report.numbers import count, warned
-from vision.detection.sighting import Refusal, Sighting
-from vision.film.clip import Frame
-from vision.optics.camera import Camera, camera_table
+from curlshot.report.numbers import count, warned
+from curlshot.vision.detection.sighting import Refusal, Sighting
+from curlshot.vision.film.clip import Frame
+from curlshot.vision.optics.camera import Camera, camera_table
 
 COLUMNS, UPRIGHT_COLUMNS = 4, 6
 """Frames beside one another on the sheet; of clips that are higher than wide."""
@@ -42,7 +42,7 @@ class Look:
 
 
 def check_table(cameras: Sequence[Camera], rim: float) -> pd.DataFrame:
-    """As `vision.optics.camera.camera_table`, with the stated error of a place at the rim.
+    """As `curlshot.vision.optics.camera.camera_table`, with the stated error of a place at the rim.
 
     Parameters
     ----------

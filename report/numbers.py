@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from data.results import Prediction
+    from curlshot.data.results import Prediction
 
 DASH = "—"
 MINUS = "−"

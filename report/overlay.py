@@ -11,11 +11,11 @@ import pandas as pd
 from matplotlib.colors import to_rgb
 from numpy.typing import NDArray
 
-from data.files import whole_file
-from data.progress import Progress, no_progress
-from data.results import Collision
-from data.sheet import HOUSE, STONE
-from report.drawing import (
+from curlshot.data.files import whole_file
+from curlshot.data.progress import Progress, no_progress
+from curlshot.data.results import Collision
+from curlshot.data.sheet import HOUSE, STONE
+from curlshot.report.drawing import (
     WHITE,
     Box,
     Colour,
@@ -27,11 +27,11 @@ from report.drawing import (
     text_box,
     write,
 )  # fmt: skip
-from report.encode import Encoder
-from report.style import stone_colours, team_colour
-from report.tables import play
-from vision.film.clip import Clip, Frame, Image
-from vision.optics.camera import Camera
+from curlshot.report.encode import Encoder
+from curlshot.report.style import stone_colours, team_colour
+from curlshot.report.tables import play
+from curlshot.vision.film.clip import Clip, Frame, Image
+from curlshot.vision.optics.camera import Camera
 
 Array = NDArray[np.float64]
 
@@ -116,7 +116,7 @@ def write_overlay(
     cameras : iterable of Camera
         Found by their `frame`.
     tracks : DataFrame
-        With `data.tracks.TRACK_COLUMNS`, `frame` counting as the clip does.
+        With `curlshot.data.tracks.TRACK_COLUMNS`, `frame` counting as the clip does.
     collisions : sequence of Collision
         Each flashed for a moment, and named for two seconds.
     path : Path

@@ -13,22 +13,22 @@ import numpy as np
 import pandas as pd
 from markupsafe import Markup
 
-from data.coach_units import METRES, Unit
-from data.errors import InputError
-from data.files import whole_file, write_text
-from data.results import Results
-from data.sheet import House
-from physics.prediction.ensemble import Ensemble
-from report.gallery import pictures
-from report.listing import page_tables
-from report.numbers import count
-from report.playback import playback
-from report.provenance import UNKNOWN, Provenance, libraries
-from report.style import render, stone_colours
-from report.tables import moving_stones
-from report.template import environment, link, source
-from report.trial import sliders, trial
-from report.typeset import write_tables
+from curlshot.data.coach_units import METRES, Unit
+from curlshot.data.errors import InputError
+from curlshot.data.files import whole_file, write_text
+from curlshot.data.results import Results
+from curlshot.data.sheet import House
+from curlshot.physics.prediction.ensemble import Ensemble
+from curlshot.report.gallery import pictures
+from curlshot.report.listing import page_tables
+from curlshot.report.numbers import count
+from curlshot.report.playback import playback
+from curlshot.report.provenance import UNKNOWN, Provenance, libraries
+from curlshot.report.style import render, stone_colours
+from curlshot.report.tables import moving_stones
+from curlshot.report.template import environment, link, source
+from curlshot.report.trial import sliders, trial
+from curlshot.report.typeset import write_tables
 
 SCRIPTS = ("motion.js", "simulate.js", "plan.js", "player.js", "whatif.js")
 """In the order in which the page needs them."""
@@ -66,12 +66,12 @@ def write_report(
     results : Results
         What the run found out.
     tracks : DataFrame
-        With `data.tracks.TRACK_COLUMNS`.
+        With `curlshot.data.tracks.TRACK_COLUMNS`.
     simulations : mapping of str to DataFrame
         Sampled simulation of each model: ``stone, frame, t, x, y, theta, vx, vy, omega``.
     cameras : DataFrame, optional
-        With `vision.optics.camera.CAMERA_COLUMNS`, for how good the calibration is; None for tracks
-        that came in metres.
+        With `curlshot.vision.optics.camera.CAMERA_COLUMNS`, for how good the calibration is; None
+        for tracks that came in metres.
     clip_name : str, optional
         What the page is called; the first input file's name if not given.
     overlay : Path, optional
@@ -81,7 +81,8 @@ def write_report(
     house : House, optional
         Rings for the plan view; None where the scene has no house.
     residuals : DataFrame, optional
-        Of the places that were seen, for the figure of them (see `report.gallery.pictures`).
+        Of the places that were seen, for the figure of them (see
+        `curlshot.report.gallery.pictures`).
     posterior : DataFrame, optional
         Samples of restitution and frictions, for the figure of them.
     ensemble : Ensemble, optional

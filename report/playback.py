@@ -13,10 +13,10 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from data.results import Results
-from data.sheet import SHEET, House
-from report.style import stone_colours, team_colour
-from report.tables import play
+from curlshot.data.results import Results
+from curlshot.data.sheet import SHEET, House
+from curlshot.report.style import stone_colours, team_colour
+from curlshot.report.tables import play
 
 STEPS: Mapping[str, float] = {
     "t": 1e-5, "x": 1e-4, "y": 1e-4, "theta": 1e-3, "speed": 1e-4, "omega": 1e-3,
@@ -40,7 +40,7 @@ def playback(
     results : Results
         What the run found out.
     tracks : DataFrame
-        With `data.tracks.TRACK_COLUMNS`.
+        With `curlshot.data.tracks.TRACK_COLUMNS`.
     simulations : mapping of str to DataFrame
         Sampled simulation of each model.
     house : House or None

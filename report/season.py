@@ -13,12 +13,12 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from data.files import write_text
-from data.tracks import write_table
-from physics.statistics.pool import Pooled
-from report.figures.parts import short
-from report.numbers import plus_minus
-from report.style import BLACK, BLUE, GREY, PNG_DPI, SKY, new_figure, styled
+from curlshot.data.files import write_text
+from curlshot.data.tracks import write_table
+from curlshot.physics.statistics.pool import Pooled
+from curlshot.report.figures.parts import short
+from curlshot.report.numbers import plus_minus
+from curlshot.report.style import BLACK, BLUE, GREY, PNG_DPI, SKY, new_figure, styled
 
 ROW = 0.24
 """Height of a shot's row, inches."""
@@ -49,9 +49,9 @@ def season_figure(shots: pd.DataFrame, hits: pd.DataFrame, pooled: Mapping[str, 
     Parameters
     ----------
     shots, hits : DataFrame
-        From `physics.statistics.season.shots_table` and `hits_table`.
+        From `curlshot.physics.statistics.season.shots_table` and `hits_table`.
     pooled : mapping
-        From `physics.statistics.season.pooled`.
+        From `curlshot.physics.statistics.season.pooled`.
 
     Returns
     -------

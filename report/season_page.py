@@ -7,11 +7,11 @@ from collections.abc import Mapping
 import pandas as pd
 from markupsafe import escape
 
-from physics.statistics.pool import Pooled
-from physics.statistics.season import SCATTER
-from report.columns import Column, Table
-from report.summary import impossible
-from report.template import environment, source
+from curlshot.physics.statistics.pool import Pooled
+from curlshot.physics.statistics.season import SCATTER
+from curlshot.report.columns import Column, Table
+from curlshot.report.summary import impossible
+from curlshot.report.template import environment, source
 
 _SHOTS = (
     Column("shot", "shot", kind="word"),
@@ -50,9 +50,9 @@ def season_page(
     title : str
         Its heading.
     shots, hits : DataFrame
-        From `physics.statistics.season.shots_table` and `hits_table`.
+        From `curlshot.physics.statistics.season.shots_table` and `hits_table`.
     pooled : mapping
-        From `physics.statistics.season.pooled`.
+        From `curlshot.physics.statistics.season.pooled`.
     pages : mapping of str to str
         Addresses of the shots' own reports, of those that have one.
     left_out : mapping of str to str

@@ -18,7 +18,7 @@ from matplotlib.colors import is_color_like, to_hex
 from matplotlib.figure import Figure
 from PIL import Image
 
-from data.text import printable
+from curlshot.data.text import printable
 
 BLACK = "#1a1a1a"
 GREY = "#7a7a7a"

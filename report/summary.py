@@ -8,15 +8,15 @@ from typing import Any
 
 import pandas as pd
 
-from data.coach_units import METRES, Unit
-from data.results import Results, SimulationScore
-from data.sheet import House
-from physics.prediction.forecast import AFTER
-from physics.simulator.simulation import Simulation
-from physics.statistics.pool import Pooled
-from physics.statistics.season import POSSIBLE, SCATTER
-from report.numbers import assumed, count, plus_minus, warned
-from report.tables import moving_stones, rest_table, shot_stone
+from curlshot.data.coach_units import METRES, Unit
+from curlshot.data.results import Results, SimulationScore
+from curlshot.data.sheet import House
+from curlshot.physics.prediction.forecast import AFTER
+from curlshot.physics.simulator.simulation import Simulation
+from curlshot.physics.statistics.pool import Pooled
+from curlshot.physics.statistics.season import POSSIBLE, SCATTER
+from curlshot.report.numbers import assumed, count, plus_minus, warned
+from curlshot.report.tables import moving_stones, rest_table, shot_stone
 
 ABREAST = 3
 """Stones on a line, which then has some hundred letters."""

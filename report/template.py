@@ -9,8 +9,8 @@ from urllib.parse import quote
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from report.cells import data, data_parts, data_significant
-from report.numbers import assumed, count
+from curlshot.report.cells import data, data_parts, data_significant
+from curlshot.report.numbers import assumed, count
 
 WEB = Path(__file__).parent / "web"
 

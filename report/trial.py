@@ -9,13 +9,13 @@ from typing import Any
 
 import pandas as pd
 
-from data.results import Results
-from physics.prediction.ensemble import Ensemble
-from physics.prediction.laws import friction_at_1
-from physics.prediction.start import measured_start
-from physics.registry import model, models
-from physics.simulator.simulation import StoneStart
-from physics.simulator.values import shot_values
+from curlshot.data.results import Results
+from curlshot.physics.prediction.ensemble import Ensemble
+from curlshot.physics.prediction.laws import friction_at_1
+from curlshot.physics.prediction.start import measured_start
+from curlshot.physics.registry import model, models
+from curlshot.physics.simulator.simulation import StoneStart
+from curlshot.physics.simulator.values import shot_values
 
 
 @dataclass(frozen=True)
@@ -41,8 +41,9 @@ def trial(tracks: pd.DataFrame, results: Results, ensemble: Ensemble) -> dict[st
     Returns
     -------
     dict
-        ``shot`` (see `physics.simulator.values.shot_values`), ``thrown`` (its rank), ``laws`` to
-        choose from, ``spins_known`` (whether the rigid-body model can run), ``assumed``.
+        ``shot`` (see `curlshot.physics.simulator.values.shot_values`), ``thrown`` (its rank),
+        ``laws`` to choose from, ``spins_known`` (whether the rigid-body model can run),
+        ``assumed``.
 
     Raises
     ------

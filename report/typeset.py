@@ -8,9 +8,9 @@ from pathlib import Path
 
 from jinja2 import Environment
 
-from data.files import write_text
-from data.tracks import write_table
-from report.columns import Column, Table
+from curlshot.data.files import write_text
+from curlshot.data.tracks import write_table
+from curlshot.report.columns import Column, Table
 
 _HTML = """\
 <!DOCTYPE html>

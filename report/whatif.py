@@ -17,15 +17,23 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
-from data.files import write_text
-from data.sheet import HOUSE, STONE
-from data.tracks import write_table
-from physics.prediction.start import Start
-from physics.simulator.simulation import Simulation
-from report.figures import draw_house, name_stones, simulated_figure
-from report.figures.parts import legend_below, short
-from report.numbers import MINUS, count
-from report.style import BLACK, GREY, PNG_DPI, new_figure, plain_text, stone_colours, styled
+from curlshot.data.files import write_text
+from curlshot.data.sheet import HOUSE, STONE
+from curlshot.data.tracks import write_table
+from curlshot.physics.prediction.start import Start
+from curlshot.physics.simulator.simulation import Simulation
+from curlshot.report.figures import draw_house, name_stones, simulated_figure
+from curlshot.report.figures.parts import legend_below, short
+from curlshot.report.numbers import MINUS, count
+from curlshot.report.style import (
+    BLACK,
+    GREY,
+    PNG_DPI,
+    new_figure,
+    plain_text,
+    stone_colours,
+    styled,
+)
 
 Array = NDArray[np.float64]
 
@@ -72,7 +80,7 @@ def write_odds(folder: Path, start: Start, outcomes: pd.DataFrame, odds: Mapping
     start : Start
         The shot.
     outcomes : DataFrame
-        As `physics.prediction.what_if.sample` gives them.
+        As `curlshot.physics.prediction.what_if.sample` gives them.
     odds : mapping
         The same in sum.
     """
@@ -135,7 +143,8 @@ def spread_figure(
     Parameters
     ----------
     outcomes : DataFrame
-        ``sample, stone, x, y, hits, in_play`` as `physics.prediction.what_if.sample` gives them.
+        ``sample, stone, x, y, hits, in_play`` as `curlshot.physics.prediction.what_if.sample` gives
+        them.
     before : mapping of str to (float, float)
         Places of the stones before, m.
     thrown : str

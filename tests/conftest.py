@@ -3,16 +3,18 @@ from __future__ import annotations
 import fcntl
 import os
 import pickle
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 
-import pipeline
-from command.threads import use_one_thread
+from curlshot import pipeline
+from curlshot.cli.threads import use_one_thread
 
 use_one_thread()  # the suite has a process for each core: more threads only wait for each other
 
-SHARED = Path(__file__).resolve().parents[2] / "shared"
+ROOT = Path(__file__).resolve().parents[1]
+SHARED = ROOT.parent / "shared"
 
 
 @pytest.fixture(scope="session")
@@ -38,3 +40,15 @@ def sample(tmp_path_factory: pytest.TempPathFactory) -> pipeline.Run:
             run = pipeline.run(out=shared / "sample" / "out")
             kept.write_bytes(pickle.dumps(run))
         return pickle.loads(kept.read_bytes())
+
+
+class PackageModule(pytest.Module):
+    """A test module under its name in the package, so that no second copy of it is loaded."""
+
+    def _getobj(self) -> object:
+        parts = self.path.relative_to(ROOT).with_suffix("").parts
+        return import_module(".".join(("curlshot", *parts)))
+
+
+def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> PackageModule:
+    return PackageModule.from_parent(parent, path=module_path)

@@ -10,10 +10,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from benchmarks import kinds
-from benchmarks.kinds import as_made
-from tests.synthetic import Scene, Truth, random_scene
-from tests.synthetic.stones import HEIGHT
+from curlshot.benchmarks import kinds
+from curlshot.benchmarks.kinds import as_made
+from curlshot.synthetic import Scene, Truth, random_scene
+from curlshot.synthetic.stones import HEIGHT
 
 ROOT = Path(__file__).resolve().parent.parent
 RUN_BY_HAND = sorted(

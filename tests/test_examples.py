@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-import pipeline
-from command.parser import command_line
+from curlshot import pipeline
+from curlshot.cli.parser import command_line
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = sorted((ROOT / "docs").glob("*.md"))

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import pytest
 
-from data import results
-from data.tracks import SEEN_AS, TRACK_COLUMNS
-from physics.prediction.what_if import Odds
-from physics.simulator.simulation import Shot
-from physics.statistics.pool import Pooled
-from physics.statistics.season import HIT_COLUMNS, SHOT_COLUMNS
-from vision.optics.camera import CAMERA_COLUMNS
+from curlshot.data import results
+from curlshot.data.tracks import SEEN_AS, TRACK_COLUMNS
+from curlshot.physics.prediction.what_if import Odds
+from curlshot.physics.simulator.simulation import Shot
+from curlshot.physics.statistics.pool import Pooled
+from curlshot.physics.statistics.season import HIT_COLUMNS, SHOT_COLUMNS
+from curlshot.vision.optics.camera import CAMERA_COLUMNS
 
 PAGE = (Path(__file__).resolve().parents[1] / "docs" / "files.md").read_text("utf-8")
 OTHERS = {

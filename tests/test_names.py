@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import pipeline
-from report.check import check_figure
-from report.looks import Look
-from report.style import plain_text
-from tests.report import looking
-from tests.report.looking import SIZE, camera
-from vision.film.clip import Frame
+from curlshot import pipeline
+from curlshot.report.check import check_figure
+from curlshot.report.looks import Look
+from curlshot.report.style import plain_text
+from curlshot.tests.unit.report import looking
+from curlshot.tests.unit.report.looking import SIZE, camera
+from curlshot.vision.film.clip import Frame
 
 
 @pytest.fixture

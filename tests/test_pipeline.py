@@ -13,16 +13,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
-import pipeline
-from data.errors import CurlshotError, InputError
-from data.files import staged
-from data.inputs import find_inputs
-from data.results_file import read_results
-from data.tracks import SEEN_AS, TRACK_COLUMNS
-from report.summary import summary
-from tests.scoring import read_truth, score_tracks
-from tests.synthetic.video import write_video
-from vision.film.clip import open_clip
+from curlshot import pipeline
+from curlshot.data.errors import CurlshotError, InputError
+from curlshot.data.files import staged
+from curlshot.data.inputs import find_inputs
+from curlshot.data.results_file import read_results
+from curlshot.data.tracks import SEEN_AS, TRACK_COLUMNS
+from curlshot.report.summary import summary
+from curlshot.synthetic.scoring import read_truth, score_tracks
+from curlshot.synthetic.video import write_video
+from curlshot.vision.film.clip import open_clip
 
 SAMPLE = pipeline.sample_clip()
 CONTRACT = {
@@ -51,11 +51,11 @@ def curlshot(
     *words: str | Path, cwd: Path | None = None, env: dict[str, str] | None = None
 ) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        [sys.executable, "-W", "error", "-m", "pipeline", *map(str, words)],
+        [sys.executable, "-W", "error", "-m", "curlshot", *map(str, words)],
         capture_output=True,
         text=True,
         check=False,
-        cwd=cwd or Path(pipeline.__file__).parent,
+        cwd=cwd,
         env={**os.environ, **(env or {})},
     )
 
@@ -67,7 +67,6 @@ def in_python(code: str) -> subprocess.CompletedProcess[str]:
         capture_output=True,
         text=True,
         check=True,
-        cwd=Path(pipeline.__file__).parent,
     )
 
 
@@ -494,7 +493,7 @@ def test_a_terminal_without_greek_letters_gets_its_answer(tmp_path: Path) -> Non
 def test_a_clip_is_tracked_without_what_takes_long_to_load(tmp_path: Path) -> None:
     clip = str(pipeline.sample_clip())
     code = (
-        "import sys, pipeline\n"
+        "import sys\nfrom curlshot import pipeline\n"
         f"pipeline.main(['track', {clip!r}, '--frames', '0:9', '-q', '-o', {str(tmp_path)!r}])\n"
         "print({'pandas', 'scipy', 'filterpy', 'matplotlib'} & sys.modules.keys() or 'none')"
     )
@@ -506,7 +505,7 @@ def test_a_clip_is_tracked_without_what_takes_long_to_load(tmp_path: Path) -> No
 def test_tracks_from_a_table_never_load_opencv(tmp_path: Path) -> None:
     (tmp_path / "hit.csv").write_text(central_hit(masses=(1.0, 1.0), restitution=0.8))
     code = (
-        "import sys, pipeline\n"
+        "import sys\nfrom curlshot import pipeline\n"
         f"pipeline.run([{str(tmp_path / 'hit.csv')!r}], {str(tmp_path / 'out')!r})\n"
         "print('cv2' in sys.modules)"
     )

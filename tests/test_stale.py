@@ -8,8 +8,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-import pipeline
-from data.tracks import TRACK_COLUMNS
+from curlshot import pipeline
+from curlshot.data.tracks import TRACK_COLUMNS
 
 OLD = "old"
 

@@ -10,28 +10,28 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import STONE, Stone
-from data.tracks import SIGHTING_COLUMNS, Columns, no_rows
-from vision.association.bare import with_handles
-from vision.association.follow import Track, follow
-from vision.association.graphic import is_graphic
-from vision.association.late import seen_late
-from vision.association.naming import named_by_motion
-from vision.association.rejoin import rejoined
-from vision.association.strays import without_strays
-from vision.association.watch import Watch
-from vision.detection.appearance import Appearance, other_stone
-from vision.detection.patch import HANDLE_HEIGHT_SD, handle_radii, is_plain
-from vision.detection.roundness import edge_errors
-from vision.detection.sighting import Sighting
-from vision.detection.smeared import widened
-from vision.detection.steady import Lightness, common_share, lightness_of, steadied
-from vision.film.clip import Clip
-from vision.optics.camera import Camera
-from vision.optics.cameras import Cameras
-from vision.spin.angles import angles_in_parts
-from vision.spin.common_height import common_height, turned_widely
-from vision.spin.handle import HandleAngles
+from curlshot.data.sheet import STONE, Stone
+from curlshot.data.tracks import SIGHTING_COLUMNS, Columns, no_rows
+from curlshot.vision.association.bare import with_handles
+from curlshot.vision.association.follow import Track, follow
+from curlshot.vision.association.graphic import is_graphic
+from curlshot.vision.association.late import seen_late
+from curlshot.vision.association.naming import named_by_motion
+from curlshot.vision.association.rejoin import rejoined
+from curlshot.vision.association.strays import without_strays
+from curlshot.vision.association.watch import Watch
+from curlshot.vision.detection.appearance import Appearance, other_stone
+from curlshot.vision.detection.patch import HANDLE_HEIGHT_SD, handle_radii, is_plain
+from curlshot.vision.detection.roundness import edge_errors
+from curlshot.vision.detection.sighting import Sighting
+from curlshot.vision.detection.smeared import widened
+from curlshot.vision.detection.steady import Lightness, common_share, lightness_of, steadied
+from curlshot.vision.film.clip import Clip
+from curlshot.vision.optics.camera import Camera
+from curlshot.vision.optics.cameras import Cameras
+from curlshot.vision.spin.angles import angles_in_parts
+from curlshot.vision.spin.common_height import common_height, turned_widely
+from curlshot.vision.spin.handle import HandleAngles
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -7,20 +7,20 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from data.errors import InputError, SceneError
-from data.progress import Progress, no_progress
-from data.sheet import House
-from work.cautions import cautions
-from work.measure import Measured
-from work.settings import Settings
+from curlshot.data.errors import InputError, SceneError
+from curlshot.data.progress import Progress, no_progress
+from curlshot.data.sheet import House
+from curlshot.work.cautions import cautions
+from curlshot.work.measure import Measured
+from curlshot.work.settings import Settings
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from data.results import Collision, Input, Results
-    from physics.local_fit.contacts import Contact
-    from physics.prediction.ensemble import Ensemble
-    from physics.whole_shot.priors import Priors
+    from curlshot.data.results import Collision, Input, Results
+    from curlshot.physics.local_fit.contacts import Contact
+    from curlshot.physics.prediction.ensemble import Ensemble
+    from curlshot.physics.whole_shot.priors import Priors
 
 
 NO_SAMPLES = "no samples: the shot tells neither restitution nor friction"
@@ -67,16 +67,16 @@ def analyse(
     import numpy as np
     import pandas as pd
 
-    from data.results import Results
-    from data.tracks import teams
-    from physics.estimate import estimate
-    from physics.kalman import smooth
-    from physics.local_fit.contacts import find_contacts
-    from physics.posterior import sample_posterior, summarise
-    from physics.prediction.forecast import predict
-    from physics.prediction.hindcast import simulate_measured
-    from physics.prediction.throws import along_sheet, first_hit
-    from vision.optics.camera import camera_table
+    from curlshot.data.results import Results
+    from curlshot.data.tracks import teams
+    from curlshot.physics.estimate import estimate
+    from curlshot.physics.kalman import smooth
+    from curlshot.physics.local_fit.contacts import find_contacts
+    from curlshot.physics.posterior import sample_posterior, summarise
+    from curlshot.physics.prediction.forecast import predict
+    from curlshot.physics.prediction.hindcast import simulate_measured
+    from curlshot.physics.prediction.throws import along_sheet, first_hit
+    from curlshot.vision.optics.camera import camera_table
 
     sightings, radius = measured.sightings, settings.radius
     if sightings.empty:
@@ -142,7 +142,7 @@ def analyse(
 
 def _input(measured: Measured) -> Input:
     """Say what was measured."""
-    from data.results import Input
+    from curlshot.data.results import Input
 
     times = measured.sightings["t"]
     return Input(
@@ -173,8 +173,8 @@ def _timed(contacts: Sequence[Contact], hits: Sequence[Collision]) -> list[Conta
 
 def _assumed_laws(settings: Settings) -> Priors:
     """Laws that predictions assume: the literature's, or without doubt what is given."""
-    from data.results import Estimate
-    from physics.prediction.forecast import assumed
+    from curlshot.data.results import Estimate
+    from curlshot.physics.prediction.forecast import assumed
 
     said = {"restitution": settings.restitution, "friction": settings.friction}
     given = {name: Estimate(value, 0.0) for name, value in said.items() if value is not None}
@@ -197,7 +197,7 @@ def as_tracks(
     simulated: pd.DataFrame | None, model: str, of_team: Mapping[str, str] | None = None
 ) -> pd.DataFrame:
     """Table of ``simulation.csv`` from a sampled simulation: nothing of it was seen."""
-    from data.tracks import TRACK_COLUMNS, empty_tracks
+    from curlshot.data.tracks import TRACK_COLUMNS, empty_tracks
 
     table = empty_tracks() if simulated is None else simulated.reindex(columns=list(TRACK_COLUMNS))
     table["seen"] = 0

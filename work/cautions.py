@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from work.measure import Measured
+from curlshot.work.measure import Measured
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from data.results import Estimate
+    from curlshot.data.results import Estimate
 
 FEWEST = 4
 """Frames in which stones must be seen to tell how they move: in three one that is hit looks like
@@ -47,7 +47,7 @@ def cautions(
     sheet : bool
         Whether the shot comes along the sheet of the house, if there is one.
     """
-    from physics.prediction.throws import later_throws
+    from curlshot.physics.prediction.throws import later_throws
 
     sightings = measured.sightings
     pace = _pace_anywhere if measured.house is None else _pace
@@ -76,7 +76,7 @@ def _pace(friction: Estimate) -> tuple[str, ...]:
 
     A clip that runs k times too slowly shows μ / k², tracks k times too long k μ.
     """
-    from physics.whole_shot.priors import FRICTION
+    from curlshot.physics.whole_shot.priors import FRICTION
 
     value, stderr = friction.value, friction.stderr
     if value is None or stderr is None or value <= 0:

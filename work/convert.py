@@ -7,11 +7,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from data.errors import CurlshotError, InputError
-from data.files import relative_path
-from data.inputs import find_inputs
-from work.measure import Measured, import_tables, refuse_clips
-from work.settings import Settings
+from curlshot.data.errors import CurlshotError, InputError
+from curlshot.data.files import relative_path
+from curlshot.data.inputs import find_inputs
+from curlshot.work.measure import Measured, import_tables, refuse_clips
+from curlshot.work.settings import Settings
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -44,10 +44,10 @@ def convert(
 
     Raises
     ------
-    data.errors.CurlshotError
+    curlshot.data.errors.CurlshotError
         Where the input cannot be used, or there is no such form; then nothing is written.
     """
-    from data.export import PROJECTS, WRITERS, check_target
+    from curlshot.data.export import PROJECTS, WRITERS, check_target
 
     path = Path(out)
     files = find_inputs(inputs)
@@ -87,7 +87,7 @@ def convert_each(
 
     Raises
     ------
-    data.errors.CurlshotError
+    curlshot.data.errors.CurlshotError
         No input, or two that would be written into one file; then nothing is written.
     """
     target = Path(out)
@@ -120,7 +120,7 @@ def _read_simulations(path: Path) -> dict[str, pd.DataFrame]:
 
 def _write_project(measured: Measured, path: Path, over: str | Path | None) -> Measured:
     """Write a project with what a run has left beside its tracks."""
-    from data.trk_write import plain_view, project_xml, write_trk, write_trz
+    from curlshot.data.trk_write import plain_view, project_xml, write_trk, write_trz
 
     sightings, beside = measured.sightings, measured.files[0].parent
     simulated = beside / "simulation.csv"
@@ -133,8 +133,8 @@ def _write_project(measured: Measured, path: Path, over: str | Path | None) -> M
         view = plain_view(sightings)
         marks = view.coordinates.pixels(sightings["frame"], sightings[["x", "y"]].to_numpy(float))
     else:
-        from vision.film.clip import open_clip
-        from vision.optics.tracker_view import view_over
+        from curlshot.vision.film.clip import open_clip
+        from curlshot.vision.optics.tracker_view import view_over
 
         clip = open_clip(find_inputs([over]))
         if packed:

@@ -6,17 +6,17 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from data.errors import InputError
-from data.inputs import PROJECT_SUFFIXES, SPREADSHEET, SPREADSHEETS, TABLE_SUFFIXES
-from data.progress import Progress
-from data.sheet import HOUSE, STONE, House, Stone, curling_size
-from work.settings import Settings, refuse_table_options
+from curlshot.data.errors import InputError
+from curlshot.data.inputs import PROJECT_SUFFIXES, SPREADSHEET, SPREADSHEETS, TABLE_SUFFIXES
+from curlshot.data.progress import Progress
+from curlshot.data.sheet import HOUSE, STONE, House, Stone, curling_size
+from curlshot.work.settings import Settings, refuse_table_options
 
 if TYPE_CHECKING:
-    from vision.camera_path.joint import HouseTrack
-    from vision.film.clip import Clip
-    from vision.optics.camera import Camera
-    from vision.optics.placed import Placed
+    from curlshot.vision.camera_path.joint import HouseTrack
+    from curlshot.vision.film.clip import Clip
+    from curlshot.vision.optics.camera import Camera
+    from curlshot.vision.optics.placed import Placed
 
 STONE_RADII = (0.12, 0.18)
 """m; below it a cap leaves hardly any granite to see, above it are diameters."""
@@ -38,7 +38,7 @@ def film(files: tuple[Path, ...], settings: Settings, progress: Progress, placed
     clip, disc = _open_clip(files, settings), disc_of(settings)
     refuse_table_options(files[0], settings)
     if settings.stick is not None:
-        from vision.optics.stick import stick_cameras
+        from curlshot.vision.optics.stick import stick_cameras
 
         cameras = stick_cameras(clip, settings.stick, progress, placed)
         filmed = Filmed(clip, cameras, disc)
@@ -48,14 +48,14 @@ def film(files: tuple[Path, ...], settings: Settings, progress: Progress, placed
         filmed = Filmed(clip, cameras, disc, house, notes)
     else:
         if settings.house is None:
-            from vision.optics.letterbox import lit_clip
+            from curlshot.vision.optics.letterbox import lit_clip
 
             clip = lit_clip(clip, progress)
         followed = _follow(clip, settings, progress, placed)
         house = House(*(float(radius) for radius in followed.radii))
         filmed = Filmed(clip, followed.cameras, disc, house, followed.warnings)
     if clip.cadence is not None:
-        from vision.optics.camera import taken_at
+        from curlshot.vision.optics.camera import taken_at
 
         filmed = replace(filmed, cameras=taken_at(filmed.cameras, clip.cadence.times))
     if not filmed.cameras:
@@ -66,7 +66,7 @@ def film(files: tuple[Path, ...], settings: Settings, progress: Progress, placed
 
 def _open_clip(files: tuple[Path, ...], settings: Settings) -> Clip:
     """Open a video, pictures, or the clip of a Tracker project."""
-    from vision.film.clip import open_clip
+    from curlshot.vision.film.clip import open_clip
 
     kinds = [path.suffix.lower() for path in files]
     if SPREADSHEETS.intersection(kinds):
@@ -76,7 +76,7 @@ def _open_clip(files: tuple[Path, ...], settings: Settings) -> Clip:
     if len(files) > 1 or kinds[0] not in PROJECT_SUFFIXES:
         odd = files[0] if kinds[0] not in PROJECT_SUFFIXES else files[1]
         raise InputError(f"{odd}: not a clip; name a video, pictures, or one Tracker project")
-    from vision.optics.project_clip import open_project_clip
+    from curlshot.vision.optics.project_clip import open_project_clip
 
     clip = open_project_clip(files[0], settings.tab, settings.frames)
     if settings.fps is not None:
@@ -89,11 +89,11 @@ def _given_cameras(
 ) -> tuple[tuple[Camera, ...], tuple[str, ...]]:
     """Read the cameras of a table, or of a Tracker project."""
     if path.suffix.lower() not in PROJECT_SUFFIXES:
-        from vision.optics.camera_file import given_cameras
+        from curlshot.vision.optics.camera_file import given_cameras
 
         return given_cameras(clip, path, progress, placed)
-    from data.project import read_project
-    from vision.optics.project_clip import project_cameras
+    from curlshot.data.project import read_project
+    from curlshot.vision.optics.project_clip import project_cameras
 
     project = read_project(path, settings.tab)
     return project_cameras(clip, project, settings.length_unit, progress, placed)
@@ -102,10 +102,10 @@ def _given_cameras(
 def _follow(clip: Clip, settings: Settings, progress: Progress, placed: Placed) -> HouseTrack:
     """Follow the house, from where a person says that it is or from where it is found."""
     if settings.house is None:
-        from vision.camera_path.follow_house import follow_house
+        from curlshot.vision.camera_path.follow_house import follow_house
 
         return follow_house(clip, progress, placed=placed, height=settings.camera_height)
-    from vision.camera_path.given import GivenHouse, follow_given
+    from curlshot.vision.camera_path.given import GivenHouse, follow_given
 
     frame, *points = settings.house
     given = GivenHouse.of(points, frame)
@@ -131,7 +131,7 @@ def disc_of(settings: Settings) -> Stone:
         Discs in a house of a size at which no granite is left about a cap, or whose diameter was
         given.
     """
-    from vision.detection.stones import plain_disc
+    from curlshot.vision.detection.stones import plain_disc
 
     sized_as_stones = settings.camera is None or curling_size(settings.radius)
     if settings.stick is not None or not sized_as_stones:

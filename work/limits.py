@@ -7,7 +7,7 @@ import sys
 from dataclasses import dataclass
 from numbers import Integral, Real
 
-from data.errors import InputError
+from curlshot.data.errors import InputError
 
 MOST_THROWS = 100_000
 """Samples of a shot at most."""

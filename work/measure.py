@@ -8,20 +8,26 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from data.errors import InputError
-from data.inputs import IMAGE_SUFFIXES, SPREADSHEET, SPREADSHEETS, TABLE_SUFFIXES, find_inputs
-from data.progress import Progress, no_progress
-from data.sheet import HOUSE, House, curling_size
-from work.film import check_size, disc_of, film
-from work.settings import Settings, refuse_clip_options
+from curlshot.data.errors import InputError
+from curlshot.data.inputs import (
+    IMAGE_SUFFIXES,
+    SPREADSHEET,
+    SPREADSHEETS,
+    TABLE_SUFFIXES,
+    find_inputs,
+)
+from curlshot.data.progress import Progress, no_progress
+from curlshot.data.sheet import HOUSE, House, curling_size
+from curlshot.work.film import check_size, disc_of, film
+from curlshot.work.settings import Settings, refuse_clip_options
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from data.tracker import Imported
-    from data.tracks import Table
-    from vision.film.clip import Clip, Frame
-    from vision.optics.camera import Camera
+    from curlshot.data.tracker import Imported
+    from curlshot.data.tracks import Table
+    from curlshot.vision.film.clip import Clip, Frame
+    from curlshot.vision.optics.camera import Camera
 
 
 @dataclass(frozen=True)
@@ -59,7 +65,7 @@ def measure(
 
     Raises
     ------
-    data.errors.CurlshotError
+    curlshot.data.errors.CurlshotError
         Where the input cannot be used; one line says why.
     """
     files = find_inputs(inputs)
@@ -68,7 +74,7 @@ def measure(
         if not all(tables):
             odd = files[tables.index(False)]
             raise InputError(f"{odd}: tables of tracks and pictures do not mix; give one kind")
-        from data.discs import refuse_no_discs
+        from curlshot.data.discs import refuse_no_discs
 
         refuse_clip_options(files[0], settings)
         table = _read(files, settings)
@@ -93,7 +99,7 @@ def import_tables(files: tuple[Path, ...], settings: Settings) -> Measured:
 
 
 def _read(files: tuple[Path, ...], settings: Settings) -> Imported:
-    from data.tracker import read_table
+    from curlshot.data.tracker import read_table
 
     return read_table(
         files,
@@ -119,11 +125,11 @@ def _imported(files: tuple[Path, ...], table: Imported, settings: Settings) -> M
 
 
 def _look_at_clip(files: tuple[Path, ...], settings: Settings, progress: Progress) -> Measured:
-    from vision.association.watch import Watch
-    from vision.detection.stones import FOLLOWING, SEARCH
-    from vision.optics.camera import carried
-    from vision.optics.letterbox import in_whole
-    from vision.track import tracks_of
+    from curlshot.vision.association.watch import Watch
+    from curlshot.vision.detection.stones import FOLLOWING, SEARCH
+    from curlshot.vision.optics.camera import carried
+    from curlshot.vision.optics.letterbox import in_whole
+    from curlshot.vision.track import tracks_of
 
     alone = len(files) == 1 and files[0].suffix.lower() in IMAGE_SUFFIXES
     # A picture by itself has one chance.

@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from data.errors import InputError
-from data.inputs import in_order, matching, named
-from data.text import printable
+from curlshot.data.errors import InputError
+from curlshot.data.inputs import in_order, matching, named
+from curlshot.data.text import printable
 
 if TYPE_CHECKING:
-    from data.results import Results
+    from curlshot.data.results import Results
 
 
 def apart(clips: Sequence[Path]) -> dict[str, Path]:
@@ -73,7 +73,7 @@ def read_runs(files: Mapping[str, Path]) -> dict[str, Results]:
     InputError
         Where one is no results.json, or not all are of discs of one size.
     """
-    from data.results_file import read_results
+    from curlshot.data.results_file import read_results
 
     runs = {name: read_results(path) for name, path in files.items()}
     first, *others = runs

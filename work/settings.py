@@ -7,12 +7,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 
-from data.coach_units import UNITS
-from data.errors import InputError
-from data.inputs import PROJECT_SUFFIXES
-from data.sheet import STONE
-from data.units import check_units
-from work.limits import (
+from curlshot.data.coach_units import UNITS
+from curlshot.data.errors import InputError
+from curlshot.data.inputs import PROJECT_SUFFIXES
+from curlshot.data.sheet import STONE
+from curlshot.data.units import check_units
+from curlshot.work.limits import (
     ANY,
     FRACTION,
     FRAME,

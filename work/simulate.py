@@ -6,17 +6,17 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from data.errors import InputError
-from data.progress import Progress, no_progress
-from data.sheet import curling_size
-from work.analyse import as_tracks
+from curlshot.data.errors import InputError
+from curlshot.data.progress import Progress, no_progress
+from curlshot.data.sheet import curling_size
+from curlshot.work.analyse import as_tracks
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from physics.prediction.start import Start
-    from physics.prediction.what_if import Changes
-    from physics.simulator.simulation import Simulation
+    from curlshot.physics.prediction.start import Start
+    from curlshot.physics.prediction.what_if import Changes
+    from curlshot.physics.simulator.simulation import Simulation
 
 MOST_SAMPLES = 1_000_000
 """Of one simulated stone; more is a mistake in the rate."""
@@ -56,11 +56,11 @@ def read_start(path: Path, folder: Path) -> Start:
     InputError
         Where there is no shot in the files, or `folder` holds the measured one.
     """
-    from data.results_file import read_results
-    from data.tracks import read_tracks
-    from physics.prediction.ensemble import read_ensemble
-    from physics.prediction.start import measured_start, written_start
-    from physics.simulator.shot import read_shot
+    from curlshot.data.results_file import read_results
+    from curlshot.data.tracks import read_tracks
+    from curlshot.physics.prediction.ensemble import read_ensemble
+    from curlshot.physics.prediction.start import measured_start, written_start
+    from curlshot.physics.simulator.shot import read_shot
 
     if not measured_shot(path):
         return written_start(read_shot(path))
@@ -111,7 +111,8 @@ def throw_often(
     count : int
         How often it is thrown.
     throw_sd : (float, float), optional
-        Scatter of speed, m/s, and direction, rad; `physics.prediction.what_if.THROW_SD` by default.
+        Scatter of speed, m/s, and direction, rad; `curlshot.physics.prediction.what_if.THROW_SD` by
+        default.
     source : str
         Name of the file that the shot is from.
     progress : callable
@@ -120,11 +121,11 @@ def throw_often(
     Returns
     -------
     outcomes : DataFrame
-        See `physics.prediction.what_if.sample`.
+        See `curlshot.physics.prediction.what_if.sample`.
     content : dict
         Of ``whatif.json``.
     """
-    from physics.prediction.what_if import THROW_SD, Changes, odds, sample
+    from curlshot.physics.prediction.what_if import THROW_SD, Changes, odds, sample
 
     speed, direction = throw_sd or THROW_SD
     outcomes = sample(start, count, (speed, direction), progress)

@@ -1,4 +1,4 @@
-"""How a stone's path turns: one module per law, found by its name (`physics.registry`)."""
+"""How a stone's path turns: one module per law, found by its name (`curlshot.physics.registry`)."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from physics.curl.fcv1 import FCV1Curl
-from physics.curl.none import NoCurl
+from curlshot.physics.curl.fcv1 import FCV1Curl
+from curlshot.physics.curl.none import NoCurl
 
 __all__ = ["Curl", "FCV1Curl", "NoCurl"]
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from physics.registry import parameter
+from curlshot.physics.registry import parameter
 
 
 @dataclass(frozen=True)

@@ -1,9 +1,9 @@
-"""The filter of `physics.kalman` in closed form: three pairs of a place and its rate.
+"""The filter of `curlshot.physics.kalman` in closed form: three pairs of a place and its rate.
 
 What a sighting shows is the place, an error that lasts for a while and one that is anew. As the
 pairs are independent, the equations of Kalman come down to a few products per step, and so do
 those of the backward pass in the form of Bryson and Frazier (Bierman, 1973, Automatica 9, 503),
-which inverts nothing. `physics.filter.reference_filter` does the same with matrices.
+which inverts nothing. `curlshot.physics.filter.reference_filter` does the same with matrices.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from math import isnan, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.filter.stretch import (
+from curlshot.physics.filter.stretch import (
     ANYWHERE_SD,
     Gate,
     Smoothed,
@@ -37,7 +37,7 @@ Cov = tuple[float, float, float, float, float, float]
 State = tuple[Triple, Cov]
 
 Step = tuple[float, float, float, float, float, float]
-"""As in `physics.filter.stretch.Steps`: reach, keep, q00, q01, q11, fade."""
+"""As in `curlshot.physics.filter.stretch.Steps`: reach, keep, q00, q01, q11, fade."""
 
 Innovation = tuple[float, Triple, float, float]
 """Sighted less predicted place, the covariance of the state with that difference, its variance, and
@@ -51,7 +51,8 @@ class Forward:
     Attributes
     ----------
     drift : (n, 6) array
-        What the ice was known to do, taken out of the sightings: `physics.filter.stretch.drift`.
+        What the ice was known to do, taken out of the sightings:
+        `curlshot.physics.filter.stretch.drift`.
     steps : sequence of Step, three times
         How place and rate go on from each time to the next.
     states : list of State, three times

@@ -1,4 +1,4 @@
-"""The filter of `physics.kalman` in matrices, by filterpy, to which `rate_filter` is held.
+"""The filter of `curlshot.physics.kalman` in matrices, by filterpy, to which `rate_filter` is held.
 
 Slower by far, and nothing but the textbook's equations. Whoever wants to couple the pairs
 (curl, say) begins here: ``smooth(…, run=reference_filter.filtered)``.
@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.filter.stretch import (
+from curlshot.physics.filter.stretch import (
     ANYWHERE_SD,
     Gate,
     Smoothed,

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from data.estimates import Estimate
+from curlshot.data.estimates import Estimate
 
 Floats = NDArray[np.float64]
 

@@ -13,7 +13,13 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.filter.stretch import ANGLE_MEMORY, SPIN_LOSS, SPIN_LOSS_SD, Stretch, loss_rate
+from curlshot.physics.filter.stretch import (
+    ANGLE_MEMORY,
+    SPIN_LOSS,
+    SPIN_LOSS_SD,
+    Stretch,
+    loss_rate,
+)
 
 Floats = NDArray[np.float64]
 
@@ -34,9 +40,9 @@ def spin_loss(glides: Sequence[tuple[Stretch, Floats]]) -> tuple[float, float]:
     """Tell how much spin stones lose, times their speed.
 
     Each piece of a stretch is fitted by θ₀ + ω₀ t and the loss, by generalised least squares with
-    the errors that angles have anew, those that last for a while and those that all share. What
-    is known beforehand (`physics.filter.stretch.SPIN_LOSS`) and all glides are pooled; where they
-    agree less than their errors say, the pooled one is larger by Birge's ratio.
+    the errors that angles have anew, those that last for a while and those that all share. What is
+    known beforehand (`curlshot.physics.filter.stretch.SPIN_LOSS`) and all glides are pooled; where
+    they agree less than their errors say, the pooled one is larger by Birge's ratio.
 
     Parameters
     ----------

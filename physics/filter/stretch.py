@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.filter.slowing import at_speed
-from physics.filter.spin_end import SHARPEST, spin_ends
+from curlshot.physics.filter.slowing import at_speed
+from curlshot.physics.filter.spin_end import SHARPEST, spin_ends
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]

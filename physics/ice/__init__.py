@@ -7,10 +7,10 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from physics.ice.constant import Constant
-from physics.ice.fcv1 import FCV1
-from physics.ice.fit import Fit
-from physics.ice.penner import Penner
+from curlshot.physics.ice.constant import Constant
+from curlshot.physics.ice.fcv1 import FCV1
+from curlshot.physics.ice.fit import Fit
+from curlshot.physics.ice.penner import Penner
 
 __all__ = ["FCV1", "Constant", "Fit", "IceLaw", "Penner"]
 

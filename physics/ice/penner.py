@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from data.sheet import GRAVITY
-from physics.registry import parameter
+from curlshot.data.sheet import GRAVITY
+from curlshot.physics.registry import parameter
 
 
 @dataclass(frozen=True)

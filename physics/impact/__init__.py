@@ -8,8 +8,8 @@ any leading shape.
 
 from __future__ import annotations
 
-from physics.impact.frictional import Frictional
-from physics.impact.impulse import (
+from curlshot.physics.impact.frictional import Frictional
+from curlshot.physics.impact.impulse import (
     After,
     Before,
     Change,
@@ -19,8 +19,8 @@ from physics.impact.impulse import (
     resolve,
     tangent,
 )
-from physics.impact.point_mass import PointMass
-from physics.impact.rigid_body import RigidBody
+from curlshot.physics.impact.point_mass import PointMass
+from curlshot.physics.impact.rigid_body import RigidBody
 
 __all__ = [
     "After",

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from data.sheet import STONE
-from physics.impact.impulse import Before, Change, Number, reduced_mass
-from physics.registry import parameter
+from curlshot.data.sheet import STONE
+from curlshot.physics.impact.impulse import Before, Change, Number, reduced_mass
+from curlshot.physics.registry import parameter
 
 
 @dataclass(frozen=True)

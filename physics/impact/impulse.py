@@ -11,7 +11,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from data.sheet import STONE
+from curlshot.data.sheet import STONE
 
 Array = NDArray[np.float64]
 Number = float | Array

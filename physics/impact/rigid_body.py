@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from physics.impact.impulse import Before, Change, reduced_mass
-from physics.registry import parameter
+from curlshot.physics.impact.impulse import Before, Change, reduced_mass
+from curlshot.physics.registry import parameter
 
 
 @dataclass(frozen=True)

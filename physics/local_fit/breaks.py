@@ -11,9 +11,14 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.filter.stretch import PLACE_MEMORY
-from physics.local_fit.segment_merging import ACCELERATION_SD, OUTLIER, SPEED_SD, merge_segments
-from physics.local_fit.traces import LASTING
+from curlshot.physics.filter.stretch import PLACE_MEMORY
+from curlshot.physics.local_fit.segment_merging import (
+    ACCELERATION_SD,
+    OUTLIER,
+    SPEED_SD,
+    merge_segments,
+)
+from curlshot.physics.local_fit.traces import LASTING
 
 Floats = NDArray[np.float64]
 
@@ -48,7 +53,7 @@ def breaks(t: Floats, xy: Floats, sd: Floats, lasting: float = LASTING) -> list[
     programming (Killick et al., 2012, J. Am. Stat. Assoc. 107, 1590), the likelihood of each
     segment coming from a recursive least-squares filter of place, velocity and acceleration. Of
     the breaks that white errors leave those are kept that neither lasting errors explain nor one
-    glide that slows the more the slower it is (`physics.local_fit.segment_merging`).
+    glide that slows the more the slower it is (`curlshot.physics.local_fit.segment_merging`).
 
     Parameters
     ----------

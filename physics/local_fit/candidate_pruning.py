@@ -11,8 +11,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from physics.local_fit.shot_fit import Meeting
-from physics.local_fit.traces import Trace
+from curlshot.physics.local_fit.shot_fit import Meeting
+from curlshot.physics.local_fit.traces import Trace
 
 MANY = 24
 """Meetings up to which all are fitted: of shots with three hits there are ten."""

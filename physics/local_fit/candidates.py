@@ -10,9 +10,9 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from physics.local_fit.breaks import FEWEST, breaks
-from physics.local_fit.shot_fit import Meeting
-from physics.local_fit.traces import Trace
+from curlshot.physics.local_fit.breaks import FEWEST, breaks
+from curlshot.physics.local_fit.shot_fit import Meeting
+from curlshot.physics.local_fit.traces import Trace
 
 Floats = NDArray[np.float64]
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.filter.slowing import at_speed, motion_state
-from physics.local_fit.shot_fit import POWER, Deceleration, Meeting, unknowns_of
+from curlshot.physics.filter.slowing import at_speed, motion_state
+from curlshot.physics.local_fit.shot_fit import POWER, Deceleration, Meeting, unknowns_of
 
 Floats = NDArray[np.float64]
 
@@ -64,7 +64,7 @@ def contact_constraints(
     Parameters
     ----------
     theta : (n,) array
-        All unknowns, as in `physics.local_fit.shot_fit.ShotFit`.
+        All unknowns, as in `curlshot.physics.local_fit.shot_fit.ShotFit`.
     at : int
         Which of them is the meeting's time.
     origins : array

@@ -9,14 +9,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from data.tracks import Table
-from physics.local_fit.candidate_pruning import prune_candidates
-from physics.local_fit.candidates import LONG, REACH, candidates, in_causal_order, moves
-from physics.local_fit.fit import fit_shot
-from physics.local_fit.glides import free
-from physics.local_fit.segments import Piece, cut
-from physics.local_fit.shot_fit import ContactState, Meeting, ShotFit
-from physics.local_fit.traces import Trace, traces
+from curlshot.data.tracks import Table
+from curlshot.physics.local_fit.candidate_pruning import prune_candidates
+from curlshot.physics.local_fit.candidates import LONG, REACH, candidates, in_causal_order, moves
+from curlshot.physics.local_fit.fit import fit_shot
+from curlshot.physics.local_fit.glides import free
+from curlshot.physics.local_fit.segments import Piece, cut
+from curlshot.physics.local_fit.shot_fit import ContactState, Meeting, ShotFit
+from curlshot.physics.local_fit.traces import Trace, traces
 
 Floats = NDArray[np.float64]
 
@@ -77,7 +77,7 @@ def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
     Parameters
     ----------
     sightings : Table
-        Of `data.tracks.SIGHTING_COLUMNS` at least ``stone, t, x, y``.
+        Of `curlshot.data.tracks.SIGHTING_COLUMNS` at least ``stone, t, x, y``.
     radius : float
         Of the discs, m.
 

@@ -14,9 +14,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from data.results import Collision, Estimate, Method, Told
-from data.sheet import GRAVITY
-from physics.local_fit.traces import Trace
+from curlshot.data.results import Collision, Estimate, Method, Told
+from curlshot.data.sheet import GRAVITY
+from curlshot.physics.local_fit.traces import Trace
 
 Floats = NDArray[np.float64]
 

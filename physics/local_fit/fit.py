@@ -14,11 +14,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.filter.slowing import LEAST, MOST, course, power_prior, stop_after
-from physics.local_fit.breaks import FEWEST
-from physics.local_fit.constraints import acceleration_prior, contact_constraints
-from physics.local_fit.segments import Piece
-from physics.local_fit.shot_fit import (
+from curlshot.physics.filter.slowing import LEAST, MOST, course, power_prior, stop_after
+from curlshot.physics.local_fit.breaks import FEWEST
+from curlshot.physics.local_fit.constraints import acceleration_prior, contact_constraints
+from curlshot.physics.local_fit.segments import Piece
+from curlshot.physics.local_fit.shot_fit import (
     ACCELERATION,
     PLACE,
     POWER,
@@ -29,9 +29,9 @@ from physics.local_fit.shot_fit import (
     times_of,
     unknowns_of,
 )
-from physics.local_fit.traces import Trace
-from physics.statistics.normal_equations import eliminated, inverse_of_blocks
-from physics.statistics.residuals import huber_weights, inflation
+from curlshot.physics.local_fit.traces import Trace
+from curlshot.physics.statistics.normal_equations import eliminated, inverse_of_blocks
+from curlshot.physics.statistics.residuals import huber_weights, inflation
 
 Floats = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.local_fit.segments import Piece
+from curlshot.physics.local_fit.segments import Piece
 
 PUSHED = 0.2
 """Acceleration ahead or aside, m/s², that neither ice nor a table that is not quite level gives

@@ -9,9 +9,9 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from data.estimates import Estimate, Friction, Glide
-from data.sheet import GRAVITY, curling_size
-from physics.filter.slowing import (
+from curlshot.data.estimates import Estimate, Friction, Glide
+from curlshot.data.sheet import GRAVITY, curling_size
+from curlshot.physics.filter.slowing import (
     FORM_SD,
     SHARE,
     V_C,
@@ -21,10 +21,10 @@ from physics.filter.slowing import (
     power_prior,
     speed_left,
 )
-from physics.local_fit.free_glides import are_free, is_pushed
-from physics.local_fit.shot_fit import ACCELERATION, POWER, Deceleration, ShotFit
-from physics.local_fit.traces import PLACE_REACH, Trace
-from physics.statistics.random_effects import random_effects, weighted_mean
+from curlshot.physics.local_fit.free_glides import are_free, is_pushed
+from curlshot.physics.local_fit.shot_fit import ACCELERATION, POWER, Deceleration, ShotFit
+from curlshot.physics.local_fit.traces import PLACE_REACH, Trace
+from curlshot.physics.statistics.random_effects import random_effects, weighted_mean
 
 Floats = NDArray[np.float64]
 
@@ -285,8 +285,8 @@ def _friction(
 ) -> Friction:
     """Friction that the glides show: the same at all speeds unless they tell that it falls.
 
-    If it does it is that at 1 m/s, with a law of `physics.ice.Fit`'s form with FCV1's v_c. If not,
-    what it would be at 1 m/s is in the error.
+    If it does it is that at 1 m/s, with a law of `curlshot.physics.ice.Fit`'s form with FCV1's v_c.
+    If not, what it would be at 1 m/s is in the error.
     """
     flat = slowed.at_1_m_per_s(0.0, 0.0)
     even = random_effects(*flat).mean

@@ -7,12 +7,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from data.results import Collision, Estimate, MeasuredState
-from physics.local_fit.noise import Noise, noises
-from physics.local_fit.shot_fit import ContactState, ShotFit
-from physics.local_fit.spins import spins_at, stone_friction
-from physics.local_fit.traces import Trace
-from physics.statistics.random_effects import random_effects
+from curlshot.data.results import Collision, Estimate, MeasuredState
+from curlshot.physics.local_fit.noise import Noise, noises
+from curlshot.physics.local_fit.shot_fit import ContactState, ShotFit
+from curlshot.physics.local_fit.spins import spins_at, stone_friction
+from curlshot.physics.local_fit.traces import Trace
+from curlshot.physics.statistics.random_effects import random_effects
 
 Floats = NDArray[np.float64]
 

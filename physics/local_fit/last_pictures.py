@@ -14,9 +14,9 @@ from math import erf, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from data.tracks import Columns
-from physics.filter.stretch import JUMP_SD
-from physics.local_fit.contacts import Contact
+from curlshot.data.tracks import Columns
+from curlshot.physics.filter.stretch import JUMP_SD
+from curlshot.physics.local_fit.contacts import Contact
 
 Floats = NDArray[np.float64]
 
@@ -42,7 +42,7 @@ def widen_last(
     Parameters
     ----------
     tracks : mapping of str to Columns
-        Stone to its rows (`data.tracks.TRACK_COLUMNS`); standard deviations are changed.
+        Stone to its rows (`curlshot.data.tracks.TRACK_COLUMNS`); standard deviations are changed.
     hits : sequence of Contact
         Those that are told.
     radius : float

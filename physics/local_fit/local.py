@@ -1,6 +1,6 @@
 """Restitution and friction from the paths on either side of the hits, never across them.
 
-Nothing is differentiated twice. See `physics.local_fit.fit` for the model.
+Nothing is differentiated twice. See `curlshot.physics.local_fit.fit` for the model.
 """
 
 from __future__ import annotations
@@ -12,18 +12,18 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from data.results import Collision, Estimate, Friction, Glide
-from data.sheet import GRAVITY
-from physics.local_fit.contacts import Contact, cut_all
-from physics.local_fit.fit import fit_shot
-from physics.local_fit.glides import WORST, Glides, free, measure_glides
-from physics.local_fit.hits import measure_hits, pooled
-from physics.local_fit.off_centre import centred
-from physics.local_fit.segments import Piece
-from physics.local_fit.shot_fit import ContactState, Deceleration, Meeting, ShotFit
-from physics.local_fit.traces import Trace, traces
-from physics.local_fit.untold import untold_hits
-from physics.statistics.residuals import huber_weights
+from curlshot.data.results import Collision, Estimate, Friction, Glide
+from curlshot.data.sheet import GRAVITY
+from curlshot.physics.local_fit.contacts import Contact, cut_all
+from curlshot.physics.local_fit.fit import fit_shot
+from curlshot.physics.local_fit.glides import WORST, Glides, free, measure_glides
+from curlshot.physics.local_fit.hits import measure_hits, pooled
+from curlshot.physics.local_fit.off_centre import centred
+from curlshot.physics.local_fit.segments import Piece
+from curlshot.physics.local_fit.shot_fit import ContactState, Deceleration, Meeting, ShotFit
+from curlshot.physics.local_fit.traces import Trace, traces
+from curlshot.physics.local_fit.untold import untold_hits
+from curlshot.physics.statistics.residuals import huber_weights
 
 Floats = NDArray[np.float64]
 
@@ -77,7 +77,7 @@ def estimate_locally(
 ) -> Local:
     """Estimate restitution and friction from the paths beside the hits.
 
-    Parameters are those of `physics.estimate.estimate`.
+    Parameters are those of `curlshot.physics.estimate.estimate`.
     """
     known = centred(traces(sightings), contacts, radius)
     return estimate_from_traces(known, contacts, radius=radius, masses=masses)

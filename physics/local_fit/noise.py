@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.filter.stretch import (
+from curlshot.physics.filter.stretch import (
     ANGLE_MEMORY,
     GATE,
     MOST_LOSS_SD,
@@ -24,8 +24,8 @@ from physics.filter.stretch import (
     SPIN_LOSS,
     SPIN_LOSS_SD,
 )
-from physics.local_fit.shot_fit import ShotFit
-from physics.local_fit.traces import Trace, level, local_residuals
+from curlshot.physics.local_fit.shot_fit import ShotFit
+from curlshot.physics.local_fit.traces import Trace, level, local_residuals
 
 Floats = NDArray[np.float64]
 

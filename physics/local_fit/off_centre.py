@@ -15,18 +15,18 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from physics.filter.stretch import PLACE_MEMORY
-from physics.local_fit.breaks import ALIKE
-from physics.local_fit.contacts import Contact
-from physics.local_fit.fit import fit_shot
-from physics.local_fit.glides import free
-from physics.local_fit.segments import Piece, cut
-from physics.local_fit.shot_fit import Meeting
-from physics.local_fit.traces import Trace
-from physics.statistics.residuals import huber_weights
+from curlshot.physics.filter.stretch import PLACE_MEMORY
+from curlshot.physics.local_fit.breaks import ALIKE
+from curlshot.physics.local_fit.contacts import Contact
+from curlshot.physics.local_fit.fit import fit_shot
+from curlshot.physics.local_fit.glides import free
+from curlshot.physics.local_fit.segments import Piece, cut
+from curlshot.physics.local_fit.shot_fit import Meeting
+from curlshot.physics.local_fit.traces import Trace
+from curlshot.physics.statistics.residuals import huber_weights
 
 if TYPE_CHECKING:
-    from data.results import Collision
+    from curlshot.data.results import Collision
 
 Floats = NDArray[np.float64]
 

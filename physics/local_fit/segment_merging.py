@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.filter.slowing import LEAST, MOST, SHARE, course, power_prior
+from curlshot.physics.filter.slowing import LEAST, MOST, SHARE, course, power_prior
 
 Floats = NDArray[np.float64]
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.local_fit.breaks import FEWEST, breaks
-from physics.local_fit.traces import Trace
+from curlshot.physics.local_fit.breaks import FEWEST, breaks
+from curlshot.physics.local_fit.traces import Trace
 
 Floats = NDArray[np.float64]
 

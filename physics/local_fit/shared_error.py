@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.local_fit.traces import Trace, shared_correlation
+from curlshot.physics.local_fit.traces import Trace, shared_correlation
 
 Floats = NDArray[np.float64]
 
@@ -24,9 +24,9 @@ def shared_error(
     """Covariance of a fit's unknowns due to the error that places share.
 
     The map of the ice is off by a random field whose correlation falls with the distance
-    (`physics.local_fit.traces.shared_correlation`), and the unknowns follow it as they follow the
-    sightings. Its variance is the mean of what is stated, `sd_place` squared, and of what the
-    residuals show, as far as noise does not hide it.
+    (`curlshot.physics.local_fit.traces.shared_correlation`), and the unknowns follow it as they
+    follow the sightings. Its variance is the mean of what is stated, `sd_place` squared, and of
+    what the residuals show, as far as noise does not hide it.
 
     Parameters
     ----------

@@ -24,10 +24,10 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import STONE, curling_size
-from data.tracks import Columns
-from physics.filter.stretch import LOSS_SD, MEMORY, MOST_LOSS_SD
-from physics.local_fit.contacts import Contact
+from curlshot.data.sheet import STONE, curling_size
+from curlshot.data.tracks import Columns
+from curlshot.physics.filter.stretch import LOSS_SD, MEMORY, MOST_LOSS_SD
+from curlshot.physics.local_fit.contacts import Contact
 
 Floats = NDArray[np.float64]
 
@@ -49,9 +49,9 @@ does, by 1 rad/s or so, whatever the make of the handles."""
 
 MAKES = (0.0, 0.5, 1.0, 1.5)
 """How steep handles of a clip may be, in standard deviations of one of which nothing is known
-(`vision.spin.pitch.STEEP`): level ones to goose-necks, alike probable beforehand, 0.94 r.m.s. In 34
-clips drawn 50 degrees aslant with level handles spins are .047 rad/s off, .063 with 1.0 alone; in
-seven whose handles rise by .15 .043 and .031, in ten by .3 .137 and .133."""
+(`curlshot.vision.spin.pitch.STEEP`): level ones to goose-necks, alike probable beforehand, 0.94
+r.m.s. In 34 clips drawn 50 degrees aslant with level handles spins are .047 rad/s off, .063 with
+1.0 alone; in seven whose handles rise by .15 .043 and .031, in ten by .3 .137 and .133."""
 
 
 End = tuple[str, int, bool]
@@ -135,9 +135,9 @@ def share_spins(
     Parameters
     ----------
     tables : mapping
-        Stone to its rows of `data.tracks.TRACK_COLUMNS`; ``omega`` and ``sd_omega`` are changed.
-        ``sd_x`` and ``sd_y`` are without what all places share, which does not turn the line from
-        one stone to another.
+        Stone to its rows of `curlshot.data.tracks.TRACK_COLUMNS`; ``omega`` and ``sd_omega`` are
+        changed. ``sd_x`` and ``sd_y`` are without what all places share, which does not turn the
+        line from one stone to another.
     contacts : sequence of Contact
         The hits.
     radius : float
@@ -147,8 +147,8 @@ def share_spins(
     together : mapping
         Stone to what its spins are off by together, (rows, k + 1), rad/s, by so many numbers of
         standard deviation 1, k of the rise of its handle and the last of the ice
-        (`physics.filter.rate_filter.shared_response`): a part of ``sd_omega``; nothing where
-        absent.
+        (`curlshot.physics.filter.rate_filter.shared_response`): a part of ``sd_omega``; nothing
+        where absent.
     """
     masses = masses or {}
     count = max((shared.shape[1] for shared in together.values()), default=1)

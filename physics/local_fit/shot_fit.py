@@ -9,8 +9,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.filter.slowing import course, motion, stop_after, velocities
-from physics.local_fit.segments import Piece
+from curlshot.physics.filter.slowing import course, motion, stop_after, velocities
+from curlshot.physics.local_fit.segments import Piece
 
 Floats = NDArray[np.float64]
 
@@ -83,7 +83,7 @@ def times_of(pieces: int, meetings: int) -> slice:
 
 @dataclass(frozen=True)
 class ShotFit:
-    """Result of `physics.local_fit.fit.fit_shot`.
+    """Result of `curlshot.physics.local_fit.fit.fit_shot`.
 
     Attributes
     ----------
@@ -93,7 +93,7 @@ class ShotFit:
         As given.
     theta : (7 P + M,) array
         Per piece x, vx, ax, y, vy, ay at `origins`; then the times of the meetings; then per
-        piece the exponent p of its deceleration (`physics.filter.slowing`).
+        piece the exponent p of its deceleration (`curlshot.physics.filter.slowing`).
     cov : (7 P + M, 7 P + M) array
         Covariance, enlarged for residuals that are too big or alike from frame to frame.
     origins : (P,) array

@@ -7,13 +7,13 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from data.results import Estimate
-from data.sheet import STONE
-from physics.filter.rate_filter import filtered, shared_response
-from physics.filter.stretch import Model, Stretch
-from physics.local_fit.noise import Noise
-from physics.local_fit.shot_fit import ContactState, ShotFit
-from physics.local_fit.traces import Trace
+from curlshot.data.results import Estimate
+from curlshot.data.sheet import STONE
+from curlshot.physics.filter.rate_filter import filtered, shared_response
+from curlshot.physics.filter.stretch import Model, Stretch
+from curlshot.physics.local_fit.noise import Noise
+from curlshot.physics.local_fit.shot_fit import ContactState, ShotFit
+from curlshot.physics.local_fit.traces import Trace
 
 Floats = NDArray[np.float64]
 

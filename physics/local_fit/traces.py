@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from data.tracks import Table
+from curlshot.data.tracks import Table
 
 Floats = NDArray[np.float64]
 
@@ -159,8 +159,8 @@ def traces(sightings: Table) -> dict[str, Trace]:
     Parameters
     ----------
     sightings : Table
-        Of `data.tracks.SIGHTING_COLUMNS` at least ``stone, t, x, y``, each stone's rows in order
-        of time; of the others what is not there is not known.
+        Of `curlshot.data.tracks.SIGHTING_COLUMNS` at least ``stone, t, x, y``, each stone's rows in
+        order of time; of the others what is not there is not known.
     """
     out: dict[str, Trace] = {}
     stones = np.asarray(sightings["stone"])

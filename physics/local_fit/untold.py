@@ -14,12 +14,21 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.local_fit.breaks import breaks
-from physics.local_fit.candidates import REACH, TOUCHING
-from physics.local_fit.segments import MOVED
-from physics.local_fit.shot_fit import Meeting
-from physics.local_fit.traces import Trace
-from physics.local_fit.ways import FEWEST, MISS, SLOWING, Gap, Way, first_way, gaps, last_way
+from curlshot.physics.local_fit.breaks import breaks
+from curlshot.physics.local_fit.candidates import REACH, TOUCHING
+from curlshot.physics.local_fit.segments import MOVED
+from curlshot.physics.local_fit.shot_fit import Meeting
+from curlshot.physics.local_fit.traces import Trace
+from curlshot.physics.local_fit.ways import (
+    FEWEST,
+    MISS,
+    SLOWING,
+    Gap,
+    Way,
+    first_way,
+    gaps,
+    last_way,
+)
 
 Floats = NDArray[np.float64]
 

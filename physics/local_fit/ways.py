@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.local_fit.candidates import OUT_OF_SIGHT
-from physics.local_fit.traces import Trace
+from curlshot.physics.local_fit.candidates import OUT_OF_SIGHT
+from curlshot.physics.local_fit.traces import Trace
 
 Floats = NDArray[np.float64]
 

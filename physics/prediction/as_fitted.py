@@ -10,12 +10,12 @@ from itertools import islice
 import numpy as np
 from numpy.typing import NDArray
 
-from data.errors import InputError
-from physics.prediction.ensemble import Ensemble
-from physics.prediction.spread import DRAWS, Doubt, drawn
-from physics.simulator.simulate import simulate
-from physics.simulator.simulation import Shot, StoneStart, check_shot
-from physics.whole_shot.whole_fit import GlobalFit, draw_choices
+from curlshot.data.errors import InputError
+from curlshot.physics.prediction.ensemble import Ensemble
+from curlshot.physics.prediction.spread import DRAWS, Doubt, drawn
+from curlshot.physics.simulator.simulate import simulate
+from curlshot.physics.simulator.simulation import Shot, StoneStart, check_shot
+from curlshot.physics.whole_shot.whole_fit import GlobalFit, draw_choices
 
 Floats = NDArray[np.float64]
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
-from data.errors import InputError
-from data.files import write_text
-from physics.impact import Impact
-from physics.simulator.simulation import Shot, check_shot
-from physics.simulator.values import shot_of, shot_values
+from curlshot.data.errors import InputError
+from curlshot.data.files import write_text
+from curlshot.physics.impact import Impact
+from curlshot.physics.simulator.simulation import Shot, check_shot
+from curlshot.physics.simulator.values import shot_of, shot_values
 
 SCHEMA = 1
 """Version of the file's form."""
@@ -55,7 +55,7 @@ def _hit_by(shot: Shot, impact: Impact) -> Shot:
 def write_ensemble(ensemble: Ensemble, path: Path) -> None:
     """Write an ``ensemble.json`` whole or not at all: a line for each shot, the likely one first.
 
-    `physics.simulator.values.shot_values` tells what stands in a line.
+    `curlshot.physics.simulator.values.shot_values` tells what stands in a line.
     """
     shots = (json.dumps(shot_values(s)) for s in (ensemble.likely, *ensemble.others))
     head = f'{{"schema": {SCHEMA}, "start": {json.dumps(ensemble.start)}, "shots": ['

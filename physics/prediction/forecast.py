@@ -10,23 +10,23 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from data.errors import InputError
-from data.results import Collision, Estimate, Prediction
-from data.sheet import STONE
-from physics.estimate import Estimates
-from physics.impact import PointMass
-from physics.local_fit.contacts import cut_all
-from physics.local_fit.fit import fit_shot
-from physics.local_fit.glides import free
-from physics.local_fit.traces import traces
-from physics.prediction.hindcast import explained_until, score
-from physics.prediction.throws import first_hit, foreseen_until
-from physics.simulator.simulate import simulate
-from physics.whole_shot.law_choice import fit_with_chosen_laws
-from physics.whole_shot.priors import Priors, literature
-from physics.whole_shot.shot_model import penner
-from physics.whole_shot.watched import watch
-from physics.whole_shot.whole_fit import GlobalFit, draw_choices
+from curlshot.data.errors import InputError
+from curlshot.data.results import Collision, Estimate, Prediction
+from curlshot.data.sheet import STONE
+from curlshot.physics.estimate import Estimates
+from curlshot.physics.impact import PointMass
+from curlshot.physics.local_fit.contacts import cut_all
+from curlshot.physics.local_fit.fit import fit_shot
+from curlshot.physics.local_fit.glides import free
+from curlshot.physics.local_fit.traces import traces
+from curlshot.physics.prediction.hindcast import explained_until, score
+from curlshot.physics.prediction.throws import first_hit, foreseen_until
+from curlshot.physics.simulator.simulate import simulate
+from curlshot.physics.whole_shot.law_choice import fit_with_chosen_laws
+from curlshot.physics.whole_shot.priors import Priors, literature
+from curlshot.physics.whole_shot.shot_model import penner
+from curlshot.physics.whole_shot.watched import watch
+from curlshot.physics.whole_shot.whole_fit import GlobalFit, draw_choices
 
 Floats = NDArray[np.float64]
 
@@ -80,9 +80,9 @@ def predict(
     Parameters
     ----------
     sightings : DataFrame
-        `data.tracks.SIGHTING_COLUMNS`.
+        `curlshot.data.tracks.SIGHTING_COLUMNS`.
     tracks : DataFrame
-        `data.tracks.TRACK_COLUMNS`, to score against.
+        `curlshot.data.tracks.TRACK_COLUMNS`, to score against.
     estimates : Estimates
         Of the same shot, for the time of its first hit.
     radius : float

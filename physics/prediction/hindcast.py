@@ -1,6 +1,6 @@
 """The measured shot simulated again, with its own laws: as the fit of the whole of it has it.
 
-What is foretold without what follows the first hit is in `physics.prediction.forecast`.
+What is foretold without what follows the first hit is in `curlshot.physics.prediction.forecast`.
 """
 
 from __future__ import annotations
@@ -13,24 +13,24 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from data.errors import InputError
-from data.results import SimulatedHit, SimulationScore
-from data.sheet import STONE
-from physics.estimate import Estimates
-from physics.impact import Impact, PointMass, RigidBody
-from physics.local_fit.traces import Trace
-from physics.local_fit.untold import OFTEN, SUDDEN
-from physics.local_fit.ways import SLOWING
-from physics.prediction.as_fitted import as_fitted, by_itself
-from physics.prediction.ensemble import Ensemble
-from physics.prediction.laws import Laws, assumed_of, measured_laws
-from physics.prediction.spread import Doubt, path_spread, simulated, simulated_hits
-from physics.prediction.throws import first_hit, foreseen_until, newcomers
-from physics.simulator.simulate import simulate
-from physics.simulator.simulation import Shot, StoneStart
-from physics.whole_shot.priors import SPIN
-from physics.whole_shot.shot_model import STATE
-from physics.whole_shot.whole_fit import GlobalFit
+from curlshot.data.errors import InputError
+from curlshot.data.results import SimulatedHit, SimulationScore
+from curlshot.data.sheet import STONE
+from curlshot.physics.estimate import Estimates
+from curlshot.physics.impact import Impact, PointMass, RigidBody
+from curlshot.physics.local_fit.traces import Trace
+from curlshot.physics.local_fit.untold import OFTEN, SUDDEN
+from curlshot.physics.local_fit.ways import SLOWING
+from curlshot.physics.prediction.as_fitted import as_fitted, by_itself
+from curlshot.physics.prediction.ensemble import Ensemble
+from curlshot.physics.prediction.laws import Laws, assumed_of, measured_laws
+from curlshot.physics.prediction.spread import Doubt, path_spread, simulated, simulated_hits
+from curlshot.physics.prediction.throws import first_hit, foreseen_until, newcomers
+from curlshot.physics.simulator.simulate import simulate
+from curlshot.physics.simulator.simulation import Shot, StoneStart
+from curlshot.physics.whole_shot.priors import SPIN
+from curlshot.physics.whole_shot.shot_model import STATE
+from curlshot.physics.whole_shot.whole_fit import GlobalFit
 
 MOVED = 0.05
 """Distance by which a stone must move to count in the score, m."""
@@ -85,7 +85,8 @@ def simulate_measured(
     Parameters
     ----------
     tracks : DataFrame
-        `data.tracks.TRACK_COLUMNS`, split at the hits as `physics.kalman.smooth` gives them.
+        `curlshot.data.tracks.TRACK_COLUMNS`, split at the hits as `curlshot.physics.kalman.smooth`
+        gives them.
     estimates : Estimates
         Of the same tracks.
     radius : float

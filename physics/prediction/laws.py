@@ -8,14 +8,14 @@ from math import isclose
 
 import numpy as np
 
-from data.results import Collision, Estimate, Friction, Joint, Results
-from data.sheet import GRAVITY, STONE, curling_size
-from physics.curl import Curl, FCV1Curl, NoCurl
-from physics.estimate import Estimates
-from physics.ice import Constant, Fit, IceLaw
-from physics.impact import Frictional
-from physics.simulator.simulation import Shot
-from physics.whole_shot.priors import LITERATURE, STONE_FRICTION, literature
+from curlshot.data.results import Collision, Estimate, Friction, Joint, Results
+from curlshot.data.sheet import GRAVITY, STONE, curling_size
+from curlshot.physics.curl import Curl, FCV1Curl, NoCurl
+from curlshot.physics.estimate import Estimates
+from curlshot.physics.ice import Constant, Fit, IceLaw
+from curlshot.physics.impact import Frictional
+from curlshot.physics.simulator.simulation import Shot
+from curlshot.physics.whole_shot.priors import LITERATURE, STONE_FRICTION, literature
 
 UNSCALED = Estimate(1.0, 0.0)
 """Stones that meet at two radii."""

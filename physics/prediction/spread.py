@@ -11,13 +11,13 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from data.errors import InputError
-from data.results import MeasuredState, SimulatedHit, StoneState
-from physics.curl import FCV1Curl
-from physics.local_fit.traces import shared_correlation
-from physics.simulator.simulate import simulate
-from physics.simulator.simulation import Hit, Shot, Simulation, StoneStart
-from physics.whole_shot.shot_model import STATE
+from curlshot.data.errors import InputError
+from curlshot.data.results import MeasuredState, SimulatedHit, StoneState
+from curlshot.physics.curl import FCV1Curl
+from curlshot.physics.local_fit.traces import shared_correlation
+from curlshot.physics.simulator.simulate import simulate
+from curlshot.physics.simulator.simulation import Hit, Shot, Simulation, StoneStart
+from curlshot.physics.whole_shot.shot_model import STATE
 
 Floats = NDArray[np.float64]
 
@@ -130,7 +130,7 @@ def drawn(shot: Shot, doubt: Doubt, rng: np.random.Generator) -> Shot:
     """Return a shot with all that is doubtful drawn from normal distributions.
 
     What is drawn is independent but for what places share: stones near each other move together
-    (`physics.local_fit.traces.shared_correlation`).
+    (`curlshot.physics.local_fit.traces.shared_correlation`).
     """
     together = _together(shot, doubt, rng)
     stones = tuple(

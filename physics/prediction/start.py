@@ -10,18 +10,18 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from data.errors import InputError
-from data.results import Results
-from data.sheet import SHEET, curling_size
-from physics.curl import NoCurl
-from physics.ice import IceLaw
-from physics.prediction.ensemble import Ensemble
-from physics.prediction.laws import assumed_of, measured_laws
-from physics.prediction.throws import first_hit, newcomers
-from physics.simulator.bounds import Bounds
-from physics.simulator.curve import Curve, curve_for
-from physics.simulator.simulate import simulate
-from physics.simulator.simulation import FASTEST, Shot, StoneStart
+from curlshot.data.errors import InputError
+from curlshot.data.results import Results
+from curlshot.data.sheet import SHEET, curling_size
+from curlshot.physics.curl import NoCurl
+from curlshot.physics.ice import IceLaw
+from curlshot.physics.prediction.ensemble import Ensemble
+from curlshot.physics.prediction.laws import assumed_of, measured_laws
+from curlshot.physics.prediction.throws import first_hit, newcomers
+from curlshot.physics.simulator.bounds import Bounds
+from curlshot.physics.simulator.curve import Curve, curve_for
+from curlshot.physics.simulator.simulate import simulate
+from curlshot.physics.simulator.simulation import FASTEST, Shot, StoneStart
 
 Array = NDArray[np.float64]
 
@@ -72,7 +72,7 @@ def measured_start(tracks: pd.DataFrame, results: Results, ensemble: Ensemble) -
     Parameters
     ----------
     tracks : DataFrame
-        `data.tracks.TRACK_COLUMNS`, as written beside the results.
+        `curlshot.data.tracks.TRACK_COLUMNS`, as written beside the results.
     results : Results
         Of the same shot.
     ensemble : Ensemble

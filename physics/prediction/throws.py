@@ -7,9 +7,9 @@ from collections.abc import Collection, Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from data.results import Collision
-from data.sheet import SHEET
-from physics.simulator.bounds import Bounds
+from curlshot.data.results import Collision
+from curlshot.data.sheet import SHEET
+from curlshot.physics.simulator.bounds import Bounds
 
 STILL = 0.03
 """Speed below which a stone has stopped, m/s: ice of μ = 0.008 stops it within 6 mm."""

@@ -10,13 +10,13 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from data.errors import InputError
-from data.progress import Progress, no_progress
-from data.sheet import HOUSE
-from physics.prediction.laws import friction_at_1
-from physics.prediction.start import Start, speed_before
-from physics.simulator.many import simulate_many
-from physics.simulator.simulation import Shot, States
+from curlshot.data.errors import InputError
+from curlshot.data.progress import Progress, no_progress
+from curlshot.data.sheet import HOUSE
+from curlshot.physics.prediction.laws import friction_at_1
+from curlshot.physics.prediction.start import Start, speed_before
+from curlshot.physics.simulator.many import simulate_many
+from curlshot.physics.simulator.simulation import Shot, States
 
 Array = NDArray[np.float64]
 

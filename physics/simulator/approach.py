@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:  # whoever follows stones in pictures needs no laws of ice
-    from physics.simulator.motion import Path, Point
+    from curlshot.physics.simulator.motion import Path, Point
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]

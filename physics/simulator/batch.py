@@ -1,4 +1,4 @@
-"""Variants of a shot under way together; see `physics.simulator.many`."""
+"""Variants of a shot under way together; see `curlshot.physics.simulator.many`."""
 
 from __future__ import annotations
 
@@ -10,15 +10,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from data.errors import InputError
-from physics.curl import Curl
-from physics.ice import IceLaw
-from physics.impact import resolve
-from physics.simulator.approach import SHORTEST, all_crossings, all_nearest, all_slack, velocity
-from physics.simulator.bounds import all_leave_at
-from physics.simulator.paths import CurveTable, Index, Paths
-from physics.simulator.simulate import PRESSED, SIMULTANEOUS, SLOW, TOUCHING, simulate
-from physics.simulator.simulation import Shot, States
+from curlshot.data.errors import InputError
+from curlshot.physics.curl import Curl
+from curlshot.physics.ice import IceLaw
+from curlshot.physics.impact import resolve
+from curlshot.physics.simulator.approach import (
+    SHORTEST,
+    all_crossings,
+    all_nearest,
+    all_slack,
+    velocity,
+)
+from curlshot.physics.simulator.bounds import all_leave_at
+from curlshot.physics.simulator.paths import CurveTable, Index, Paths
+from curlshot.physics.simulator.simulate import PRESSED, SIMULTANEOUS, SLOW, TOUCHING, simulate
+from curlshot.physics.simulator.simulation import Shot, States
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

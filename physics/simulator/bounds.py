@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from data.sheet import SHEET
-from physics.simulator.approach import SHORTEST
-from physics.simulator.motion import Path, Point
+from curlshot.data.sheet import SHEET
+from curlshot.physics.simulator.approach import SHORTEST
+from curlshot.physics.simulator.motion import Path, Point
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]

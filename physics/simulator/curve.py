@@ -18,8 +18,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.curl import Curl
-from physics.ice import IceLaw
+from curlshot.physics.curl import Curl
+from curlshot.physics.ice import IceLaw
 
 Array = NDArray[np.float64]
 Cubic = tuple[float, float, float, float]

@@ -13,12 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from data.errors import InputError
-from data.progress import Progress, no_progress
-from physics.curl import Curl
-from physics.ice import IceLaw
-from physics.simulator.batch import Batch
-from physics.simulator.simulation import Shot, States, check_shot
+from curlshot.data.errors import InputError
+from curlshot.data.progress import Progress, no_progress
+from curlshot.physics.curl import Curl
+from curlshot.physics.ice import IceLaw
+from curlshot.physics.simulator.batch import Batch
+from curlshot.physics.simulator.simulation import Shot, States, check_shot
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.curl import Curl
-from physics.ice import IceLaw
-from physics.simulator.curve import Cell, cubic, curve_for
+from curlshot.physics.curl import Curl
+from curlshot.physics.ice import IceLaw
+from curlshot.physics.simulator.curve import Cell, cubic, curve_for
 
 Array = NDArray[np.float64]
 

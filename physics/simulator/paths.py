@@ -7,10 +7,19 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.curl import Curl
-from physics.ice import IceLaw
-from physics.simulator.curve import ALONG, ASIDE, LOSS, SPEED, STRAIGHT, TURN, cubics, curve_for
-from physics.simulator.motion import REST_SPEED
+from curlshot.physics.curl import Curl
+from curlshot.physics.ice import IceLaw
+from curlshot.physics.simulator.curve import (
+    ALONG,
+    ASIDE,
+    LOSS,
+    SPEED,
+    STRAIGHT,
+    TURN,
+    cubics,
+    curve_for,
+)
+from curlshot.physics.simulator.motion import REST_SPEED
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -103,7 +112,7 @@ def _solve(c: Array, value: Array, width: Array) -> Array:
 
 
 class Paths:
-    """The present path of each of `count` stones; see `physics.simulator.motion.Path`.
+    """The present path of each of `count` stones; see `curlshot.physics.simulator.motion.Path`.
 
     Attributes
     ----------

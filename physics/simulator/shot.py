@@ -11,10 +11,10 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from data.errors import InputError
-from physics.registry import models, parameters_of
-from physics.simulator.bounds import Bounds
-from physics.simulator.simulation import FARTHEST, FASTEST, Shot, StoneStart, overlaps
+from curlshot.data.errors import InputError
+from curlshot.physics.registry import models, parameters_of
+from curlshot.physics.simulator.bounds import Bounds
+from curlshot.physics.simulator.simulation import FARTHEST, FASTEST, Shot, StoneStart, overlaps
 
 RADIUS = 0.145
 """Radius of a stone where the file gives none, m: that of published simulators with `FCV1`."""
@@ -87,12 +87,12 @@ def read_shot(path: Path) -> Shot:
     """Read a shot from a ``SHOT.toml``.
 
     A table ``[physics]``, all optional: model (point-mass, rigid-body, frictional) with
-    restitution, stone_friction and inertia (I / (m R²)); ice (constant and penner with
-    friction, fcv1 and fit with a, v_c and b), curl (none, fcv1 with turn, loss and slow),
-    radius (m): the models of `physics.registry` and their parameters; sheet (none, or up or
-    down, the way of play, where stones that leave it are to be taken away). One table
-    ``[[stone]]`` a stone: name, x, y (m); vx, vy (m/s), omega (rad/s), theta (rad), mass (kg)
-    and omega_after (rad/s; a number, or a list with one a hit) where they matter.
+    restitution, stone_friction and inertia (I / (m R²)); ice (constant and penner with friction,
+    fcv1 and fit with a, v_c and b), curl (none, fcv1 with turn, loss and slow), radius (m): the
+    models of `curlshot.physics.registry` and their parameters; sheet (none, or up or down, the way
+    of play, where stones that leave it are to be taken away). One table ``[[stone]]`` a stone:
+    name, x, y (m); vx, vy (m/s), omega (rad/s), theta (rad), mass (kg) and omega_after (rad/s; a
+    number, or a list with one a hit) where they matter.
 
     Parameters
     ----------

@@ -1,9 +1,9 @@
 """The shot again: stones glide, hit each other and come to rest, event by event.
 
 Nothing is stepped through time. Each stone's path to rest is known in closed form (see
-`physics.simulator.motion.Path`); the first moment at which two paths come within two radii is found
-by bounds on how far a path can leave its chord, so that no contact is stepped over however fast the
-stones are; a hit gives two stones new paths.
+`curlshot.physics.simulator.motion.Path`); the first moment at which two paths come within two radii
+is found by bounds on how far a path can leave its chord, so that no contact is stepped over however
+fast the stones are; a hit gives two stones new paths.
 """
 
 from __future__ import annotations
@@ -11,14 +11,14 @@ from __future__ import annotations
 import math
 from itertools import combinations
 
-from data.errors import InputError
-from data.results import StoneState
-from physics.impact import Before, Number
-from physics.simulator.approach import first_contact
-from physics.simulator.bounds import leaves_at
-from physics.simulator.event_queue import EventQueue
-from physics.simulator.motion import Motion, Path, Point
-from physics.simulator.simulation import Hit, Rest, Shot, Simulation, check_shot
+from curlshot.data.errors import InputError
+from curlshot.data.results import StoneState
+from curlshot.physics.impact import Before, Number
+from curlshot.physics.simulator.approach import first_contact
+from curlshot.physics.simulator.bounds import leaves_at
+from curlshot.physics.simulator.event_queue import EventQueue
+from curlshot.physics.simulator.motion import Motion, Path, Point
+from curlshot.physics.simulator.simulation import Hit, Rest, Shot, Simulation, check_shot
 
 TOUCHING = 1e-9
 """Gap up to which two stones touch, m."""

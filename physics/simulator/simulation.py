@@ -13,14 +13,14 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
-from data.errors import InputError
-from data.results import StoneState
-from data.sheet import STONE
-from physics.curl import Curl, FCV1Curl
-from physics.ice import FCV1, IceLaw
-from physics.impact import Frictional, Impact
-from physics.simulator.bounds import Bounds
-from physics.simulator.motion import Motion, Path
+from curlshot.data.errors import InputError
+from curlshot.data.results import StoneState
+from curlshot.data.sheet import STONE
+from curlshot.physics.curl import Curl, FCV1Curl
+from curlshot.physics.ice import FCV1, IceLaw
+from curlshot.physics.impact import Frictional, Impact
+from curlshot.physics.simulator.bounds import Bounds
+from curlshot.physics.simulator.motion import Motion, Path
 
 Array = NDArray[np.float64]
 

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-from physics.registry import FAMILIES, model
-from physics.simulator.bounds import Bounds
-from physics.simulator.simulation import Shot, StoneStart
+from curlshot.physics.registry import FAMILIES, model
+from curlshot.physics.simulator.bounds import Bounds
+from curlshot.physics.simulator.simulation import Shot, StoneStart
 
 
 def shot_values(shot: Shot) -> dict[str, Any]:

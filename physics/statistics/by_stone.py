@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from data.results import Collision, Estimate, Glide, StoneResult
-from physics.statistics.random_effects import random_effects
+from curlshot.data.results import Collision, Estimate, Glide, StoneResult
+from curlshot.physics.statistics.random_effects import random_effects
 
 
 def results_by_stone(

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from data.estimates import Estimate
+from curlshot.data.estimates import Estimate
 
 Floats = NDArray[np.float64]
 

@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from data.results import Collision, Results
-from physics.statistics.pool import FRICTION_SCATTER, RESTITUTION_SCATTER, Pooled, pool
+from curlshot.data.results import Collision, Results
+from curlshot.physics.statistics.pool import FRICTION_SCATTER, RESTITUTION_SCATTER, Pooled, pool
 
 SHOT_COLUMNS = (
     "shot", "hits", "restitution", "stderr_restitution", "friction", "stderr_friction", "law",

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from physics.whole_shot.law_choice import BEFORE, fit_with_chosen_laws
-from physics.whole_shot.misfit import fit_without_bent_tracks
-from physics.whole_shot.shot_model import Watched
-from physics.whole_shot.whole_fit import GlobalFit
+from curlshot.physics.whole_shot.law_choice import BEFORE, fit_with_chosen_laws
+from curlshot.physics.whole_shot.misfit import fit_without_bent_tracks
+from curlshot.physics.whole_shot.shot_model import Watched
+from curlshot.physics.whole_shot.whole_fit import GlobalFit
 
 AWAY, QUIETER, UNEXPLAINED = 0.2, 2.0, 2.0
 """Time, s, in which nothing is seen if a clip shows something else; how many times less noise the
@@ -22,7 +22,7 @@ def fit_followed(shot: Watched) -> tuple[GlobalFit, str | None]:
     Parameters
     ----------
     shot : Watched
-        As `physics.whole_shot.watched.watch` makes it.
+        As `curlshot.physics.whole_shot.watched.watch` makes it.
 
     Returns
     -------

@@ -14,14 +14,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from data.errors import InputError
-from data.results import Estimate
-from physics.local_fit.shared_error import shared_error
-from physics.statistics.normal_equations import bounded, inverse
-from physics.statistics.residuals import HUBER, huber_weights, inflation
-from physics.whole_shot.off_centre import centred
-from physics.whole_shot.shot_model import Unknown, Watched
-from physics.whole_shot.whole_fit import GlobalFit, own_values
+from curlshot.data.errors import InputError
+from curlshot.data.results import Estimate
+from curlshot.physics.local_fit.shared_error import shared_error
+from curlshot.physics.statistics.normal_equations import bounded, inverse
+from curlshot.physics.statistics.residuals import HUBER, huber_weights, inflation
+from curlshot.physics.whole_shot.off_centre import centred
+from curlshot.physics.whole_shot.shot_model import Unknown, Watched
+from curlshot.physics.whole_shot.whole_fit import GlobalFit, own_values
 
 Floats = NDArray[np.float64]
 
@@ -72,7 +72,7 @@ def fit_shots(
     Parameters
     ----------
     shots : sequence of Watched
-        As `physics.whole_shot.watched.watch` makes them.
+        As `curlshot.physics.whole_shot.watched.watch` makes them.
     fixed : mapping, optional
         Unknowns to hold, and at what; a bare name holds it in every shot.
     shared : sequence of str

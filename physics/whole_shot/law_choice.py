@@ -10,13 +10,13 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from data.results import Estimate, Law
-from data.sheet import curling_size
-from physics.filter.slowing import V_C
-from physics.whole_shot.global_fit import LOST, fit_shots
-from physics.whole_shot.shot_model import Watched, penner
-from physics.whole_shot.watched import THROWN
-from physics.whole_shot.whole_fit import GlobalFit
+from curlshot.data.results import Estimate, Law
+from curlshot.data.sheet import curling_size
+from curlshot.physics.filter.slowing import V_C
+from curlshot.physics.whole_shot.global_fit import LOST, fit_shots
+from curlshot.physics.whole_shot.shot_model import Watched, penner
+from curlshot.physics.whole_shot.watched import THROWN
+from curlshot.physics.whole_shot.whole_fit import GlobalFit
 
 STRAIGHT = {"slope": 0.0, "v_c": V_C, "turn": 0.0}
 """Constant friction and no curl: one of two ways that a first fit sets out from, and what unknowns

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from data.results import Misfit
-from physics.local_fit.traces import Trace
-from physics.statistics.residuals import huber_weights, inflation
-from physics.whole_shot.law_choice import fit_with_chosen_laws
-from physics.whole_shot.off_centre import centred
-from physics.whole_shot.shot_model import Watched
-from physics.whole_shot.whole_fit import GlobalFit
+from curlshot.data.results import Misfit
+from curlshot.physics.local_fit.traces import Trace
+from curlshot.physics.statistics.residuals import huber_weights, inflation
+from curlshot.physics.whole_shot.law_choice import fit_with_chosen_laws
+from curlshot.physics.whole_shot.off_centre import centred
+from curlshot.physics.whole_shot.shot_model import Watched
+from curlshot.physics.whole_shot.whole_fit import GlobalFit
 
 Floats = NDArray[np.float64]
 
@@ -46,7 +46,7 @@ def fit_without_bent_tracks(shot: Watched) -> GlobalFit:
     Parameters
     ----------
     shot : Watched
-        As `physics.whole_shot.watched.watch` makes it.
+        As `curlshot.physics.whole_shot.watched.watch` makes it.
 
     Returns
     -------

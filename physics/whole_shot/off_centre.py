@@ -7,10 +7,10 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.local_fit.off_centre import moved
-from physics.local_fit.traces import Trace
-from physics.statistics.residuals import huber_weights
-from physics.whole_shot.whole_fit import GlobalFit
+from curlshot.physics.local_fit.off_centre import moved
+from curlshot.physics.local_fit.traces import Trace
+from curlshot.physics.statistics.residuals import huber_weights
+from curlshot.physics.whole_shot.whole_fit import GlobalFit
 
 Floats = NDArray[np.float64]
 

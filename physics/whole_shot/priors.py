@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from data.results import Estimate
-from data.sheet import curling_size
-from physics.filter.slowing import V_C
+from curlshot.data.results import Estimate
+from curlshot.data.sheet import curling_size
+from curlshot.physics.filter.slowing import V_C
 
 SLOPE, KNEE, TURN = Estimate(0.002, 0.001), Estimate(V_C, 0.04), Estimate(0.0, 0.01)
 """What is known of a and v_c in μ(v) = a / (v + v_c) + b, m/s, where friction falls (a is 0.002 in

@@ -8,16 +8,16 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from data.results import Estimate
-from data.sheet import STONE
-from physics.curl import Curl, FCV1Curl, NoCurl
-from physics.filter.slowing import V_C
-from physics.ice import Fit, IceLaw, Penner
-from physics.impact import Frictional
-from physics.local_fit.traces import Trace
-from physics.simulator.motion import Path
-from physics.simulator.simulate import simulate
-from physics.simulator.simulation import Shot, Simulation, StoneStart
+from curlshot.data.results import Estimate
+from curlshot.data.sheet import STONE
+from curlshot.physics.curl import Curl, FCV1Curl, NoCurl
+from curlshot.physics.filter.slowing import V_C
+from curlshot.physics.ice import Fit, IceLaw, Penner
+from curlshot.physics.impact import Frictional
+from curlshot.physics.local_fit.traces import Trace
+from curlshot.physics.simulator.motion import Path
+from curlshot.physics.simulator.simulate import simulate
+from curlshot.physics.simulator.simulation import Shot, Simulation, StoneStart
 
 Floats = NDArray[np.float64]
 

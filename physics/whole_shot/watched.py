@@ -8,17 +8,17 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from data.results import Estimate
-from data.sheet import curling_size
-from physics.curl import FCV1Curl
-from physics.filter.slowing import V_C
-from physics.local_fit.noise import Noise, noises
-from physics.local_fit.shot_fit import ShotFit
-from physics.local_fit.spins import spin_on
-from physics.local_fit.traces import Trace
-from physics.local_fit.untold import SUDDEN
-from physics.whole_shot.priors import SPIN, Priors
-from physics.whole_shot.shot_model import SpinSeen, Unknown, Watched
+from curlshot.data.results import Estimate
+from curlshot.data.sheet import curling_size
+from curlshot.physics.curl import FCV1Curl
+from curlshot.physics.filter.slowing import V_C
+from curlshot.physics.local_fit.noise import Noise, noises
+from curlshot.physics.local_fit.shot_fit import ShotFit
+from curlshot.physics.local_fit.spins import spin_on
+from curlshot.physics.local_fit.traces import Trace
+from curlshot.physics.local_fit.untold import SUDDEN
+from curlshot.physics.whole_shot.priors import SPIN, Priors
+from curlshot.physics.whole_shot.shot_model import SpinSeen, Unknown, Watched
 
 Floats = NDArray[np.float64]
 

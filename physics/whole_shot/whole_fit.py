@@ -9,9 +9,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from data.results import Estimate, Joint, Law
-from physics.simulator.simulation import Simulation
-from physics.whole_shot.shot_model import Watched
+from curlshot.data.results import Estimate, Joint, Law
+from curlshot.physics.simulator.simulation import Simulation
+from curlshot.physics.whole_shot.shot_model import Watched
 
 Floats = NDArray[np.float64]
 
@@ -22,7 +22,7 @@ come to rest in a wrong place: those of good fits are off by up to 4."""
 
 @dataclass(frozen=True)
 class GlobalFit:
-    """Outcome of `physics.whole_shot.global_fit.fit_shots`.
+    """Outcome of `curlshot.physics.whole_shot.global_fit.fit_shots`.
 
     Attributes
     ----------

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import pandas as pd
 from matplotlib.figure import Figure
 
-from data.results import Collision
-from report.figures.parts import (
+from curlshot.data.results import Collision
+from curlshot.report.figures.parts import (
     LABELS,
     WIDTH,
     draw_measured,
@@ -22,7 +22,7 @@ from report.figures.parts import (
     time_axis,
     title,
 )
-from report.style import BLACK, model_lines, new_figure, plain_text, styled
+from curlshot.report.style import BLACK, model_lines, new_figure, plain_text, styled
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -42,7 +42,7 @@ def comparison_figure(
     Parameters
     ----------
     tracks : DataFrame
-        With `data.tracks.TRACK_COLUMNS`.
+        With `curlshot.data.tracks.TRACK_COLUMNS`.
     simulations : mapping of str to DataFrame
         Sampled simulation of each model: ``stone, t, x, y`` and, if known, ``sd_x, sd_y``.
     stone : str

@@ -10,13 +10,22 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from data.results import Friction, Glide
-from data.sheet import GRAVITY
-from physics.ice import FCV1, IceLaw, Penner
-from physics.prediction.laws import law_of
-from report.figures.parts import WIDTH, Array, legend_below, line, rows_of, short, speeds, title
-from report.numbers import plus_minus
-from report.style import BLACK, GREY, PALE, new_figure, stone_colours, styled
+from curlshot.data.results import Friction, Glide
+from curlshot.data.sheet import GRAVITY
+from curlshot.physics.ice import FCV1, IceLaw, Penner
+from curlshot.physics.prediction.laws import law_of
+from curlshot.report.figures.parts import (
+    WIDTH,
+    Array,
+    legend_below,
+    line,
+    rows_of,
+    short,
+    speeds,
+    title,
+)
+from curlshot.report.numbers import plus_minus
+from curlshot.report.style import BLACK, GREY, PALE, new_figure, stone_colours, styled
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -53,7 +62,7 @@ def friction_figure(
     friction : Friction
         Of the whole shot.
     tracks : DataFrame
-        With `data.tracks.TRACK_COLUMNS`, for the speeds of the glides.
+        With `curlshot.data.tracks.TRACK_COLUMNS`, for the speeds of the glides.
     curling : bool
         Whether these are stones on curling ice: then laws of the literature are shown too, and
         the range that was measured.

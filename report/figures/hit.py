@@ -10,12 +10,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from data.results import Collision, MeasuredState
-from data.sheet import STONE
-from report.figures.parts import WIDTH, Array, said, short, symbols, title
-from report.numbers import DASH, plus_minus
-from report.style import AFTER, BEFORE, BLACK, GREY, new_figure, styled
-from report.tables import in_axes
+from curlshot.data.results import Collision, MeasuredState
+from curlshot.data.sheet import STONE
+from curlshot.report.figures.parts import WIDTH, Array, said, short, symbols, title
+from curlshot.report.numbers import DASH, plus_minus
+from curlshot.report.style import AFTER, BEFORE, BLACK, GREY, new_figure, styled
+from curlshot.report.tables import in_axes
 
 _COLUMNS = ((0.47, "$v_n$ (m/s)"), (0.74, "$v_t$ (m/s)"), (1.0, "ω (rad/s)"))
 

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patheffects import withStroke
 
-from report.figures.parts import Array, short
+from curlshot.report.figures.parts import Array, short
 
 Box = tuple[Array, Array]
 """Lower left and upper right corner, m."""

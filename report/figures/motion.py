@@ -10,9 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from data.results import Collision, Glide, MeasuredState
-from data.sheet import GRAVITY, STONE
-from report.figures.parts import (
+from curlshot.data.results import Collision, Glide, MeasuredState
+from curlshot.data.sheet import GRAVITY, STONE
+from curlshot.report.figures.parts import (
     LABELS,
     MOST_ENTRIES,
     WIDTH,
@@ -32,9 +32,9 @@ from report.figures.parts import (
     time_axis,
     title,
 )
-from report.numbers import plus_minus
-from report.style import AFTER, BEFORE, GREEN, new_figure, stone_colours, styled
-from report.tables import magnitude, moving_stones
+from curlshot.report.numbers import plus_minus
+from curlshot.report.style import AFTER, BEFORE, GREEN, new_figure, stone_colours, styled
+from curlshot.report.tables import magnitude, moving_stones
 
 _TANGENT = 0.4  # s of fitted velocity drawn on either side of a hit, at most
 _STILL = 1e-3  # m/s; slower is at rest
@@ -61,7 +61,7 @@ def motion_figure(
     Parameters
     ----------
     tracks : DataFrame
-        With `data.tracks.TRACK_COLUMNS`.
+        With `curlshot.data.tracks.TRACK_COLUMNS`.
     stone : str
         Which stone.
     collisions : sequence of Collision
@@ -100,7 +100,7 @@ def spin_figure(tracks: pd.DataFrame, stone: str, collisions: Sequence[Collision
     Parameters
     ----------
     tracks : DataFrame
-        With `data.tracks.TRACK_COLUMNS`.
+        With `curlshot.data.tracks.TRACK_COLUMNS`.
     stone : str
         Which stone.
     collisions : sequence of Collision

@@ -14,10 +14,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike, NDArray
 
-from data.results import Collision
-from report.numbers import fixed, parts
-from report.style import BLACK, GREY, PALE, plain_text
-from report.tables import magnitude
+from curlshot.data.results import Collision
+from curlshot.report.numbers import fixed, parts
+from curlshot.report.style import BLACK, GREY, PALE, plain_text
+from curlshot.report.tables import magnitude
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

@@ -11,12 +11,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Ellipse
 
-from data.results import Collision
-from data.sheet import SHEET, STONE, House
-from physics.simulator.simulation import Hit
-from report.figures.labels import name_stones
-from report.figures.parts import WIDTH, Array, legend_below, line, rows_of, title
-from report.style import (
+from curlshot.data.results import Collision
+from curlshot.data.sheet import SHEET, STONE, House
+from curlshot.physics.simulator.simulation import Hit
+from curlshot.report.figures.labels import name_stones
+from curlshot.report.figures.parts import WIDTH, Array, legend_below, line, rows_of, title
+from curlshot.report.style import (
     BLACK,
     GREY,
     RING_FILLS,
@@ -26,7 +26,7 @@ from report.style import (
     stone_colours,
     styled,
 )
-from report.tables import last_speed, moving_stones, play
+from curlshot.report.tables import last_speed, moving_stones, play
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -58,7 +58,7 @@ def plan_figure(
     Parameters
     ----------
     tracks : DataFrame
-        With `data.tracks.TRACK_COLUMNS`.
+        With `curlshot.data.tracks.TRACK_COLUMNS`.
     simulations : mapping of str to DataFrame, optional
         Sampled simulation of each model; their last places are drawn as empty circles, of stones
         that were last seen under way those at that time.
@@ -139,7 +139,7 @@ def _handles(
 def new_sheet(low: Array, high: Array, rows_below: int) -> tuple[Figure, Axes, float]:
     """Give a figure of the ice between two corners, m, over so many rows of legend, and inches a m.
 
-    For use within `report.style.styled`.
+    For use within `curlshot.report.style.styled`.
     """
     scale = min((WIDTH - 0.75) / (high[0] - low[0]), _TALLEST / (high[1] - low[1]))
     figure = new_figure(WIDTH, scale * (high[1] - low[1]) + 0.85 + 0.2 * rows_below)

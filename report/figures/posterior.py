@@ -10,10 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 
-from data.results import Joint
-from report.figures.parts import WIDTH, Array, legend_below, line, title
-from report.numbers import plus_minus
-from report.style import BLUE, GREY, PALE, new_figure, styled
+from curlshot.data.results import Joint
+from curlshot.report.figures.parts import WIDTH, Array, legend_below, line, title
+from curlshot.report.numbers import plus_minus
+from curlshot.report.style import BLUE, GREY, PALE, new_figure, styled
 
 NAMES = {
     "restitution": "$e$",

@@ -10,9 +10,9 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from data.results import Collision, Misfit
-from report.figures.parts import WIDTH, Array, legend_below, line, short, time_axis, title
-from report.style import BLACK, GREY, PALE, new_figure, stone_colours, styled
+from curlshot.data.results import Collision, Misfit
+from curlshot.report.figures.parts import WIDTH, Array, legend_below, line, short, time_axis, title
+from curlshot.report.style import BLACK, GREY, PALE, new_figure, stone_colours, styled
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -47,7 +47,8 @@ def residuals_figure(
     Parameters
     ----------
     residuals : DataFrame
-        ``stone, t, dx, dy, sd_x, sd_y``, m and s, as `report.tables.residual_table` makes it.
+        ``stone, t, dx, dy, sd_x, sd_y``, m and s, as `curlshot.report.tables.residual_table` makes
+        it.
     collisions : sequence of Collision
         All hits of the shot, in order.
     misfits : sequence of Misfit

@@ -10,13 +10,13 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from data.sheet import STONE, House
-from physics.simulator.simulation import Hit
-from report.figures.labels import name_stones
-from report.figures.parts import Array, legend_below, line, rows_of, title
-from report.figures.plan import contact_place, draw_house, new_sheet, pair, thickened
-from report.numbers import count, fixed
-from report.style import BLACK, GREY, plain_text, stone_colours, styled
+from curlshot.data.sheet import STONE, House
+from curlshot.physics.simulator.simulation import Hit
+from curlshot.report.figures.labels import name_stones
+from curlshot.report.figures.parts import Array, legend_below, line, rows_of, title
+from curlshot.report.figures.plan import contact_place, draw_house, new_sheet, pair, thickened
+from curlshot.report.numbers import count, fixed
+from curlshot.report.style import BLACK, GREY, plain_text, stone_colours, styled
 
 FAR = 6.4
 """How far from the tee, or from where a stone began, a place still is in view, m."""

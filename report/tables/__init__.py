@@ -1,9 +1,9 @@
 """The tables of a shot, as DataFrames: SI units, one fact a column, NaN or None where unknown."""
 
-from report.tables.coach import speed_table, takeout_table
-from report.tables.laws import choice_table, ice_table, law_table, method_table
-from report.tables.rest import distance_table, last_speed, rest_table, shot_stone
-from report.tables.shot import (
+from curlshot.report.tables.coach import speed_table, takeout_table
+from curlshot.report.tables.laws import choice_table, ice_table, law_table, method_table
+from curlshot.report.tables.rest import distance_table, last_speed, rest_table, shot_stone
+from curlshot.report.tables.shot import (
     glide_table,
     hit_table,
     moving_stones,
@@ -13,7 +13,7 @@ from report.tables.shot import (
     scored_stones,
     stone_table,
 )
-from report.tables.states import in_axes, magnitude, measured_table, simulated_table
+from curlshot.report.tables.states import in_axes, magnitude, measured_table, simulated_table
 
 __all__ = [
     "choice_table",

@@ -10,11 +10,11 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from data.results import Collision, MeasuredState
-from data.sheet import SHEET, STONE
-from physics.prediction.throws import STILL, thrown
-from report.tables.shot import moving_stones
-from report.tables.states import magnitude
+from curlshot.data.results import Collision, MeasuredState
+from curlshot.data.sheet import SHEET, STONE
+from curlshot.physics.prediction.throws import STILL, thrown
+from curlshot.report.tables.shot import moving_stones
+from curlshot.report.tables.states import magnitude
 
 
 def speed_table(

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pandas as pd
 
-from data.results import Results
-from data.sheet import curling_size
+from curlshot.data.results import Results
+from curlshot.data.sheet import curling_size
 
 LITERATURE = {
     "restitution": (0.83, 0.06, None, None, "Barnes et al., Icarus (granite spheres)"),

@@ -10,12 +10,12 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from data.results import Collision
-from data.sheet import HOUSE, STONE, House
-from physics.prediction.throws import STILL, thrown
-from report.tables.shot import moving_stones
-from report.tables.states import magnitude
-from report.tables.teams import team_names
+from curlshot.data.results import Collision
+from curlshot.data.sheet import HOUSE, STONE, House
+from curlshot.physics.prediction.throws import STILL, thrown
+from curlshot.report.tables.shot import moving_stones
+from curlshot.report.tables.states import magnitude
+from curlshot.report.tables.teams import team_names
 
 LAST = 0.25
 """The last seconds of a track that tell whether its stone has stopped."""

@@ -7,11 +7,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from data.results import Collision, Glide, Prediction, SimulationScore
-from data.sheet import STONE
-from physics.local_fit.off_centre import centred
-from physics.local_fit.traces import traces
-from physics.prediction.throws import thrown
+from curlshot.data.results import Collision, Glide, Prediction, SimulationScore
+from curlshot.data.sheet import STONE
+from curlshot.physics.local_fit.off_centre import centred
+from curlshot.physics.local_fit.traces import traces
+from curlshot.physics.prediction.throws import thrown
 
 
 def moving_stones(
@@ -147,9 +147,9 @@ def residual_table(
     Parameters
     ----------
     sightings : DataFrame
-        `data.tracks.SIGHTING_COLUMNS`.
+        `curlshot.data.tracks.SIGHTING_COLUMNS`.
     tracks : DataFrame
-        `data.tracks.TRACK_COLUMNS`, smoothed from them.
+        `curlshot.data.tracks.TRACK_COLUMNS`, smoothed from them.
     collisions : sequence of Collision
         The hits.
     radius : float

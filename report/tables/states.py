@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from data.results import Collision, MeasuredState, SimulatedHit, SimulationScore
+from curlshot.data.results import Collision, MeasuredState, SimulatedHit, SimulationScore
 
 Array = NDArray[np.float64]
 

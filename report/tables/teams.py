@@ -7,7 +7,7 @@ from colorsys import rgb_to_hsv
 
 import pandas as pd
 
-from data.tracks import teams
+from curlshot.data.tracks import teams
 
 _HUES = (
     *((15, "red"), (42, "orange"), (70, "yellow"), (165, "green"), (195, "teal"), (255, "blue")),

@@ -11,5 +11,6 @@ in little memory.
 When it has been read, `follow` joins the sightings to tracks by gating and global assignment
 (`assign`), and `rejoin` what goes out of sight to what comes back. `strays` takes out sightings of
 what covers a stone; `graphic` and `bare` take out tracks of what is none. `naming` names those that
-are left, and `late` says which were first seen at rest. `vision.track` calls them in this order.
+are left, and `late` says which were first seen at rest. `curlshot.vision.track` calls them in this
+order.
 """

@@ -7,12 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import Stone
-from vision.association.expected import look_on_course
-from vision.association.follower import StoneView
-from vision.detection.appearance import Appearance
-from vision.detection.smeared import swept_share
-from vision.detection.stones import Search
+from curlshot.data.sheet import Stone
+from curlshot.vision.association.expected import look_on_course
+from curlshot.vision.association.follower import StoneView
+from curlshot.vision.detection.appearance import Appearance
+from curlshot.vision.detection.smeared import swept_share
+from curlshot.vision.detection.stones import Search
 
 Array = NDArray[np.float64]
 

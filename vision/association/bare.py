@@ -13,12 +13,12 @@ from math import nan
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import Stone
-from vision.association.follow import Track
-from vision.association.naming import first_motion
-from vision.detection.appearance import Appearance
-from vision.detection.patch import is_plain
-from vision.detection.relief import BARE, contrast, contrast_turned, without_handle
+from curlshot.data.sheet import Stone
+from curlshot.vision.association.follow import Track
+from curlshot.vision.association.naming import first_motion
+from curlshot.vision.detection.appearance import Appearance
+from curlshot.vision.detection.patch import is_plain
+from curlshot.vision.detection.relief import BARE, contrast, contrast_turned, without_handle
 
 Complex = NDArray[np.complex64]
 Flags = NDArray[np.bool_]

@@ -9,15 +9,15 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import STONE, Stone
-from vision.detection.appearance import Appearance
-from vision.detection.measure import Measures, measure_discs
-from vision.detection.patch import EFFORT
-from vision.detection.placing import sightings
-from vision.detection.rays import Look
-from vision.detection.seek import seek_about
-from vision.detection.sighting import Sighting
-from vision.detection.stones import FOLLOWING, Search, judge
+from curlshot.data.sheet import STONE, Stone
+from curlshot.vision.detection.appearance import Appearance
+from curlshot.vision.detection.measure import Measures, measure_discs
+from curlshot.vision.detection.patch import EFFORT
+from curlshot.vision.detection.placing import sightings
+from curlshot.vision.detection.rays import Look
+from curlshot.vision.detection.seek import seek_about
+from curlshot.vision.detection.sighting import Sighting
+from curlshot.vision.detection.stones import FOLLOWING, Search, judge
 
 Array = NDArray[np.float64]
 
@@ -58,7 +58,7 @@ def look_on_course(
     appearance : Appearance or None
         What stones look like here; not used for a plain disc.
     disc : Stone
-        Size of the stones, or `vision.detection.stones.plain_disc`.
+        Size of the stones, or `curlshot.vision.detection.stones.plain_disc`.
     search : Search
         What they must show.
 

@@ -16,12 +16,12 @@ from math import hypot, inf, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.association.assign import assign
-from vision.association.hits import MOTION_TOLD, struck
-from vision.association.lead import DECELERATION, coloured
-from vision.association.rows import Rows
-from vision.detection.appearance import OTHER_STONE, colour_differences
-from vision.detection.sighting import Sighting
+from curlshot.vision.association.assign import assign
+from curlshot.vision.association.hits import MOTION_TOLD, struck
+from curlshot.vision.association.lead import DECELERATION, coloured
+from curlshot.vision.association.rows import Rows
+from curlshot.vision.detection.appearance import OTHER_STONE, colour_differences
+from curlshot.vision.detection.sighting import Sighting
 
 Array = NDArray[np.float64]
 

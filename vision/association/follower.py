@@ -15,20 +15,20 @@ from math import dist, hypot, inf
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import Stone
-from vision.association.expected import ON_COURSE, SETTLED, look_beside, look_on_course
-from vision.association.hits import MOTION_TOLD, struck
-from vision.association.lead import DOUBTFUL, Lead
-from vision.association.still import portraits, unchanged
-from vision.detection.appearance import Appearance, colour_difference, other_stone
-from vision.detection.rays import Look
-from vision.detection.seek import Bounds
-from vision.detection.sighting import Sighting
-from vision.detection.stones import NEAREST, Search, search_picture
-from vision.film.clip import Frame
-from vision.film.shelf import Shelf
-from vision.optics import projection
-from vision.optics.camera import Camera
+from curlshot.data.sheet import Stone
+from curlshot.vision.association.expected import ON_COURSE, SETTLED, look_beside, look_on_course
+from curlshot.vision.association.hits import MOTION_TOLD, struck
+from curlshot.vision.association.lead import DOUBTFUL, Lead
+from curlshot.vision.association.still import portraits, unchanged
+from curlshot.vision.detection.appearance import Appearance, colour_difference, other_stone
+from curlshot.vision.detection.rays import Look
+from curlshot.vision.detection.seek import Bounds
+from curlshot.vision.detection.sighting import Sighting
+from curlshot.vision.detection.stones import NEAREST, Search, search_picture
+from curlshot.vision.film.clip import Frame
+from curlshot.vision.film.shelf import Shelf
+from curlshot.vision.optics import projection
+from curlshot.vision.optics.camera import Camera
 
 Array = NDArray[np.float64]
 

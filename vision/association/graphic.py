@@ -11,10 +11,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import Stone
-from vision.association.follow import Track
-from vision.optics.camera import Camera
-from vision.optics.cameras import Cameras
+from curlshot.data.sheet import Stone
+from curlshot.vision.association.follow import Track
+from curlshot.vision.optics.camera import Camera
+from curlshot.vision.optics.cameras import Cameras
 
 Array = NDArray[np.float64]
 

@@ -11,9 +11,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from data.sheet import Stone
-from vision.association.follow import Track
-from vision.optics.camera import Camera
+from curlshot.data.sheet import Stone
+from curlshot.vision.association.follow import Track
+from curlshot.vision.optics.camera import Camera
 
 LATE = 1.0
 """A stone is first seen late if its place was in view so long before, s: what is found anew is

@@ -9,13 +9,13 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from physics.simulator.approach import nearest
-from vision.association.still import Portrait
-from vision.detection.sighting import Sighting
-from vision.film.shelf import Kept
-from vision.spin.align import Complex
-from vision.spin.facing import angle_between
-from vision.spin.handle import TURNING
+from curlshot.physics.simulator.approach import nearest
+from curlshot.vision.association.still import Portrait
+from curlshot.vision.detection.sighting import Sighting
+from curlshot.vision.film.shelf import Kept
+from curlshot.vision.spin.align import Complex
+from curlshot.vision.spin.facing import angle_between
+from curlshot.vision.spin.handle import TURNING
 
 Array = NDArray[np.float64]
 
@@ -73,7 +73,7 @@ class Lead:
     anchor : tuple of float
         The place that it has not left lately, m.
     facing : Kept of ndarray, optional
-        How its cap looked when it came there (`vision.spin.handle.cap_spectrum`).
+        How its cap looked when it came there (`curlshot.vision.spin.handle.cap_spectrum`).
     steady : int
         For how many clear sightings it has neither left nor turned.
     portrait : Portrait, optional

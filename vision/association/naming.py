@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from data.tracks import stone_name
-from vision.association.follow import Track
+from curlshot.data.tracks import stone_name
+from curlshot.vision.association.follow import Track
 
 LEFT, JITTER = 0.25, 6.0
 """How far from where it lay a stone must be to have left: in radii, and in its usual distance from

@@ -1,11 +1,11 @@
 """Stones that come back into sight: which of those that went out of it each of them is.
 
-`vision.association.follow` takes what comes for the stone that is expected next to it. One that is
-hit while people hide it comes out elsewhere, and perhaps another one where it was expected. So all
-gaps are looked at once more when both of their ends are known. Up to a hit a stone goes as it was
-last seen, from then on as it is seen next: at the hit the two ways are at the same place at the
-same time, and without a hit they are one. Of the stones that went out of sight and those that came
-back, those are one that together do so best.
+`curlshot.vision.association.follow` takes what comes for the stone that is expected next to it. One
+that is hit while people hide it comes out elsewhere, and perhaps another one where it was expected.
+So all gaps are looked at once more when both of their ends are known. Up to a hit a stone goes as
+it was last seen, from then on as it is seen next: at the hit the two ways are at the same place at
+the same time, and without a hit they are one. Of the stones that went out of sight and those that
+came back, those are one that together do so best.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.association.assign import assign
-from vision.association.follow import BIRTHS, PATIENCE, Track
-from vision.association.lead import DECELERATION
-from vision.detection.appearance import OTHER_STONE, colour_difference
-from vision.detection.sighting import Sighting
+from curlshot.vision.association.assign import assign
+from curlshot.vision.association.follow import BIRTHS, PATIENCE, Track
+from curlshot.vision.association.lead import DECELERATION
+from curlshot.vision.detection.appearance import OTHER_STONE, colour_difference
+from curlshot.vision.detection.sighting import Sighting
 
 Array = NDArray[np.float64]
 

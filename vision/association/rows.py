@@ -13,8 +13,8 @@ from typing import overload
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.detection.sighting import Sighting
-from vision.film.shelf import Kept
+from curlshot.vision.detection.sighting import Sighting
+from curlshot.vision.film.shelf import Kept
 
 Array = NDArray[np.float64]
 

@@ -15,11 +15,11 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import Stone
-from vision.detection.sighting import Sighting
-from vision.film.picture import Picture, lightness_at
-from vision.optics.camera import Camera
-from vision.optics.cameras import Cameras
+from curlshot.data.sheet import Stone
+from curlshot.vision.detection.sighting import Sighting
+from curlshot.vision.film.picture import Picture, lightness_at
+from curlshot.vision.optics.camera import Camera
+from curlshot.vision.optics.cameras import Cameras
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.association.follow import BIRTHS, Track
-from vision.association.rows import Rows
+from curlshot.vision.association.follow import BIRTHS, Track
+from curlshot.vision.association.rows import Rows
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]

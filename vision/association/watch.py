@@ -1,9 +1,9 @@
 """The stones of a clip, frame by frame: known ones followed, new ones sought now and then.
 
 Searching a picture for stones costs ten times what measuring them does. So known stones are
-followed (`vision.association.follower`), and now and then all of the ice is searched. What such a
-search finds anew is followed back through the last pictures, so that nothing is lost by searching
-rarely.
+followed (`curlshot.vision.association.follower`), and now and then all of the ice is searched. What
+such a search finds anew is followed back through the last pictures, so that nothing is lost by
+searching rarely.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from data.sheet import STONE, Stone
-from vision.association.again import measure_again
-from vision.association.follower import BLOCK, Follower, StoneView
-from vision.association.lead import Lead
-from vision.association.rows import Rows
-from vision.detection.appearance import (
+from curlshot.data.sheet import STONE, Stone
+from curlshot.vision.association.again import measure_again
+from curlshot.vision.association.follower import BLOCK, Follower, StoneView
+from curlshot.vision.association.lead import Lead
+from curlshot.vision.association.rows import Rows
+from curlshot.vision.detection.appearance import (
     MOST_COLOURS,
     UNLIKE,
     Appearance,
@@ -27,17 +27,17 @@ from vision.detection.appearance import (
     convincing,
     learn,
 )
-from vision.detection.balance import Balance, brightening, tones
-from vision.detection.patch import is_plain
-from vision.detection.placing import placed_by
-from vision.detection.rays import Look
-from vision.detection.sighting import Sighting
-from vision.detection.stones import FOLLOWING, SEARCH, Search
-from vision.detection.strangers import strangers
-from vision.film.clip import Frame, Image
-from vision.film.picture import brightened, toned
-from vision.film.shelf import Kept, Shelf
-from vision.optics.camera import Camera
+from curlshot.vision.detection.balance import Balance, brightening, tones
+from curlshot.vision.detection.patch import is_plain
+from curlshot.vision.detection.placing import placed_by
+from curlshot.vision.detection.rays import Look
+from curlshot.vision.detection.sighting import Sighting
+from curlshot.vision.detection.stones import FOLLOWING, SEARCH, Search
+from curlshot.vision.detection.strangers import strangers
+from curlshot.vision.film.clip import Frame, Image
+from curlshot.vision.film.picture import brightened, toned
+from curlshot.vision.film.shelf import Kept, Shelf
+from curlshot.vision.optics.camera import Camera
 
 AT_ONCE = 64
 """Pictures whose stones are placed together in the end: more take memory, and no less time each."""
@@ -77,7 +77,7 @@ class Watch:
     Parameters
     ----------
     disc : Stone
-        Size of the stones, or `vision.detection.stones.plain_disc`.
+        Size of the stones, or `curlshot.vision.detection.stones.plain_disc`.
     search : Search
         Where stones are sought and what they must show.
     """

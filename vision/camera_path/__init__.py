@@ -5,5 +5,5 @@ camera (`piece`); `replay` tells which of them show the shot. From picture to pi
 and, where that is too fast, `leap` tell about how the camera moved; `edge_tracker` then refines the
 view on the edges of the house, and where no rings are in view `ice_tracker` does on `landmarks` and
 lines, found with the help of earlier pictures (`keyframe`). `shutter` and `smear` know the blur of
-a pan. `joint` makes one camera path of all that was measured (`vision.optics.bundle`).
+a pan. `joint` makes one camera path of all that was measured (`curlshot.vision.optics.bundle`).
 """

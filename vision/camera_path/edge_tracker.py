@@ -13,24 +13,24 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import HOUSE
-from vision.camera_path.joint import Seen
-from vision.camera_path.shutter import ShutterLight, Smeared
-from vision.camera_path.smear import Shutter, reach_beyond, smear
-from vision.film.clip import Frame
-from vision.film.picture import Picture
-from vision.film.shelf import Kept
-from vision.optics.linear import Observations
-from vision.optics.paint import CIRCLES, EIGHT, FIXED, TWELVE, Marks, joined
-from vision.optics.pose import View
-from vision.optics.resection import ViewSolution, solve_views
-from vision.optics.rig import R4, R8
-from vision.sheet.edges import MIN_CONTRAST
-from vision.sheet.marks import Evidence, measure_along, measure_marks
-from vision.sheet.mixing import lit
-from vision.sheet.normals import OUTSIDE, Normals, lay_out
-from vision.sheet.outline import PaintEdge, find_edge
-from vision.sheet.stations import THIN
+from curlshot.data.sheet import HOUSE
+from curlshot.vision.camera_path.joint import Seen
+from curlshot.vision.camera_path.shutter import ShutterLight, Smeared
+from curlshot.vision.camera_path.smear import Shutter, reach_beyond, smear
+from curlshot.vision.film.clip import Frame
+from curlshot.vision.film.picture import Picture
+from curlshot.vision.film.shelf import Kept
+from curlshot.vision.optics.linear import Observations
+from curlshot.vision.optics.paint import CIRCLES, EIGHT, FIXED, TWELVE, Marks, joined
+from curlshot.vision.optics.pose import View
+from curlshot.vision.optics.resection import ViewSolution, solve_views
+from curlshot.vision.optics.rig import R4, R8
+from curlshot.vision.sheet.edges import MIN_CONTRAST
+from curlshot.vision.sheet.marks import Evidence, measure_along, measure_marks
+from curlshot.vision.sheet.mixing import lit
+from curlshot.vision.sheet.normals import OUTSIDE, Normals, lay_out
+from curlshot.vision.sheet.outline import PaintEdge, find_edge
+from curlshot.vision.sheet.stations import THIN
 
 Array = NDArray[np.float64]
 

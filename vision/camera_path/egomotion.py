@@ -13,9 +13,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.camera_path.keyframe import small_of
-from vision.film.picture import Picture
-from vision.optics.pose import DOWN, View, rotation_vector
+from curlshot.vision.camera_path.keyframe import small_of
+from curlshot.vision.film.picture import Picture
+from curlshot.vision.optics.pose import DOWN, View, rotation_vector
 
 Array = NDArray[np.float64]
 

@@ -15,22 +15,22 @@ from itertools import groupby
 import numpy as np
 from numpy.typing import NDArray
 
-from data.errors import SceneError
-from data.progress import Progress, no_progress
-from data.sheet import HOUSE
-from vision.camera_path.edge_tracker import EdgeTracker
-from vision.camera_path.joint import HouseTrack, Seen, fit_clip
-from vision.camera_path.piece import MOST_MISSED, Piece
-from vision.camera_path.replay import Glimpse, glimpse, has_jumped, is_nearer, is_replay
-from vision.film.clip import Clip, Frame
-from vision.film.picture import image_of
-from vision.film.shelf import Shelf
-from vision.optics.camera import Camera
-from vision.optics.paint import TWELVE
-from vision.optics.placed import Placed, nobody
-from vision.optics.pose import View
-from vision.sheet.house import find_house
-from vision.sheet.house_fit import HouseFit, at_height
+from curlshot.data.errors import SceneError
+from curlshot.data.progress import Progress, no_progress
+from curlshot.data.sheet import HOUSE
+from curlshot.vision.camera_path.edge_tracker import EdgeTracker
+from curlshot.vision.camera_path.joint import HouseTrack, Seen, fit_clip
+from curlshot.vision.camera_path.piece import MOST_MISSED, Piece
+from curlshot.vision.camera_path.replay import Glimpse, glimpse, has_jumped, is_nearer, is_replay
+from curlshot.vision.film.clip import Clip, Frame
+from curlshot.vision.film.picture import image_of
+from curlshot.vision.film.shelf import Shelf
+from curlshot.vision.optics.camera import Camera
+from curlshot.vision.optics.paint import TWELVE
+from curlshot.vision.optics.placed import Placed, nobody
+from curlshot.vision.optics.pose import View
+from curlshot.vision.sheet.house import find_house
+from curlshot.vision.sheet.house_fit import HouseFit, at_height
 
 Array = NDArray[np.float64]
 

@@ -15,22 +15,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from data.errors import InputError
-from data.progress import Progress, no_progress
-from data.sheet import HOUSE
-from vision.camera_path.follow_house import follow_house
-from vision.camera_path.joint import HouseTrack, Seen, fit_clip
-from vision.film.clip import Clip, Frame, Image
-from vision.film.flow import similarity
-from vision.film.shelf import Kept
-from vision.optics.camera import Camera
-from vision.optics.paint import TWELVE, Marks, fixed, joined
-from vision.optics.placed import Placed, nobody
-from vision.optics.pose import View, camera
-from vision.sheet.house import fit_house
-from vision.sheet.house_fit import HouseFit, start
-from vision.sheet.lines import y_up
-from vision.sheet.rings import SQUASHES, Guess
+from curlshot.data.errors import InputError
+from curlshot.data.progress import Progress, no_progress
+from curlshot.data.sheet import HOUSE
+from curlshot.vision.camera_path.follow_house import follow_house
+from curlshot.vision.camera_path.joint import HouseTrack, Seen, fit_clip
+from curlshot.vision.film.clip import Clip, Frame, Image
+from curlshot.vision.film.flow import similarity
+from curlshot.vision.film.shelf import Kept
+from curlshot.vision.optics.camera import Camera
+from curlshot.vision.optics.paint import TWELVE, Marks, fixed, joined
+from curlshot.vision.optics.placed import Placed, nobody
+from curlshot.vision.optics.pose import View, camera
+from curlshot.vision.sheet.house import fit_house
+from curlshot.vision.sheet.house_fit import HouseFit, start
+from curlshot.vision.sheet.lines import y_up
+from curlshot.vision.sheet.rings import SQUASHES, Guess
 
 Array = NDArray[np.float64]
 

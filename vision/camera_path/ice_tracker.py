@@ -11,17 +11,17 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.camera_path.edge_tracker import EdgeTracker
-from vision.camera_path.joint import Seen
-from vision.camera_path.keyframe import Keyframe, keyframe
-from vision.camera_path.landmarks import Landmarks
-from vision.film.clip import Frame
-from vision.film.picture import Picture
-from vision.film.shelf import Kept
-from vision.optics.linear import Observations
-from vision.optics.paint import Marks, joined
-from vision.optics.pose import VIEW_SIZE, View
-from vision.optics.resection import solve_view, solve_views
+from curlshot.vision.camera_path.edge_tracker import EdgeTracker
+from curlshot.vision.camera_path.joint import Seen
+from curlshot.vision.camera_path.keyframe import Keyframe, keyframe
+from curlshot.vision.camera_path.landmarks import Landmarks
+from curlshot.vision.film.clip import Frame
+from curlshot.vision.film.picture import Picture
+from curlshot.vision.film.shelf import Kept
+from curlshot.vision.optics.linear import Observations
+from curlshot.vision.optics.paint import Marks, joined
+from curlshot.vision.optics.pose import VIEW_SIZE, View
+from curlshot.vision.optics.resection import solve_view, solve_views
 
 Array = NDArray[np.float64]
 

@@ -1,7 +1,8 @@
 """The cameras of a clip, from what its frames have measured.
 
-What the frames share is fitted to some of them (`vision.optics.bundle`), then every view with that
-held. Each camera says how well it is known: by its own marks, and by what all frames share.
+What the frames share is fitted to some of them (`curlshot.vision.optics.bundle`), then every view
+with that held. Each camera says how well it is known: by its own marks, and by what all frames
+share.
 
 Assumed: the principal point is the middle of the picture, pixels are square, the camera stays
 where it is or moves slowly, and the 12-ft circle has its nominal radius.
@@ -16,15 +17,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import HOUSE
-from vision.camera_path.keyframe import Keyframe, replaced
-from vision.camera_path.shutter import LEAST_SMEAR
-from vision.film.shelf import Kept
-from vision.optics.astray import astray, motion
-from vision.optics.bundle import LOST, NOISE_TRUST, bundle
-from vision.optics.camera import Camera, CameraError
-from vision.optics.lean import fit_leaning
-from vision.optics.linear import (
+from curlshot.data.sheet import HOUSE
+from curlshot.vision.camera_path.keyframe import Keyframe, replaced
+from curlshot.vision.camera_path.shutter import LEAST_SMEAR
+from curlshot.vision.film.shelf import Kept
+from curlshot.vision.optics.astray import astray, motion
+from curlshot.vision.optics.bundle import LOST, NOISE_TRUST, bundle
+from curlshot.vision.optics.camera import Camera, CameraError
+from curlshot.vision.optics.lean import fit_leaning
+from curlshot.vision.optics.linear import (
     Linear,
     Observations,
     by_measure,
@@ -32,12 +33,12 @@ from vision.optics.linear import (
     linearised,
     view_equations,
 )
-from vision.optics.paint import CIRCLES, FIXED, MEASURED, Marks, joined
-from vision.optics.pose import VIEW_SIZE, View, camera, turning
-from vision.optics.projection import PARAMETERS
-from vision.optics.quality import ARC, edges_off, quality, warnings
-from vision.optics.resection import solve_views
-from vision.optics.rig import (
+from curlshot.vision.optics.paint import CIRCLES, FIXED, MEASURED, Marks, joined
+from curlshot.vision.optics.pose import VIEW_SIZE, View, camera, turning
+from curlshot.vision.optics.projection import PARAMETERS
+from curlshot.vision.optics.quality import ARC, edges_off, quality, warnings
+from curlshot.vision.optics.resection import solve_views
+from curlshot.vision.optics.rig import (
     K1,
     K1_BEND,
     K1_ZOOM,
@@ -51,9 +52,9 @@ from vision.optics.rig import (
     distortion,
     zoom,
 )
-from vision.optics.robust import WIDTH, inverse
-from vision.optics.shared import Bundle, family, piece_of, sensitivity
-from vision.sheet.outline import HALF_WAY, PaintEdge
+from curlshot.vision.optics.robust import WIDTH, inverse
+from curlshot.vision.optics.shared import Bundle, family, piece_of, sensitivity
+from curlshot.vision.sheet.outline import HALF_WAY, PaintEdge
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

@@ -8,10 +8,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.film.picture import Image, Picture, Planes
-from vision.optics.camera import Camera
-from vision.optics.paint import FIXED, Marks
-from vision.optics.pose import View, camera, project
+from curlshot.vision.film.picture import Image, Picture, Planes
+from curlshot.vision.optics.camera import Camera
+from curlshot.vision.optics.paint import FIXED, Marks
+from curlshot.vision.optics.pose import View, camera, project
 
 Array = NDArray[np.float64]
 
@@ -70,7 +70,7 @@ def keyframe(
     view, cov : View, ndarray of shape (4, 4)
         Its view and that view's covariance.
     rig : ndarray
-        As in `vision.optics.rig`.
+        As in `curlshot.vision.optics.rig`.
     drift : float
         Standard deviation of the places that the view itself rests on, m.
     """

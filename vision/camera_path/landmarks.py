@@ -14,10 +14,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.camera_path.keyframe import Keyframe, enlarged, shrunk, small_of
-from vision.film.picture import Image, Picture
-from vision.optics.paint import Marks, fixed
-from vision.optics.pose import View, project
+from curlshot.vision.camera_path.keyframe import Keyframe, enlarged, shrunk, small_of
+from curlshot.vision.film.picture import Image, Picture
+from curlshot.vision.optics.paint import Marks, fixed
+from curlshot.vision.optics.pose import View, project
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

@@ -6,11 +6,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.camera_path.keyframe import small_of
-from vision.film.picture import Image, Picture
-from vision.optics.paint import fixed
-from vision.optics.pose import View, camera
-from vision.optics.resection import solve_view
+from curlshot.vision.camera_path.keyframe import small_of
+from curlshot.vision.film.picture import Image, Picture
+from curlshot.vision.optics.paint import fixed
+from curlshot.vision.optics.pose import View, camera
+from curlshot.vision.optics.resection import solve_view
 
 Array = NDArray[np.float64]
 

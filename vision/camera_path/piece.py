@@ -1,7 +1,8 @@
 """A piece of a clip: frames of one camera, each followed from the one before.
 
-Each frame is predicted and refined on the edges of the house (`vision.camera_path.edge_tracker`).
-Where that fails, the picture before is recognised in it.
+Each frame is predicted and refined on the edges of the house
+(`curlshot.vision.camera_path.edge_tracker`). Where that fails, the picture before is recognised in
+it.
 """
 
 from __future__ import annotations
@@ -14,26 +15,35 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.camera_path.edge_tracker import HELD, LONGEST_STRIDE, EdgeTracker, put_right
-from vision.camera_path.egomotion import foretold
-from vision.camera_path.ice_tracker import IceTracker
-from vision.camera_path.joint import Seen, spread
-from vision.camera_path.leap import leapt
-from vision.camera_path.replay import EVERY, Glimpse, cut_among, glimpse, shows_again
-from vision.camera_path.shutter import LEAST_SMEAR, more_light
-from vision.film.clip import Frame
-from vision.film.picture import Picture
-from vision.film.shelf import Kept, Shelf
-from vision.optics.adjust import SHARING, Solution, solve
-from vision.optics.camera import Camera
-from vision.optics.lean import fit_leaning
-from vision.optics.linear import Observations
-from vision.optics.paint import CENTRE_LINE, CIRCLES, EIGHT, FOUR, TEE_LINE, TWELVE, Marks, joined
-from vision.optics.pose import ROLL, View, camera
-from vision.optics.predict import MEMORY, predict
-from vision.optics.resection import solve_view, solve_views
-from vision.optics.rig import Prior
-from vision.sheet.house_fit import TILT_GAIN, HouseFit
+from curlshot.vision.camera_path.edge_tracker import HELD, LONGEST_STRIDE, EdgeTracker, put_right
+from curlshot.vision.camera_path.egomotion import foretold
+from curlshot.vision.camera_path.ice_tracker import IceTracker
+from curlshot.vision.camera_path.joint import Seen, spread
+from curlshot.vision.camera_path.leap import leapt
+from curlshot.vision.camera_path.replay import EVERY, Glimpse, cut_among, glimpse, shows_again
+from curlshot.vision.camera_path.shutter import LEAST_SMEAR, more_light
+from curlshot.vision.film.clip import Frame
+from curlshot.vision.film.picture import Picture
+from curlshot.vision.film.shelf import Kept, Shelf
+from curlshot.vision.optics.adjust import SHARING, Solution, solve
+from curlshot.vision.optics.camera import Camera
+from curlshot.vision.optics.lean import fit_leaning
+from curlshot.vision.optics.linear import Observations
+from curlshot.vision.optics.paint import (
+    CENTRE_LINE,
+    CIRCLES,
+    EIGHT,
+    FOUR,
+    TEE_LINE,
+    TWELVE,
+    Marks,
+    joined,
+)
+from curlshot.vision.optics.pose import ROLL, View, camera
+from curlshot.vision.optics.predict import MEMORY, predict
+from curlshot.vision.optics.resection import solve_view, solve_views
+from curlshot.vision.optics.rig import Prior
+from curlshot.vision.sheet.house_fit import TILT_GAIN, HouseFit
 
 Array = NDArray[np.float64]
 

@@ -10,10 +10,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import HOUSE
-from vision.film.picture import Picture, lightness_at
-from vision.film.shelf import Kept
-from vision.optics.pose import View, project
+from curlshot.data.sheet import HOUSE
+from curlshot.vision.film.picture import Picture, lightness_at
+from curlshot.vision.film.shelf import Kept
+from curlshot.vision.optics.pose import View, project
 
 Array = NDArray[np.float64]
 Halves = NDArray[np.float16]

@@ -1,9 +1,9 @@
 """Motion blur by the shutter: whether it acted on linear light or on gamma-coded values.
 
-The shutter of a camera blurs light (see `vision.sheet.mixing`): of an edge that is smeared by 15 px
-half the light lies 3 px within dark paint. Where pictures are means of others, codes were blurred.
-Which it was, edges along the pan tell beside those across it: on either side of a ring they are
-moved towards the darker colour, as no view moves them. One smeared frame shows it.
+The shutter of a camera blurs light (see `curlshot.vision.sheet.mixing`): of an edge that is smeared
+by 15 px half the light lies 3 px within dark paint. Where pictures are means of others, codes were
+blurred. Which it was, edges along the pan tell beside those across it: on either side of a ring
+they are moved towards the darker colour, as no view moves them. One smeared frame shows it.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.camera_path.smear import SHARP
-from vision.optics.linear import Observations, linearised
-from vision.optics.paint import CIRCLES, FIXED, TWELVE, Marks
-from vision.optics.pose import View
-from vision.optics.robust import WIDTH, regress
-from vision.sheet.mixing import half_light
-from vision.sheet.outline import PaintEdge
+from curlshot.vision.camera_path.smear import SHARP
+from curlshot.vision.optics.linear import Observations, linearised
+from curlshot.vision.optics.paint import CIRCLES, FIXED, TWELVE, Marks
+from curlshot.vision.optics.pose import View
+from curlshot.vision.optics.robust import WIDTH, regress
+from curlshot.vision.sheet.mixing import half_light
+from curlshot.vision.sheet.outline import PaintEdge
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -117,7 +117,8 @@ class Smeared:
         marks : Marks
             As measured with a share that is taken for known.
         view, rig : View, ndarray
-            The camera fitted to them, as in `vision.optics.pose` and `vision.optics.rig`.
+            The camera fitted to them, as in `curlshot.vision.optics.pose` and
+            `curlshot.vision.optics.rig`.
         size : tuple of int
             Width and height of the picture, px.
         share : float

@@ -10,12 +10,12 @@ from math import inf, isnan
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.detection.circles import WALL
-from vision.detection.contrast import worth_of
-from vision.detection.relief import BARE, own_contrast
-from vision.detection.sighting import Sighting
-from vision.film.clip import Image
-from vision.film.lab import bgr_of, chroma, lab_of
+from curlshot.vision.detection.circles import WALL
+from curlshot.vision.detection.contrast import worth_of
+from curlshot.vision.detection.relief import BARE, own_contrast
+from curlshot.vision.detection.sighting import Sighting
+from curlshot.vision.film.clip import Image
+from curlshot.vision.film.lab import bgr_of, chroma, lab_of
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]

@@ -15,9 +15,9 @@ from math import nan
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.detection.appearance import Colour
-from vision.film.picture import Image, Picture, brightened, colours_at
-from vision.optics.camera import Camera
+from curlshot.vision.detection.appearance import Colour
+from curlshot.vision.film.picture import Image, Picture, brightened, colours_at
+from curlshot.vision.optics.camera import Camera
 
 Array = NDArray[np.float64]
 

@@ -12,8 +12,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.detection.rays import Rays, directions
-from vision.detection.rims import Bands, Rim
+from curlshot.vision.detection.rays import Rays, directions
+from curlshot.vision.detection.rims import Bands, Rim
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]

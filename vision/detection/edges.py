@@ -12,18 +12,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import Stone
-from vision.detection.appearance import GREY, Appearance
-from vision.detection.circles import WALL, Fits, fit_circles
-from vision.detection.contrast import by_lightness
-from vision.detection.mixture import CapRays, by_light
-from vision.detection.patch import Effort
-from vision.detection.rays import Rays, directions
-from vision.detection.rims import Rim, falls_along
-from vision.detection.samples import Samples
-from vision.detection.shoulder import HIDDEN, against_beyond
-from vision.detection.smeared import middles, swept_share
-from vision.film.lab import chroma
+from curlshot.data.sheet import Stone
+from curlshot.vision.detection.appearance import GREY, Appearance
+from curlshot.vision.detection.circles import WALL, Fits, fit_circles
+from curlshot.vision.detection.contrast import by_lightness
+from curlshot.vision.detection.mixture import CapRays, by_light
+from curlshot.vision.detection.patch import Effort
+from curlshot.vision.detection.rays import Rays, directions
+from curlshot.vision.detection.rims import Rim, falls_along
+from curlshot.vision.detection.samples import Samples
+from curlshot.vision.detection.shoulder import HIDDEN, against_beyond
+from curlshot.vision.detection.smeared import middles, swept_share
+from curlshot.vision.film.lab import chroma
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import Stone
-from vision.detection.appearance import Appearance
-from vision.detection.circles import Fits
-from vision.detection.edges import Views, falling_off
-from vision.detection.patch import Effort
-from vision.detection.samples import Samples
+from curlshot.data.sheet import Stone
+from curlshot.vision.detection.appearance import Appearance
+from curlshot.vision.detection.circles import Fits
+from curlshot.vision.detection.edges import Views, falling_off
+from curlshot.vision.detection.patch import Effort
+from curlshot.vision.detection.samples import Samples
 
 Array = NDArray[np.float64]
 

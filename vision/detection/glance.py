@@ -7,19 +7,19 @@ from math import hypot
 
 import numpy as np
 
-from data.sheet import STONE, Stone
-from vision.detection.appearance import MOST_COLOURS, UNLIKE, Appearance, convincing, learn
-from vision.detection.balance import brightening, tones
-from vision.detection.measure import measure_discs
-from vision.detection.patch import is_plain
-from vision.detection.rays import Look
-from vision.detection.relief import without_handle
-from vision.detection.sighting import Refusal, Sighting
-from vision.detection.stones import NEAREST, SEARCH, Findings, search_picture
-from vision.detection.strangers import by_shape, strangers, weighed
-from vision.film.clip import Image
-from vision.film.picture import brightened, image_of, toned
-from vision.optics.camera import Camera
+from curlshot.data.sheet import STONE, Stone
+from curlshot.vision.detection.appearance import MOST_COLOURS, UNLIKE, Appearance, convincing, learn
+from curlshot.vision.detection.balance import brightening, tones
+from curlshot.vision.detection.measure import measure_discs
+from curlshot.vision.detection.patch import is_plain
+from curlshot.vision.detection.rays import Look
+from curlshot.vision.detection.relief import without_handle
+from curlshot.vision.detection.sighting import Refusal, Sighting
+from curlshot.vision.detection.stones import NEAREST, SEARCH, Findings, search_picture
+from curlshot.vision.detection.strangers import by_shape, strangers, weighed
+from curlshot.vision.film.clip import Image
+from curlshot.vision.film.picture import brightened, image_of, toned
+from curlshot.vision.optics.camera import Camera
 
 BOTH_MEASURES = 1.2
 """Least mean of the two evidences of a stone: by its shape, or before any was known, and by what

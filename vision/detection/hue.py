@@ -12,9 +12,9 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.detection.rays import Rays
-from vision.film.lab import lab_of
-from vision.film.picture import TO_CHROMA
+from curlshot.vision.detection.rays import Rays
+from curlshot.vision.film.lab import lab_of
+from curlshot.vision.film.picture import TO_CHROMA
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]

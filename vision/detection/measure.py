@@ -13,17 +13,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import Stone
-from vision.detection.appearance import Appearance
-from vision.detection.circles import fit_circles
-from vision.detection.contrast import mean_colours
-from vision.detection.edges import Views, fit_edges, mixtures_matter, visible_on
-from vision.detection.evidence import ENOUGH, evidence_of
-from vision.detection.hue import sharpened
-from vision.detection.patch import EFFORT, Effort, is_plain, over_caps, unrolled
-from vision.detection.rays import Look, Rays, cameras_of
-from vision.detection.rims import Rim, falls_along
-from vision.detection.samples import samples_on
+from curlshot.data.sheet import Stone
+from curlshot.vision.detection.appearance import Appearance
+from curlshot.vision.detection.circles import fit_circles
+from curlshot.vision.detection.contrast import mean_colours
+from curlshot.vision.detection.edges import Views, fit_edges, mixtures_matter, visible_on
+from curlshot.vision.detection.evidence import ENOUGH, evidence_of
+from curlshot.vision.detection.hue import sharpened
+from curlshot.vision.detection.patch import EFFORT, Effort, is_plain, over_caps, unrolled
+from curlshot.vision.detection.rays import Look, Rays, cameras_of
+from curlshot.vision.detection.rims import Rim, falls_along
+from curlshot.vision.detection.samples import samples_on
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
@@ -67,21 +67,21 @@ class Measures:
         For a stone 0 to about 3, for a plain disc 0 to 1.
     excused : ndarray, shape (n,)
         How much more of it there would be but for a hue that is coded coarsely
-        (`vision.detection.patch.Effort`): enough to follow what is known to be a stone, not to tell
-        it is.
+        (`curlshot.vision.detection.patch.Effort`): enough to follow what is known to be a stone,
+        not to tell it is.
     light : ndarray, shape (n, 2)
         Where the cap's centre lies by the lightness of its edge alone, less the centre, m; NaN
         where it was not found, or not sought.
     swept : ndarray of bool, shape (n,)
         Whether it was seen how far a fast stone's cap is smeared, and the centre goes by that.
     bends : ndarray, shape (n, 6)
-        How the edge of cap or disc is bent (`vision.detection.circles.Fits`), m.
+        How the edge of cap or disc is bent (`curlshot.vision.detection.circles.Fits`), m.
     outline : ndarray, shape (n, circles)
         Radii found, as shares of the nominal ones.
     wall : ndarray, shape (n,)
         How high the wall of the cap is, m; means nothing where it is not seen.
     handle : ndarray, shape (n, rays, rings, 3)
-        What is around the centre (`vision.detection.patch.unrolled`).
+        What is around the centre (`curlshot.vision.detection.patch.unrolled`).
     worth : ndarray, shape (n, rays, radii)
         What the samples of `rays` may be: 1 cap, −1 granite, 0 neither.
     rays : Rays

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from data.sheet import STONE, Stone
-from vision.detection.rays import Rays
+from curlshot.data.sheet import STONE, Stone
+from curlshot.vision.detection.rays import Rays
 
 Array = NDArray[np.float64]
 Bytes = NDArray[np.uint8]
@@ -71,7 +71,7 @@ class CapRays:
     ----------
     rays, over : Rays
         Such as fall off with the granite, and such as stay at the height of the cap
-        (`vision.detection.patch.over_caps`).
+        (`curlshot.vision.detection.patch.over_caps`).
     behind : ndarray, shape (n, rays)
         Slant of the view along each ray, above 0 on the far side.
     of_cap : ndarray of bool, shape (n, rays, well within the cap)

@@ -9,9 +9,9 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import STONE, Stone
-from vision.detection.rays import Look, Profile, Rays, chained, sample_rays, straight
-from vision.optics.cameras import Cameras
+from curlshot.data.sheet import STONE, Stone
+from curlshot.vision.detection.rays import Look, Profile, Rays, chained, sample_rays, straight
+from curlshot.vision.optics.cameras import Cameras
 
 Array = NDArray[np.float64]
 Bytes = NDArray[np.uint8]
@@ -131,7 +131,7 @@ def over_caps(looks: Sequence[Look], by: Cameras, rays: Rays, disc: Stone) -> Ra
     looks : sequence of Look
         Pictures of one size and n places in all.
     by : Cameras
-        Theirs (`vision.detection.rays.cameras_of`).
+        Theirs (`curlshot.vision.detection.rays.cameras_of`).
     rays : Rays
         About these places, which fall off as the granite does (`profile_of`).
     disc : Stone
@@ -173,7 +173,7 @@ def unrolled(looks: Sequence[Look], by: Cameras, disc: Stone, effort: Effort) ->
     looks : sequence of Look
         Pictures of one size and n places in all.
     by : Cameras
-        Theirs (`vision.detection.rays.cameras_of`).
+        Theirs (`curlshot.vision.detection.rays.cameras_of`).
     disc : Stone
         Size of the discs.
     effort : Effort

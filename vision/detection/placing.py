@@ -8,17 +8,17 @@ from math import nan
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import STONE, Stone
-from vision.detection.appearance import GREY
-from vision.detection.measure import Measures
-from vision.detection.patch import handle_radii
-from vision.detection.rays import Look
-from vision.detection.sighting import Sighting
-from vision.film.lab import chroma
-from vision.film.shelf import Kept
-from vision.optics.camera import Camera
-from vision.optics.cameras import Cameras
-from vision.spin.handle import cap_spectrum
+from curlshot.data.sheet import STONE, Stone
+from curlshot.vision.detection.appearance import GREY
+from curlshot.vision.detection.measure import Measures
+from curlshot.vision.detection.patch import handle_radii
+from curlshot.vision.detection.rays import Look
+from curlshot.vision.detection.sighting import Sighting
+from curlshot.vision.film.lab import chroma
+from curlshot.vision.film.shelf import Kept
+from curlshot.vision.optics.camera import Camera
+from curlshot.vision.optics.cameras import Cameras
+from curlshot.vision.spin.handle import cap_spectrum
 
 Array = NDArray[np.float64]
 
@@ -37,7 +37,8 @@ of 12 clips with caps that end at 0.12 m, 1 mm and 2.7."""
 MIXED_SD = 0.003
 """How much less well that is known of caps without hue, m: what pixels mix of cap, granite and ice
 at their far edges depends on how full the granite's shoulders are, and on where light was blurred
-(`vision.detection.mixture`). 27 drawn ones were off along the view by what 4 mm of height make."""
+(`curlshot.vision.detection.mixture`). 27 drawn ones were off along the view by what 4 mm of height
+make."""
 
 HIDES = (STONE.radius - STONE.cap_radius) / (STONE.cap_height - STONE.rim_height)
 """Slant from which on a usual cap, too, has no granite left to be seen at its far edge."""

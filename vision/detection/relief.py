@@ -11,10 +11,10 @@ from math import nan, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import STONE
-from vision.detection.patch import handle_radii
-from vision.detection.sighting import Sighting
-from vision.spin.align import ORDERS, ring_weights
+from curlshot.data.sheet import STONE
+from curlshot.vision.detection.patch import handle_radii
+from curlshot.vision.detection.sighting import Sighting
+from curlshot.vision.spin.align import ORDERS, ring_weights
 
 Complex = NDArray[np.complex64]
 Flags = NDArray[np.bool_]
@@ -52,7 +52,7 @@ def contrast(here: Complex, there: Complex) -> float:
     Parameters
     ----------
     here, there : ndarray, shape (orders, rings, channels)
-        From `vision.spin.handle.cap_spectrum`, of a stone that hardly turned between them.
+        From `curlshot.vision.spin.handle.cap_spectrum`, of a stone that hardly turned between them.
 
     Returns
     -------

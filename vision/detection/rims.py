@@ -13,7 +13,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.detection.rays import Rays
+from curlshot.vision.detection.rays import Rays
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.detection.sighting import Sighting
+from curlshot.vision.detection.sighting import Sighting
 
 Array = NDArray[np.float64]
 

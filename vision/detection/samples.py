@@ -8,11 +8,11 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import Stone
-from vision.detection.appearance import Appearance, membership
-from vision.detection.circles import medians
-from vision.detection.contrast import by_hue, mean_colours, own_worth
-from vision.detection.patch import (
+from curlshot.data.sheet import Stone
+from curlshot.vision.detection.appearance import Appearance, membership
+from curlshot.vision.detection.circles import medians
+from curlshot.vision.detection.contrast import by_hue, mean_colours, own_worth
+from curlshot.vision.detection.patch import (
     CAP_END,
     INNER_RING,
     OUTER_RING,
@@ -22,8 +22,8 @@ from vision.detection.patch import (
     in_granite,
     profile_of,
 )
-from vision.detection.rays import Rays
-from vision.detection.rims import falls_along, summed
+from curlshot.vision.detection.rays import Rays
+from curlshot.vision.detection.rims import falls_along, summed
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]

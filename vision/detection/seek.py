@@ -18,14 +18,14 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import Stone
-from vision.detection.appearance import Appearance, any_stone, membership
-from vision.detection.ice_map import IceMap, rectify
-from vision.detection.patch import CAP_END, RING_BEGIN, RING_END, in_granite, is_plain
-from vision.detection.shape import NO_BALLOT, ballot
-from vision.film.lab import lab_of
-from vision.film.picture import Picture, colours_at
-from vision.optics.camera import Camera
+from curlshot.data.sheet import Stone
+from curlshot.vision.detection.appearance import Appearance, any_stone, membership
+from curlshot.vision.detection.ice_map import IceMap, rectify
+from curlshot.vision.detection.patch import CAP_END, RING_BEGIN, RING_END, in_granite, is_plain
+from curlshot.vision.detection.shape import NO_BALLOT, ballot
+from curlshot.vision.film.lab import lab_of
+from curlshot.vision.film.picture import Picture, colours_at
+from curlshot.vision.optics.camera import Camera
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
@@ -52,7 +52,8 @@ class Candidates:
     appearance : Appearance or None
         By what they were sought; None for plain discs.
     say : ndarray, shape (sizes,)
-        What they say of how large caps are (`vision.detection.shape`), where no colour is known.
+        What they say of how large caps are (`curlshot.vision.detection.shape`), where no colour is
+        known.
     """
 
     places: Array

@@ -13,12 +13,12 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import Stone
-from vision.detection.appearance import Appearance, membership
-from vision.detection.ice_map import IceMap
-from vision.detection.patch import CAP_END, RING_BEGIN, RING_END
-from vision.film.lab import lab_of
-from vision.film.picture import colours_at
+from curlshot.data.sheet import Stone
+from curlshot.vision.detection.appearance import Appearance, membership
+from curlshot.vision.detection.ice_map import IceMap
+from curlshot.vision.detection.patch import CAP_END, RING_BEGIN, RING_END
+from curlshot.vision.film.lab import lab_of
+from curlshot.vision.film.picture import colours_at
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
@@ -119,7 +119,7 @@ def _kernels(radius_px: float, half: int) -> tuple[Floats, Array, Floats, Floats
     whole : ndarray, shape (px,)
         Of the mean over both.
     template : ndarray, shape (px, sizes)
-        As `apart`, edges left out, as `vision.detection.seek` has it.
+        As `apart`, edges left out, as `curlshot.vision.detection.seek` has it.
     """
     fine, pixels = 4, 2 * half + 1
     offset = (np.arange(pixels * fine) - (pixels * fine - 1) / 2) / fine / radius_px

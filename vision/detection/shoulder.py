@@ -13,10 +13,18 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import Stone
-from vision.detection.contrast import mean_colours
-from vision.detection.mixture import INNER, WITHIN, CapRays, around, granite_seen, moved, past
-from vision.film.picture import TO_CHROMA
+from curlshot.data.sheet import Stone
+from curlshot.vision.detection.contrast import mean_colours
+from curlshot.vision.detection.mixture import (
+    INNER,
+    WITHIN,
+    CapRays,
+    around,
+    granite_seen,
+    moved,
+    past,
+)
+from curlshot.vision.film.picture import TO_CHROMA
 
 Array = NDArray[np.float64]
 Bytes = NDArray[np.uint8]

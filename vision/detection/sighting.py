@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.film.shelf import Kept
+from curlshot.vision.film.shelf import Kept
 
 Array = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ class Sighting(NamedTuple):
     wall : float
         How high the wall of the cap is, m; means nothing where it is not seen.
     bends : tuple of float
-        How the edge of cap or disc is bent (`vision.detection.circles.Fits`), m.
+        How the edge of cap or disc is bent (`curlshot.vision.detection.circles.Fits`), m.
     pixel : tuple of float
         Where the picture shows the middle of the cap, px.
     pixel_size : float
@@ -51,12 +51,13 @@ class Sighting(NamedTuple):
     cap_samples, granite_samples : ndarray, shape (n, 3)
         Colours of the cap and of the granite, for learning.
     spectrum : Kept of ndarray or None
-        How the cap looked around its centre (`vision.spin.handle.cap_spectrum`); None where too
-        little of it was seen to tell its angle.
+        How the cap looked around its centre (`curlshot.vision.spin.handle.cap_spectrum`); None
+        where too little of it was seen to tell its angle.
     measured : bool
         Whether its edges were measured in this picture; else it looked as when they last were.
     swept : bool
-        Whether its place goes by how far the motion smears its cap (`vision.detection.smeared`).
+        Whether its place goes by how far the motion smears its cap
+        (`curlshot.vision.detection.smeared`).
     """
 
     x: float

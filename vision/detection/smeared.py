@@ -13,10 +13,10 @@ from math import hypot, nan
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import Stone
-from vision.detection.circles import medians
-from vision.detection.rays import Rays, directions
-from vision.detection.sighting import Sighting
+from curlshot.data.sheet import Stone
+from curlshot.vision.detection.circles import medians
+from curlshot.vision.detection.rays import Rays, directions
+from curlshot.vision.detection.sighting import Sighting
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]

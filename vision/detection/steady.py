@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.detection.roundness import WHOLE
-from vision.detection.sighting import Sighting
+from curlshot.vision.detection.roundness import WHOLE
+from curlshot.vision.detection.sighting import Sighting
 
 Array = NDArray[np.float64]
 

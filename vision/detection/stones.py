@@ -1,8 +1,8 @@
 """Stones in one picture: sought on the rectified ice, measured on rays, or refused for a reason.
 
-A stone is a disc of grey granite with a saturated cap of known size, a known height above
-the ice. Where one may be, the rectified ice tells (`vision.detection.seek`); whether it is one and
-where its centre lies, the picture itself (`vision.detection.measure`).
+A stone is a disc of grey granite with a saturated cap of known size, a known height above the ice.
+Where one may be, the rectified ice tells (`curlshot.vision.detection.seek`); whether it is one and
+where its centre lies, the picture itself (`curlshot.vision.detection.measure`).
 """
 
 from __future__ import annotations
@@ -13,17 +13,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import STONE, Stone
-from vision.detection.appearance import Appearance
-from vision.detection.measure import Measures, measure_discs
-from vision.detection.patch import EFFORT, is_plain
-from vision.detection.placing import placed_by, sightings
-from vision.detection.rays import Look, Rays
-from vision.detection.samples import CLEARLY, well_within
-from vision.detection.seek import Bounds, Candidates, seek
-from vision.detection.sighting import Refusal, Sighting
-from vision.film.picture import Picture
-from vision.optics.camera import Camera
+from curlshot.data.sheet import STONE, Stone
+from curlshot.vision.detection.appearance import Appearance
+from curlshot.vision.detection.measure import Measures, measure_discs
+from curlshot.vision.detection.patch import EFFORT, is_plain
+from curlshot.vision.detection.placing import placed_by, sightings
+from curlshot.vision.detection.rays import Look, Rays
+from curlshot.vision.detection.samples import CLEARLY, well_within
+from curlshot.vision.detection.seek import Bounds, Candidates, seek
+from curlshot.vision.detection.sighting import Refusal, Sighting
+from curlshot.vision.film.picture import Picture
+from curlshot.vision.optics.camera import Camera
 
 Array = NDArray[np.float64]
 

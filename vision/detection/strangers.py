@@ -15,8 +15,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import Stone
-from vision.detection.appearance import (
+from curlshot.data.sheet import Stone
+from curlshot.vision.detection.appearance import (
     BY_SHAPE,
     MOST_COLOURS,
     Appearance,
@@ -25,15 +25,22 @@ from vision.detection.appearance import (
     convincing,
     learn,
 )
-from vision.detection.contrast import alike
-from vision.detection.patch import is_plain
-from vision.detection.rays import Look
-from vision.detection.seek import Candidates
-from vision.detection.shape import NO_BALLOT, elected
-from vision.detection.sighting import Sighting
-from vision.detection.stones import Findings, Search, apart, measured, search_picture, sought_in
-from vision.film.lab import chroma
-from vision.optics.cameras import Cameras
+from curlshot.vision.detection.contrast import alike
+from curlshot.vision.detection.patch import is_plain
+from curlshot.vision.detection.rays import Look
+from curlshot.vision.detection.seek import Candidates
+from curlshot.vision.detection.shape import NO_BALLOT, elected
+from curlshot.vision.detection.sighting import Sighting
+from curlshot.vision.detection.stones import (
+    Findings,
+    Search,
+    apart,
+    measured,
+    search_picture,
+    sought_in,
+)
+from curlshot.vision.film.lab import chroma
+from curlshot.vision.optics.cameras import Cameras
 
 Array = NDArray[np.float64]
 
@@ -73,7 +80,7 @@ def strangers(
     looks : sequence of Look
         At pictures, with the places of stones that need not be found.
     disc : Stone
-        Size of the stones, or `vision.detection.stones.plain_disc`.
+        Size of the stones, or `curlshot.vision.detection.stones.plain_disc`.
     search : Search
         Where stones are sought and what they must show.
     made : bool

@@ -13,13 +13,13 @@ import av
 import cv2
 import numpy as np
 
-from data.errors import InputError
-from data.inputs import IMAGE_SUFFIXES, picture_times
-from vision.film.cadence import Cadence, cadence_of
-from vision.film.fields import deinterlaced
-from vision.film.picture import Image as Image
-from vision.film.picture import Picture, Planes, image_of
-from vision.film.repeats import Repeats
+from curlshot.data.errors import InputError
+from curlshot.data.inputs import IMAGE_SUFFIXES, picture_times
+from curlshot.vision.film.cadence import Cadence, cadence_of
+from curlshot.vision.film.fields import deinterlaced
+from curlshot.vision.film.picture import Image as Image
+from curlshot.vision.film.picture import Picture, Planes, image_of
+from curlshot.vision.film.repeats import Repeats
 
 DEFAULT_IMAGE_FPS = 25.0
 """Rate of pictures where none is given, 1/s."""
@@ -43,8 +43,8 @@ class Frame:
 class Clip:
     """A clip that can be read through, again and again, always in order.
 
-    Pictures that repeat the one before are left out (`vision.film.repeats`). Single ones are where
-    they come in a cadence, which one pass shows and from the next on is followed.
+    Pictures that repeat the one before are left out (`curlshot.vision.film.repeats`). Single ones
+    are where they come in a cadence, which one pass shows and from the next on is followed.
 
     Attributes
     ----------

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.film.picture import Image
+from curlshot.vision.film.picture import Image
 
 Array = NDArray[np.float64]
 

@@ -17,11 +17,11 @@ from typing import TYPE_CHECKING
 import cv2
 import numpy as np
 
-from vision.film.cadence import Shown
-from vision.film.picture import Image, Picture, Planes
+from curlshot.vision.film.cadence import Shown
+from curlshot.vision.film.picture import Image, Picture, Planes
 
 if TYPE_CHECKING:
-    from vision.film.clip import Frame
+    from curlshot.vision.film.clip import Frame
 
 PLACES = 16000
 """Pixels, about, by which two pictures are compared."""

@@ -12,12 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from vision.optics.linear import Linear, Observations, by_rig, linearised
-from vision.optics.paint import Marks, joined
-from vision.optics.pose import VIEW_SIZE, View
-from vision.optics.resection import VIEW_SD
-from vision.optics.rig import Prior
-from vision.optics.robust import WIDTH, loss, spread
+from curlshot.vision.optics.linear import Linear, Observations, by_rig, linearised
+from curlshot.vision.optics.paint import Marks, joined
+from curlshot.vision.optics.pose import VIEW_SIZE, View
+from curlshot.vision.optics.resection import VIEW_SD
+from curlshot.vision.optics.rig import Prior
+from curlshot.vision.optics.robust import WIDTH, loss, spread
 
 Array = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ class Solution:
     Attributes
     ----------
     rig : ndarray, shape (15,)
-        Shared part, in the order of `vision.optics.rig.Prior`.
+        Shared part, in the order of `curlshot.vision.optics.rig.Prior`.
     views : tuple of View
         One per frame.
     rms : ndarray

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.optics.linear import Linear, Observations
+from curlshot.vision.optics.linear import Linear, Observations
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

@@ -21,8 +21,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.optics.arrow import Arrow
-from vision.optics.linear import (
+from curlshot.vision.optics.arrow import Arrow
+from curlshot.vision.optics.linear import (
     Linear,
     Observations,
     by_measure,
@@ -30,18 +30,18 @@ from vision.optics.linear import (
     linearised,
     view_equations,
 )
-from vision.optics.paint import Marks, joined
-from vision.optics.pose import VIEW_SIZE, View
-from vision.optics.resection import VIEW_SD
-from vision.optics.rig import POSITION, RIG_SIZE, Prior
-from vision.optics.robust import WIDTH, loss
-from vision.optics.shared import BINS, Bundle, family, piece_of, polynomials
+from curlshot.vision.optics.paint import Marks, joined
+from curlshot.vision.optics.pose import VIEW_SIZE, View
+from curlshot.vision.optics.resection import VIEW_SD
+from curlshot.vision.optics.rig import POSITION, RIG_SIZE, Prior
+from curlshot.vision.optics.robust import WIDTH, loss
+from curlshot.vision.optics.shared import BINS, Bundle, family, piece_of, polynomials
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 FAMILIES = 3
-"""Of marks: see `vision.optics.shared.family`."""
+"""Of marks: see `curlshot.vision.optics.shared.family`."""
 
 PAINT_SD = np.array([0.001, 0.002, 1.0])
 """What is expected of the paint of circles and of lines, m; fixed points have none."""

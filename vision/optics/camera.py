@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from data.tracks import Columns
-from vision.optics import projection
+from curlshot.data.tracks import Columns
+from curlshot.vision.optics import projection
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -30,8 +30,8 @@ class CameraError:
     Attributes
     ----------
     shared, own : ndarray, shape (9, 9)
-        Covariance of the camera's parameters (`vision.optics.projection.PARAMETERS`): the part that
-        a clip's frames share and the part that each has for itself.
+        Covariance of the camera's parameters (`curlshot.vision.optics.projection.PARAMETERS`): the
+        part that a clip's frames share and the part that each has for itself.
     scale : float
         Standard deviation of the logarithm of all lengths: how well the yardstick is known.
     drift : float

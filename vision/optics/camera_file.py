@@ -9,12 +9,12 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from data.errors import InputError
-from data.progress import Progress, no_progress
-from data.sheet import STONE
-from vision.film.clip import Clip
-from vision.optics.camera import CAMERA_COLUMNS, Camera
-from vision.optics.placed import Placed, nobody
+from curlshot.data.errors import InputError
+from curlshot.data.progress import Progress, no_progress
+from curlshot.data.sheet import STONE
+from curlshot.vision.film.clip import Clip
+from curlshot.vision.optics.camera import CAMERA_COLUMNS, Camera
+from curlshot.vision.optics.placed import Placed, nobody
 
 Array = NDArray[np.float64]
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.optics import projection
-from vision.optics.camera import Camera
+from curlshot.vision.optics import projection
+from curlshot.vision.optics.camera import Camera
 
 Array = NDArray[np.float64]
 

@@ -11,11 +11,11 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from vision.optics.adjust import Solution, solve
-from vision.optics.paint import Marks
-from vision.optics.pose import DOWN, View, rotation_matrix, rotation_vector
-from vision.optics.resection import VIEW_SD
-from vision.optics.rig import ANYWHERE, POSITION, Prior, start_rig
+from curlshot.vision.optics.adjust import Solution, solve
+from curlshot.vision.optics.paint import Marks
+from curlshot.vision.optics.pose import DOWN, View, rotation_matrix, rotation_vector
+from curlshot.vision.optics.resection import VIEW_SD
+from curlshot.vision.optics.rig import ANYWHERE, POSITION, Prior, start_rig
 
 Array = NDArray[np.float64]
 

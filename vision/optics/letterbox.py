@@ -13,11 +13,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from data.progress import Progress, no_progress
-from vision.film.clip import Clip, Frame
-from vision.film.picture import Image, Picture, Planes
-from vision.optics.camera import Camera
-from vision.optics.projection import middle
+from curlshot.data.progress import Progress, no_progress
+from curlshot.vision.film.clip import Clip, Frame
+from curlshot.vision.film.picture import Image, Picture, Planes
+from curlshot.vision.optics.camera import Camera
+from curlshot.vision.optics.projection import middle
 
 Flags = NDArray[np.bool_]
 Shares = NDArray[np.float64]

@@ -9,9 +9,9 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.optics.paint import MEASURED, Marks, ice_frame, measures
-from vision.optics.pose import VIEW_SIZE, rotation_matrix, turning
-from vision.optics.rig import K1, K1_BEND, K1_ZOOM, K2, POSITION, RIG_SIZE, zoom
+from curlshot.vision.optics.paint import MEASURED, Marks, ice_frame, measures
+from curlshot.vision.optics.pose import VIEW_SIZE, rotation_matrix, turning
+from curlshot.vision.optics.rig import K1, K1_BEND, K1_ZOOM, K2, POSITION, RIG_SIZE, zoom
 
 Array = NDArray[np.float64]
 Value = TypeVar("Value", np.float64, np.bool_)

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from data.sheet import HOUSE
-from vision.optics.rig import BACK_Y, CENTRE_X, HOG_Y, R4, R8, SIDE_L, SIDE_R, TEE_Y
+from curlshot.data.sheet import HOUSE
+from curlshot.vision.optics.rig import BACK_Y, CENTRE_X, HOG_Y, R4, R8, SIDE_L, SIDE_R, TEE_Y
 
 Array = NDArray[np.float64]
 

@@ -1,7 +1,7 @@
 """A camera with a place: rotation and focal length per frame, the rest shared by a clip.
 
-With the shared part (`vision.optics.rig`) a frame's `View` says where every point of the ice
-appears in the picture.
+With the shared part (`curlshot.vision.optics.rig`) a frame's `View` says where every point of the
+ice appears in the picture.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from vision.optics.camera import Camera, CameraError
-from vision.optics.rig import POSITION, distortion
+from curlshot.vision.optics.camera import Camera, CameraError
+from curlshot.vision.optics.rig import POSITION, distortion
 
 Array = NDArray[np.float64]
 

@@ -13,16 +13,16 @@ from pathlib import Path
 import av
 import numpy as np
 
-from data.errors import InputError
-from data.inputs import IMAGE_SUFFIXES
-from data.progress import Progress, no_progress
-from data.project import unpack_clip
-from data.trk import Project
-from data.units import LENGTH_UNITS, unit_of_lengths
-from vision.film.clip import Clip, Frame, open_clip
-from vision.optics.camera import Camera
-from vision.optics.placed import Placed, nobody
-from vision.optics.tracker_view import CORNER
+from curlshot.data.errors import InputError
+from curlshot.data.inputs import IMAGE_SUFFIXES
+from curlshot.data.progress import Progress, no_progress
+from curlshot.data.project import unpack_clip
+from curlshot.data.trk import Project
+from curlshot.data.units import LENGTH_UNITS, unit_of_lengths
+from curlshot.vision.film.clip import Clip, Frame, open_clip
+from curlshot.vision.optics.camera import Camera
+from curlshot.vision.optics.placed import Placed, nobody
+from curlshot.vision.optics.tracker_view import CORNER
 
 
 @dataclass

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.optics.camera import Camera
-from vision.optics.paint import CIRCLES, ice_frame, measures
-from vision.optics.pose import View, project
-from vision.optics.rig import POSITION, Prior
+from curlshot.vision.optics.camera import Camera
+from curlshot.vision.optics.paint import CIRCLES, ice_frame, measures
+from curlshot.vision.optics.pose import View, project
+from curlshot.vision.optics.rig import POSITION, Prior
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -65,8 +65,8 @@ def quality(pieces: Index, off: float, view: View, rig: Array, size: tuple[int, 
     Parameters
     ----------
     pieces : ndarray of int
-        Pieces of the circles, `ARC` long, that it explains (`vision.optics.shared.piece_of`), as
-        often as may be.
+        Pieces of the circles, `ARC` long, that it explains
+        (`curlshot.vision.optics.shared.piece_of`), as often as may be.
     off : float
         How far their edges are off (`edges_off`), m; NaN where the camera is carried.
     view, rig, size

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from vision.optics.linear import Linear, Observations, linearised, view_equations
-from vision.optics.paint import Marks
-from vision.optics.pose import VIEW_SIZE, View
-from vision.optics.robust import WIDTH, inverse, loss, spread
+from curlshot.vision.optics.linear import Linear, Observations, linearised, view_equations
+from curlshot.vision.optics.paint import Marks
+from curlshot.vision.optics.pose import VIEW_SIZE, View
+from curlshot.vision.optics.robust import WIDTH, inverse, loss, spread
 
 Array = NDArray[np.float64]
 

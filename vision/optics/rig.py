@@ -12,7 +12,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from data.sheet import SHEET
+from curlshot.data.sheet import SHEET
 
 Array = NDArray[np.float64]
 Log = TypeVar("Log", float, Array)

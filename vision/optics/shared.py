@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.optics.paint import CIRCLES, FIXED, Marks
-from vision.optics.pose import VIEW_SIZE
-from vision.optics.rig import POSITION, RIG_SIZE
+from curlshot.vision.optics.paint import CIRCLES, FIXED, Marks
+from curlshot.vision.optics.pose import VIEW_SIZE
+from curlshot.vision.optics.rig import POSITION, RIG_SIZE
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

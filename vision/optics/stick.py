@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from data.errors import InputError
-from data.progress import Progress, no_progress
-from vision.film.clip import Clip
-from vision.optics.camera import Camera
-from vision.optics.placed import Placed, nobody
+from curlshot.data.errors import InputError
+from curlshot.data.progress import Progress, no_progress
+from curlshot.vision.film.clip import Clip
+from curlshot.vision.optics.camera import Camera
+from curlshot.vision.optics.placed import Placed, nobody
 
 Stick = tuple[float, float, float, float, float]
 """Two ends (x1, y1, x2, y2), px, and the length, m."""

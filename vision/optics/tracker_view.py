@@ -9,13 +9,13 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
-from data.errors import InputError
-from data.sheet import HOUSE
-from data.trk import Coordinates
-from data.trk_write import View
-from vision.film.clip import Clip
-from vision.optics.camera import Camera
-from vision.optics.camera_file import cameras_of
+from curlshot.data.errors import InputError
+from curlshot.data.sheet import HOUSE
+from curlshot.data.trk import Coordinates
+from curlshot.data.trk_write import View
+from curlshot.vision.film.clip import Clip
+from curlshot.vision.optics.camera import Camera
+from curlshot.vision.optics.camera_file import cameras_of
 
 Array = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ def view_over(
     camera_csv : Path
         Of the run that measured the tracks.
     sightings : DataFrame
-        `data.tracks.SIGHTING_COLUMNS`.
+        `curlshot.data.tracks.SIGHTING_COLUMNS`.
     video : tuple of str
         Where Tracker finds the clip's files, from the project's folder.
 

@@ -15,21 +15,21 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import SHEET
-from vision.film.picture import Image
-from vision.optics.adjust import SHARING, Solution, solve
-from vision.optics.lean import fit_leaning
-from vision.optics.paint import HOG_LINE, Marks, joined
-from vision.optics.pose import View, pictured, project
-from vision.optics.resection import ROUND
-from vision.optics.rig import BACK_Y, BENT, HOG_Y, K1, WIDE, Prior, with_lens
-from vision.sheet.lines import back_end, upright
-from vision.sheet.marks import EDGE_SD
+from curlshot.data.sheet import SHEET
+from curlshot.vision.film.picture import Image
+from curlshot.vision.optics.adjust import SHARING, Solution, solve
+from curlshot.vision.optics.lean import fit_leaning
+from curlshot.vision.optics.paint import HOG_LINE, Marks, joined
+from curlshot.vision.optics.pose import View, pictured, project
+from curlshot.vision.optics.resection import ROUND
+from curlshot.vision.optics.rig import BACK_Y, BENT, HOG_Y, K1, WIDE, Prior, with_lens
+from curlshot.vision.sheet.lines import back_end, upright
+from curlshot.vision.sheet.marks import EDGE_SD
 
 Array = NDArray[np.float64]
 
 LENSES = np.arange(-0.40, 0.11, 0.02)
-"""k1 of the lenses tried; k2 goes with it (`vision.optics.rig`)."""
+"""k1 of the lenses tried; k2 goes with it (`curlshot.vision.optics.rig`)."""
 
 MIDDLE = SHEET.hog_line + 0.05
 """Where the middle of the line is, m: the rules have its inner edge, and 10 cm for its width."""

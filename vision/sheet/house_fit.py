@@ -11,23 +11,31 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import HOUSE
-from vision.film.picture import Image
-from vision.optics.adjust import SHARING, Solution, solve
-from vision.optics.camera import Camera
-from vision.optics.lean import fit_leaning
-from vision.optics.paint import TWELVE, Marks
-from vision.optics.pose import DOWN, View, aim, camera, rescaled, rotation_vector
-from vision.optics.resection import ROUND
-from vision.optics.rig import ANYWHERE, BENT, OVERHEAD, POSITION, Prior, distortion, start_rig
-from vision.sheet.hog_line import by_hog_line, may_be_in_view
-from vision.sheet.lines import lesser_side_step, sides, upright
-from vision.sheet.marks import Evidence, measure_marks
-from vision.sheet.mixing import lit
-from vision.sheet.outline import HALF_WAY, PaintEdge, find_edge
-from vision.sheet.proof import worth
-from vision.sheet.rings import Guess
-from vision.sheet.straight import LEAST, by_sides
+from curlshot.data.sheet import HOUSE
+from curlshot.vision.film.picture import Image
+from curlshot.vision.optics.adjust import SHARING, Solution, solve
+from curlshot.vision.optics.camera import Camera
+from curlshot.vision.optics.lean import fit_leaning
+from curlshot.vision.optics.paint import TWELVE, Marks
+from curlshot.vision.optics.pose import DOWN, View, aim, camera, rescaled, rotation_vector
+from curlshot.vision.optics.resection import ROUND
+from curlshot.vision.optics.rig import (
+    ANYWHERE,
+    BENT,
+    OVERHEAD,
+    POSITION,
+    Prior,
+    distortion,
+    start_rig,
+)
+from curlshot.vision.sheet.hog_line import by_hog_line, may_be_in_view
+from curlshot.vision.sheet.lines import lesser_side_step, sides, upright
+from curlshot.vision.sheet.marks import Evidence, measure_marks
+from curlshot.vision.sheet.mixing import lit
+from curlshot.vision.sheet.outline import HALF_WAY, PaintEdge, find_edge
+from curlshot.vision.sheet.proof import worth
+from curlshot.vision.sheet.rings import Guess
+from curlshot.vision.sheet.straight import LEAST, by_sides
 
 Array = NDArray[np.float64]
 
@@ -71,7 +79,7 @@ class HouseFit:
     ----------
     camera : Camera
     view, rig : View, ndarray
-        The camera's parts (see `vision.optics.rig` and `vision.optics.pose`).
+        The camera's parts (see `curlshot.vision.optics.rig` and `curlshot.vision.optics.pose`).
     evidence : Evidence
         The marks it rests on.
     rms_px : float

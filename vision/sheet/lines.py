@@ -6,10 +6,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import HOUSE, SHEET
-from vision.film.picture import Image
-from vision.optics.pose import View, pictured, project, turned
-from vision.optics.rig import SIDE_L, SIDE_R
+from curlshot.data.sheet import HOUSE, SHEET
+from curlshot.vision.film.picture import Image
+from curlshot.vision.optics.pose import View, pictured, project, turned
+from curlshot.vision.optics.rig import SIDE_L, SIDE_R
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]

@@ -1,7 +1,8 @@
 """Edges of the painted circles and lines, measured along their normals at sub-pixel precision.
 
-Circles, the sheet's sides and wide lines are edges between two colours (`vision.sheet.edges`); of
-thin lines the middle is measured (`vision.sheet.stripes`). What is ragged counts less.
+Circles, the sheet's sides and wide lines are edges between two colours
+(`curlshot.vision.sheet.edges`); of thin lines the middle is measured
+(`curlshot.vision.sheet.stripes`). What is ragged counts less.
 """
 
 from __future__ import annotations
@@ -13,15 +14,15 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.film.picture import Picture, channels_at
-from vision.optics.paint import CIRCLES, FIXED, TWELVE, Marks
-from vision.sheet.edges import crossings, steps
-from vision.sheet.normals import OUTSIDE, SAMPLES, Normals, Profiles, lay_out
-from vision.sheet.outline import HALF_WAY, PaintEdge
-from vision.sheet.outlined import outlines, summed
-from vision.sheet.runs import Curves, Runs, smooth
-from vision.sheet.stations import BLOCK, THIN
-from vision.sheet.stripes import Blocks, find_stripes
+from curlshot.vision.film.picture import Picture, channels_at
+from curlshot.vision.optics.paint import CIRCLES, FIXED, TWELVE, Marks
+from curlshot.vision.sheet.edges import crossings, steps
+from curlshot.vision.sheet.normals import OUTSIDE, SAMPLES, Normals, Profiles, lay_out
+from curlshot.vision.sheet.outline import HALF_WAY, PaintEdge
+from curlshot.vision.sheet.outlined import outlines, summed
+from curlshot.vision.sheet.runs import Curves, Runs, smooth
+from curlshot.vision.sheet.stations import BLOCK, THIN
+from curlshot.vision.sheet.stripes import Blocks, find_stripes
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -118,7 +119,7 @@ def measure_marks(
     ----------
     picture : Picture
     view, rig : ndarray
-        Camera as in `vision.optics.pose` and `vision.optics.rig`.
+        Camera as in `curlshot.vision.optics.pose` and `curlshot.vision.optics.rig`.
     reach : float
         Half length of the normals, px.
     spacing : float
@@ -297,7 +298,7 @@ class _Places:
     kinds : dict of int to slice
         Which of the places lie on each kind of line.
     line, along, normal : ndarray, shapes (n,), (n,) and (2, n)
-        As in `vision.optics.paint.Marks`.
+        As in `curlshot.vision.optics.paint.Marks`.
     blocks : Blocks
         Those of thin lines.
     runs, curves : Runs, Curves

@@ -16,14 +16,14 @@ from math import erf, inf, pi, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.film.picture import TO_CHROMA, Picture
-from vision.optics.paint import CIRCLES, EIGHT, TWELVE
-from vision.optics.pose import View
-from vision.optics.robust import regress
-from vision.sheet.edges import SHARPNESS
-from vision.sheet.marks import Evidence, profiles
-from vision.sheet.normals import SAMPLES, lay_out
-from vision.sheet.outline import PaintEdge
+from curlshot.vision.film.picture import TO_CHROMA, Picture
+from curlshot.vision.optics.paint import CIRCLES, EIGHT, TWELVE
+from curlshot.vision.optics.pose import View
+from curlshot.vision.optics.robust import regress
+from curlshot.vision.sheet.edges import SHARPNESS
+from curlshot.vision.sheet.marks import Evidence, profiles
+from curlshot.vision.sheet.normals import SAMPLES, lay_out
+from curlshot.vision.sheet.outline import PaintEdge
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -85,7 +85,7 @@ def lit(edge: PaintEdge, picture: Picture, view: View, rig: Array, evidence: Evi
         a line moves channels apart as well.
     picture : Picture
     view, rig : View, ndarray
-        The camera, as in `vision.optics.pose` and `vision.optics.rig`.
+        The camera, as in `curlshot.vision.optics.pose` and `curlshot.vision.optics.rig`.
     evidence : Evidence
         What was measured with it.
     """
@@ -111,8 +111,8 @@ def half_light(palette: Array) -> Array:
     Returns
     -------
     ndarray, shape (9,)
-        On the scale of `vision.sheet.edges.steps`: 0 half way between the codes, and where not
-        known.
+        On the scale of `curlshot.vision.sheet.edges.steps`: 0 half way between the codes, and where
+        not known.
     """
     low, high = np.clip(palette, 0.0, None).swapaxes(0, 1)
     half = (0.5 * (low**GAMMA + high**GAMMA)) ** (1 / GAMMA)
@@ -130,7 +130,7 @@ def share_of_light(
     ----------
     picture : Picture
     view, rig : View, ndarray
-        The camera, as in `vision.optics.pose` and `vision.optics.rig`.
+        The camera, as in `curlshot.vision.optics.pose` and `curlshot.vision.optics.rig`.
     slope : float
         Of the profiles across the 12-ft edge half way, steps per px; more than 0.
 

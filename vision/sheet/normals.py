@@ -8,10 +8,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.optics.paint import CIRCLES, HOG_LINE, LEFT, RIGHT, ice_frame, measures
-from vision.optics.pose import project
-from vision.optics.rig import HOG_Y
-from vision.sheet.stations import BLOCK, ON_ALL, ON_ALL_DOWN, ON_CIRCLES, THIN, Stations
+from curlshot.vision.optics.paint import CIRCLES, HOG_LINE, LEFT, RIGHT, ice_frame, measures
+from curlshot.vision.optics.pose import project
+from curlshot.vision.optics.rig import HOG_Y
+from curlshot.vision.sheet.stations import BLOCK, ON_ALL, ON_ALL_DOWN, ON_CIRCLES, THIN, Stations
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -66,9 +66,9 @@ class Normals:
     line : ndarray of int, shape (n,)
         The kind of each.
     along : ndarray, shape (n,)
-        Where along its line, as in `vision.optics.paint.Marks`.
+        Where along its line, as in `curlshot.vision.optics.paint.Marks`.
     foot, way : ndarray, shape (2, n)
-        Where it is on the ice, as in `vision.optics.paint.ice_frame`.
+        Where it is on the ice, as in `curlshot.vision.optics.paint.ice_frame`.
     point : ndarray, shape (2, n)
         Where it was in the picture, px.
     normal : ndarray, shape (2, n)
@@ -162,7 +162,7 @@ def lay_out(
     Parameters
     ----------
     view, rig : ndarray
-        Camera as in `vision.optics.pose` and `vision.optics.rig`.
+        Camera as in `curlshot.vision.optics.pose` and `curlshot.vision.optics.rig`.
     size : tuple of int
         Width and height of the picture, px.
     reach : float

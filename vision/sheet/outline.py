@@ -14,7 +14,7 @@ from math import erfc, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.sheet.edges import crossings
+from curlshot.vision.sheet.edges import crossings
 
 Array = NDArray[np.float64]
 
@@ -89,7 +89,7 @@ class PaintEdge:
         all circles, each of which is measured to its outer side.
     light : tuple of float
         Levels at which the circles (12, 8 and 4 ft) are crossed beside that, as light was blurred
-        before it was coded (see `vision.sheet.mixing`).
+        before it was coded (see `curlshot.vision.sheet.mixing`).
     """
 
     level: float = 0.0

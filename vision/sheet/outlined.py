@@ -9,9 +9,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.optics.paint import CIRCLES
-from vision.sheet.edges import END, ENDS, LIGHT, MIN_CONTRAST, SHARPNESS
-from vision.sheet.normals import SAMPLES, Profiles
+from curlshot.vision.optics.paint import CIRCLES
+from curlshot.vision.sheet.edges import END, ENDS, LIGHT, MIN_CONTRAST, SHARPNESS
+from curlshot.vision.sheet.normals import SAMPLES, Profiles
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -48,9 +48,9 @@ def outlines(
     kinds : dict of int to slice
         Which of them lie on each circle.
     value, good, palette : ndarray, shapes (SAMPLES, n), (n,) and (9, 2, 3)
-        As `vision.sheet.edges.steps` found them; of outlines alone this writes the profiles on the
-        scale from the sides (−0.5) to the outline (0.5), whether one is shown, and the sides'
-        colours.
+        As `curlshot.vision.sheet.edges.steps` found them; of outlines alone this writes the
+        profiles on the scale from the sides (−0.5) to the outline (0.5), whether one is shown, and
+        the sides' colours.
 
     Returns
     -------

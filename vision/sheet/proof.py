@@ -6,12 +6,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import HOUSE
-from vision.film.picture import Image
-from vision.optics.paint import EIGHT, TWELVE
-from vision.optics.pose import View, pictured
-from vision.sheet.lines import clearness
-from vision.sheet.marks import Evidence
+from curlshot.data.sheet import HOUSE
+from curlshot.vision.film.picture import Image
+from curlshot.vision.optics.paint import EIGHT, TWELVE
+from curlshot.vision.optics.pose import View, pictured
+from curlshot.vision.sheet.lines import clearness
+from curlshot.vision.sheet.marks import Evidence
 
 Array = NDArray[np.float64]
 

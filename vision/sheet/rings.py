@@ -15,10 +15,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import HOUSE
-from vision.film.picture import Image
-from vision.optics.rig import OVERHEAD, R4, R8
-from vision.sheet.tilt import Rounding, Tilt, rounded
+from curlshot.data.sheet import HOUSE
+from curlshot.vision.film.picture import Image
+from curlshot.vision.optics.rig import OVERHEAD, R4, R8
+from curlshot.vision.sheet.tilt import Rounding, Tilt, rounded
 
 Array = NDArray[np.float64]
 

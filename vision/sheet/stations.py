@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import HOUSE, SHEET
-from vision.optics.paint import (
+from curlshot.data.sheet import HOUSE, SHEET
+from curlshot.vision.optics.paint import (
     BACK_LINE,
     CENTRE_LINE,
     CIRCLES,
@@ -50,9 +50,9 @@ class Stations:
     line : ndarray of int, shape (n,)
         The kind of line of each station.
     along : ndarray, shape (n,)
-        Where along its line it is, as in `vision.optics.paint.Marks`.
+        Where along its line it is, as in `curlshot.vision.optics.paint.Marks`.
     foot, way : ndarray, shape (2, n)
-        Where it is on the ice, as in `vision.optics.paint.ice_frame`.
+        Where it is on the ice, as in `curlshot.vision.optics.paint.ice_frame`.
     ahead, behind : ndarray of int, shape (n,)
         The stations after and before it on its line; at a line's end itself.
     group_size, group_start : ndarray of int, shape (g,)

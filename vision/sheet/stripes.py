@@ -13,10 +13,10 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from data.sheet import HOUSE
-from vision.sheet.normals import LEAST_BLOCKS, SAMPLES, Normals, Profiles, means_of_ends
-from vision.sheet.runs import Runs
-from vision.sheet.stations import BLOCK, THIN
+from curlshot.data.sheet import HOUSE
+from curlshot.vision.sheet.normals import LEAST_BLOCKS, SAMPLES, Normals, Profiles, means_of_ends
+from curlshot.vision.sheet.runs import Runs
+from curlshot.vision.sheet.stations import BLOCK, THIN
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

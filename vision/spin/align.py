@@ -73,7 +73,7 @@ def align(spectra: Complex, angles: Array, radii: Array, sd_shift: Array) -> Ali
     Parameters
     ----------
     spectra : ndarray, shape (n, orders, rings, channels)
-        From `vision.spin.handle.cap_spectrum`; a ring that is not seen is 0.
+        From `curlshot.vision.spin.handle.cap_spectrum`; a ring that is not seen is 0.
     angles : ndarray, shape (n,)
         Where to begin, rad; within a few tenths of the truth.
     radii : ndarray, shape (rings,)

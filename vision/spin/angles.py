@@ -1,9 +1,9 @@
 """Angles of a stone in clips of any length: part by part, each registered to the first by its mean.
 
-The pictures of a cap take memory while its angle is told (`vision.spin.handle`). So no more than
-a thousand are looked at together: a stone that moves shows fewer as a rule, one at rest as many
-in minutes. Of a longer track each part is measured against its own mean picture, and that against
-the first part's: errors do not add up from part to part.
+The pictures of a cap take memory while its angle is told (`curlshot.vision.spin.handle`). So no
+more than a thousand are looked at together: a stone that moves shows fewer as a rule, one at rest
+as many in minutes. Of a longer track each part is measured against its own mean picture, and that
+against the first part's: errors do not add up from part to part.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from math import ceil, pi
 
 import numpy as np
 
-from vision.film.shelf import Kept
-from vision.spin.align import TOGETHER, Array, Complex, turned
-from vision.spin.facing import angles_between
-from vision.spin.handle import HandleAngles, handle_angles
-from vision.spin.pitch import of_axes
+from curlshot.vision.film.shelf import Kept
+from curlshot.vision.spin.align import TOGETHER, Array, Complex, turned
+from curlshot.vision.spin.facing import angles_between
+from curlshot.vision.spin.handle import HandleAngles, handle_angles
+from curlshot.vision.spin.pitch import of_axes
 
 MOST = 1000
 """Pictures that are looked at together at most: some 20 MB. Parts that are seen in different slants
@@ -35,7 +35,7 @@ def angles_in_parts(
     slants: Array | None = None,
     height: int | None = None,
 ) -> HandleAngles:
-    """Angle of one stone in every frame; see `vision.spin.handle.handle_angles`.
+    """Angle of one stone in every frame; see `curlshot.vision.spin.handle.handle_angles`.
 
     Parameters
     ----------
@@ -44,11 +44,11 @@ def angles_in_parts(
     spectra : sequence of Kept of ndarray or None
         Read when their part is due.
     radii, sd_centre : ndarray
-        As for `vision.spin.handle.handle_angles`.
+        As for `curlshot.vision.spin.handle.handle_angles`.
     most : int
         Pictures that are looked at together at most.
     slants : ndarray, shape (n, 2), optional
-        As for `vision.spin.handle.handle_angles`.
+        As for `curlshot.vision.spin.handle.handle_angles`.
     height : int, optional
         Which of those at which caps were unrolled to go by; what the stone itself tells if not
         given.

@@ -6,7 +6,7 @@ from math import pi
 
 import numpy as np
 
-from vision.spin.align import ORDERS, Complex
+from curlshot.vision.spin.align import ORDERS, Complex
 
 DIRECTIONS = 96
 """Directions in which a cap's picture is looked at: enough for the highest of its harmonics."""
@@ -28,7 +28,7 @@ def bearing(mean: Complex) -> float | None:
     Parameters
     ----------
     mean : ndarray, shape (orders, rings, channels)
-        Harmonics of the cap's picture (`vision.spin.handle.cap_spectrum`).
+        Harmonics of the cap's picture (`curlshot.vision.spin.handle.cap_spectrum`).
 
     Returns
     -------

@@ -1,10 +1,11 @@
 """At which height the handles of a clip are seen, told by the stones that turned.
 
-Caps are unrolled at the height of the grip and at that of the cap (`vision.spin.handle`). At the
-wrong one what turns about the stone's axis is seen beside it, and pictures of a stone that turned
-widely are much less alike. Those of a stone that turned a little are about as much alike at either
-height, light and shade on the cap decide, and its angles, told about a point beside its axis, are
-off by a tenth. Stones of one clip have handles of one make: what turned tells it for the others.
+Caps are unrolled at the height of the grip and at that of the cap (`curlshot.vision.spin.handle`).
+At the wrong one what turns about the stone's axis is seen beside it, and pictures of a stone that
+turned widely are much less alike. Those of a stone that turned a little are about as much alike at
+either height, light and shade on the cap decide, and its angles, told about a point beside its
+axis, are off by a tenth. Stones of one clip have handles of one make: what turned tells it for the
+others.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from collections.abc import Collection
 
 import numpy as np
 
-from vision.spin.handle import DOUBT, HandleAngles
+from curlshot.vision.spin.handle import DOUBT, HandleAngles
 
 WIDELY = 1.5
 """By how much a stone turned that tells the height by itself, rad. Of 27 drawn stones seen at 45 to

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vision.spin.align import Complex
+from curlshot.vision.spin.align import Complex
 
 OFTEN = 0.25
 """Quantile of what a ring shows in a stone's pictures that is taken for what it shows uncovered:
@@ -27,7 +27,7 @@ def uncovered(pictures: Complex) -> Complex:
     Parameters
     ----------
     pictures : ndarray, shape (n, orders, rings, channels)
-        From `vision.spin.handle.cap_spectrum`; a ring that is not seen is 0.
+        From `curlshot.vision.spin.handle.cap_spectrum`; a ring that is not seen is 0.
 
     Returns
     -------

@@ -1,7 +1,7 @@
 """Rotation of one picture of a cap against another, by circular cross-correlation.
 
-Both are angular harmonics on rings (`vision.spin.handle.cap_spectrum`): the angle that brings them
-together is the maximum of their circular cross-correlation.
+Both are angular harmonics on rings (`curlshot.vision.spin.handle.cap_spectrum`): the angle that
+brings them together is the maximum of their circular cross-correlation.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from math import ceil, nan, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.spin.align import HARMONICS, Array, Complex, rings_seen
+from curlshot.vision.spin.align import HARMONICS, Array, Complex, rings_seen
 
 _GRID = 1440
 """Angles of a whole turn that are tried."""

@@ -19,7 +19,7 @@ from itertools import accumulate
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.spin.align import HARMONICS, ORDERS, Array, Complex, rings_seen
+from curlshot.vision.spin.align import HARMONICS, ORDERS, Array, Complex, rings_seen
 
 KNOT = 0.4
 """Time between the knots of the light, s."""
@@ -81,7 +81,7 @@ def unlit(times: Array, pictures: Complex, angles: Array) -> Unlit:
     times : ndarray, shape (n,)
         s, increasing.
     pictures : ndarray, shape (n, orders, rings, channels)
-        Of the orders `vision.spin.align.ORDERS`.
+        Of the orders `curlshot.vision.spin.align.ORDERS`.
     angles : ndarray, shape (n,)
         rad.
     """
@@ -143,7 +143,7 @@ def course(times: Array, pictures: Complex) -> tuple[Array, float]:
     times : ndarray, shape (n,)
         s, increasing.
     pictures : ndarray, shape (n, orders, rings, channels)
-        Of the orders `vision.spin.align.ORDERS`.
+        Of the orders `curlshot.vision.spin.align.ORDERS`.
 
     Returns
     -------

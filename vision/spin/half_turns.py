@@ -14,9 +14,9 @@ from itertools import accumulate
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.spin.align import HARMONICS, Array, Complex, rings_seen
-from vision.spin.facing import crossed
-from vision.spin.shade import parts, upright_mean
+from curlshot.vision.spin.align import HARMONICS, Array, Complex, rings_seen
+from curlshot.vision.spin.facing import crossed
+from curlshot.vision.spin.shade import parts, upright_mean
 
 SPAN = 0.2
 """Time over which a spin is taken to be constant, s."""
@@ -46,7 +46,7 @@ def unfolded(times: Array, pictures: Complex, angles: Array) -> Array:
     times : ndarray, shape (n,)
         s, increasing.
     pictures : ndarray, shape (n, orders, rings, channels)
-        From `vision.spin.handle.cap_spectrum`; a ring that is not seen is 0.
+        From `curlshot.vision.spin.handle.cap_spectrum`; a ring that is not seen is 0.
     angles : ndarray, shape (n,)
         rad, most of them right but for half turns; NaN where they are not told.
 

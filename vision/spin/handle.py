@@ -8,16 +8,16 @@ The mean over the angle (k = 0) says nothing; k = 1 is left out because a centre
 slightly off and light from one side look like it.
 
 The handle stands above the cap, and seen aslant its picture is shifted: what turns about the
-stone's axis in a picture unrolled at one height does not at another. What is seen best may be
-the grip, or its foot and the shade about it on the cap. So the cap is unrolled at both heights,
-and that is believed at which a stone's pictures are most alike or, where that hardly tells, at
-which more of them turns. `vision.spin.align` finds what shift is left with the last bit of the
-angle, `vision.spin.inclined` how steeply a handle rises, and `vision.spin.pitch` what one looks
-turned by that is a little higher at one end.
+stone's axis in a picture unrolled at one height does not at another. What is seen best may be the
+grip, or its foot and the shade about it on the cap. So the cap is unrolled at both heights, and
+that is believed at which a stone's pictures are most alike or, where that hardly tells, at which
+more of them turns. `curlshot.vision.spin.align` finds what shift is left with the last bit of the
+angle, `curlshot.vision.spin.inclined` how steeply a handle rises, and `curlshot.vision.spin.pitch`
+what one looks turned by that is a little higher at one end.
 
-Rings that something lies before are left out (`vision.spin.cover`).
+Rings that something lies before are left out (`curlshot.vision.spin.cover`).
 Light that stays as the cap turns is taken out; where lamps mirrored on the cap are brighter than
-the handle, what turns is told by its spin first (`vision.spin.glints`).
+the handle, what turns is told by its spin first (`curlshot.vision.spin.glints`).
 """
 
 from __future__ import annotations
@@ -28,15 +28,23 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.spin.align import LASTING, ORDERS, Array, Complex, align, ring_weights, rings_seen
-from vision.spin.bearing import bearing
-from vision.spin.cover import uncovered
-from vision.spin.facing import angle_between, angles_between
-from vision.spin.glints import course, unlit
-from vision.spin.half_turns import unfolded
-from vision.spin.inclined import TOLD, inclined, rise_of_handle
-from vision.spin.pitch import STEEP, levelled, of_axes
-from vision.spin.shade import parts, unturned, upright_mean
+from curlshot.vision.spin.align import (
+    LASTING,
+    ORDERS,
+    Array,
+    Complex,
+    align,
+    ring_weights,
+    rings_seen,
+)
+from curlshot.vision.spin.bearing import bearing
+from curlshot.vision.spin.cover import uncovered
+from curlshot.vision.spin.facing import angle_between, angles_between
+from curlshot.vision.spin.glints import course, unlit
+from curlshot.vision.spin.half_turns import unfolded
+from curlshot.vision.spin.inclined import TOLD, inclined, rise_of_handle
+from curlshot.vision.spin.pitch import STEEP, levelled, of_axes
+from curlshot.vision.spin.shade import parts, unturned, upright_mean
 
 ODD, ODDEST = 0.2, 3.0
 """Share of a stone's pictures that their mean does not explain from which on its angles err more,
@@ -113,7 +121,7 @@ class HandleAngles:
         Angle and its standard error, rad; NaN where it cannot be told.
     rise : ndarray, shape (n, 2)
         What angles are off by together, if the handle rises by one standard error more along either
-        axis of the cap, rad (`vision.spin.pitch`); it is no part of `sd`.
+        axis of the cap, rad (`curlshot.vision.spin.pitch`); it is no part of `sd`.
     unlike : ndarray, shape (heights,)
         How many pictures' worth of what was seen their mean does not explain, by the height at
         which caps were unrolled; 0 where nothing was seen.
@@ -178,7 +186,7 @@ def cap_spectrum(patch: NDArray[np.uint8], radii: Array) -> Complex:
     Returns
     -------
     ndarray, shape (..., orders, rings, channels)
-        Of the orders `vision.spin.align.ORDERS`, each ring with its weight.
+        Of the orders `curlshot.vision.spin.align.ORDERS`, each ring with its weight.
     """
     spectrum = np.fft.rfft(patch.astype(np.float32), axis=-3)[..., ORDERS, :, :] / patch.shape[-3]
     weight = np.resize(ring_weights(radii), patch.shape[-2])
@@ -195,7 +203,7 @@ def handle_angles(
     """Angle of one stone in every frame, continuous.
 
     It is the direction of the handle, on the ice, or half a turn off; where no handle stands out of
-    the cap (`vision.spin.bearing`) its zero is the first frame seen.
+    the cap (`curlshot.vision.spin.bearing`) its zero is the first frame seen.
 
     Parameters
     ----------

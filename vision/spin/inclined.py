@@ -2,9 +2,10 @@
 
 A goose-neck's grip is some 5 cm above the foot at its other end. At a slant of 0.8 the one is seen
 4 cm beside the other, more than a grip is wide, and what is off no longer goes as the steepness
-does (`vision.spin.pitch` takes it so). So pictures are unrolled anew, on a plane that rises along
-the handle and turns with it. At a wrong steepness they are less alike, and angles go to and fro as
-the handle turns: that one is believed at which they are most alike and spins are the steadiest.
+does (`curlshot.vision.spin.pitch` takes it so). So pictures are unrolled anew, on a plane that
+rises along the handle and turns with it. At a wrong steepness they are less alike, and angles go to
+and fro as the handle turns: that one is believed at which they are most alike and spins are the
+steadiest.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.spin.align import (
+from curlshot.vision.spin.align import (
     ORDERS,
     Array,
     Complex,
@@ -24,8 +25,8 @@ from vision.spin.align import (
     rings_seen,
     turned,
 )
-from vision.spin.bearing import bearing
-from vision.spin.shade import parts, upright_mean
+from curlshot.vision.spin.bearing import bearing
+from curlshot.vision.spin.shade import parts, upright_mean
 
 STEEPNESSES = np.round(np.arange(-0.6, 0.61, 0.1), 1)
 """That are tried: how much higher a handle is per length along it; goose-necks have 0.3 to 0.5."""
@@ -59,7 +60,7 @@ def inclined(
     Parameters
     ----------
     pictures, angles, radii, slants
-        As for `vision.spin.pitch.levelled`.
+        As for `curlshot.vision.spin.pitch.levelled`.
     rise : complex
         How steep the plane is, and in which direction, of a cap at angle 0.
 
@@ -86,7 +87,7 @@ def rise_of_handle(
     pictures, angles, radii, slants
         As for `inclined`.
     sd_shift : ndarray, shape (n,)
-        As for `vision.spin.align.align`.
+        As for `curlshot.vision.spin.align.align`.
 
     Returns
     -------

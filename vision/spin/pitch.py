@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.spin.align import (
+from curlshot.vision.spin.align import (
     ALIKE,
     LASTING,
     Array,
@@ -23,7 +23,7 @@ from vision.spin.align import (
     slopes,
     turned,
 )
-from vision.spin.shade import parts, upright_mean
+from curlshot.vision.spin.shade import parts, upright_mean
 
 STEEP = 0.2
 """How steep what is seen on caps is, a standard deviation: goose-necks 0.35, paint 0."""
@@ -47,13 +47,14 @@ def levelled(
     Parameters
     ----------
     pictures : ndarray, shape (n, orders, rings, channels)
-        From `vision.spin.handle.cap_spectrum`; a ring that is not seen is 0.
+        From `curlshot.vision.spin.handle.cap_spectrum`; a ring that is not seen is 0.
     angles : ndarray, shape (n,)
         That bring them onto their mean, rad.
     radii : ndarray, shape (rings,)
         m.
     slants : ndarray, shape (n, 2)
-        Of the view (`vision.optics.cameras.Cameras.slants`), with the axes that angles count from.
+        Of the view (`curlshot.vision.optics.cameras.Cameras.slants`), with the axes that angles
+        count from.
     sd_steep : float
         How steep what is seen may be, a standard deviation.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.spin.align import ORDERS, TOGETHER, Array, Complex, turned
+from curlshot.vision.spin.align import ORDERS, TOGETHER, Array, Complex, turned
 
 SPREAD = 1.0
 """Standard deviation of a harmonic's phase, rad, that holds its light near 0 as much as pictures of

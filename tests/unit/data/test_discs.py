@@ -1,0 +1,98 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from curlshot import pipeline
+from curlshot.data.discs import refuse_no_discs, top_speed
+from curlshot.data.errors import InputError
+from curlshot.data.sheet import STONE
+from curlshot.data.tracker import read_table
+from curlshot.data.tracks import check_sightings
+from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
+
+
+def shot(size: float = 1.0) -> pd.DataFrame:
+    """A hit whose lengths are taken for this many times what they are."""
+    table = watch(hit_motion(), np.random.default_rng(0), sd=0.004, given=False)
+    return table.assign(x=size * table["x"], y=size * table["y"])
+
+
+def test_discs_that_hit_pass() -> None:
+    refuse_no_discs(shot(), RADIUS, "a.txt")
+    refuse_no_discs(shot(), STONE.radius, "a.txt")
+    refuse_no_discs(shot(0.2), 0.2 * RADIUS, "a.txt")
+
+
+@pytest.mark.parametrize("size", [0.3048, 0.0254, 0.01, 0.001])
+def test_discs_in_one_another_are_refused(size: float) -> None:
+    """Metres taken for feet, inches, centimetres, millimetres."""
+    with pytest.raises(InputError, match=r"a\.txt: A and B come within .* but discs of radius"):
+        refuse_no_discs(shot(size), RADIUS, "a.txt")
+
+
+def test_a_point_of_the_edge_is_no_stone() -> None:
+    a = shot().query("stone == 'A'")
+    edge = a.assign(stone="edge", x=a["x"] + 0.14)
+    with pytest.raises(InputError, match=r"A and edge come within 14 cm .* \(--names\)"):
+        refuse_no_discs(pd.concat([a, edge]), RADIUS, "a.txt")
+
+
+def test_one_slipped_mark_is_no_evidence() -> None:
+    table = shot()
+    row = table.index[(table["stone"] == "A")][3]
+    table.loc[row, ["x", "y"]] = 0.0
+    refuse_no_discs(table, 0.12, "a.txt")  # no stones: they may be fast
+
+
+def test_stones_faster_than_any_are_refused_but_not_other_discs() -> None:
+    t = np.arange(20) / 25 - 5.13e-5  # even steps through times that were rounded
+    table = check_sightings(
+        pd.DataFrame({"stone": "A", "t": t, "x": 7.0 * t - t**2 / 99, "y": 0.0})
+    )
+    with pytest.raises(InputError, match=r"7\.0 m/s at t = 0 s, faster than any curling stone"):
+        refuse_no_discs(table, STONE.radius, "a.txt")
+    refuse_no_discs(table, 0.03, "a.txt")
+
+
+def test_top_speed_is_hardly_moved_by_noise() -> None:
+    rng = np.random.default_rng(1)
+    t = np.arange(1000) / 500
+    xy = np.column_stack([1.5 * t, 0 * t]) + rng.normal(0, 0.002, (1000, 2))
+    speed, _ = top_speed(t, xy)
+    assert speed == pytest.approx(1.5, abs=0.15)
+    assert top_speed(t[:1], xy[:1]) == (0.0, 0.0)
+
+
+def test_the_command_says_so_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shot()[["stone", "t", "x", "y"]].to_csv(tmp_path / "a.csv", index=False)
+    given = ["estimate", str(tmp_path / "a.csv"), "-o", str(tmp_path / "out"), "-q"]
+    assert pipeline.main([*given, "--length-unit", "ft"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "another length unit" in line
+    assert not (tmp_path / "out").exists()
+
+
+def test_no_length_unit_is_advised_where_the_file_says_its_own(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = shot(0.01)[["stone", "t", "x", "y"]].rename(columns={"x": "x (m)", "y": "y (m)"})
+    table.to_csv(tmp_path / "a.csv", index=False)
+    assert (
+        pipeline.main(["estimate", str(tmp_path / "a.csv"), "-o", str(tmp_path / "o"), "-q"]) == 2
+    )
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "calibration" in line and "--length-unit" not in line
+
+
+def test_real_discs_pass(shared: Path) -> None:
+    """Air tables and motion capture, whose discs touch for long."""
+    pucks = read_table([shared / "tracks" / "airtable_two_pucks.csv"], length_unit="cm")
+    refuse_no_discs(pucks.sightings, 0.035, "pucks")
+    for path in (shared / "tracks" / "discs_500hz").glob("hit_*.csv"):
+        refuse_no_discs(read_table([path], fps=500).sightings, 0.025, path.name)

@@ -1,0 +1,218 @@
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from curlshot.data.errors import InputError
+from curlshot.data.results import (
+    Collision,
+    Estimate,
+    Friction,
+    Glide,
+    Input,
+    Joint,
+    Law,
+    MeasuredState,
+    Method,
+    Misfit,
+    Posterior,
+    Results,
+    SimulationScore,
+    StoneResult,
+    Told,
+)
+from curlshot.data.results_file import SCHEMA, read_results, results_json, write_results
+
+RESULTS = Results(
+    input=Input(("clip Ä.mp4",), 25.0, 150, 5.96),
+    restitution=Estimate(0.83, 0.02),
+    friction=Friction(0.0109, 3e-4, "constant"),
+    collisions=(
+        Collision(
+            t=1.12,
+            stderr_t=0.004,
+            stones=("A", "B"),
+            normal=(0.6, -0.8),
+            restitution=0.81,
+            stderr=0.03,
+            before={"A": MeasuredState(0, 1, 0.05, -1.36, 0.66), "B": MeasuredState(0, 0, 0, 0)},
+            after={
+                "A": MeasuredState(0, 1, -0.4, -0.3, 2.0),
+                "B": MeasuredState(0, 0, 0.4, -1.0, 1.5),
+            },
+            momentum_residual=0.05,
+            energy_lost=0.2,
+            note="seen for four frames only",
+        ),
+    ),
+    glides=(Glide("A", 1.2, 5.5, 0.011, 4e-4), Glide("B", 1.2, 1.4, None, None)),
+    simulations={
+        "point-mass": SimulationScore(0.03, {"A": 0.05, "B": None}),
+        "rigid-body": SimulationScore(None, note="no spins"),
+    },
+    warnings=("two frames are missing",),
+    laws=Joint(("restitution", "friction"), (0.83, 0.0109), ((4e-4, 1e-7), (1e-7, 9e-8))),
+    methods={
+        "local": Method(Estimate(0.82, 0.03), hits=(Estimate(0.81, 0.03),)),
+        "global": Method(stone_friction=Told(note="nothing slides"), note="not used"),
+    },
+    law_choice=(Law("ice constant", 0.0, 0.9, Estimate(0.0109, 3e-4)),),
+    curl=Told(0.008, 0.001),
+    stones={
+        "A": StoneResult(Estimate(0.01, 1e-3), Estimate(0.002, 0.001), 1.2, Estimate(0.6, 0.1))
+    },
+    misfits=(Misfit("A", 0.0, 1.2, 0.8, False, False), Misfit("A", 1.2, 5.5, 6.1, True, True)),
+    posterior=Posterior(100, {"restitution": {"0.5": 0.83}}, {"restitution": {"restitution": 1.0}}),
+    teams={"A": "#d8c020"},
+    sheet=False,
+)
+
+
+def strict(text: str) -> dict[str, object]:
+    def refuse(word: str) -> float:
+        raise AssertionError(f"{word} is no JSON")
+
+    parsed = json.loads(text, parse_constant=refuse)
+    assert isinstance(parsed, dict)
+    return parsed
+
+
+def test_round_trip(tmp_path: Path) -> None:
+    write_results(RESULTS, tmp_path / "results.json")
+    assert read_results(tmp_path / "results.json") == RESULTS
+
+
+def test_the_form_of_the_file() -> None:
+    raw = strict(results_json(RESULTS))
+    assert raw["schema"] == SCHEMA == 1
+    assert set(raw) == {
+        *("schema", "input", "restitution", "friction", "collisions", "glides"),
+        *("simulations", "warnings", "radius", "predictions", "laws", "methods", "law_choice"),
+        *("curl", "stones", "misfits", "posterior", "masses", "teams"),
+        "sheet",
+    }
+    assert raw["input"] == {
+        "files": ["clip Ä.mp4"],
+        "fps": 25.0,
+        "frames": 150,
+        "duration": 5.96,
+    }
+    constants = {"a": None, "v_c": None, "b": None}
+    assert raw["friction"] == {"value": 0.0109, "stderr": 3e-4, "law": "constant", **constants}
+    assert raw["collisions"][0]["stones"] == ["A", "B"]  # type: ignore[index]
+    assert raw["collisions"][0]["before"]["B"]["omega"] is None  # type: ignore[index]
+    assert raw["glides"][1]["friction"] is None  # type: ignore[index]
+
+
+def test_what_is_not_finite_is_null(tmp_path: Path) -> None:
+    odd = replace(
+        RESULTS,
+        restitution=Estimate(math.nan, math.inf),
+        simulations={"frictional": SimulationScore(np.float64("nan"), {"A": -math.inf})},
+        input=replace(RESULTS.input, frames=np.int64(7), fps=np.float32(25)),  # type: ignore[arg-type]
+    )
+    raw = strict(results_json(odd))
+    assert raw["restitution"] == {"value": None, "stderr": None}
+    assert raw["input"]["frames"] == 7  # type: ignore[index]
+    write_results(odd, tmp_path / "results.json")
+    back = read_results(tmp_path / "results.json")
+    assert back.restitution == Estimate(None, None)
+    assert back.simulations["frictional"].rest_error == {"A": None}
+
+
+numbers = st.one_of(st.none(), st.floats())
+
+
+@given(value=numbers, stderr=numbers, text=st.text())
+def test_any_value_is_strict_json(value: float | None, stderr: float | None, text: str) -> None:
+    results = replace(
+        RESULTS,
+        restitution=Estimate(value, stderr),
+        warnings=(text,),
+        glides=(Glide(text, 0.0, 1.0, value, stderr),),
+    )
+    raw = strict(results_json(results))
+    known = value is not None and math.isfinite(value)
+    assert raw["restitution"]["value"] == (value if known else None)  # type: ignore[index]
+    assert raw["warnings"] == [text]
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("", "not a results.json"),
+        ("{", "not a results.json"),
+        ("[]", "not a results.json"),
+        ("3", "not a results.json"),
+        ("null", "not a results.json"),
+        ("{}", "not a results.json"),
+        ('{"schema": 2}', "another version"),
+        ('{"schema": 1}', "not a results.json"),
+    ],
+)
+def test_other_files_are_refused(tmp_path: Path, text: str, reason: str) -> None:
+    path = tmp_path / "results.json"
+    path.write_text(text)
+    with pytest.raises(InputError, match=reason):
+        read_results(path)
+    path.write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(InputError, match=r"not a results\.json"):
+        read_results(path)
+    with pytest.raises(InputError, match="No such file"):
+        read_results(tmp_path / "none.json")
+
+
+@settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    key=st.sampled_from(sorted(json.loads(results_json(RESULTS)))),
+    value=st.recursive(
+        st.one_of(st.none(), st.integers(), st.text(max_size=5), st.booleans()),
+        lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner),
+        max_leaves=4,
+    ),
+)
+def test_damaged_results_are_read_or_refused(tmp_path: Path, key: str, value: object) -> None:
+    raw = json.loads(results_json(RESULTS))
+    raw[key] = value
+    path = tmp_path / "results.json"
+    path.write_text(json.dumps(raw))
+    try:
+        read_results(path)
+    except InputError as refusal:
+        assert str(path) in str(refusal)
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        (("collisions", 0, "t"), {}),
+        (("collisions", 0, "t"), None),
+        (("collisions", 0, "stone_friction"), "1.5"),
+        (("collisions", 0, "before", "A", "vx"), "fast"),
+        (("collisions", 0, "stones"), ["A", "Q"]),
+        (("friction", "stderr"), "x"),
+        (("restitution", "value"), True),
+        (("glides", 0, "t0"), []),
+        (("radius",), 0),
+        (("radius",), "0.1455"),
+    ],
+)
+def test_what_is_no_number_or_no_stone_is_refused(
+    path: tuple[str | int, ...], value: object, tmp_path: Path
+) -> None:
+    content = json.loads(results_json(RESULTS))
+    place = content
+    for key in path[:-1]:
+        place = place[key]
+    place[path[-1]] = value
+    file = tmp_path / "results.json"
+    file.write_text(json.dumps(content))
+    with pytest.raises(InputError, match="not a results"):
+        read_results(file)

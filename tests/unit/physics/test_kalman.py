@@ -1,0 +1,385 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from curlshot.data.tracks import TRACK_COLUMNS, check_sightings
+from curlshot.physics.filter import reference_filter as reference
+from curlshot.physics.filter.rate_filter import filtered
+from curlshot.physics.filter.stretch import Filter
+from curlshot.physics.kalman import smooth
+from curlshot.physics.local_fit.contacts import Contact, find_contacts
+from curlshot.synthetic.physics import Motion, Start
+from curlshot.tests.unit.physics.watch import RADIUS, airtable, hit_motion, watch
+
+COLUMNS = ("x", "y", "theta", "vx", "vy", "omega")
+
+
+def errors(tracks: pd.DataFrame, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
+    """Errors of a table of tracks and their stated standard deviations, COLUMNS each."""
+    truth = motion.at(tracks["t"].to_numpy())
+    index = tracks["stone"].map({"A": 0, "B": 1}).to_numpy()
+    exact = truth[np.arange(len(tracks)), index]
+    off = tracks[list(COLUMNS)].to_numpy() - exact
+    return off, tracks[[f"sd_{name}" for name in COLUMNS]].to_numpy()
+
+
+def test_errors_are_as_large_as_stated() -> None:
+    rng = np.random.default_rng(31)
+    motion = hit_motion(1.2, 0.08, after=1.5)
+    pulls = []
+    for _ in range(12):
+        seen = watch(motion, rng, sd=0.006)
+        tracks = smooth(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+        off, sd = errors(tracks, motion)
+        speed = np.hypot(*motion.at(tracks["t"].to_numpy())[:, 0, 3:5].T)
+        beside = np.abs(tracks["t"] - motion.hits[0].t) < 0.01  # the hit itself may lie between
+        moving = (tracks["stone"] == "A") | (tracks["t"] > motion.hits[0].t)
+        pulls.append((off / sd)[moving & ~beside & (speed > 0.05)])
+    square = np.mean(np.concatenate(pulls) ** 2, axis=0)
+    # Normalised estimation error squared, 12 independent shots with some 5 free states each.
+    assert np.all(square > 0.35)
+    assert np.all(square < 1.6)
+    covered = np.mean(np.abs(np.concatenate(pulls)) < 2, axis=0)
+    assert np.all(covered > 0.88)
+
+
+@pytest.mark.parametrize("speed", [0.5, 0.7, 2.0])
+def test_slow_stones_are_slowed_more_on_real_ice(speed: float) -> None:
+    """On ice that slows a stone by v^(-1/4) velocities are as good at the ends as is stated."""
+    rng = np.random.default_rng(2)
+    t = np.arange(0, 3.0, 0.04)
+    stop = speed**1.25 / 0.125
+    left = 1 - t / stop
+    y, vy = speed * stop / 1.8 * (1 - left**1.8), speed * left**0.8
+    pulls = []
+    for _ in range(8):
+        table = pd.DataFrame({"stone": "A", "frame": np.arange(len(t)), "t": t})
+        table["x"], table["y"] = rng.normal(0, 0.003, len(t)), rng.normal(y, 0.003)
+        tracks = smooth(check_sightings(table.assign(sd_x=0.003, sd_y=0.003)), (), radius=RADIUS)
+        off = np.column_stack([(tracks["y"] - y) / tracks["sd_y"], tracks["vy"] - vy])
+        off[:, 1] /= tracks["sd_vy"]
+        pulls.append(off[[0, -1]])
+    assert np.all(np.mean(np.square(pulls), axis=0) < 2)
+
+
+def test_smoothing_is_better_than_looking() -> None:
+    motion = hit_motion(1.2, 0.08, after=1.5)
+    seen = watch(motion, np.random.default_rng(32), sd=0.006)
+    tracks = smooth(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    off, _ = errors(tracks, motion)
+    far = np.abs(tracks["t"] - motion.hits[0].t) > 0.05
+    assert np.sqrt(np.mean(off[far, :2] ** 2)) < 0.003
+    assert np.sqrt(np.mean(off[far, 3:5] ** 2)) < 0.012
+    assert np.sqrt(np.mean(off[far, 5] ** 2)) < 0.05
+
+
+def test_nothing_leaks_across_a_hit() -> None:
+    motion = hit_motion()
+    seen = watch(motion, np.random.default_rng(33))
+    hits = find_contacts(seen, RADIUS)
+    whole = smooth(seen, hits, radius=RADIUS)
+    late = seen["t"] > hits[0].t
+    other = seen.copy()
+    other.loc[late, ["x", "y"]] += 0.05 * np.sin(10 * other.loc[late, ["t"]].to_numpy())
+    changed = smooth(other, hits, radius=RADIUS)
+    before = whole["t"] < hits[0].t
+    after = whole[~before][["vx", "vy"]].to_numpy() - changed[~before][["vx", "vy"]].to_numpy()
+    assert np.abs(after).max() > 0.05
+    for column in ("x", "y", "vx", "vy"):
+        shift = np.abs(whole[before][column] - changed[before][column])
+        # Only what the deceleration and the noise of the whole shot say can differ.
+        assert shift.max() < 0.02
+    jump = whole[~before & (whole["stone"] == "B")].iloc[0]
+    assert np.hypot(jump["vx"], jump["vy"]) > 1.0
+
+
+def test_a_row_that_may_lie_on_the_other_side_of_a_hit_says_so() -> None:
+    motion = hit_motion()
+    seen = watch(motion, np.random.default_rng(42))
+    frame = seen["t"].unique()[np.searchsorted(seen["t"].unique(), motion.hits[0].t)]
+    sure, unsure = (
+        smooth(
+            seen, [Contact(frame - 0.001, error, ("A", "B"), motion.hits[0].normal)], radius=RADIUS
+        )
+        for error in (1e-5, 1e-3)
+    )
+    beside = (sure["t"] == frame) & (sure["stone"] == "A")
+    before = (sure["t"] < frame) & (sure["stone"] == "A")
+    jump = sure["vy"][beside].item() - sure["vy"][before].iloc[-1]
+    # It lies one standard error of the time after the hit: before it with a probability of 0.159.
+    assert unsure["sd_vy"][beside].item() == pytest.approx(
+        np.hypot(sure["sd_vy"][beside].item(), np.sqrt(0.159 * 0.841) * jump), rel=0.01
+    )
+    assert unsure["sd_vy"][before].iloc[-2] == pytest.approx(sure["sd_vy"][before].iloc[-2])
+
+
+def test_an_angle_seen_beside_a_hit_is_kept_whatever_becomes_of_the_spin() -> None:
+    t = np.arange(60) / 25
+    turned = 9.0 * np.minimum(t - 1.0, 0.0) - 9.0 * np.maximum(t - 1.0, 0.0)
+    seen = pd.DataFrame({"stone": "A", "t": t, "x": 0.0, "y": np.minimum(t - 1.0, 0.0)})
+    seen = check_sightings(seen.assign(theta=turned, sd_x=0.002, sd_y=0.002, sd_theta=0.01))
+    tracks = smooth(seen, [Contact(1.0, 0.005, ("A", "B"), (0.0, 1.0))], radius=RADIUS)
+    assert np.abs(tracks["theta"] - turned).max() < 0.05
+    beside = tracks["omega"][t == 1.0].item(), tracks["sd_omega"][t == 1.0].item()
+    assert beside[0] == pytest.approx(-9.0, abs=0.5)
+    assert beside[1] == pytest.approx(9.0, rel=0.05)  # half of what the hit changed
+
+
+def test_a_stone_at_rest_stays_at_rest() -> None:
+    motion = hit_motion()
+    seen = watch(motion, np.random.default_rng(34))
+    hits = find_contacts(seen, RADIUS)
+    tracks = smooth(seen, hits, radius=RADIUS)
+    resting = tracks[(tracks["stone"] == "B") & (tracks["t"] < hits[0].t)]
+    assert (resting[["vx", "vy", "omega"]] == 0).all().all()
+    assert np.ptp(resting["x"]) < 1e-3
+    assert np.hypot(resting["x"], resting["y"]).max() < 0.004
+
+
+def test_a_stone_stopped_dead_was_as_fast_until_then() -> None:
+    pulls = []
+    for seed in range(10):
+        rng = np.random.default_rng([41, seed])
+        t = np.arange(60) / 25
+        stop = t[35] + 0.04 * rng.random()
+        y = 1.1 * np.minimum(t, stop) - 1.1 * stop
+        seen = check_sightings(
+            pd.DataFrame(
+                {
+                    "stone": "A",
+                    "frame": np.arange(60),
+                    "t": t,
+                    "x": rng.normal(0, 0.0005, 60),
+                    "y": y + rng.normal(0, 0.0005, 60),
+                    "sd_x": 0.0005,
+                    "sd_y": 0.0005,
+                }
+            )
+        )
+        tracks = smooth(seen, (), radius=RADIUS)
+        moving = tracks[(t < stop) & (t > 0.5)]
+        pulls.append((moving["vy"] - 1.1) / moving["sd_vy"])
+    assert np.mean(np.abs(np.concatenate(pulls)) < 2) > 0.9
+
+
+def test_gaps_are_bridged_and_marked() -> None:
+    rng = np.random.default_rng(35)
+    motion = hit_motion()
+    seen = watch(motion, rng, fps=50)
+    dropped = seen["frame"].isin(rng.choice(150, 40, replace=False))
+    hidden = (seen["stone"] == "A") & seen["t"].between(0.4, 0.7)
+    left = seen[~dropped & ~hidden].reset_index(drop=True)
+    tracks = smooth(left, find_contacts(left, RADIUS), radius=RADIUS)
+    assert tuple(tracks.columns) == TRACK_COLUMNS
+    carried = tracks[tracks["seen"] == 0]
+    assert set(carried["stone"]) == {"A"}
+    assert carried["t"].between(0.4, 0.7).all()
+    assert len(carried) == (~dropped & hidden).sum()
+    off, sd = errors(tracks, motion)
+    gap = (tracks["seen"] == 0).to_numpy()
+    assert np.abs(off[gap, :2]).max() < 0.01
+    assert sd[gap, 0].max() > 1.15 * np.median(sd[~gap & (tracks["stone"] == "A"), 0])
+
+
+def test_frames_in_which_nothing_was_measured_have_states_where_they_are_wanted() -> None:
+    motion = hit_motion(1.0, 0.05)
+    seen = watch(motion, np.random.default_rng(8), sd=0.002)
+    hits = find_contacts(seen, RADIUS)
+    without = smooth(seen, hits, radius=RADIUS)
+    t = float(seen["t"].iloc[10]) + 0.005
+    tracks = smooth(seen, hits, radius=RADIUS, unseen={9999: t})
+    added = tracks["frame"] == 9999
+    off, sd = errors(tracks[added], motion)
+    assert len(off) == 2 and (tracks["seen"][added] == 0).all() and (tracks["t"][added] == t).all()
+    assert np.all(np.abs(off[:, :2]) < 5 * sd[:, :2])
+    kept = tracks[~added].reset_index(drop=True)
+    assert np.allclose(kept[["x", "y"]], without[["x", "y"]], atol=1e-5)
+
+
+def test_a_way_too_short_to_be_seen_twice_is_told_by_its_ends() -> None:
+    motion = hit_motion(1.8, 0.0, after=1.0, others=[Start(0.03, 2 * RADIUS + 0.07)])
+    first, second = motion.hits
+    middle = (first.t + second.t) / 2
+    for sightings in (0, 1):
+        pulls = []
+        for seed in range(8):
+            rng = np.random.default_rng([37, seed])
+            seen = watch(motion, rng, fps=100, sd=0.001)
+            near = seen["t"].between(first.t, second.t) & (seen["stone"] == "B")
+            kept = (seen.loc[near, "t"] - middle).abs().nsmallest(sightings).index
+            left = seen.drop(seen.index[near].difference(kept)).reset_index(drop=True)
+            contacts = [
+                Contact(hit.t + rng.normal(0, 5e-4), 5e-4, stones, hit.normal)
+                for hit, stones in ((first, ("A", "B")), (second, ("B", "C")))
+            ]
+            tracks = smooth(left, contacts, radius=RADIUS)
+            own = tracks[tracks["stone"] == "B"]
+            row = own.iloc[(own["t"] - middle).abs().argmin()]
+            true = motion.at(row["t"])[1]
+            pulls += [(row[v] - true[k]) / row[f"sd_{v}"] for k, v in ((3, "vx"), (4, "vy"))]
+            assert row["sd_vy"] < 0.1
+            assert row["y"] == pytest.approx(true[1], abs=4 * row["sd_y"])
+        assert np.mean(np.abs(pulls) < 2) > 0.8
+
+
+def test_outliers_are_refused() -> None:
+    rng = np.random.default_rng(36)
+    motion = hit_motion()
+    seen = watch(motion, rng)
+    wild = rng.choice(np.flatnonzero(seen["t"] > 0.3), 5, replace=False)
+    bad = seen.copy()
+    bad.loc[wild, "x"] += 0.3
+    tracks = smooth(bad, find_contacts(bad, RADIUS), radius=RADIUS)
+    keys = pd.MultiIndex.from_frame(bad.loc[wild, ["stone", "frame"]])
+    refused = tracks.set_index(["stone", "frame"]).loc[keys, "seen"]
+    assert (refused == 0).all()
+    off, _ = errors(tracks, motion)
+    assert np.abs(off[:, :2]).max() < 0.03
+
+
+@pytest.mark.parametrize("stone", ["A", "B"])
+@pytest.mark.parametrize("since", [0.0, 1.0])
+def test_a_slip_that_a_way_begins_with_is_refused(stone: str, since: float) -> None:
+    """The first of all sightings, and the first after the hit: the next ones are believed."""
+    motion = hit_motion(1.5, 0.05)
+    seen = watch(motion, np.random.default_rng(38), sd=0.002)
+    first = seen.index[(seen["stone"] == stone) & (seen["t"] > since)][0]
+    seen.loc[first, "x"] += 0.3
+    tracks = smooth(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    own = tracks[tracks["stone"] == stone]
+    assert own["t"][own["seen"] == 0].tolist() == [seen.loc[first, "t"]]
+    off, _ = errors(tracks, motion)
+    assert np.abs(off[:, :2]).max() < 0.01
+
+
+def test_angles_that_nobody_saw_are_empty(shared: Path) -> None:
+    seen = airtable(shared)
+    tracks = smooth(seen, find_contacts(seen, 0.035), radius=0.035)
+    assert tracks[["theta", "omega", "sd_theta", "sd_omega"]].isna().all().all()
+    assert tracks[["x", "vx", "sd_x", "sd_vx"]].notna().all().all()
+
+
+def test_a_spin_is_seen_through_missing_angles() -> None:
+    motion = hit_motion(stone_friction=0.2)
+    seen = watch(motion, np.random.default_rng(37))
+    seen.loc[seen["frame"] % 3 == 0, ["theta", "sd_theta"]] = np.nan
+    tracks = smooth(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    off, _ = errors(tracks, motion)
+    assert np.abs(off[:, 5]).max() < 0.3
+    late = tracks[(tracks["stone"] == "B") & tracks["t"].between(1.3, 2.0)]["omega"]
+    assert late.mean() == pytest.approx(motion.hits[0].after[1][2], abs=0.05)
+
+
+def test_small_and_empty_tables() -> None:
+    seen = watch(hit_motion(), np.random.default_rng(38))
+    assert smooth(seen.iloc[:0], (), radius=RADIUS).empty
+    one = smooth(seen.iloc[:1], (), radius=RADIUS)
+    assert len(one) == 1
+    assert one["x"].iloc[0] == pytest.approx(seen["x"].iloc[0])
+    two = smooth(seen.groupby("stone").head(2).reset_index(drop=True), (), radius=RADIUS)
+    assert len(two) == 4
+    assert np.isfinite(two[["x", "y", "vx", "vy"]].to_numpy()).all()
+
+
+def test_what_sightings_share_is_not_averaged_out() -> None:
+    t = np.arange(50) / 25
+    table = pd.DataFrame({"stone": "A", "frame": np.arange(50), "t": t, "x": 1.0, "y": 0.0})
+    table = table.assign(theta=np.nan, sd_x=0.002, sd_y=0.002, sd_theta=np.nan)
+    table = table.assign(sd_place_x=0.003, sd_place_y=0.006)
+    tracks = smooth(check_sightings(table), (), radius=0.1455)
+    assert (tracks["sd_x"].between(0.003, 0.0036)).all()
+    assert (tracks["sd_y"].between(0.006, 0.0064)).all()
+    far = table.assign(sd_place_x=0.003 * (1 + np.arange(50)))
+    tracks = smooth(check_sightings(far), (), radius=0.1455)
+    assert tracks["sd_x"].to_numpy() == pytest.approx(far["sd_place_x"].to_numpy(), abs=0.0006)
+
+
+def test_what_places_share_does_not_turn_the_line_on_which_stones_hit() -> None:
+    """Velocities tell spins of poorly seen handles as well wherever all of it happens."""
+    seen = watch(hit_motion(), np.random.default_rng(5), sd=0.001, sd_theta=0.3)
+    hits = find_contacts(seen, RADIUS)
+    alike = seen.assign(sd_place_x=0.006, sd_place_y=0.006)
+    sure, shared = (smooth(table, hits, radius=RADIUS) for table in (seen, alike))
+    turning = sure["sd_omega"] > 0.05
+    assert turning.sum() > 20
+    assert (shared["sd_omega"] < 1.1 * sure["sd_omega"])[turning].all()
+
+
+@pytest.mark.parametrize("run", [filtered, reference.filtered])
+def test_a_stone_at_rest_that_was_moved_unseen_lies_where_it_is_seen(run: Filter) -> None:
+    """Between its two places nobody knows where it is, and the errors say so."""
+    rng = np.random.default_rng(5)
+    t = np.arange(0, 4, 1 / 30)
+    y = 0.85 - 0.19 * np.clip((t - 1.1) / 0.35, 0, 1)
+    table = pd.DataFrame({"stone": "B", "frame": np.arange(len(t)), "t": t, "x": 0.07, "y": y})
+    table[["x", "y"]] += rng.normal(0, 0.001, (len(t), 2))
+    hidden = (t > 1.05) & (t < 1.55)
+    table = table[~hidden]
+    unseen = {int(k): float(t[k]) for k in np.flatnonzero(hidden)}
+    tracks = smooth(check_sightings(table), (), radius=RADIUS, run=run, unseen=unseen)
+    off, sd = (tracks["y"] - y).to_numpy(), tracks["sd_y"].to_numpy()
+    assert np.abs(off[~hidden]).max() < 0.001
+    assert (tracks["seen"] == ~hidden).all()
+    assert (np.abs(off) < 2 * sd + 1e-4)[hidden].all()
+    assert sd[hidden].min() > 0.03 and sd[~hidden].max() < 0.001
+    assert (tracks.loc[hidden, "sd_vy"] > 0.3).all()
+
+
+def stopped(hidden: tuple[float, float], **columns: np.ndarray) -> tuple[pd.DataFrame, np.ndarray]:
+    """B glides 0.8 m, turning, and lies there from 4 s on; other columns instead. Second when."""
+    rng = np.random.default_rng(0)
+    t = np.arange(0, 9, 1 / 25)
+    glided = np.minimum(t, 4.0)
+    table = pd.DataFrame({"stone": "B", "frame": np.arange(len(t)), "t": t, "x": 0.0})
+    table["y"], table["theta"] = 0.4 * glided - 0.05 * glided**2, 0.5 * glided
+    table = table.assign(**{name: table[name] + more for name, more in columns.items()})
+    table[["x", "y"]] += rng.normal(0, 0.001, (len(t), 2))
+    table["theta"] += rng.normal(0, 0.01, len(t))
+    return table[(t < hidden[0]) | (t > hidden[1])], t[(t >= hidden[0]) & (t <= hidden[1])]
+
+
+@pytest.mark.parametrize("run", [filtered, reference.filtered])
+def test_a_stone_that_stops_unseen_and_is_hit_later_was_not_moved(run: Filter) -> None:
+    """Its rest is kept apart from its glide, for a hit ends it, but at the same place."""
+    t = np.arange(0, 9, 1 / 25)
+    table, when = stopped((3.6, 4.6), x=1.4 * np.maximum(t - 7, 0))
+    hitting = pd.DataFrame({"stone": "A", "frame": np.arange(len(t)), "t": t, "y": 0.8})
+    hitting["x"] = np.where(t < 7, 1.5, 0.1) * (t - 7) - 2 * RADIUS
+    sightings = check_sightings(pd.concat([hitting, table]))
+    contacts = [Contact(7.0, 0.001, ("A", "B"), (1.0, 0.0))]
+    unseen = {round(25 * at): float(at) for at in when}
+    tracks = smooth(sightings, contacts, radius=RADIUS, run=run, unseen=unseen)
+    b = tracks[(tracks["stone"] == "B") & tracks["t"].between(3.6, 4.6)]
+    assert (np.abs(b["y"] - 0.8 + 0.05 * np.maximum(4 - b["t"], 0) ** 2) < 0.003).all()
+    assert b["omega"].notna().all()
+    assert (b.loc[b["t"] > 4.2, ["vy", "omega"]] == 0).all(axis=None)
+
+
+@pytest.mark.parametrize("run", [filtered, reference.filtered])
+def test_a_stone_that_stopped_and_was_turned_unseen_did_not_spin_before(run: Filter) -> None:
+    later = (np.arange(0, 9, 1 / 25) > 6).astype(float)
+    table, when = stopped((5.8, 6.4), y=0.3 * later, theta=2.5 * later)
+    unseen = {round(25 * at): float(at) for at in when}
+    tracks = smooth(check_sightings(table), (), radius=RADIUS, run=run, unseen=unseen)
+    before = tracks[tracks["t"].between(5.0, 5.79)]
+    assert (np.abs(before["omega"]) < 3 * before["sd_omega"]).all()
+    assert np.abs(tracks.loc[tracks["t"] > 6.41, "theta"] - 4.5).max() < 0.02
+    meanwhile = tracks.loc[tracks["seen"] == 0, ["theta", "omega", "sd_theta", "sd_omega"]]
+    assert len(meanwhile) == len(when) and meanwhile.isna().all(axis=None)
+
+
+@pytest.mark.parametrize("run", [filtered, reference.filtered])
+def test_a_stray_where_a_moved_stone_comes_back_has_no_say(run: Filter) -> None:
+    """It lies elsewhere from there on: the filter believed the stray and refused the others."""
+    later = (np.arange(0, 9, 1 / 25) > 6).astype(float)
+    table, _ = stopped((5.8, 6.4), y=0.3 * later)
+    back = table["t"].gt(6.4).idxmax()
+    table.loc[back, "y"] -= 0.15
+    tracks = smooth(check_sightings(table), (), radius=RADIUS, run=run)
+    after = tracks[tracks["t"] > 6.5]
+    assert (after["seen"] == 1).all()
+    assert (np.abs(after["y"] - 1.1) < 0.0005).all()

@@ -1,0 +1,97 @@
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from curlshot.data.sheet import STONE
+from curlshot.vision.detection.patch import handle_radii
+from curlshot.vision.detection.relief import contrast, contrast_turned, without_handle
+from curlshot.vision.detection.sighting import Sighting
+from curlshot.vision.film.shelf import Kept
+from curlshot.vision.spin.handle import cap_spectrum
+
+RADII = handle_radii(STONE)
+RAYS = 48
+ANGLE = np.arange(RAYS)[:, None] * (2 * np.pi / RAYS)
+
+
+def cap(light: NDArray[np.float64], noise: float = 0.0, seed: int = 0) -> NDArray[np.complex64]:
+    """Spectrum of a cap of L* 120 and this more, shape (rays, rings): the same at both heights."""
+    rng = np.random.default_rng(seed)
+    lab = np.full((RAYS, 2 * len(RADII), 3), (120.0, 160.0, 150.0))
+    lab[..., 0] += np.tile(np.broadcast_to(light, (RAYS, len(RADII))), 2)
+    return cap_spectrum(np.round(lab + rng.normal(0, noise, lab.shape)).astype(np.uint8), RADII)
+
+
+def bar(height: float, turn: float = 0.0, wide: float = 0.014) -> NDArray[np.float64]:
+    """A handle along one diameter, so much lighter than the cap."""
+    return np.where(np.abs(RADII * np.sin(ANGLE - turn)) < wide, height, 0.0)
+
+
+@pytest.mark.parametrize("order", [2, 3, 4, 5])
+def test_a_wave_around_the_centre_has_its_root_mean_square(order: int) -> None:
+    wave = cap(40 * np.cos(order * ANGLE))
+    assert contrast(wave, wave) == pytest.approx(40 / np.sqrt(2), rel=0.01)
+
+
+@pytest.mark.parametrize("order", [1, 7, 12])
+def test_light_from_one_side_and_grain_are_no_handle(order: int) -> None:
+    wave = cap(40 * np.cos(order * ANGLE))
+    assert contrast(wave, wave) < 0.5
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.05, 1.0])
+def test_a_handle_shows_however_it_lies_and_a_rim_does_not(turn: float) -> None:
+    one, other = cap(bar(30, turn)), cap(bar(30, turn + 0.1))
+    assert contrast(one, other) == pytest.approx(contrast(one, one), rel=0.1)
+    assert contrast(one, one) > 5
+    rim = cap(np.where(RADII / STONE.cap_radius > 0.75, 40 * np.cos(2 * ANGLE), 0.0))
+    assert contrast(rim, rim) < 0.5
+
+
+def test_noise_that_is_anew_in_each_picture_is_not_shared() -> None:
+    noisy = [cap(bar(0), 8.0, seed) for seed in range(41)]
+    assert np.median([contrast(a, a) for a in noisy]) > 2
+    assert abs(np.median([contrast(*pair) for pair in pairwise(noisy)])) < 1
+
+
+def test_opposites_share_less_than_nothing() -> None:
+    wave = 40 * np.cos(2 * ANGLE)
+    assert contrast(cap(wave), cap(-wave)) == pytest.approx(-40 / np.sqrt(2), rel=0.01)
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.7, 1.6, 3.1])
+def test_a_turn_between_two_pictures_may_leave_their_contrast(turn: float) -> None:
+    one, other = cap(bar(30)), cap(bar(30, turn))
+    assert contrast_turned(one, other) == pytest.approx(contrast(one, one), rel=0.05)
+
+
+def test_noise_adds_half_as_much_to_turned_pictures_as_to_one() -> None:
+    noisy = [cap(bar(0), 8.0, seed) for seed in range(41)]
+    own = np.median([contrast(a, a) for a in noisy])
+    assert np.median([contrast_turned(*pair) for pair in pairwise(noisy)]) < 0.55 * own
+
+
+def seen(height: float, pixel: float = 0.01) -> Sighting:
+    """A stone whose handle is so much lighter than its cap."""
+    return Sighting(
+        0.0, 0.0, 0.002, 0.002, (0.0, 0.0), np.array([120.0, 190.0, 165.0]), 1.0, 2.0,
+        (1.0, 0.98), 0.0, (0.0,) * 6, (0.0, 0.0), pixel, spectrum=Kept(cap(bar(height), 1.0)),
+    )  # fmt: skip
+
+
+def test_one_picture_tells_paint_beside_stones_and_not_where_no_handle_is_seen() -> None:
+    stones, paint = [seen(30.0), seen(-15.0)], [seen(0.0), seen(2.0)]
+    assert without_handle([*stones, *paint]).tolist() == [False, False, True, True]
+    assert not without_handle(paint).any()
+    assert not without_handle([*stones, seen(0.0, pixel=0.02)]).any()  # too coarse to show it
+    assert not without_handle([*stones, paint[0]._replace(spectrum=None)]).any()
+    assert without_handle([]).shape == (0,)
+
+
+def test_beside_clear_handles_a_faint_one_is_still_one() -> None:
+    """Real stones have 2.8 and more, squares of a house that is painted as a tartan 0.9 to 1.8."""
+    assert without_handle([seen(30.0), seen(8.0), seen(5.0)]).tolist() == [False, False, True]

@@ -1,0 +1,136 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from curlshot.data.sheet import STONE
+from curlshot.synthetic.clip import render_still
+from curlshot.tests.unit.vision.association.test_follow import sighting
+from curlshot.tests.unit.vision.detection.test_stones import CAMERA, RED, camera_of, scene_of
+from curlshot.vision.detection.appearance import learn
+from curlshot.vision.detection.measure import measure_discs
+from curlshot.vision.detection.rays import Look, Rays, directions
+from curlshot.vision.detection.smeared import BY_EDGES_OFF, _covered, middles, swept_share, widened
+from curlshot.vision.detection.stones import search_picture
+
+Array = NDArray[np.float64]
+
+RAYS = Rays(
+    np.zeros((1, 48, 44, 3), np.uint8), np.zeros((1, 48, 44, 3), np.uint8),
+    np.ones((1, 48, 44), bool), np.linspace(0.029, 0.154, 44), directions(48)[0],
+)  # fmt: skip
+
+
+def exposed(middle: Array, way: Array, beyond: float) -> NDArray[np.float32]:
+    """Signal on rays about (0, 0) of a stone that goes a way over what signals `beyond`."""
+    points = RAYS.radius[:, None] * directions(48)[1][:, None]
+    mean = np.zeros(points.shape[:2])
+    for share in np.linspace(-0.5, 0.5, 201):
+        away = np.hypot(*(points - middle - share * way).transpose(2, 0, 1))
+        there = np.where(points[..., 0] > 0, beyond, -0.5)
+        mean += np.select([away < STONE.cap_radius, away < STONE.radius], [0.5, -0.5], there) / 201
+    return mean[None].astype(np.float32)
+
+
+@pytest.mark.parametrize("exposure", [0.3, 0.5, 0.95])
+@pytest.mark.parametrize("heading", [0.0, 1.9, -2.6])
+def test_a_smeared_cap_is_found_whatever_it_passes_over(exposure: float, heading: float) -> None:
+    drift = 0.12 * np.array([np.cos(heading), np.sin(heading)])
+    for beyond in (-0.5, 0.8):
+        truth = np.array([0.006, -0.004])
+        seen = exposed(truth, exposure * drift, beyond)
+        ok, middle, off = middles(seen, RAYS, STONE, np.zeros((1, 2)), drift[None])
+        assert ok.all()
+        assert np.hypot(*(middle[0] - truth)) < 0.0012
+        assert 0.0002 < np.hypot(*off[0]) < 0.004
+
+
+def test_what_is_far_from_its_place_or_hardly_in_view_tells_no_middle() -> None:
+    drift = np.array([0.12, 0.0])
+    far = exposed(np.array([0.055, 0.0]), 0.5 * drift, -0.5)
+    hardly = replace(RAYS, inside=RAYS.inside & (np.arange(48) < 4)[:, None])
+    near = exposed(np.array([0.006, -0.004]), 0.5 * drift, -0.5)
+    for seen, rays in ((far, RAYS), (near, hardly)):
+        ok, middle, off = middles(seen, rays, STONE, np.array([[0.001, 0.002]]), drift[None])
+        assert not ok.any() and not off.any()
+        np.testing.assert_array_equal(middle, [[0.001, 0.002]])
+
+
+def test_what_is_covered_changes_as_it_is_said_to() -> None:
+    rng = np.random.default_rng(4)
+    a, b = rng.uniform(-0.14, 0.14, (2, 400))
+    b = b[np.abs(b) < 0.09]
+    a, way, step = a[: len(b)], np.full(len(b), 0.06), 1e-6
+    _, change = _covered(a, b, way, STONE.cap_radius)
+    moved = [(a - step, b, way), (a, b - step, way), (a, b, way + step)]
+    for by, ahead in zip(change, moved, strict=True):
+        share = _covered(*ahead, STONE.cap_radius)[0] - _covered(a, b, way, STONE.cap_radius)[0]
+        # Where a border is passed within the step the two differ.
+        assert np.mean(np.abs(by - share / step) < 1e-2) > 0.98
+
+
+def test_slow_stones_are_left_to_their_edges_and_fast_ones_are_not() -> None:
+    share = swept_share(np.array([[0.0, 0.0], [0.03, 0.02], [0.0, -0.07], [0.09, 0.05]]))
+    assert share[:2].tolist() == [0, 0] and 0.2 < share[2] < 0.8 and share[3] == 1
+
+
+PATH = np.array([[0.3, 1.7], [0.29, 1.6], [0.28, 1.5]])
+SCENES = [[scene_of([(x, y, RED)]) for x, y in PATH + s * (PATH[1] - PATH[0])]
+          for s in np.linspace(-0.3, 0.3, 9)]  # fmt: skip
+VIEW = camera_of(CAMERA, SCENES[0][0])
+PICTURES = [
+    np.mean([render_still(scenes[k], CAMERA) for scenes in SCENES], axis=0).round().astype(np.uint8)
+    for k in range(3)
+]
+LEARNED = learn(search_picture(render_still(SCENES[4][1], CAMERA), VIEW).stones)
+
+
+@pytest.mark.parametrize("aside", [(0.0, 0.0), (0.004, 0.012), (-0.003, -0.012)])
+def test_of_a_stone_that_is_known_to_move_the_place_is_that_of_mid_exposure(
+    aside: tuple[float, float],
+) -> None:
+    place = PATH[1:2] + np.array(aside)
+    look = Look(PICTURES[1], VIEW, place, (PATH[1] - PATH[0])[None])
+    still = measure_discs([replace(look, drift=None)], LEARNED, STONE)
+    moving = measure_discs([look], LEARNED, STONE)
+    assert moving.swept.all() and not still.swept.any()
+    assert np.hypot(*(moving.centre[0] - PATH[1])) < 0.0025
+    assert moving.sd[0, 1] > still.sd[0, 1]
+    assert np.isnan(moving.light).all()
+
+
+@pytest.mark.parametrize("drift", [(-0.01, -0.1), (0.07, 0.05)])
+def test_a_fast_stone_that_is_sharp_is_told_by_its_edges(drift: tuple[float, float]) -> None:
+    picture = render_still(SCENES[4][1], CAMERA)
+    look = Look(picture, VIEW, PATH[1:2], np.array([drift]))
+    still = measure_discs([replace(look, drift=None)], LEARNED, STONE)
+    moving = measure_discs([look], LEARNED, STONE)
+    assert moving.swept.all()
+    np.testing.assert_array_equal(moving.centre, still.centre)
+    np.testing.assert_array_equal(moving.sd, still.sd)
+    assert np.isfinite(moving.light).all()
+
+
+def test_a_fast_stone_that_is_half_covered_is_left_to_its_edges() -> None:
+    covered = PICTURES[1].copy()
+    x, y = VIEW.project(PATH[1:2], STONE.cap_height)[0].astype(int).tolist()
+    covered[y - 50 : y + 50, x : x + 50] = (60, 90, 60)
+    look = Look(covered, VIEW, PATH[1:2], (PATH[1] - PATH[0])[None])
+    assert not measure_discs([look], LEARNED, STONE).swept.any()
+
+
+def test_smeared_edges_say_less_of_where_a_fast_stone_is_along_its_way() -> None:
+    times = [0.04 * k for k in range(6)]
+    seen = [sighting((0.0, 0.1 * k))._replace(light=(0.001, 0.0), swept=k == 3) for k in range(6)]
+    out = widened(times, seen)
+    for k in range(6):
+        extra = 0.0 if k == 3 else 0.1 * BY_EDGES_OFF
+        assert out[k].sd_y == pytest.approx(np.hypot(seen[k].sd_y, extra))
+        assert out[k].sd_x == pytest.approx(seen[k].sd_x)
+        assert np.isnan(out[k].light[0]) == (k != 3)
+    rests = [sighting((0.0, 0.001 * k)) for k in range(6)]
+    assert widened(times, rests) == rests
+    assert widened(times[:1], seen[:1]) == seen[:1]

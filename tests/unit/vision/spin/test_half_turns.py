@@ -1,0 +1,109 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from curlshot.vision.spin import handle
+from curlshot.vision.spin.align import ORDERS
+from curlshot.vision.spin.half_turns import unfolded
+
+RNG = np.random.default_rng(3)
+BAR = np.where(ORDERS % 2 == 0, np.exp(-((ORDERS / 6.0) ** 2)), 0.0)
+CLOSE = 0.1
+"""To what a path tells angles, rad: half of how far apart those that are tried are, and more."""
+
+
+def pictures(angles: np.ndarray, lit: float = 0.0, noise: float = 0.02) -> np.ndarray:
+    """Pictures of a bar alike at both ends; of its odd harmonics light has the other sign."""
+    odd = np.where(ORDERS % 2 == 1, lit * np.exp(-((ORDERS / 6.0) ** 2)), 0.0)
+    turned = (BAR + odd * np.sign(np.cos(angles))[:, None]) * np.exp(-1j * ORDERS * angles[:, None])
+    each = np.repeat(turned, 24, axis=1).reshape(len(angles), len(ORDERS), 8, 3)
+    grain = RNG.normal(0, noise, (2, *each.shape))
+    return np.asarray(each + grain[0] + 1j * grain[1], np.complex64)
+
+
+def error(found: np.ndarray, true: np.ndarray) -> float:
+    """Largest difference but for what all have in common."""
+    off = found - true
+    return float(np.nanmax(np.abs(off - np.nanmedian(off))))
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.floats(-3, 3), st.integers(8, 30), st.integers(0, 12), st.sampled_from([-2, -1, 1, 2]))
+def test_half_turns_beside_a_gap_are_taken_out(
+    spin: float, at: int, hidden: int, halves: int
+) -> None:
+    times = np.arange(50) / 25
+    true = spin * times
+    angles = true + np.pi * halves * (np.arange(50) >= at)
+    angles[at : at + hidden] = np.nan
+    out = unfolded(times, pictures(true), angles)
+    assert np.array_equal(np.isfinite(out), np.isfinite(angles))
+    assert error(out, true) < CLOSE
+
+
+def test_a_hit_changes_a_spin_and_what_covers_a_cap_for_a_moment_does_not() -> None:
+    times = np.arange(90) / 30
+    true = np.where(times < 1.5, 1.2 * times, 1.8 - 2.0 * (times - 1.5))
+    seen = pictures(true)
+    angles = true.copy()
+    covered = slice(20, 24)  # a broom turned by itself
+    seen[covered] = pictures(np.linspace(1.0, 4.0, 4))
+    angles[covered] = true[19] + np.linspace(0.1, 0.6, 4)
+    angles[24:] += np.pi
+    out = unfolded(times, seen, angles)
+    assert error(np.delete(out, np.arange(19, 25)), np.delete(true, np.arange(19, 25))) < CLOSE
+
+
+def test_light_that_has_a_handle_look_the_other_way_round_turns_no_stone() -> None:
+    times = np.arange(75) / 25
+    true = -1.5 * times
+    out = unfolded(times, pictures(true, lit=0.6), true + np.pi * (times > 1.0))
+    assert error(out, true) < CLOSE
+
+
+def test_a_stone_turns_on_while_its_handle_is_long_unseen() -> None:
+    each = np.arange(20) / 25
+    times = np.concatenate([each, 1.8 + each])
+    true = -1.4 * times
+    for halves in (-1, 1):
+        out = unfolded(times, pictures(true), true + np.pi * halves * (times > 1))
+        assert error(out, true) < CLOSE
+
+
+def test_a_disc_that_turns_faster_than_all_that_is_tried_is_left() -> None:
+    times = np.arange(60) / 60
+    fast = 16.0 * times
+    assert np.array_equal(unfolded(times, pictures(fast), fast), fast)
+    slower = 8.0 * times
+    assert error(unfolded(times, pictures(slower), slower), slower) < CLOSE
+
+
+def test_what_stones_may_turn_is_left() -> None:
+    times = np.concatenate([np.arange(20) / 25, 1.46 + np.arange(20) / 25])
+    hit = np.where(times > 1, 1.8 + 4.3 * (times - 1.46), 0.0)  # spun out of sight
+    no_half_turn = np.where(np.arange(40) < 20, 0.0, 1.2)  # something else went wrong there
+    for true in (hit, no_half_turn):
+        assert np.array_equal(unfolded(times, pictures(true), true), true)
+
+
+def test_few_or_no_angles_stay_as_they_are() -> None:
+    for angles in (np.full(3, np.nan), np.array([np.nan, 1.0, np.nan]), np.array([0.0, 3.1])[:0]):
+        seen = pictures(np.zeros(len(angles)))
+        same = unfolded(np.arange(len(angles)) / 25, seen, angles)
+        assert np.array_equal(same, angles, equal_nan=True)
+
+
+def test_a_handle_found_again_the_wrong_way_round_is_put_right(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of a bar alike at both ends the pictures themselves do not tell."""
+    times, radii = np.arange(50) / 25, np.linspace(0.012, 0.09, 8)
+    true = 1.4 * times
+    wrong = true + np.pi * (times > 0.9)
+    monkeypatch.setattr(handle, "_followed", lambda *_: wrong)
+    theta = handle.handle_angles(times, [*pictures(true, 0, 0)], radii, np.full(50, 0.0005)).theta
+    ends = np.pi * round((theta[0] - true[0]) / np.pi)
+    assert np.abs(theta - true - ends).max() < 0.01
