@@ -1,3 +1,5 @@
 """From a clip of a curling shot to its physics: tracks, restitution, friction, simulation."""
 
-VERSION = "0.1.0"
+from curlshot.data.version import VERSION as __version__
+
+__all__ = ["__version__"]

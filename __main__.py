@@ -2,7 +2,7 @@
 
 import sys
 
-from curlshot.pipeline import main
+from curlshot.cli.main import main
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -30,7 +30,6 @@ import cv2
 import numpy as np
 import pandas as pd
 
-from curlshot import pipeline
 from curlshot.cli.threads import LIMITS, use_one_thread
 from curlshot.report.encode import Encoder
 from curlshot.synthetic.camera import broadcast_camera
@@ -62,7 +61,7 @@ while capture.read()[0]:
 TRACK = """
 import sys
 from curlshot import pipeline
-assert pipeline.main(["track", *sys.argv[1:]]) == 0
+assert main(["track", *sys.argv[1:]]) == 0
 """
 
 HELD = """
@@ -172,7 +171,7 @@ def parts(clip: Path, repeats: int) -> pd.DataFrame:
         alone = time.process_time() - start
         with tempfile.TemporaryDirectory() as folder, timed(spent):
             start = time.process_time()
-            code = pipeline.main(["track", str(clip), "-q", "-o", folder])
+            code = main(["track", str(clip), "-q", "-o", folder])
             whole = time.process_time() - start
         assert code == 0
         parts = {**spent, "decoding, tables, the rest": whole - sum(spent.values())}

@@ -21,7 +21,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from curlshot.benchmarks.simulate import house, peer_rates, seconds, single, thrown_often
-from curlshot.data.tracks import check_sightings
+from curlshot.data.tracks import check_detections
 from curlshot.physics.estimate import Estimates, estimate
 from curlshot.physics.local_fit.contacts import find_contacts
 from curlshot.physics.local_fit.local import Local, estimate_locally
@@ -247,7 +247,7 @@ def table(rows: Iterable[Row]) -> str:
 
 
 def _watch(motion: Motion, rng: np.random.Generator, **how: float) -> pd.DataFrame:
-    return check_sightings(noisy_detections(motion, rng, **how))
+    return check_detections(noisy_detections(motion, rng, **how))
 
 
 def main() -> int:

@@ -19,16 +19,16 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from curlshot.config import Config
 from curlshot.data.errors import CurlshotError
 from curlshot.data.progress import no_progress
 from curlshot.data.sheet import STONE
 from curlshot.vision.detection.glance import glance
 from curlshot.vision.detection.stones import SEARCH
 from curlshot.vision.film.clip import Image
+from curlshot.vision.measure import film
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.placed import nobody
-from curlshot.work.film import film
-from curlshot.work.settings import Settings
 
 Array = NDArray[np.float64]
 
@@ -60,7 +60,7 @@ def main() -> None:
     houses, tally = 0, Tally()
     for file in files:
         try:
-            camera = film([file], Settings(), no_progress, nobody).cameras[0]
+            camera = film([file], Config(), no_progress, nobody).cameras[0]
         except CurlshotError:
             continue
         houses += 1

@@ -1,7 +1,7 @@
 """How exactly discs are followed in seven plain sequences: ``python -m benchmarks.sequences``.
 
 Sequences as autotrackers are tried on: 200 pictures of 1280 × 720 px, discs of radius 20 px, the
-scale from a calibration stick. RMS of the distance to the true centre, px, of the sightings
+scale from a calibration stick. RMS of the distance to the true centre, px, of the detections
 themselves and of the tracks, beside the figures of Tracker 6.2's autotracker on sequences of the
 same kinds (its defaults; one disc at a time, marked by hand at first). A star marks what misses
 its bar: 0.05 px, 0.3 px where something covers the disc, and nothing lost.
@@ -170,7 +170,7 @@ def draw_brush(picture: Picture, path: Floats, frame: int) -> None:
 
 
 def followed(sequence: Sequence, folder: Path) -> tuple[pd.DataFrame, pd.DataFrame, float]:
-    """Sightings, tracks, and the CPU time of following per frame, s."""
+    """Return detections, tracks, and the CPU time of following per frame, s."""
     files = []
     for index, picture in enumerate(pictures(sequence)):
         files.append(folder / f"{index:03d}.png")
@@ -178,10 +178,10 @@ def followed(sequence: Sequence, folder: Path) -> tuple[pd.DataFrame, pd.DataFra
     clip = open_clip(files, FPS)
     disc = plain_disc(RADIUS / SCALE)
     start = time.process_time()
-    sightings = track_stones(clip, stick_cameras(clip, STICK), disc=disc).sightings
+    detections = track_stones(clip, stick_cameras(clip, STICK), disc=disc).detections
     spent = (time.process_time() - start) / FRAMES
-    hits = find_contacts(sightings, disc.radius)
-    return sightings, smooth(sightings, hits, radius=disc.radius), spent
+    hits = find_contacts(detections, disc.radius)
+    return detections, smooth(detections, hits, radius=disc.radius), spent
 
 
 def misses(table: pd.DataFrame, sequence: Sequence) -> tuple[Floats, int]:
@@ -207,13 +207,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--kinds", nargs="+", default=[""], help="only those whose names begin so")
     kinds = tuple(parser.parse_args().kinds)
-    print(
-        f"{'px RMS':20} {'sightings':>10} {'tracks':>8} {'worst':>8} {'lost':>6} {'ms':>6}  Tracker"
-    )
+    print(f"{'px RMS':20} {'stones':>10} {'tracks':>8} {'worst':>8} {'lost':>6} {'ms':>6}  Tracker")
     for sequence in (item for item in SEQUENCES if item.name.startswith(kinds)):
         with tempfile.TemporaryDirectory() as folder:
-            sightings, tracks, spent = followed(sequence, Path(folder))
-        seen, lost = misses(sightings, sequence)
+            detections, tracks, spent = followed(sequence, Path(folder))
+        seen, lost = misses(detections, sequence)
         errors, _ = misses(tracks, sequence)
         star = "*" if rms(errors) > sequence.bar or lost else " "
         print(

@@ -115,7 +115,7 @@ def clips_table() -> pd.DataFrame:
         start = time.process_time()
         stones = track_stones(clip, cameras)
         spent = time.process_time() - start
-        table = stones.sightings.assign(seen=1)
+        table = stones.detections.assign(seen=1)
         for axis in "xy":
             table[f"sd_{axis}"] = np.hypot(table[f"sd_{axis}"], table[f"sd_place_{axis}"])
         score = score_tracks(table, truth)
@@ -129,7 +129,7 @@ def clips_table() -> pd.DataFrame:
                 "switches": score.switches,
                 "RMSE mm": 1e3 * score.rmse,
                 "within 2 sd": score.within_two_sd,
-                "spin rad/s": spin_error(stones.sightings, truth, score.names),
+                "spin rad/s": spin_error(stones.detections, truth, score.names),
                 "ms/frame": 1e3 * spent / len(cameras),
             }
         )

@@ -53,9 +53,9 @@ BARS = {
 
 def tracks_of(clip: Clip, cameras: Sequence[Camera]) -> pd.DataFrame:
     """Give what ``tracks.csv`` of a clip holds."""
-    sightings = track_stones(clip, cameras).sightings
-    hits = find_contacts(sightings, STONE.radius)
-    return smooth(sightings, hits, radius=STONE.radius)
+    detections = track_stones(clip, cameras).detections
+    hits = find_contacts(detections, STONE.radius)
+    return smooth(detections, hits, radius=STONE.radius)
 
 
 def errors_of(tracks: pd.DataFrame, truth: Truth, names: dict[str, str]) -> pd.DataFrame:

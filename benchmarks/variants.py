@@ -22,6 +22,7 @@ import pandas as pd
 
 from curlshot import pipeline
 from curlshot.data.results import Estimate, Prediction
+from curlshot.outcome import Run
 from curlshot.physics.estimate import Estimates, estimate
 from curlshot.physics.local_fit.contacts import find_contacts
 from curlshot.physics.prediction.forecast import predict
@@ -29,7 +30,6 @@ from curlshot.physics.prediction.laws import measured_laws
 from curlshot.physics.whole_shot.priors import Priors, literature
 from curlshot.synthetic.clip import Truth, cached_clip
 from curlshot.synthetic.scenes import sample_variant
-from curlshot.work.analyse import Run
 
 DURATION = 6.0
 
@@ -52,7 +52,7 @@ def row(seed: int) -> tuple[str, bool]:
     off_mu = (results.friction.value or np.nan) / mu - 1
     score = results.simulations["frictional"]
     again = {stone: off for stone, off in score.rest_error.items() if off is not None}
-    ahead = foretold(done, measured.sightings)
+    ahead = foretold(done, measured.detections)
     forecast = results.predictions["frictional"]
     kept = abs(off_e) <= 0.01 and abs(off_mu) <= 0.03 and max(again.values(), default=1.0) <= 0.03
     wide, high = truth.size
@@ -67,12 +67,12 @@ def row(seed: int) -> tuple[str, bool]:
     return "  ".join([*cells, "yes" if kept else "NO"]), kept
 
 
-def foretold(done: Run, sightings: pd.DataFrame) -> Prediction:
+def foretold(done: Run, detections: pd.DataFrame) -> Prediction:
     """Predict the shot from what was seen before its first hit, with the laws as measured."""
     results = done.results
-    found = estimate(sightings, find_contacts(sightings, results.radius), radius=results.radius)
+    found = estimate(detections, find_contacts(detections, results.radius), radius=results.radius)
     laws = as_measured(found, results.radius)
-    return predict(sightings, done.tracks, found, radius=results.radius, laws=laws)["frictional"]
+    return predict(detections, done.tracks, found, radius=results.radius, laws=laws)["frictional"]
 
 
 def as_measured(shot: Estimates, radius: float) -> Priors:

@@ -8,40 +8,23 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TypeVar
 
+from curlshot.config import Config
 from curlshot.data.errors import InputError
 from curlshot.data.files import check_folder
-from curlshot.data.sheet import STONE
-from curlshot.work.settings import Settings
-from curlshot.work.simulate import measured_shot
+from curlshot.data.messages import option
 
 T = TypeVar("T")
 
 
-def settings_of(arguments: argparse.Namespace) -> Settings:
-    """Gather what was said of the input; a command takes some of the options only."""
+def config_of(arguments: argparse.Namespace) -> Config:
+    """Return the configuration: the file of ``--config``, then what stands on the command line."""
     known = vars(arguments)
-    return Settings(
-        fps=known.get("fps"),
-        frames=known.get("frames"),
-        stick=known.get("stick"),
-        house=known.get("house"),
-        camera=known.get("camera"),
-        camera_height=known.get("camera_height"),
-        radius=known.get("radius", STONE.radius),
-        masses=_by_stone("--mass", known.get("mass", ())),
-        length_unit=known.get("length_unit"),
-        angle_unit=known.get("angle_unit"),
-        no_house=known.get("no_house", False),
-        clip=known.get("clip", False),
-        tab=known.get("tab"),
-        names=_by_stone("--names", known.get("names", [])),
-        angles={s: Path(p) for s, p in _by_stone("--angles", known.get("angles", [])).items()},
-        overlay=not known.get("no_overlay", False),
-        restitution=known.get("restitution"),
-        friction=known.get("friction"),
-        samples=known.get("samples") or 0,
-        units=known.get("units", "m"),
-    )
+    path = known.get("config")
+    config = Config() if path is None else Config.from_file(path)
+    given = {name: known[name] for name in config.values() if known.get(name) is not None}
+    for name in given.keys() & {"masses", "names", "angles"}:
+        given[name] = _by_stone(option(name), given[name])
+    return config.replace(**given)
 
 
 def out_folder(arguments: argparse.Namespace, first: str | Path) -> Path:
@@ -56,6 +39,8 @@ def out_folder(arguments: argparse.Namespace, first: str | Path) -> Path:
 
 def what_if_folder(arguments: argparse.Namespace, shot: Path) -> Path:
     """Folder for the simulation of a shot; of a measured one by default NAME-whatif."""
+    from curlshot.physics.prediction.restart import measured_shot
+
     if arguments.out is not None or not measured_shot(shot):
         return out_folder(arguments, shot)
     return check_folder(f"{shot.resolve().parent.name.removesuffix('-curlshot')}-whatif")

@@ -14,6 +14,7 @@ from types import FrameType
 
 from curlshot.cli.bars import Bars
 from curlshot.data.errors import CurlshotError
+from curlshot.data.messages import as_options
 
 _ENDS = ("SIGTERM", "SIGHUP")
 """Signals that ask to end, where the platform has them."""
@@ -62,7 +63,7 @@ def guarded(work: Callable[[], str], bars: Bars) -> int:
             text = work()
     except CurlshotError as error:
         bars.close()
-        print(f"curlshot: {one_line(str(error))}", file=sys.stderr)
+        print(f"curlshot: {one_line(as_options(str(error)))}", file=sys.stderr)
         return 2
     except OSError as error:
         bars.close()
@@ -80,7 +81,7 @@ def guarded(work: Callable[[], str], bars: Bars) -> int:
         return 128 + (stop.number if isinstance(stop, _Stopped) else signal.SIGINT)
     bars.close()
     try:
-        print(text, flush=True)
+        print(as_options(text), flush=True)
     except BrokenPipeError:
         # The reader, such as head, has had enough; Python would complain again at its exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -7,9 +7,7 @@ from pathlib import Path
 
 from curlshot.cli import values
 from curlshot.data.coach_units import UNITS
-from curlshot.data.sheet import STONE
-from curlshot.data.units import ANGLE_UNITS, LENGTH_UNITS
-from curlshot.work.limits import (
+from curlshot.data.limits import (
     FRACTION,
     FRICTION,
     HEIGHT,
@@ -19,6 +17,8 @@ from curlshot.work.limits import (
     SAMPLES,
     Limits,
 )
+from curlshot.data.sheet import STONE
+from curlshot.data.units import ANGLE_UNITS, LENGTH_UNITS
 
 OFFSETS = Limits(-5.0, 5.0, "a distance in metres, -5 to 5")
 
@@ -28,9 +28,19 @@ def radius_option(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--radius",
         type=values.within(RADIUS),
-        default=STONE.radius,
         metavar="METRES",
         help=f"radius of the discs ({STONE.radius}: a curling stone)",
+    )
+
+
+def config_option(parser: argparse.ArgumentParser) -> None:
+    """Add the file of settings."""
+    parser.add_argument(
+        "--config",
+        type=Path,
+        metavar="FILE.toml",
+        help="settings of a rink or a camera; options of the command line win (curlshot config"
+        " prints all of them)",
     )
 
 
@@ -38,9 +48,9 @@ def mass_option(parser: argparse.ArgumentParser) -> None:
     """Add the masses of the discs, for commands that tell their physics."""
     parser.add_argument(
         "--mass",
+        dest="masses",
         type=values.mass,
         action="append",
-        default=[],
         metavar="STONE=MASS",
         help="mass of a disc, where they are not all equal (any unit)",
     )
@@ -163,7 +173,6 @@ def units_option(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--units",
         choices=tuple(UNITS),
-        default="m",
         help="of what coaches read (m); all else is SI",
     )
 
@@ -176,7 +185,10 @@ def tab_option(parser: argparse.ArgumentParser) -> None:
 def no_house_option(parser: argparse.ArgumentParser) -> None:
     """Add whether tables count from a tee, for commands to which that matters."""
     parser.add_argument(
-        "--no-house", action="store_true", help="the origin of tables is not the tee of a house"
+        "--no-house",
+        action="store_true",
+        default=None,
+        help="the origin of tables is not the tee of a house",
     )
 
 
@@ -190,7 +202,6 @@ def table_options(parser: argparse.ArgumentParser) -> None:
         "--names",
         type=values.pair,
         action="append",
-        default=[],
         metavar="STONE=TRACK",
         help='which tracks are stones, e.g. --names A="mass A" --names B="mass B" (all)',
     )
@@ -198,7 +209,6 @@ def table_options(parser: argparse.ArgumentParser) -> None:
         "--angles",
         type=values.pair,
         action="append",
-        default=[],
         metavar="STONE=FILE",
         help="how a stone is turned: an export of a point of its edge about its centre",
     )

@@ -12,6 +12,7 @@ from curlshot.cli import values
 from curlshot.cli.options import (
     assumption_options,
     clip_options,
+    config_option,
     mass_option,
     no_house_option,
     radius_option,
@@ -21,7 +22,7 @@ from curlshot.cli.options import (
     units_option,
     what_if_options,
 )
-from curlshot.work.limits import JOBS
+from curlshot.data.limits import JOBS
 
 
 class _Parser(argparse.ArgumentParser):
@@ -63,7 +64,7 @@ def command_line(version: str) -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"curlshot {version}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
-    for add in (_run, _track, _check, _estimate, _season, _convert, _simulate):
+    for add in (_run, _track, _check, _estimate, _season, _convert, _simulate, _config):
         add(commands)
     return parser
 
@@ -97,15 +98,21 @@ def _run(commands: Any) -> None:
     table_options(parser)
     no_house_option(parser)
     tab_option(parser)
+    config_option(parser)
     parser.add_argument(
         "--clip",
         action="store_true",
+        default=None,
         help="measure the clip of a Tracker project, not what is marked in it",
     )
     assumption_options(parser)
     units_option(parser)
     parser.add_argument(
-        "--no-overlay", action="store_true", help="do not write the annotated clip overlay.mp4"
+        "--no-overlay",
+        dest="overlay",
+        action="store_false",
+        default=None,
+        help="do not write the annotated clip overlay.mp4",
     )
     parser.add_argument(
         "--jobs",
@@ -126,6 +133,7 @@ def _track(commands: Any) -> None:
     parser.add_argument("inputs", nargs="+", metavar="CLIP", help="a video or pictures")
     clip_options(parser)
     tab_option(parser)
+    config_option(parser)
 
 
 def _check(commands: Any) -> None:
@@ -139,6 +147,7 @@ def _check(commands: Any) -> None:
     parser.add_argument("inputs", nargs="+", metavar="CLIP", help="a video or pictures")
     clip_options(parser)
     tab_option(parser)
+    config_option(parser)
 
 
 def _estimate(commands: Any) -> None:
@@ -155,6 +164,7 @@ def _estimate(commands: Any) -> None:
     table_options(parser)
     no_house_option(parser)
     tab_option(parser)
+    config_option(parser)
     assumption_options(parser)
     units_option(parser)
     rate_option(parser, "rate of a table without times, 1/s")
@@ -201,6 +211,7 @@ def _convert(commands: Any) -> None:
     parser.add_argument("--over", metavar="CLIP", help="the clip that a project shows")
     table_options(parser)
     tab_option(parser)
+    config_option(parser)
     rate_option(parser, "rate of a table without times, 1/s")
 
 
@@ -254,6 +265,18 @@ def _simulate(commands: Any) -> None:
     rate_option(parser, "samples per second (25)", 25.0)
     parser.add_argument("--json", action="store_true", help="print the outcome as JSON")
     what_if_options(parser)
+
+
+def _config(commands: Any) -> None:
+    parser = _bare_command(
+        commands,
+        "config",
+        "all settings with their units and meanings, as a file for --config",
+        "  curlshot config > club.toml                      to be edited and used with\n"
+        "  curlshot run shot.mp4 --config club.toml\n"
+        "  curlshot config --config club.toml               what a file sets, checked\n",
+    )
+    config_option(parser)
 
 
 def _command(

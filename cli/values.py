@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from curlshot.work.limits import POSITIVE, Limits, has_length
+from curlshot.data.limits import POSITIVE, Limits, has_length
 
 if TYPE_CHECKING:
     from curlshot.physics.prediction.what_if import Amount

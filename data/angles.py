@@ -130,14 +130,14 @@ def read_angles(path: Path, angle_unit: str | None = None, fps: float | None = N
 
 
 def attach(
-    sightings: pd.DataFrame, stone: str, track: AngleTrack, source: str
+    detections: pd.DataFrame, stone: str, track: AngleTrack, source: str
 ) -> tuple[pd.DataFrame, list[str]]:
-    """Give a stone's sightings the angles of the same times.
+    """Give a stone's detections the angles of the same times.
 
     Parameters
     ----------
-    sightings : DataFrame
-        `curlshot.data.tracks.SIGHTING_COLUMNS`.
+    detections : DataFrame
+        `curlshot.data.tracks.DETECTION_COLUMNS`.
     stone : str
         Whose angle it is.
     track : AngleTrack
@@ -147,21 +147,21 @@ def attach(
 
     Returns
     -------
-    sightings : DataFrame
+    detections : DataFrame
         With `theta` of the stone; NaN at times without an angle.
     warnings : list of str
-        How many angles found no sighting.
+        How many angles found no detection.
 
     Raises
     ------
     InputError
         No such stone, or no common time.
     """
-    mine = (sightings["stone"] == stone).to_numpy()
+    mine = (detections["stone"] == stone).to_numpy()
     if not mine.any():
-        there = ", ".join(sightings["stone"].unique())
+        there = ", ".join(detections["stone"].unique())
         raise InputError(f"{source}: angle of {stone}: no such stone; there are {there}")
-    times = sightings.loc[mine, "t"].to_numpy(float)
+    times = detections.loc[mine, "t"].to_numpy(float)
     steps = np.concatenate([np.diff(times), np.diff(track.t)])
     # The same moment may be printed to another digit, but not be a quarter of a step away.
     tolerance = 0.25 * float(steps.min()) if len(steps) else 1e-3
@@ -176,13 +176,13 @@ def attach(
             f"{source}: angle of {stone}: none of its times ({track.t[0]:.3g} to"
             f" {track.t[-1]:.3g} s) is a time of {stone} ({times[0]:.3g} to {times[-1]:.3g} s)"
         )
-    theta = sightings["theta"].to_numpy(float).copy()
+    theta = detections["theta"].to_numpy(float).copy()
     theta[mine] = np.where(same, track.theta[nearest], np.nan)
     lost = len(track.t) - len(np.unique(nearest[same]))
     warnings = []
     if lost:
         warnings.append(f"{source}: {lost} of {len(track.t)} angles have no place of {stone}")
-    return sightings.assign(theta=theta), warnings
+    return detections.assign(theta=theta), warnings
 
 
 def spin_rate(t: Array, theta: Array) -> float:
@@ -249,14 +249,14 @@ def _unit(
     if rate > FASTEST_SPIN:
         return "deg", [
             f"{path}: angles taken in degrees, they change too fast for radians"
-            " (--angle-unit to say otherwise)"
+            " (`angle_unit` to say otherwise)"
         ]
     if rate > _DOUBTFUL_SPIN:
         raise InputError(
             f"{path}: angles in degrees or in radians? they change by {rate:.0f} a second; say it"
-            " with --angle-unit, or export x and y too"
+            " with `angle_unit`, or export x and y too"
         )
-    return "rad", [f"{path}: angles taken in radians (--angle-unit to say otherwise)"]
+    return "rad", [f"{path}: angles taken in radians (`angle_unit` to say otherwise)"]
 
 
 def _unit_by_place(theta: Array, direction: Array) -> str | None:

@@ -18,7 +18,7 @@ from curlshot.data.units import LENGTH_UNITS, TIME_UNITS, abbreviated
 Array = NDArray[np.float64]
 
 UNIT_SAID = "another length unit than the file says, or another calibration"
-UNIT_NOT_SAID = f"another length unit (--length-unit: {', '.join(LENGTH_UNITS)})"
+UNIT_NOT_SAID = f"another length unit (`length_unit`: {', '.join(LENGTH_UNITS)})"
 """What may be wrong with lengths, where the file says their unit and where it does not."""
 
 
@@ -58,7 +58,7 @@ def clock_column(table: TextTable, names: Sequence[str], fps: float | None) -> i
         there = ", ".join(name for name in names if name)[:80]
         raise InputError(
             f"{table.path}: no time column, t (there are {there}); rename it, or give the frame"
-            " rate of the rows (--fps)"
+            " rate of the rows (`fps`)"
         )
     return names.index("frame") if "frame" in names else None
 
@@ -88,7 +88,7 @@ def times_of(
     if told not in TIME_UNITS:
         raise InputError(
             f"{table.path}: its time unit is “{told[:20]}”, which is unknown here; known are"
-            f" {', '.join(TIME_UNITS)}; frames are a column frame and their rate (--fps)"
+            f" {', '.join(TIME_UNITS)}; frames are a column frame and their rate (`fps`)"
         )
     unit = TIME_UNITS[told]
     different = np.unique(times)
@@ -97,7 +97,7 @@ def times_of(
     if whole and not (bracket or minutes) and (fps is not None or decimals == 0):
         if fps is None:
             raise InputError(
-                f"{table.path}: the times are whole numbers: frames? give their rate (--fps), 1 if"
+                f"{table.path}: the times are whole numbers: frames? give their rate (`fps`), 1 if"
                 " they are seconds; for milliseconds name the column t (ms)"
             )
         return times / fps, None, [f"{table.path}: the times are whole numbers; taken as frames"]

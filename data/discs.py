@@ -26,14 +26,14 @@ WINDOW = 0.1
 
 
 def refuse_no_discs(
-    sightings: pd.DataFrame, radius: float, source: str, advice: str = UNIT_NOT_SAID
+    detections: pd.DataFrame, radius: float, source: str, advice: str = UNIT_NOT_SAID
 ) -> None:
     """Refuse tracks that discs of this radius cannot have.
 
     Parameters
     ----------
-    sightings : DataFrame
-        `curlshot.data.tracks.SIGHTING_COLUMNS`.
+    detections : DataFrame
+        `curlshot.data.tracks.DETECTION_COLUMNS`.
     radius : float
         Of the discs, m.
     source : str
@@ -47,9 +47,9 @@ def refuse_no_discs(
         Two discs lie in one another at several times, or a curling stone is faster than any.
     """
     if curling_size(radius):
-        _refuse_racing(sightings, source, advice)
-    places = sightings.pivot_table(index="t", columns="stone", values=["x", "y"])
-    for one, other in combinations(sorted(sightings["stone"].unique()), 2):
+        _refuse_racing(detections, source, advice)
+    places = detections.pivot_table(index="t", columns="stone", values=["x", "y"])
+    for one, other in combinations(sorted(detections["stone"].unique()), 2):
         apart = np.hypot(
             places["x"][one] - places["x"][other], places["y"][one] - places["y"][other]
         )
@@ -58,19 +58,19 @@ def refuse_no_discs(
             raise InputError(
                 f"{source}: {one} and {other} come within {_length(inside.min())} of each other at"
                 f" t = {moment(inside.idxmin())}, but discs of radius {radius:g} m are"
-                f" {_length(2 * radius)} wide: {advice}, another radius (--radius), or not both are"
-                " stones (--names)"
+                f" {_length(2 * radius)} wide: {advice}, another radius (`radius`), or not both are"
+                " stones (`names`)"
             )
 
 
-def _refuse_racing(sightings: pd.DataFrame, source: str, advice: str) -> None:
-    for stone, rows in sightings.groupby("stone", sort=False):
+def _refuse_racing(detections: pd.DataFrame, source: str, advice: str) -> None:
+    for stone, rows in detections.groupby("stone", sort=False):
         speed, t = top_speed(rows["t"].to_numpy(), rows[["x", "y"]].to_numpy())
         if speed > FASTEST_STONE:
             raise InputError(
                 f"{source}: {stone} moves at {speed:.1f} m/s at t = {moment(t)}, faster than any"
                 f" curling stone: {advice}, a slipped mark, names exchanged, or other discs"
-                " (--radius)"
+                " (`radius`)"
             )
 
 

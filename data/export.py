@@ -17,13 +17,13 @@ _WHERE_TOLD = ("sd_place_x", "sd_place_y", "rise_a", "rise_b", "team")
 """Columns of a CSV only where there is something in them."""
 
 
-def write_text(sightings: pd.DataFrame, path: Path) -> None:
+def write_text(detections: pd.DataFrame, path: Path) -> None:
     """Write what Tracker reads with File > Import > Text Data File, tabs between the cells.
 
     Parameters
     ----------
-    sightings : DataFrame
-        `curlshot.data.tracks.SIGHTING_COLUMNS`.
+    detections : DataFrame
+        `curlshot.data.tracks.DETECTION_COLUMNS`.
     path : Path
         File to write, whole or not at all.
 
@@ -38,17 +38,17 @@ def write_text(sightings: pd.DataFrame, path: Path) -> None:
     many digits as it takes to read the same number again. Angles, errors and frames follow in
     columns that Tracker does not need; none begins or ends with x or y, as places do there.
     """
-    stones = list(dict.fromkeys(sightings["stone"]))
+    stones = list(dict.fromkeys(detections["stone"]))
     labels = {stone: "_".join(stone.split()) for stone in stones}
     doubled = [label for label in labels.values() if list(labels.values()).count(label) > 1]
     if doubled:
         raise InputError(f"{path}: two stones named {doubled[0]} without blanks; rename one")
     one = len(stones) == 1
-    by_frame = sightings.drop_duplicates("frame").set_index("frame")["t"].sort_index()
+    by_frame = detections.drop_duplicates("frame").set_index("frame")["t"].sort_index()
     columns = {"t": [_time(t) for t in by_frame]}
     beside: dict[str, list[str]] = {}
     for stone in stones:
-        rows = sightings[sightings["stone"] == stone].set_index("frame").reindex(by_frame.index)
+        rows = detections[detections["stone"] == stone].set_index("frame").reindex(by_frame.index)
         end = "" if one else f"_{labels[stone]}"
         columns[f"x{end}"] = [_number(v) for v in rows["x"]]
         columns[f"y{end}"] = [_number(v) for v in rows["y"]]
@@ -65,19 +65,19 @@ def write_text(sightings: pd.DataFrame, path: Path) -> None:
         part.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
 
 
-def write_csv(sightings: pd.DataFrame, path: Path) -> None:
+def write_csv(detections: pd.DataFrame, path: Path) -> None:
     """Write one row per stone and time, every number with all its digits."""
-    empty = [name for name in _WHERE_TOLD if sightings[name].isin(["", np.nan]).all()]
-    table = sightings.drop(columns=empty).assign(t=[_time(t) for t in sightings["t"]])
+    empty = [name for name in _WHERE_TOLD if detections[name].isin(["", np.nan]).all()]
+    table = detections.drop(columns=empty).assign(t=[_time(t) for t in detections["t"]])
     with whole_file(path) as part:
         table.to_csv(part, index=False, lineterminator="\n")
 
 
-def write_parquet(sightings: pd.DataFrame, path: Path) -> None:
+def write_parquet(detections: pd.DataFrame, path: Path) -> None:
     """Write one row per stone and time as Parquet; raises `InputError` without pyarrow."""
     need_pyarrow(path)
     with whole_file(path) as part:
-        sightings.to_parquet(part, engine="pyarrow", index=False)
+        detections.to_parquet(part, engine="pyarrow", index=False)
 
 
 WRITERS: Mapping[str, Callable[[pd.DataFrame, Path], None]] = {

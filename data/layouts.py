@@ -25,7 +25,7 @@ from curlshot.data.delimited import TextTable, read_text_table
 from curlshot.data.errors import InputError
 from curlshot.data.headers import ANGLE_NAMES, TIME_NAMES, plain_name
 from curlshot.data.track_file import TrackFile
-from curlshot.data.tracks import SEEN_AS, stone_name
+from curlshot.data.tracks import EARLIER_NAMES, MEASURED_AS, stone_name
 from curlshot.data.units import ANGLE_UNITS, LENGTH_UNITS
 from curlshot.data.wide import (
     COMPANIONS,
@@ -85,6 +85,7 @@ def _is_header(cells: Sequence[str]) -> bool:
 
 def _tidy(table: TextTable, names: Sequence[str], fps: float | None) -> TrackFile:
     """Read one row per stone and time, columns in any order."""
+    names = [EARLIER_NAMES.get(name, name) for name in names]
     missing = [name for name in ("x", "y") if name not in names]
     if missing:
         raise InputError(f"{table.path}: no column {', '.join(missing)}; needs stone, t, x, y")
@@ -94,7 +95,8 @@ def _tidy(table: TextTable, names: Sequence[str], fps: float | None) -> TrackFil
     if TIME_NAMES.isdisjoint(names) and "frame" not in names:
         raise InputError(f"{table.path}: no column t; needs stone, t, x, y")
     clock = clock_column(table, names, fps)
-    wanted = {n: names.index(n) for n in ("x", "y", "seen", *COMPANIONS, *SEEN_AS) if n in names}
+    known = ("x", "y", "seen", *COMPANIONS, *MEASURED_AS)
+    wanted = {n: names.index(n) for n in known if n in names}
     values = values_of(table, wanted.values(), clock)
     times, decimals, warnings = times_of(table, values, clock, fps)
     stones = [stone.strip("\"'") for stone in table.cells([names.index("stone")])[0]]
@@ -111,7 +113,7 @@ def _tidy(table: TextTable, names: Sequence[str], fps: float | None) -> TrackFil
     for name in sorted({*stones} - {*tracks["stone"], ""}):
         warnings.append(f"{table.path}: {name} has no place in any row; left out")
     # Tables that this program wrote are in radians, however fast a disc turns.
-    unit = None if wanted.keys().isdisjoint(("seen", "sd_theta", *SEEN_AS)) else "rad"
+    unit = None if wanted.keys().isdisjoint(("seen", "sd_theta", *MEASURED_AS)) else "rad"
     return TrackFile(tracks, decimals, angle_unit=unit, continuous=True, warnings=warnings)
 
 
@@ -122,7 +124,7 @@ def _without_header(table: TextTable, fps: float | None) -> TrackFile:
     if timeless and fps is None:
         raise InputError(
             f"{table.path}: {width} columns without a header; needs t, x, y (and x, y of each"
-            " further stone), or the frame rate (--fps) where there is no t"
+            " further stone), or the frame rate (`fps`) where there is no t"
         )
     clock = None if timeless else 0
     values = values_of(table, range(width), clock)

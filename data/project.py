@@ -121,7 +121,7 @@ def _chosen(
             continue
         sound.append((project, place))
         if len(tabs) > 1 and suits(project):
-            note = f"{path}: of the tabs {names}, the first with {what} is used: {name} (--tab)"
+            note = f"{path}: of the tabs {names}, the first with {what} is used: {name} (`tab`)"
             return replace(project, warnings=(note, *project.warnings)), place
     if not sound:
         raise faults[0]

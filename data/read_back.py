@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from curlshot.data.tracks import LENGTHS, SEEN_AS
+from curlshot.data.tracks import LENGTHS, MEASURED_AS
 
 MOVED, FAR, SCATTERS = 0.02, 0.1, 6.0
 """How far from what was measured a filter leaves no stone's places on the whole, m, and none by
@@ -25,28 +25,28 @@ def as_measured(tracks: pd.DataFrame, source: str) -> tuple[pd.DataFrame, list[s
     ----------
     tracks : DataFrame
         ``stone, x, y`` (m), and what else there is of `curlshot.data.tracks.TRACK_COLUMNS` and
-        `SEEN_AS` (m, rad); all with a place.
+        `MEASURED_AS` (m, rad); all with a place.
     source : str
         What to call the table in warnings.
 
     Returns
     -------
     tracks : DataFrame
-        Without ``seen`` and the columns of `SEEN_AS`, and without rows that a filter carried.
+        Without ``seen`` and the columns of `MEASURED_AS`, and without rows that a filter carried.
     warnings : list of str
     """
-    told = {name: column for name, column in SEEN_AS.items() if name in tracks}
+    told = {name: column for name, column in MEASURED_AS.items() if name in tracks}
     filtered = tracks.drop(columns=["seen", *told], errors="ignore")
     if "seen" not in tracks:
-        tracks = tracks.assign(seen=tracks.get("seen_x", tracks["x"]).notna())
+        tracks = tracks.assign(seen=tracks.get("meas_x", tracks["x"]).notna())
     shown = tracks["seen"] != 0
-    if "seen_x" not in told or "seen_y" not in told:
+    if "meas_x" not in told or "meas_y" not in told:
         return filtered[shown], []
-    off = tracks[["x", "y"]] - tracks[["seen_x", "seen_y"]].to_numpy()
+    off = tracks[["x", "y"]] - tracks[["meas_x", "meas_y"]].to_numpy()
     stones = off[shown & off.notna().all(axis=1)].groupby(tracks["stone"])
     if (stones.median()[stones.size() >= FEW].abs() > MOVED).any(axis=None):
         return filtered[shown], [
-            f"{source}: x and y are not where seen_x and seen_y are; taken as edited, and those"
+            f"{source}: x and y are not where meas_x and meas_y are; taken as edited, and those"
             " left out"
         ]
     away = pd.Series(np.hypot(off["x"], off["y"]), off.index)

@@ -45,7 +45,7 @@ class Method:
 class Law:
     """One choice of laws that the shot was fitted with.
 
-    ``criterion`` is minus twice the log probability of the sightings, less that of the best;
+    ``criterion`` is minus twice the log probability of the detections, less that of the best;
     ``weight`` is the probability of these laws among those tried, and ``friction`` that of the
     ice at 1 m/s under them.
     """

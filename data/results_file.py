@@ -11,6 +11,7 @@ from typing import Any, TypeVar, get_type_hints
 
 from curlshot.data.errors import InputError
 from curlshot.data.files import write_text
+from curlshot.data.messages import as_options
 from curlshot.data.results import (
     Collision,
     Estimate,
@@ -38,7 +39,7 @@ _Made = TypeVar("_Made")
 
 
 def results_json(results: Results) -> str:
-    """Text of ``results.json``: strict JSON, values that are not finite as null."""
+    """Return the text of ``results.json``: strict JSON, values that are not finite as null."""
     content = _plain({"schema": SCHEMA, **asdict(results)})
     return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False)
 
@@ -162,7 +163,9 @@ def _plain(value: Any) -> Any:
         return {str(key): _plain(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
         return [_plain(item) for item in value]
-    if isinstance(value, bool) or value is None or isinstance(value, (str, int)):
+    if isinstance(value, str):
+        return as_options(value)
+    if isinstance(value, bool) or value is None or isinstance(value, int):
         return value
     number = float(value)
     return number if math.isfinite(number) else None

@@ -22,6 +22,11 @@ class House:
     four_foot: float = 0.610
     button: float = 0.152
 
+    @property
+    def painted(self) -> tuple[float, float, float]:
+        """Radii of the three circles that are measured, m, the largest first."""
+        return self.twelve_foot, self.eight_foot, self.four_foot
+
 
 @dataclass(frozen=True)
 class Sheet:

@@ -36,7 +36,7 @@ def chosen(
         raise InputError(f"no track named {missing[0]}; there are {', '.join(there)}")
     stones = {track: stone for stone, track in names.items()}
     if len(stones) < len(names):
-        raise InputError("one track cannot be two stones; name each once (--names)")
+        raise InputError("one track cannot be two stones; name each once (`names`)")
     kept = [_renamed(file, stones) for file in files]
     used = [(path, file) for path, file in zip(paths, kept, strict=True) if len(file.tracks)]
     return [path for path, _ in used], [file for _, file in used]

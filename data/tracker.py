@@ -26,7 +26,7 @@ from curlshot.data.project import is_project, read_project
 from curlshot.data.read_back import as_measured
 from curlshot.data.stone_names import chosen, named_by_file, refuse_shared_names
 from curlshot.data.track_file import TrackFile
-from curlshot.data.tracks import ANGLES, LENGTHS, SEEN_AS, check_sightings
+from curlshot.data.tracks import ANGLES, EARLIER_NAMES, LENGTHS, MEASURED_AS, check_detections
 from curlshot.data.units import (
     ANGLE_UNITS,
     LENGTH_UNITS,
@@ -61,8 +61,8 @@ class Imported:
 
     Attributes
     ----------
-    sightings : DataFrame
-        `curlshot.data.tracks.SIGHTING_COLUMNS`; m, s, rad; stones are named as in the files.
+    detections : DataFrame
+        `curlshot.data.tracks.DETECTION_COLUMNS`; m, s, rad; stones are named as in the files.
     warnings : tuple of str
         What was decided on evidence, or left out.
     fps : float or None
@@ -73,7 +73,7 @@ class Imported:
         What may be wrong with the lengths if they make no sense.
     """
 
-    sightings: pd.DataFrame
+    detections: pd.DataFrame
     warnings: tuple[str, ...]
     fps: float | None
     masses: Mapping[str, float] = field(default_factory=dict)
@@ -114,7 +114,7 @@ def read_table(
     Returns
     -------
     Imported
-        Checked sightings.
+        Checked detections.
 
     Raises
     ------
@@ -140,7 +140,7 @@ def read_table(
         else:
             files.append(read_layout(path, fps))
     if tab is not None and not any(map(is_project, paths)):
-        raise InputError(f"{paths[0]}: no Tracker project, which alone has tabs (--tab)")
+        raise InputError(f"{paths[0]}: no Tracker project, which alone has tabs (`tab`)")
     warnings = [text for file in files for text in file.warnings]
     files, notes = named_by_file(paths, files)
     warnings += notes
@@ -158,7 +158,7 @@ def read_table(
     refuse_shared_names(paths, files)
     table = pd.concat([file.tracks for file in files], ignore_index=True)
     table, rate = with_clock(table, [file.decimals for file in files])
-    table = check_sightings(table, source)
+    table = check_detections(table, source)
     said = all(abbreviated(file.length_unit or "") in LENGTH_UNITS for file in files)
     advice = UNIT_SAID if said else UNIT_NOT_SAID
     warnings += _check_scale(table, source, advice) + _check_rate(rate, table, source)
@@ -172,9 +172,9 @@ def read_table(
 
 
 def _checked_parquet(path: Path) -> TrackFile:
-    table = read_parquet(path)
-    tracks = check_sightings(table, str(path))
-    told = [name for name in ("seen", *SEEN_AS) if name in table]
+    table = read_parquet(path).rename(columns=EARLIER_NAMES)
+    tracks = check_detections(table, str(path))
+    told = [name for name in ("seen", *MEASURED_AS) if name in table]
     beside = table[told].apply(pd.to_numeric, errors="coerce")
     beside = beside.assign(stone=table["stone"].astype(str), t=pd.to_numeric(table["t"]))
     return TrackFile(tracks.merge(beside, how="left"), angle_unit="rad", continuous=True)
@@ -191,7 +191,7 @@ def _set_masses(
     if untouched:
         return {}, [
             f"{source}: the mass of {', '.join(untouched)} is Tracker's default, 1; all masses are"
-            " taken as equal (--mass to say otherwise)"
+            " taken as equal (`masses` to say otherwise)"
         ]
     return known, []
 
@@ -230,7 +230,7 @@ def _to_si(
             if chosen == "deg":
                 warnings.append(
                     f"{path}: angles taken in degrees, they change too fast for radians"
-                    " (--angle-unit to say otherwise)"
+                    " (`angle_unit` to say otherwise)"
                 )
         for name in ANGLES:
             if name in tracks:

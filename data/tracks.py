@@ -50,31 +50,34 @@ TRACK_COLUMNS: tuple[str, ...] = (
 tables what they say; empty where nothing is known.
 """
 
-SIGHTING_COLUMNS: tuple[str, ...] = (
+DETECTION_COLUMNS: tuple[str, ...] = (
     "stone", "frame", "t", "x", "y", "theta", "sd_x", "sd_y", "sd_theta",
     "sd_place_x", "sd_place_y", "rise_a", "rise_b", "team",
 )  # fmt: skip
-"""Columns of a table of sightings: measured places, before any filter. sd may be NaN.
+"""Columns of a table of detections: measured places, before any filter. sd may be NaN.
 
-``sd_x`` and ``sd_y`` are of what differs from sighting to sighting, ``sd_place_x`` and
-``sd_place_y`` (m) of what the sightings of a stone share and no filter averages out: the camera,
+``sd_x`` and ``sd_y`` are of what differs from detection to detection, ``sd_place_x`` and
+``sd_place_y`` (m) of what the detections of a stone share and no filter averages out: the camera,
 the scale. ``rise_a`` and ``rise_b`` (rad) are what the angles of a stone are off by together, each
-times one number of standard deviation 1 that all its sightings share: by how much a handle rises
+times one number of standard deviation 1 that all its detections share: by how much a handle rises
 above the cap otherwise than was taken out.
 """
 
 LENGTHS = ("x", "y", "sd_x", "sd_y", "sd_place_x", "sd_place_y")
-"""Columns of sightings that are in a unit of length."""
+"""Columns of detections that are in a unit of length."""
 
 ANGLES = ("theta", "sd_theta", "rise_a", "rise_b")
-"""Columns of sightings that are in a unit of angle."""
+"""Columns of detections that are in a unit of angle."""
 
-SEEN_AS = {f"seen_{name}": name for name in (*LENGTHS, *ANGLES)}
-"""Columns of ``tracks.csv`` beside `TRACK_COLUMNS`, and what of a sighting they hold: what was
+MEASURED_AS = {f"meas_{name}": name for name in (*LENGTHS, *ANGLES)}
+"""Columns of ``tracks.csv`` beside `TRACK_COLUMNS`, and what of a detection they hold: what was
 measured of the stone in that frame, before any filter; empty where nothing was. What is estimated
 from the table later rests on them."""
 
-_NUMBERS = tuple(name for name in SIGHTING_COLUMNS if name not in ("stone", "team"))
+EARLIER_NAMES = {f"seen_{name}": f"meas_{name}" for name in (*LENGTHS, *ANGLES)}
+"""Names that columns of ``tracks.csv`` had in version 0.1."""
+
+_NUMBERS = tuple(name for name in DETECTION_COLUMNS if name not in ("stone", "team"))
 
 AT_ONCE = 2000
 """Rows that are made texts together: of a long table these take more memory than its numbers."""
@@ -98,22 +101,22 @@ def stone_name(index: int) -> str:
     return letter if turn == 0 else f"{letter}{turn}"
 
 
-def check_sightings(table: pd.DataFrame, source: str = "tracks") -> pd.DataFrame:
-    """Return the sightings of `table`, sorted by stone and time, or say all that is wrong.
+def check_detections(table: pd.DataFrame, source: str = "tracks") -> pd.DataFrame:
+    """Return the detections of `table`, sorted by stone and time, or say all that is wrong.
 
     Parameters
     ----------
     table : DataFrame
         At least ``stone, t, x, y``; `frame`, `theta`, the sd columns and `team` are filled in
         (NaN, the rank of the time for `frame`, "" for `team`) where they are missing. Rows whose x
-        or y is missing are dropped: a missing sample is no sighting.
+        or y is missing are dropped: a missing sample is no detection.
     source : str
         What to call the table in messages.
 
     Returns
     -------
     DataFrame
-        With exactly `SIGHTING_COLUMNS`.
+        With exactly `DETECTION_COLUMNS`.
 
     Raises
     ------
@@ -150,7 +153,7 @@ def check_sightings(table: pd.DataFrame, source: str = "tracks") -> pd.DataFrame
         out["frame"] = np.searchsorted(times, out["t"].to_numpy())
     out["frame"] = out["frame"].astype(int)
     out = out.sort_values(["stone", "t"], kind="stable").reset_index(drop=True)
-    return out[list(SIGHTING_COLUMNS)]
+    return out[list(DETECTION_COLUMNS)]
 
 
 def _as_numbers(table: pd.DataFrame, name: str) -> tuple[Array, NDArray[np.bool_]]:
@@ -218,7 +221,7 @@ def teams(table: Table) -> dict[str, str]:
 
 
 def no_rows(columns: Sequence[str]) -> Columns:
-    """Return a table of sightings or tracks without rows."""
+    """Return a table of detections or tracks without rows."""
     kinds = {"stone": str, "team": str, "frame": int, "seen": int}
     return {name: np.empty(0, kinds.get(name, float)) for name in columns}
 
@@ -249,19 +252,19 @@ def _texts(column: NDArray[Any]) -> list[str]:
     return ["" if value is None or value != value else str(value) for value in column.tolist()]
 
 
-def write_tracks(tracks: Table, path: Path, sightings: Table | None = None) -> None:
+def write_tracks(tracks: Table, path: Path, detections: Table | None = None) -> None:
     """Write ``tracks.csv`` with `TRACK_COLUMNS` in their order.
 
-    Of which `sightings` they were made, if given, is written beside them (`SEEN_AS`).
+    Of which `detections` they were made, if given, is written beside them (`MEASURED_AS`).
     """
     table = {name: tracks[name] for name in TRACK_COLUMNS}
-    if sightings is not None:
+    if detections is not None:
         rank = {
-            key: k for k, key in enumerate(zip(sightings["stone"], sightings["t"], strict=True))
+            key: k for k, key in enumerate(zip(detections["stone"], detections["t"], strict=True))
         }
         rows = [rank.get(key, -1) for key in zip(tracks["stone"], tracks["t"], strict=True)]
-        for written, name in SEEN_AS.items():
-            table[written] = np.append(np.asarray(sightings[name], float), np.nan)[rows]
+        for written, name in MEASURED_AS.items():
+            table[written] = np.append(np.asarray(detections[name], float), np.nan)[rows]
     write_table(table, path)
 
 
@@ -291,4 +294,15 @@ def read_tracks(path: Path) -> pd.DataFrame:
     states = table[["t", "x", "y", "vx", "vy"]].to_numpy()
     if not (np.abs(states) < FARTHEST).all():  # NaN is refused too
         raise InputError(f"{path}: times, places or velocities that are none")
+    return table
+
+
+def simulation_table(
+    simulated: pd.DataFrame | None, model: str, of_team: Mapping[str, str] | None = None
+) -> pd.DataFrame:
+    """Return the table of ``simulation.csv`` from a sampled simulation; none of it was seen."""
+    table = empty_tracks() if simulated is None else simulated.reindex(columns=list(TRACK_COLUMNS))
+    table["seen"] = 0
+    table["team"] = [(of_team or {}).get(str(name), "") for name in table["stone"]]
+    table.insert(0, "model", model)
     return table

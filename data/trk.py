@@ -194,7 +194,7 @@ class Project:
             Where no track has a mark in the clip, two have one name, or there is no scale.
         """
         if not self.masses:
-            clip = "; what its clip shows can be measured (--clip)" if self.video else ""
+            clip = "; what its clip shows can be measured (`clip`)" if self.video else ""
             raise InputError(
                 f"{self.source}: no point mass with marks (it has"
                 f" {', '.join(self.others)[:80] or 'no tracks'}); mark stones as point masses in"

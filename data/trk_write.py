@@ -66,9 +66,9 @@ class View:
     frames: int = 0
 
 
-def plain_view(sightings: pd.DataFrame) -> View:
+def plain_view(detections: pd.DataFrame) -> View:
     """Give a view from above without a video, in which all places lie within the picture."""
-    xy = sightings[["x", "y"]].to_numpy(float)
+    xy = detections[["x", "y"]].to_numpy(float)
     low, high = xy.min(axis=0), xy.max(axis=0)
     size = np.array(PLAIN_SIZE)
     scale = float(np.clip(0.8 * np.min(size / np.maximum(high - low, 0.2)), 1.5, 1e4))
@@ -93,7 +93,7 @@ def write_trz(project: str, path: Path, clip: Mapping[str, Path]) -> None:
 
 
 def project_xml(
-    sightings: pd.DataFrame,
+    detections: pd.DataFrame,
     view: View,
     marks: Array,
     simulations: Mapping[str, pd.DataFrame] | None = None,
@@ -102,21 +102,21 @@ def project_xml(
 
     Parameters
     ----------
-    sightings : DataFrame
-        `curlshot.data.tracks.SIGHTING_COLUMNS`.
+    detections : DataFrame
+        `curlshot.data.tracks.DETECTION_COLUMNS`.
     view : View
         What the tracks are shown over.
     marks : ndarray, shape (n, 2)
-        Where each sighting is in the picture, Tracker's pixels.
+        Where each detection is in the picture, Tracker's pixels.
     simulations : mapping, optional
         Tables with ``stone, t, x, y`` by the name of the model.
     """
-    clock = _Clock.of(sightings)
+    clock = _Clock.of(detections)
     tracks = [
         _point_mass(str(stone), rows, marks[rows.index], colour)
         for (stone, rows), colour in zip(
-            sightings.reset_index(drop=True).groupby("stone", sort=False),
-            _cycle(sightings["stone"].nunique()),
+            detections.reset_index(drop=True).groupby("stone", sort=False),
+            _cycle(detections["stone"].nunique()),
             strict=True,
         )
     ]
@@ -163,8 +163,8 @@ class _Clock:
     times: Array = field(repr=False)
 
     @classmethod
-    def of(cls, sightings: pd.DataFrame) -> _Clock:
-        by_frame = sightings.drop_duplicates("frame").sort_values("frame")
+    def of(cls, detections: pd.DataFrame) -> _Clock:
+        by_frame = detections.drop_duplicates("frame").sort_values("frame")
         frames, t = by_frame["frame"].to_numpy(int), by_frame["t"].to_numpy(float)
         first, last = int(frames[0]), int(frames[-1])
         duration = float((t[-1] - t[0]) / (last - first)) if last > first else 0.04

@@ -75,7 +75,7 @@ def unit_of_lengths(told: str | None, said: str | None, source: str, teller: str
         if said is None:
             raise InputError(
                 f"{source}: its length unit is “{told[:20]}”, which is unknown here; known are"
-                f" {', '.join(LENGTH_UNITS)}: set one in the {teller}, or name it (--length-unit)"
+                f" {', '.join(LENGTH_UNITS)}: set one in the {teller}, or name it (`length_unit`)"
             )
         return said
     if said not in (None, told):
@@ -95,5 +95,5 @@ def unit_of_angles(told: str | None, said: str | None, source: str) -> str | Non
         return said or told or None
     raise InputError(
         f"{source}: its unit of angles is “{told[:20]}”, which is unknown here; known are"
-        f" {', '.join(ANGLE_UNITS)}: set one in the header, or name it (--angle-unit)"
+        f" {', '.join(ANGLE_UNITS)}: set one in the header, or name it (`angle_unit`)"
     )

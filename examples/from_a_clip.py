@@ -9,11 +9,12 @@ from __future__ import annotations
 import sys
 
 from curlshot import pipeline
+from curlshot.config import Config
 
 clips = sys.argv[1:]
-settings = pipeline.Settings() if clips else pipeline.Settings(frames=(0, 49))
+config = Config() if clips else Config().replace(frames=(0, 49))
 
-done = pipeline.run(clips, settings=settings)  # with out="folder" it writes its files, too
+done = pipeline.run(clips, config=config)  # with out="folder" it writes its files, too
 
 results = done.results
 print(f"e = {results.restitution.value} ± {results.restitution.stderr}")

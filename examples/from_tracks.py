@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 
 from curlshot.data.sheet import STONE
-from curlshot.data.tracks import check_sightings
+from curlshot.data.tracks import check_detections
 from curlshot.physics.estimate import estimate
 from curlshot.physics.local_fit.contacts import find_contacts
 from curlshot.physics.simulator.simulate import simulate
@@ -32,9 +32,9 @@ def made_up() -> pd.DataFrame:
 RADIUS = STONE.radius  # of the discs, m
 
 table = pd.read_csv(Path(sys.argv[1]) / "tracks.csv") if sys.argv[1:] else made_up()
-sightings = check_sightings(table)
-hits = find_contacts(sightings, RADIUS)
-found = estimate(sightings, hits, radius=RADIUS)
+detections = check_detections(table)
+hits = find_contacts(detections, RADIUS)
+found = estimate(detections, hits, radius=RADIUS)
 
 print("hits:", [(f"{hit.t:.3f} s", hit.stones) for hit in hits])
 print("e:", found.restitution)

@@ -1,7 +1,7 @@
 """One e, and one friction between stones, for several shots of the same stones.
 
 Run it as ``python examples/shared.py [RUN ...]``, with the folders of runs. Without any, two shots
-are made up. All sightings of all shots are fitted at once through the simulator, where e and the
+are made up. All detections of all shots are fitted at once through the simulator, where e and the
 friction between stones are the same in all of them and what is left is each shot's own.
 """
 
@@ -15,7 +15,7 @@ import pandas as pd
 
 from curlshot import pipeline
 from curlshot.data.sheet import STONE
-from curlshot.data.tracks import check_sightings
+from curlshot.data.tracks import check_detections
 from curlshot.physics.estimate import estimate
 from curlshot.physics.impact.frictional import Frictional
 from curlshot.physics.local_fit.contacts import find_contacts
@@ -32,13 +32,13 @@ def made_up(speed: float, aside: float) -> pd.DataFrame:
     shot = Shot(stones, impact=Frictional(0.83))
     seen = simulate(shot).sample(np.arange(0.0, 3.0, 1 / 30))
     seen[["x", "y"]] += np.random.default_rng(1).normal(0.0, 0.003, (len(seen), 2))
-    return check_sightings(seen[["stone", "t", "x", "y"]])
+    return check_detections(seen[["stone", "t", "x", "y"]])
 
 
-runs = [pipeline.measure(Path(run) / "tracks.csv").sightings for run in sys.argv[1:]]
+runs = [pipeline.measure(Path(run) / "tracks.csv").detections for run in sys.argv[1:]]
 fits = []
-for sightings in runs or [made_up(1.5, 0.05), made_up(2.0, -0.08)]:
-    found = estimate(sightings, find_contacts(sightings, RADIUS), radius=RADIUS)
+for detections in runs or [made_up(1.5, 0.05), made_up(2.0, -0.08)]:
+    found = estimate(detections, find_contacts(detections, RADIUS), radius=RADIUS)
     if found.whole is None:
         sys.exit(f"a shot that cannot be fitted as a whole: {found.by_whole.note}")
     fits.append(found.whole)

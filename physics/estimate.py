@@ -72,7 +72,7 @@ LAWS = ("restitution", "friction", "stone_friction")
 
 @dataclass(frozen=True)
 class Estimates:
-    """What a table of sightings says about the physics of the shot.
+    """What a table of detections says about the physics of the shot.
 
     Attributes
     ----------
@@ -140,7 +140,7 @@ class Estimates:
 
 
 def estimate(
-    sightings: pd.DataFrame,
+    detections: pd.DataFrame,
     contacts: Sequence[Contact],
     *,
     radius: float,
@@ -150,8 +150,8 @@ def estimate(
 
     Parameters
     ----------
-    sightings : DataFrame
-        `curlshot.data.tracks.SIGHTING_COLUMNS`.
+    detections : DataFrame
+        `curlshot.data.tracks.DETECTION_COLUMNS`.
     contacts : sequence of Contact
         The hits, as `curlshot.physics.local_fit.contacts.find_contacts` gives them.
     radius : float
@@ -166,7 +166,7 @@ def estimate(
             return seen
         return estimate_from_traces(over, contacts, radius=radius, masses=masses)
 
-    seen = estimate_locally(sightings, contacts, radius=radius, masses=masses)
+    seen = estimate_locally(detections, contacts, radius=radius, masses=masses)
     fitted, local, off, doubt, end = _whole(seen, radius, masses or {}, centred)
     restitution, friction, unsure = local.restitution, local.friction, local.friction_doubt
     whole = fitted if doubt is None else None
@@ -248,7 +248,7 @@ class _Whole(NamedTuple):
     fit : GlobalFit or None
     local : Local
         What the paths beside the hits say: as sighted, or, where that goes with the fit, with what
-        the fit has caps beside the centres by taken out of the sightings.
+        the fit has caps beside the centres by taken out of the detections.
     off : tuple of Misfit
         How far each track is from the fit, where that follows the shot.
     doubt, end : str or None

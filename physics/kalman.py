@@ -1,4 +1,4 @@
-"""Positions, velocities and spins from sightings: a Kalman filter, smoothed backwards.
+"""Positions, velocities and spins from detections: a Kalman filter, smoothed backwards.
 
 State x, y, vx, vy, θ, ω. Between two times a stone moves on with its velocity, which the ice
 lowers; what the ice does otherwise is white noise of acceleration. The known part of the
@@ -6,7 +6,7 @@ deceleration is taken out of the measurements before the filter and put back aft
 that the filter itself stays linear and the backward pass (Rauch, Tung and Striebel, 1965,
 AIAA J. 3, 1445) exact. A filter never runs across a hit.
 
-The noise of sightings is estimated from the shot itself (`curlshot.physics.local_fit.noise`): its
+The noise of detections is estimated from the shot itself (`curlshot.physics.local_fit.noise`): its
 white part is the filter's measurement noise, its correlated part a further state of each pair. The
 error that all places share is added in the end, to places and, as an error of the scale, to
 velocities.
@@ -54,7 +54,7 @@ it); clip by clip these are .90 to .98 in 28, fewer in 5 and more in 35 (with 0.
 
 
 def smooth(
-    sightings: Table,
+    detections: Table,
     contacts: Sequence[Contact],
     *,
     radius: float,
@@ -62,16 +62,16 @@ def smooth(
     run: Filter = filtered,
     unseen: Mapping[int, float] = MappingProxyType({}),
 ) -> pd.DataFrame:
-    """Turn sightings into tracks, as a DataFrame: see `smoothed`."""
+    """Turn detections into tracks, as a DataFrame: see `smoothed`."""
     import pandas as pd
 
     return pd.DataFrame(
-        smoothed(sightings, contacts, radius=radius, masses=masses, run=run, unseen=unseen)
+        smoothed(detections, contacts, radius=radius, masses=masses, run=run, unseen=unseen)
     )
 
 
 def smoothed(
-    sightings: Table,
+    detections: Table,
     contacts: Sequence[Contact],
     *,
     radius: float,
@@ -79,12 +79,12 @@ def smoothed(
     run: Filter = filtered,
     unseen: Mapping[int, float] = MappingProxyType({}),
 ) -> Columns:
-    """Turn sightings into tracks: one row per stone and time from its first to its last.
+    """Turn detections into tracks: one row per stone and time from its first to its last.
 
     Parameters
     ----------
-    sightings : Table
-        Of `curlshot.data.tracks.SIGHTING_COLUMNS` at least ``stone, t, x, y``; standard deviations
+    detections : Table
+        Of `curlshot.data.tracks.DETECTION_COLUMNS` at least ``stone, t, x, y``; standard deviations
         are estimated where missing, frames without a number are counted.
     contacts : sequence of Contact
         The hits. The filter never runs across one. What both sides share is put right besides:
@@ -104,16 +104,16 @@ def smoothed(
     -------
     Columns
         `curlshot.data.tracks.TRACK_COLUMNS`. ``seen`` is 0 in rows at which other stones were seen
-        but not this one, at frames `unseen`, or at which its sighting was refused as an outlier.
+        but not this one, at frames `unseen`, or at which its detection was refused as an outlier.
         Angles and spins are NaN where the stone's angle was not seen from one hit to the next,
         velocities where it was seen once. The standard deviations of places include what the
-        sightings share (``sd_place_x``, ``sd_place_y``).
+        detections share (``sd_place_x``, ``sd_place_y``).
     """
-    known = centred(traces(sightings), contacts, radius)
+    known = centred(traces(detections), contacts, radius)
     if not known:
         return no_rows(TRACK_COLUMNS)
-    t = np.asarray(sightings["t"], float)
-    rank = sightings["frame"] if "frame" in sightings else np.unique(t, return_inverse=True)[1]
+    t = np.asarray(detections["t"], float)
+    rank = detections["frame"] if "frame" in detections else np.unique(t, return_inverse=True)[1]
     times, first = np.unique(np.append(t, [*unseen.values()]), return_index=True)
     frames = np.append(np.asarray(rank, int), np.array([*unseen], int))[first]
     fit, model, noise = _fit_pieces(known, contacts, radius)
@@ -134,7 +134,7 @@ def smoothed(
         for column, alike in zip(("sd_x", "sd_y"), stone.trace.sd_place[stone.row].T, strict=True):
             each[name][column] = np.hypot(each[name][column], alike)
     widen_last(each, contacts, radius, masses)
-    team, tables = teams(sightings), list(each.values())
+    team, tables = teams(detections), list(each.values())
     tracks = {name: np.concatenate([table[name] for table in tables]) for name in tables[0]}
     tracks["team"] = np.array([team[stone] for stone in tracks["stone"].tolist()])
     return {name: tracks[name] for name in TRACK_COLUMNS}
@@ -143,7 +143,7 @@ def smoothed(
 def _fit_pieces(
     known: dict[str, Trace], contacts: Sequence[Contact], radius: float
 ) -> tuple[ShotFit, Model, dict[str, Noise]]:
-    """Fit each stretch between hits by itself: rests, the law of the ice, noise of sightings."""
+    """Fit each stretch between hits by itself: rests, the law of the ice, noise of detections."""
     by_hits, _ = cut_all(known, contacts, radius)
     pieces = [replace(piece, opens=None, closes=None) for piece in by_hits]
     loose = fit_shot(known, pieces, (), radius, deceleration=free(radius))
@@ -162,9 +162,10 @@ class _Stone:
     Attributes
     ----------
     trace : Trace
-        Its sightings.
+        Its detections.
     t, frames, row, part : (n,) array
-        Times, s, with their frames, the sighting nearest to each, and how many hits it comes after.
+        Times, s, with their frames, the detection nearest to each, and how many hits it comes
+        after.
     hits : sequence of Contact
         Of the stone, in order of time.
     stretches : list of (array of int, Stretch)
@@ -195,12 +196,12 @@ def _cut_at_hits(
     noise: Noise,
     radius: float,
 ) -> _Stone:
-    """Cut one stone's sightings at its hits; leave out what begins a stretch, or a rest, far off.
+    """Cut one stone's detections at its hits; leave out what begins a stretch, or a rest, far off.
 
     Parameters
     ----------
     trace : Trace
-        The sightings.
+        The detections.
     t, frames : (n,) array
         Times at which states are wanted, s, and their frames.
     hits : sequence of Contact
@@ -210,7 +211,7 @@ def _cut_at_hits(
     model : Model
         How the ice slows it.
     noise : Noise
-        Of the sightings.
+        Of the detections.
     radius : float
         Of the discs, m.
     """
@@ -277,7 +278,7 @@ def _track(stone: _Stone, model: Model, run: Filter) -> tuple[Columns, Floats]:
 def _carry(cut: Stretch, mean: Floats, spread: Floats, at: NDArray[np.intp]) -> None:
     """Carry a stone that rests elsewhere than before from there to here, in the time between.
 
-    Between the last sighting at one place and the first at the other it may be anywhere on the
+    Between the last detection at one place and the first at the other it may be anywhere on the
     way, and move and turn at any speed.
     """
     sighted = np.flatnonzero(np.isfinite(cut.z[:, 0]))
@@ -297,7 +298,7 @@ def _carry(cut: Stretch, mean: Floats, spread: Floats, at: NDArray[np.intp]) -> 
 
 
 def _residuals(fit: ShotFit, piece: NDArray[np.int64], t: Floats, xy: Floats) -> Floats:
-    """How far sightings are from the fits of their pieces, (n, 2), m; NaN where there are none."""
+    """How far detections are from the fits of their pieces, (n, 2), m; NaN where there are none."""
     out = np.empty_like(xy)
     for rank in np.unique(piece):
         own = piece == rank
@@ -315,7 +316,7 @@ def _false_start(at: NDArray[np.intp], residual: Floats) -> NDArray[np.intp]:
     at : (m,) array of int
         The rows between two hits, or from where it lies elsewhere on.
     residual : (n, 2) array
-        How far all sightings are from their fits, in their standard deviations.
+        How far all detections are from their fits, in their standard deviations.
     """
     seen = at[np.isfinite(residual[at, 0])]
     good = (residual[seen[: PATIENCE + 1]] ** 2).sum(axis=1) < GATE

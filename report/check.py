@@ -1,4 +1,4 @@
-"""The contact sheet of ``curlshot check``, by which to trust the camera and the sightings."""
+"""The contact sheet of ``curlshot check``, by which to trust the camera and the detections."""
 
 from __future__ import annotations
 

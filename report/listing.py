@@ -145,7 +145,7 @@ def page_tables(
         Table(
             "laws_tried",
             "Laws that the whole shot was fitted with",
-            "The criterion is minus twice the log probability of the sightings, less that of the"
+            "The criterion is minus twice the log probability of the detections, less that of the"
             " best; the weight is the probability of these laws. What the others would give is in"
             " the errors.",
             _CHOICES,

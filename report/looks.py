@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from curlshot.report.numbers import count, warned
-from curlshot.vision.detection.sighting import Refusal, Sighting
+from curlshot.vision.detection.detection import Detection, Refusal
 from curlshot.vision.film.clip import Frame
 from curlshot.vision.optics.camera import Camera, camera_table
 
@@ -29,7 +29,7 @@ class Look:
     ----------
     frame : Frame
     camera : Camera
-    stones : sequence of Sighting
+    stones : sequence of Detection
         What was taken for a stone.
     refused : sequence of Refusal
         What looked like one and was refused, and why.
@@ -37,7 +37,7 @@ class Look:
 
     frame: Frame
     camera: Camera
-    stones: Sequence[Sighting]
+    stones: Sequence[Detection]
     refused: Sequence[Refusal] = ()
 
 

@@ -11,7 +11,7 @@ import pandas as pd
 from scipy.optimize import linear_sum_assignment
 
 GATE = 0.15
-"""Farther than this from every true stone, m, a sighting is false."""
+"""Farther than this from every true stone, m, a detection is false."""
 
 LONGEST = 5
 """Frames for which a track may be false."""

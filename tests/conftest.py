@@ -10,6 +10,7 @@ import pytest
 
 from curlshot import pipeline
 from curlshot.cli.threads import use_one_thread
+from curlshot.outcome import Run
 
 use_one_thread()  # the suite has a process for each core: more threads only wait for each other
 
@@ -26,7 +27,7 @@ def shared() -> Path:
 
 
 @pytest.fixture(scope="session")
-def sample(tmp_path_factory: pytest.TempPathFactory) -> pipeline.Run:
+def sample(tmp_path_factory: pytest.TempPathFactory) -> Run:
     """One run of the bundled sample with all its files, which no test may change.
 
     Processes of pytest-xdist share it: the first that asks for it makes it, others wait and read.

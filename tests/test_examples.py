@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from curlshot import pipeline
 from curlshot.cli.parser import command_line
+from curlshot.outcome import Run
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = sorted((ROOT / "docs").glob("*.md"))
@@ -47,7 +47,7 @@ def test_from_a_clip(capsys: pytest.CaptureFixture[str]) -> None:
     assert e == pytest.approx(0.8345, abs=0.05)
 
 
-def test_from_tracks(sample: pipeline.Run, capsys: pytest.CaptureFixture[str]) -> None:
+def test_from_tracks(sample: Run, capsys: pytest.CaptureFixture[str]) -> None:
     assert sample.out is not None
     for words in ((), (sample.out,)):
         text = said("from_tracks", capsys, *words)
@@ -55,7 +55,7 @@ def test_from_tracks(sample: pipeline.Run, capsys: pytest.CaptureFixture[str]) -
         assert "B leaves with" in text
 
 
-def test_shared(sample: pipeline.Run, capsys: pytest.CaptureFixture[str]) -> None:
+def test_shared(sample: Run, capsys: pytest.CaptureFixture[str]) -> None:
     assert sample.out is not None
     number = r"e = Estimate\(value=(\S+), stderr=(\S+)\)"
     for words, true, shots in (((), 0.83, 2), ((sample.out,), 0.8345, 1)):
@@ -71,7 +71,7 @@ def test_simulate(capsys: pytest.CaptureFixture[str]) -> None:
     assert text.count("A on B") == 3
 
 
-def test_coach(sample: pipeline.Run, capsys: pytest.CaptureFixture[str]) -> None:
+def test_coach(sample: Run, capsys: pytest.CaptureFixture[str]) -> None:
     assert sample.out is not None
     text = said("coach", capsys, sample.out)
     assert "ft/s" in text
@@ -82,7 +82,7 @@ def test_coach(sample: pipeline.Run, capsys: pytest.CaptureFixture[str]) -> None
     assert "nan" not in text
 
 
-def test_what_if(sample: pipeline.Run, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_if(sample: Run, capsys: pytest.CaptureFixture[str]) -> None:
     assert sample.out is not None
     text = said("what_if", capsys, sample.out)
     assert "5 cm to the left" in text
@@ -90,7 +90,7 @@ def test_what_if(sample: pipeline.Run, capsys: pytest.CaptureFixture[str]) -> No
     assert text.count("A: in the house") == text.count("B: in the house") == 3
 
 
-def test_figures(sample: pipeline.Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_figures(sample: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert sample.out is not None
     text = said("figures", capsys, sample.out, tmp_path)
     assert "sd_vx" in text
@@ -98,7 +98,7 @@ def test_figures(sample: pipeline.Run, tmp_path: Path, capsys: pytest.CaptureFix
     assert {path.name for path in tmp_path.iterdir()} == names
 
 
-def test_the_picture_of_the_readme_is_small_and_can_be_made(sample: pipeline.Run) -> None:
+def test_the_picture_of_the_readme_is_small_and_can_be_made(sample: Run) -> None:
     assert sample.out is not None
     made = runpy.run_path(str(ROOT / "docs" / "picture.py"))["picture"](sample.out)
     assert made.width > 1.6 * made.height

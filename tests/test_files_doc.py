@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from curlshot.data import results
-from curlshot.data.tracks import SEEN_AS, TRACK_COLUMNS
+from curlshot.data.tracks import MEASURED_AS, TRACK_COLUMNS
 from curlshot.physics.prediction.what_if import Odds
 from curlshot.physics.simulator.simulation import Shot
 from curlshot.physics.statistics.pool import Pooled
@@ -44,7 +44,7 @@ def fields_of(kind: object) -> set[str]:
 
 
 WRITTEN = {
-    "tracks.csv": {*TRACK_COLUMNS, *SEEN_AS},
+    "tracks.csv": {*TRACK_COLUMNS, *MEASURED_AS},
     "camera.csv": {*CAMERA_COLUMNS},
     "results.json": fields_of(results.Results),
     "ensemble.json": {field.name for field in dataclasses.fields(Shot)},

@@ -14,11 +14,14 @@ import pandas as pd
 import pytest
 
 from curlshot import pipeline
+from curlshot.cli.main import main
+from curlshot.config import Config
 from curlshot.data.errors import CurlshotError, InputError
 from curlshot.data.files import staged
 from curlshot.data.inputs import find_inputs
 from curlshot.data.results_file import read_results
-from curlshot.data.tracks import SEEN_AS, TRACK_COLUMNS
+from curlshot.data.tracks import MEASURED_AS, TRACK_COLUMNS
+from curlshot.outcome import Run
 from curlshot.report.summary import summary
 from curlshot.synthetic.scoring import read_truth, score_tracks
 from curlshot.synthetic.video import write_video
@@ -70,7 +73,7 @@ def in_python(code: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-def test_sample_is_measured_to_the_bars(sample: pipeline.Run) -> None:
+def test_sample_is_measured_to_the_bars(sample: Run) -> None:
     truth = read_truth(SAMPLE)
     score = score_tracks(sample.tracks, truth.stones)
     assert score.missed == ()
@@ -86,7 +89,7 @@ def test_sample_is_measured_to_the_bars(sample: pipeline.Run) -> None:
 
 
 def test_a_clip_told_at_another_rate_tells_what_it_tells_at_its_own(
-    sample: pipeline.Run, tmp_path: Path
+    sample: Run, tmp_path: Path
 ) -> None:
     pictures = [frame.image for frame in islice(open_clip([SAMPLE]).every(), 76)]
     # 25 a second told as 30: five pictures in six frames.
@@ -110,15 +113,15 @@ def test_a_clip_told_at_another_rate_tells_what_it_tells_at_its_own(
     assert set(of_a.loc[of_a["frame"] % 6 == 1, "seen"]) == {0}
 
 
-def test_sample_names_stones_by_their_first_motion(sample: pipeline.Run) -> None:
+def test_sample_names_stones_by_their_first_motion(sample: Run) -> None:
     assert [hit.stones for hit in sample.results.collisions] == [("A", "B"), ("B", "C")]
 
 
-def test_run_writes_the_whole_contract(sample: pipeline.Run) -> None:
+def test_run_writes_the_whole_contract(sample: Run) -> None:
     assert sample.out is not None
     assert {item.name for item in sample.out.iterdir()} == CONTRACT
     tracks = pd.read_csv(sample.out / "tracks.csv")
-    assert tuple(tracks.columns) == (*TRACK_COLUMNS, *SEEN_AS)
+    assert tuple(tracks.columns) == (*TRACK_COLUMNS, *MEASURED_AS)
     simulation = pd.read_csv(sample.out / "simulation.csv")
     assert tuple(simulation.columns) == ("model", *TRACK_COLUMNS)
     assert set(simulation["model"]) == {"point-mass", "rigid-body", "frictional"}
@@ -131,7 +134,7 @@ def test_run_writes_the_whole_contract(sample: pipeline.Run) -> None:
     assert dict(zip(tracks["stone"], tracks["team"], strict=True)) == teams
 
 
-def test_tracks_come_back_to_the_same_physics(sample: pipeline.Run) -> None:
+def test_tracks_come_back_to_the_same_physics(sample: Run) -> None:
     assert sample.out is not None
     again = pipeline.run([sample.out / "tracks.csv"])
     for name in ("restitution", "friction"):
@@ -142,7 +145,7 @@ def test_tracks_come_back_to_the_same_physics(sample: pipeline.Run) -> None:
     assert again.cameras is None
 
 
-def test_summary_says_what_a_person_asks(sample: pipeline.Run) -> None:
+def test_summary_says_what_a_person_asks(sample: Run) -> None:
     text = summary(sample.results, sample.tracks, sample.out)
     for word in ("stones", "A on B", "B on C", "e = ", "μ = ", "±", "report.html"):
         assert word in text
@@ -171,7 +174,7 @@ def test_single_picture_gives_positions_only(
     assert score.recall == 1
     assert score.rmse < 0.03
     assert done.tracks["vx"].isna().all()
-    assert pipeline.main(["simulate", str(tmp_path / "out")]) == 2
+    assert main(["simulate", str(tmp_path / "out")]) == 2
     assert "no shot is known" in capsys.readouterr().err
     assert done.results.restitution.value is None
     assert done.results.friction.value is None
@@ -184,9 +187,9 @@ def test_folder_of_pictures_is_a_clip(tmp_path: Path) -> None:
         _, image = capture.read()
         cv2.imwrite(str(tmp_path / f"f{index}.png"), image)
     capture.release()
-    measured = pipeline.measure([tmp_path], pipeline.Settings(fps=25))
+    measured = pipeline.measure([tmp_path], Config().replace(fps=25))
     assert measured.frames == 12
-    assert measured.sightings["t"].max() == pytest.approx(11 / 25)
+    assert measured.detections["t"].max() == pytest.approx(11 / 25)
     assert [p.name for p in measured.files[8:]] == ["f8.png", "f9.png", "f10.png", "f11.png"]
 
 
@@ -215,12 +218,12 @@ def test_simulate_prints_and_writes(tmp_path: Path) -> None:
 
 
 def test_what_if_of_a_measured_shot(
-    sample: pipeline.Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    sample: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert sample.out is not None
     measured, out = str(sample.out / "results.json"), tmp_path / "out"
     words = ["simulate", measured, "-q", "-o", str(out)]
-    assert pipeline.main([*words, "--samples", "60"]) == 0
+    assert main([*words, "--samples", "60"]) == 0
     text = capsys.readouterr().out
     for word in ("A on B", "A thrown 60 times", "in the house", "shot stone", "outcomes.csv"):
         assert word in text
@@ -234,22 +237,22 @@ def test_what_if_of_a_measured_shot(
     # Half a metre to its right it passes B and hits D; all is told as JSON.
     changes = ["--aim-offset", "-0.5", "--speed", "0.9x", "--restitution", "0.9"]
     changes += ["--friction", "0.012", "--spin=-0.5x", "--samples", "20", "--throw-sd", "0,0"]
-    assert pipeline.main([*words, *changes, "--json"]) == 0
+    assert main([*words, *changes, "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     assert [hit["stones"] for hit in told["nominal"]["hits"]] == [["A", "D"]]
     assert told["stones"]["B"]["moved"] == 0
     assert told["changes"]["speed"] == {"value": 0.9, "relative": True}
     # What an earlier call left does not stay beside a shot without samples.
-    assert pipeline.main([*words, "--samples", "0"]) == 0
+    assert main([*words, "--samples", "0"]) == 0
     assert {item.name for item in out.iterdir()} == {"simulation.csv", "plan.png"}
-    assert pipeline.main(["simulate", measured, "-o", str(sample.out)]) == 2
+    assert main(["simulate", measured, "-o", str(sample.out)]) == 2
     assert "holds the run itself" in capsys.readouterr().err
 
 
 def test_what_if_of_a_written_shot(tmp_path: Path) -> None:
     shot, out = tmp_path / "SHOT.toml", tmp_path / "out"
     shot.write_text(SHOT)
-    assert pipeline.main(["simulate", str(shot), "-o", str(out), "--samples", "200"]) == 0
+    assert main(["simulate", str(shot), "-o", str(out), "--samples", "200"]) == 0
     outcomes = pd.read_csv(out / "outcomes.csv")
     assert outcomes["y"].mean() == pytest.approx(38.232, abs=0.1)
     assert 0.1 < outcomes["y"].std() < 0.5
@@ -357,7 +360,7 @@ def test_mistakes_end_in_one_line_and_exit_code_2(
         out = tmp_path / "out"
         extra = ["-o", str(out)] if words and words[0] in ("run", "estimate", "track") else []
         try:
-            code = pipeline.main([*map(str, words), *extra])
+            code = main([*map(str, words), *extra])
         except SystemExit as exit_:  # argparse leaves by itself
             code = int(exit_.code or 0)
         said = capsys.readouterr()
@@ -375,15 +378,15 @@ def test_a_house_or_a_camera_may_be_given(
     common = [str(SAMPLE), "--frames", "0:8", "-q", "-o"]
     # The tee and two points of the 12-ft ring, some pixels beside their true places.
     house = "4:631,529,902,536,632,263"
-    assert pipeline.main(["track", *common, str(tmp_path / "one"), "--house", house]) == 0
+    assert main(["track", *common, str(tmp_path / "one"), "--house", house]) == 0
     table = tmp_path / "one" / "camera.csv"
-    assert pipeline.main(["track", *common, str(tmp_path / "two"), "--camera", str(table)]) == 0
+    assert main(["track", *common, str(tmp_path / "two"), "--camera", str(table)]) == 0
     assert "not part of the errors" in capsys.readouterr().out
     one, two = (pd.read_csv(tmp_path / name / "tracks.csv") for name in ("one", "two"))
     assert len(one) == len(two) and one["frame"].nunique() == 9
     # The one's stones were measured while its cameras were provisional.
     np.testing.assert_allclose(one[["x", "y"]], two[["x", "y"]], atol=1e-3)
-    assert pipeline.main(["check", *common, str(tmp_path / "see"), "--camera", str(table)]) == 0
+    assert main(["check", *common, str(tmp_path / "see"), "--camera", str(table)]) == 0
     assert (tmp_path / "see" / "check.png").exists()
 
 
@@ -421,10 +424,10 @@ def test_truncated_clip_is_used_as_far_as_it_goes(tmp_path: Path) -> None:
 
 def test_pucks_from_a_stick(shared: Path) -> None:
     clip = shared / "clips" / "collision-pucks.mp4"
-    settings = pipeline.Settings(
+    settings = Config().replace(
         frames=(2, 31), stick=(20.0, 35.6, 20.0, 219.6, 0.5), radius=0.0465, overlay=False
     )
-    done = pipeline.run([clip], settings=settings)
+    done = pipeline.run([clip], config=settings)
     assert done.tracks["stone"].nunique() == 2
     (hit,) = done.results.collisions
     assert hit.restitution is not None and hit.stderr is not None
@@ -435,8 +438,8 @@ def test_pucks_from_a_stick(shared: Path) -> None:
 
 def test_masses_reach_estimate_and_simulation(tmp_path: Path) -> None:
     (tmp_path / "hit.csv").write_text(central_hit(masses=(1.0, 2.0), restitution=0.8))
-    settings = pipeline.Settings(masses={"A": 1.0, "B": 2.0})
-    done = pipeline.run([tmp_path / "hit.csv"], settings=settings)
+    settings = Config().replace(masses={"A": 1.0, "B": 2.0})
+    done = pipeline.run([tmp_path / "hit.csv"], config=settings)
     assert done.results.restitution.value == pytest.approx(0.8, abs=0.02)
     (hit,) = done.results.collisions
     assert hit.momentum_residual is not None and hit.momentum_residual < 0.02
@@ -494,7 +497,7 @@ def test_a_clip_is_tracked_without_what_takes_long_to_load(tmp_path: Path) -> No
     clip = str(pipeline.sample_clip())
     code = (
         "import sys\nfrom curlshot import pipeline\n"
-        f"pipeline.main(['track', {clip!r}, '--frames', '0:9', '-q', '-o', {str(tmp_path)!r}])\n"
+        f"main(['track', {clip!r}, '--frames', '0:9', '-q', '-o', {str(tmp_path)!r}])\n"
         "print({'pandas', 'scipy', 'filterpy', 'matplotlib'} & sys.modules.keys() or 'none')"
     )
     done = in_python(code)
@@ -519,7 +522,7 @@ def test_a_restitution_of_nothing_is_told_as_a_change(
     shot, out = tmp_path / "shot.toml", tmp_path / "out"
     shot.write_text('[[stone]]\nname = "A"\nx = 0\ny = -3\nvy = 2\n')
     words = ["simulate", str(shot), "-o", str(out), "--samples", "3", "--json", "--restitution"]
-    assert pipeline.main([*words, "0"]) == 0
+    assert main([*words, "0"]) == 0
     assert json.loads(capsys.readouterr().out)["changes"] == {"restitution": 0.0}
 
 
@@ -531,9 +534,9 @@ def test_convert_does_not_write_over_its_input(
     before = table.read_bytes()
     folder.mkdir()
     for out, why in ((table, "is what is to be converted"), (folder, "is a folder")):
-        assert pipeline.main(["convert", str(table), str(out)]) == 2
+        assert main(["convert", str(table), str(out)]) == 2
         assert f"{out}: {why}" in capsys.readouterr().err
-    assert pipeline.main(["convert", str(table), str(table / "c.csv")]) == 2
+    assert main(["convert", str(table), str(table / "c.csv")]) == 2
     refusal = capsys.readouterr().err
     assert f"{table}: is a file" in refusal
     assert "-o" not in refusal.split("; ")[-1]  # convert knows no -o

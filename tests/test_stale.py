@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 
 from curlshot import pipeline
+from curlshot.cli.main import main
 from curlshot.data.tracks import TRACK_COLUMNS
 
 OLD = "old"
@@ -46,7 +47,7 @@ def left(folder: Path) -> set[str]:
 
 def test_estimates_of_other_tracks_stand_alone(folder, tmp_path):
     tracks = glide(tmp_path / "other.csv")
-    assert pipeline.main(["estimate", str(tracks), "-o", str(folder), "-q"]) == 0
+    assert main(["estimate", str(tracks), "-o", str(folder), "-q"]) == 0
     assert left(folder) == {"results.json", "ensemble.json", "notes.txt"}
     assert (folder / "results.json").read_text() != OLD
 
@@ -54,7 +55,7 @@ def test_estimates_of_other_tracks_stand_alone(folder, tmp_path):
 def test_estimates_stay_beside_their_own_tracks(folder):
     tracks = glide(folder / "tracks.csv")
     text = tracks.read_text()
-    assert pipeline.main(["estimate", str(tracks), "-o", str(folder), "-q"]) == 0
+    assert main(["estimate", str(tracks), "-o", str(folder), "-q"]) == 0
     written = {"results.json", "ensemble.json"}
     assert left(folder) == {*written, "tracks.csv", "camera.csv", "notes.txt"}
     assert tracks.read_text() == text
@@ -62,20 +63,20 @@ def test_estimates_stay_beside_their_own_tracks(folder):
 
 def test_tracks_stay_alone(folder):
     clip = str(pipeline.sample_clip())
-    assert pipeline.main(["track", clip, "--frames", "0:8", "-o", str(folder), "-q"]) == 0
+    assert main(["track", clip, "--frames", "0:8", "-o", str(folder), "-q"]) == 0
     assert left(folder) == {"tracks.csv", "camera.csv", "notes.txt"}
     assert all((folder / name).read_text() != OLD for name in ("tracks.csv", "camera.csv"))
 
 
 def test_a_failure_leaves_the_earlier_run(folder, tmp_path):
-    assert pipeline.main(["estimate", str(tmp_path / "none.csv"), "-o", str(folder), "-q"]) == 2
+    assert main(["estimate", str(tmp_path / "none.csv"), "-o", str(folder), "-q"]) == 2
     assert left(folder) == {*pipeline.WRITTEN, "notes.txt"}
 
 
 def test_a_run_does_not_write_over_its_own_input(folder, capsys):
     tracks = folder / "tracks.csv"
     before = tracks.read_bytes()
-    assert pipeline.main(["run", str(tracks), "-o", str(folder), "-q"]) == 2
+    assert main(["run", str(tracks), "-o", str(folder), "-q"]) == 2
     assert "would be written over" in capsys.readouterr().err
     assert tracks.read_bytes() == before
 
@@ -84,18 +85,18 @@ def test_a_broken_simulation_beside_tracks_is_one_line(folder, tmp_path, capsys)
     glide(folder / "tracks.csv")
     for text in ("", "a,b\n1,2\n", "model,stone,t,x,y\nm,A,no,1,2\n"):
         (folder / "simulation.csv").write_text(text, encoding="utf-8")
-        assert pipeline.main(["convert", str(folder / "tracks.csv"), str(tmp_path / "x.trk")]) == 2
+        assert main(["convert", str(folder / "tracks.csv"), str(tmp_path / "x.trk")]) == 2
         assert "not a simulation.csv" in capsys.readouterr().err
 
 
 def test_a_mass_given_twice_is_refused(folder, tmp_path, capsys):
     words = ["estimate", str(glide(tmp_path / "t.csv")), "-o", str(tmp_path / "o"), "-q"]
-    assert pipeline.main([*words, "--mass", "A=1", "--mass", "A=2"]) == 2
+    assert main([*words, "--mass", "A=1", "--mass", "A=2"]) == 2
     assert "given twice" in capsys.readouterr().err
 
 
 def test_options_of_tables_are_refused_on_clips(tmp_path, capsys):
     for words in (["--names", "A=x"], ["--length-unit", "cm"], ["--tab", "x"]):
         command = ["run", str(pipeline.sample_clip()), "-o", str(tmp_path / "o"), "-q", *words]
-        assert pipeline.main(command) == 2
+        assert main(command) == 2
         assert f"only tables take {words[0]}" in capsys.readouterr().err

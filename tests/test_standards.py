@@ -13,24 +13,28 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 MAY_IMPORT = {
     "data": set(),
-    "cli": {"data", "physics", "work"},
-    "physics": {"data"},
-    "vision": {"data", "physics"},
+    "config": {"data"},
+    "physics": {"data", "config"},
+    "vision": {"data", "config", "physics"},
     "synthetic": set(),
-    "work": {"data", "physics", "vision"},
-    "report": {"data", "physics", "vision"},
-    "pipeline": {"cli", "data", "physics", "vision", "work", "report"},
+    "report": {"data", "config", "physics", "vision", "outcome"},
+    "outcome": {"data", "config", "physics", "report"},
+    "pipeline": {"data", "config", "physics", "vision", "outcome"},
+    "season": {"data", "config", "physics", "report", "outcome", "pipeline"},
+    "cli": {"data", "config", "physics", "vision", "report", "outcome", "pipeline", "season"},
 }
+"""The rooms that each room may import. `outcome` and `report` are one floor: a run draws itself."""
 ORDER = {
-    "vision": "film optics sheet camera_path spin detection association track",
+    "vision": "film optics sheet camera_path spin detection association track measure",
     "physics": "registry impact ice curl filter statistics local_fit kalman simulator whole_shot"
-    " estimate posterior prediction",
+    " estimate posterior prediction steps cautions",
 }
 """Folders and modules of a room: each may import itself and those before it."""
 
 
 def modules(room: str) -> list[Path]:
-    return [ROOT / "pipeline.py"] if room == "pipeline" else sorted((ROOT / room).rglob("*.py"))
+    file = ROOT / f"{room}.py"
+    return [file] if file.exists() else sorted((ROOT / room).rglob("*.py"))
 
 
 def imported(path: Path) -> set[str]:

@@ -1,4 +1,4 @@
-"""From a clip and its cameras to the table of sightings: each stone, each frame, each angle."""
+"""From a clip and its cameras to the table of detections: each stone, each frame, each angle."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from curlshot.data.sheet import STONE, Stone
-from curlshot.data.tracks import SIGHTING_COLUMNS, Columns, no_rows
+from curlshot.data.tracks import DETECTION_COLUMNS, Columns, no_rows
 from curlshot.vision.association.bare import with_handles
 from curlshot.vision.association.follow import Track, follow
 from curlshot.vision.association.graphic import is_graphic
@@ -21,9 +21,9 @@ from curlshot.vision.association.rejoin import rejoined
 from curlshot.vision.association.strays import without_strays
 from curlshot.vision.association.watch import Watch
 from curlshot.vision.detection.appearance import Appearance, other_stone
+from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.patch import HANDLE_HEIGHT_SD, handle_radii, is_plain
 from curlshot.vision.detection.roundness import edge_errors
-from curlshot.vision.detection.sighting import Sighting
 from curlshot.vision.detection.smeared import widened
 from curlshot.vision.detection.steady import Lightness, common_share, lightness_of, steadied
 from curlshot.vision.film.clip import Clip
@@ -63,7 +63,7 @@ class StoneTracks:
     Attributes
     ----------
     table : Columns
-        With `SIGHTING_COLUMNS`, by stone and time; stones A, B, C … in the order in which they
+        With `DETECTION_COLUMNS`, by stone and time; stones A, B, C … in the order in which they
         first move, then those at rest by their distance to the tee.
     warnings : tuple of str
         What a person should know.
@@ -73,7 +73,7 @@ class StoneTracks:
     warnings: tuple[str, ...] = ()
 
     @cached_property
-    def sightings(self) -> pd.DataFrame:
+    def detections(self) -> pd.DataFrame:
         """The same as a DataFrame."""
         import pandas as pd
 
@@ -130,13 +130,13 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
     tracks = with_handles(tracks, watch.appearance, disc)
     named, rest = named_by_motion(tracks, disc.radius)
     if not named:
-        return StoneTracks(no_rows(SIGHTING_COLUMNS), ("no stones were found on the ice",))
+        return StoneTracks(no_rows(DETECTION_COLUMNS), ("no stones were found on the ice",))
     hardly = watch.appearance is not None and watch.appearance.own
-    errors = _by_edges([track.sightings for track in named.values()], disc, hardly)
+    errors = _by_edges([track.detections for track in named.values()], disc, hardly)
     edge = dict(zip(named, errors, strict=True))
     team = _teams(named, watch.appearance)
     slants = slants_of(named, cameras, disc)
-    light = {name: lightness_of(track.times, track.sightings) for name, track in named.items()}
+    light = {name: lightness_of(track.times, track.detections) for name, track in named.items()}
     share = {
         cap: common_share(light[name] for name in named if team[name] == cap)
         for cap in set(team.values())
@@ -156,7 +156,7 @@ def tracks_of(watch: Watch, cameras: Sequence[Camera]) -> StoneTracks:
         for name in sorted(named)
     ]
     return StoneTracks(
-        {name: np.concatenate([part[name] for part in rows]) for name in SIGHTING_COLUMNS},
+        {name: np.concatenate([part[name] for part in rows]) for name in DETECTION_COLUMNS},
         (*late, *_without_colour(watch.appearance)),
     )
 
@@ -171,7 +171,7 @@ def slants_of(
     by_frame = {camera.frame: camera for camera in cameras}
     out = {}
     for name, track in tracks.items():
-        places = track.sightings.columns("x", "y").T
+        places = track.detections.columns("x", "y").T
         by = Cameras.of([by_frame[frame] for frame in track.frames], [1] * len(places))
         out[name] = 0 * places if is_plain(disc) else by.slants(places)
     return out
@@ -182,7 +182,7 @@ def off_axis(track: Track, slants: Array) -> Array:
 
     By the errors of the centres and, in a slanting view, of the height at which the handle is.
     """
-    sd = np.mean(track.sightings.columns("sd_x", "sd_y"), axis=0)
+    sd = np.mean(track.detections.columns("sd_x", "sd_y"), axis=0)
     return np.asarray(np.hypot(sd, HANDLE_HEIGHT_SD * np.hypot(*slants.T)))
 
 
@@ -193,7 +193,7 @@ def _angles(
 
     def told(name: str, height: int | None = None) -> HandleAngles:
         track, slant = tracks[name], slants[name]
-        off, spectra = off_axis(track, slant), track.sightings.spectra
+        off, spectra = off_axis(track, slant), track.detections.spectra
         times, radii = np.array(track.times), handle_radii(disc)
         return angles_in_parts(times, spectra, radii, off, slants=slant, height=height)
 
@@ -215,8 +215,8 @@ def _rows(
     angles: HandleAngles,
     light: tuple[Lightness, float],
 ) -> Columns:
-    # Made only now: the angles take much memory, and so do the sightings of a long clip.
-    seen = steadied(widened(track.times, [*track.sightings]), *light)
+    # Made only now: the angles take much memory, and so do the detections of a long clip.
+    seen = steadied(widened(track.times, [*track.detections]), *light)
     x, y, sd_x, sd_y, sd_place_x, sd_place_y = np.array(
         [(item.x, item.y, item.sd_x, item.sd_y, *item.sd_place) for item in seen]
     ).T
@@ -238,7 +238,7 @@ def _rows(
     }
 
 
-def _by_edges(stones: Sequence[Sequence[Sighting]], disc: Stone, hardly: bool) -> Array:
+def _by_edges(stones: Sequence[Sequence[Detection]], disc: Stone, hardly: bool) -> Array:
     """State how far edges of stones may be aside, (stones, 2), m: see `edge_errors`.
 
     `hardly` says that caps are hardly told from granite, of which the error was measured by itself.

@@ -1,6 +1,6 @@
 """The filter of `curlshot.physics.kalman` in closed form: three pairs of a place and its rate.
 
-What a sighting shows is the place, an error that lasts for a while and one that is anew. As the
+What a detection shows is the place, an error that lasts for a while and one that is anew. As the
 pairs are independent, the equations of Kalman come down to a few products per step, and so do
 those of the backward pass in the form of Bryson and Frazier (Bierman, 1973, Automatica 9, 503),
 which inverts nothing. `curlshot.physics.filter.reference_filter` does the same with matrices.
@@ -51,14 +51,14 @@ class Forward:
     Attributes
     ----------
     drift : (n, 6) array
-        What the ice was known to do, taken out of the sightings:
+        What the ice was known to do, taken out of the detections:
         `curlshot.physics.filter.stretch.drift`.
     steps : sequence of Step, three times
         How place and rate go on from each time to the next.
     states : list of State, three times
-        After the sighting at each time.
+        After the detection at each time.
     innovations : list of Innovation or None, three times
-        Of that sighting; None where there was none or it was refused.
+        Of that detection; None where there was none or it was refused.
     """
 
     drift: Floats
@@ -84,7 +84,7 @@ def filtered(stretch: Stretch) -> Smoothed:
     mean, spread : (n, 6) array
         x, y, vx, vy, θ, ω and their standard deviations.
     seen : (n,) int array
-        Whether the sighting of the place at each time was used.
+        Whether the detection of the place at each time was used.
     """
     way = forward(stretch)
     n = len(stretch.t)
@@ -215,7 +215,7 @@ def _predicted(state: State, step: Step, slow: float) -> State:
 
 
 def _innovation(state: State, value: float, variance: float) -> Innovation:
-    """Compare a sighting of the place with the state."""
+    """Compare a detection of the place with the state."""
     (place, _, lasting), (p00, p01, p02, _, p12, p22) = state
     c = (p00 + p02, p01 + p12, p02 + p22)
     rest = c[2] + variance

@@ -66,7 +66,7 @@ def filtered(stretch: Stretch) -> Smoothed:
 
 
 def _update(filter_: Any, rows: Floats, value: Floats, sd: Floats, gate: Gate) -> bool:
-    """Use a sighting that passes the gate."""
+    """Use a detection that passes the gate."""
     error = value - rows @ filter_.x
     spread = rows @ filter_.P @ rows.T + np.diag(sd**2)
     passes = gate.passes(float(error @ np.linalg.solve(spread, error)))

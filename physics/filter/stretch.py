@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 START_SD = (3.0, 10.0)
-"""What is known of speed (m/s) and spin (rad/s) before the first sighting."""
+"""What is known of speed (m/s) and spin (rad/s) before the first detection."""
 
 JUMP_SD = (1.0, 3.0)
 """How much velocity (m/s) and spin (rad/s) change where a motion changes without a hit, per change
@@ -38,14 +38,14 @@ STOPPED_SD = 0.01
 """How well a stone is known to have stopped, m/s: the moment of it is not exactly known."""
 
 ANYWHERE_SD = (10.0, 100.0)
-"""What is known of place (m) and angle (rad) before the first sighting, and once moved unseen."""
+"""What is known of place (m) and angle (rad) before the first detection, and once moved unseen."""
 
 MEMORY = 0.125
 """Time over which what the ice takes keeps its deviation from the mean, s. Stones curl, and so it
-never fades altogether; a longer time follows the errors of sightings instead."""
+never fades altogether; a longer time follows the errors of detections instead."""
 
 PLACE_MEMORY, ANGLE_MEMORY = 0.3, 0.8
-"""Times over which errors of sightings that last for a while become others, s."""
+"""Times over which errors of detections that last for a while become others, s."""
 
 LOSS_SD, MOST_LOSS_SD = (0.003, 0.015), (0.1, 1.0)
 """How much a slow stone loses speed (m/s²) and spin (rad/s²) otherwise than is known: times its
@@ -58,20 +58,20 @@ SPIN_LOSS = SPIN_LOSS_SD = 0.0125
 what FCV1 has (Uehara and Ito, 2021), perhaps all of that or none."""
 
 GATE = 100.0
-"""Squared normalised innovation beyond which a sighting is refused."""
+"""Squared normalised innovation beyond which a detection is refused."""
 
 PATIENCE = 2
-"""Refusals in a row after which the filter is taken to be wrong, and sightings to be right."""
+"""Refusals in a row after which the filter is taken to be wrong, and detections to be right."""
 
 
 class Gate:
-    """Lets sightings in whose normalised innovation is small, and those after too many refusals."""
+    """Lets in detections whose normalised innovation is small, or after many refusals."""
 
     def __init__(self) -> None:
         self._refused = 0
 
     def passes(self, distance: float) -> bool:
-        """Whether a sighting is used, by its squared normalised innovation."""
+        """Whether a detection is used, by its squared normalised innovation."""
         passes = distance < GATE or self._refused >= PATIENCE
         self._refused = 0 if passes else self._refused + 1
         return passes
@@ -105,7 +105,7 @@ class Stretch:
     z : (n, 3) array
         x, y (m) and θ (rad); NaN where not seen.
     sd, slow : (n, 3) array
-        Standard deviations of what is anew in each sighting and of what lasts for a while.
+        Standard deviations of what is anew in each detection and of what lasts for a while.
     piece : (n,) array
         Number of the piece of its path: where it changes, the motion changed of itself.
     rest, idle : (n,) array of bool
@@ -142,7 +142,7 @@ class Stretch:
 
 
 Smoothed = tuple[Floats, Floats, NDArray[np.int64]]
-"""x, y, vx, vy, θ, ω, shape (n, 6); their standard deviations; whether each sighting was used."""
+"""x, y, vx, vy, θ, ω, shape (n, 6); their standard deviations; whether each detection was used."""
 
 Filter = Callable[[Stretch], Smoothed]
 """Filters a stretch and smooths it backwards."""
@@ -209,7 +209,7 @@ def _steps(stretch: Stretch, still: Bools, deviation: Floats, sudden: Floats, ki
 def drift(stretch: Stretch, along: Steps, turning: Steps) -> Floats:
     """Known change of the state by the ice since the first time, shape (n, 6).
 
-    It is taken out of the sightings before the filter and put back afterwards.
+    It is taken out of the detections before the filter and put back afterwards.
     """
     dt = np.diff(stretch.t)[:, None]
     speed = stretch.speed[:-1]

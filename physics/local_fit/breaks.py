@@ -26,14 +26,14 @@ BREAK_COST = 12.0
 """Cost of a break in units of −2 log likelihood: one change in some hundred samples."""
 
 FEWEST = 4
-"""Sightings that make a segment; fewer are taken for outliers."""
+"""Detections that make a segment; fewer are taken for outliers."""
 
 PRUNED_FROM, PRUNED_AFTER = 40.0, 8
 """Cost above that of the cheapest partition, some three breaks, from which a segment is pruned, and
-how many sightings it has before it may be."""
+how many detections it has before it may be."""
 
 PRUNED_EACH = 4
-"""They are pruned at one sighting in so many: more often takes longer than to go on with them."""
+"""They are pruned at one detection in so many: more often takes longer than to go on with them."""
 
 STILL = 25.0
 """Squared normalised shift of a mean place, two axes, below which it is no trace of a motion."""
@@ -83,7 +83,7 @@ def _breaks(samples: bytes, lasting: float) -> tuple[float, ...]:
     sought = _starts(t, xy, white, np.ones(n, bool))
     if not sought:
         return ()
-    # As often as sightings err alike they say the same once more: only what stands out of that is
+    # As often as detections err alike they say the same once more: only what stands out of that is
     # a break. Where it is, their scatter tells best.
     alike = 2 * PLACE_MEMORY / float(np.median(np.diff(t)))
     held = (1 + max(ALIKE, lasting * alike)) * variance
@@ -145,7 +145,7 @@ def _at_one_place(xy: Floats, variance: Floats) -> bool:
 
     Most stones rest most of the time, and to see that is a thousand times cheaper than to
     look for breaks. A break would show in the mean place over one of the stretches of
-    `FEWEST` sightings and of twice, four times … as many.
+    `FEWEST` detections and of twice, four times … as many.
     """
     if np.abs(xy - np.median(xy, axis=0)).max() < PLACE:
         return True

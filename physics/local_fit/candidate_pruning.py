@@ -18,7 +18,7 @@ MANY = 24
 """Meetings up to which all are fitted: of shots with three hits there are ten."""
 
 SPAN, FEWEST = 0.4, 8
-"""Time either side of a meeting within which a hit shows, s, unless as many sightings take more."""
+"""Time on either side of a meeting within which a hit shows, s, or more for as many detections."""
 
 CHANGED = 14.0
 """Squared normalised change of a relative velocity, two axes, below which it is none: chance, which

@@ -23,20 +23,20 @@ TOUCHING = 1.02
 """Distance in units of 2R up to which two discs touch, but for noise."""
 
 LITTLE = 0.25
-"""Time within which a hit shows in where a stone is, s, unless six sightings take longer."""
+"""Time within which a hit shows in where a stone is, s, unless six detections take longer."""
 
 LONG = 1.0
 """Time within which it shows that a stone was hardly moved, s."""
 
 GAP, SIDE = 2.5, 6
-"""Usual times between sightings that make a gap, and how many sightings either side of it say how
+"""Usual times between detections that make a gap, and how many detections either side of it say how
 stones went on in it."""
 
 ONCE = 1.0
 """Time out of sight, s, in which a stone hits another but once, unless they lie in a rack."""
 
 OUT_OF_SIGHT = 0.5
-"""Time out of sight, s, after which the sightings at its ends do not tell the way between them."""
+"""Time out of sight, s, after which the detections at its ends do not tell the way between them."""
 
 
 def candidates(known: Mapping[str, Trace], radius: float) -> list[Meeting]:
@@ -130,7 +130,7 @@ def _chain(meetings: Sequence[Meeting], k: int, known: Mapping[str, Trace]) -> l
 
 
 def _closing(meeting: Meeting, known: Mapping[str, Trace], time: float) -> float:
-    """How much nearer, m, a pair came over a few sightings before `time`; 0 if none for sure."""
+    """How much nearer, m, a pair came over a few detections before `time`; 0 if none for sure."""
     first, second = (known[stone] for stone in meeting.stones)
     step = max(first.step, second.step)
     t = time - step * np.array([8.0, 7.0, 6.0, 3.0, 2.0, 1.0])
@@ -160,7 +160,7 @@ def _approaches(
         return []
     t, apart = _through_gaps(t, _at(b, t) - _at(a, t), _hidden(a, b, t))
     distance = np.hypot(apart[:, 0], apart[:, 1])
-    # Between two sightings they may have come closer by what they move in that time.
+    # Between two detections they may have come closer by what they move in that time.
     noise = 3 * np.sqrt(np.mean(a.sd**2) + np.mean(b.sd**2))
     step = np.maximum(np.hypot(*np.diff(apart, axis=0).T) - noise, 0.0)
     step = _over_gaps(a, b, t, step)

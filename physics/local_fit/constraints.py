@@ -1,4 +1,4 @@
-"""What a fit of a shot knows besides the sightings: how ice slows, and what holds at a hit.
+"""What a fit of a shot knows besides the detections: how ice slows, and what holds at a hit.
 
 Each is linearised and goes into the normal equations like a further measurement.
 """
@@ -81,7 +81,7 @@ def contact_constraints(
     Returns
     -------
     rows, values, sd : arrays, shapes (m, n), (m,) and (m,)
-        Derivatives, values and standard deviations. A constraint that the sightings contradict is
+        Derivatives, values and standard deviations. A constraint that the detections contradict is
         weighted down (Cauchy weights).
     """
     t = theta[at]

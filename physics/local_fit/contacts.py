@@ -37,7 +37,7 @@ MOST_RUB = 1.0
 most. A stone that was at rest goes on along the line of the centres, but for that."""
 
 MOST_PASSED = 3
-"""Sightings past which the time of a hit may go where no gap lets it go farther."""
+"""Detections past which the time of a hit may go where no gap lets it go farther."""
 
 MOST_RESTARTS = 4
 """How often a search goes on from where hits lie past so many."""
@@ -63,21 +63,21 @@ class Contact:
     normal: tuple[float, float]
 
 
-def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
-    """Find the hits between the stones of a table of sightings.
+def find_contacts(detections: Table, radius: float) -> tuple[Contact, ...]:
+    """Find the hits between the stones of a table of detections.
 
-    Every approach of two stones to about 2R is a candidate. All are fitted at once as hits,
-    and the one whose impulse is least significant is struck off until all that are left
-    changed the motion of both their stones, or passed on an impulse that can have come no other
-    way. Where several show no hit (of those between two sightings none is seen by itself), one that
-    stays out of reach goes first, then one that pushes nothing, of these one of two stones that
-    others set off in the same gap, and then the pair that lies farthest from touching. A pair hits
-    again only after something else came between.
+    Every approach of two stones to about 2R is a candidate. All are fitted at once as hits, and the
+    one whose impulse is least significant is struck off until all that are left changed the motion
+    of both their stones, or passed on an impulse that can have come no other way. Where several
+    show no hit (of those between two detections none is seen by itself), one that stays out of
+    reach goes first, then one that pushes nothing, of these one of two stones that others set off
+    in the same gap, and then the pair that lies farthest from touching. A pair hits again only
+    after something else came between.
 
     Parameters
     ----------
-    sightings : Table
-        Of `curlshot.data.tracks.SIGHTING_COLUMNS` at least ``stone, t, x, y``.
+    detections : Table
+        Of `curlshot.data.tracks.DETECTION_COLUMNS` at least ``stone, t, x, y``.
     radius : float
         Of the discs, m.
 
@@ -86,7 +86,7 @@ def find_contacts(sightings: Table, radius: float) -> tuple[Contact, ...]:
     tuple of Contact
         In order of time.
     """
-    known = traces(sightings)
+    known = traces(detections)
     meetings = prune_candidates(candidates(known, radius), known)
     cuts: dict[str, list[Piece]] = {}
     ordered, restarts = False, MOST_RESTARTS
@@ -142,7 +142,7 @@ def _at_times(fit: ShotFit) -> list[Meeting]:
 
 
 def _past(fit: ShotFit, asked: Iterable[int], known: Mapping[str, Trace], most: int) -> set[str]:
-    """Stones of the meetings asked for whose times went past as many sightings, or more.
+    """Stones of the meetings asked for whose times went past as many detections, or more.
 
     These lie on the wrong side of the meeting: of one that was sought in a gap, all of those from
     the end of the gap to the hit.
@@ -159,7 +159,7 @@ def _past(fit: ShotFit, asked: Iterable[int], known: Mapping[str, Trace], most: 
 def _ended(fit: ShotFit, k: int) -> set[str]:
     """Stones of meeting k if the fit has one at rest by then on the path that opens with it.
 
-    A stone that was hit moves. Of one at rest neither sightings nor momentum tell how fast it was,
+    A stone that was hit moves. Of one at rest neither detections nor momentum tell how fast it was,
     so that its error has no bounds: the first guess of the time was too far off.
     """
     stones = fit.meetings[k].stones

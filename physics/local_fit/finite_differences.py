@@ -36,7 +36,7 @@ def by_finite_differences(
     Parameters
     ----------
     known : mapping
-        Stone to its sightings.
+        Stone to its detections.
     collisions : sequence of Collision
         The hits in order of time; only their times and stones are used.
     ends : mapping

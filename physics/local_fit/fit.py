@@ -62,7 +62,7 @@ def fit_shot(
     Parameters
     ----------
     traces : mapping
-        Stone to its sightings.
+        Stone to its detections.
     pieces : sequence of Piece
         All pieces to fit; each meeting must open and close one of either stone.
     meetings : sequence of Meeting
@@ -137,7 +137,7 @@ class _Solver:
         settled = False
         for done in range(STEPS):
             self._assign()
-            data, right = self._sightings()
+            data, right = self._detections()
             held, held_right = self._constraints()
             cov = inverse_of_blocks(data + held, self.blocks)
             new = cov @ (right + held_right)
@@ -188,7 +188,7 @@ class _Solver:
         return min(low, 0.0), max(high, 0.0)
 
     def _assign(self) -> None:
-        """Give each sighting beside a hit to the side of it that it lies on."""
+        """Give each detection beside a hit to the side of it that it lies on."""
         for (k, stone), (i, j) in self.sides.items():
             t = self.theta[self.times][k]
             both = np.concatenate([self.pieces[i].samples, self.pieces[j].samples])
@@ -205,7 +205,7 @@ class _Solver:
         return own[:POWER].reshape(2, 3), float(own[POWER])
 
     def _course(self, i: int) -> tuple[Floats, Floats, Floats]:
-        """Give times of a piece's sightings from its origin, s, its places, their derivatives.
+        """Give times of a piece's detections from its origin, s, its places, their derivatives.
 
         Times go on no more once it rests.
         """
@@ -230,8 +230,8 @@ class _Solver:
             self.left[i] = off / trace.sd[piece.samples]
         return self.left[i]
 
-    def _sightings(self) -> tuple[Floats, Floats]:
-        """Set up the normal equations of the sightings, outliers weighted down."""
+    def _detections(self) -> tuple[Floats, Floats]:
+        """Set up the normal equations of the detections, outliers weighted down."""
         normal, right = np.zeros((self.size, self.size)), np.zeros(self.size)
         for i, piece in enumerate(self.pieces):
             if not len(piece.samples):
@@ -243,9 +243,9 @@ class _Solver:
         return normal, right
 
     def _piece_equations(self, i: int, weights: Floats) -> tuple[Floats, Floats]:
-        """Set up the normal equations of one piece's sightings, of its own unknowns.
+        """Set up the normal equations of one piece's detections, of its own unknowns.
 
-        Two further unknowns are eliminated at once: what the sightings say of the velocity is
+        Two further unknowns are eliminated at once: what the detections say of the velocity is
         wrong by what they share, on either axis.
         """
         piece, own = self.pieces[i], self.theta[self.own[i]]
@@ -267,7 +267,7 @@ class _Solver:
         return normal, right
 
     def _constraints(self) -> tuple[Floats, Floats]:
-        """Set up the normal equations of what is known besides the sightings."""
+        """Set up the normal equations of what is known besides the detections."""
         normal, right = np.zeros((self.size, self.size)), np.zeros(self.size)
         for own, piece in zip(self.own, self.pieces, strict=True):
             place, speed, change = own[PLACE], own[VELOCITY], own[ACCELERATION]
@@ -331,7 +331,7 @@ def _first_guess(piece: Piece, trace: Trace, start: float) -> Floats:
 
     By a straight line, without an acceleration; one that stops by the first half of its way, as if
     it was slowed evenly: how long it then rests tells nothing of its motion. At rest all but the
-    place is 0. The shortest pieces use the sightings beside them too.
+    place is 0. The shortest pieces use the detections beside them too.
     """
     samples = piece.samples
     if len(samples) < 3:

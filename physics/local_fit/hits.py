@@ -24,7 +24,7 @@ LOST = 0.2
 won, beyond three standard errors, something else touched the stones."""
 
 SEEN = 4
-"""Sightings of a stone on one side of a hit from which they tell its velocity there. By fewer it is
+"""Detections of a stone on one side of a hit that are enough for its velocity there. By fewer it is
 told, between two hits, by their momentum, as if there were no others."""
 
 UNLIKE = 0.05
@@ -46,7 +46,7 @@ def measure_hits(
     joint, apart : ShotFit
         The fit, with and without the momentum of each pair held.
     known : mapping
-        Stone to its sightings.
+        Stone to its detections.
     radius : float
         Of the discs, m.
     masses : mapping

@@ -55,7 +55,7 @@ class Local:
     fit : ShotFit or None
         Of the paths; None where no stone moves.
     known : mapping
-        Stone to its sightings.
+        Stone to its detections.
     """
 
     restitution: Estimate = field(default_factory=Estimate)
@@ -69,7 +69,7 @@ class Local:
 
 
 def estimate_locally(
-    sightings: pd.DataFrame,
+    detections: pd.DataFrame,
     contacts: Sequence[Contact],
     *,
     radius: float,
@@ -79,7 +79,7 @@ def estimate_locally(
 
     Parameters are those of `curlshot.physics.estimate.estimate`.
     """
-    known = centred(traces(sightings), contacts, radius)
+    known = centred(traces(detections), contacts, radius)
     return estimate_from_traces(known, contacts, radius=radius, masses=masses)
 
 
@@ -90,7 +90,7 @@ def estimate_from_traces(
     radius: float,
     masses: Mapping[str, float] | None = None,
 ) -> Local:
-    """As `estimate_locally`, of the sightings by stone, which are taken to be over the centres."""
+    """As `estimate_locally`, of the detections by stone, which are taken to be over the centres."""
     meetings = [
         Meeting(c.t, c.stones, max(known[stone].gap(c.t) for stone in c.stones)) for c in contacts
     ]

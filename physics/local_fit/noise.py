@@ -1,10 +1,10 @@
-"""Noise of the sightings of a shot: white noise, and errors that are correlated in time.
+"""Noise of the detections of a shot: white noise, and errors that are correlated in time.
 
 Light, shadow and where edges fall between pixels change slowly as a stone moves on. The residuals
 from a smooth motion tell both parts: the scatter of neighbours is white noise, that of a whole
 stretch is both. Codecs take most of a picture from the one before, so that neighbours among many
 pictures a second have errors in common: of angles means of such are looked at. A residual larger
-than either part explains is taken for a worse sighting, unless it is so large that the filter
+than either part explains is taken for a worse detection, unless it is so large that the filter
 refuses it.
 """
 
@@ -30,10 +30,10 @@ from curlshot.physics.local_fit.traces import Trace, level, local_residuals
 Floats = NDArray[np.float64]
 
 FEWEST = 8
-"""Sightings in a row from which they say how they err."""
+"""Detections in a row from which they say how they err."""
 
 ENOUGH = FEWEST + 4
-"""Sightings in a row of which `FEWEST` have two neighbours on either side."""
+"""Detections in a row of which `FEWEST` have two neighbours on either side."""
 
 BRIEF = 0.04
 """Time after which angles have nothing in common for being neighbours, s. Under H.264 those of
@@ -42,28 +42,28 @@ none from 0.033 s on. So do places, but with means of them fewer lie within two 
 those of 12 clips of 60 pictures a second, not 0.97), though speeds are 3 % nearer."""
 
 FEW = 30
-"""Sightings of a stone whose scatter says as much of its errors as that of the others does."""
+"""Detections of a stone whose scatter says as much of its errors as that of the others does."""
 
 STATED, OTHERS = 1.0, 4.0
-"""How many memories of sightings say as much of a stone's lasting errors as what is stated of them
+"""How many memories of detections say as much of a stone's lasting errors as what is stated of them
 does, and as those of the others of its shot do."""
 
 WILD = 3.0
-"""Standard deviations beyond which a sighting is worse than it says."""
+"""Standard deviations beyond which a detection is worse than it says."""
 
 WORSE = 2.0
-"""How many times as large as usual an error that lasts may be: what a sighting is worse than that,
+"""How many times as large as usual an error that lasts may be: what a detection is worse than that,
 as one cut by the picture's edge, goes with it, and is no error of the next ones."""
 
 MOST = 60
-"""So many sightings of a stretch are enough to tell how much of a lasting error a fit takes."""
+"""So many detections of a stretch are enough to tell how much of a lasting error a fit takes."""
 
 
 @dataclass(frozen=True)
 class Noise:
-    """Standard deviations of the sightings of one stone: x, y and θ, (n, 3) each.
+    """Standard deviations of the detections of one stone: x, y and θ, (n, 3) each.
 
-    ``white`` is independent from sighting to sighting, ``slow`` correlated in time.
+    ``white`` is independent from detection to detection, ``slow`` correlated in time.
     """
 
     white: Floats
@@ -72,14 +72,14 @@ class Noise:
 
 @dataclass(frozen=True)
 class Run:
-    """Sightings of one stone in one stretch of smooth motion.
+    """Detections of one stone in one stretch of smooth motion.
 
     Attributes
     ----------
     stone : str
         Whose.
     samples : (n,) array of int
-        Which of its sightings.
+        Which of its detections.
     t : (n,) array
         Times, s.
     off : (n,) array
@@ -87,7 +87,7 @@ class Run:
     free : float
         How many numbers of the motion they tell.
     each : int
-        Of how many sightings in a row each of these is the mean.
+        Of how many detections in a row each of these is the mean.
     """
 
     stone: str
@@ -108,7 +108,7 @@ class Run:
 
 
 def noises(fit: ShotFit, known: Mapping[str, Trace]) -> dict[str, Noise]:
-    """Estimate the noise of the sightings of each stone.
+    """Estimate the noise of the detections of each stone.
 
     Their stated errors are taken for the whole; the scatter says how much of it is white.
 
@@ -117,7 +117,7 @@ def noises(fit: ShotFit, known: Mapping[str, Trace]) -> dict[str, Noise]:
     fit : ShotFit
         Of all pieces.
     known : mapping
-        Stone to its sightings.
+        Stone to its detections.
 
     Returns
     -------
@@ -139,7 +139,7 @@ def noises(fit: ShotFit, known: Mapping[str, Trace]) -> dict[str, Noise]:
 
 
 def _noise(white: Floats, slow: Floats) -> Noise:
-    """Count as white what few sightings are much worse by than the others."""
+    """Count as white what few detections are much worse by than the others."""
     lasting = np.minimum(slow, WORSE * np.median(slow, axis=0))
     return Noise(np.sqrt(white**2 + slow**2 - lasting**2), lasting)
 

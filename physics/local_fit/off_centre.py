@@ -38,7 +38,7 @@ TURNED = 2.0
 no path need be fitted."""
 
 FEWEST = 12
-"""Sightings of a stretch from which it tells of its cap."""
+"""Detections of a stretch from which it tells of its cap."""
 
 OTHER_SLOWING = 0.01
 """Standard deviation of each of the first three Legendre terms by which the acceleration of a glide
@@ -64,10 +64,10 @@ REWEIGHTED = 3
 def centred(
     known: Mapping[str, Trace], hits: Sequence[Meeting | Contact | Collision], radius: float
 ) -> dict[str, Trace]:
-    """Put the sightings of each stone over its centre, where it shows that they are beside it.
+    """Put the detections of each stone over its centre, where it shows that they are beside it.
 
     On each axis of every stretch of motion between hits a polynomial of the fifth degree, and a
-    place in the stone's frame for all of them, are fitted to the sightings (linear least squares;
+    place in the stone's frame for all of them, are fitted to the detections (linear least squares;
     the place is known before to `Trace.sd_off_centre`, what is more than a parabola by
     `OTHER_SLOWING`). Other stones stay as they are: such without angles for a while, without a
     stated error that their places share, or hardly turning.
@@ -75,7 +75,7 @@ def centred(
     Parameters
     ----------
     known : mapping
-        Stone to its sightings.
+        Stone to its detections.
     hits : sequence of Meeting, Contact or Collision
         The hits.
     radius : float
@@ -105,7 +105,7 @@ def _centred(trace: Trace, hits: Sequence[tuple[int, float]], radius: float) -> 
 
 
 def moved(trace: Trace, beside: Floats) -> Trace:
-    """Put sightings over the centre of a stone whose cap is so far beside it, m, in its frame.
+    """Put detections over the centre of a stone whose cap is so far beside it, m, in its frame.
 
     Where it is not known how it is turned they stay, and err by that.
     """
@@ -131,7 +131,7 @@ def _joined(pieces: Sequence[Piece]) -> list[Piece]:
 
 
 def _stretches(trace: Trace, pieces: Sequence[Piece], radius: float) -> list[NDArray[np.int64]]:
-    """Sightings of each stretch in which a stone moves."""
+    """Return detections of each stretch in which a stone moves."""
     alone = [replace(piece, opens=None, closes=None) for piece in pieces]
     fit = fit_shot({trace.stone: trace}, alone, (), radius, deceleration=free(radius))
     moving = (p.samples[trace.t[p.samples] < fit.stop(i)] for i, p in enumerate(fit.pieces))
@@ -148,7 +148,7 @@ def _beside(
     """By how much the cap is beside the centre, in the stone's frame, m; its normal matrix."""
     normal = np.eye(2) / sd**2
     right = np.zeros(2)
-    # As often as sightings err alike they say the same once more.
+    # As often as detections err alike they say the same once more.
     alike = max(ALIKE, trace.lasting * 2 * PLACE_MEMORY / trace.step)
     for samples in stretches:
         noise = np.sqrt(np.mean(trace.sd[samples] ** 2, axis=1))

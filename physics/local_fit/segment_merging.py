@@ -23,7 +23,7 @@ OUTLIER = 16.0
 """Squared normalised error, two axes, at which a sample costs no more."""
 
 FEWEST = 6
-"""Sightings from which a stretch tells how it is slowed."""
+"""Detections from which a stretch tells how it is slowed."""
 
 STEPS = 12
 """Most Gauss-Newton steps of one glide."""
@@ -35,7 +35,7 @@ def merge_segments(
     """Drop the starts of segments at which a glide goes on.
 
     Neighbours are merged, the most probable pair first, as long as one glide slowed by a power of
-    its speed makes their sightings more probable than two do.
+    its speed makes their detections more probable than two do.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ from curlshot.physics.local_fit.traces import Trace
 Floats = NDArray[np.float64]
 
 BESIDE = 0.6
-"""Usual times between sightings before or after a hit within which one may show its other side."""
+"""Usual times between detections before or after a hit within which one may show its other side."""
 
 SLOW = 0.15
 """Mean speed of a stone that is taken to rest, its radii per second: on ice it would stop within a
@@ -31,11 +31,11 @@ of it, for a rest that follows may be a hundred times as long as the glide that 
 
 MOVED, NOISE, BETWEEN = 0.2, 5.0, 9
 """How far from where it lay a stone is that was moved, in radii, and in standard errors of its
-places: a house that comes in smeared by a pan was 2 cm off. So many sightings on either side tell
+places: a house that comes in smeared by a pan was 2 cm off. So many detections on either side tell
 where it lies."""
 
 CURVED = 6
-"""Sightings from which the speed at the end of a stretch is told by a parabola, not a line."""
+"""Detections from which the speed at the end of a stretch is told by a parabola, not a line."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Piece:
     start, end : float
         Times that bound it, s (infinite at the ends of a path).
     samples : (n,) int array
-        Which of the path's sightings lie in it.
+        Which of the path's detections lie in it.
     rest : bool
         The stone lies still throughout.
     stops : bool
@@ -112,7 +112,7 @@ def cut(path: Trace, hits: Sequence[tuple[int, float]], radius: float) -> list[P
 
 
 def _spaced(edges: Sequence[float], t: Floats) -> list[float]:
-    """Keep the breaks that leave at least `FEWEST` sightings on either side of them."""
+    """Keep the breaks that leave at least `FEWEST` detections on either side of them."""
     kept: list[float] = []
     passed = 0
     for edge in edges:

@@ -12,7 +12,7 @@ from curlshot.physics.local_fit.traces import Trace, shared_correlation
 Floats = NDArray[np.float64]
 
 GROUPS = 400
-"""Most groups of neighbouring sightings per axis whose shared error is followed up."""
+"""Most groups of neighbouring detections per axis whose shared error is followed up."""
 
 MEDIAN = 0.4549
 """Median of the square of a standard normal number."""
@@ -25,19 +25,19 @@ def shared_error(
 
     The map of the ice is off by a random field whose correlation falls with the distance
     (`curlshot.physics.local_fit.traces.shared_correlation`), and the unknowns follow it as they
-    follow the sightings. Its variance is the mean of what is stated, `sd_place` squared, and of
+    follow the detections. Its variance is the mean of what is stated, `sd_place` squared, and of
     what the residuals show, as far as noise does not hide it.
 
     Parameters
     ----------
     traces : mapping
-        Sightings of each stone.
+        Detections of each stone.
     residuals : (n, 2) array
         Sighted less fitted places over their standard deviations, in the order of the traces.
     slopes : (2 n, m) array
         Derivatives of the residuals by the unknowns.
     cov : (m, m) array
-        Covariance of the unknowns from errors that are anew in each sighting.
+        Covariance of the unknowns from errors that are anew in each detection.
     weights : (2 n,) array
         Of the residuals in the fit.
 

@@ -36,11 +36,11 @@ def spins_at(
     Parameters
     ----------
     fit : ShotFit
-        Which sightings belong to which side.
+        Which detections belong to which side.
     k : int
         Rank of the hit.
     known, noise : mapping
-        Stone to its sightings, and to how they err.
+        Stone to its detections, and to how they err.
     mass : (2,) array
         Masses of the two.
     """
@@ -92,11 +92,11 @@ def spin_on(
     Parameters
     ----------
     fit : ShotFit
-        Which sightings belong to the piece.
+        Which detections belong to the piece.
     rank : int
         Of the piece.
     known, noise : mapping
-        Stone to its sightings, and to how they err.
+        Stone to its detections, and to how they err.
     time : float
         s.
     """

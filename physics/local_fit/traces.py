@@ -1,4 +1,4 @@
-"""The sightings of each stone as arrays, every place with a standard deviation."""
+"""The detections of each stone as arrays, every place with a standard deviation."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ besides the error that places share, which is less where a camera looks close up
 out of stills and moved, whose way is known, 1.7 mm (r.m.s.) were left where more was taken out."""
 
 AROUND, SLOW = 0.5, 0.02
-"""Time around a sighting, s, in which a stone that goes on has gone so many m a second: on ice a
+"""Time around a detection, s, in which a stone that goes on has gone so many m a second: on ice a
 slower one stops within a quarter of a second."""
 
 APART = 10
-"""Sightings at rest, and as many of a stone that goes on, from which each say how they scatter."""
+"""Detections at rest, and as many of a stone that goes on, from which each say how they scatter."""
 
 FACED = 0.5
 """Time, s, within which an angle is to be told for it to be known how a stone is turned: a third of
@@ -54,7 +54,7 @@ this; with half, a push of 0.1 m/s is missed."""
 
 @dataclass(frozen=True)
 class Trace:
-    """The sightings of one stone as arrays.
+    """The detections of one stone as arrays.
 
     Attributes
     ----------
@@ -87,7 +87,7 @@ class Trace:
 
     @property
     def step(self) -> float:
-        """Usual time between two sightings, s."""
+        """Usual time between two detections, s."""
         return float(np.median(np.diff(self.t))) if len(self.t) > 1 else 0.04
 
     @property
@@ -118,7 +118,7 @@ class Trace:
 
     @cached_property
     def faced(self) -> NDArray[np.bool_]:
-        """Whether an angle is told within `FACED` of each of the sightings, shape (n,)."""
+        """Whether an angle is told within `FACED` of each of the detections, shape (n,)."""
         told = self.t[np.isfinite(self.theta)]
         if not len(told):
             return np.zeros(len(self.t), bool)
@@ -127,7 +127,7 @@ class Trace:
         return np.asarray(np.abs(ends - self.t).min(0) < FACED)
 
     def gap(self, time: float) -> float:
-        """Time between the sightings either side of a time, at least the usual step, s."""
+        """Time between the detections either side of a time, at least the usual step, s."""
         if len(self.t) < 2:
             return self.step
         k = int(np.clip(np.searchsorted(self.t, time), 1, len(self.t) - 1))
@@ -146,28 +146,28 @@ class Trace:
         return replace(self, **{name: getattr(self, name)[keep] for name in names})
 
     def between(self, start: float, end: float) -> NDArray[np.bool_]:
-        """Which sightings lie in [start, end)."""
+        """Which detections lie in [start, end)."""
         return np.asarray((self.t >= start) & (self.t < end))
 
 
-def traces(sightings: Table) -> dict[str, Trace]:
-    """Split a table of sightings by stone and give every place a standard deviation.
+def traces(detections: Table) -> dict[str, Trace]:
+    """Split a table of detections by stone and give every place a standard deviation.
 
     Where the table has none it is estimated from how places scatter about local parabolas;
     where it has some that are smaller than that scatter, they are scaled up to it.
 
     Parameters
     ----------
-    sightings : Table
-        Of `curlshot.data.tracks.SIGHTING_COLUMNS` at least ``stone, t, x, y``, each stone's rows in
-        order of time; of the others what is not there is not known.
+    detections : Table
+        Of `curlshot.data.tracks.DETECTION_COLUMNS` at least ``stone, t, x, y``, each stone's rows
+        in order of time; of the others what is not there is not known.
     """
     out: dict[str, Trace] = {}
-    stones = np.asarray(sightings["stone"])
-    columns = {name: np.asarray(sightings[name], float) for name in ("t", "x", "y")}
+    stones = np.asarray(detections["stone"])
+    columns = {name: np.asarray(detections[name], float) for name in ("t", "x", "y")}
     for name in ("theta", "sd_x", "sd_y", "sd_theta", *SHARED, *RISE):
-        told = name in sightings
-        columns[name] = np.asarray(sightings[name] if told else np.full(len(stones), np.nan), float)
+        own = detections[name] if name in detections else np.full(len(stones), np.nan)
+        columns[name] = np.asarray(own, float)
     for name in np.unique(stones).tolist():
         own = {key: values[stones == name] for key, values in columns.items()}
         t, xy = own["t"], np.column_stack([own["x"], own["y"]])
@@ -191,7 +191,7 @@ def traces(sightings: Table) -> dict[str, Trace]:
 
 
 def _goes(t: Floats, xy: Floats) -> NDArray[np.bool_]:
-    """Whether a stone goes on at each of its sightings, as far as others show it."""
+    """Whether a stone goes on at each of its detections, as far as others show it."""
     ways = [np.interp(t + 0.5 * AROUND, t, x) - np.interp(t - 0.5 * AROUND, t, x) for x in xy.T]
     return np.asarray(np.hypot(*ways) > SLOW * AROUND)
 

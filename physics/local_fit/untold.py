@@ -59,7 +59,7 @@ SEVERAL = 3
 camera that moved, or people that move them."""
 
 FEW = 7
-"""Sightings of which a median tells where a stone is."""
+"""Detections of which a median tells where a stone is."""
 
 STEPS = 40
 """Times in a span at which it is looked how near two stones are."""
@@ -111,7 +111,7 @@ def untold_hits(known: Mapping[str, Trace], told: Sequence[Meeting], radius: flo
     Parameters
     ----------
     known : mapping
-        Stone to its sightings.
+        Stone to its detections.
     told : sequence of Meeting
         The hits that are told.
     radius : float
@@ -317,7 +317,7 @@ def _leaves(path: Trace, radius: float) -> tuple[float, bool] | None:
 
 
 def _away(path: Trace, place: Floats, radius: float) -> tuple[Floats, float, Floats]:
-    """Tell how far a stone is from a place, by running medians of a few sightings.
+    """Tell how far a stone is from a place, by running medians of a few detections.
 
     Returns
     -------

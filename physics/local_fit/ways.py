@@ -14,7 +14,7 @@ from curlshot.physics.local_fit.traces import Trace
 Floats = NDArray[np.float64]
 
 WINDOW, FEWEST = 0.25, 5
-"""Time, s, and sightings at the end of a gap that tell how a stone goes there: longer ones may have
+"""Time, s, and detections at the end of a gap that show how a stone goes there: longer may have
 another hit in them."""
 
 SLOWING, SLOWING_SD = 0.1, 0.03
@@ -34,7 +34,7 @@ class Way:
     Attributes
     ----------
     t : float
-        Of the sighting at the end, s.
+        Of the detection at the end, s.
     place, velocity : (2,) array
         m and m/s; the velocity is 0 of a stone at rest.
     sd_place, sd_speed : float
@@ -85,19 +85,19 @@ def gaps(path: Trace, least: float = OUT_OF_SIGHT) -> Iterator[Gap]:
 
 
 def last_way(path: Trace, k: int) -> Way:
-    """How a stone goes at its sighting k, by those before."""
+    """How a stone goes at its detection k, by those before."""
     few = np.flatnonzero(path.t[: k + 1] >= path.t[k] - WINDOW)
     return _way(path, np.arange(min(int(few[0]), max(k + 1 - FEWEST, 0)), k + 1), k)
 
 
 def first_way(path: Trace, k: int) -> Way:
-    """How a stone goes at its sighting k, by those after."""
+    """How a stone goes at its detection k, by those after."""
     few = np.flatnonzero(path.t[k:] <= path.t[k] + WINDOW) + k
     return _way(path, np.arange(k, min(max(int(few[-1]) + 1, k + FEWEST), len(path.t))), k)
 
 
 def _way(path: Trace, samples: NDArray[np.int64], k: int) -> Way:
-    """Fit a straight way to sightings; its speed is that at sighting k."""
+    """Fit a straight way to detections; its speed is that at detection k."""
     t, sd = path.t[samples], float(np.mean(path.sd[samples]))
     middle = float(t.mean())
     tau = t - middle

@@ -94,7 +94,7 @@ def _sound(shots: Iterable[Shot]) -> list[Shot]:
 def _possible(
     fit: GlobalFit, rng: np.random.Generator, tries: int
 ) -> Iterator[tuple[GlobalFit, Floats]]:
-    """Draw laws and values of their unknowns, and give those that the sightings allow."""
+    """Draw laws and values of their unknowns, and give those that the detections allow."""
     best: dict[int, list[Floats]] = {}
     for own, values in draw_choices(fit, tries, rng):
         if id(own) not in best:

@@ -1,4 +1,4 @@
-"""The shot predicted: from sightings before its first hit alone, and what was known beforehand."""
+"""The shot predicted: from detections before its first hit alone, and what was known beforehand."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ ASSUMED = assumed(STONE.radius)
 
 
 def predict(
-    sightings: pd.DataFrame,
+    detections: pd.DataFrame,
     tracks: pd.DataFrame,
     estimates: Estimates,
     *,
@@ -73,14 +73,14 @@ def predict(
 ) -> dict[str, Prediction]:
     """Predict a shot from what was seen before its first hit and score it against the tracks.
 
-    The states and the laws of the ice come from a fit through the simulator to all sightings before
-    the hit, the laws of hits from what is assumed; of what follows nothing is used but to score
-    the outcome.
+    The states and the laws of the ice come from a fit through the simulator to all detections
+    before the hit, the laws of hits from what is assumed; of what follows nothing is used but to
+    score the outcome.
 
     Parameters
     ----------
-    sightings : DataFrame
-        `curlshot.data.tracks.SIGHTING_COLUMNS`.
+    detections : DataFrame
+        `curlshot.data.tracks.DETECTION_COLUMNS`.
     tracks : DataFrame
         `curlshot.data.tracks.TRACK_COLUMNS`, to score against.
     estimates : Estimates
@@ -103,7 +103,7 @@ def predict(
     rigid = Prediction(None, note="needs spins after the hit, which only the shot itself tells")
     note = "too little is seen before the first hit"
     try:
-        fit = _before(sightings[sightings["t"] < first], radius, masses or {}, laws)
+        fit = _before(detections[detections["t"] < first], radius, masses or {}, laws)
     except InputError as error:
         fit, note = None, f"cannot be simulated: {error}"
     if fit is None:
@@ -118,7 +118,7 @@ def predict(
 
 
 def _before(
-    sightings: pd.DataFrame, radius: float, masses: Mapping[str, float], laws: Priors
+    detections: pd.DataFrame, radius: float, masses: Mapping[str, float], laws: Priors
 ) -> GlobalFit | None:
     """Fit the states of all stones to what was seen before the hit; None where none moves.
 
@@ -126,7 +126,7 @@ def _before(
     What is assumed of the ice is known beforehand but not held: where it is wrong, it would draw
     places and velocities aside.
     """
-    known = traces(sightings)
+    known = traces(detections)
     pieces, _ = cut_all(known, (), radius)
     if not pieces:
         return None
@@ -143,8 +143,8 @@ def _before(
         if len(trace.t) < len(known[name].t)
     }
     if moved:
-        since = sightings["stone"].map(moved).fillna(-np.inf).astype(float)
-        return _before(sightings[sightings["t"] > since], radius, masses, laws)
+        since = detections["stone"].map(moved).fillna(-np.inf).astype(float)
+        return _before(detections[detections["t"] > since], radius, masses, laws)
     held = {
         name: law.value or 0.0 for name, law in vars(laws).items() if name in MOST or not law.stderr
     }

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 HUBER = 3.0
-"""Normalised distance of a sighting from the fit beyond which it loses weight."""
+"""Normalised distance of a detection from the fit beyond which it loses weight."""
 
 LAGS = 0.25
-"""Longest lag, relative to sightings per parameter, at which residuals are compared."""
+"""Longest lag, relative to detections per parameter, at which residuals are compared."""
 
 LONGEST = 60
 """No lag as long as this is looked at."""
@@ -22,7 +22,7 @@ LONGEST = 60
 def huber_weights(residuals: Floats) -> Floats:
     """Weights of Huber's estimator for residuals of shape (n, 2); shape (n, 1).
 
-    A sighting is an outlier as a whole, so that no choice of axes matters.
+    A detection is an outlier as a whole, so that no choice of axes matters.
     """
     size = np.hypot(residuals[:, 0], residuals[:, 1])
     out: Floats = (HUBER / np.maximum(size, HUBER))[:, None]

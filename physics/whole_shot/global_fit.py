@@ -3,7 +3,7 @@
 The unknowns are the states of the stones at the start, the laws of the ice and of the hits;
 where and when stones meet, and the normals, follow from the geometry. Several shots may share
 unknowns. Levenberg and Marquardt's method with differences of simulations for derivatives;
-sightings far off lose weight as Huber has it.
+detections far off lose weight as Huber has it.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def fit_shots(
     noise: float = 1.0,
     ends: Sequence[GlobalFit] = (),
 ) -> GlobalFit:
-    """Fit all unknowns of one or several shots to all their sightings at once.
+    """Fit all unknowns of one or several shots to all their detections at once.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def fit_shots(
     start : mapping, optional
         Where to set out from, where not from the shots' own guesses.
     noise : float
-        Factor on the variances of the sightings to set out with.
+        Factor on the variances of the detections to set out with.
     ends : sequence of GlobalFit
         Fits of the same unknowns that set out from elsewhere; one of them is returned where this
         comes to the same end.
@@ -128,7 +128,7 @@ class _Problem:
         self.sd = np.array([_or(unknown.prior, "stderr", np.inf) for unknown in each])
         steps = {"omega": SPIN_STEP, "loss": LOSS_STEP}
         self.step = np.array([steps.get(u.name.rpartition(".")[2], STEP) for u in each])
-        self.sightings = sum(len(t.t) for shot in self.shots for t in shot.traces.values())
+        self.detections = sum(len(t.t) for shot in self.shots for t in shot.traces.values())
         self.ended = [(fit, inverse(fit.cov)) for fit in self.ends if fit.settled]
 
     def solve(self) -> GlobalFit:
@@ -170,21 +170,21 @@ class _Problem:
             tuple(self.shots),
             sum(_huber(run) for places, _ in residuals for run in places),
             self._elsewhere(at, residuals),
-            self.sightings,
+            self.detections,
             self.noise,
             settled,
         )
 
     def _noise(self, at: Floats, residuals: Sequence[tuple[list[Floats], Floats]]) -> float:
-        """Return the factor on the variances of the sightings that their residuals ask for."""
+        """Return the factor on the variances of the detections that their residuals ask for."""
         runs = [(run, 3) for places, _ in residuals for run in places]
-        return inflation(runs, 2 * self.sightings - len(at))
+        return inflation(runs, 2 * self.detections - len(at))
 
     def _descend(self, at: Floats) -> tuple[Floats, bool]:
         """Levenberg and Marquardt's steps from a guess to the least cost.
 
-        Unknowns are damped by the most that the sightings have told of each on the way (Moré, 1978,
-        Lecture Notes in Mathematics 630, 105): stones that stick tell nothing of the friction
+        Unknowns are damped by the most that the detections have told of each on the way (Moré,
+        1978, Lecture Notes in Mathematics 630, 105): stones that stick tell nothing of the friction
         between them, and what is known of it beforehand would draw it to where they slide.
         """
         damping = 1e-3
@@ -204,7 +204,7 @@ class _Problem:
             except InputError:  # a step too far: to what cannot be simulated
                 there, new_cost = residuals, np.inf
             # Residuals larger than stated make errors that much larger.
-            settled = SETTLED**2 * len(at) * max(1.0, cost / self.sightings)
+            settled = SETTLED**2 * len(at) * max(1.0, cost / self.detections)
             small = float(step @ normal @ step) < settled
             if new_cost < cost:
                 small = small or cost - new_cost < settled

@@ -49,10 +49,10 @@ SELDOM = 9.0
 
 
 def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None) -> GlobalFit:
-    """Fit a shot with the laws that the sightings ask for, some unknowns held if `fixed`.
+    """Fit a shot with the laws that the detections ask for, some unknowns held if `fixed`.
 
     First friction depends on the speed and the paths curl. Each of the two is left out, and
-    friction between stones is, where the sightings are the more probable without: then the
+    friction between stones is, where the detections are the more probable without: then the
     friction is constant, the paths are straight, the stones stick. A wrong law would lead the
     others astray if they were taken up one after the other.
 
@@ -127,7 +127,7 @@ class _Tried:
     ----------
     fits : list of GlobalFit
     criteria : list of float
-        Of each, minus twice the log probability of the sightings, but for what all share.
+        Of each, minus twice the log probability of the detections, but for what all share.
     held : dict
         Unknowns that the best holds, and at what.
     rank : int
@@ -141,7 +141,7 @@ class _Tried:
 
     @property
     def best(self) -> GlobalFit:
-        """The fit that makes the sightings most probable, of those that may be the best."""
+        """The fit that makes the detections most probable, of those that may be the best."""
         return self.fits[self.rank]
 
     @property
@@ -256,12 +256,12 @@ def _best_of(fits: Sequence[GlobalFit]) -> GlobalFit:
 
 
 def _cost(fit: GlobalFit, noise: float) -> float:
-    """Least squares of a fit: its sightings' with that much noise, and what else it heeds."""
+    """Least squares of a fit: its detections' with that much noise, and what else it heeds."""
     return fit.deviance / noise + fit.elsewhere
 
 
 def _against(fit: GlobalFit, name: str) -> float:
-    """Twice the log of how much more probable the sightings are if an unknown is 0.
+    """Twice the log of how much more probable the detections are if an unknown is 0.
 
     It is the density of what the fit tells of the unknown over that of what was known of it
     beforehand, both at 0 (Dickey, 1971, Annals of Mathematical Statistics 42, 204). So an error
@@ -342,12 +342,12 @@ def _values(fit: GlobalFit, held: Mapping[str, float] = MappingProxyType({})) ->
 
 
 def _beside(fit: GlobalFit, best: GlobalFit) -> float:
-    """Twice the log of how much more probable the best fit makes the sightings than another."""
+    """Twice the log of how much more probable the best fit makes the detections than another."""
     return _criterion(fit, best.inflation) - _criterion(best, best.inflation)
 
 
 def _criterion(fit: GlobalFit, noise: float) -> float:
-    """Minus twice the log probability of the sightings, but for what all fits share.
+    """Minus twice the log probability of the detections, but for what all fits share.
 
     By Laplace's method (Kass and Raftery, 1995, J. Am. Stat. Assoc. 90, 773).
     """

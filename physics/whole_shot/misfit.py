@@ -24,7 +24,7 @@ DEGREE = 5
 """Of the polynomials in time that a path is looked for to be bent by: bends of a sixth of it."""
 
 EACH = 4
-"""Sightings for each of their coefficients, at least."""
+"""Detections for each of their coefficients, at least."""
 
 CERTAIN = 5.0
 """Standard deviations by which a bend is larger than chance makes it: of 100 drawn shots with even
@@ -84,7 +84,7 @@ def misfits(shot: Watched, fit: GlobalFit, level: float | None = None) -> tuple[
     Parameters
     ----------
     shot : Watched
-        The sightings, with the errors to judge by.
+        The detections, with the errors to judge by.
     fit : GlobalFit
         Of that shot, of its beginning, or of the same with larger errors.
     level : float, optional
@@ -124,7 +124,7 @@ def _misfit(
     def square(residuals: Floats) -> float:
         return float(np.sum((basis.T @ residuals) ** 2)) / by_chance
 
-    # A few sightings far off bend no path; but one that is bent is off by as much as it is.
+    # A few detections far off bend no path; but one that is bent is off by as much as it is.
     off = square(run[rows] * huber_weights(run[rows]))
     certain = bool(off > 1 + CERTAIN / np.sqrt(degree + 1))
     size = float(np.sqrt(square(run[rows]) if certain else off))

@@ -23,7 +23,7 @@ def centred(trace: Trace, residuals: Floats, noise: float, sd: float) -> tuple[F
     Parameters
     ----------
     trace : Trace
-        Sightings of the stone; where no angle is told for a while nothing is taken out.
+        Detections of the stone; where no angle is told for a while nothing is taken out.
     residuals : (n, 2) array
         Sighted less fitted places over their standard deviations.
     noise : float
@@ -50,12 +50,12 @@ def centred(trace: Trace, residuals: Floats, noise: float, sd: float) -> tuple[F
 
 
 def centred_traces(known: Mapping[str, Trace], fit: GlobalFit) -> Mapping[str, Trace]:
-    """Put sightings over the centres by what a fit of the whole shot has the caps beside them.
+    """Put detections over the centres by what a fit of the whole shot has the caps beside them.
 
     Parameters
     ----------
     known : mapping
-        Stone to its sightings, of which the shot that was fitted may hold only a part.
+        Stone to its detections, of which the shot that was fitted may hold only a part.
     fit : GlobalFit
         Of that shot.
 

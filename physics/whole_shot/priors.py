@@ -1,4 +1,4 @@
-"""What is known of the laws before any sighting, with its sources."""
+"""What is known of the laws before any detection, with its sources."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ SPIN = Estimate(0.0, 3.0)
 
 @dataclass(frozen=True)
 class Priors:
-    """What is known of the laws before any sighting.
+    """What is known of the laws before any detection.
 
     Attributes
     ----------
@@ -84,7 +84,7 @@ def literature(radius: float) -> Priors:
 
 
 def loose_priors(radius: float) -> Priors:
-    """Return priors that leave the say to the sightings.
+    """Return priors that leave the say to the detections.
 
     Only the friction is that of curling ice where the discs have the size of curling stones:
     half a second of a glide does not tell it, and velocities at a hit depend on it.

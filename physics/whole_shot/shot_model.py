@@ -1,4 +1,4 @@
-"""A watched shot as a function of its unknowns: the simulator beside the sightings."""
+"""A watched shot as a function of its unknowns: the simulator beside the detections."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Unknown:
     low, high : float
         Bounds.
     prior : Estimate, optional
-        What is known of it besides the sightings.
+        What is known of it besides the detections.
     """
 
     name: str
@@ -92,7 +92,7 @@ class Watched:
     Attributes
     ----------
     traces : mapping
-        Sightings of each stone that took part.
+        Detections of each stone that took part.
     start : float
         Time at which the simulation begins, s.
     unknowns : tuple of Unknown
@@ -127,7 +127,7 @@ class Watched:
 
     @property
     def end(self) -> float:
-        """Time of the last sighting, s."""
+        """Time of the last detection, s."""
         return max(float(trace.t[-1]) for trace in self.traces.values())
 
     def sd_off_centre(self, trace: Trace) -> float:
@@ -167,7 +167,7 @@ class Watched:
         return Shot(stones, impact, self.ice(values), curl(values), radius)
 
     def replay(self, values: Mapping[str, float]) -> Simulation:
-        """Simulate the shot up to its last sighting."""
+        """Simulate the shot up to its last detection."""
         return simulate(self.shot(values), until=self.end - self.start)
 
     def residuals(self, simulation: Simulation) -> list[Floats]:

@@ -1,4 +1,4 @@
-"""From sightings and the fit of their pieces to a shot that a whole fit can begin with."""
+"""From detections and the fit of their pieces to a shot that a whole fit can begin with."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def watch(
     masses: Mapping[str, float] | None = None,
     bystanders: Sequence[str] = (),
 ) -> Watched | None:
-    """Gather what a whole fit needs: sightings, first guesses, spins and the order of hits.
+    """Gather what a whole fit needs: detections, first guesses, spins and the order of hits.
 
     A stone counts until something else than ice and hits moves it, and so do those that it
     hits after that. One that lies still at first and is set off by what no hit tells counts as
@@ -67,7 +67,7 @@ def watch(
     Parameters
     ----------
     known : mapping
-        Stone to its sightings.
+        Stone to its detections.
     fit : ShotFit
         Of the pieces of all stones that move.
     radius : float
@@ -158,7 +158,7 @@ def _traces(
     late: float,
     lie: Collection[str],
 ) -> tuple[dict[str, Trace], float]:
-    """Sightings that count, by stone, and when the shot begins, s.
+    """Return detections that count, by stone, and when the shot begins, s.
 
     Of those that move or are `hit`, till they `end` or rest, but for those that come into view
     after `late` and are not hit; and of bystanders, as long as the shot lasts. Some `lie` at first.

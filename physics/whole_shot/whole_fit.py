@@ -41,13 +41,13 @@ class GlobalFit:
     shots : tuple of Watched
         As given.
     deviance : float
-        Huber's sum of squared residuals of the sightings.
+        Huber's sum of squared residuals of the detections.
     elsewhere : float
         The like of the spins and of what was known beforehand.
-    sightings : int
-        Number of sightings.
+    detections : int
+        Number of detections.
     inflation : float
-        Factor that the variances of the sightings were enlarged by.
+        Factor that the variances of the detections were enlarged by.
     settled : bool
         Whether the fit came to its end.
     laws : tuple of Law
@@ -65,7 +65,7 @@ class GlobalFit:
     shots: tuple[Watched, ...]
     deviance: float
     elsewhere: float
-    sightings: int
+    detections: int
     inflation: float
     settled: bool
     laws: tuple[Law, ...] = ()
@@ -79,14 +79,14 @@ class GlobalFit:
         return Estimate(self.fixed[name], 0.0)
 
     def told(self, name: str) -> bool:
-        """Whether the sightings tell more of an unknown than was known beforehand."""
+        """Whether the detections tell more of an unknown than was known beforehand."""
         if name not in self.names:
             return False
         k = self.names.index(name)
         return bool(self.cov[k, k] < 0.5 * self.prior_sd[k] ** 2)
 
     def joint(self, names: Sequence[str]) -> Joint | None:
-        """Return those of some unknowns that the sightings tell of, None where it is none."""
+        """Return those of some unknowns that the detections tell of, None where it is none."""
         told = [name for name in names if self.told(name)]
         at = [self.names.index(name) for name in told]
         cov = self.cov[np.ix_(at, at)].tolist()
@@ -100,7 +100,7 @@ class GlobalFit:
         return own_values(rank, len(self.shots), self.names, numbers, self.fixed, self.shots[rank])
 
     def simulation(self, rank: int = 0) -> Simulation:
-        """Return the fitted shot, up to its last sighting."""
+        """Return the fitted shot, up to its last detection."""
         return self.shots[rank].replay(self.state(rank))
 
     @property
@@ -116,7 +116,7 @@ class GlobalFit:
         """Mean square of the residuals in terms of all errors of the places, shared ones too.
 
         The inflation compares them with what is anew in each frame alone: on a good clip the
-        map of the ice is off by several times that, alike for all sightings near each other.
+        map of the ice is off by several times that, alike for all detections near each other.
         """
         traces = [trace for shot in self.shots for trace in shot.traces.values()]
         shared = np.concatenate([(trace.sd_place / trace.sd) ** 2 for trace in traces])
@@ -124,7 +124,7 @@ class GlobalFit:
 
     @property
     def astray(self) -> bool:
-        """Whether a stone is far from its simulated path for at least half of its sightings.
+        """Whether a stone is far from its simulated path for at least half of its detections.
 
         `misfit` does not tell: there, all that is far off counts as little as an outlier does.
         """

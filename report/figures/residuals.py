@@ -1,4 +1,4 @@
-"""What the fitted shot leaves of the sightings."""
+"""What the fitted shot leaves of the detections."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _FARTHEST = 5.0
 """Residual, in standard deviations, up to which the histogram goes."""
 
 _MANY = 500
-"""Sightings from which on their dots are small."""
+"""Detections from which on their dots are small."""
 
 _BAND = 0.6
 """Opacity of the band of the stated errors."""
@@ -106,7 +106,7 @@ def _draw_times(
             t[own], off[own], ".", color=colour, ms=size, alpha=0.7, mew=0, zorder=3,
             rasterized=True,
         )  # fmt: skip
-    # A few wild sightings shall not squeeze all the others: they are marks at the edge.
+    # A few wild detections shall not squeeze all the others: they are marks at the edge.
     reach = 1.5 * max(float(np.quantile(np.abs(off), 0.98)), 2 * sd)
     for sign, mark in ((1, 6), (-1, 7)):  # carets with their tips at the value, up and down
         wild = sign * off > reach

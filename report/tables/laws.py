@@ -89,7 +89,7 @@ def choice_table(results: Results) -> pd.DataFrame:
     -------
     DataFrame
         ``laws, weight, criterion, friction, stderr``: `weight` is the probability of a choice,
-        `criterion` minus twice the log probability of the sightings, less that of the best.
+        `criterion` minus twice the log probability of the detections, less that of the best.
     """
     rows = [
         {

@@ -137,17 +137,17 @@ def scored_stones(scores: Mapping[str, SimulationScore] | Mapping[str, Predictio
 
 
 def residual_table(
-    sightings: pd.DataFrame,
+    detections: pd.DataFrame,
     tracks: pd.DataFrame,
     collisions: Sequence[Collision] = (),
     radius: float = STONE.radius,
 ) -> pd.DataFrame:
-    """Sighted less smoothed places, one row per sighting.
+    """Sighted less smoothed places, one row per detection.
 
     Parameters
     ----------
-    sightings : DataFrame
-        `curlshot.data.tracks.SIGHTING_COLUMNS`.
+    detections : DataFrame
+        `curlshot.data.tracks.DETECTION_COLUMNS`.
     tracks : DataFrame
         `curlshot.data.tracks.TRACK_COLUMNS`, smoothed from them.
     collisions : sequence of Collision
@@ -159,11 +159,11 @@ def residual_table(
     -------
     DataFrame
         ``stone, frame, t, dx, dy, sd_x, sd_y``: m and s; the standard deviations are those of
-        the sightings, from their scatter where the table has none. Where a cap shows to be beside
+        the detections, from their scatter where the table has none. Where a cap shows to be beside
         its stone's centre that is taken out, as for the filter.
     """
     keys, sd = ["stone", "frame"], ["sd_x", "sd_y"]
-    table = sightings.sort_values(["stone", "t"]).reset_index(drop=True)
+    table = detections.sort_values(["stone", "t"]).reset_index(drop=True)
     known = centred(traces(table), collisions, radius)
     if known:
         table[sd] = np.concatenate([known[str(name)].sd for name in sorted(known)])

@@ -30,7 +30,7 @@ def measure_again(
     Parameters
     ----------
     views : sequence of StoneView
-        Pictures in a row; sightings in them are replaced.
+        Pictures in a row; detections in them are replaced.
     appearance : Appearance or None
         What stones look like here.
     disc : Stone
@@ -46,7 +46,7 @@ def measure_again(
         )
         drift = drifts(places[k], before, after, MOST_STEP * disc.radius)
         smeared = swept_share(view.drift_seen(places[k], drift)) > 0
-        fast = [i for i in np.flatnonzero(smeared).tolist() if not view.sightings[i].swept]
+        fast = [i for i in np.flatnonzero(smeared).tolist() if not view.detections[i].swept]
         if fast:
             doubtful += [(view, i) for i in fast]
             looks.append(view.look(places[k][fast].tolist(), drift[fast].tolist()))
@@ -55,7 +55,7 @@ def measure_again(
     seen = look_on_course(looks, appearance, disc, search)
     for (view, i), found in zip(doubtful, seen, strict=True):
         if found is not None and found.swept:
-            view.sightings[i] = found.without_samples()
+            view.detections[i] = found.without_samples()
 
 
 def drifts(places: Array, before: Array, after: Array, reach: float) -> Array:

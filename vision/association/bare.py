@@ -59,7 +59,7 @@ def with_handles(
         for track, moves in zip(tracks, moved, strict=True)
     ]
     brief = np.array([len(track.frames) < FEWEST for track in tracks], bool)
-    ends = ([track.sightings[k] for track in tracks] for k in (0, -1))
+    ends = ([track.detections[k] for track in tracks] for k in (0, -1))
     alone = np.all([without_handle(seen) for seen in ends], axis=0)
     without = bare(shown, team, moved) | (alone & brief)
     return [track for track, out in zip(tracks, without, strict=True) if not out]
@@ -79,8 +79,8 @@ def contrast_of(track: Track, shared: Callable[[Complex, Complex], float]) -> fl
     float
         NaN where fewer than `FEWEST` pictures show the cap, or where they are too coarse.
     """
-    shown = [kept for kept in track.sightings.spectra if kept is not None]
-    if len(shown) < FEWEST or np.median(track.sightings.columns("pixel_size")) > WIDTH:
+    shown = [kept for kept in track.detections.spectra if kept is not None]
+    if len(shown) < FEWEST or np.median(track.detections.columns("pixel_size")) > WIDTH:
         return nan
     some = np.unique(np.linspace(0, len(shown) - 2, MOST_PAIRS).astype(int)).tolist()
     # What covers a cap for some time has contrast of its own.

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from curlshot.data.sheet import STONE, Stone
 from curlshot.vision.detection.appearance import Appearance
+from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.measure import Measures, measure_discs
 from curlshot.vision.detection.patch import EFFORT
-from curlshot.vision.detection.placing import sightings
+from curlshot.vision.detection.placing import detections
 from curlshot.vision.detection.rays import Look
 from curlshot.vision.detection.seek import seek_about
-from curlshot.vision.detection.sighting import Sighting
 from curlshot.vision.detection.stones import FOLLOWING, Search, judge
 
 Array = NDArray[np.float64]
@@ -48,7 +48,7 @@ def look_on_course(
     appearance: Appearance | None,
     disc: Stone = STONE,
     search: Search = FOLLOWING,
-) -> list[Sighting | None]:
+) -> list[Detection | None]:
     """Measure stones that have kept their course.
 
     Parameters
@@ -64,7 +64,7 @@ def look_on_course(
 
     Returns
     -------
-    list of Sighting or None
+    list of Detection or None
         One per place, in their order; None where there is no stone.
     """
     seen = measure_discs(looks, appearance, disc, FOLLOWED)
@@ -77,23 +77,23 @@ def look_on_course(
         seen = measure_discs(looks, appearance, disc, FOLLOWED)
         settled = seen.shift < SETTLED * disc.radius
         found = _found(seen, looks, settled, disc, search)
-        for i, sighting in zip(near.tolist(), found, strict=True):
-            out[i] = sighting
+        for i, detection in zip(near.tolist(), found, strict=True):
+            out[i] = detection
     return out
 
 
 def look_beside(
     look: Look,
-    seen: Sequence[Sighting | None],
+    seen: Sequence[Detection | None],
     appearance: Appearance | None,
     disc: Stone = STONE,
     search: Search = FOLLOWING,
-) -> list[Sighting | None]:
+) -> list[Detection | None]:
     """Measure stones that have left their course by a little: as `look_on_course`.
 
     Parameters
     ----------
-    seen : sequence of Sighting or None
+    seen : sequence of Detection or None
         What was seen on their course: where nothing answers more strongly beside it than there,
         nothing is measured.
     """
@@ -103,7 +103,7 @@ def look_beside(
     )  # fmt: skip
     known = np.array([(inf, inf) if s is None else (s.x, s.y) for s in seen]).reshape(-1, 2)
     others = np.flatnonzero(np.hypot(*(about - known).T) > SAME * disc.radius)
-    out: list[Sighting | None] = [None] * len(about)
+    out: list[Detection | None] = [None] * len(about)
     if not len(others):
         return out
     (at,) = _moved([look], about, others)
@@ -112,8 +112,8 @@ def look_beside(
     looks = [replace(at, places=np.where(within[:, None], found.centre, at.places))]
     found = measure_discs(looks, appearance, disc, FOLLOWED)
     beside = _found(found, looks, np.ones(len(others), bool), disc, search)
-    for i, sighting in zip(others.tolist(), beside, strict=True):
-        out[i] = sighting
+    for i, detection in zip(others.tolist(), beside, strict=True):
+        out[i] = detection
     return out
 
 
@@ -136,12 +136,12 @@ def _found(
     right: NDArray[np.bool_],
     disc: Stone,
     search: Search,
-) -> list[Sighting | None]:
-    """Give the sightings where places show stones and are the right ones, else None."""
-    out: list[Sighting | None] = [None] * len(right)
+) -> list[Detection | None]:
+    """Give the detections where places show stones and are the right ones, else None."""
+    out: list[Detection | None] = [None] * len(right)
     faults = judge(seen, disc, replace(search, least_evidence=search.least_again))
     chosen = np.array([i for i, fault in enumerate(faults) if right[i] and not fault], np.intp)
-    found = sightings(seen, looks, chosen, disc)
-    for i, sighting in zip(chosen.tolist(), found, strict=True):
-        out[i] = sighting
+    found = detections(seen, looks, chosen, disc)
+    for i, detection in zip(chosen.tolist(), found, strict=True):
+        out[i] = detection
     return out

@@ -1,4 +1,4 @@
-"""Which sighting is which stone: association over time by gating and global assignment.
+"""Which detection is which stone: association over time by gating and global assignment.
 
 Two discs are never nearer than two radii, so between frames a stone is told from its
 neighbours by place alone as long as it moves by less than about a radius more or less than
@@ -21,14 +21,14 @@ from curlshot.vision.association.hits import MOTION_TOLD, struck
 from curlshot.vision.association.lead import DECELERATION, coloured
 from curlshot.vision.association.rows import Rows
 from curlshot.vision.detection.appearance import OTHER_STONE, colour_differences
-from curlshot.vision.detection.sighting import Sighting
+from curlshot.vision.detection.detection import Detection
 
 Array = NDArray[np.float64]
 
 Pair = tuple[float, float]
 
-SIGHTING_SD = 0.004
-"""What sightings err by beside what they say, radii: half a millimetre."""
+DETECTION_SD = 0.004
+"""What detections err by beside what they say, radii: half a millimetre."""
 
 ACCELERATION_NOISE = 2.0
 """Root of the spectral density of the acceleration, taken for white noise, radii/s^1.5."""
@@ -54,7 +54,7 @@ PATIENCE = 3.0
 """Seconds for which a moving stone is waited for."""
 
 BIRTHS = 5
-"""Sightings that make a track."""
+"""Detections that make a track."""
 
 BRIEF = 0.5
 """A track no longer than this, s, must show more in the open: shoulders look like a stone for a few
@@ -63,13 +63,13 @@ frames where a person turns."""
 
 @dataclass
 class Track:
-    """One stone's sightings, each with the index of its frame in the clip.
+    """One stone's detections, each with the index of its frame in the clip.
 
     Attributes
     ----------
     frames, times : list
-        Frame numbers and times, s, of the sightings.
-    sightings : Rows
+        Frame numbers and times, s, of the detections.
+    detections : Rows
     colour : ndarray, shape (3,)
         Running mean of the cap's colour, L*a*b*.
 
@@ -79,7 +79,7 @@ class Track:
 
     frames: list[int] = field(default_factory=list)
     times: list[float] = field(default_factory=list)
-    sightings: Rows = field(default_factory=Rows)
+    detections: Rows = field(default_factory=Rows)
     colour: Array = field(default_factory=lambda: np.zeros(3))
     _place: Pair = (0.0, 0.0)
     _velocity: Pair = (0.0, 0.0)
@@ -87,7 +87,7 @@ class Track:
 
     @property
     def speed(self) -> float:
-        """Speed at the last sighting, m/s; 0 where it cannot be told from 0."""
+        """Speed at the last detection, m/s; 0 where it cannot be told from 0."""
         speed = hypot(*self._velocity)
         return speed if speed > 3 * sqrt(self._covariance[2]) else 0.0
 
@@ -101,21 +101,21 @@ class Track:
         (x, y), (vx, vy) = self._place, self._velocity
         return x + vx * path, y + vy * path
 
-    def add(self, frame: int, t: float, sighting: Sighting, radius: float) -> None:
-        """Take in a sighting."""
-        x, y = sighting.x, sighting.y
-        noise = sighting.sd_x * sighting.sd_y + (SIGHTING_SD * radius) ** 2
+    def add(self, frame: int, t: float, detection: Detection, radius: float) -> None:
+        """Take in a detection."""
+        x, y = detection.x, detection.y
+        noise = detection.sd_x * detection.sd_y + (DETECTION_SD * radius) ** 2
         if not self.times:
             self._place, self._covariance = (x, y), (noise, 0.0, (ANY_SPEED * radius) ** 2)
-            self.colour = np.array(sighting.colour, float)
+            self.colour = np.array(detection.colour, float)
         else:
             step = t - self.times[-1]
             self._predict(step, radius)
             self._update(x, y, noise, step, radius)
-            self.colour = coloured(self.colour, sighting)
+            self.colour = coloured(self.colour, detection)
         self.frames.append(frame)
         self.times.append(t)
-        self.sightings.append(sighting)
+        self.detections.append(detection)
 
     def _predict(self, step: float, radius: float) -> None:
         """Predict the state so many seconds ahead."""
@@ -129,7 +129,7 @@ class Track:
         )
 
     def _update(self, x: float, y: float, noise: float, step: float, radius: float) -> None:
-        """Update the state by a sighting at x, y with the variance `noise` per axis."""
+        """Update the state by a detection at x, y with the variance `noise` per axis."""
         (predicted_x, predicted_y), (vx, vy) = self._place, self._velocity
         p00, p01, p11 = self._covariance
         innovation_x, innovation_y = x - predicted_x, y - predicted_y
@@ -145,22 +145,22 @@ class Track:
 
 
 def follow(
-    frames: Iterable[tuple[int, float, Sequence[Sighting]]],
+    frames: Iterable[tuple[int, float, Sequence[Detection]]],
     radius: float,
     least_score: float = 0.0,
     least_open: float = 0.0,
     other: float = OTHER_STONE,
 ) -> list[Track]:
-    """Join the sightings of a clip to tracks.
+    """Join the detections of a clip to tracks.
 
     Parameters
     ----------
-    frames : iterable of (frame, t, sightings)
+    frames : iterable of (frame, t, detections)
         In order of time; read once.
     radius : float
         Of the discs, m.
     least_score : float
-        Evidence that the better part of a track's sightings must show.
+        Evidence that the better part of a track's detections must show.
     least_open : float
         The same for a track no longer than `BRIEF` of what nothing covers.
     other : float
@@ -169,24 +169,24 @@ def follow(
     Returns
     -------
     list of Track
-        Those with enough sightings to be a stone, in order of birth.
+        Those with enough detections to be a stone, in order of birth.
     """
     tracks: list[Track] = []
     closed: list[Track] = []
     count, begin, t, step = 0, inf, -inf, inf
-    for frame, now, sightings in frames:
+    for frame, now, detections in frames:
         step, t = min(step, now - t), now
         count, begin = count + 1, min(begin, t)
         lost = [i for i, track in enumerate(tracks) if _given_up(track, t, step)]
         for index in reversed(lost):
             closed.append(tracks.pop(index))
-        taken = _assign(tracks, t, sightings, radius, other)
-        for column, sighting in enumerate(sightings):
+        taken = _assign(tracks, t, detections, radius, other)
+        for column, detection in enumerate(detections):
             if column in taken:
-                taken[column].add(frame, t, sighting, radius)
+                taken[column].add(frame, t, detection, radius)
             else:
                 track = Track()
-                track.add(frame, t, sighting, radius)
+                track.add(frame, t, detection, radius)
                 tracks.append(track)
     births = min(BIRTHS, (count + 1) // 2)
     if t - begin < 2 * BRIEF:  # all tracks are brief
@@ -198,7 +198,7 @@ def follow(
     ]
     return sorted(
         (track for track in stones if not any(_beneath(track, o, radius) for o in stones)),
-        key=lambda track: (track.frames[0], track.sightings[0].x),
+        key=lambda track: (track.frames[0], track.detections[0].x),
     )
 
 
@@ -209,7 +209,7 @@ def _beneath(track: Track, other: Track, radius: float) -> bool:
     """
     if not other.times[0] < track.times[0] <= track.times[-1] < other.times[-1]:
         return False
-    here, there = (one.sightings.columns("x", "y") for one in (track, other))
+    here, there = (one.detections.columns("x", "y") for one in (track, other))
     away = [np.interp(track.times, other.times, there[i]) - here[i] for i in (0, 1)]
     return bool((np.hypot(*away) < radius).all())
 
@@ -220,7 +220,7 @@ def _convincing(track: Track, least_score: float, least_open: float) -> bool:
     What looks unchanged shows nothing more. What covers a stone now and then hides its evidence,
     but a disc of paint shows some of granite while a person stands beside it.
     """
-    score, visible, measured = track.sightings.columns("score", "visible", "measured")
+    score, visible, measured = track.detections.columns("score", "visible", "measured")
     if not measured.any():
         return False
     in_the_open = np.median(visible) > OPEN
@@ -240,14 +240,14 @@ def _given_up(track: Track, t: float, step: float) -> bool:
 def _assign(
     tracks: Sequence[Track],
     t: float,
-    sightings: Sequence[Sighting],
+    detections: Sequence[Detection],
     radius: float,
     other: float,
 ) -> dict[int, Track]:
-    """Sighting index to the track that it continues."""
-    if not tracks or not sightings:
+    """Return the track that each detection continues, by its index."""
+    if not tracks or not detections:
         return {}
-    seen = np.array([(s.x, s.y) for s in sightings])
+    seen = np.array([(s.x, s.y) for s in detections])
     last = np.array([track._place for track in tracks])
     since = np.array([track.times[-1] for track in tracks])
     ways = np.array([track._velocity if track.speed > 0 else (0.0, 0.0) for track in tracks])
@@ -264,10 +264,10 @@ def _assign(
     # A stone that has been hit a moment ago is still near where it was.
     distance = np.minimum(away / reach, near / reach + 0.1)
     unlike = colour_differences(
-        np.array([track.colour for track in tracks]), np.array([s.colour for s in sightings])
+        np.array([track.colour for track in tracks]), np.array([s.colour for s in detections])
     )
     # What is seen of one that somebody covers may be a jersey.
-    shown = np.minimum(np.array([s.visible for s in sightings]) / OPEN, 1.0)
+    shown = np.minimum(np.array([s.visible for s in detections]) / OPEN, 1.0)
     unlike = unlike * shown**2
     # Young tracks yield to old ones.
     youth = np.array([0.5 if len(track.frames) < BIRTHS else 0.0 for track in tracks])

@@ -21,9 +21,9 @@ from curlshot.vision.association.hits import MOTION_TOLD, struck
 from curlshot.vision.association.lead import DOUBTFUL, Lead
 from curlshot.vision.association.still import portraits, unchanged
 from curlshot.vision.detection.appearance import Appearance, colour_difference, other_stone
+from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.rays import Look
 from curlshot.vision.detection.seek import Bounds
-from curlshot.vision.detection.sighting import Sighting
 from curlshot.vision.detection.stones import NEAREST, Search, search_picture
 from curlshot.vision.film.clip import Frame
 from curlshot.vision.film.shelf import Shelf
@@ -34,7 +34,7 @@ Array = NDArray[np.float64]
 
 Place = tuple[float, float]
 
-Foreseen = tuple[Place, Sighting | None]
+Foreseen = tuple[Place, Detection | None]
 """Where a stone was expected some pictures before, and what was seen there, if one was."""
 
 STILL = 0.03
@@ -68,19 +68,19 @@ class StoneView:
 
     frame: Frame
     camera: Camera
-    sightings: list[Sighting] = field(default_factory=list)
+    detections: list[Detection] = field(default_factory=list)
     before: Camera | None = None
 
     @property
     def places(self) -> Array:
         """Of the stones, m, shape (n, 2)."""
-        return _places(self.sightings)
+        return _places(self.detections)
 
     def put_aside(self, shelf: Shelf) -> None:
         """Put aside how the caps of its stones look."""
-        for sighting in self.sightings:
-            if sighting.spectrum is not None:
-                sighting.spectrum.put_aside(shelf)
+        for detection in self.detections:
+            if detection.spectrum is not None:
+                detection.spectrum.put_aside(shelf)
 
     def look(self, places: Sequence[Place], drift: Sequence[Place] | None = None) -> Look:
         """Look at places on the ice in it; what is there drifts so far from picture to picture."""
@@ -160,24 +160,24 @@ class Follower:
         near, still = ON_COURSE * self.disc.radius, STILL * self.disc.radius
         expected = [lead.at(t) for lead in leads]
         found = self._measured(views, leads, expected, ahead, step)
-        going: list[tuple[Lead, Sighting | None]] = []
+        going: list[tuple[Lead, Detection | None]] = []
         lost: list[int] = []
         # The best first: of two leads to one stone, the other is lost.
         for index in sorted(range(len(leads)), key=lambda i: -_score(found[i])):
-            lead, sighting = leads[index], found[index]
-            if _away(view.sightings, *expected[index]) < 0.5 * self.disc.radius:
+            lead, detection = leads[index], found[index]
+            if _away(view.detections, *expected[index]) < 0.5 * self.disc.radius:
                 continue  # it leads to a stone that is followed already
-            if sighting is None or _away(view.sightings, sighting.x, sighting.y) < apart:
+            if detection is None or _away(view.detections, detection.x, detection.y) < apart:
                 lost.append(index)
                 continue
-            view.sightings.append(sighting)
-            going.append((lead.on(sighting, t, near, still), sighting))
+            view.detections.append(detection)
+            going.append((lead.on(detection, t, near, still), detection))
         hit = _struck(leads, t, self.disc.radius) if lost else {}
         for index in lost:
             lead = leads[index]
             nearby = None if lead.missed else self._near(view, lead)
             if nearby is not None:
-                view.sightings.append(nearby)
+                view.detections.append(nearby)
                 going.append((lead.on(nearby, t, near, still), nearby))
                 continue
             since = abs(t - lead.t)
@@ -198,7 +198,7 @@ class Follower:
         }
         pictures = [(view.frame.picture, view.camera) for view in views]
         alike = [
-            {i: sighting for i, sighting in zip(known, seen, strict=True) if sighting}
+            {i: detection for i, detection in zip(known, seen, strict=True) if detection}
             for seen in unchanged(pictures, list(known.values()), self.disc)
         ]
         # Now and then even what looks unchanged is measured, and oftener what may be hit.
@@ -213,7 +213,7 @@ class Follower:
         for view, seen in zip(views, alike, strict=True):
             expected = [lead.at(view.frame.t) for lead in leads]
             others = [i for i in range(len(leads)) if i not in seen]
-            out.append([(expected[i], sighting) for i, sighting in seen.items()])
+            out.append([(expected[i], detection) for i, detection in seen.items()])
             looks.append(_look_at(view, leads, expected, others, step))
         if any(len(look.places) for look in looks):
             measured = iter(look_on_course(looks, self.appearance, self.disc, self.search))
@@ -228,7 +228,7 @@ class Follower:
         expected: Sequence[Place],
         ahead: Sequence[list[Foreseen]],
         step: float,
-    ) -> list[Sighting | None]:
+    ) -> list[Detection | None]:
         """Look at each stone where it is expected, unless it was measured ahead.
 
         One that has taken another course, as after a hit, is measured ahead anew.
@@ -251,33 +251,33 @@ class Follower:
                 found[index] = _nearest(anew[0], expected[index])[1]
         astray = [
             index
-            for index, (lead, sighting) in enumerate(zip(leads, found, strict=True))
-            if not lead.missed and _score(sighting) < DOUBTFUL * lead.score
+            for index, (lead, detection) in enumerate(zip(leads, found, strict=True))
+            if not lead.missed and _score(detection) < DOUBTFUL * lead.score
         ]
         if astray:
             look = _look_at(view, leads, expected, astray, step)
             seen = look_beside(
                 look, [found[i] for i in astray], self.appearance, self.disc, self.search
             )
-            for index, sighting in zip(astray, seen, strict=True):
-                if _score(found[index]) < DOUBTFUL * _score(sighting):
-                    found[index] = sighting
+            for index, detection in zip(astray, seen, strict=True):
+                if _score(found[index]) < DOUBTFUL * _score(detection):
+                    found[index] = detection
         return found
 
     def _portrayed(
         self,
         view: StoneView,
-        going: Sequence[tuple[Lead, Sighting | None]],
+        going: Sequence[tuple[Lead, Detection | None]],
         after: Sequence[Foreseen],
     ) -> list[Lead]:
         """Take the portraits of the stones at rest that were measured, and will not be next."""
         leads = [lead for lead, _ in going]
         measured = [seen for _, seen in after if seen is not None and seen.measured]
         due = [
-            (index, sighting)
-            for index, (lead, sighting) in enumerate(going)
-            if lead.rests and sighting is not None and sighting.measured
-            if _away(measured, sighting.x, sighting.y) > STILL * self.disc.radius
+            (index, detection)
+            for index, (lead, detection) in enumerate(going)
+            if lead.rests and detection is not None and detection.measured
+            if _away(measured, detection.x, detection.y) > STILL * self.disc.radius
         ]
         taken = portraits(
             view.frame.picture, view.camera, view.frame.t, [s for _, s in due], self.disc
@@ -286,7 +286,7 @@ class Follower:
             leads[index] = replace(leads[index], portrait=portrait)
         return leads
 
-    def _near(self, view: StoneView, lead: Lead) -> Sighting | None:
+    def _near(self, view: StoneView, lead: Lead) -> Detection | None:
         """Seek a stone that is not where it is expected about there and about its last place.
 
         What is there in another colour is no such stone, but another one, or a jersey's sleeve.
@@ -305,7 +305,7 @@ class Follower:
             return None
         return found[int(np.argmin(away))]
 
-    def sought(self, view: StoneView, bounds: Bounds | None = None) -> list[Sighting]:
+    def sought(self, view: StoneView, bounds: Bounds | None = None) -> list[Detection]:
         """Stones on a part of the ice, or on all of it, that were not seen in the view so far."""
         found = search_picture(
             view.frame.picture,
@@ -316,7 +316,7 @@ class Follower:
             bounds,
             view.places,
         )
-        return [sighting.without_samples() for sighting in found.stones]
+        return [detection.without_samples() for detection in found.stones]
 
 
 def _look_at(
@@ -349,23 +349,23 @@ def _time_between(views: Sequence[StoneView], leads: Sequence[Lead]) -> float:
     return float(np.min(gaps)) if len(gaps) else 0.0
 
 
-def _away(sightings: Sequence[Sighting], x: float, y: float) -> float:
+def _away(detections: Sequence[Detection], x: float, y: float) -> float:
     """Distance from a place to the nearest of the stones seen, m."""
-    return min((hypot(s.x - x, s.y - y) for s in sightings), default=inf)
+    return min((hypot(s.x - x, s.y - y) for s in detections), default=inf)
 
 
-def _nearest(ahead: Sequence[Foreseen], place: Place) -> tuple[float, Sighting | None]:
+def _nearest(ahead: Sequence[Foreseen], place: Place) -> tuple[float, Detection | None]:
     """Give what was measured ahead nearest to a place, and how far from it, m."""
     away = [(dist(place, start), seen) for start, seen in ahead]
     return min(away, key=lambda found: found[0], default=(inf, None))
 
 
-def _score(sighting: Sighting | None) -> float:
-    return -1.0 if sighting is None else sighting.score
+def _score(detection: Detection | None) -> float:
+    return -1.0 if detection is None else detection.score
 
 
-def _places(sightings: Sequence[Sighting]) -> Array:
-    return _array([(s.x, s.y) for s in sightings])
+def _places(detections: Sequence[Detection]) -> Array:
+    return _array([(s.x, s.y) for s in detections])
 
 
 def _array(places: Sequence[Place]) -> Array:

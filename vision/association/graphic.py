@@ -1,7 +1,7 @@
 """Graphics laid over the picture, as the icons of a score: no stones, though they look like some.
 
 What rests or glides on the ice and what stays in the picture are told apart by which of the two the
-sightings bear out, once the ice moves in the picture.
+detections bear out, once the ice moves in the picture.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from curlshot.vision.optics.cameras import Cameras
 Array = NDArray[np.float64]
 
 LEAST_SD = 0.15
-"""Standard error that a sighting has at least, px: what films do to a picture that stays, and what
+"""Standard error that a detection has at least, px: what films do to a picture that stays, and what
 cameras are off by from picture to picture. Icons and stones at rest stray by .1 to .3."""
 
 ASTRAY = 9.0
-"""What a sighting counts at most: one so far off, in squares of its error, is of something else."""
+"""Most that a detection counts, in squares of its error: one farther off is of something else."""
 
 TOLD = 1.0
-"""By how much a sighting must bear out the picture rather than the ice on average, in such squares.
+"""By how much a detection must bear out picture rather than ice on average, in such squares.
 Ten icons of eight drawn clips have 2.6 to 8.8 of 9, stones of those and 13 more .15 at most."""
 
 IN_THE_OPEN = 1.6
@@ -57,7 +57,7 @@ def is_graphic(track: Track, cameras: Sequence[Camera], disc: Stone) -> bool:
     disc : Stone
         Size of the discs.
     """
-    x, y, sd_x, sd_y, score = track.sightings.columns("x", "y", "sd_x", "sd_y", "score")
+    x, y, sd_x, sd_y, score = track.detections.columns("x", "y", "sd_x", "sd_y", "score")
     by_frame = {camera.frame: camera for camera in cameras}
     by = Cameras.of([by_frame[frame] for frame in track.frames], [1] * len(x))
     places = np.column_stack([x, y])

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 MOTION_TOLD = 3
-"""Sightings that tell how a stone moves, so that a hit nobody sees is expected."""
+"""Detections that tell how a stone moves, so that a hit nobody sees is expected."""
 
 RESTITUTION = 0.85
 """Of a hit that nobody saw."""

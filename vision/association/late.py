@@ -46,7 +46,7 @@ def seen_late(rest: Mapping[str, Track], cameras: Sequence[Camera], disc: Stone)
 
 def _in_view(camera: Camera, track: Track, disc: Stone) -> bool:
     """Whether a camera shows all of the place at which a track begins."""
-    x, y = track.sightings[0].x, track.sightings[0].y
+    x, y = track.detections[0].x, track.detections[0].y
     r = disc.radius
     rim = camera.project(
         np.array([(x - r, y), (x + r, y), (x, y - r), (x, y + r)]), disc.cap_height

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from curlshot.physics.simulator.approach import nearest
 from curlshot.vision.association.still import Portrait
-from curlshot.vision.detection.sighting import Sighting
+from curlshot.vision.detection.detection import Detection
 from curlshot.vision.film.shelf import Kept
 from curlshot.vision.spin.align import Complex
 from curlshot.vision.spin.facing import angle_between
@@ -20,17 +20,17 @@ from curlshot.vision.spin.handle import TURNING
 Array = NDArray[np.float64]
 
 STEADY = 5
-"""Sightings at one place that make a stone one at rest."""
+"""Detections at one place that make a stone one at rest."""
 
 DECELERATION = 0.1
 """Of a stone on ice, about, m/s²."""
 
 MEMORY = 8
-"""Sightings on one course that say together where a stone is and how fast: a course is not quite
+"""Detections on one course that say together where a stone is and how fast: a course is not quite
 straight, and a touch may change it by little."""
 
 SCORE_GAIN = 0.2
-"""Share of the last sighting in the evidence that is usual for a stone: one that goes astray bit by
+"""Share of the last detection in the evidence that is usual for a stone: one that drifts off bit by
 bit, along the edge of paint as light as its granite, still falls below that."""
 
 DOUBTFUL = 0.85
@@ -40,7 +40,7 @@ on paint of its cap's colour, one still shows 0.6 to 0.75 of its evidence where 
 by as much along paint as light as granite, 0.6 to 0.8."""
 
 COLOUR_GAIN = 0.1
-"""Weight of the last sighting, seen in whole, in the colour of a cap."""
+"""Weight of the last detection, seen in whole, in the colour of a cap."""
 
 AHEAD = 1.5
 """How far ahead it is looked whether a stone comes near a place, s: for a handful of blocks."""
@@ -49,11 +49,11 @@ TURNED = 0.06
 """A cap that has turned by more spins on the spot, rad."""
 
 
-def coloured(known: Array | None, sighting: Sighting) -> Array:
-    """Colour of a cap, L*a*b*, shape (3,), after a sighting: what covers much of it says little."""
+def coloured(known: Array | None, detection: Detection) -> Array:
+    """Return the colour of a cap, L*a*b*, shape (3,), after a detection."""
     if known is None:
-        return sighting.colour
-    return np.asarray(known + COLOUR_GAIN * sighting.visible * (sighting.colour - known))
+        return detection.colour
+    return np.asarray(known + COLOUR_GAIN * detection.visible * (detection.colour - known))
 
 
 @dataclass(frozen=True)
@@ -75,11 +75,11 @@ class Lead:
     facing : Kept of ndarray, optional
         How its cap looked when it came there (`curlshot.vision.spin.handle.cap_spectrum`).
     steady : int
-        For how many clear sightings it has neither left nor turned.
+        For how many clear detections it has neither left nor turned.
     portrait : Portrait, optional
         Its picture when it was last measured, if it rests.
     along : int
-        How many sightings on its course it is known by, up to `MEMORY`.
+        How many detections on its course it is known by, up to `MEMORY`.
     colour : ndarray, shape (3,), optional
         Running mean of its cap's colour, L*a*b*.
     """
@@ -97,12 +97,12 @@ class Lead:
     colour: Array | None = field(default=None, compare=False)
 
     @classmethod
-    def to(cls, sighting: Sighting, t: float) -> Lead:
-        """Lead to a stone of which nothing is known but one sighting."""
-        place = sighting.x, sighting.y
+    def to(cls, detection: Detection, t: float) -> Lead:
+        """Lead to a stone of which nothing is known but one detection."""
+        place = detection.x, detection.y
         return cls(
-            place, (0.0, 0.0), t, place, sighting.score,
-            facing=sighting.spectrum, colour=sighting.colour,
+            place, (0.0, 0.0), t, place, detection.score,
+            facing=detection.spectrum, colour=detection.colour,
         )  # fmt: skip
 
     def if_rested(self, others: Iterable[Lead]) -> Lead:
@@ -138,8 +138,8 @@ class Lead:
         step = min(max(t - self.t, -lasts), lasts)
         return 1 - step / lasts, step
 
-    def on(self, sighting: Sighting, t: float, near: float, still: float) -> Lead:
-        """Go on from a sighting: it updates the state.
+    def on(self, detection: Detection, t: float, near: float, still: float) -> Lead:
+        """Go on from a detection: it updates the state.
 
         Parameters
         ----------
@@ -148,16 +148,16 @@ class Lead:
         still : float
             How far from its anchor it may be and rest, m.
         """
-        x, y = sighting.x, sighting.y
+        x, y = detection.x, detection.y
         place, velocity, along = self._updated(x, y, t, near)
         left = hypot(x - self.anchor[0], y - self.anchor[1])
-        score = self.score + SCORE_GAIN * (sighting.score - self.score)
+        score = self.score + SCORE_GAIN * (detection.score - self.score)
         # What covers a stone by half draws it aside, or shows it turned.
-        clear = sighting.score >= DOUBTFUL * self.score
-        if clear and (left >= still or self._turned(sighting)):
+        clear = detection.score >= DOUBTFUL * self.score
+        if clear and (left >= still or self._turned(detection)):
             return Lead(
                 place, velocity, t, (x, y), score,
-                facing=sighting.spectrum, along=along, colour=coloured(self.colour, sighting),
+                facing=detection.spectrum, along=along, colour=coloured(self.colour, detection),
             )  # fmt: skip
         return Lead(
             place,
@@ -165,19 +165,19 @@ class Lead:
             t,
             self.anchor,
             score,
-            facing=sighting.spectrum if self.facing is None else self.facing,
+            facing=detection.spectrum if self.facing is None else self.facing,
             steady=self.steady + clear,
-            portrait=None if sighting.measured else self.portrait,
+            portrait=None if detection.measured else self.portrait,
             along=along,
-            colour=coloured(self.colour, sighting),
+            colour=coloured(self.colour, detection),
         )
 
     def _updated(
         self, x: float, y: float, t: float, near: float
     ) -> tuple[tuple[float, float], tuple[float, float], int]:
-        """Place, velocity and `along` after a sighting at x, y, m.
+        """Place, velocity and `along` after a detection at x, y, m.
 
-        As a straight line fitted to so many sightings would have them: the expanding-memory
+        As a straight line fitted to so many detections would have them: the expanding-memory
         alpha-beta (g-h) filter (Brookner, 1998, Tracking and Kalman filtering made easy). On
         another course, `near` or farther from the prediction, it begins anew.
         """
@@ -197,11 +197,11 @@ class Lead:
         (x, y), (vx, vy) = place.tolist(), velocity.tolist()
         return Lead((x, y), (vx, vy), t, (x, y), self.score, colour=self.colour)
 
-    def _turned(self, sighting: Sighting) -> bool:
+    def _turned(self, detection: Detection) -> bool:
         """Whether the cap faces elsewhere than when it came to its place, as far as is seen."""
-        if self.facing is None or sighting.spectrum is None:
+        if self.facing is None or detection.spectrum is None:
             return False
         angle, likeness = angle_between(
-            self.facing.get(), sighting.spectrum.get(), 0.0, TURNING.reach
+            self.facing.get(), detection.spectrum.get(), 0.0, TURNING.reach
         )
         return likeness > TURNING.least_likeness and abs(angle) > TURNED

@@ -23,7 +23,7 @@ def first_motion(track: Track, radius: float) -> float | None:
     A stone moves when it leaves its first place for good by more than its jitter and a
     share of its radius; the time is carried back to when it was still there.
     """
-    places = track.sightings.columns("x", "y").T
+    places = track.detections.columns("x", "y").T
     times = np.array(track.times)
     if len(times) < 3:
         return None
@@ -31,7 +31,7 @@ def first_motion(track: Track, radius: float) -> float | None:
     start = places[0]
     if float(np.hypot(*(places - start).T).max()) < least:
         return None
-    # Its first place is that of all its first sightings that are alike.
+    # Its first place is that of all its first detections that are alike.
     still = 1
     while still < len(times) and np.hypot(*(places[still] - np.median(places[:still], 0))) < least:
         still += 1
@@ -57,7 +57,7 @@ def first_motion(track: Track, radius: float) -> float | None:
 def _first_speed(track: Track) -> float:
     """Mean speed over the first few frames, m/s."""
     few = min(FEW, len(track.times) - 1)
-    first, last = track.sightings[0], track.sightings[few]
+    first, last = track.detections[0], track.detections[few]
     wait = track.times[few] - track.times[0]
     return float(np.hypot(last.x - first.x, last.y - first.y) / wait) if wait > 0 else 0.0
 
@@ -81,7 +81,7 @@ def named_by_motion(
     for number, track in enumerate(tracks):
         start = first_motion(track, radius)
         if start is None:
-            x, y = np.median(track.sightings.columns("x", "y"), axis=1)
+            x, y = np.median(track.detections.columns("x", "y"), axis=1)
             rest.append((float(np.hypot(x, y)), number))
         else:
             moved.append((start, -_first_speed(track), number))

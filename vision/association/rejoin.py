@@ -22,7 +22,7 @@ from curlshot.vision.association.assign import assign
 from curlshot.vision.association.follow import BIRTHS, PATIENCE, Track
 from curlshot.vision.association.lead import DECELERATION
 from curlshot.vision.detection.appearance import OTHER_STONE, colour_difference
-from curlshot.vision.detection.sighting import Sighting
+from curlshot.vision.detection.detection import Detection
 
 Array = NDArray[np.float64]
 
@@ -34,7 +34,7 @@ WINDOW = 0.2
 the stone went out of sight."""
 
 SLOW = 0.04
-"""Speed, m/s, that sightings of one at rest may show: 3 mm off, and more than that seldom. One that
+"""Speed, m/s, that detections of one at rest may show: 3 mm off, and seldom more. One that
 goes as slowly rests 8 mm on."""
 
 PLACE_SD, SPEED_SD, SLOWING_SD = 0.2, 0.15, 0.2
@@ -69,8 +69,8 @@ class _Motion:
     velocity: Array
 
     @classmethod
-    def of(cls, times: Array, seen: Sequence[Sighting]) -> _Motion:
-        """From sightings on a straight way, the one at the end first."""
+    def of(cls, times: Array, seen: Sequence[Detection]) -> _Motion:
+        """From detections on a straight way, the one at the end first."""
         end = float(times[0])
         places = np.array([(s.x, s.y) for s in seen])
         basis = np.stack([np.ones(len(times)), times - end], axis=1)
@@ -100,7 +100,7 @@ class _Motion:
 
 @dataclass(frozen=True)
 class _Stretch:
-    """A part of a track without a long gap: sightings from the one to before the other."""
+    """A part of a track without a long gap: detections from the one to before the other."""
 
     track: Track
     begin: int
@@ -117,12 +117,12 @@ class _Stretch:
     @cached_property
     def colour(self) -> Array:
         """Of its cap, L*a*b*."""
-        return _colour([self.track.sightings[k] for k in range(self.begin, self.end)])
+        return _colour([self.track.detections[k] for k in range(self.begin, self.end)])
 
     def _motion(self, order: Sequence[int]) -> _Motion:
         times = np.array([self.track.times[k] for k in order])
         count = max(int((np.abs(times - times[0]) <= WINDOW).sum()), BIRTHS)
-        return _Motion.of(times[:count], [self.track.sightings[k] for k in order[:count]])
+        return _Motion.of(times[:count], [self.track.detections[k] for k in order[:count]])
 
 
 def rejoined(tracks: Sequence[Track], radius: float, other: float = OTHER_STONE) -> list[Track]:
@@ -131,7 +131,7 @@ def rejoined(tracks: Sequence[Track], radius: float, other: float = OTHER_STONE)
     Parameters
     ----------
     tracks : sequence of Track
-        As they were followed, each of `BIRTHS` sightings or more.
+        As they were followed, each of `BIRTHS` detections or more.
     radius : float
         Of the discs, m.
     other : float
@@ -160,7 +160,7 @@ def rejoined(tracks: Sequence[Track], radius: float, other: float = OTHER_STONE)
         while chain[-1] in goes_on:
             chain.append(goes_on[chain[-1]])
         out.append(_joined([stretches[k] for k in chain]))
-    return sorted(out, key=lambda track: (track.frames[0], track.sightings[0].x))
+    return sorted(out, key=lambda track: (track.frames[0], track.detections[0].x))
 
 
 def _stretches(track: Track) -> list[_Stretch]:
@@ -195,12 +195,12 @@ def _joined(stretches: Sequence[_Stretch]) -> Track:
     for part in stretches:
         out.frames += part.track.frames[part.begin : part.end]
         out.times += part.track.times[part.begin : part.end]
-        out.sightings.extend(part.track.sightings[part.begin : part.end])
-    out.colour = _colour(out.sightings)
+        out.detections.extend(part.track.detections[part.begin : part.end])
+    out.colour = _colour(out.detections)
     return out
 
 
-def _colour(seen: Iterable[Sighting]) -> Array:
+def _colour(seen: Iterable[Detection]) -> Array:
     """Of a cap, L*a*b*: of one that goes out of sight a jersey may be seen in the end."""
     colours, visible = zip(*((s.colour, s.visible) for s in seen), strict=True)
     return np.asarray(np.average(colours, axis=0, weights=np.square(visible)))

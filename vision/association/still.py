@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from curlshot.data.sheet import Stone
-from curlshot.vision.detection.sighting import Sighting
+from curlshot.vision.detection.detection import Detection
 from curlshot.vision.film.picture import Picture, lightness_at
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.cameras import Cameras
@@ -50,7 +50,7 @@ class Portrait:
 
     Attributes
     ----------
-    sighting : Sighting
+    detection : Detection
         As measured.
     t : float
         When, s.
@@ -62,7 +62,7 @@ class Portrait:
         Least-squares solution by it.
     """
 
-    sighting: Sighting
+    detection: Detection
     t: float
     lightness: Array
     design: Array
@@ -101,7 +101,7 @@ def _lightness(picture: Picture, pixels: Array) -> Array:
 
 
 def portraits(
-    picture: Picture, camera: Camera, t: float, seen: Sequence[Sighting], disc: Stone
+    picture: Picture, camera: Camera, t: float, seen: Sequence[Detection], disc: Stone
 ) -> list[Portrait | None]:
     """Take the pictures of stones that were measured in a picture.
 
@@ -109,7 +109,7 @@ def portraits(
     ----------
     picture, camera, t : Picture, Camera, float
         The picture, its camera and its time, s.
-    seen : sequence of Sighting
+    seen : sequence of Detection
         The stones.
     disc : Stone
         Their size.
@@ -142,18 +142,18 @@ def portraits(
 
 def unchanged(
     views: Sequence[tuple[Picture, Camera]], known: Sequence[Portrait], disc: Stone
-) -> list[list[Sighting | None]]:
+) -> list[list[Detection | None]]:
     """Look whether stones look in pictures as they did in their portraits.
 
     Returns
     -------
-    list of list of Sighting or None
-        For each picture and portrait the sighting with the place by this picture, without a
+    list of list of Detection or None
+        For each picture and portrait the detection with the place by this picture, without a
         picture of the handle; None where something has changed, or is in the way.
     """
     if not known:
         return [[] for _ in views]
-    places = np.array([(p.sighting.x, p.sighting.y) for p in known])
+    places = np.array([(p.detection.x, p.detection.y) for p in known])
     by = Cameras.of([camera for _, camera in views], [len(known)] * len(views))
     pixels, middle, scale = (
         each.reshape(len(views), len(known), *each.shape[1:])
@@ -173,7 +173,7 @@ def unchanged(
     columns = (still.tolist(), moved.tolist(), (middle + shift).tolist())
     return [
         [
-            p.sighting._replace(x=x, y=y, pixel=(u, v), spectrum=None, measured=False)
+            p.detection._replace(x=x, y=y, pixel=(u, v), spectrum=None, measured=False)
             if ok
             else None
             for p, ok, (x, y), (u, v) in zip(known, *row, strict=True)

@@ -1,4 +1,4 @@
-"""Sightings that are not of the stone they were taken for, but of what covers it.
+"""Detections that are not of the stone they were taken for, but of what covers it.
 
 A shoulder or a shoe in the colour of the cap that comes over a stone takes its track along. It
 shows little of a stone, and goes where no stone goes that none has hit.
@@ -22,14 +22,14 @@ FAINT = 0.5
 third; stones half covered, or on paint of their caps' colour, half and more."""
 
 WINDOW = 0.4
-"""Time for which clear sightings tell the course of a stone, s, if it is straight."""
+"""Time for which clear detections tell the course of a stone, s, if it is straight."""
 
 STRAIGHT = 0.03
-"""How far off a straight course sightings may be, r.m.s. per axis, radii: a few millimetres."""
+"""How far off a straight course detections may be, r.m.s. per axis, radii: a few millimetres."""
 
 ASTRAY, GROWTH = 0.25, 0.7
-"""How far off its course a sighting must be, in radii, and by how much more per second from the
-clear sightings that tell this."""
+"""How far off its course a detection must be, in radii, and by how much more per second from the
+clear detections that tell this."""
 
 TINY = 1e-30
 """In place of no speed at all, m²/s²."""
@@ -52,7 +52,7 @@ def without_strays(tracks: Sequence[Track], radius: float) -> list[Track]:
     list of Track
         In their order.
     """
-    places = [track.sightings.columns("x", "y").T for track in tracks]
+    places = [track.detections.columns("x", "y").T for track in tracks]
     out = []
     for rank, track in enumerate(tracks):
         others = [(np.array(other.times), places[k]) for k, other in enumerate(tracks) if k != rank]
@@ -64,9 +64,9 @@ def without_strays(tracks: Sequence[Track], radius: float) -> list[Track]:
 def _strays(
     track: Track, places: Array, others: Sequence[tuple[Array, Array]], radius: float
 ) -> Flags:
-    """Tell which sightings of a track are of something else."""
+    """Tell which detections of a track are of something else."""
     times = np.array(track.times)
-    score = track.sightings.columns("score")[0]
+    score = track.detections.columns("score")[0]
     faint = score < FAINT * np.percentile(score, 75)
     stray = np.zeros(len(times), bool)
     edges = np.flatnonzero(np.diff(np.r_[False, faint, False])).reshape(-1, 2)
@@ -87,7 +87,7 @@ def _strays(
 def _off_course(
     times: Array, places: Array, clear: NDArray[np.intp], run: slice, radius: float
 ) -> Flags:
-    """Tell what of a run is off the course of clear sightings, of which the nearest comes first."""
+    """Return what of a run is off the course of clear detections, the nearest of them first."""
     start, wait = times[clear[0]], times[run] - times[clear[0]]
     near = clear[np.abs(times[clear] - start) <= WINDOW]
     basis = np.stack([np.ones(len(near)), times[near] - start], axis=1)
@@ -115,11 +115,11 @@ def _touched(
 
 
 def _part(track: Track, ranks: NDArray[np.intp]) -> Track:
-    """Take some of the sightings of a track."""
+    """Take some of the detections of a track."""
     some = ranks.tolist()
     return Track(
         [track.frames[k] for k in some],
         [track.times[k] for k in some],
-        Rows(track.sightings[k] for k in some),
+        Rows(track.detections[k] for k in some),
         track.colour,
     )

@@ -28,10 +28,10 @@ from curlshot.vision.detection.appearance import (
     learn,
 )
 from curlshot.vision.detection.balance import Balance, brightening, tones
+from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.patch import is_plain
 from curlshot.vision.detection.placing import placed_by
 from curlshot.vision.detection.rays import Look
-from curlshot.vision.detection.sighting import Sighting
 from curlshot.vision.detection.stones import FOLLOWING, SEARCH, Search
 from curlshot.vision.detection.strangers import strangers
 from curlshot.vision.film.clip import Frame, Image
@@ -58,11 +58,11 @@ LESSON, DOUBTFUL_LESSON = 8, 2
 those show a stone, but none that convinces."""
 
 MOST_LESSONS = 200
-"""After so many sightings that taught, none of another colour is learned from."""
+"""After so many detections that taught, none of another colour is learned from."""
 
 
 ROOM = 1000
-"""Pictures of caps, 7 kB each, and pictures' sightings, 2 kB, that need not be put aside."""
+"""Pictures of caps, 7 kB each, and pictures' detections, 2 kB, that need not be put aside."""
 
 
 def pictures_kept(size: tuple[int, int]) -> int:
@@ -85,7 +85,7 @@ class Watch:
     def __init__(self, disc: Stone = STONE, search: Search = FOLLOWING):
         self.appearance: Appearance | None = None
         self.disc, self._search = disc, search
-        self._lessons: list[Sighting] = []
+        self._lessons: list[Detection] = []
         self._waiting: list[StoneView] = []
         self._recent: deque[StoneView] = deque()
         self._shelf = Shelf(ROOM)
@@ -96,7 +96,7 @@ class Watch:
         self._leads: list[Lead] = []
         self._since = self._most = MEMORY
         self._searched_first = False
-        self._seen: dict[int, Kept[Sequence[Sighting]]] = {}
+        self._seen: dict[int, Kept[Sequence[Detection]]] = {}
 
     def look(self, frame: Frame, camera: Camera) -> None:
         """Take in a frame; it waits for some more, the first ones until the stones are learned."""
@@ -115,7 +115,7 @@ class Watch:
         # The next search goes back no farther: no more pictures than that are held at all.
         while self._recent and len(self._recent) + len(self._waiting) > self._most:
             self._put_aside(self._recent.popleft())
-        self._seen[frame.index] = Kept(view.sightings)
+        self._seen[frame.index] = Kept(view.detections)
         if len(self._waiting) >= (BLOCK if self._knows else self._most):
             self._catch_up()
 
@@ -124,14 +124,14 @@ class Watch:
         """Whether a frame has been looked at."""
         return bool(self._seen)
 
-    def finish(self, cameras: Sequence[Camera]) -> Iterator[tuple[int, float, Sequence[Sighting]]]:
-        """Give the number, the time and the sightings of each frame, once.
+    def finish(self, cameras: Sequence[Camera]) -> Iterator[tuple[int, float, Sequence[Detection]]]:
+        """Give the number, the time and the detections of each frame, once.
 
         Parameters
         ----------
         cameras : sequence of Camera
             As they are known by now, and at the times at which the frames were taken: they place
-            the stones, and tell the errors that their sightings share; frames without one are left
+            the stones, and tell the errors that their detections share; frames without one are left
             out.
         """
         self._catch_up()
@@ -140,7 +140,7 @@ class Watch:
         self._recent.clear()  # no picture is looked at any more: they take a quarter of all memory
         return self._placed([camera for camera in cameras if camera.frame in self._seen])
 
-    def _placed(self, known: Sequence[Camera]) -> Iterator[tuple[int, float, Sequence[Sighting]]]:
+    def _placed(self, known: Sequence[Camera]) -> Iterator[tuple[int, float, Sequence[Detection]]]:
         for begin in range(0, len(known), AT_ONCE):
             some = known[begin : begin + AT_ONCE]
             seen = [self._seen.pop(camera.frame).get() for camera in some]
@@ -207,7 +207,7 @@ class Watch:
 
     def _of_any_colour(
         self, views: Iterable[StoneView], radius_px: float = SEARCH.radius_px
-    ) -> list[Sighting]:
+    ) -> list[Detection]:
         """Stones of any colour that were not seen in the views so far.
 
         A dull cap on vivid paint answers too faintly on a map much coarser than that of `SEARCH`.
@@ -234,7 +234,7 @@ class Watch:
     def _put_aside(self, view: StoneView) -> None:
         """Keep of a view that is done what takes little memory."""
         view.put_aside(self._shelf)
-        rows: Kept[Sequence[Sighting]] = Kept(Rows(view.sightings))
+        rows: Kept[Sequence[Detection]] = Kept(Rows(view.detections))
         rows.put_aside(self._shelf)
         self._seen[view.frame.index] = rows
 
@@ -252,7 +252,7 @@ class Watch:
         fresh = self._find(view)
         if self._look_for_colours(view):
             fresh += self._find(view)
-        leads = [Lead.to(sighting, view.frame.t) for sighting in fresh]
+        leads = [Lead.to(detection, view.frame.t) for detection in fresh]
         if self._knows:
             before = self._follower.follow([*self._recent][-2::-1], leads)
             leads = [lead.if_rested(before) for lead in leads]
@@ -263,10 +263,10 @@ class Watch:
     def _search_first(self) -> None:
         """Search the first picture too: what lies there may be hidden in the next one searched."""
         first, *others = self._recent
-        leads = [Lead.to(sighting, first.frame.t) for sighting in self._find(first)]
+        leads = [Lead.to(detection, first.frame.t) for detection in self._find(first)]
         self._leads += self._follower.follow(others, leads)
 
-    def _find(self, view: StoneView) -> list[Sighting]:
+    def _find(self, view: StoneView) -> list[Detection]:
         """Add to a view the stones of known colours that were not seen in it so far.
 
         What lies there before any is known is sought on a finer map: it answers more clearly there.
@@ -276,14 +276,14 @@ class Watch:
         radius_px = SEARCH.radius_px if finer else self._search.radius_px
         search = replace(self._search, radius_px=radius_px)
         fresh = replace(self._follower, search=search).sought(view)
-        view.sightings.extend(fresh)
+        view.detections.extend(fresh)
         return fresh
 
     def _look_for_colours(self, view: StoneView) -> bool:
         """See whether there are stones of a colour that is not known yet, and learn it."""
         if self.appearance is None or len(self._lessons) >= MOST_LESSONS:
             return False
-        shown = {self.appearance.nearest(stone.colour)[0] for stone in view.sightings}
+        shown = {self.appearance.nearest(stone.colour)[0] for stone in view.detections}
         if len(shown) == MOST_COLOURS:
             return False  # one more would take the place of one that is on the ice
         new = any(

@@ -327,8 +327,8 @@ def follow_house(
     if track is None:
         raise SceneError(
             f"{clip.files[0]}: no house in view (it is known by two of its circles or more);"
-            " point at it with --house, or for another scene with a still camera use"
-            " --stick X1,Y1,X2,Y2,METRES"
+            " point at it with `house`, or for another scene with a still camera use"
+            " `stick`"
         )
     return track
 

@@ -8,7 +8,7 @@ says what is cap and what granite (`appearance` has the colours learned from the
 those of one stone), `rims` finds edges on the rays, `circles` fits circles to them, `edges` puts
 together what sets them aside, and `evidence` weighs whether it is a stone. `stones` does all that
 for one picture, says why a place was refused, and has `placing` take the cap's height out. The
-result is a `sighting.Sighting`.
+result is a `detection.Detection`.
 
 Of no stone anything is known at first: `strangers` finds them by their shape, `shape` how large
 their caps are, `relief` whether they have handles. `balance` makes pictures of one light, `hue`

@@ -1,4 +1,4 @@
-"""What stones look like in a clip: the colours of caps and granite, learned from sightings."""
+"""What stones look like in a clip: the colours of caps and granite, learned from detections."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from curlshot.vision.detection.circles import WALL
 from curlshot.vision.detection.contrast import worth_of
+from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.relief import BARE, own_contrast
-from curlshot.vision.detection.sighting import Sighting
 from curlshot.vision.film.clip import Image
 from curlshot.vision.film.lab import bgr_of, chroma, lab_of
 
@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
 
 CONVINCING = 1.4
-"""Evidence from which a sighting teaches what stones look like."""
+"""Evidence from which a detection teaches what stones look like."""
 
 MOST_COLOURS = 2
 """Cap colours of a clip: two teams play."""
@@ -195,35 +195,35 @@ def any_stone(white: int = 210) -> Appearance:
     return Appearance((cap - granite).astype(np.float32))
 
 
-def convincing(sightings: Iterable[Sighting]) -> list[Sighting]:
+def convincing(detections: Iterable[Detection]) -> list[Detection]:
     """Those from which may be learned what stones look like."""
-    return [sighting for sighting in sightings if sighting.score > CONVINCING]
+    return [detection for detection in detections if detection.score > CONVINCING]
 
 
-def by_colour(sightings: Iterable[Sighting]) -> list[list[Sighting]]:
-    """Group sightings by the colour of their caps, the largest group first.
+def by_colour(detections: Iterable[Detection]) -> list[list[Detection]]:
+    """Group detections by the colour of their caps, the largest group first.
 
     All stones of a clip are of one size and one granite: what is not like the most convincing
-    ones is left out. A sighting without a handle, as of paint, counts less.
+    ones is left out. A detection without a handle, as of paint, counts less.
     """
-    groups: list[list[Sighting]] = []
-    for sighting in sorted(sightings, key=lambda item: -item.score):
+    groups: list[list[Detection]] = []
+    for detection in sorted(detections, key=lambda item: -item.score):
         for group in groups:
-            if colour_difference(group[0].colour, sighting.colour) < UNLIKE:
-                group.append(sighting)
+            if colour_difference(group[0].colour, detection.colour) < UNLIKE:
+                group.append(detection)
                 break
         else:
-            groups.append([sighting])
+            groups.append([detection])
     return _of_one_set(sorted(groups, key=lambda group: sum(map(_handled, group)), reverse=True))
 
 
-def _handled(sighting: Sighting) -> float:
-    """How much of a handle a sighting shows, 0 to 1; 1 where it is not told."""
-    shown = own_contrast(sighting)
+def _handled(detection: Detection) -> float:
+    """How much of a handle a detection shows, 0 to 1; 1 where it is not told."""
+    shown = own_contrast(detection)
     return 1.0 if isnan(shown) else min(shown / BARE, 1.0)
 
 
-def _of_one_set(groups: list[list[Sighting]]) -> list[list[Sighting]]:
+def _of_one_set(groups: list[list[Detection]]) -> list[list[Detection]]:
     """Leave out groups whose rim or granite is not that of the group with the most evidence."""
     if len(groups) < 2:
         return groups
@@ -237,17 +237,17 @@ def _of_one_set(groups: list[list[Sighting]]) -> list[list[Sighting]]:
     return [group for group, out in zip(groups, other, strict=True) if not out]
 
 
-def learn(sightings: Sequence[Sighting]) -> Appearance | None:
-    """Learn the cap colours and the granite of a clip from sightings in many frames.
+def learn(detections: Sequence[Detection]) -> Appearance | None:
+    """Learn the cap colours and the granite of a clip from detections in many frames.
 
     Caps are grouped by their colour; groups that are rare beside the others are left out.
 
     Returns
     -------
     Appearance or None
-        None where there are no sightings.
+        None where there are no detections.
     """
-    groups = by_colour(sightings)
+    groups = by_colour(detections)
     groups = [group for group in groups[:MOST_COLOURS] if len(group) >= 0.08 * len(groups[0])]
     if not groups:
         return None

@@ -10,11 +10,11 @@ import numpy as np
 from curlshot.data.sheet import STONE, Stone
 from curlshot.vision.detection.appearance import MOST_COLOURS, UNLIKE, Appearance, convincing, learn
 from curlshot.vision.detection.balance import brightening, tones
+from curlshot.vision.detection.detection import Detection, Refusal
 from curlshot.vision.detection.measure import measure_discs
 from curlshot.vision.detection.patch import is_plain
 from curlshot.vision.detection.rays import Look
 from curlshot.vision.detection.relief import without_handle
-from curlshot.vision.detection.sighting import Refusal, Sighting
 from curlshot.vision.detection.stones import NEAREST, SEARCH, Findings, search_picture
 from curlshot.vision.detection.strangers import by_shape, strangers, weighed
 from curlshot.vision.film.clip import Image
@@ -107,7 +107,7 @@ def _with_strangers(
     enough by both measures together: on paint of its own colour each misses much of it.
     """
 
-    def apart(place: Sighting | Refusal, stones: Sequence[Sighting]) -> bool:
+    def apart(place: Detection | Refusal, stones: Sequence[Detection]) -> bool:
         least = NEAREST * disc.radius
         return all(hypot(place.x - s.x, place.y - s.y) > least for s in stones)
 

@@ -1,4 +1,4 @@
-"""From measures to sightings: where a camera places them, and what errors they share."""
+"""From measures to detections: where a camera places them, and what errors they share."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from curlshot.data.sheet import STONE, Stone
 from curlshot.vision.detection.appearance import GREY
+from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.measure import Measures
 from curlshot.vision.detection.patch import handle_radii
 from curlshot.vision.detection.rays import Look
-from curlshot.vision.detection.sighting import Sighting
 from curlshot.vision.film.lab import chroma
 from curlshot.vision.film.shelf import Kept
 from curlshot.vision.optics.camera import Camera
@@ -55,10 +55,10 @@ USUAL_RMS_PX = 0.3
 """What that residual is taken for where it is not known, px."""
 
 
-def sightings(
+def detections(
     seen: Measures, looks: Sequence[Look], chosen: NDArray[np.intp], disc: Stone
-) -> list[Sighting]:
-    """Give sightings of places that were measured; what they share is not told yet.
+) -> list[Detection]:
+    """Give detections of places that were measured; what they share is not told yet.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def sightings(
     )  # fmt: skip
     rows = zip(seen.colour[chosen], spectra, *(column.tolist() for column in columns), strict=True)
     return [
-        Sighting(
+        Detection(
             x, y, sd_x, sd_y, (nan, nan), colour, visible, score, tuple(outline), wall,
             tuple(bends), (u, v), nan, (light_x, light_y),
             Kept(spectrum.copy()) if told else None, swept=swept,
@@ -93,32 +93,32 @@ def sightings(
 
 
 def placed_by(
-    cameras: Sequence[Camera], seen: Sequence[Sequence[Sighting]], disc: Stone
-) -> list[list[Sighting]]:
-    """Give sightings the places that cameras of their pictures give them, with what they share.
+    cameras: Sequence[Camera], seen: Sequence[Sequence[Detection]], disc: Stone
+) -> list[list[Detection]]:
+    """Give detections the places that cameras of their pictures give them, with what they share.
 
     Parameters
     ----------
     cameras : sequence of Camera
         Of pictures of one size.
-    seen : sequence of sequence of Sighting
+    seen : sequence of sequence of Detection
         What was seen in the picture of each.
     disc : Stone
         Size of the discs, their caps as large as they show.
     """
     each = [[*one] for one in seen]
-    flat = [sighting for one in each for sighting in one]
+    flat = [detection for one in each for detection in one]
     if not flat:
         return each
     by = Cameras.of(cameras, [len(one) for one in each])
-    places = by.ice(np.array([sighting.pixel for sighting in flat]), disc.cap_height)
+    places = by.ice(np.array([detection.pixel for detection in flat]), disc.cap_height)
     size = 1 / by.scale_at(places)
-    grey = chroma(np.array([sighting.colour for sighting in flat])) < GREY
+    grey = chroma(np.array([detection.colour for detection in flat])) < GREY
     shared = _shared_errors(by, places, size, disc, grey)
     told = zip(flat, places.tolist(), shared.tolist(), size.tolist(), strict=True)
     placed = iter(
-        sighting._replace(x=x, y=y, sd_place=(sd_x, sd_y), pixel_size=pixel)
-        for sighting, (x, y), (sd_x, sd_y), pixel in told
+        detection._replace(x=x, y=y, sd_place=(sd_x, sd_y), pixel_size=pixel)
+        for detection, (x, y), (sd_x, sd_y), pixel in told
     )
     return [[next(placed) for _ in one] for one in each]
 

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from curlshot.data.sheet import STONE
+from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.patch import handle_radii
-from curlshot.vision.detection.sighting import Sighting
 from curlshot.vision.spin.align import ORDERS, ring_weights
 
 Complex = NDArray[np.complex64]
@@ -71,7 +71,7 @@ def contrast_turned(here: Complex, there: Complex) -> float:
     return sqrt(2 * float(np.abs(_shared(here, there)).sum()) / _WEIGHT)
 
 
-def without_handle(seen: Sequence[Sighting]) -> Flags:
+def without_handle(seen: Sequence[Detection]) -> Flags:
     """Tell which of several things have no handle, by one picture of each, shape (n,).
 
     None has where no handle is seen at all: that is how stones here look.
@@ -80,8 +80,8 @@ def without_handle(seen: Sequence[Sighting]) -> Flags:
     return np.asarray((shown < BARE_ALONE) & (shown >= BARE).any())
 
 
-def own_contrast(seen: Sighting) -> float:
-    """Contrast of the picture of a sighting with itself; NaN where its cap is not seen well."""
+def own_contrast(seen: Detection) -> float:
+    """Contrast of the picture of a detection with itself; NaN where its cap is not seen well."""
     if seen.spectrum is None:
         return nan
     spectrum = seen.spectrum.get()

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from curlshot.vision.detection.sighting import Sighting
+from curlshot.vision.detection.detection import Detection
 
 Array = NDArray[np.float64]
 
@@ -44,13 +44,13 @@ USUAL, USUAL_STONES = 0.0005, 1 / 3
 a tenth of it, others bent by twice as much, so that it says little once stones are seen."""
 
 
-def edge_errors(stones: Sequence[Sequence[Sighting]], radius: float) -> Array:
+def edge_errors(stones: Sequence[Sequence[Detection]], radius: float) -> Array:
     """Give the standard errors, x and y, of places by the edges of cap and granite, m.
 
     Parameters
     ----------
-    stones : sequence of sequences of Sighting
-        The sightings of each stone; all stones of a clip are made and lit alike, and so bent.
+    stones : sequence of sequences of Detection
+        The detections of each stone; all stones of a clip are made and lit alike, and so bent.
     radius : float
         Of the caps, or of discs without one, m.
 

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from curlshot.data.sheet import Stone
 from curlshot.vision.detection.circles import medians
+from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.rays import Rays, directions
-from curlshot.vision.detection.sighting import Sighting
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
@@ -81,8 +81,8 @@ def swept_share(drift: Array) -> Array:
     return np.asarray(np.clip((np.hypot(*drift.T) - low) / (high - low), 0.0, 1.0))
 
 
-def widened(times: Sequence[float], seen: Sequence[Sighting]) -> list[Sighting]:
-    """State of the sightings of one stone how smeared edges err, where these tell its place.
+def widened(times: Sequence[float], seen: Sequence[Detection]) -> list[Detection]:
+    """State of the detections of one stone how smeared edges err, where these tell its place.
 
     How fast a stone goes is not known where it is first seen, or just after a hit; and of one that
     is covered or leaves the picture only the edges tell.
@@ -91,14 +91,14 @@ def widened(times: Sequence[float], seen: Sequence[Sighting]) -> list[Sighting]:
     ----------
     times : sequence of float
         Ascending, s.
-    seen : sequence of Sighting
+    seen : sequence of Detection
         The stone at these times.
     """
     out = list(seen)
     if len(out) < 2:
         return out
     step = float(np.median(np.diff(times)))
-    places = np.array([(sighting.x, sighting.y) for sighting in seen])
+    places = np.array([(detection.x, detection.y) for detection in seen])
     drift = step * np.gradient(places, np.array(times), axis=0)
     share = swept_share(drift)
     for k in np.flatnonzero(share > 0).tolist():

@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.roundness import WHOLE
-from curlshot.vision.detection.sighting import Sighting
 
 Array = NDArray[np.float64]
 
@@ -26,7 +26,7 @@ MEMORY = 3.0
 edge by hue is aside by has changed several times by then."""
 
 FEWEST = 12
-"""Sightings from which the two edges are compared."""
+"""Detections from which the two edges are compared."""
 
 SLOWLY = 0.5
 """Time in which hue wanders, s: lightness must steady a way over this as well as from picture to
@@ -52,7 +52,7 @@ class Lightness(NamedTuple):
     Attributes
     ----------
     told : ndarray of int, shape (n,)
-        Sightings that it says something of.
+        Detections that it says something of.
     aside : ndarray, shape (n, 2)
         The edge by lightness off their places, beyond what lasts, m.
     jerks : tuple of (float, float, float)
@@ -65,14 +65,14 @@ class Lightness(NamedTuple):
     jerks: tuple[tuple[float, float, float], ...]
 
 
-def lightness_of(times: Sequence[float], seen: Iterable[Sighting]) -> Lightness:
+def lightness_of(times: Sequence[float], seen: Iterable[Detection]) -> Lightness:
     """Tell what the lightness of its cap says of the way of a stone.
 
     Parameters
     ----------
     times : sequence of float
         Ascending, s.
-    seen : iterable of Sighting
+    seen : iterable of Detection
         The stone at these times.
     """
     rows = np.array([(s.x, s.y, *s.light, s.visible) for s in seen]).reshape(-1, 5)
@@ -104,12 +104,12 @@ def common_share(stones: Iterable[Lightness]) -> float:
     return float(np.clip(-common / np.maximum(power, TINY), 0.0, 1.0).min())
 
 
-def steadied(seen: Sequence[Sighting], light: Lightness, share: float) -> list[Sighting]:
+def steadied(seen: Sequence[Detection], light: Lightness, share: float) -> list[Detection]:
     """Steady the places of one stone by a share of what lightness says.
 
     Parameters
     ----------
-    seen : sequence of Sighting
+    seen : sequence of Detection
         The stone.
     light : Lightness
         Of it.

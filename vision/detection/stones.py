@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 
 from curlshot.data.sheet import STONE, Stone
 from curlshot.vision.detection.appearance import Appearance
+from curlshot.vision.detection.detection import Detection, Refusal
 from curlshot.vision.detection.measure import Measures, measure_discs
 from curlshot.vision.detection.patch import EFFORT, is_plain
-from curlshot.vision.detection.placing import placed_by, sightings
+from curlshot.vision.detection.placing import detections, placed_by
 from curlshot.vision.detection.rays import Look, Rays
 from curlshot.vision.detection.samples import CLEARLY, well_within
 from curlshot.vision.detection.seek import Bounds, Candidates, seek
-from curlshot.vision.detection.sighting import Refusal, Sighting
 from curlshot.vision.film.picture import Picture
 from curlshot.vision.optics.camera import Camera
 
@@ -87,7 +87,7 @@ FOLLOWING = Search(radius_px=6.5, least_score=0.3)
 class Findings:
     """What a search of one picture gave: the stones, strongest first, and what was refused."""
 
-    stones: tuple[Sighting, ...] = ()
+    stones: tuple[Detection, ...] = ()
     refused: tuple[Refusal, ...] = ()
 
 
@@ -179,10 +179,10 @@ def measured(look: Look, sought: Candidates, disc: Stone, search: Search) -> Fin
         ]
         chosen = np.array([i for i, fault in enumerate(faults) if not fault], np.intp)
         places = seen.centre[chosen]
-    found = sightings(seen, looks, chosen, disc)
+    found = detections(seen, looks, chosen, disc)
     stones = [
-        with_samples(sighting, seen, i, disc)
-        for i, sighting in zip(chosen.tolist(), found, strict=True)
+        with_samples(detection, seen, i, disc)
+        for i, detection in zip(chosen.tolist(), found, strict=True)
     ]
     (placed,) = placed_by([look.camera], [apart(stones, disc)], disc)
     return Findings(tuple(placed), tuple(refused))
@@ -233,7 +233,7 @@ def _hollow(rays: Rays, disc: Stone) -> NDArray[np.bool_]:
     return np.asarray((unlike & seen).sum(1) < LEAST_UNLIKE * seen.sum(1))
 
 
-def with_samples(found: Sighting, seen: Measures, index: int, disc: Stone) -> Sighting:
+def with_samples(found: Detection, seen: Measures, index: int, disc: Stone) -> Detection:
     """Add what the place's samples say of the colours of cap and granite, for learning."""
     cap, ring = well_within(seen.rays.radius, disc)
     lab, worth = seen.rays.lab[index], seen.worth[index]
@@ -243,9 +243,9 @@ def with_samples(found: Sighting, seen: Measures, index: int, disc: Stone) -> Si
     )
 
 
-def apart(found: Sequence[Sighting], disc: Stone) -> list[Sighting]:
+def apart(found: Sequence[Detection], disc: Stone) -> list[Detection]:
     """Keep the better of any two that overlap more than two discs can."""
-    kept: list[Sighting] = []
+    kept: list[Detection] = []
     for item in sorted(found, key=lambda s: -s.score):
         if all(np.hypot(item.x - k.x, item.y - k.y) > NEAREST * disc.radius for k in kept):
             kept.append(item)

@@ -26,11 +26,11 @@ from curlshot.vision.detection.appearance import (
     learn,
 )
 from curlshot.vision.detection.contrast import alike
+from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.patch import is_plain
 from curlshot.vision.detection.rays import Look
 from curlshot.vision.detection.seek import Candidates
 from curlshot.vision.detection.shape import NO_BALLOT, elected
-from curlshot.vision.detection.sighting import Sighting
 from curlshot.vision.detection.stones import (
     Findings,
     Search,
@@ -181,25 +181,25 @@ def _measured(
     return [measured(*each, disc, search) for each in zip(looks, sought, strict=True)]
 
 
-def _sure(found: Sequence[Findings]) -> list[Sighting]:
+def _sure(found: Sequence[Findings]) -> list[Detection]:
     return convincing(stone for one in found for stone in one.stones)
 
 
-def _beside(look: Look, found: Sequence[Sighting]) -> Look:
+def _beside(look: Look, found: Sequence[Detection]) -> Look:
     """Look beside stones of which those found convince."""
     sure = np.array([(s.x, s.y) for s in convincing(found)]).reshape(-1, 2)
     return replace(look, places=np.concatenate([look.places, sure]))
 
 
 def by_shape(
-    look: Look, found: Sequence[Sighting], disc: Stone, search: Search
-) -> tuple[Sighting, ...]:
+    look: Look, found: Sequence[Detection], disc: Stone, search: Search
+) -> tuple[Detection, ...]:
     """Seek what has a stone's shape beside those found that convince; see `weighed`."""
     known = _beside(look, found).places
     return search_picture(look.picture, look.camera, BY_SHAPE, disc, search, known=known).stones
 
 
-def weighed(stone: Sighting, granite: Colour | None, unknown: float = UNKNOWN) -> Sighting:
+def weighed(stone: Detection, granite: Colour | None, unknown: float = UNKNOWN) -> Detection:
     """Give a stone told by its shape the evidence that it has beside those told by colours."""
     if not len(stone.granite_samples):
         return stone._replace(score=stone.score + unknown)

@@ -263,7 +263,7 @@ def _open_images(paths: Sequence[Path], fps: float | None, first: int, last: int
     clip = Clip(tuple(paths), size, rate, len(paths), first, last)
     if fps is None and len(paths) > 1:
         clip.warnings.append(
-            f"pictures carry no times: {DEFAULT_IMAGE_FPS:g} a second assumed; say --fps"
+            f"pictures carry no times: {DEFAULT_IMAGE_FPS:g} a second assumed; say `fps`"
         )
     times = picture_times(paths)
     longest = max((b - a for a, b in pairwise(times)), default=1.0) if times else 1.0

@@ -2,7 +2,7 @@
 
 Whoever has a `Kept` has the thing by `Kept.get`, wherever it is. In memory at first, it goes to a
 `Shelf` by `Kept.put_aside` and is read from there anew each time; what is left of it in memory is
-where it lies. Things may hold others that are kept, as rows of sightings hold pictures of caps.
+where it lies. Things may hold others that are kept, as rows of detections hold pictures of caps.
 """
 
 from __future__ import annotations

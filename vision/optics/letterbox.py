@@ -71,7 +71,7 @@ class LitClip(Clip):
                 hidden = True
                 self._warn(
                     f"{self.files[0]}: black bars are cut off, but frame {frame.index} shows"
-                    " something there; give the frames of the shot alone (--frames)"
+                    " something there; give the frames of the shot alone (`frames`)"
                 )
             yield Frame(frame.index, frame.t, without_bars(frame.picture, self.bars))
         self.cadence = self.whole.cadence

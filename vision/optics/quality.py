@@ -133,7 +133,7 @@ def warnings(
         found.append(
             f"the camera's height cannot be told from this view ({height:.1f} ±"
             f" {sd:.1f} m assumed); stones far from the picture's middle may be"
-            " centimetres off; say it with --camera-height if you know it"
+            " centimetres off; give it as `camera_height` if you know it"
         )
     if not lined:
         found.append("neither centre line nor tee line is seen; y is up in the picture")

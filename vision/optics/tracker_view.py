@@ -9,11 +9,14 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
+from curlshot.data.convert import Projected
 from curlshot.data.errors import InputError
+from curlshot.data.files import relative_path
+from curlshot.data.measurement import Measurement
 from curlshot.data.sheet import HOUSE
 from curlshot.data.trk import Coordinates
 from curlshot.data.trk_write import View
-from curlshot.vision.film.clip import Clip
+from curlshot.vision.film.clip import Clip, open_clip
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.camera_file import cameras_of
 
@@ -23,8 +26,34 @@ CORNER = 0.5
 """Tracker counts pixels from the corner of the first, OpenCV from its middle, px."""
 
 
+def projected(measured: Measurement, clip_files: Sequence[Path], path: Path) -> Projected:
+    """Return tracks over a clip, by the ``camera.csv`` beside them, for a project to be written.
+
+    Parameters
+    ----------
+    measured : Measurement
+        The tracks.
+    clip_files : sequence of Path
+        The clip that Tracker shall show.
+    path : Path
+        The project; a .trz holds the clip.
+
+    Raises
+    ------
+    InputError
+        No clip, no such table of cameras, or not of these tracks.
+    """
+    clip = open_clip(clip_files)
+    packed: dict[str, Path] = {}
+    if path.suffix.lower() == ".trz":
+        packed = {f"videos/{file.name}": file for file in clip.files}
+    video = tuple(packed) or tuple(relative_path(file, path.parent) for file in clip.files)
+    camera_csv = measured.files[0].parent / "camera.csv"
+    return Projected(*view_over(clip, camera_csv, measured.detections, video), packed)
+
+
 def view_over(
-    clip: Clip, camera_csv: Path, sightings: pd.DataFrame, video: tuple[str, ...]
+    clip: Clip, camera_csv: Path, detections: pd.DataFrame, video: tuple[str, ...]
 ) -> tuple[View, Array, float]:
     """Place tracks in the pictures of a clip by the cameras of a run.
 
@@ -34,8 +63,8 @@ def view_over(
         What Tracker shall show.
     camera_csv : Path
         Of the run that measured the tracks.
-    sightings : DataFrame
-        `curlshot.data.tracks.SIGHTING_COLUMNS`.
+    detections : DataFrame
+        `curlshot.data.tracks.DETECTION_COLUMNS`.
     video : tuple of str
         Where Tracker finds the clip's files, from the project's folder.
 
@@ -44,7 +73,7 @@ def view_over(
     View
         The clip, with the camera as Tracker's coordinate system.
     ndarray, shape (n, 2)
-        Where each sighting is in the picture, Tracker's pixels.
+        Where each detection is in the picture, Tracker's pixels.
     float
         How far off Tracker shows places at the 12-ft ring, m, at worst.
 
@@ -54,13 +83,13 @@ def view_over(
         No such table of cameras, or not of these tracks.
     """
     if not camera_csv.is_file():
-        raise InputError(f"{camera_csv}: no such file; --over needs tracks.csv and camera.csv")
+        raise InputError(f"{camera_csv}: no such file; `over` needs tracks.csv and camera.csv")
     cameras = cameras_of(camera_csv, clip.size)
-    unknown = sorted(set(sightings["frame"]) - set(cameras))
+    unknown = sorted(set(detections["frame"]) - set(cameras))
     if unknown:
         raise InputError(f"{camera_csv}: no camera of frame {unknown[0]}; not of the same run")
     system = closest_similarity(list(cameras.values()))
-    marks = marks_of(cameras, sightings["frame"], sightings[["x", "y"]].to_numpy(float))
+    marks = marks_of(cameras, detections["frame"], detections[["x", "y"]].to_numpy(float))
     off = off_at(system, list(cameras.values()), HOUSE.twelve_foot)
     return View(system, clip.size, video, clip.expected), marks, off
 

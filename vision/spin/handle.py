@@ -146,7 +146,7 @@ class Turning:
     reach : float
         How far from the expected angle a stone is looked for, rad.
     most_spin : float
-        How much that reach grows per second without a sighting, rad/s.
+        How much that reach grows per second without a detection, rad/s.
     lost : float
         Time without an angle after which a stone may be turned anyhow, s.
     least_likeness : float

@@ -5,26 +5,26 @@ from pathlib import Path
 
 import pytest
 
-from curlshot.cli.arguments import out_folder, settings_of, what_if_folder
+from curlshot.cli.arguments import config_of, out_folder, what_if_folder
+from curlshot.config import Config
 from curlshot.data.errors import InputError
-from curlshot.work.settings import Settings
 
 
 def test_what_was_not_said_is_as_usual() -> None:
-    assert settings_of(Namespace()) == Settings()
+    assert config_of(Namespace()) == Config()
 
 
 def test_values_by_stone_are_gathered() -> None:
-    said = Namespace(mass=[("A", 19.1), ("B", 18.0)], angles=[("A", "a.txt")], samples=None)
-    settings = settings_of(said)
-    assert settings.masses == {"A": 19.1, "B": 18.0}
-    assert settings.angles == {"A": Path("a.txt")}
-    assert settings.samples == 0
+    said = Namespace(masses=[("A", 19.1), ("B", 18.0)], angles=[("A", "a.txt")], samples=None)
+    settings = config_of(said)
+    assert settings.stones.masses == {"A": 19.1, "B": 18.0}
+    assert settings.tables.angles == {"A": Path("a.txt")}
+    assert settings.physics.samples == 0
 
 
 def test_a_stone_that_is_named_twice_is_refused() -> None:
     with pytest.raises(InputError, match="--names: A is given twice"):
-        settings_of(Namespace(names=[("A", "x"), ("A", "y")]))
+        config_of(Namespace(names=[("A", "x"), ("A", "y")]))
 
 
 @pytest.mark.parametrize(

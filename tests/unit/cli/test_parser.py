@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from curlshot.cli.main import WORK
 from curlshot.cli.parser import command_line
 from curlshot.physics.registry import FAMILIES, models, parameters_of
 from curlshot.physics.simulator.shot import read_shot
 from curlshot.physics.simulator.simulation import StoneStart
-from curlshot.pipeline import WORK
 
 
 def said(capsys, *words: str) -> tuple[int, str]:

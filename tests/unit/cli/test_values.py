@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from curlshot.cli import values
 from curlshot.cli.options import OFFSETS
+from curlshot.data.limits import FRACTION, FRICTION, POSITIVE, RADIUS, SAMPLES
 from curlshot.physics.prediction.what_if import Amount
-from curlshot.work.limits import FRACTION, FRICTION, POSITIVE, RADIUS, SAMPLES
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from curlshot import pipeline
+from curlshot.cli.main import main
 from curlshot.data.angles import read_angles
 from curlshot.data.errors import InputError
 from curlshot.data.tracker import read_table
@@ -75,7 +76,7 @@ def test_missing_angles_stay_missing(tmp_path: Path) -> None:
     theta = np.where((T > 0.3) & (T < 0.6), np.nan, THETA)
     angle = put(tmp_path, "edge\nt\tθ\n" + table(T, np.degrees(theta)))
     place = put(tmp_path, "mass A\nt\tx\ty\n" + table(T, T, 2 * T, digits=3), "a.txt")
-    found = read_table([place], names={"A": "mass A"}, angles={"A": angle}).sightings
+    found = read_table([place], names={"A": "mass A"}, angles={"A": angle}).detections
     np.testing.assert_allclose(found["theta"], theta, atol=1e-8)
 
 
@@ -83,7 +84,7 @@ def test_angles_meet_places_of_the_same_moment_only(tmp_path: Path) -> None:
     place = put(tmp_path, "A\nt\tx\ty\n" + table(T[::2], T[::2], T[::2], digits=3), "a.txt")
     angle = put(tmp_path, "edge\nt\tθ\n" + table(np.round(T, 3), np.degrees(THETA)))
     found = read_table([place], angles={"A": angle})
-    np.testing.assert_allclose(found.sightings["theta"], THETA[::2], atol=1e-8)
+    np.testing.assert_allclose(found.detections["theta"], THETA[::2], atol=1e-8)
     assert any("15 of 30 angles have no place of A" in text for text in found.warnings)
     late = put(tmp_path, "edge\nt\tθ\n" + table(T + 9.01, THETA))
     with pytest.raises(InputError, match="none of its times"):
@@ -114,8 +115,8 @@ def test_names_choose_and_rename_tracks(tmp_path: Path) -> None:
     places = put(
         tmp_path, "#multi:\n\tmass A\t\tdust\t\nt\tx\ty\tx\ty\t\n0\t1\t2\t3\t4\n0.1\t1.1\t2\t3\t4\n"
     )
-    assert set(read_table([places]).sightings["stone"]) == {"mass A", "dust"}
-    assert set(read_table([places], names={"A": "mass A"}).sightings["stone"]) == {"A"}
+    assert set(read_table([places]).detections["stone"]) == {"mass A", "dust"}
+    assert set(read_table([places], names={"A": "mass A"}).detections["stone"]) == {"A"}
     with pytest.raises(InputError, match="no track named mass B; there are mass A, dust"):
         read_table([places], names={"B": "mass B"})
     with pytest.raises(InputError, match="one track cannot be two stones"):
@@ -169,7 +170,7 @@ def test_the_road_of_the_paper_from_text_files_alone(tmp_path: Path) -> None:
         angles += ["--angles", f"{stone}={angle}"]
         names += ["--names", f"{stone}={name.replace(' ', '_') if stone == 'C' else name}"]
     out = tmp_path / "out"
-    done = pipeline.main(["run", *places, *angles, *names, "-o", str(out), "-q"])
+    done = main(["run", *places, *angles, *names, "-o", str(out), "-q"])
     assert done == 0
     results = json.loads((out / "results.json").read_text("utf-8"))
     for key, true in (("restitution", 0.8345), ("friction", truth["friction"])):

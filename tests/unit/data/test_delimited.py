@@ -58,7 +58,7 @@ def test_units_behind_a_stroke_or_in_words(tmp_path: Path, text: str) -> None:
     path.write_text(f"{text}\n" + "".join(f"0.{k}{mark}{k}{mark}200\n" for k in range(5)))
     table = read_text_table(path, lambda names: names[0] == "t (s)")
     assert table.names == ("t (s)", "x (cm)", "y (cm)")
-    tracks = read_table([path]).sightings
+    tracks = read_table([path]).detections
     assert tracks["y"].tolist() == [2.0] * 5
     assert tracks["t"].tolist() == pytest.approx([0, 0.1, 0.2, 0.3, 0.4])
 
@@ -136,6 +136,6 @@ def test_a_row_of_units_below_the_header(tmp_path: Path, units: str) -> None:
     path = tmp_path / "a.csv"
     path.write_text(f"sep=;\nMass A;;;\nt;x;y;\n{units}\n0,04;110;200;\n0,08;112;205;;;\n;;;\n")
     found = read_table([path])
-    assert list(found.sightings["stone"]) == ["Mass A"] * 2
-    np.testing.assert_allclose(found.sightings["x"], [1.1, 1.12])
+    assert list(found.detections["stone"]) == ["Mass A"] * 2
+    np.testing.assert_allclose(found.detections["x"], [1.1, 1.12])
     assert "length unit cm, as the header says" in found.warnings[0]

@@ -6,12 +6,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from curlshot import pipeline
+from curlshot.cli.main import main
 from curlshot.data.discs import refuse_no_discs, top_speed
 from curlshot.data.errors import InputError
 from curlshot.data.sheet import STONE
 from curlshot.data.tracker import read_table
-from curlshot.data.tracks import check_sightings
+from curlshot.data.tracks import check_detections
 from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
 
 
@@ -50,7 +50,7 @@ def test_one_slipped_mark_is_no_evidence() -> None:
 
 def test_stones_faster_than_any_are_refused_but_not_other_discs() -> None:
     t = np.arange(20) / 25 - 5.13e-5  # even steps through times that were rounded
-    table = check_sightings(
+    table = check_detections(
         pd.DataFrame({"stone": "A", "t": t, "x": 7.0 * t - t**2 / 99, "y": 0.0})
     )
     with pytest.raises(InputError, match=r"7\.0 m/s at t = 0 s, faster than any curling stone"):
@@ -72,7 +72,7 @@ def test_the_command_says_so_in_one_line(
 ) -> None:
     shot()[["stone", "t", "x", "y"]].to_csv(tmp_path / "a.csv", index=False)
     given = ["estimate", str(tmp_path / "a.csv"), "-o", str(tmp_path / "out"), "-q"]
-    assert pipeline.main([*given, "--length-unit", "ft"]) == 2
+    assert main([*given, "--length-unit", "ft"]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert "another length unit" in line
     assert not (tmp_path / "out").exists()
@@ -83,9 +83,7 @@ def test_no_length_unit_is_advised_where_the_file_says_its_own(
 ) -> None:
     table = shot(0.01)[["stone", "t", "x", "y"]].rename(columns={"x": "x (m)", "y": "y (m)"})
     table.to_csv(tmp_path / "a.csv", index=False)
-    assert (
-        pipeline.main(["estimate", str(tmp_path / "a.csv"), "-o", str(tmp_path / "o"), "-q"]) == 2
-    )
+    assert main(["estimate", str(tmp_path / "a.csv"), "-o", str(tmp_path / "o"), "-q"]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert "calibration" in line and "--length-unit" not in line
 
@@ -93,6 +91,6 @@ def test_no_length_unit_is_advised_where_the_file_says_its_own(
 def test_real_discs_pass(shared: Path) -> None:
     """Air tables and motion capture, whose discs touch for long."""
     pucks = read_table([shared / "tracks" / "airtable_two_pucks.csv"], length_unit="cm")
-    refuse_no_discs(pucks.sightings, 0.035, "pucks")
+    refuse_no_discs(pucks.detections, 0.035, "pucks")
     for path in (shared / "tracks" / "discs_500hz").glob("hit_*.csv"):
-        refuse_no_discs(read_table([path], fps=500).sightings, 0.025, path.name)
+        refuse_no_discs(read_table([path], fps=500).detections, 0.025, path.name)

@@ -9,11 +9,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from curlshot import pipeline
+from curlshot.cli.main import main
 from curlshot.data.errors import InputError
 from curlshot.data.export import write_csv, write_parquet, write_text
 from curlshot.data.tracker import read_table
-from curlshot.data.tracks import check_sightings
+from curlshot.data.tracks import check_detections
 
 
 def shot(seed: int = 0, stones: str = "ABC", even: bool = True) -> pd.DataFrame:
@@ -37,7 +37,7 @@ def shot(seed: int = 0, stones: str = "ABC", even: bool = True) -> pd.DataFrame:
         )[rng.uniform(size=len(t)) > 0.2]
         for stone in stones
     ]
-    return check_sightings(pd.concat(rows))
+    return check_detections(pd.concat(rows))
 
 
 SAME = ["stone", "frame", "t", "x", "y", "theta", "sd_x", "sd_y", "sd_theta"]
@@ -53,7 +53,7 @@ def test_what_is_written_is_read_again(
     path = tmp_path / f"shot{ending}"
     (write_text if ending == ".txt" else write_csv)(table, path)
     found = read_table([path])
-    pd.testing.assert_frame_equal(found.sightings[SAME], table[SAME], check_exact=True)
+    pd.testing.assert_frame_equal(found.detections[SAME], table[SAME], check_exact=True)
     assert found.warnings == ()
 
 
@@ -66,17 +66,17 @@ def test_what_is_written_is_read_again(
 )
 def test_every_digit_survives(tmp_path: Path, values: list[float], ending: str) -> None:
     t = 0.3 * np.arange(len(values)) + 0.1
-    table = check_sightings(pd.DataFrame({"stone": "A", "t": t, "x": values, "y": values[::-1]}))
+    table = check_detections(pd.DataFrame({"stone": "A", "t": t, "x": values, "y": values[::-1]}))
     path = tmp_path / f"a{ending}"
     (write_text if ending == ".txt" else write_csv)(table, path)
-    found = read_table([path]).sightings
+    found = read_table([path]).detections
     pd.testing.assert_frame_equal(found[["t", "x", "y"]], table[["t", "x", "y"]], check_exact=True)
 
 
 def test_names_for_tracker_have_no_blanks(tmp_path: Path) -> None:
     table = shot().replace({"stone": {"A": "mass A", "B": "mass B"}})
     write_text(table, tmp_path / "a.txt")
-    assert set(read_table([tmp_path / "a.txt"]).sightings["stone"]) == {"mass_A", "mass_B", "C"}
+    assert set(read_table([tmp_path / "a.txt"]).detections["stone"]) == {"mass_A", "mass_B", "C"}
     with pytest.raises(InputError, match="without blanks"):
         write_text(table.replace({"stone": {"C": "mass_A"}}), tmp_path / "b.txt")
     assert not (tmp_path / "b.txt").exists()
@@ -92,7 +92,7 @@ def test_parquet_needs_its_library(tmp_path: Path) -> None:
             read_table([path])
         return
     write_parquet(table, path)
-    pd.testing.assert_frame_equal(read_table([path]).sightings[SAME], table[SAME])
+    pd.testing.assert_frame_equal(read_table([path]).detections[SAME], table[SAME])
     path.write_bytes(b"no table")
     with pytest.raises(InputError, match="no Parquet"):
         read_table([path])
@@ -102,11 +102,11 @@ def test_convert_there_and_back(tmp_path: Path, capsys: pytest.CaptureFixture[st
     table = shot()
     one, two, three = (str(tmp_path / name) for name in ("a.csv", "b.txt", "c.csv"))
     write_csv(table, Path(one))
-    assert pipeline.main(["convert", one, two]) == 0
-    assert pipeline.main(["convert", two, three]) == 0
-    pd.testing.assert_frame_equal(read_table([Path(three)]).sightings[SAME], table[SAME])
+    assert main(["convert", one, two]) == 0
+    assert main(["convert", two, three]) == 0
+    pd.testing.assert_frame_equal(read_table([Path(three)]).detections[SAME], table[SAME])
     assert "3 stones in" in capsys.readouterr().out
     for source, target in [(one, "d.docx"), (str(Path(__file__)), "d.csv")]:
-        assert pipeline.main(["convert", source, str(tmp_path / target)]) == 2
+        assert main(["convert", source, str(tmp_path / target)]) == 2
         assert len(capsys.readouterr().err.splitlines()) == 1
         assert not (tmp_path / target).exists()

@@ -16,7 +16,7 @@ from curlshot.data.angles import read_angles
 from curlshot.data.errors import InputError
 from curlshot.data.project import unpack_clip
 from curlshot.data.tracker import read_table
-from curlshot.data.tracks import check_sightings
+from curlshot.data.tracks import check_detections
 from curlshot.data.trk_write import plain_view, project_xml
 from curlshot.tests.unit.data.dialects import archive, export, project, put, truth
 
@@ -62,7 +62,7 @@ def read_or_refused(path: Path) -> None:
     except InputError as refusal:
         assert "\n" not in str(refusal)
         return
-    table = found.sightings
+    table = found.detections
     assert np.isfinite(table[["t", "x", "y"]].to_numpy()).all()
     assert (table.groupby("stone")["t"].diff().dropna() > 0).all()
     assert table[["x", "y"]].abs().to_numpy().max() <= 100
@@ -138,9 +138,9 @@ def damaged(raw: bytes, rng: np.random.Generator) -> bytes:
 def own_files() -> dict[str, bytes]:
     """Small files of every kind, by name."""
     table, few = truth(8), truth(5)
-    sightings = check_sightings(few.assign(theta=0.1 * few["t"], sd_x=0.002, sd_y=0.002))
-    view = plain_view(sightings)
-    marks = view.coordinates.pixels(sightings["frame"], sightings[["x", "y"]].to_numpy())
+    detections = check_detections(few.assign(theta=0.1 * few["t"], sd_x=0.002, sd_y=0.002))
+    view = plain_view(detections)
+    marks = view.coordinates.pixels(detections["frame"], detections[["x", "y"]].to_numpy())
     texts = {
         "tab.txt": export(table),
         "comma.csv": export(table, ",", "four digits"),
@@ -150,7 +150,7 @@ def own_files() -> dict[str, bytes]:
         "angle.txt": "edge\nt\tx\ty\tθ\n0\t0.1\t0\t0\n0.1\t0.1\t0.01\t5.7\n0.2\t0.09\t0.02\t12\n",
         "bare.txt": "0 1 2 3 4\n0.1 1.1 2.1 3.1 4.1\n0.2 1.2 2.2 3.2 4.2\n",
         "project.trk": project(),
-        "own.trk": project_xml(sightings, view, marks, {"frictional": few}),
+        "own.trk": project_xml(detections, view, marks, {"frictional": few}),
     }
     packed = {"a.trk": project(video='<property name="path" type="string">v/c.mp4</property>')}
     return {name: text.encode() for name, text in texts.items()} | {

@@ -21,7 +21,7 @@ def test_masses_count_only_if_all_were_set(tmp_path: Path) -> None:
 
 def test_a_project_in_latin_1_that_calls_itself_utf_8_is_read(tmp_path: Path) -> None:
     text = project({"Jalón": {0: (1.0, 2.0)}})
-    found = read_table([put(tmp_path, text.encode("latin-1"))]).sightings
+    found = read_table([put(tmp_path, text.encode("latin-1"))]).detections
     assert list(found["stone"]) == ["Jalón"]
 
 
@@ -30,9 +30,9 @@ def test_first_tab_with_marks_is_used_unless_another_is_named(tmp_path: Path) ->
     content = {"a.trk": project({}), "b.trk": project(), "x/c.trk": other, "x/._c.trk": b"\0"}
     path = put(tmp_path, archive(content), "tabs.trz")
     found = read_table([path])
-    assert set(found.sightings["stone"]) == {"red", "blue"}
+    assert set(found.detections["stone"]) == {"red", "blue"}
     assert any("a, b, c" in text and ": b (--tab)" in text for text in found.warnings)
-    assert set(read_table([path], tab="c").sightings["stone"]) == {"green"}
+    assert set(read_table([path], tab="c").detections["stone"]) == {"green"}
     with pytest.raises(InputError, match="no tab d; there is a, b, c"):
         read_table([path], tab="d")
     table = put(tmp_path, "stone,t,x,y\nA,0,0,0\nA,1,0,1\n", "shot.csv")
@@ -49,7 +49,7 @@ def test_a_set_of_tabs_leads_to_its_projects(tmp_path: Path) -> None:
     text = (
         f'<object class="T.TFrame"><property name="tabs" type="array">{entry}</property></object>'
     )
-    assert len(read_table([put(tmp_path, text, "tabs.trk")]).sightings) == 7
+    assert len(read_table([put(tmp_path, text, "tabs.trk")]).detections) == 7
 
 
 LAUGHS = (
@@ -100,7 +100,7 @@ def test_archives_do_no_harm(tmp_path: Path) -> None:
         with pytest.raises(InputError, match=reason):
             read_table([put(tmp_path, raw, "a.trz")])
     outside = put(tmp_path, archive({"../../evil.trk": project()}), "b.trz")
-    assert len(read_table([outside]).sightings) == 7
+    assert len(read_table([outside]).detections) == 7
     assert sorted(item.name for item in tmp_path.iterdir()) == ["a.trz", "b.trz"]
 
 
@@ -114,8 +114,8 @@ PAIRS = ("V1", "V2", "V3", "V5", "V8", "V11", "V17", "V23", "V28", "V30")
 def test_project_and_export_of_real_users_agree(shared: Path, name: str) -> None:
     """V28's project was saved again after its export; its marks are still the same."""
     folder = shared / "tracker" / "real"
-    marked = read_table([folder / f"pair_{name}.trk"]).sightings
-    exported = read_table([folder / f"pair_{name}_export.txt"]).sightings
+    marked = read_table([folder / f"pair_{name}.trk"]).detections
+    exported = read_table([folder / f"pair_{name}_export.txt"]).detections
     assert len(marked) == len(exported) > 900
     for column in ("t", "x", "y"):
         np.testing.assert_allclose(marked[column], exported[column], rtol=0, atol=1e-9)
@@ -131,16 +131,16 @@ def test_project_and_export_of_real_users_agree(shared: Path, name: str) -> None
 )
 def test_sample_projects_agree_with_their_exports(shared: Path, name: str, export: str) -> None:
     folder = shared / "tracker" / "samples"
-    marked = read_table([folder / name]).sightings
-    printed = read_table([folder / export]).sightings
+    marked = read_table([folder / name]).detections
+    printed = read_table([folder / export]).detections
     columns = ["stone", "frame", "t", "x", "y"]
     pd.testing.assert_frame_equal(marked[columns], printed[columns], rtol=0, atol=5.1e-7)
 
 
 def test_project_with_a_reference_frame_agrees_with_its_export(shared: Path) -> None:
     folder = shared / "tracker" / "samples"
-    marked = read_table([folder / "full_project.trk"]).sightings
-    printed = read_table([folder / "full_export_default_frame.txt"]).sightings
+    marked = read_table([folder / "full_project.trk"]).detections
+    printed = read_table([folder / "full_export_default_frame.txt"]).detections
     stones = [rows.reset_index() for _, rows in printed.groupby("stone")]
     red, yellow = stones
     np.testing.assert_allclose(marked["t"], yellow["t"], rtol=0, atol=1e-9)
@@ -150,6 +150,6 @@ def test_project_with_a_reference_frame_agrees_with_its_export(shared: Path) -> 
 
 def test_projects_of_real_users_are_read(shared: Path) -> None:
     for path in sorted((shared / "tracker" / "real").glob("*.trz")):
-        assert len(read_table([path]).sightings) >= 10, path.name
+        assert len(read_table([path]).detections) >= 10, path.name
     with pytest.raises(InputError, match="not calibrated"):
         read_table([shared / "tracker" / "real" / "26a2_protractor.trk"])

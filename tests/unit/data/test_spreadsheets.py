@@ -36,7 +36,7 @@ def imported(
 
 
 def is_true(table: Imported, **truth: np.ndarray) -> bool:
-    found = table.sightings
+    found = table.detections
     assert {*found["stone"]} == {*truth}
     for stone, places in truth.items():
         own = found[found["stone"] == stone]
@@ -218,7 +218,7 @@ def test_stones_of_other_rates_keep_their_times(tmp_path: Path) -> None:
     fast = np.arange(48) / 60
     (tmp_path / "A.csv").write_text(f"t,x,y\n{rows(T, A)}")
     (tmp_path / "B.csv").write_text(f"t,x,y\n{rows(fast, 0.5 + 0.1 * fast, 1 + 0.2 * fast)}")
-    found = read_table([tmp_path / "A.csv", tmp_path / "B.csv"]).sightings
+    found = read_table([tmp_path / "A.csv", tmp_path / "B.csv"]).detections
     own = found[found["stone"] == "B"]
     assert own["t"].to_numpy() == pytest.approx(fast, abs=1e-4)
     assert own["y"].to_numpy() == pytest.approx(1 + 0.2 * own["t"].to_numpy(), abs=1e-4)

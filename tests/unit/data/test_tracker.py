@@ -9,7 +9,7 @@ import pytest
 from curlshot.data.errors import InputError
 from curlshot.data.export import write_csv
 from curlshot.data.tracker import Imported, read_table
-from curlshot.data.tracks import SIGHTING_COLUMNS, teams, write_tracks
+from curlshot.data.tracks import DETECTION_COLUMNS, teams, write_tracks
 from curlshot.tests.unit.data.dialects import RED, export, put, truth
 
 
@@ -33,9 +33,9 @@ def test_every_delimiter_and_decimal_sign(
 ) -> None:
     text = export(truth(), delimiter, pattern, decimal)
     found = read(tmp_path, text)
-    assert_same(found.sightings, truth(), 5.1e-7 if pattern == "full" else 5.1e-4)
-    assert tuple(found.sightings.columns) == SIGHTING_COLUMNS
-    assert found.sightings["theta"].isna().all()
+    assert_same(found.detections, truth(), 5.1e-7 if pattern == "full" else 5.1e-4)
+    assert tuple(found.detections.columns) == DETECTION_COLUMNS
+    assert found.detections["theta"].isna().all()
     assert bool(found.warnings) == (delimiter == decimal == ",")
 
 
@@ -45,20 +45,20 @@ def test_swedish_numbers_line_ends_and_encodings(
     tmp_path: Path, line_end: str, encoding: str
 ) -> None:
     text = export(truth(), ";", "full", ",", swedish=True).replace("\n", line_end)
-    assert_same(read(tmp_path, text.encode(encoding)).sightings, truth(), 5.1e-7)
+    assert_same(read(tmp_path, text.encode(encoding)).detections, truth(), 5.1e-7)
 
 
 @pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
 def test_a_letter_with_a_zero_of_its_own_is_text(tmp_path: Path, encoding: str) -> None:
     text = "t,一_x,一_y\n0.0,1.5,2.5\n0.5,2.5,3.5\n"
-    assert list(read(tmp_path, text.encode(encoding)).sightings["stone"]) == ["一", "一"]
+    assert list(read(tmp_path, text.encode(encoding)).detections["stone"]) == ["一", "一"]
 
 
 def test_native_digits(tmp_path: Path) -> None:
     digits = str.maketrans("0123456789", "۰۱۲۳۴۵۶۷۸۹")
     header, body = export(truth(), ";", "full", ",", columns=("x", "y")).split("y;\n", 1)
     text = header + "y;\n" + body.translate(digits).replace("-", "\u200e\N{MINUS SIGN}")
-    assert_same(read(tmp_path, text).sightings, truth(), 5.1e-7)
+    assert_same(read(tmp_path, text).detections, truth(), 5.1e-7)
 
 
 def test_legacy_layout_and_table_copy_give_the_same_track(tmp_path: Path) -> None:
@@ -66,10 +66,10 @@ def test_legacy_layout_and_table_copy_give_the_same_track(tmp_path: Path) -> Non
     body = "".join(f"{t:.9E}\t{x}\t{y}\t\t\n" for t, x, y in rows)
     legacy = read(tmp_path, "mass_A\nt\tx\ty\tv_{x}\tθ_{r}\n" + body)
     copied = read(tmp_path, "\tmass_A\nt\tx\ty\tvx\tθr (°)\n" + body)
-    pd.testing.assert_frame_equal(legacy.sightings, copied.sightings)
-    assert list(legacy.sightings["stone"]) == ["mass_A"] * 3
-    assert list(legacy.sightings["frame"]) == [0, 1, 3]
-    np.testing.assert_allclose(legacy.sightings["x"], [x for _, x, _ in rows], atol=1e-12)
+    pd.testing.assert_frame_equal(legacy.detections, copied.detections)
+    assert list(legacy.detections["stone"]) == ["mass_A"] * 3
+    assert list(legacy.detections["frame"]) == [0, 1, 3]
+    np.testing.assert_allclose(legacy.detections["x"], [x for _, x, _ in rows], atol=1e-12)
 
 
 @pytest.mark.parametrize("fps", [23.976, 25.0, 29.97, 50.0, 59.94, 120.0])
@@ -78,7 +78,7 @@ def test_times_printed_to_the_millisecond_become_equal_steps(tmp_path: Path, fps
     table = truth(n, fps)
     found = read(tmp_path, export(table, pattern="four digits", columns=("x", "y")))
     assert found.fps == pytest.approx(fps, rel=2e-4)
-    red = found.sightings[found.sightings["stone"] == RED]
+    red = found.detections[found.detections["stone"] == RED]
     np.testing.assert_allclose(red["t"], np.arange(n) / fps, atol=4e-4)
     # Differences of printed times would be 0.5 ms wrong.
     assert np.ptp(np.diff(red["t"])) < 1e-9
@@ -87,8 +87,8 @@ def test_times_printed_to_the_millisecond_become_equal_steps(tmp_path: Path, fps
 def test_uneven_times_stay_as_they_are(tmp_path: Path) -> None:
     t = [0.0, 0.033, 0.1, 0.117, 0.2, 0.31]
     found = read(tmp_path, "t\tx\ty\n" + "".join(f"{v}\t{v}\t0\n" for v in t))
-    assert list(found.sightings["t"]) == t
-    assert list(found.sightings["frame"]) == list(range(6))
+    assert list(found.detections["t"]) == t
+    assert list(found.detections["frame"]) == list(range(6))
 
 
 def test_one_file_per_stone_on_one_clock(tmp_path: Path) -> None:
@@ -97,8 +97,8 @@ def test_one_file_per_stone_on_one_clock(tmp_path: Path) -> None:
         put(tmp_path, export(rows, pattern="four digits", columns=("x", "y")), f"{stone}.txt")
         for stone, rows in table.groupby("stone")
     ]
-    assert_same(read_table(paths).sightings, table, 5.1e-4)
-    assert_same(read_table(paths).sightings, table, 5.1e-4)
+    assert_same(read_table(paths).detections, table, 5.1e-4)
+    assert_same(read_table(paths).detections, table, 5.1e-4)
     with pytest.raises(InputError, match="two stones with one name, red stone"):
         read_table([paths[0], paths[0]])
 
@@ -108,9 +108,9 @@ def test_tracks_of_one_name_are_named_after_their_files(tmp_path: Path) -> None:
     rows = "mass_A\nt\tx\ty\n0.00\t{0}\t2\n0.04\t{0}.1\t2\n"
     paths = [put(tmp_path, rows.format(k), f"{name}.txt") for k, name in enumerate("ABC")]
     found = read_table(paths)
-    assert list(found.sightings["stone"]) == ["A", "A", "B", "B", "C", "C"]
+    assert list(found.detections["stone"]) == ["A", "A", "B", "B", "C", "C"]
     assert "all their tracks are named mass_A; named after the files" in found.warnings[0]
-    chosen = read_table(paths, names={"red": "B"}).sightings
+    chosen = read_table(paths, names={"red": "B"}).detections
     assert list(chosen["x"]) == [1.0, 1.1]
     (tmp_path / "again").mkdir()
     with pytest.raises(InputError, match="two stones with one name, mass_A"):
@@ -119,7 +119,7 @@ def test_tracks_of_one_name_are_named_after_their_files(tmp_path: Path) -> None:
 
 def test_nameless_file_is_named_after_itself(tmp_path: Path) -> None:
     path = put(tmp_path, "t,y,x\n0,1,2\n0.1,1,2.5\n", "Stein Ä.csv")
-    found = read_table([path]).sightings
+    found = read_table([path]).detections
     assert list(found["stone"]) == ["Stein Ä"] * 2
     assert list(found["x"]) == [2.0, 2.5]
 
@@ -129,7 +129,7 @@ def test_tidy_table_in_any_order_keeps_spin_and_uncertainty(tmp_path: Path) -> N
         "seen;theta;y;x;sd_x;stone;t\n"
         "1;90,5;1;2;0,01;A;0,04\n0;9;9;9;0,01;A;0,08\n1;;3;4;;B;0,04\n1;97,5;1;2,1;0,01;A;0,12\n"
     )
-    found = read(tmp_path, text).sightings
+    found = read(tmp_path, text).detections
     assert list(found["stone"]) == ["A", "A", "B"]
     assert list(found["t"]) == [0.04, 0.12, 0.04]
     # Our own angles run on: neither wrapped nor degrees, whatever they begin with.
@@ -143,21 +143,21 @@ def test_own_tracks_come_back(tmp_path: Path) -> None:
     table = table.assign(**{f"sd_{n}": 0.01 for n in ("x", "y", "theta", "vx", "vy", "omega")})
     write_tracks(table, tmp_path / "tracks.csv")
     found = read_table([tmp_path / "tracks.csv"])
-    assert_same(found.sightings, truth(), 1e-8)
-    assert (found.sightings["sd_y"] == 0.01).all()
+    assert_same(found.detections, truth(), 1e-8)
+    assert (found.detections["sd_y"] == 0.01).all()
     assert found.warnings == ()
 
 
 @pytest.mark.parametrize(("unit", "metres"), [("cm", 0.01), ("mm", 0.001), ("in", 0.0254)])
 def test_length_unit(tmp_path: Path, unit: str, metres: float) -> None:
     text = "t,x,y\n0.00,10,-20\n0.04,14,-20\n"
-    asked = read(tmp_path, text, length_unit=unit).sightings
+    asked = read(tmp_path, text, length_unit=unit).detections
     np.testing.assert_allclose(asked["x"], np.array([10, 14]) * metres)
     told = read(tmp_path, text.replace("x,y", f"x ({unit}),y ({unit})"))
-    pd.testing.assert_frame_equal(told.sightings, asked)
+    pd.testing.assert_frame_equal(told.detections, asked)
     assert unit in told.warnings[0]
     second_row = read(tmp_path, text.replace("x,y\n", f"x,y\ns,{unit},{unit}\n"))
-    pd.testing.assert_frame_equal(second_row.sightings, asked)
+    pd.testing.assert_frame_equal(second_row.detections, asked)
 
 
 def test_wide_table_without_time_needs_the_rate(tmp_path: Path) -> None:
@@ -166,7 +166,7 @@ def test_wide_table_without_time_needs_the_rate(tmp_path: Path) -> None:
     )
     with pytest.raises(InputError, match="no time column"):
         read(tmp_path, text)
-    found = read(tmp_path, text, fps=10).sightings
+    found = read(tmp_path, text, fps=10).detections
     a = found[found["stone"] == "a"]
     np.testing.assert_allclose(a["t"], np.arange(60) / 10)
     np.testing.assert_allclose(a["theta"], 3 + 0.1 * np.arange(60), atol=1e-6)
@@ -176,14 +176,14 @@ def test_wide_table_without_time_needs_the_rate(tmp_path: Path) -> None:
 def test_whole_numbers_as_time_are_frames_or_refused(tmp_path: Path) -> None:
     text = "t,x,y\n1,0,0\n2,0.1,0\n4,0.3,0\n"
     frames = read(tmp_path, text, fps=25)
-    assert list(frames.sightings["t"]) == [0.04, 0.08, 0.16]
+    assert list(frames.detections["t"]) == [0.04, 0.08, 0.16]
     assert "taken as frames" in frames.warnings[0]
     with pytest.raises(InputError, match=r"whole numbers: frames\? give their rate"):
         read(tmp_path, text)
     seconds = "t,x,y\n1.000,0,0\n2.000,0.1,0\n4.000,0.3,0\n"
-    assert list(read(tmp_path, seconds).sightings["t"]) == [1, 2, 4]
+    assert list(read(tmp_path, seconds).detections["t"]) == [1, 2, 4]
     ms = read(tmp_path, "t (ms),x,y\n40,0,0\n80,0.1,0\n160,0.3,0\n")
-    np.testing.assert_allclose(ms.sightings["t"], [0.04, 0.08, 0.16])
+    np.testing.assert_allclose(ms.detections["t"], [0.04, 0.08, 0.16])
 
 
 def test_angles_about_the_origin_are_no_spin(tmp_path: Path) -> None:
@@ -191,12 +191,12 @@ def test_angles_about_the_origin_are_no_spin(tmp_path: Path) -> None:
     x, y = 1 - 2 * t, 0.5 + t
     about = np.arctan2(y, x)
     greek = pd.DataFrame({"t": t, "x": x, "y": y, "θ": about, "ω": 1.0})
-    assert read(tmp_path, greek.to_csv(index=False)).sightings["theta"].isna().all()
+    assert read(tmp_path, greek.to_csv(index=False)).detections["theta"].isna().all()
     latin = read(tmp_path, greek.rename(columns={"θ": "theta"}).to_csv(index=False))
-    assert latin.sightings["theta"].isna().all()
+    assert latin.detections["theta"].isna().all()
     assert "about the origin" in latin.warnings[0]
     spin = greek.rename(columns={"θ": "theta"}).assign(theta=1.5 * t)
-    own = read(tmp_path, spin.to_csv(index=False)).sightings
+    own = read(tmp_path, spin.to_csv(index=False)).detections
     np.testing.assert_allclose(own["theta"], 1.5 * t)
 
 
@@ -206,20 +206,20 @@ def test_degrees_by_evidence_or_by_word(tmp_path: Path) -> None:
     wrapped = table.assign(theta=table["theta"] % 360)
     for source in (table, wrapped):
         found = read(tmp_path, source.to_csv(index=False))
-        np.testing.assert_allclose(found.sightings["theta"], np.radians(90 + 70 * t))
+        np.testing.assert_allclose(found.detections["theta"], np.radians(90 + 70 * t))
         assert "degrees" in found.warnings[0]
     rows = table.assign(stone="A", theta=table["theta"] - 90)  # that begin at 0 say nothing
     found = read(tmp_path, rows.to_csv(index=False))
-    np.testing.assert_allclose(found.sightings["theta"], np.radians(70 * t))
+    np.testing.assert_allclose(found.detections["theta"], np.radians(70 * t))
     assert "degrees" in found.warnings[0]
     far = table.assign(stone="A", theta=90 + 2 * t)  # continuous: after many turns
     found = read(tmp_path, far.to_csv(index=False))
-    np.testing.assert_allclose(found.sightings["theta"], 90 + 2 * t)
+    np.testing.assert_allclose(found.detections["theta"], 90 + 2 * t)
     slow = table.assign(theta=2 * t)
     text = slow.to_csv(index=False)
-    np.testing.assert_allclose(read(tmp_path, text).sightings["theta"], 2 * t)
+    np.testing.assert_allclose(read(tmp_path, text).detections["theta"], 2 * t)
     told = read(tmp_path, text, angle_unit="deg")
-    np.testing.assert_allclose(told.sightings["theta"], np.radians(2 * t))
+    np.testing.assert_allclose(told.detections["theta"], np.radians(2 * t))
     assert told.warnings == ()
 
 
@@ -229,11 +229,11 @@ def test_headerless_velocities_are_no_second_stone(tmp_path: Path) -> None:
     rows = np.column_stack([t, x, y, np.full(40, 2.0), 3 * np.cos(3 * t)])
     text = "\n".join("\t".join(f"{v:.6f}" for v in row) for row in rows)
     found = read(tmp_path, text)
-    assert list(found.sightings["stone"].unique()) == ["shot"]
+    assert list(found.detections["stone"].unique()) == ["shot"]
     assert "velocities" in found.warnings[0]
     rows[:, 3:] += 0.5  # now they are the places of another stone
     text = "\n".join("\t".join(f"{v:.6f}" for v in row) for row in rows)
-    assert list(read(tmp_path, text).sightings["stone"].unique()) == ["A", "B"]
+    assert list(read(tmp_path, text).detections["stone"].unique()) == ["A", "B"]
 
 
 NONSENSE = {
@@ -307,7 +307,7 @@ def test_missing_file_folder_and_bad_options(tmp_path: Path) -> None:
 def test_a_stone_without_any_place_is_said_to_be_left_out(tmp_path: Path) -> None:
     text = "stone,t,x,y\n" + "".join(f"A,{k / 10},0,{k / 10}\nB,{k / 10},,1\n" for k in range(9))
     found = read(tmp_path, text)
-    assert {*found.sightings["stone"]} == {"A"}
+    assert {*found.detections["stone"]} == {"A"}
     assert any("B has no place in any row; left out" in text for text in found.warnings)
 
 
@@ -337,7 +337,7 @@ def test_one_picture_has_places_and_no_rate(tmp_path: Path) -> None:
     found = read(tmp_path, "stone,t,x,y\nA,0,1,1\nB,0,0,1\nC,0,0,2\n")
     assert found.fps is None
     assert found.warnings == ()
-    assert list(found.sightings["frame"]) == [0, 0, 0]
+    assert list(found.detections["frame"]) == [0, 0, 0]
 
 
 # Files that Tracker and its users wrote.
@@ -351,7 +351,7 @@ def test_every_export_at_hand_is_read_or_refused(shared: Path) -> None:
     refused = {}
     for path in _texts(shared / "tracker" / "samples") + _texts(shared / "tracker" / "real"):
         try:
-            assert len(read_table([path]).sightings) > 0
+            assert len(read_table([path]).detections) > 0
         except InputError as refusal:
             assert "\n" not in str(refusal)
             refused[path.name] = str(refusal)
@@ -374,7 +374,7 @@ def test_every_export_at_hand_is_read_or_refused(shared: Path) -> None:
 )
 def test_all_dialects_of_one_shot_agree(shared: Path, family: str, best: str) -> None:
     folder = shared / "tracker" / "samples"
-    truth_rows = read_table([folder / best]).sightings.set_index(["stone", "frame"])
+    truth_rows = read_table([folder / best]).detections.set_index(["stone", "frame"])
     if family == "moving_":
         paths = [p for p in _texts(folder) if p.name.startswith(family)]
     else:
@@ -384,7 +384,7 @@ def test_all_dialects_of_one_shot_agree(shared: Path, family: str, best: str) ->
     for path in paths:
         if "angles" in path.name:
             continue
-        rows = read_table([path]).sightings
+        rows = read_table([path]).detections
         formatted = "fullprecision" not in path.name and "reopening" not in path.name
         # A table copy knows no frames: match by time.
         rows = rows.assign(frame=np.round(rows["t"] * 30).astype(int))
@@ -401,13 +401,13 @@ def test_rows_between_the_steps_of_a_clip_are_no_places(shared: Path) -> None:
     folder = shared / "tracker" / "samples"
     step2 = sorted(p for p in _texts(folder) if p.name.startswith("step2_"))
     best = folder / "step2_export_one_track_all_columns_fullprecision_tab.txt"
-    wanted = read_table([best]).sightings.set_index("t")
+    wanted = read_table([best]).detections.set_index("t")
     assert (np.diff(wanted["frame"]) == 2).all()
     compared = 0
     for path in step2:
         if "angles" in path.name:
             continue
-        rows = read_table([path]).sightings
+        rows = read_table([path]).detections
         rows = rows[rows["stone"].str.startswith("red")]
         if rows.empty:
             continue
@@ -427,7 +427,7 @@ def test_two_pucks_without_header(shared: Path) -> None:
     raw = np.loadtxt(path, delimiter=";")
     found = read_table([path], length_unit="cm")
     for k, name in enumerate("AB"):
-        rows = found.sightings[found.sightings["stone"] == name]
+        rows = found.detections[found.detections["stone"] == name]
         np.testing.assert_allclose(rows["t"], raw[:, 0], atol=1e-9)
         np.testing.assert_allclose(rows[["x", "y"]], raw[:, 1 + 2 * k : 3 + 2 * k] / 100)
     assert found.fps == pytest.approx(100)
@@ -441,7 +441,7 @@ def test_discs_of_motion_capture(shared: Path) -> None:
     for path in paths:
         found = read_table([path], fps=500)
         raw = pd.read_csv(path)
-        for name, rows in found.sightings.groupby("stone"):
+        for name, rows in found.detections.groupby("stone"):
             assert len(rows) == len(raw)
             np.testing.assert_allclose(rows["x"], raw[f"c_{name}_x"])
             turns = (rows["theta"].to_numpy() - raw[f"ang_{name}"]) / (2 * np.pi)
@@ -462,8 +462,8 @@ def test_the_team_of_a_table_is_kept(tmp_path: Path) -> None:
             for k in range(5)
         )
     )
-    found = read_table([path]).sightings
+    found = read_table([path]).detections
     assert teams(found) == {"A": "Norway", "B": "Great Britain"}
     copy = tmp_path / "copy.csv"
     write_csv(found, copy)
-    assert teams(read_table([copy]).sightings) == teams(found)
+    assert teams(read_table([copy]).detections) == teams(found)

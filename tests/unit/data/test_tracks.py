@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from curlshot.data.errors import InputError
 from curlshot.data.tracker import read_table
 from curlshot.data.tracks import (
-    SIGHTING_COLUMNS,
+    DETECTION_COLUMNS,
     TRACK_COLUMNS,
-    check_sightings,
+    check_detections,
     empty_tracks,
     read_tracks,
     stone_name,
@@ -32,31 +32,31 @@ def shot() -> pd.DataFrame:
 
 
 def full_tracks() -> pd.DataFrame:
-    table = check_sightings(shot()).assign(seen=1)
+    table = check_detections(shot()).assign(seen=1)
     rest = [name for name in TRACK_COLUMNS if name not in table]
     return table.assign(**dict.fromkeys(rest, 1 / 3), theta=0.123456789)
 
 
 def test_missing_columns_are_filled_and_rows_sorted() -> None:
     mixed = shot().sample(frac=1, random_state=1).sort_values("t", kind="stable")
-    table = check_sightings(mixed)
-    assert tuple(table.columns) == SIGHTING_COLUMNS
+    table = check_detections(mixed)
+    assert tuple(table.columns) == DETECTION_COLUMNS
     assert list(table["stone"]) == ["A"] * 5 + ["B"] * 3
     assert list(table["frame"]) == [0, 1, 2, 3, 4, 2, 3, 4]
     assert table[["theta", "sd_x", "sd_y", "sd_theta"]].isna().all(axis=None)
-    pd.testing.assert_frame_equal(check_sightings(table), table)
+    pd.testing.assert_frame_equal(check_detections(table), table)
 
 
-def test_rows_without_a_place_are_no_sightings() -> None:
+def test_rows_without_a_place_are_no_detections() -> None:
     table = shot()
     table.loc[1, "x"] = np.nan
     table.loc[6, "y"] = np.nan
-    assert len(check_sightings(table)) == len(table) - 2
+    assert len(check_detections(table)) == len(table) - 2
 
 
 def test_numbers_as_text_are_numbers() -> None:
     table = shot().astype(str)
-    pd.testing.assert_frame_equal(check_sightings(table), check_sightings(shot()))
+    pd.testing.assert_frame_equal(check_detections(table), check_detections(shot()))
 
 
 @pytest.mark.parametrize(
@@ -77,11 +77,11 @@ def test_numbers_as_text_are_numbers() -> None:
     ],
 )
 def test_faults_are_named(change: dict[str, object], reason: str) -> None:
-    table = check_sightings(shot()).astype(object)
+    table = check_detections(shot()).astype(object)
     for name, wrong in change.items():
         table.loc[2, name] = wrong
     with pytest.raises(InputError, match=reason) as refusal:
-        check_sightings(table, "shot.csv")
+        check_detections(table, "shot.csv")
     assert str(refusal.value).startswith("shot.csv: ")
 
 
@@ -89,7 +89,7 @@ def test_all_faults_stand_in_one_line() -> None:
     table = shot().assign(sd_x=-1.0)
     table.loc[2, "t"] = 0.0
     with pytest.raises(InputError) as refusal:
-        check_sightings(table)
+        check_detections(table)
     assert "time goes back" in str(refusal.value)
     assert "negative" in str(refusal.value)
     assert "\n" not in str(refusal.value)
@@ -98,14 +98,14 @@ def test_all_faults_stand_in_one_line() -> None:
 @pytest.mark.parametrize("gone", ["stone", "t", "x", "y"])
 def test_needed_columns(gone: str) -> None:
     with pytest.raises(InputError, match=f"no column {gone}"):
-        check_sightings(shot().drop(columns=gone))
+        check_detections(shot().drop(columns=gone))
 
 
 def test_a_table_without_places_is_refused() -> None:
     with pytest.raises(InputError, match="no row with a place"):
-        check_sightings(shot().assign(x=np.nan))
+        check_detections(shot().assign(x=np.nan))
     with pytest.raises(InputError, match="no row with a place"):
-        check_sightings(empty_tracks())
+        check_detections(empty_tracks())
 
 
 def test_tracks_come_back_to_nine_digits(tmp_path: Path) -> None:
@@ -114,8 +114,8 @@ def test_tracks_come_back_to_nine_digits(tmp_path: Path) -> None:
     text = (tmp_path / "out" / "tracks.csv").read_text()
     assert text.splitlines()[0] == ",".join(TRACK_COLUMNS)
     assert "\r" not in text
-    found = read_table([tmp_path / "out" / "tracks.csv"]).sightings
-    wanted = check_sightings(tracks)
+    found = read_table([tmp_path / "out" / "tracks.csv"]).detections
+    wanted = check_detections(tracks)
     pd.testing.assert_frame_equal(found, wanted, rtol=1e-8)
 
 
@@ -123,7 +123,7 @@ def test_rows_that_the_filter_carried_are_no_measurements(tmp_path: Path) -> Non
     tracks = full_tracks()
     tracks.loc[3, "seen"] = 0
     write_tracks(tracks, tmp_path / "tracks.csv")
-    assert len(read_table([tmp_path / "tracks.csv"]).sightings) == len(tracks) - 1
+    assert len(read_table([tmp_path / "tracks.csv"]).detections) == len(tracks) - 1
 
 
 def test_names_that_look_like_numbers_stay_names(tmp_path: Path) -> None:
@@ -173,7 +173,7 @@ def test_any_text_is_read_or_refused(tmp_path: Path, cells: list[str]) -> None:
     path = tmp_path / "tracks.csv"
     path.write_text("".join(cells))
     try:
-        table = read_table([path]).sightings
+        table = read_table([path]).detections
     except InputError:
         return
     assert np.isfinite(table[["t", "x", "y"]].to_numpy()).all()
@@ -202,7 +202,7 @@ def test_written_tracks_without_sense_are_refused(tmp_path: Path, wrong: str) ->
 
 def test_teams_are_kept_in_all_that_is_written(tmp_path: Path) -> None:
     given = shot().assign(team=["red"] * 4 + [None] * 4)
-    table = check_sightings(given)
+    table = check_detections(given)
     assert teams(table) == {"A": "red", "B": ""}
     path = tmp_path / "tracks.csv"
     write_tracks(full_tracks().assign(team=table["team"]), path)

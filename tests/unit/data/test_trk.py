@@ -81,14 +81,14 @@ def test_what_was_done_to_the_picture_and_between_marks_is_told() -> None:
 
 def test_length_unit_of_the_project(tmp_path: Path) -> None:
     root = '<property name="length_unit" type="string">cm</property>'
-    plain = read_table([put(tmp_path, project())]).sightings
+    plain = read_table([put(tmp_path, project())]).detections
     found = read_table([put(tmp_path, project(root=root))])
-    np.testing.assert_allclose(found.sightings["x"], plain["x"] / 100)
+    np.testing.assert_allclose(found.detections["x"], plain["x"] / 100)
     assert not [text for text in found.warnings if "unit" in text or "header" in text]
     with pytest.raises(InputError, match="length unit is cm, as the project says, not ft"):
         read_table([put(tmp_path, project(root=root))], length_unit="ft")
     odd = put(tmp_path, project(root=root.replace("cm", "ell")))
     with pytest.raises(InputError, match="“ell”, which is unknown here; known are"):
         read_table([odd])
-    named = read_table([odd], length_unit="cm").sightings
+    named = read_table([odd], length_unit="cm").detections
     np.testing.assert_allclose(named["x"], plain["x"] / 100)

@@ -10,7 +10,7 @@ from curlshot.tests.unit.data.dialects import KEYS, MARKS, numbers, project, put
 
 
 def test_places_are_those_of_the_moving_coordinate_system(tmp_path: Path) -> None:
-    found = read_table([put(tmp_path, project())]).sightings.set_index(["stone", "frame"])
+    found = read_table([put(tmp_path, project())]).detections.set_index(["stone", "frame"])
     for (stone, frame), row in found.iterrows():
         px, py = MARKS[stone][frame]
         ox, oy, angle, sx, sy = KEYS[0 if frame < 3 else 3]
@@ -22,14 +22,14 @@ def test_places_are_those_of_the_moving_coordinate_system(tmp_path: Path) -> Non
 def test_only_steps_of_the_clip_count_and_time_starts_there(tmp_path: Path) -> None:
     clip = numbers(startframe=1, stepsize=2, stepcount=2, starttime=500)
     found = read_table([put(tmp_path, project(keys={0: KEYS[0]}, clip=clip))])
-    assert list(found.sightings["frame"]) == [1, 3]
-    np.testing.assert_allclose(found.sightings["t"], [0.5, 0.58])
+    assert list(found.detections["frame"]) == [1, 3]
+    np.testing.assert_allclose(found.detections["t"], [0.5, 0.58])
     assert any("blue has no mark in the clip" in text for text in found.warnings)
 
 
 def test_frames_before_a_shift_are_dropped(tmp_path: Path) -> None:
     clip = numbers(startframe=2, frameshift=2)
-    found = read_table([put(tmp_path, project(clip=clip))]).sightings
+    found = read_table([put(tmp_path, project(clip=clip))]).detections
     assert list(found["frame"][found["stone"] == "red"]) == [0, 1, 2, 3]
 
 
@@ -41,8 +41,8 @@ def test_reference_frame_gives_the_origin_and_is_left_out(tmp_path: Path) -> Non
     root = '<property name="referenceframe" type="string">base</property>'
     keys = {0: (0.0, 0.0, 0.0, 10.0, 10.0)}
     found = read_table([put(tmp_path, project(marks, keys, root=root))])
-    assert list(found.sightings["stone"]) == ["red"] * 4
-    np.testing.assert_allclose(found.sightings["x"], [5, 5, 4, 4])
+    assert list(found.detections["stone"]) == ["red"] * 4
+    np.testing.assert_allclose(found.detections["x"], [5, 5, 4, 4])
     assert any("relative to base" in text for text in found.warnings)
 
 
@@ -51,7 +51,7 @@ def test_uneven_frames_of_the_video_keep_their_times(tmp_path: Path) -> None:
         '<property name="array" type="string">{0,40,80,160,200,240}</property></property>'
     )
     found = read_table([put(tmp_path, project(video=stamps, duration=48.0))])
-    red = found.sightings[found.sightings["stone"] == "red"]
+    red = found.detections[found.detections["stone"] == "red"]
     np.testing.assert_allclose(red["t"], np.array([0, 40, 80, 160, 200, 240]) / 1000)
     assert any("uneven" in text for text in found.warnings)
 

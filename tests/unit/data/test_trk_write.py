@@ -9,7 +9,7 @@ import pytest
 
 from curlshot.data.project import read_project, unpack_clip
 from curlshot.data.tracker import read_table
-from curlshot.data.tracks import check_sightings
+from curlshot.data.tracks import check_detections
 from curlshot.data.trk import Coordinates
 from curlshot.data.trk_write import View, plain_view, project_xml, write_trk, write_trz
 
@@ -22,7 +22,7 @@ def shot(even: bool = True) -> pd.DataFrame:
     t = frame / 30 if even else np.cumsum(rng.uniform(0.02, 0.06, len(frame)))
     a = pd.DataFrame({"stone": "A", "frame": frame, "t": t, "x": t, "y": np.sin(t), "theta": 3 * t})
     b = a.assign(stone='b & "c" <d>', x=-t / 3, theta=np.nan)[rng.uniform(size=len(t)) > 0.3]
-    return check_sightings(pd.concat([a.assign(team="#c02020"), b]))
+    return check_detections(pd.concat([a.assign(team="#c02020"), b]))
 
 
 def moving_view(frames: np.ndarray) -> View:
@@ -41,7 +41,7 @@ def test_a_written_project_reads_back(tmp_path: Path, even: bool) -> None:
     marks = view.coordinates.pixels(table["frame"], table[["x", "y"]].to_numpy()) + 3.0
     write_trk(project_xml(table, view, marks), path)
     found = read_table([path])
-    pd.testing.assert_frame_equal(found.sightings[SAME], table[SAME], check_exact=True)
+    pd.testing.assert_frame_equal(found.detections[SAME], table[SAME], check_exact=True)
     assert found.masses == {}
     project = read_project(path)
     written = np.concatenate([mass.marks for mass in project.masses])
@@ -56,13 +56,13 @@ def test_what_tracker_saves_again_reads_by_its_marks(tmp_path: Path) -> None:
     marks = view.coordinates.pixels(table["frame"], table[["x", "y"]].to_numpy())
     write_trk(project_xml(table, view, marks), path)
     path.write_text(path.read_text("utf-8").replace('"measured"', '"unknown"'), "utf-8")
-    found = read_table([path]).sightings
+    found = read_table([path]).detections
     np.testing.assert_allclose(found[["t", "x", "y"]], table[["t", "x", "y"]], rtol=0, atol=1e-9)
     kept = ["frame", "theta", "sd_x", "sd_y"]
     pd.testing.assert_frame_equal(found[kept], table[kept])
     text = path.read_text("utf-8").replace('"string">m<', '"string">cm<')
     path.write_text(text.replace('">0.01<', '">a word<', 1), "utf-8")
-    rescaled = read_table([path]).sightings
+    rescaled = read_table([path]).detections
     np.testing.assert_allclose(rescaled["x"], table["x"] / 100)
     np.testing.assert_allclose(rescaled["sd_y"], 0.003)
     assert rescaled["sd_theta"].isna().sum() == 1
@@ -80,7 +80,7 @@ def test_damaged_exact_places_are_not_used(tmp_path: Path, damage: str) -> None:
         with pytest.raises(Exception, match="no number"):
             read_table([path])
         return
-    found = read_table([path]).sightings
+    found = read_table([path]).detections
     np.testing.assert_allclose(found[["x", "y"]], table[["x", "y"]], rtol=0, atol=1e-9)
 
 
@@ -112,7 +112,7 @@ def test_an_archive_holds_the_clip_under_its_name_in_the_project(tmp_path: Path)
     view = replace(plain_view(table), video=("videos/c.mp4",))
     project = project_xml(table, view, np.zeros((len(table), 2)))
     write_trz(project, tmp_path / "shot.trz", {"videos/c.mp4": clip})
-    found = read_table([tmp_path / "shot.trz"]).sightings
+    found = read_table([tmp_path / "shot.trz"]).detections
     pd.testing.assert_frame_equal(found[SAME], table[SAME], check_exact=True)
     (tmp_path / "to").mkdir()
     _, files = unpack_clip(tmp_path / "shot.trz", None, tmp_path / "to")
@@ -142,4 +142,4 @@ def test_simulations_are_external_models_at_the_steps_of_the_clip(tmp_path: Path
     assert len(xs) == 20
     np.testing.assert_allclose([float(v) for v in xs[5:]], model["x"])
     # Models are no measurements.
-    assert len(read_table([path]).sightings) == len(table)
+    assert len(read_table([path]).detections) == len(table)

@@ -111,7 +111,7 @@ def stretches_of(seen: pd.DataFrame, radius: float = RADIUS) -> list[Stretch]:
 @pytest.mark.parametrize("stated", [True, False])
 @pytest.mark.parametrize("slow", [0.0, 0.004])
 def test_innovations_of_a_shot_are_as_large_as_expected(stated: bool, slow: float) -> None:
-    # How its sightings err is not told, or only in part.
+    # How its detections err is not told, or only in part.
     each = []
     for seed in range(61, 67):
         rng = np.random.default_rng(seed)
@@ -126,7 +126,7 @@ def test_innovations_of_a_shot_are_as_large_as_expected(stated: bool, slow: floa
     assert len(found) > 200
     for axis in range(3):
         told = found[np.isfinite(found[:, axis]), axis]
-        # What the ice may do is more than it does here, and how sightings err is not quite known.
+        # What the ice may do is more than it does here, and how detections err is not quite known.
         low, high = chi2.ppf([0.025, 0.975], len(told)) / len(told)
         assert 0.9 * low < np.mean(told**2) < 1.1 * high
 

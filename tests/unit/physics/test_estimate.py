@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from curlshot.data.results import Estimate, Friction
-from curlshot.data.tracks import check_sightings
+from curlshot.data.tracks import check_detections
 from curlshot.physics.estimate import Estimates, _of_two, _times, estimate
 from curlshot.physics.kalman import smooth
 from curlshot.physics.local_fit.contacts import find_contacts
@@ -235,7 +235,7 @@ def test_what_cannot_be_told_is_none_and_said() -> None:
     assert cut.restitution.value is None
 
 
-def test_no_sightings_at_all() -> None:
+def test_no_detections_at_all() -> None:
     seen = watch(hit_motion(), np.random.default_rng(21)).iloc[:0]
     assert measure(seen).collisions == ()
     assert measure(seen).warnings
@@ -243,7 +243,7 @@ def test_no_sightings_at_all() -> None:
 
 def test_columns_that_a_table_lacks_are_as_good_as_empty_ones() -> None:
     bare = watch(hit_motion(), np.random.default_rng(23))[["stone", "t", "x", "y"]]
-    full = check_sightings(bare)
+    full = check_detections(bare)
     hits = find_contacts(bare, RADIUS)
     assert len(hits) == 1
     assert hits == find_contacts(full, RADIUS)
@@ -316,7 +316,7 @@ def test_stones_that_gain_speed_have_no_friction(gain: float, whys: list[str]) -
     table = pd.DataFrame({"stone": "A", "frame": np.arange(60), "t": t, "x": 0.0})
     table["y"] = 0.5 * t + 0.5 * gain * t**2
     table = table.assign(sd_x=0.002, sd_y=0.002)
-    found = estimate(check_sightings(table), (), radius=0.1455)
+    found = estimate(check_detections(table), (), radius=0.1455)
     assert found.friction.value is None
     for why in whys:
         assert any(why in text for text in found.warnings)
@@ -381,7 +381,7 @@ def test_friction_of_the_whole_shot_that_is_not_that_of_the_glides_is_not_used(
 
 
 def beside_its_centre(spin: float, way: float) -> pd.DataFrame:
-    """Sightings of a hit whose thrown stone has its cap 6 mm beside its centre."""
+    """Detections of a hit whose thrown stone has its cap 6 mm beside its centre."""
     starts = [Start(0.06, -1.6, 0.0, 1.5, 0.3, spin), Start(0.0, 0.0, 0.0, 0.0, 1.0)]
     motion = simulate(starts, 4.0, ice=Ice(b=0.0109), impact=Impact(0.83), step=5e-4, keep_every=4)
     seen = watch(motion, np.random.default_rng(3), sd=0.001)

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from curlshot.data.tracks import TRACK_COLUMNS, check_sightings
+from curlshot.data.tracks import TRACK_COLUMNS, check_detections
 from curlshot.physics.filter import reference_filter as reference
 from curlshot.physics.filter.rate_filter import filtered
 from curlshot.physics.filter.stretch import Filter
@@ -59,7 +59,7 @@ def test_slow_stones_are_slowed_more_on_real_ice(speed: float) -> None:
     for _ in range(8):
         table = pd.DataFrame({"stone": "A", "frame": np.arange(len(t)), "t": t})
         table["x"], table["y"] = rng.normal(0, 0.003, len(t)), rng.normal(y, 0.003)
-        tracks = smooth(check_sightings(table.assign(sd_x=0.003, sd_y=0.003)), (), radius=RADIUS)
+        tracks = smooth(check_detections(table.assign(sd_x=0.003, sd_y=0.003)), (), radius=RADIUS)
         off = np.column_stack([(tracks["y"] - y) / tracks["sd_y"], tracks["vy"] - vy])
         off[:, 1] /= tracks["sd_vy"]
         pulls.append(off[[0, -1]])
@@ -121,7 +121,7 @@ def test_an_angle_seen_beside_a_hit_is_kept_whatever_becomes_of_the_spin() -> No
     t = np.arange(60) / 25
     turned = 9.0 * np.minimum(t - 1.0, 0.0) - 9.0 * np.maximum(t - 1.0, 0.0)
     seen = pd.DataFrame({"stone": "A", "t": t, "x": 0.0, "y": np.minimum(t - 1.0, 0.0)})
-    seen = check_sightings(seen.assign(theta=turned, sd_x=0.002, sd_y=0.002, sd_theta=0.01))
+    seen = check_detections(seen.assign(theta=turned, sd_x=0.002, sd_y=0.002, sd_theta=0.01))
     tracks = smooth(seen, [Contact(1.0, 0.005, ("A", "B"), (0.0, 1.0))], radius=RADIUS)
     assert np.abs(tracks["theta"] - turned).max() < 0.05
     beside = tracks["omega"][t == 1.0].item(), tracks["sd_omega"][t == 1.0].item()
@@ -147,7 +147,7 @@ def test_a_stone_stopped_dead_was_as_fast_until_then() -> None:
         t = np.arange(60) / 25
         stop = t[35] + 0.04 * rng.random()
         y = 1.1 * np.minimum(t, stop) - 1.1 * stop
-        seen = check_sightings(
+        seen = check_detections(
             pd.DataFrame(
                 {
                     "stone": "A",
@@ -204,13 +204,13 @@ def test_a_way_too_short_to_be_seen_twice_is_told_by_its_ends() -> None:
     motion = hit_motion(1.8, 0.0, after=1.0, others=[Start(0.03, 2 * RADIUS + 0.07)])
     first, second = motion.hits
     middle = (first.t + second.t) / 2
-    for sightings in (0, 1):
+    for detections in (0, 1):
         pulls = []
         for seed in range(8):
             rng = np.random.default_rng([37, seed])
             seen = watch(motion, rng, fps=100, sd=0.001)
             near = seen["t"].between(first.t, second.t) & (seen["stone"] == "B")
-            kept = (seen.loc[near, "t"] - middle).abs().nsmallest(sightings).index
+            kept = (seen.loc[near, "t"] - middle).abs().nsmallest(detections).index
             left = seen.drop(seen.index[near].difference(kept)).reset_index(drop=True)
             contacts = [
                 Contact(hit.t + rng.normal(0, 5e-4), 5e-4, stones, hit.normal)
@@ -244,7 +244,7 @@ def test_outliers_are_refused() -> None:
 @pytest.mark.parametrize("stone", ["A", "B"])
 @pytest.mark.parametrize("since", [0.0, 1.0])
 def test_a_slip_that_a_way_begins_with_is_refused(stone: str, since: float) -> None:
-    """The first of all sightings, and the first after the hit: the next ones are believed."""
+    """The first of all detections, and the first after the hit: the next ones are believed."""
     motion = hit_motion(1.5, 0.05)
     seen = watch(motion, np.random.default_rng(38), sd=0.002)
     first = seen.index[(seen["stone"] == stone) & (seen["t"] > since)][0]
@@ -285,16 +285,16 @@ def test_small_and_empty_tables() -> None:
     assert np.isfinite(two[["x", "y", "vx", "vy"]].to_numpy()).all()
 
 
-def test_what_sightings_share_is_not_averaged_out() -> None:
+def test_what_detections_share_is_not_averaged_out() -> None:
     t = np.arange(50) / 25
     table = pd.DataFrame({"stone": "A", "frame": np.arange(50), "t": t, "x": 1.0, "y": 0.0})
     table = table.assign(theta=np.nan, sd_x=0.002, sd_y=0.002, sd_theta=np.nan)
     table = table.assign(sd_place_x=0.003, sd_place_y=0.006)
-    tracks = smooth(check_sightings(table), (), radius=0.1455)
+    tracks = smooth(check_detections(table), (), radius=0.1455)
     assert (tracks["sd_x"].between(0.003, 0.0036)).all()
     assert (tracks["sd_y"].between(0.006, 0.0064)).all()
     far = table.assign(sd_place_x=0.003 * (1 + np.arange(50)))
-    tracks = smooth(check_sightings(far), (), radius=0.1455)
+    tracks = smooth(check_detections(far), (), radius=0.1455)
     assert tracks["sd_x"].to_numpy() == pytest.approx(far["sd_place_x"].to_numpy(), abs=0.0006)
 
 
@@ -320,7 +320,7 @@ def test_a_stone_at_rest_that_was_moved_unseen_lies_where_it_is_seen(run: Filter
     hidden = (t > 1.05) & (t < 1.55)
     table = table[~hidden]
     unseen = {int(k): float(t[k]) for k in np.flatnonzero(hidden)}
-    tracks = smooth(check_sightings(table), (), radius=RADIUS, run=run, unseen=unseen)
+    tracks = smooth(check_detections(table), (), radius=RADIUS, run=run, unseen=unseen)
     off, sd = (tracks["y"] - y).to_numpy(), tracks["sd_y"].to_numpy()
     assert np.abs(off[~hidden]).max() < 0.001
     assert (tracks["seen"] == ~hidden).all()
@@ -349,10 +349,10 @@ def test_a_stone_that_stops_unseen_and_is_hit_later_was_not_moved(run: Filter) -
     table, when = stopped((3.6, 4.6), x=1.4 * np.maximum(t - 7, 0))
     hitting = pd.DataFrame({"stone": "A", "frame": np.arange(len(t)), "t": t, "y": 0.8})
     hitting["x"] = np.where(t < 7, 1.5, 0.1) * (t - 7) - 2 * RADIUS
-    sightings = check_sightings(pd.concat([hitting, table]))
+    detections = check_detections(pd.concat([hitting, table]))
     contacts = [Contact(7.0, 0.001, ("A", "B"), (1.0, 0.0))]
     unseen = {round(25 * at): float(at) for at in when}
-    tracks = smooth(sightings, contacts, radius=RADIUS, run=run, unseen=unseen)
+    tracks = smooth(detections, contacts, radius=RADIUS, run=run, unseen=unseen)
     b = tracks[(tracks["stone"] == "B") & tracks["t"].between(3.6, 4.6)]
     assert (np.abs(b["y"] - 0.8 + 0.05 * np.maximum(4 - b["t"], 0) ** 2) < 0.003).all()
     assert b["omega"].notna().all()
@@ -364,7 +364,7 @@ def test_a_stone_that_stopped_and_was_turned_unseen_did_not_spin_before(run: Fil
     later = (np.arange(0, 9, 1 / 25) > 6).astype(float)
     table, when = stopped((5.8, 6.4), y=0.3 * later, theta=2.5 * later)
     unseen = {round(25 * at): float(at) for at in when}
-    tracks = smooth(check_sightings(table), (), radius=RADIUS, run=run, unseen=unseen)
+    tracks = smooth(check_detections(table), (), radius=RADIUS, run=run, unseen=unseen)
     before = tracks[tracks["t"].between(5.0, 5.79)]
     assert (np.abs(before["omega"]) < 3 * before["sd_omega"]).all()
     assert np.abs(tracks.loc[tracks["t"] > 6.41, "theta"] - 4.5).max() < 0.02
@@ -379,7 +379,7 @@ def test_a_stray_where_a_moved_stone_comes_back_has_no_say(run: Filter) -> None:
     table, _ = stopped((5.8, 6.4), y=0.3 * later)
     back = table["t"].gt(6.4).idxmax()
     table.loc[back, "y"] -= 0.15
-    tracks = smooth(check_sightings(table), (), radius=RADIUS, run=run)
+    tracks = smooth(check_detections(table), (), radius=RADIUS, run=run)
     after = tracks[tracks["t"] > 6.5]
     assert (after["seen"] == 1).all()
     assert (np.abs(after["y"] - 1.1) < 0.0005).all()

@@ -1,4 +1,4 @@
-"""Sightings whose truth is known: small-step motion seen with noise, and real tracks."""
+"""Detections whose truth is known: small-step motion seen with noise, and real tracks."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from curlshot.data.tracks import check_sightings
+from curlshot.data.tracks import check_detections
 from curlshot.synthetic.detections import NAMES, RADIUS, hit_motion, noisy_detections
 from curlshot.synthetic.physics import Motion
 
@@ -29,7 +29,7 @@ __all__ = [
 
 def watch(motion: Motion, rng: np.random.Generator, **how: float) -> pd.DataFrame:
     """Return checked detections of a motion (see `noisy_detections`)."""
-    return check_sightings(noisy_detections(motion, rng, **how))  # type: ignore[arg-type]
+    return check_detections(noisy_detections(motion, rng, **how))  # type: ignore[arg-type]
 
 
 def uncut(
@@ -62,7 +62,7 @@ def uncut(
         if given:
             table["sd_x"] = table["sd_y"] = size
         tables.append(table[(frames >= 0) | (i > 0)])
-    return check_sightings(pd.concat(tables))
+    return check_detections(pd.concat(tables))
 
 
 def lasting(rng: np.random.Generator, t: Floats, sd: float, memory: float) -> Floats:
@@ -87,7 +87,7 @@ def semireal(
                 drift[k] = keep * drift[k - 1] + np.sqrt(1 - keep**2) * rng.normal(0, slow)
             noise = drift + rng.normal(0, sd, len(group))
             seen.loc[group.index, column] = group[column] + noise
-    return check_sightings(seen[["stone", "frame", "t", "x", "y", "theta"]])
+    return check_detections(seen[["stone", "frame", "t", "x", "y", "theta"]])
 
 
 def airtable(shared: Path) -> pd.DataFrame:
@@ -98,7 +98,7 @@ def airtable(shared: Path) -> pd.DataFrame:
         pd.DataFrame({"stone": name, "t": t, "x": cm[:, 2 * k], "y": cm[:, 2 * k + 1]})
         for k, name in enumerate(("1", "2"))
     ]
-    return check_sightings(pd.concat(pucks))
+    return check_detections(pd.concat(pucks))
 
 
 def discs(shared: Path, number: int) -> pd.DataFrame:
@@ -117,4 +117,4 @@ def discs(shared: Path, number: int) -> pd.DataFrame:
         )
         for name in "ab"
     ]
-    return check_sightings(pd.concat(both))
+    return check_detections(pd.concat(both))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from curlshot.vision.detection.sighting import Sighting
+from curlshot.vision.detection.detection import Detection
 from curlshot.vision.optics.camera import Camera
 
 SIZE = (320, 240)
@@ -16,8 +16,8 @@ def camera(frame: int, **kwargs) -> Camera:
     return Camera(frame, frame / 25, homography, SIZE, **kwargs)
 
 
-def stone(x: float, y: float) -> Sighting:
-    return Sighting(
+def stone(x: float, y: float) -> Detection:
+    return Detection(
         x, y, 1e-3, 1e-3, 0.0, np.zeros(3), 1.0, 2.5, (1.0, 1.0), 0.0, (), (160.0, 120.0), 0.02
     )
 

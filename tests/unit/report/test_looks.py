@@ -14,7 +14,7 @@ from curlshot.report.looks import (
     way_of_play,
 )
 from curlshot.tests.unit.report.looking import camera, stone, table
-from curlshot.vision.detection.sighting import Refusal
+from curlshot.vision.detection.detection import Refusal
 from curlshot.vision.film.clip import Frame
 from curlshot.vision.optics.camera import CameraError
 

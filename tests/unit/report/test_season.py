@@ -10,12 +10,17 @@ import pandas as pd
 import pytest
 
 from curlshot import pipeline
+from curlshot.cli.main import main
+from curlshot.config import Config
 from curlshot.data.errors import InputError
 from curlshot.data.results import Collision, Estimate, Friction, Input, MeasuredState, Results
 from curlshot.data.results_file import write_results
+from curlshot.data.run_folders import find_runs
+from curlshot.outcome import Run
 from curlshot.physics.statistics.season import hits_table, pooled, shots_table
-from curlshot.pipeline import Settings, find_runs, main, season
 from curlshot.report.season import season_figure
+from curlshot.season.batch import run_each
+from curlshot.season.together import season
 
 HIT = Collision(
     1.0, 0.01, ("A", "B"), (0.6, 0.8), 0.82, 0.01,
@@ -168,11 +173,11 @@ def test_folder_without_runs_is_refused(tmp_path: Path) -> None:
 def test_one_bad_clip_does_not_stop_the_others(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def run_or_not(clips: list[Path], out: Path, *_: object) -> pipeline.Run:
+    def run_or_not(clips: list[Path], out: Path, *_: object) -> Run:
         if clips[0].stem == "bad":
             raise InputError(f"{clips[0]}: not a video")
         shot = replace(SHOT, friction=Friction(0.01 + len(clips[0].stem) / 1e4, 0.001))
-        return pipeline.Run(pd.DataFrame(), None, shot, pd.DataFrame(), out)
+        return Run(pd.DataFrame(), None, shot, pd.DataFrame(), out)
 
     monkeypatch.setattr(pipeline, "run", run_or_not)
     for name in ("good.mp4", "bad.mp4", "other.mp4"):
@@ -191,10 +196,10 @@ def test_two_clips_at_once_come_to_what_one_after_the_other_does(tmp_path: Path)
     for name in ("one.mp4", "two.mp4"):
         shutil.copy(pipeline.sample_clip(), tmp_path / name)
     clips = [*sorted(tmp_path.glob("*.mp4")), tmp_path / "none.mp4"]
-    settings = Settings(frames=(0, 12), overlay=False)
+    settings = Config().replace(frames=(0, 12), overlay=False)
     found = {}
     for jobs in (1, 2):
-        done, failed = pipeline.run_each(clips, tmp_path / str(jobs), settings, jobs=jobs)
+        done, failed = run_each(clips, tmp_path / str(jobs), settings, jobs=jobs)
         assert list(done) == ["one", "two"] and list(failed) == ["none"]
         assert all((tmp_path / str(jobs) / name / "report.html").exists() for name in done)
         found[jobs] = done

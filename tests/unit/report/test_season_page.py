@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from curlshot.cli.main import main
 from curlshot.data.results import Estimate, Results
 from curlshot.data.results_file import write_results
-from curlshot.pipeline import main
 from curlshot.tests.unit.report.browser import Browser, needs_chromium
 from curlshot.tests.unit.report.test_page import Page
 from curlshot.tests.unit.report.test_season import BARE, SHOT

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pandas as pd
 import pytest
 
-from curlshot import pipeline
+from curlshot.cli.main import main
 from curlshot.data.coach_units import FEET
 from curlshot.data.results import Prediction
 from curlshot.data.sheet import HOUSE
@@ -89,6 +89,6 @@ def test_the_command_takes_the_unit(tmp_path, capsys, unit: str, said: str):
     tracks = pd.concat([glide("A", (0.3, 3.0), 1.0), glide("B", (0.6, 0.8))])
     tracks.to_csv(tmp_path / "glide.csv", index=False)
     words = ["estimate", "-q", str(tmp_path / "glide.csv"), "-o", str(tmp_path / "out")]
-    assert pipeline.main([*words, "--units", unit]) == 0
+    assert main([*words, "--units", unit]) == 0
     (line,) = [k for k in capsys.readouterr().out.splitlines() if k.startswith("shot stone")]
     assert said in line

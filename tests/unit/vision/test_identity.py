@@ -9,7 +9,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from curlshot.synthetic.physics import Impact, Motion, Start, simulate
-from curlshot.tests.unit.vision.association.test_follow import R, sighting
+from curlshot.tests.unit.vision.association.test_follow import R, detection
 from curlshot.vision.association.follow import Track, follow
 from curlshot.vision.association.rejoin import rejoined
 
@@ -24,7 +24,7 @@ def followed(
     noise: float = 0.002,
     hidden: Hidden = lambda stone, t, place: False,
 ) -> tuple[list[Track], list[set[int]], int]:
-    """Tracks of stones of one colour; per track the stones that it joined; sightings in all."""
+    """Tracks of stones of one colour; per track the stones that it joined; detections in all."""
     rng = np.random.default_rng(8)
     of_stone: dict[int, int] = {}
     frames = []
@@ -34,14 +34,14 @@ def followed(
         for stone, state in enumerate(motion.at(t)):
             if not hidden(stone, t, state[:2]):
                 x, y = state[:2] + rng.normal(0, noise, 2)
-                seen.append(sighting((x, y)))
+                seen.append(detection((x, y)))
                 of_stone[x, y] = stone
         rng.shuffle(seen)
         frames.append((index, t, seen))
     tracks = rejoined(follow(frames, R), R)
     return (
         tracks,
-        [{of_stone[s.x, s.y] for s in track.sightings} for track in tracks],
+        [{of_stone[s.x, s.y] for s in track.detections} for track in tracks],
         len(of_stone),
     )
 
@@ -81,9 +81,9 @@ def test_three_stones_hit_within_a_fifth_of_a_second(
     second = np.array([offsets[1], -np.sqrt((2 * R + gap) ** 2 - offsets[1] ** 2)])
     starts = [Start(offsets[0], 1.0, 0.0, -speed), Start(0.0, 0.0), Start(*second.tolist())]
     motion = simulate(starts, 2.2, impact=Impact(restitution, 0.05), step=5e-4)
-    tracks, joined, sightings = followed(motion, 2.2, fps=fps)
+    tracks, joined, detections = followed(motion, 2.2, fps=fps)
     assert nobody_switched(joined, 3)
-    assert sum(len(track.frames) for track in tracks) == sightings
+    assert sum(len(track.frames) for track in tracks) == detections
 
 
 @settings(max_examples=15, deadline=None)
@@ -127,12 +127,12 @@ def test_leaving_and_entering_the_picture(speed: float, later: float) -> None:
     gap=st.floats(0.1, 0.4),
     share=st.floats(0.1, 0.9),
 )
-@example(speed=2.375, offset=0.0, gap=0.25, share=0.5625)  # four sightings before it
+@example(speed=2.375, offset=0.0, gap=0.25, share=0.5625)  # four detections before it
 def test_a_hit_that_nobody_saw(speed: float, offset: float, gap: float, share: float) -> None:
     starts = [Start(offset, 1.0, 0.0, -speed), Start(0.0, 0.0)]
     motion = simulate(starts, 2.5, impact=Impact(0.8, 0.05), step=1e-3)
     since = motion.hits[0].t - gap * share
-    assume(since > 0.08)  # two sightings before it tell no speed
+    assume(since > 0.08)  # two detections before it tell no speed
 
     def hidden(stone: int, t: float, place: np.ndarray) -> bool:
         return since < t < since + gap

@@ -67,7 +67,7 @@ def test_a_longer_clip_needs_no_more_pictures() -> None:
 
 
 def test_of_a_frame_few_numbers_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where its marks and sightings lie, and its view."""
+    """Where its marks and detections lie, and its view."""
     for module in ("association.watch", "camera_path.follow_house"):
         monkeypatch.setattr(f"curlshot.vision.{module}.ROOM", 0)
     tracemalloc.start()

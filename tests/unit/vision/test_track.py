@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 from scipy.stats import chi2
 
 from curlshot.data.sheet import STONE, Stone
-from curlshot.data.tracks import SIGHTING_COLUMNS, teams
+from curlshot.data.tracks import DETECTION_COLUMNS, teams
 from curlshot.physics.filter.rate_filter import filtered, forward
 from curlshot.physics.filter.stretch import Smoothed, Stretch
 from curlshot.physics.kalman import smooth
 from curlshot.physics.local_fit.contacts import find_contacts
 from curlshot.synthetic.clip import render_still
 from curlshot.synthetic.scoring import score_tracks
-from curlshot.tests.unit.vision.association.test_follow import sighting
+from curlshot.tests.unit.vision.association.test_follow import detection
 from curlshot.tests.unit.vision.detection.test_stones import (
     CAMERA,
     RED,
@@ -71,8 +71,8 @@ def test_the_sample_is_followed_from_end_to_end() -> None:
     truth, cameras = sample_truth()
     clip = open_clip([DATA / "sample.mp4"], frames=(0, 80))
     stones = track_stones(clip, cameras)
-    assert tuple(stones.sightings.columns) == SIGHTING_COLUMNS
-    score = score_tracks(stones.sightings.assign(seen=1), truth[truth["frame"] <= 80], visible=0.5)
+    assert tuple(stones.detections.columns) == DETECTION_COLUMNS
+    score = score_tracks(stones.detections.assign(seen=1), truth[truth["frame"] <= 80], visible=0.5)
     assert score.recall > 0.99
     assert score.switches == 0
     assert not score.false_tracks
@@ -80,13 +80,13 @@ def test_the_sample_is_followed_from_end_to_end() -> None:
     assert score.names["A"] == "A"
     assert score.names["B"] == "B"
     assert score.names["C"] == "C"
-    team = teams(stones.sightings)
+    team = teams(stones.detections)
     assert team["A"] == team["C"] != team["B"]
     assert all(len(colour) == 7 for colour in team.values())
-    turn = stones.sightings[stones.sightings["stone"] == "A"].set_index("frame")["theta"]
+    turn = stones.detections[stones.detections["stone"] == "A"].set_index("frame")["theta"]
     true = truth[truth["stone"] == "A"].set_index("frame")["theta"].loc[turn.index]
     assert (turn - true - (turn - true).mean()).std() < 0.04
-    angles = stones.sightings.dropna(subset="theta").groupby("stone").first()
+    angles = stones.detections.dropna(subset="theta").groupby("stone").first()
     handles = truth.set_index(["stone", "frame"])["theta"]
     for name, ours in score.names.items():
         angle, frame = angles.loc[ours, ["theta", "frame"]]
@@ -105,7 +105,7 @@ def test_a_clip_without_stones_says_so(tmp_path: Path) -> None:
         position=np.array([0.0, 0, 10]),
     )  # fmt: skip
     stones = track_stones(clip, (camera,))
-    assert stones.sightings.empty
+    assert stones.detections.empty
     assert stones.warnings == ("no stones were found on the ice",)
 
 
@@ -118,7 +118,7 @@ def test_where_caps_of_one_lightness_are_all_that_is_told_the_others_are_warned_
     scene, path = scene_of([(0.3, 0.2, RED), (1.4, 0.6, RED)]), tmp_path / "ice.png"
     cv2.imwrite(str(path), without_colours(scene) if grey else render_still(scene, CAMERA))
     stones = track_stones(open_clip([path]), (camera_of(CAMERA, scene),))
-    assert len(stones.sightings) == 2
+    assert len(stones.detections) == 2
     assert ["without colour" in text for text in stones.warnings] == [True] * warned
 
 
@@ -132,7 +132,7 @@ def test_caps_that_are_hardly_told_from_granite_lie_less_surely(tmp_path: Path) 
             tmp_path / "i.png",
         )
         cv2.imwrite(str(path), without_colours(scene))
-        stones = track_stones(open_clip([path]), (camera_of(CAMERA, scene),)).sightings
+        stones = track_stones(open_clip([path]), (camera_of(CAMERA, scene),)).detections
         assert len(stones) == 2
         shared.append(stones[["sd_place_x", "sd_place_y"]].to_numpy().max())
     assert max(shared[:2]) < 0.007
@@ -154,7 +154,7 @@ def test_real_stones(shared: Path, name: str) -> None:
     tracks = pd.read_csv(shared / "clips" / f"semireal_{name}.truth.csv")
     clip = open_clip([shared / "clips" / f"semireal_{name}.mp4"], frames=(40, 110))
     stones = track_stones(clip, cameras, disc=STONE)
-    score = score_tracks(stones.sightings.assign(seen=1), tracks[tracks["frame"].between(40, 110)])
+    score = score_tracks(stones.detections.assign(seen=1), tracks[tracks["frame"].between(40, 110)])
     assert score.recall > 0.97
     assert score.switches == 0
     assert not score.false_tracks
@@ -170,7 +170,7 @@ def test_balls_among_projected_rings_hit_each_other(
 ) -> None:
     clip = open_clip([shared / "clips" / f"{name}.mp4"], frames=(0, last))
     cameras = stick_cameras(clip, (70.0, 360.0, 1173.0, 360.0, 1.9))
-    seen = track_stones(clip, cameras, disc=plain_disc(0.0286)).sightings
+    seen = track_stones(clip, cameras, disc=plain_disc(0.0286)).detections
     (contact,) = find_contacts(seen, 0.0286)
     assert contact.t == pytest.approx(hit, abs=0.05)
     assert {*seen.loc[seen["t"] > hit, "stone"]} == {*contact.stones}
@@ -180,7 +180,7 @@ def test_pucks_on_a_dark_table(shared: Path) -> None:
     clip = open_clip([shared / "clips" / "collision-pucks.mp4"], frames=(2, 31))
     cameras = stick_cameras(clip, (20.0, 219.8, 20.0, 35.9, 0.5))
     stones = track_stones(clip, cameras, disc=plain_disc(0.0465))
-    table = stones.sightings
+    table = stones.detections
     assert table["stone"].value_counts().to_dict() == {"A": 30, "B": 30}
     thrown, other = (table[table["stone"] == name] for name in "AB")
     # The masses are equal: what the two move by in all stays the same through the hit.
@@ -196,7 +196,7 @@ def test_pucks_on_a_dark_table(shared: Path) -> None:
 def test_the_filter_is_no_surer_of_a_clip_than_it_may_be() -> None:
     truth, cameras = sample_truth()
     clip = open_clip([DATA / "sample.mp4"], frames=(0, 80))
-    seen = track_stones(clip, cameras).sightings
+    seen = track_stones(clip, cameras).detections
     stretches: list[Stretch] = []
 
     def spy(stretch: Stretch) -> Smoothed:
@@ -224,8 +224,8 @@ def test_the_filter_is_no_surer_of_a_clip_than_it_may_be() -> None:
 def test_caps_seen_aslant_may_have_been_unrolled_aside(disc: Stone, more: float) -> None:
     """By 2 cm of height for each that the view goes aside; a plain disc shows nothing above it."""
     track = Track()
-    track.add(0, 0.0, sighting((0.5, -12.0)), disc.radius)
-    (seen,) = track.sightings
+    track.add(0, 0.0, detection((0.5, -12.0)), disc.radius)
+    (seen,) = track.detections
     for position, aside in (np.array([0.5, 0.0, 10.0]), more), (None, 0.0):
         cameras = [Camera(0, 0.0, np.eye(3), (160, 120), position=position)]
         off = off_axis(track, slants_of({"A": track}, cameras, disc)["A"])
@@ -258,7 +258,7 @@ def test_stones_that_hardly_turn_are_seen_at_the_height_of_those_that_do(
     tracks, slants = {}, {}
     for time in own:
         tracks[str(time)] = track = Track()
-        track.add(0, time, sighting((0.5, -12.0)), STONE.radius)
+        track.add(0, time, detection((0.5, -12.0)), STONE.radius)
         slants[str(time)] = np.array([[0.1 * time, 0.0]])
     found = _angles(tracks, STONE, slants)
     # Each with the slants of its view.
@@ -272,9 +272,9 @@ def test_stones_that_hardly_turn_are_seen_at_the_height_of_those_that_do(
 def test_no_clip_has_all_of_what_places_may_share() -> None:
     # Places of drawn and cut-out stones were off by 0.7 to 1.1 of their parts' sum.
     track = Track()
-    track.add(0, 0.0, sighting((0.5, 1.0))._replace(sd_place=(0.003, 0.0)), STONE.radius)
-    light = lightness_of(track.times, track.sightings)
-    seen = [track.sightings]
+    track.add(0, 0.0, detection((0.5, 1.0))._replace(sd_place=(0.003, 0.0)), STONE.radius)
+    light = lightness_of(track.times, track.detections)
+    seen = [track.detections]
     by_edges = _by_edges(seen, STONE, False)
     untold = HandleAngles(np.full(1, np.nan), np.full(1, np.nan), np.zeros((1, 2)), np.zeros(2))
     row = _rows("A", track, "", by_edges[0], untold, (light, 0.0))

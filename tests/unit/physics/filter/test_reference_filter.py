@@ -32,7 +32,7 @@ def stretch(rng: np.random.Generator) -> Stretch:
 
 
 def whole(own: Stretch) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Places and rates of x given all sightings at once: a Gaussian conditioned on them."""
+    """Places and rates of x given all detections at once: a Gaussian conditioned on them."""
     along, turning = steps(own)
     known = drift(own, along, turning)
     start, rates = own.start
@@ -66,7 +66,7 @@ def whole(own: Stretch) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_smoothing_conditions_on_all_sightings(seed: int) -> None:
+def test_smoothing_conditions_on_all_detections(seed: int) -> None:
     own = stretch(np.random.default_rng(seed))
     mean, spread, seen = filtered(own)
     its_mean, its_spread = whole(own)

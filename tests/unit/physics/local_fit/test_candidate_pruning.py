@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from curlshot.data.tracks import check_sightings
+from curlshot.data.tracks import check_detections
 from curlshot.physics.local_fit.candidate_pruning import MANY, prune_candidates
 from curlshot.physics.local_fit.candidates import candidates
 from curlshot.physics.local_fit.contacts import find_contacts
@@ -33,7 +33,7 @@ def row(hit: bool) -> pd.DataFrame:
         table = pd.DataFrame({"stone": name, "frame": np.arange(len(t)), "t": t})
         table["x"], table["y"] = (place + rng.normal(0, 0.003, len(t)) for place in (x, y))
         tables.append(table.assign(theta=np.nan, sd_x=0.003, sd_y=0.003, sd_theta=np.nan))
-    return check_sightings(pd.concat(tables))
+    return check_detections(pd.concat(tables))
 
 
 def test_stones_that_go_together_hit_none() -> None:

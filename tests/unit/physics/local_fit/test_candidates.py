@@ -51,7 +51,7 @@ def test_ways_that_cross_beside_a_gap_do_not_cross_in_it(turned: float, count: i
         assert places[rank] == pytest.approx((0.3, 0.8 - 0.7 * turned))
 
 
-def test_ways_through_a_gap_are_told_by_several_sightings_but_not_by_an_earlier_hit() -> None:
+def test_ways_through_a_gap_are_told_by_several_detections_but_not_by_an_earlier_hit() -> None:
     every = np.arange(0, 2.5, 0.04)
     t = every[(every < 1.0) | (every > 1.3)]
     early, late = np.minimum(t - 0.7, 0.0), np.maximum(t - 1.1, 0.0)

@@ -37,7 +37,7 @@ def test_a_hit_is_timed_to_a_fraction_of_a_frame() -> None:
 def test_slow_stones_hit_away_from_where_they_seem_closest(
     speed: float, restitution: float, seed: int
 ) -> None:
-    # Side by side for long, 1 cm of noise tells the closest sighting by chance: the hit lies past
+    # Side by side for long, 1 cm of noise tells the closest detection by chance: the hit lies past
     # where it is sought from there. One such hit was found twice, one 7 standard errors early.
     motion = hit_motion(speed, 0.03, after=1.2, restitution=restitution, friction=0.007)
     seen = watch(motion, np.random.default_rng(seed), fps=60, sd=0.01)
@@ -124,7 +124,7 @@ def test_chain_of_hits_two_frames_apart(shared: Path) -> None:
         assert hits[1].t == pytest.approx(2.3937, abs=0.02)
 
 
-def test_two_side_by_side_are_hit_between_two_sightings() -> None:
+def test_two_side_by_side_are_hit_between_two_detections() -> None:
     rng = np.random.default_rng(6)
     motion = hit_motion(2.0, 0.155, others=(Start(0.325, 0.0),))
     assert [(hit.first, hit.second) for hit in motion.hits] == [(0, 1), (0, 2)]
@@ -185,7 +185,7 @@ def packed(rows: int, come: Start, duration: float) -> Motion:
 
 @pytest.mark.parametrize("seed", [1, 3, 7])
 def test_of_three_packed_stones_the_front_one_drives_both_others(seed: int) -> None:
-    # All of it is between two sightings: that the other two, which touch, met is not needed.
+    # All of it is between two detections: that the other two, which touch, met is not needed.
     rng = np.random.default_rng(seed)
     motion = packed(2, Start(rng.uniform(0.03, 0.05), -1.5, 0.0, 2.0, 0.0, 1.0), 2.0)
     hits = find_contacts(watch(motion, rng, sd=0.001), RADIUS)
@@ -333,7 +333,7 @@ def test_hits_do_not_depend_on_the_axes(turn: float, x: float, y: float, mirror:
     assert np.allclose(other.normal, matrix @ np.array(hit.normal), atol=1e-3)
 
 
-def test_few_or_lonely_sightings_have_no_hits() -> None:
+def test_few_or_lonely_detections_have_no_hits() -> None:
     seen = watch(hit_motion(), np.random.default_rng(8))
     assert find_contacts(seen[seen["stone"] == "A"].reset_index(drop=True), RADIUS) == ()
     assert find_contacts(seen.iloc[:1], RADIUS) == ()

@@ -27,7 +27,7 @@ def test_stones_that_part_or_lie_still_tell_nothing() -> None:
     early = replace(late, t=contact.t)
     found = by_finite_differences({**known, **still}, [early], {"B": 2.0})
     assert found.friction == Estimate()
-    for rest in (early.t, early.t + 0.04):  # at once, or after a single sighting
+    for rest in (early.t, early.t + 0.04):  # at once, or after a single detection
         assert by_finite_differences(known, [early], {"B": rest}).friction == Estimate()
 
 

@@ -16,7 +16,7 @@ T = np.linspace(2.0, 3.0, 21)
 MEETINGS = [Meeting(2.4, ("A", "B"), 0.05)]
 
 
-def test_exact_sightings_give_the_exact_hit() -> None:
+def test_exact_detections_give_the_exact_hit() -> None:
     motion = hit_motion(1.5, 0.1)
     known = traces(watch(motion, np.random.default_rng(61), sd=1e-6))
     meetings = [Meeting(1.01, ("A", "B"), 1 / 30)]
@@ -75,11 +75,11 @@ def test_a_piece_begins_with_the_hit_that_opens_it() -> None:
     assert _origin(piece(np.arange(9, 21), opens=0), trace(), MEETINGS) == 2.4
 
 
-def test_a_piece_that_no_hit_opens_begins_with_its_first_sighting() -> None:
+def test_a_piece_that_no_hit_opens_begins_with_its_first_detection() -> None:
     assert _origin(piece(np.arange(9, 21)), trace(), MEETINGS) == pytest.approx(2.45)
 
 
-def test_a_piece_without_sightings_begins_or_ends_when_it_is_known_to() -> None:
+def test_a_piece_without_detections_begins_or_ends_when_it_is_known_to() -> None:
     none = np.arange(0)
     assert _origin(piece(none), trace(), MEETINGS) == 2.4
     assert _origin(piece(none, start=-np.inf), trace(), MEETINGS) == 3.0
@@ -103,7 +103,7 @@ def test_a_glide_is_guessed_alike_however_long_its_stone_rests_in_the_end(rests:
 
 
 @pytest.mark.parametrize("samples", [np.arange(9, 21), np.arange(9, 10), np.arange(0)])
-def test_a_line_is_found_by_however_few_sightings(samples: np.ndarray) -> None:
+def test_a_line_is_found_by_however_few_detections(samples: np.ndarray) -> None:
     place, velocity, acceleration = _first_guess(piece(samples), trace(), 2.4).T
     assert place == pytest.approx([1.12, 1.52])
     assert velocity == pytest.approx([0.3, -1.2])

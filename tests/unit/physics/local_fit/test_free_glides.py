@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from curlshot.data.tracks import check_sightings
+from curlshot.data.tracks import check_detections
 from curlshot.physics.kalman import smooth
 from curlshot.physics.local_fit.contacts import find_contacts
 from curlshot.physics.local_fit.free_glides import are_free, is_pushed
@@ -16,14 +16,14 @@ FPS = 60
 
 
 def seen(*ways: Floats, sd: float = 0.001) -> pd.DataFrame:
-    """Sightings of ways, (n, 2) at `FPS`, of as many stones."""
+    """Detections of ways, (n, 2) at `FPS`, of as many stones."""
     tables = []
     for k, way in enumerate(ways):
         x, y = (way + np.random.default_rng(k).normal(0, sd, way.shape)).T
         tables.append(
             pd.DataFrame({"stone": f"S{k}", "t": np.arange(len(way)) / FPS, "x": x, "y": y})
         )
-    return check_sightings(pd.concat(tables))
+    return check_detections(pd.concat(tables))
 
 
 def told(*ways: Floats) -> Local:
@@ -132,17 +132,17 @@ def test_frictions_that_differ_are_a_mean_if_that_tells_something() -> None:
 
 @pytest.mark.parametrize("gain", [0.3, 0.6, 1.0])
 def test_a_push_up_to_the_hit_spoils_neither_restitution_nor_tracks(gain: float) -> None:
-    sightings = watch(hit_motion(1.5, 0.08), np.random.default_rng(3), sd=0.002)
-    pushed = (sightings["stone"] == "A") & (sightings["t"] < 1.0)
-    away = 1.0 - sightings.loc[pushed, "t"]
-    sightings.loc[pushed, "y"] += 0.5 * (gain + 0.0109 * 9.81) * away**2
-    contacts = find_contacts(sightings, RADIUS)
-    found = estimate_locally(sightings, contacts, radius=RADIUS)
+    detections = watch(hit_motion(1.5, 0.08), np.random.default_rng(3), sd=0.002)
+    pushed = (detections["stone"] == "A") & (detections["t"] < 1.0)
+    away = 1.0 - detections.loc[pushed, "t"]
+    detections.loc[pushed, "y"] += 0.5 * (gain + 0.0109 * 9.81) * away**2
+    contacts = find_contacts(detections, RADIUS)
+    found = estimate_locally(detections, contacts, radius=RADIUS)
     assert found.restitution.value == pytest.approx(0.83, abs=0.02)
     assert found.restitution.stderr is not None and found.restitution.stderr < 0.02
     assert found.friction.value == pytest.approx(0.0109, abs=0.0005)
     assert any("A is pushed, carried or led" in text for text in found.warnings)
-    tracks = smooth(sightings, contacts, radius=RADIUS).query("stone == 'A' and t < 0.98")
+    tracks = smooth(detections, contacts, radius=RADIUS).query("stone == 'A' and t < 0.98")
     speed = 1.5 - gain * (1.0 - tracks["t"])
     assert np.sqrt(np.mean((tracks["vy"] - speed) ** 2)) < 0.05
 

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from curlshot.data.sheet import GRAVITY
-from curlshot.data.tracks import check_sightings
+from curlshot.data.tracks import check_detections
 from curlshot.physics.local_fit.glides import measure_glides
 from curlshot.physics.local_fit.local import Local, estimate_locally
 from curlshot.synthetic.physics import Ice, Start, simulate
@@ -21,7 +21,7 @@ def glide(duration: float, sd_place: float, wobble: float) -> pd.DataFrame:
 
 
 def local(table: pd.DataFrame) -> Local:
-    return estimate_locally(check_sightings(table), (), radius=0.1455)
+    return estimate_locally(check_detections(table), (), radius=0.1455)
 
 
 @pytest.mark.parametrize("duration", [1.0, 2.0, 4.0])

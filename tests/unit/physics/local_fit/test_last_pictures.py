@@ -33,7 +33,7 @@ def tracks(
     seed: int = 0,
     masses: Mapping[str, float] | None = None,
 ) -> pd.DataFrame:
-    """What the filter makes of sightings up to so many seconds after the hit; true `y` beside."""
+    """What the filter makes of detections up to so many seconds after the hit; true `y` beside."""
     rng, t = np.random.default_rng(seed), HIT + end - np.arange(50)[::-1] / 25
     parts = []
     for name, x, y in zip("AB", (aside, 0.0), paths(t, aside), strict=True):

@@ -21,7 +21,7 @@ SHOTS = 6
 
 
 def shots(*, given: bool = True, slow: float = 0.0, turned: float = 0.0) -> list[pd.DataFrame]:
-    """Sightings of shots, by 4 mm and 0.02 rad anew and by more that lasts."""
+    """Detections of shots, by 4 mm and 0.02 rad anew and by more that lasts."""
     out = []
     for seed in range(SHOTS):
         rng = np.random.default_rng([71, seed])
@@ -106,7 +106,7 @@ def test_what_is_stated_is_lasting_where_it_does_not_scatter() -> None:
     assert np.all(slow < [0.012, 0.012, 0.06])
 
 
-def test_a_sighting_that_lies_off_is_a_worse_one() -> None:
+def test_a_detection_that_lies_off_is_a_worse_one() -> None:
     seen = shots()[0]
     at = seen.index[(seen["stone"] == "A") & (seen["frame"] == 12)][0]
     off = seen.copy()
@@ -139,7 +139,7 @@ def test_stones_that_never_move_err_as_is_stated() -> None:
     assert np.isnan(noise.white[:, 2]).all()
 
 
-def test_what_a_few_sightings_are_much_worse_by_is_anew_in_them() -> None:
+def test_what_a_few_detections_are_much_worse_by_is_anew_in_them() -> None:
     seen = shots(slow=0.004)[0]
     before = told(seen)
     for name, group in seen.groupby("stone"):
@@ -152,7 +152,7 @@ def test_what_a_few_sightings_are_much_worse_by_is_anew_in_them() -> None:
         np.testing.assert_allclose(after.slow[3:, :2], np.tile(usually, (len(group) - 3, 1)))
 
 
-def test_a_few_sightings_far_off_hardly_widen_the_others() -> None:
+def test_a_few_detections_far_off_hardly_widen_the_others() -> None:
     scatter = np.random.default_rng(7).normal(0, 1, (1000, 1))
     scatter[::50] = 30.0
     assert 0.9 < _square(scatter) < 1.3

@@ -32,7 +32,7 @@ def wobble(theta: Floats) -> Floats:
 
 
 def seen(xy: Floats, omega: float = 1.6, seed: int = 0, place: float = PLACE) -> Trace:
-    """Sightings of a stone's centre that err by little each and by more for a while."""
+    """Detections of a stone's centre that err by little each and by more for a while."""
     rng = np.random.default_rng(seed)
     t = np.arange(len(xy)) / FPS
     slow = np.column_stack([lasting(rng, t, 0.5 * SD, 0.3) for _ in range(2)])

@@ -17,7 +17,7 @@ def trace(t: np.ndarray, y: np.ndarray, sd: float, seed: int = 0) -> Trace:
 T = np.arange(0, 4, 1 / 30)
 
 
-def test_pieces_cover_every_sighting_once() -> None:
+def test_pieces_cover_every_detection_once() -> None:
     y = np.where(T < 1, 0, np.where(T < 2, T - 1, 1 - 0.5 * (T - 2)))
     one = trace(T, y, 0.003)
     pieces = cut(one, [(4, 3.0)], 0.1455)
@@ -65,7 +65,7 @@ def test_a_stone_that_rests_elsewhere_once_it_was_hidden_rests_twice(
 
 @pytest.mark.parametrize("stray", [20, 52, 68, 100])
 def test_a_stray_does_not_shift_where_two_rests_part(stray: int) -> None:
-    """One sighting before, or one after, is taken for the stone and shows another at its place."""
+    """One detection before, or one after, is taken for the stone and shows another at its place."""
     y = np.where(T < 2, 0.0, 0.3)
     y[stray] = 0.3 - y[stray]
     seen = (T < 1.8) | (T > 2.2)

@@ -90,7 +90,7 @@ def test_spins_are_those_of_the_tracks_filter(monkeypatch: pytest.MonkeyPatch) -
         assert spin.stderr == pytest.approx(row["sd_omega"], rel=0.1)
 
 
-def test_a_time_between_two_sightings_or_at_one_is_the_same() -> None:
+def test_a_time_between_two_detections_or_at_one_is_the_same() -> None:
     fit, known = fitted(watch(hit_motion(), np.random.default_rng(6)))
     rank, noise = fit.sides[0, "A"][0], noises(fit, known)
     moment = float(known["A"].t[12])

@@ -47,7 +47,7 @@ def hit(
 def table(
     t: Floats, places: dict[str, Floats], hidden: dict[str, tuple[float, float]]
 ) -> pd.DataFrame:
-    """Sightings with 2 mm of noise; each stone is hidden between two times."""
+    """Detections with 2 mm of noise; each stone is hidden between two times."""
     rng = np.random.default_rng(3)
     parts = []
     for name, xy in places.items():
@@ -61,9 +61,9 @@ def table(
     return pd.concat(parts, ignore_index=True)
 
 
-def said(sightings: pd.DataFrame) -> list[str]:
-    contacts = find_contacts(sightings, R)
-    warnings = estimate_locally(sightings, contacts, radius=R).warnings
+def said(detections: pd.DataFrame) -> list[str]:
+    contacts = find_contacts(detections, R)
+    warnings = estimate_locally(detections, contacts, radius=R).warnings
     return [text for text in warnings if not text.startswith(("restitution: no hit", "no stone"))]
 
 
@@ -76,15 +76,15 @@ def said(sightings: pd.DataFrame) -> list[str]:
     ],
 )
 def test_hit_in_long_gaps_is_found(hidden: dict[str, tuple[float, float]]) -> None:
-    sightings = table(*hit(1.0), hidden)
-    (contact,) = find_contacts(sightings, R)
+    detections = table(*hit(1.0), hidden)
+    (contact,) = find_contacts(detections, R)
     assert set(contact.stones) == {"A", "B"}
     assert contact.t == pytest.approx(1.5, abs=4 * contact.stderr_t + 0.005)
-    local = estimate_locally(sightings, [contact], radius=R)
+    local = estimate_locally(detections, [contact], radius=R)
     value, stderr = local.restitution.value, local.restitution.stderr
     assert value is not None and stderr is not None
     assert abs(value - E) < 3 * stderr and stderr < 0.1
-    assert said(sightings) == []
+    assert said(detections) == []
 
 
 def test_hit_whose_stone_is_not_seen_again_is_said() -> None:
@@ -131,16 +131,16 @@ def test_near_miss_says_nothing(hidden: dict[str, tuple[float, float]]) -> None:
     start = np.array([2 * R + 0.02, 1.6])
     places["A"] = glide(start, np.array([0.0, -1.15]), t)
     places["B"] = np.zeros((len(t), 2))
-    sightings = table(t, places, hidden)
-    assert find_contacts(sightings, R) == ()
-    assert said(sightings) == []
+    detections = table(t, places, hidden)
+    assert find_contacts(detections, R) == ()
+    assert said(detections) == []
 
 
 def test_stone_that_light_moves_a_little_says_nothing() -> None:
     t, places = hit(1.0)
     places["C"][t > 2.0] += [0.006, 0.0]
-    sightings = table(t, places, {})
-    assert said(sightings) == []
+    detections = table(t, places, {})
+    assert said(detections) == []
     places["C"] = np.where(
         (t > 2.0)[:, None], glide(places["C"][0], np.array([0.3, 0.0]), t - 2.0), places["C"][0]
     )
@@ -194,15 +194,15 @@ def test_who_is_lost_too_long_is_nobody_who_hit(wait: float, hits: int) -> None:
     places = {"A": glide(np.zeros(2), lost, t)}
     end = glide(np.zeros(2), lost, np.array([1.5 + 0.5 * wait]))[0]
     places["B"] = glide(end - np.array([0.0, 2 * R]), np.array([0.05, -0.5]), t - 1.5 - 0.5 * wait)
-    sightings = table(t, places, {"A": (1.5, 99.0), "B": (-1.0, 1.5 + wait)})
-    assert len(said(sightings)) == hits
+    detections = table(t, places, {"A": (1.5, 99.0), "B": (-1.0, 1.5 + wait)})
+    assert len(said(detections)) == hits
 
 
 @pytest.mark.parametrize("step", [0.4, 0.6, 1.0])
 def test_tables_marked_once_in_a_while_say_nothing_of_a_hit_that_is_told(step: float) -> None:
     t, places = hit(1.0, at=4.0, end=14.0)
-    sightings = table(t, places, {})
-    few = sightings[sightings["frame"] % round(step * FPS) == 0].reset_index(drop=True)
+    detections = table(t, places, {})
+    few = detections[detections["frame"] % round(step * FPS) == 0].reset_index(drop=True)
     assert len(find_contacts(few, R)) == 1
     assert not any("motion of" in text or "hit" in text for text in said(few))
 

@@ -18,7 +18,7 @@ def test_unknowns_that_are_eliminated_are_as_if_they_had_been_solved_for() -> No
     variance = np.array([0.3, 2.0, 0.0])
     normal, right = rows.T @ rows, rows.T @ seen
     small, value, further = eliminated(normal, right, variance)
-    # The same with what is known as three more sightings, the third as good as exact.
+    # The same with what is known as three more detections, the third as good as exact.
     full = normal + np.diag([*np.zeros(5), 1 / 0.3, 1 / 2.0, 1e14])
     truth = np.linalg.solve(full, right)
     found = np.linalg.solve(small, value)

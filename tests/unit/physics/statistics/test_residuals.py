@@ -35,7 +35,7 @@ def test_products_of_neighbours_are_summed_run_by_run() -> None:
     np.testing.assert_allclose(_products(runs, 11), due, atol=1e-9)
 
 
-def test_a_sighting_far_off_weighs_less_whatever_the_axes() -> None:
+def test_a_detection_far_off_weighs_less_whatever_the_axes() -> None:
     weights = huber_weights(np.array([[0.0, 0.0], [2.9, 0.0], [-3.6, 4.8]]))
     assert weights[:, 0] == pytest.approx([1.0, 1.0, HUBER / 6])
 

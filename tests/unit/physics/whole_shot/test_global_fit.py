@@ -35,7 +35,7 @@ def test_the_laws_and_their_errors() -> None:
             assert found.stderr is not None
             pulls.append((found.value - true) / found.stderr)
     assert np.sqrt(np.mean(np.square(pulls))) == pytest.approx(1.0, abs=0.5)
-    assert len(fit.residuals()) == fit.sightings
+    assert len(fit.residuals()) == fit.detections
 
 
 def test_held_unknowns_stay_and_shared_ones_are_one() -> None:
@@ -103,7 +103,7 @@ def test_stones_that_slide_are_not_taken_to_stick() -> None:
 
 
 def test_what_a_map_shares_is_no_wrong_simulation() -> None:
-    """A map off by millimetres in a smooth way: sightings are far more alike than they are true."""
+    """A map off by millimetres in a smooth way: detections agree far more than they are true."""
     motion = hit_motion(1.5, 0.08)
     seen = watch(motion, np.random.default_rng(5), sd=0.0005)
     field, wave = 0.004, 2.0  # m, 1/m: errors of a map are taken to be alike over a metre

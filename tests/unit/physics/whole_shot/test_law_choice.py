@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from curlshot.data.tracks import check_sightings
+from curlshot.data.tracks import check_detections
 from curlshot.physics.estimate import Estimates, estimate
 from curlshot.physics.filter.slowing import V_C
 from curlshot.physics.local_fit.contacts import find_contacts
@@ -341,7 +341,7 @@ def test_a_spin_that_nobody_saw_may_be_of_either_sense(seed: int) -> None:
     seen = watch(motion, np.random.default_rng(seed), fps=60, sd=0.003).drop(
         columns=["theta", "sd_theta"]
     )
-    found = estimate(check_sightings(seen), find_contacts(seen, RADIUS), radius=RADIUS)
+    found = estimate(check_detections(seen), find_contacts(seen, RADIUS), radius=RADIUS)
     assert found.whole is not None
     assert float(found.curl.value or 0) == pytest.approx(0.0082, abs=0.002)
     assert float(found.whole["A.omega"].value or 0) < 0
@@ -361,7 +361,7 @@ def test_a_path_curls_to_the_side_of_a_spin_that_nobody_saw(spin: float) -> None
     seen = watch(motion, np.random.default_rng(23), fps=25, sd=0.002).drop(
         columns=["theta", "sd_theta"]
     )
-    found = estimate(check_sightings(seen), find_contacts(seen, RADIUS), radius=RADIUS)
+    found = estimate(check_detections(seen), find_contacts(seen, RADIUS), radius=RADIUS)
     assert found.whole is not None
     assert found.curl.value == pytest.approx(0.012, abs=0.002)
     assert abs(float(found.curl.value or 0) - 0.012) < 2.5 * float(found.curl.stderr or 0)
@@ -396,7 +396,7 @@ def test_one_place_counts_once_whatever_led_there() -> None:
     """Stones that stick do so by any friction, and a spin may be set out for from either sense."""
     motion = hit_motion(1.5, 0.15, before=0.8, after=1.5, stone_friction=0.5)
     seen = watch(motion, np.random.default_rng(3), sd=0.002).drop(columns=["theta", "sd_theta"])
-    found = estimate(check_sightings(seen), find_contacts(seen, RADIUS), radius=RADIUS).whole
+    found = estimate(check_detections(seen), find_contacts(seen, RADIUS), radius=RADIUS).whole
     assert found is not None
     places = {
         (

@@ -13,7 +13,7 @@ COUNT = 200
 
 
 def trace(turned: float, known: bool = True) -> Trace:
-    """Sightings of a stone that turns by so many radians."""
+    """Detections of a stone that turns by so many radians."""
     t = np.linspace(0.0, 4.0, COUNT)
     theta = 0.3 + turned * t / 4.0 if known else np.full(COUNT, np.nan)
     xy = np.zeros((COUNT, 2))
@@ -54,7 +54,7 @@ def test_outliers_do_not_move_it() -> None:
 def test_it_is_known_beforehand() -> None:
     seen = trace(5.0)
     residuals = wobble(seen, 0.003, 0.0)
-    # As many sightings' noise as this leaves half of what is known beforehand.
+    # As many detections' noise as this leaves half of what is known beforehand.
     noise = COUNT * (PLACE / SD) ** 2
     _, beside = centred(seen, residuals / 10, noise, PLACE)
     assert beside == pytest.approx([0.15 / 2, 0.0], abs=1e-9)
@@ -69,7 +69,7 @@ def test_nothing_is_taken_out_without_angles_or_a_stated_error(seen: Trace, sd: 
 
 
 @pytest.mark.parametrize("share", [1.0, 0.25])
-def test_sightings_are_put_over_the_centre_by_as_much_as_the_fit_allows(share: float) -> None:
+def test_detections_are_put_over_the_centre_by_as_much_as_the_fit_allows(share: float) -> None:
     """As much noise as this leaves part of what is known beforehand, the more the more that is."""
     seen, noise = trace(5.0), COUNT * (PLACE / SD) ** 2
     residuals = wobble(seen, 0.003, 0.0) / 10

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from curlshot.data.results import Estimate
-from curlshot.data.tracks import check_sightings
+from curlshot.data.tracks import check_detections
 from curlshot.physics.local_fit.traces import traces
 from curlshot.physics.whole_shot.shot_model import SpinSeen, Unknown, Watched, curl, ice, penner
 
@@ -23,14 +23,14 @@ def watched(hits: tuple[tuple[str, str], ...] = (), times: tuple[float, ...] = (
     """Three stones in a row, seen where `VALUES` puts them, from 2 s on."""
     t = 2.0 + np.arange(60) / 30
     laws = tuple(Unknown(name, value) for name, value in VALUES.items())
-    empty = check_sightings(
+    empty = check_detections(
         pd.concat([pd.DataFrame({"stone": s, "t": t, "x": 0.0, "y": 0.0}) for s in "ABC"])
     )
     bare = Watched(traces(empty), 2.0, laws, radius=RADIUS)
     run = bare.replay(VALUES).sample(t - 2.0)
     seen = run[["stone", "x", "y"]].assign(t=2.0 + run["t"], sd_x=0.002, sd_y=0.002)
     spins = (SpinSeen("A", 2.1, 0.9, 0.05),)
-    return Watched(traces(check_sightings(seen)), 2.0, laws, spins, hits, times, RADIUS)
+    return Watched(traces(check_detections(seen)), 2.0, laws, spins, hits, times, RADIUS)
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from curlshot.data.tracks import check_sightings
+from curlshot.data.tracks import check_detections
 from curlshot.physics.local_fit.traces import traces
 from curlshot.physics.whole_shot.shot_model import Unknown, Watched
 from curlshot.physics.whole_shot.whole_fit import GlobalFit
@@ -22,7 +22,7 @@ def watched(sd_place: float = 0.0) -> Watched:
     table = pd.DataFrame({"stone": "A", "t": t, "x": 0.003, "y": y, "sd_x": 0.002, "sd_y": 0.002})
     table = table.assign(sd_place_x=sd_place, sd_place_y=sd_place)
     unknowns = tuple(Unknown(name, 0.0) for name in (*NAMES, *HELD))
-    return Watched(traces(check_sightings(table)), 0.0, unknowns)
+    return Watched(traces(check_detections(table)), 0.0, unknowns)
 
 
 def fit(*shots: Watched) -> GlobalFit:
@@ -36,13 +36,13 @@ def fit(*shots: Watched) -> GlobalFit:
         shots or (watched(),),
         deviance=60.0,
         elsewhere=0.0,
-        sightings=30,
+        detections=30,
         inflation=2.0,
         settled=True,
     )
 
 
-def test_what_the_sightings_tell_is_apart_from_what_was_known() -> None:
+def test_what_the_detections_tell_is_apart_from_what_was_known() -> None:
     found = fit()
     assert not found.told("restitution")
     assert found.told("friction")

@@ -16,7 +16,7 @@ def test_residuals_that_are_normal_look_so(shot):
     assert said[0].split()[0] in ("94", "95", "96")
 
 
-def test_wild_sightings_are_marks_at_the_edge(shot):
+def test_wild_detections_are_marks_at_the_edge(shot):
     table = residuals(shot)
     table.loc[7, "dx"] = 0.5
     table.loc[9, "dy"] = -0.5

@@ -22,7 +22,7 @@ def test_stones_whose_motion_shows_only_later_are_measured_again() -> None:
         assert len(found) == 1 and not found[0].swept
     measure_again(views, LEARNED, STONE, FOLLOWING)
     for view, truth in zip(views, PATH, strict=True):
-        assert view.sightings[0].swept
+        assert view.detections[0].swept
         assert np.hypot(*(view.places[0] - truth)) < 0.0025
 
 
@@ -44,7 +44,7 @@ def test_a_stone_at_rest_is_smeared_by_a_camera_that_goes_past_it() -> None:
     np.testing.assert_allclose(drift, [PATH[1] - PATH[0]], atol=1e-9)
     np.testing.assert_allclose(views[1].drift_seen(places, PATH[:1] - PATH[1]), 0, atol=1e-9)
     measure_again(views, LEARNED, STONE, FOLLOWING)
-    assert [view.sightings[0].swept for view in views] == [False, True, True]
+    assert [view.detections[0].swept for view in views] == [False, True, True]
     for view in views[1:]:
         assert np.hypot(*(view.places[0] - PATH[0])) < 0.0025
 
@@ -55,9 +55,9 @@ def test_another_stone_in_the_next_picture_is_no_motion() -> None:
         picture = render_still(scene_of([(*place, RED)]), CAMERA)
         found = search_picture(picture, VIEW, LEARNED).stones
         views.append(StoneView(Frame(k, 0.04 * k, picture), VIEW, list(found)))
-    before = [list(view.sightings) for view in views]
+    before = [list(view.detections) for view in views]
     measure_again(views, LEARNED, STONE, FOLLOWING)
-    assert [view.sightings for view in views] == before
+    assert [view.detections for view in views] == before
 
 
 def test_drifts_are_told_by_the_next_picture_or_by_the_one_before() -> None:

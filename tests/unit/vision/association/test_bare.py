@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from curlshot.data.sheet import STONE
-from curlshot.tests.unit.vision.association.test_follow import RED, YELLOW, sighting
+from curlshot.tests.unit.vision.association.test_follow import RED, YELLOW, detection
 from curlshot.tests.unit.vision.detection.test_relief import bar, cap
 from curlshot.vision.association.bare import bare, contrast_of, with_handles
 from curlshot.vision.association.follow import Track
@@ -32,7 +32,7 @@ def track_of(
     track = Track()
     for frame, spectrum in enumerate(caps):
         shown = None if spectrum is None else Kept(spectrum)
-        seen = sighting((1.0, step * frame), colour)._replace(spectrum=shown, pixel_size=pixel)
+        seen = detection((1.0, step * frame), colour)._replace(spectrum=shown, pixel_size=pixel)
         track.add(frame, frame / 25, seen, STONE.radius)
     return track
 

@@ -31,7 +31,7 @@ def test_where_a_stone_is_expected_has_no_say_in_where_it_is(aside: float, apart
         look = Look(image, camera, true + way)
         beside = aside > 0.02
         seen = look_beside(look, [None] * 3, learned) if beside else look_on_course([look], learned)
-        assert all(sighting is not None for sighting in seen)
+        assert all(detection is not None for detection in seen)
         found[turn] = np.array([(s.x, s.y) for s in seen if s is not None])
     places = np.array(list(found.values()))
     assert np.abs(places - places.mean(0)).max() < apart

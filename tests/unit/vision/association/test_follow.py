@@ -8,15 +8,15 @@ import pytest
 from curlshot.vision.association.follow import Track, follow
 from curlshot.vision.association.naming import named_by_motion
 from curlshot.vision.association.rejoin import rejoined
-from curlshot.vision.detection.sighting import Sighting
+from curlshot.vision.detection.detection import Detection
 
 R = 0.1455
 RED, YELLOW = np.array([90.0, 180.0, 150.0]), np.array([190.0, 120.0, 195.0])
 Place = tuple[float, float]
 
 
-def sighting(place: Place, colour: np.ndarray = RED, score: float = 3.0) -> Sighting:
-    return Sighting(
+def detection(place: Place, colour: np.ndarray = RED, score: float = 3.0) -> Detection:
+    return Detection(
         *place, 0.002, 0.002, (0.001, 0.001), colour, 1.0, score, (1.0, 1.0), 0.0, (0.0,) * 6,
         (0.0, 0.0), 0.0,
     )  # fmt: skip
@@ -28,7 +28,7 @@ def clip(
     fps: float = 25.0,
     noise: float = 0.002,
     colours: Sequence[np.ndarray] | None = None,
-) -> list[tuple[int, float, list[Sighting]]]:
+) -> list[tuple[int, float, list[Detection]]]:
     rng = np.random.default_rng(3)
     frames = []
     for index in range(int(seconds * fps)):
@@ -38,14 +38,14 @@ def clip(
             place = path(t)
             if place is not None:
                 x, y = np.array(place) + rng.normal(0, noise, 2)
-                seen.append(sighting((x, y), RED if colours is None else colours[number]))
+                seen.append(detection((x, y), RED if colours is None else colours[number]))
         rng.shuffle(seen)
         frames.append((index, t, seen))
     return frames
 
 
 def ends(tracks: Sequence[Track]) -> list[tuple[float, float]]:
-    return sorted((round(t.sightings[-1].x, 1), round(t.sightings[-1].y, 1)) for t in tracks)
+    return sorted((round(t.detections[-1].x, 1), round(t.detections[-1].y, 1)) for t in tracks)
 
 
 @pytest.mark.parametrize("speed", [0.8, 2.0, 3.4])
@@ -61,8 +61,8 @@ def test_a_full_hit_of_equal_stones_switches_nobody(speed: float, fps: float) ->
 
     tracks = follow(clip([thrown, struck], 2.0, fps), R)
     assert len(tracks) == 2
-    first = max(tracks, key=lambda track: track.sightings[0].y)
-    assert first.sightings[-1].y == pytest.approx(2 * R, abs=0.02)
+    first = max(tracks, key=lambda track: track.detections[0].y)
+    assert first.detections[-1].y == pytest.approx(2 * R, abs=0.02)
     assert [len(track.frames) for track in tracks] == [int(2 * fps)] * 2
 
 
@@ -84,9 +84,9 @@ def test_a_hit_that_nobody_saw_switches_nobody(speed: float, hidden: tuple[float
 
     tracks = follow(clip([thrown, struck], 2.0), R)
     assert len(tracks) == 2
-    first, other = sorted(tracks, key=lambda track: -track.sightings[0].y)
-    assert first.sightings[-1].y == pytest.approx(2 * R - 0.5 * (1 - e) * speed, abs=0.02)
-    assert other.sightings[-1].y < -0.8 * speed
+    first, other = sorted(tracks, key=lambda track: -track.detections[0].y)
+    assert first.detections[-1].y == pytest.approx(2 * R - 0.5 * (1 - e) * speed, abs=0.02)
+    assert other.detections[-1].y < -0.8 * speed
 
 
 def test_three_stones_within_a_fifth_of_a_second() -> None:
@@ -106,9 +106,9 @@ def test_three_stones_within_a_fifth_of_a_second() -> None:
     assert len(tracks) == 3
     by_name, rest = named_by_motion(tracks, R)
     assert not rest
-    assert by_name["A"].sightings[0].y > 1.5
-    assert by_name["B"].sightings[0].y == pytest.approx(0, abs=0.01)
-    assert by_name["C"].sightings[0].y == pytest.approx(-gap - 2 * R, abs=0.01)
+    assert by_name["A"].detections[0].y > 1.5
+    assert by_name["B"].detections[0].y == pytest.approx(0, abs=0.01)
+    assert by_name["C"].detections[0].y == pytest.approx(-gap - 2 * R, abs=0.01)
 
 
 def test_two_seconds_out_of_sight_keep_the_identity() -> None:
@@ -125,10 +125,10 @@ def test_two_seconds_out_of_sight_keep_the_identity() -> None:
 
 def test_a_blip_is_no_stone_and_single_pictures_count() -> None:
     frames = clip([lambda t: (0.0, 0.0)], 2.0)
-    frames[10][2].append(sighting((1.0, 1.0)))
-    frames[11][2].append(sighting((1.0, 1.0)))
+    frames[10][2].append(detection((1.0, 1.0)))
+    frames[11][2].append(detection((1.0, 1.0)))
     assert len(follow(frames, R)) == 1
-    assert len(follow([(0, 0.0, [sighting((0, 0)), sighting((1, 1))])], R)) == 2
+    assert len(follow([(0, 0.0, [detection((0, 0)), detection((1, 1))])], R)) == 2
 
 
 @pytest.mark.parametrize("fps", [1.0, 0.1])
@@ -151,7 +151,7 @@ def test_colours_part_stones_that_swap_places_unseen() -> None:
 
     tracks = follow(clip([first, second], 3.0, colours=[RED, YELLOW]), R)
     for track in tracks:
-        assert np.ptp([s.colour[2] for s in track.sightings]) < 1
+        assert np.ptp([s.colour[2] for s in track.detections]) < 1
 
 
 @pytest.mark.parametrize(("other", "count"), [(45.0, 1), (30.0, 2)])
@@ -170,7 +170,7 @@ def test_a_stone_of_another_team_comes_out_beside_where_one_went_out_of_sight(
 
 def test_what_looks_a_little_like_a_stone_for_a_moment_is_none() -> None:
     def seen(score: float, visible: float, frames: int, of: int = 100) -> int:
-        shoulder = sighting((1.0, 0.0), score=score)._replace(visible=visible)
+        shoulder = detection((1.0, 0.0), score=score)._replace(visible=visible)
         shown = [(i, i / 25, [shoulder] if i >= of - frames else []) for i in range(of)]
         return len(follow(shown, R, 1.1, 1.5))
 
@@ -188,7 +188,7 @@ def test_in_the_open_a_stone_looks_like_one_most_of_the_time(
     share: float, visible: float, kept: int
 ) -> None:
     """Paint does for some time, in a shadow; a stone that is half covered, now and then."""
-    better = sighting((1.0, 0.0), score=1.5)._replace(visible=visible)
+    better = detection((1.0, 0.0), score=1.5)._replace(visible=visible)
     seen = [
         (i, i / 25, [better if i < 60 * share else better._replace(score=0.9)]) for i in range(60)
     ]
@@ -197,15 +197,15 @@ def test_in_the_open_a_stone_looks_like_one_most_of_the_time(
 
 def test_what_looks_unchanged_is_no_more_evidence() -> None:
     def kept(measured: float, then: float) -> int:
-        seen = [sighting((1.0, 0.0), score=measured)] * 10 + [
-            sighting((1.0, 0.0), score=then)._replace(measured=i == 0) for i in range(60)
+        seen = [detection((1.0, 0.0), score=measured)] * 10 + [
+            detection((1.0, 0.0), score=then)._replace(measured=i == 0) for i in range(60)
         ]
         return len(follow([(i, i / 25, [one]) for i, one in enumerate(seen)], R, 1.15, 1.5))
 
     assert kept(1.0, 1.2) == 0
     assert kept(1.0, 2.0) == 0  # one look in eleven
     assert kept(1.2, 1.2) == 1
-    never = [(i, i / 25, [sighting((1.0, 0.0))._replace(measured=False)]) for i in range(60)]
+    never = [(i, i / 25, [detection((1.0, 0.0))._replace(measured=False)]) for i in range(60)]
     assert follow(never, R, 1.15, 1.5) == []
 
 
@@ -230,7 +230,7 @@ def test_a_stone_that_a_jersey_half_covers_keeps_its_name() -> None:
 
     colours = [YELLOW, RED]
     (only,) = follow(clip([resting, jersey], colours=colours), R)
-    assert np.ptp([s.colour[2] for s in only.sightings]) < 1
+    assert np.ptp([s.colour[2] for s in only.detections]) < 1
     assert len(follow(clip([resting, beside], colours=colours), R)) == 2
     # One that stays where another one was before is another one.
     assert len(follow(clip([away, to_the_end], colours=colours), R)) == 2
@@ -243,7 +243,7 @@ def test_a_stone_that_somebody_covers_keeps_its_colour() -> None:
         t = index / 25
         covered = float(np.clip((t - 1.0) / 0.5, 0, 1)) if t < 1.6 else 0.0
         colour = (1 - covered) * RED + covered * YELLOW
-        one = sighting((0.3, 0.4), colour)._replace(visible=0.3 if covered else 1.0)
+        one = detection((0.3, 0.4), colour)._replace(visible=0.3 if covered else 1.0)
         frames.append((index, t, [] if 1.6 <= t < 2.4 else [one]))
     assert len(rejoined(follow(frames, R), R)) == 1
     (track,) = follow(frames[:40], R)

@@ -21,8 +21,8 @@ from curlshot.vision.association.follower import Follower, StoneView
 from curlshot.vision.association.lead import Lead
 from curlshot.vision.association.still import Portrait, portraits
 from curlshot.vision.detection.appearance import learn
+from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.rays import Look
-from curlshot.vision.detection.sighting import Sighting
 from curlshot.vision.detection.stones import FOLLOWING, search_picture
 from curlshot.vision.film.clip import Frame
 
@@ -49,7 +49,7 @@ def follower(first: StoneView) -> Follower:
 
 
 def seen(views: list[StoneView], true: list[Places]) -> np.ndarray:
-    """Distance of the nearest sighting to each true place, m, shape (views, stones)."""
+    """Distance of the nearest detection to each true place, m, shape (views, stones)."""
     return np.array(
         [
             [np.hypot(*(shown.places - place).T).min() for place in places]
@@ -62,7 +62,7 @@ def test_stones_are_sought_where_none_was_seen_yet(follower: Follower) -> None:
     shown = view(START, 0)
     found = follower.sought(shown)
     assert len(found) == 3
-    shown.sightings.extend(found[:2])
+    shown.detections.extend(found[:2])
     again = follower.sought(shown)
     assert [round(s.x, 2) for s in again] == [round(found[2].x, 2)]
 
@@ -74,10 +74,10 @@ def test_a_stone_on_its_course_and_those_at_rest_are_seen_all_the_way(
     true = [[(0.3, 0.2 - 0.03 * k), *START[1:]] for k in range(6)][::step]
     views = [view(places, k) for k, places in enumerate(true)]
     leads = [Lead.to(s, views[0].frame.t) for s in follower.sought(views[0])]
-    views[0].sightings.extend(follower.sought(views[0]))
+    views[0].detections.extend(follower.sought(views[0]))
     left = follower.follow(views[1:], leads)
     assert len(left) == 3
-    assert all(len(shown.sightings) == 3 for shown in views)
+    assert all(len(shown.detections) == 3 for shown in views)
     assert seen(views, true).max() < 0.006
 
 
@@ -90,7 +90,7 @@ def test_a_stone_that_is_gone_is_waited_for_and_then_given_up(follower: Follower
     assert sum(lead.missed for lead in waiting) == 1
     left = follower.follow(views[2:], waiting)
     assert len(left) == 2 and not any(lead.missed for lead in left)
-    assert all(len(shown.sightings) == 2 for shown in views)
+    assert all(len(shown.detections) == 2 for shown in views)
 
 
 def test_what_is_beside_a_hidden_stone_in_another_colour_is_not_that_stone(
@@ -104,7 +104,7 @@ def test_what_is_beside_a_hidden_stone_in_another_colour_is_not_that_stone(
         image = np.asarray(render_still(scene, CAMERA), np.uint8)
         shown = StoneView(Frame(1, 0.1, image), camera_of(CAMERA, scene))
         follower.follow([shown], leads)
-        assert len(shown.sightings) == (cap == YELLOW)
+        assert len(shown.detections) == (cap == YELLOW)
 
 
 def test_a_stone_that_was_hit_unseen_is_looked_for_where_the_hit_sends_it(
@@ -130,7 +130,7 @@ def test_a_stone_that_was_hit_unseen_is_looked_for_where_the_hit_sends_it(
 def test_what_is_hidden_is_not_looked_for_again_where_it_was_just_missed(
     follower: Follower, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def counted(looks: list[Look], *rest: Any) -> list[Sighting | None]:
+    def counted(looks: list[Look], *rest: Any) -> list[Detection | None]:
         looked.append(looks[0].places)
         return look_on_course(looks, *rest)
 
@@ -148,7 +148,7 @@ def test_what_is_hidden_is_not_looked_for_again_where_it_was_just_missed(
 def test_a_stone_that_sets_off_is_measured_in_the_next_pictures_at_once(
     follower: Follower, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def counted(looks: Sequence[Look], *others: Any) -> list[Sighting | None]:
+    def counted(looks: Sequence[Look], *others: Any) -> list[Detection | None]:
         together.append(sum(len(look.places) > 0 for look in looks))
         return look_on_course(looks, *others)
 
@@ -178,7 +178,7 @@ def test_stones_at_rest_are_portrayed_where_they_will_not_be_measured_next(
     # The first eight are measured together; what looks the same later is not.
     assert taken == [*[0] * 7, 3, *[0] * 6]
     assert all(lead.portrait is not None for lead in left)
-    assert [sum(s.measured for s in shown.sightings) for shown in views] == [*[3] * 8, *[0] * 6]
+    assert [sum(s.measured for s in shown.detections) for shown in views] == [*[3] * 8, *[0] * 6]
 
 
 def test_a_stone_that_may_be_hit_is_measured_in_every_block(
@@ -191,16 +191,16 @@ def test_a_stone_that_may_be_hit_is_measured_in_every_block(
     start = (x - 2 * STONE.radius, y - 3)
     comes = Lead(start, (0.0, 2.0), still[15].frame.t, start, leads[0].score)
     follower.follow(still[16:], [*leads, comes])
-    assert all(len(shown.sightings) == 3 for shown in still)
-    assert sum(s.measured for shown in still[8:16] for s in shown.sightings) == 0
-    measured = [s for shown in still[16:] for s in shown.sightings if s.measured]
+    assert all(len(shown.detections) == 3 for shown in still)
+    assert sum(s.measured for shown in still[8:16] for s in shown.detections) == 0
+    measured = [s for shown in still[16:] for s in shown.detections if s.measured]
     assert [(s.x, s.y) for s in measured] == [pytest.approx(START[0], abs=0.01)]
 
 
 def test_what_shows_clearly_less_than_a_moment_ago_is_looked_for_beside_too(
     follower: Follower, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def doubted(looks: list[Look], *_: object) -> list[Sighting]:
+    def doubted(looks: list[Look], *_: object) -> list[Detection]:
         places = np.concatenate([look.places for look in looks])
         near = [min(known, key=lambda s: np.hypot(s.x - x, s.y - y)) for x, y in places]
         return [s._replace(score=0.7 * s.score) for s in near]
@@ -216,7 +216,7 @@ def test_what_shows_clearly_less_than_a_moment_ago_is_looked_for_beside_too(
 def test_a_stone_that_is_drawn_aside_bit_by_bit_is_found_again(
     follower: Follower, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fading(looks: list[Look], *_: object) -> list[Sighting]:
+    def fading(looks: list[Look], *_: object) -> list[Detection]:
         nonlocal share
         share *= 0.93
         places = np.concatenate([look.places for look in looks])
@@ -238,7 +238,7 @@ def test_a_stone_that_is_drawn_aside_bit_by_bit_is_found_again(
 def test_what_is_beside_a_stone_must_show_clearly_more(
     follower: Follower, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def little_more(look: Look, *_: object) -> list[Sighting]:
+    def little_more(look: Look, *_: object) -> list[Detection]:
         near = [min(known, key=lambda s: np.hypot(s.x - x, s.y - y)) for x, y in look.places]
         return [s._replace(x=s.x + 0.02, score=1.1 * s.score) for s in near]
 

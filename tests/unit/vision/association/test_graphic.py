@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from curlshot.data.sheet import STONE
-from curlshot.tests.unit.vision.association.test_follow import sighting
+from curlshot.tests.unit.vision.association.test_follow import detection
 from curlshot.vision.association.follow import Track
 from curlshot.vision.association.graphic import glide, is_graphic
 from curlshot.vision.optics.camera import Camera, CameraError
@@ -33,7 +33,7 @@ def cameras_of(times: Array, x: Array, zoom: Array | float = 1.0) -> list[Camera
 def track_of(times: Array, places: Array, score: float = 2.2) -> Track:
     track = Track()
     for frame, (t, (x, y)) in enumerate(zip(times, places, strict=True)):
-        seen = sighting((x, y), score=score)._replace(sd_x=0.0008, sd_y=0.0008)
+        seen = detection((x, y), score=score)._replace(sd_x=0.0008, sd_y=0.0008)
         track.add(frame, float(t), seen, STONE.radius)
     return track
 

@@ -32,7 +32,7 @@ def test_a_stone_first_seen_at_rest_is_told_of(since: float, begins: Camera, war
         return (1.6, 0.5) if t >= since else None
 
     frames = clip([path, lambda t: (0.0, 0.0)])
-    tracks = {f"{t.sightings[0].x:.0f}": t for t in follow(frames, STONE.radius)}
+    tracks = {f"{t.detections[0].x:.0f}": t for t in follow(frames, STONE.radius)}
     assert len(tracks) == 2
     cameras = [replace(WIDE if t > 1.5 else begins, frame=index, t=t) for index, t, _ in frames]
     told = seen_late({"A": tracks["2"], "B": tracks["0"]}, cameras, STONE)

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from curlshot.tests.unit.vision.association.test_follow import sighting
+from curlshot.tests.unit.vision.association.test_follow import detection
 from curlshot.vision.association.lead import DECELERATION, MEMORY, STEADY, Lead
 from curlshot.vision.film.shelf import Kept
 
@@ -11,9 +11,9 @@ NEAR, STILL = 0.02, 0.004
 
 
 def followed(places: list[tuple[float, float]], step: float = 0.04) -> Lead:
-    lead = Lead.to(sighting(places[0]), 0.0)
+    lead = Lead.to(detection(places[0]), 0.0)
     for count, place in enumerate(places[1:], 1):
-        lead = lead.on(sighting(place), count * step, NEAR, STILL)
+        lead = lead.on(detection(place), count * step, NEAR, STILL)
     return lead
 
 
@@ -66,7 +66,7 @@ def test_a_stone_that_stays_rests_until_it_leaves() -> None:
 
 def test_what_is_half_covered_tells_not_that_a_stone_has_left_nor_that_it_rests() -> None:
     lead = followed([(0.3, 0.2)] * (STEADY + 1))
-    aside = sighting((0.3, 0.21))
+    aside = detection((0.3, 0.21))
     covered = aside._replace(score=0.8 * aside.score)
     half = lead.on(covered, 1.0, NEAR, STILL)
     assert half.rests and half.anchor == (0.3, 0.2) and half.steady == lead.steady
@@ -74,11 +74,11 @@ def test_what_is_half_covered_tells_not_that_a_stone_has_left_nor_that_it_rests(
 
 
 def test_a_stone_found_anew_rests_if_it_did_before() -> None:
-    new = Lead.to(sighting((0.3, 0.2)), 1.0)
+    new = Lead.to(detection((0.3, 0.2)), 1.0)
     back = [followed([(0.3, 0.2)] * (STEADY + 1), -0.04), followed([(0.3, 0.2), (0.3, 0.3)])]
     assert new.if_rested(back).rests
     assert not new.if_rested(back[1:]).rests
-    assert not Lead.to(sighting((0.3, 0.5)), 1.0).if_rested(back).rests
+    assert not Lead.to(detection((0.3, 0.5)), 1.0).if_rested(back).rests
 
 
 def test_a_cap_that_turns_on_the_spot_does_not_rest() -> None:
@@ -89,10 +89,10 @@ def test_a_cap_that_turns_on_the_spot_does_not_rest() -> None:
         return (cap * np.exp(-1j * np.arange(1, 18) * angle)[:, None, None]).astype(np.complex64)
 
     for spin, rests in ((0.0, True), (0.5, False)):
-        lead = Lead.to(sighting((0.3, 0.2))._replace(spectrum=Kept(facing(0.0))), 0.0)
+        lead = Lead.to(detection((0.3, 0.2))._replace(spectrum=Kept(facing(0.0))), 0.0)
         for count in range(1, STEADY + 2):
             t = count / 25
-            seen = sighting((0.3, 0.2))._replace(spectrum=Kept(facing(spin * t)))
+            seen = detection((0.3, 0.2))._replace(spectrum=Kept(facing(spin * t)))
             lead = lead.on(seen, t, NEAR, STILL)
         assert lead.rests is rests
 

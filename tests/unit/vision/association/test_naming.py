@@ -26,7 +26,7 @@ def test_resting_stones_are_named_by_their_distance_to_the_tee() -> None:
     tracks = follow(clip(paths, 1.0), R)
     named, rest = named_by_motion(tracks, R)
     assert rest == ("B", "C")
-    start = {name: track.sightings[0] for name, track in named.items()}
+    start = {name: track.detections[0] for name, track in named.items()}
     assert start["A"].y == pytest.approx(2, abs=0.01)
     assert start["B"].y == pytest.approx(0.2, abs=0.01)
     assert start["C"].x == pytest.approx(1.5, abs=0.01)

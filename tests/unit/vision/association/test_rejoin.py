@@ -3,7 +3,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from curlshot.tests.unit.vision.association.test_follow import RED, YELLOW, Place, R, clip, sighting
+from curlshot.tests.unit.vision.association.test_follow import (
+    RED,
+    YELLOW,
+    Place,
+    R,
+    clip,
+    detection,
+)
 from curlshot.vision.association.follow import follow
 from curlshot.vision.association.rejoin import _Motion, rejoined
 
@@ -131,9 +138,9 @@ def test_two_equal_stones_that_meet_out_of_sight_keep_their_names(aside, speed, 
     tracks = rejoined(follow(clip([thrown, struck], seconds=5.0), R), R)
     assert len(tracks) == 2
     for track in tracks:
-        path = thrown if track.sightings[0].y > 0.1 else struck
+        path = thrown if track.detections[0].y > 0.1 else struck
         off = [np.hypot(*np.subtract(path(t), (s.x, s.y))) for t, s in zip(
-            track.times, track.sightings, strict=True)]  # fmt: skip
+            track.times, track.detections, strict=True)]  # fmt: skip
         assert max(off) < 0.05
 
 
@@ -210,6 +217,6 @@ def test_a_stone_is_waited_for_three_seconds(back, stones) -> None:
 
 def test_a_stone_that_comes_to_rest_does_not_turn_round() -> None:
     places = np.array([(0.1 * t - 0.05 * t**2, 0.0) for t in np.arange(0, 0.21, 0.04)])
-    way = _Motion.of(np.arange(0, 0.21, 0.04), [sighting(tuple(place)) for place in places])
+    way = _Motion.of(np.arange(0, 0.21, 0.04), [detection(tuple(place)) for place in places])
     assert way.at(np.array([1.0, 2.0, 3.0]))[:, 0] == pytest.approx(0.05, abs=0.01)
     assert way.at(np.array([-1.0]))[0, 0] == pytest.approx(-0.15, abs=0.02)

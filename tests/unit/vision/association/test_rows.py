@@ -5,16 +5,16 @@ import tracemalloc
 
 import numpy as np
 
-from curlshot.tests.unit.vision.association.test_follow import sighting
+from curlshot.tests.unit.vision.association.test_follow import detection
 from curlshot.vision.association.rows import AT_ONCE, Rows
-from curlshot.vision.detection.sighting import Sighting
+from curlshot.vision.detection.detection import Detection
 from curlshot.vision.film.shelf import Kept, Shelf
 
 
-def shown(rank: int) -> Sighting:
+def shown(rank: int) -> Detection:
     """One in which no two numbers are alike."""
     x, y, *rest = (rank + np.arange(1, 23) / 100).tolist()
-    return sighting((x, y), np.array(rest[:3]), rest[3])._replace(
+    return detection((x, y), np.array(rest[:3]), rest[3])._replace(
         sd_x=rest[4], sd_y=rest[5], sd_place=(rest[6], rest[7]), visible=rest[8],
         bends=tuple(rest[9:15]), pixel=(rest[15], rest[16]), pixel_size=rest[17],
         light=(rest[18], rest[19]), measured=rank % 2 == 0, swept=rank % 3 == 0,
@@ -30,7 +30,7 @@ def test_what_was_packed_is_as_it_was() -> None:
     assert len(rows) == 4
     left_out = {"outline", "wall", "cap_samples", "granite_samples"}
     for one, other in zip([*rows, rows[-1]], [*seen, seen[-1]], strict=True):
-        for name in set(Sighting._fields) - left_out:
+        for name in set(Detection._fields) - left_out:
             np.testing.assert_array_equal(getattr(one, name), getattr(other, name), name)
     assert [s.x for s in rows[1:3]] == [seen[1].x, seen[2].x]
     np.testing.assert_array_equal(

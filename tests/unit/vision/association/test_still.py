@@ -40,18 +40,18 @@ def known() -> list[Portrait]:
 def test_shifts_are_told_to_a_fraction_of_a_millimetre(known: list[Portrait], light: float) -> None:
     shift = np.array([0.002, -0.003])
     found = unchanged([(picture((0.002, -0.003), light), VIEW)], known, STONE)[0]
-    for index, (sighting, portrait) in enumerate(zip(found, known, strict=True)):
-        assert sighting is not None and not sighting.measured
-        moved = np.array([sighting.x - portrait.sighting.x, sighting.y - portrait.sighting.y])
+    for index, (detection, portrait) in enumerate(zip(found, known, strict=True)):
+        assert detection is not None and not detection.measured
+        moved = np.array([detection.x - portrait.detection.x, detection.y - portrait.detection.y])
         np.testing.assert_allclose(moved, shift if index == 0 else 0.0, atol=4e-4)
-        pixel = VIEW.project(np.array([sighting.x, sighting.y]), STONE.cap_height)
-        np.testing.assert_allclose(sighting.pixel, pixel, atol=0.01)
+        pixel = VIEW.project(np.array([detection.x, detection.y]), STONE.cap_height)
+        np.testing.assert_allclose(detection.pixel, pixel, atol=0.01)
 
 
 def test_what_moves_turns_or_is_covered_is_not_taken_for_the_same(known: list[Portrait]) -> None:
     assert unchanged([(picture((0.03, 0.0)), VIEW)], known, STONE)[0][0] is None
     covered = picture()
-    u, v = known[1].sighting.pixel
+    u, v = known[1].detection.pixel
     covered[round(v) : round(v) + 8, round(u) - 20 : round(u) + 20] = (40, 60, 200)
     seen = unchanged([(covered, VIEW)], known, STONE)[0]
     assert seen[1] is None
@@ -60,12 +60,12 @@ def test_what_moves_turns_or_is_covered_is_not_taken_for_the_same(known: list[Po
 
 def test_an_even_cover_is_not_taken_for_a_light_without_contrast(known: list[Portrait]) -> None:
     covered = picture()
-    u, v = known[1].sighting.pixel
+    u, v = known[1].detection.pixel
     covered[round(v) - 40 : round(v) + 40, round(u) - 40 : round(u) + 40] = (60, 90, 60)
     seen = unchanged([(covered, VIEW)], known, STONE)[0]
-    assert [sighting is None for sighting in seen] == [False, True, False]
+    assert [detection is None for detection in seen] == [False, True, False]
 
 
 def test_a_place_without_any_pattern_has_no_portrait(known: list[Portrait]) -> None:
     blank = np.full_like(picture(), 200)
-    assert portraits(blank, VIEW, 0.0, [known[0].sighting], STONE) == [None]
+    assert portraits(blank, VIEW, 0.0, [known[0].detection], STONE) == [None]

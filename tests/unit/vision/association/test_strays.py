@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from curlshot.tests.unit.vision.association.test_follow import Place, R, sighting
+from curlshot.tests.unit.vision.association.test_follow import Place, R, detection
 from curlshot.vision.association.follow import Track
 from curlshot.vision.association.strays import without_strays
 
@@ -26,7 +26,7 @@ def track(
     for frame in range(round(until * FPS)):
         t = frame / FPS
         x, y = np.array(path(t)) + rng.normal(0, noise, 2)
-        out.add(frame, t, sighting((x, y), score=2.8 * shown if faint(t) else 2.8), R)
+        out.add(frame, t, detection((x, y), score=2.8 * shown if faint(t) else 2.8), R)
     return out
 
 
@@ -57,8 +57,8 @@ def test_what_takes_a_track_along_is_left_out(course, begin: float, end: float) 
     assert same is bystander
     out = [t for t in whole.times if t not in left.times]
     assert out == [t for t in whole.times if begin <= t < end]
-    assert len(left.sightings) == len(left.times) == len(left.frames)
-    assert [one.score for one in left.sightings] == [2.8] * len(left.times)
+    assert len(left.detections) == len(left.times) == len(left.frames)
+    assert [one.score for one in left.detections] == [2.8] * len(left.times)
 
 
 def test_a_stone_half_covered_where_it_rests_or_glides_stays() -> None:

@@ -23,10 +23,10 @@ from curlshot.vision.association.follower import StoneView
 from curlshot.vision.association.lead import Lead
 from curlshot.vision.association.watch import Watch, pictures_kept
 from curlshot.vision.detection.appearance import Appearance
+from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.placing import placed_by
 from curlshot.vision.detection.rays import Look
 from curlshot.vision.detection.seek import Candidates
-from curlshot.vision.detection.sighting import Sighting
 from curlshot.vision.detection.stones import (
     FOLLOWING,
     SEARCH,
@@ -66,7 +66,7 @@ def test_a_stone_found_late_is_followed_back_also_one_of_a_new_colour(
     watch = Watch()
     for index in range(50):
         watch.look(Frame(index, index / 25, after if index >= since else before), camera)
-    counts = [len(sightings) for _, _, sightings in watch.finish(lasting(camera))]
+    counts = [len(detections) for _, _, detections in watch.finish(lasting(camera))]
     assert counts == [3] * since + [4] * (50 - since)
 
 
@@ -93,7 +93,7 @@ def test_with_fewer_pictures_kept_a_late_stone_is_followed_back_as_well(
     watch = Watch()
     for frame in range(50):
         watch.look(Frame(frame, frame / 25, after if frame >= since else before), camera)
-    counts = [len(sightings) for _, _, sightings in watch.finish(lasting(camera))]
+    counts = [len(detections) for _, _, detections in watch.finish(lasting(camera))]
     assert counts == [3] * since + [4] * (50 - since)
     assert max(now - then for now, then in held) == 10
 
@@ -107,7 +107,8 @@ def test_pictures_of_caps_are_left_where_they_were_put_aside(
     for index in range(50):
         watch.look(Frame(index, index / 25, image), camera)
     found = [*watch.finish(lasting(camera))]
-    caps = [seen.spectrum for _, _, sightings in found[:16] for seen in sightings if seen.spectrum]
+    first = [seen for _, _, detections in found[:16] for seen in detections]
+    caps = [seen.spectrum for seen in first if seen.spectrum]
     assert len(caps) >= 3
     assert all(cap.place_on(shelf) is not None for cap in caps)
 
@@ -125,13 +126,13 @@ def test_in_the_end_stones_are_placed_by_the_cameras_that_are_known_by_then(
     known = [
         replace(camera, frame=index, t=index / 24, k1=0.01 * index) for index in [*range(1, 12), 99]
     ]
-    seen = {frame: sightings for frame, _, sightings in watches[0].finish(lasting(camera))}
+    seen = {frame: detections for frame, _, detections in watches[0].finish(lasting(camera))}
     found = list(watches[1].finish(known))
     assert [(frame, t) for frame, t, _ in found] == [(k, k / 24) for k in range(1, 12)]
-    for (frame, _, sightings), by in zip(found, known, strict=False):
+    for (frame, _, detections), by in zip(found, known, strict=False):
         (expected,) = placed_by([by], [seen[frame]], STONE)
-        assert len(sightings) == len(AT_REST)
-        told, places = ([(s.x, s.y) for s in each] for each in (sightings, expected))
+        assert len(detections) == len(AT_REST)
+        told, places = ([(s.x, s.y) for s in each] for each in (detections, expected))
         np.testing.assert_allclose(told, places)
 
 
@@ -163,7 +164,7 @@ def test_a_third_colour_does_not_take_the_place_of_one_on_the_ice() -> None:
         if watch.appearance is not None:
             learned.add(tuple(cap.name for cap in watch.appearance.caps))
     assert len(learned) == 1
-    assert [len(sightings) for _, _, sightings in watch.finish(lasting(camera))] == [4] * 150
+    assert [len(detections) for _, _, detections in watch.finish(lasting(camera))] == [4] * 150
 
 
 def test_a_stone_that_convinces_in_some_pictures_only_is_learned_from_these() -> None:
@@ -176,7 +177,7 @@ def test_a_stone_that_convinces_in_some_pictures_only_is_learned_from_these() ->
     for index in range(24):
         # Of the pictures looked at first, every eighth, none is clear.
         watch.look(Frame(index, index / 25, clear if index in (2, 10, 20) else covered), camera)
-    assert [len(sightings) for _, _, sightings in watch.finish(lasting(camera))] == [1] * 24
+    assert [len(detections) for _, _, detections in watch.finish(lasting(camera))] == [1] * 24
 
 
 @pytest.mark.parametrize("disc", [STONE, plain_disc(STONE.radius)])
@@ -191,7 +192,7 @@ def test_a_stone_seen_before_somebody_stands_over_it_is_seen_from_the_first_pict
     watch = Watch(disc)
     for index in range(50):
         watch.look(Frame(index, index / 25, clear if index < 6 else covered), camera)
-    counts = [len(sightings) for _, _, sightings in watch.finish(lasting(camera))]
+    counts = [len(detections) for _, _, detections in watch.finish(lasting(camera))]
     assert counts == [3] * 6 + [2] * 44
 
 
@@ -203,7 +204,7 @@ def test_a_dull_cap_on_vivid_paint_is_learned_beside_a_vivid_one() -> None:
     watch = Watch()
     for index in range(24):
         watch.look(Frame(index, index / 25, image), camera)
-    assert [len(sightings) for _, _, sightings in watch.finish(lasting(camera))] == [2] * 24
+    assert [len(detections) for _, _, detections in watch.finish(lasting(camera))] == [2] * 24
 
 
 def test_a_cap_of_which_little_is_coloured_is_seen_from_the_first_picture_on() -> None:
@@ -213,7 +214,7 @@ def test_a_cap_of_which_little_is_coloured_is_seen_from_the_first_picture_on() -
     watch = Watch()
     for index in range(24):
         watch.look(Frame(index, index / 25, image), camera)
-    assert [len(sightings) for _, _, sightings in watch.finish(lasting(camera))] == [3] * 24
+    assert [len(detections) for _, _, detections in watch.finish(lasting(camera))] == [3] * 24
 
 
 def test_two_teams_that_a_coarse_map_shows_are_not_sought_on_a_fine_one(
@@ -232,7 +233,7 @@ def test_two_teams_that_a_coarse_map_shows_are_not_sought_on_a_fine_one(
     watch = Watch()
     for index in range(24):
         watch.look(Frame(index, index / 25, image), camera)
-    assert [len(sightings) for _, _, sightings in watch.finish(lasting(camera))] == [3] * 24
+    assert [len(detections) for _, _, detections in watch.finish(lasting(camera))] == [3] * 24
     assert maps == [FOLLOWING.radius_px]
 
 
@@ -251,7 +252,7 @@ def test_how_stones_are_made_that_are_not_there_is_asked_on_the_fine_map_alone(
     monkeypatch.setattr("curlshot.vision.detection.strangers.sought_in", noted)
     watch = Watch()
     watch.look(Frame(0, 0.0, image), camera)
-    assert [len(sightings) for _, _, sightings in watch.finish(lasting(camera))] == [0]
+    assert [len(detections) for _, _, detections in watch.finish(lasting(camera))] == [0]
     large = LARGE * STONE.cap_radius
     fine, coarse = SEARCH.radius_px, FOLLOWING.radius_px
     assert sought == [
@@ -270,7 +271,7 @@ def test_a_stone_that_is_hit_under_cover_is_found_in_the_moment_that_shows_it() 
             for x, y in camera.project(np.array([(0.3, 0.2), (0.3, -0.3)]), 0.12).astype(int):
                 image[y - 50 : y + 50, x - 50 : x + 50] = (60, 90, 60)
         watch.look(Frame(index, index / 25, image), camera)
-    counts = [len(sightings) for _, _, sightings in watch.finish(lasting(camera))]
+    counts = [len(detections) for _, _, detections in watch.finish(lasting(camera))]
     assert counts == [3] * 26 + [2] * 7 + [3] * 9 + [2] * 24 + [3] * 4
 
 
@@ -292,7 +293,7 @@ def test_stones_that_show_briefly_after_a_bare_beginning_are_seen() -> None:
     for index in range(40):
         image = bare if index < 10 else shown if index < 27 else left
         watch.look(Frame(index, index / 25, image), camera)
-    counts = [len(sightings) for _, _, sightings in watch.finish(lasting(camera))]
+    counts = [len(detections) for _, _, detections in watch.finish(lasting(camera))]
     assert counts == [0] * 10 + [3] * 17 + [2] * 13
 
 
@@ -304,7 +305,7 @@ def test_a_stone_hidden_soon_after_it_was_found_is_looked_for_where_it_went() ->
     watch, camera = Watch(), camera_of(CAMERA, scene_of(AT_REST))
     for index, image in enumerate(images):
         watch.look(Frame(index, index / 25, image), camera)
-    counts = [len(sightings) for _, _, sightings in watch.finish(lasting(camera))]
+    counts = [len(detections) for _, _, detections in watch.finish(lasting(camera))]
     assert counts == [2] * 8 + [3] * 25 + [2] * 11 + [3] * 10 + [2] * 26
 
 
@@ -314,8 +315,8 @@ def test_a_stone_that_jumps_is_found_again_at_once(jump: float) -> None:
     watch, camera = Watch(), camera_of(CAMERA, scene_of(AT_REST))
     for index in range(12):
         watch.look(Frame(index, index / 25, there if index >= 7 else here), camera)
-    for index, _, sightings in watch.finish(lasting(camera)):
-        places = np.array([(s.x, s.y) for s in sightings])
+    for index, _, detections in watch.finish(lasting(camera)):
+        places = np.array([(s.x, s.y) for s in detections])
         assert len(places) == 3
         true = (0.3, 0.2 - jump if index >= 7 else 0.2)
         assert np.hypot(*(places - true).T).min() < 0.006
@@ -331,10 +332,10 @@ def test_a_stone_that_spins_on_the_spot_is_measured_all_the_time() -> None:
         image = render_still(replace(scene, stones=(turned, *scene.stones[1:])), CAMERA)
         watch.look(Frame(index, index / 25, np.asarray(image, np.uint8)), camera)
     told = {True: 0, False: 0}
-    for _, _, sightings in watch.finish(lasting(camera)):
-        for sighting in sightings:
-            spins = np.hypot(sighting.x - AT_REST[0][0], sighting.y - AT_REST[0][1]) < 0.05
-            told[bool(spins)] += sighting.spectrum is not None
+    for _, _, detections in watch.finish(lasting(camera)):
+        for detection in detections:
+            spins = np.hypot(detection.x - AT_REST[0][0], detection.y - AT_REST[0][1]) < 0.05
+            told[bool(spins)] += detection.spectrum is not None
     assert told[True] > 25
     assert told[False] < 40
 
@@ -348,7 +349,7 @@ def test_caps_are_known_in_a_light_that_has_wandered_and_after_a_fade() -> None:
         yellow = np.array([1 - 0.004 * index, 1.0, 1 + 0.001 * index])
         lit = (image * (faded * yellow)).clip(0, 255).astype(np.uint8)
         watch.look(Frame(index, index / 25, lit), camera)
-    counts = [len(sightings) for _, _, sightings in watch.finish(lasting(camera))]
+    counts = [len(detections) for _, _, detections in watch.finish(lasting(camera))]
     assert counts[16:] == [3] * 84
 
 
@@ -384,7 +385,7 @@ def test_tones_stay_where_no_stone_shows_once_they_are_lifted(
     watch = Watch()
     of_any_colour = watch._of_any_colour
 
-    def none_in_lifted(views: Iterable[StoneView], *radius_px: float) -> list[Sighting]:
+    def none_in_lifted(views: Iterable[StoneView], *radius_px: float) -> list[Detection]:
         views = list(views)
         seen = [view for view in views if np.max(view.frame.picture) > 128]  # type: ignore[arg-type]
         return of_any_colour(seen, *radius_px) if seen else []

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from curlshot.tests.unit.vision.association.test_follow import sighting
+from curlshot.tests.unit.vision.association.test_follow import detection
 from curlshot.tests.unit.vision.detection.test_relief import bar
 from curlshot.tests.unit.vision.detection.test_relief import cap as picture_of
 from curlshot.vision.detection.appearance import (
@@ -20,7 +20,7 @@ from curlshot.vision.detection.appearance import (
     learn,
     membership,
 )
-from curlshot.vision.detection.sighting import Sighting
+from curlshot.vision.detection.detection import Detection
 from curlshot.vision.film.shelf import Kept
 
 RED, YELLOW, BLUE, GREY = (30, 24, 150), (20, 190, 220), (170, 80, 30), (105, 105, 100)
@@ -33,9 +33,9 @@ def lab(bgr: tuple[int, int, int]) -> np.ndarray:
 
 def seen(
     cap: tuple[int, int, int], score: float = 2.0, size: float = 1.0, wall: float = 0.0
-) -> Sighting:
+) -> Detection:
     rng = np.random.default_rng(int(sum(cap)))
-    return sighting((0.0, 0.0), lab(cap), score)._replace(
+    return detection((0.0, 0.0), lab(cap), score)._replace(
         cap_samples=lab(cap) + rng.normal(0, 2, (60, 3)),
         granite_samples=lab(GREY) + rng.normal(0, 2, (60, 3)),
         outline=(size, 0.98),
@@ -156,7 +156,7 @@ def test_a_team_whose_only_stone_in_view_lies_on_dark_paint_is_kept() -> None:
     assert look is not None and len(look.caps) == 2
 
 
-def test_the_size_of_caps_is_learned_from_three_sightings_on() -> None:
+def test_the_size_of_caps_is_learned_from_three_detections_on() -> None:
     few, many = learn([seen(RED, size=1.04)] * 2), learn([seen(RED, size=1.04)] * 5)
     assert few is not None and many is not None
     assert few.outline[0] == 1.0

@@ -9,35 +9,35 @@ import pytest
 
 from curlshot.synthetic.camera import tilted_camera
 from curlshot.synthetic.clip import render_still
-from curlshot.tests.unit.vision.association.test_follow import sighting
+from curlshot.tests.unit.vision.association.test_follow import detection
 from curlshot.tests.unit.vision.detection import test_relief as relief
 from curlshot.tests.unit.vision.detection.test_stones import CAMERA, YELLOW, camera_of, scene_of
 from curlshot.tests.unit.vision.detection.test_stones import RED as SCARLET
 from curlshot.vision.detection import appearance
 from curlshot.vision.detection import glance as module
 from curlshot.vision.detection.appearance import Appearance
+from curlshot.vision.detection.detection import Detection, Refusal
 from curlshot.vision.detection.glance import glance
 from curlshot.vision.detection.rays import Look
-from curlshot.vision.detection.sighting import Refusal, Sighting
 from curlshot.vision.detection.stones import Findings
 from curlshot.vision.optics.camera import Camera
 
 RED, BLUE = np.array([120.0, 190.0, 165.0]), np.array([50.0, 140.0, 92.0])
 
 
-def stone(x: float, colour: np.ndarray, score: float) -> Sighting:
+def stone(x: float, colour: np.ndarray, score: float) -> Detection:
     around = np.zeros((20, 3))
-    return sighting((x, 0.0), colour, score)._replace(
+    return detection((x, 0.0), colour, score)._replace(
         cap_samples=around + colour, granite_samples=around + np.array([90.0, 128.0, 128.0])
     )
 
 
 def seen_twice(
     monkeypatch: pytest.MonkeyPatch,
-    first: tuple[Sighting, ...],
+    first: tuple[Detection, ...],
     known: Findings,
     again: dict[float, float],
-    shapes: tuple[Sighting, ...] = (),
+    shapes: tuple[Detection, ...] = (),
 ) -> Findings:
     """What a glance makes of stones found at first, then and by shape, and evidence by their x."""
 
@@ -99,8 +99,8 @@ def test_a_square_of_a_painted_pattern_is_no_stone_beside_stones(
     )
     learned: list[int] = []
 
-    def learn(sightings: Sequence[Sighting]) -> Appearance | None:
-        look = appearance.learn(sightings)
+    def learn(detections: Sequence[Detection]) -> Appearance | None:
+        look = appearance.learn(detections)
         assert look is not None
         learned.append(len(look.caps))
         return look

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from curlshot.data.sheet import STONE, Stone
-from curlshot.tests.unit.vision.association.test_follow import sighting
+from curlshot.tests.unit.vision.association.test_follow import detection
 from curlshot.vision.detection.placing import (
     CAP_END_SD,
     GIVEN_ASTRAY,
@@ -28,7 +28,7 @@ PLACES = [(0.0, 0.5), (1.5, -1.0), (-2.0, 2.0)]
 
 def test_places_are_those_under_the_pixels_with_the_caps_height_taken_out() -> None:
     pixels = DOWN.project(np.array(PLACES), STONE.cap_height).tolist()
-    seen = [sighting((9.0, 9.0))._replace(pixel=(u, v)) for u, v in pixels]
+    seen = [detection((9.0, 9.0))._replace(pixel=(u, v)) for u, v in pixels]
     found, none = placed_by([DOWN, DOWN], [seen, []], STONE)
     np.testing.assert_allclose([(s.x, s.y) for s in found], PLACES, atol=1e-6)
     np.testing.assert_allclose([s.pixel_size for s in found], HEIGHT / FOCAL, rtol=0.01)
@@ -38,11 +38,11 @@ def test_places_are_those_under_the_pixels_with_the_caps_height_taken_out() -> N
 
 def stated(camera: Camera, disc: Stone = STONE) -> np.ndarray:
     pixels = DOWN.project(np.array(PLACES), disc.cap_height).tolist()
-    seen = [sighting((9.0, 9.0))._replace(pixel=(u, v)) for u, v in pixels]
+    seen = [detection((9.0, 9.0))._replace(pixel=(u, v)) for u, v in pixels]
     return np.array([s.sd_place for s in placed_by([camera], [seen], disc)[0]])
 
 
-def test_what_sightings_share_is_the_camera_s_and_what_a_slant_hides() -> None:
+def test_what_detections_share_is_the_camera_s_and_what_a_slant_hides() -> None:
     pixel = HEIGHT / FOCAL
     flat = stated(DOWN, replace(STONE, cap_height=0.0))
     np.testing.assert_allclose(flat, GIVEN_ASTRAY * 0.2 * pixel, rtol=0.01)
@@ -60,7 +60,7 @@ def height(slant: float, cap_radius: float = STONE.cap_radius) -> float:
     away[:2] = -slant * HEIGHT * np.array([0.6, 0.8])
     down = camera(View(np.array([0, 0, 0, np.log(FOCAL)])), away, (9000, 9000))
     pixel = down.project(np.zeros((1, 2)), STONE.cap_height)[0]
-    seen = [sighting((0.0, 0.0))._replace(pixel=(float(pixel[0]), float(pixel[1])))]
+    seen = [detection((0.0, 0.0))._replace(pixel=(float(pixel[0]), float(pixel[1])))]
     disc = replace(STONE, cap_radius=cap_radius)
     x, y = placed_by([replace(down, rms_px=0.0)], [seen], disc)[0][0].sd_place
     # All of it lies along the view, nothing across.
@@ -116,7 +116,7 @@ def test_a_camera_uncertain_on_one_axis_leaves_the_other_certain() -> None:
 def test_caps_without_hue_lie_less_surely_along_a_slanting_view() -> None:
     pixels = DOWN.project(np.array(PLACES), STONE.cap_height).tolist()
     black = np.array([60.0, 129.0, 127.0])
-    seen = [sighting((9.0, 9.0))._replace(pixel=(u, v), colour=black) for u, v in pixels]
+    seen = [detection((9.0, 9.0))._replace(pixel=(u, v), colour=black) for u, v in pixels]
     sd = np.array([s.sd_place for s in placed_by([DOWN], [seen], STONE)[0]])
     more = np.sqrt(np.maximum(sd**2 - stated(DOWN) ** 2, 0.0))
     np.testing.assert_allclose(more, MIXED_SD * np.abs(PLACES) / HEIGHT, atol=1e-9)

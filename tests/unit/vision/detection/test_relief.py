@@ -7,9 +7,9 @@ import pytest
 from numpy.typing import NDArray
 
 from curlshot.data.sheet import STONE
+from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.patch import handle_radii
 from curlshot.vision.detection.relief import contrast, contrast_turned, without_handle
-from curlshot.vision.detection.sighting import Sighting
 from curlshot.vision.film.shelf import Kept
 from curlshot.vision.spin.handle import cap_spectrum
 
@@ -75,9 +75,9 @@ def test_noise_adds_half_as_much_to_turned_pictures_as_to_one() -> None:
     assert np.median([contrast_turned(*pair) for pair in pairwise(noisy)]) < 0.55 * own
 
 
-def seen(height: float, pixel: float = 0.01) -> Sighting:
+def seen(height: float, pixel: float = 0.01) -> Detection:
     """A stone whose handle is so much lighter than its cap."""
-    return Sighting(
+    return Detection(
         0.0, 0.0, 0.002, 0.002, (0.0, 0.0), np.array([120.0, 190.0, 165.0]), 1.0, 2.0,
         (1.0, 0.98), 0.0, (0.0,) * 6, (0.0, 0.0), pixel, spectrum=Kept(cap(bar(height), 1.0)),
     )  # fmt: skip

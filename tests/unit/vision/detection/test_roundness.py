@@ -3,9 +3,9 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from curlshot.tests.unit.vision.association.test_follow import sighting
+from curlshot.tests.unit.vision.association.test_follow import detection
+from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.roundness import PIXELS, SHARE, SMALL, USUAL, edge_errors
-from curlshot.vision.detection.sighting import Sighting
 
 WAVES = np.array([1.0, -1.0, 1.0, 1.0, -1.0, 1.0])
 CAP, LARGE = 0.1, 1e6
@@ -16,13 +16,13 @@ def bent(
     visible: float = 1.0,
     pixel: float = 0.0,
     light: tuple[float, float] = (np.nan, np.nan),
-) -> Sighting:
-    return sighting((0.0, 1.0))._replace(
+) -> Detection:
+    return detection((0.0, 1.0))._replace(
         bends=tuple(bend * WAVES), visible=visible, pixel_size=pixel, light=light
     )
 
 
-def edge_error(stones: Sequence[Sequence[Sighting]], radius: float = CAP) -> float:
+def edge_error(stones: Sequence[Sequence[Detection]], radius: float = CAP) -> float:
     """Give the one error of stones that differ in nothing."""
     errors = edge_errors(stones, radius)
     assert errors.shape == (len(stones), 2)

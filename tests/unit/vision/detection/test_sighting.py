@@ -2,11 +2,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from curlshot.tests.unit.vision.association.test_follow import sighting
+from curlshot.tests.unit.vision.association.test_follow import detection
 
 
 def test_what_only_learning_needs_can_be_left_out() -> None:
-    seen = sighting((0.3, -0.2))._replace(
+    seen = detection((0.3, -0.2))._replace(
         cap_samples=np.ones((9, 3)), granite_samples=np.ones((5, 3))
     )
     left = seen.without_samples()

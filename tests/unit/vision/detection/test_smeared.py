@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from curlshot.data.sheet import STONE
 from curlshot.synthetic.clip import render_still
-from curlshot.tests.unit.vision.association.test_follow import sighting
+from curlshot.tests.unit.vision.association.test_follow import detection
 from curlshot.tests.unit.vision.detection.test_stones import CAMERA, RED, camera_of, scene_of
 from curlshot.vision.detection.appearance import learn
 from curlshot.vision.detection.measure import measure_discs
@@ -124,13 +124,13 @@ def test_a_fast_stone_that_is_half_covered_is_left_to_its_edges() -> None:
 
 def test_smeared_edges_say_less_of_where_a_fast_stone_is_along_its_way() -> None:
     times = [0.04 * k for k in range(6)]
-    seen = [sighting((0.0, 0.1 * k))._replace(light=(0.001, 0.0), swept=k == 3) for k in range(6)]
+    seen = [detection((0.0, 0.1 * k))._replace(light=(0.001, 0.0), swept=k == 3) for k in range(6)]
     out = widened(times, seen)
     for k in range(6):
         extra = 0.0 if k == 3 else 0.1 * BY_EDGES_OFF
         assert out[k].sd_y == pytest.approx(np.hypot(seen[k].sd_y, extra))
         assert out[k].sd_x == pytest.approx(seen[k].sd_x)
         assert np.isnan(out[k].light[0]) == (k != 3)
-    rests = [sighting((0.0, 0.001 * k)) for k in range(6)]
+    rests = [detection((0.0, 0.001 * k)) for k in range(6)]
     assert widened(times, rests) == rests
     assert widened(times[:1], seen[:1]) == seen[:1]

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from curlshot.tests.unit.vision.association.test_follow import sighting
-from curlshot.vision.detection.sighting import Sighting
+from curlshot.tests.unit.vision.association.test_follow import detection
+from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.steady import FEWEST, MEMORY, common_share, lightness_of, steadied
 
 RATE = 25.0
@@ -18,23 +18,23 @@ def waves(rng: np.random.Generator, times: np.ndarray, size: float) -> np.ndarra
 
 def seen_by(
     hue: np.ndarray, light: np.ndarray, way: np.ndarray, visible: float = 1.0
-) -> list[Sighting]:
-    """Sightings of a way by errors of the edges by hue and by lightness."""
+) -> list[Detection]:
+    """Detections of a way by errors of the edges by hue and by lightness."""
     places = (way + hue).tolist()
     aside = (light - hue + LAMPS).tolist()
     return [
-        sighting((x, y))._replace(light=(u, v), visible=visible, sd_x=1e-3, sd_y=2e-3)
+        detection((x, y))._replace(light=(u, v), visible=visible, sd_x=1e-3, sd_y=2e-3)
         for (x, y), (u, v) in zip(places, aside, strict=True)
     ]
 
 
-def alone(times: list[float], seen: list[Sighting]) -> list[Sighting]:
+def alone(times: list[float], seen: list[Detection]) -> list[Detection]:
     """A stone that no other has caps like, steadied."""
     light = lightness_of(times, seen)
     return steadied(seen, light, common_share([light]))
 
 
-def errors(seen: list[Sighting], way: np.ndarray) -> np.ndarray:
+def errors(seen: list[Detection], way: np.ndarray) -> np.ndarray:
     return np.array([(s.x, s.y) for s in seen]) - way
 
 
@@ -166,7 +166,7 @@ def test_where_its_jerks_tell_nothing_the_errors_of_a_stone_stay() -> None:
 def test_like_caps_tell_together_by_how_much_lightness_steadies() -> None:
     rng = np.random.default_rng(6)
 
-    def drawn(count: int) -> tuple[list[float], list[Sighting], np.ndarray]:
+    def drawn(count: int) -> tuple[list[float], list[Detection], np.ndarray]:
         times = np.arange(count) / RATE
         way = np.column_stack([0.1 * times, 3 - 1.4 * times + 0.05 * times**2])
         hue = waves(rng, times, 4e-4) + rng.normal(0, 3e-4, way.shape)

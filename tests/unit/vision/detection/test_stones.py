@@ -15,7 +15,7 @@ from curlshot.synthetic.physics import Start
 from curlshot.synthetic.scene import Colour, Graphic, Person, Scene, Stone
 from curlshot.synthetic.scenes import PAINTS
 from curlshot.vision.detection.appearance import BY_SHAPE, colour_difference, convincing, learn
-from curlshot.vision.detection.sighting import Sighting
+from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.stones import FOLLOWING, SEARCH, Search, plain_disc, search_picture
 from curlshot.vision.film.clip import open_clip
 from curlshot.vision.optics.camera import Camera, CameraError
@@ -39,13 +39,13 @@ def scene_of(places: list[tuple[float, float, Colour]], **more: object) -> Scene
     return replace(Scene(stones=stones), **more)  # type: ignore[arg-type]
 
 
-def look(scene: Scene, path: CameraPath = CAMERA, search: Search = SEARCH) -> tuple[Sighting, ...]:
+def look(scene: Scene, path: CameraPath = CAMERA, search: Search = SEARCH) -> tuple[Detection, ...]:
     image = np.asarray(render_still(scene, path), np.uint8)
     return search_picture(image, camera_of(path, scene), search=search).stones
 
 
-def misses(found: tuple[Sighting, ...], scene: Scene) -> NDArray[np.float64]:
-    """Distance of each true stone to the nearest sighting, m."""
+def misses(found: tuple[Detection, ...], scene: Scene) -> NDArray[np.float64]:
+    """Distance of each true stone to the nearest detection, m."""
     seen = np.array([(s.x, s.y) for s in found]).reshape(-1, 2)
     true = np.array([(s.start.x, s.start.y) for s in scene.stones])
     return np.asarray(np.hypot(*(true[:, None] - seen[None]).transpose(2, 0, 1)).min(1))

@@ -21,9 +21,9 @@ from curlshot.tests.unit.vision.detection.test_stones import (
 )  # fmt: skip
 from curlshot.vision.detection.appearance import BY_SHAPE, CONVINCING
 from curlshot.vision.detection.appearance import Colour as Granite
+from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.rays import Look
 from curlshot.vision.detection.seek import Candidates
-from curlshot.vision.detection.sighting import Sighting
 from curlshot.vision.detection.stones import FOLLOWING, Findings, plain_disc
 from curlshot.vision.detection.strangers import strangers, weighed
 
@@ -38,7 +38,7 @@ def painted(*caps: Colour) -> Scene:
 
 def seen(
     scene: Scene, known: list[tuple[float, float]] | None = None, contrast: float = 1.0
-) -> tuple[Sighting, ...]:
+) -> tuple[Detection, ...]:
     image = (255 - contrast * (255 - np.asarray(render_still(scene, CAMERA), float))).astype(
         np.uint8
     )

@@ -11,10 +11,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from curlshot import pipeline
+from curlshot.cli.main import main
 from curlshot.data.errors import InputError
 from curlshot.data.project import read_project
-from curlshot.data.tracks import check_sightings
+from curlshot.data.tracks import check_detections
 from curlshot.data.trk import Coordinates
 from curlshot.data.trk_write import View, project_xml, write_trk, write_trz
 from curlshot.vision.film.clip import open_clip
@@ -48,7 +48,7 @@ def project(
     """A resting stone over a clip, its frames of this duration, s."""
     count = len(frames)
     t = start + step * np.arange(count)
-    table = check_sightings(
+    table = check_detections(
         pd.DataFrame({"stone": "A", "frame": list(frames), "t": t, "x": 0.5, "y": 0.2})
     )
     keys = np.array([0, 6])
@@ -199,7 +199,7 @@ def test_the_clip_or_the_marks(tmp_path: Path, capsys: pytest.CaptureFixture[str
         cv2.circle(image, tuple(centre.tolist()), 16 * 24, (40, 40, 160), -1, cv2.LINE_AA, 4)
         writer.write(image)
     writer.release()
-    table = check_sightings(
+    table = check_detections(
         pd.DataFrame(
             {"stone": "puck", "frame": range(frames), "t": np.arange(frames) / 25,
              "x": places[:, 0] + 0.3, "y": places[:, 1]}
@@ -213,17 +213,17 @@ def test_the_clip_or_the_marks(tmp_path: Path, capsys: pytest.CaptureFixture[str
     trz = str(tmp_path / "shot.trz")
     out = tmp_path / "out"
     common = ["--radius", "0.08", "-o", str(out), "-q"]
-    assert pipeline.main(["track", trz, "--camera", trz, *common]) == 0
+    assert main(["track", trz, "--camera", trz, *common]) == 0
     found = pd.read_csv(out / "tracks.csv")
     np.testing.assert_allclose(found[["x", "y"]], places, atol=2e-3)
     np.testing.assert_allclose(found["t"], table["t"], atol=1e-6)
-    assert pipeline.main(["estimate", trz, *common]) == 0
-    assert pipeline.main(["run", trz, "--clip", "--camera", trz, "--no-overlay", *common]) == 0
+    assert main(["estimate", trz, *common]) == 0
+    assert main(["run", trz, "--clip", "--camera", trz, "--no-overlay", *common]) == 0
     assert (out / "report.html").exists()
     other = ["-o", str(tmp_path / "other"), "-q"]
-    assert pipeline.main(["run", str(out / "tracks.csv"), "--clip", *other]) == 2
+    assert main(["run", str(out / "tracks.csv"), "--clip", *other]) == 2
     assert "not a clip" in capsys.readouterr().err
-    assert pipeline.main(["run", trz, "--camera", trz, *common]) == 2
+    assert main(["run", trz, "--camera", trz, *common]) == 2
     assert "only clips take --camera" in capsys.readouterr().err
 
 

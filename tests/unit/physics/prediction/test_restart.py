@@ -5,11 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from curlshot import pipeline
+from curlshot.cli.main import main
+from curlshot.outcome import Run
 
 
 def test_a_run_is_simulated_by_the_name_of_its_folder(
-    sample: pipeline.Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    sample: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert sample.out is not None
     monkeypatch.chdir(tmp_path)
@@ -18,21 +19,21 @@ def test_a_run_is_simulated_by_the_name_of_its_folder(
     for name in ("results.json", "tracks.csv", "ensemble.json"):
         (run / name).write_bytes((sample.out / name).read_bytes())
     for shot in (run, run / "results.json"):
-        assert pipeline.main(["simulate", str(shot), "--samples", "0"]) == 0
+        assert main(["simulate", str(shot), "--samples", "0"]) == 0
     assert {path.name for path in tmp_path.iterdir()} == {run.name, "semi.final-whatif"}
 
 
 def test_a_folder_without_a_run_is_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert pipeline.main(["simulate", str(tmp_path)]) == 2
+    assert main(["simulate", str(tmp_path)]) == 2
     assert "name a SHOT.toml or the folder of a run" in capsys.readouterr().err
 
 
 def test_a_shot_that_is_not_there_is_named(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert pipeline.main(["simulate", str(tmp_path / "none.toml")]) == 2
+    assert main(["simulate", str(tmp_path / "none.toml")]) == 2
     assert "none.toml: no such file; name a SHOT.toml" in capsys.readouterr().err
 
 
@@ -41,7 +42,7 @@ def test_a_change_that_is_none_is_named_as_it_was_written(
     option: str, said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with pytest.raises(SystemExit, match="2"):
-        pipeline.main(["simulate", "shot.toml", option, said])
+        main(["simulate", "shot.toml", option, said])
     assert f"{said!r} is not" in capsys.readouterr().err
 
 
@@ -55,7 +56,7 @@ def test_what_few_throws_and_pucks_do_not_tell_is_null_and_said(
         encoding="utf-8",
     )
     out = tmp_path / "out"
-    assert pipeline.main(["simulate", str(shot), "--samples", "1", "-o", str(out)]) == 0
+    assert main(["simulate", str(shot), "--samples", "1", "-o", str(out)]) == 0
     said = capsys.readouterr().out
     assert "A thrown 1 time, at rest:\n" in said and "±" not in said
     assert "in the house" not in said and "shot stone" not in said.partition("warning")[0]

@@ -6,12 +6,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from curlshot.config import Config
 from curlshot.data.errors import SceneError
+from curlshot.data.measurement import Measurement
 from curlshot.data.sheet import HOUSE
-from curlshot.data.tracks import SIGHTING_COLUMNS
-from curlshot.work.analyse import analyse
-from curlshot.work.measure import Measured
-from curlshot.work.settings import Settings
+from curlshot.data.tracks import DETECTION_COLUMNS
+from curlshot.pipeline import analyse
 
 
 def test_samples_that_cannot_be_drawn_are_not_left_out_in_silence() -> None:
@@ -19,10 +19,10 @@ def test_samples_that_cannot_be_drawn_are_not_left_out_in_silence() -> None:
     still = still.assign(
         x=0.1, y=0.2, team="", sd_x=0.003, sd_y=0.003, sd_place_x=0.0, sd_place_y=0.0
     )
-    still = still.reindex(columns=list(SIGHTING_COLUMNS))
-    seen = Measured((Path("still.csv"),), still, 25.0, 20, ())
+    still = still.reindex(columns=list(DETECTION_COLUMNS))
+    seen = Measurement((Path("still.csv"),), still, 25.0, 20, ())
     steps = []
-    done = analyse(seen, Settings(samples=10), lambda *step: steps.append(step))
+    done = analyse(seen, Config().replace(samples=10), lambda *step: steps.append(step))
     assert steps == [("physics", 0, 1), ("physics", 1, 1)]
     assert done.posterior is None
     assert any("no samples" in text for text in done.results.warnings)
@@ -39,8 +39,8 @@ def test_a_table_that_goes_across_a_sheet_has_none(across: bool) -> None:
     )
     glide = pd.DataFrame({"stone": "A", "frame": range(50), "t": t, "team": "", **places})
     glide = glide.assign(sd_x=0.0003, sd_y=0.0003, sd_place_x=0.0, sd_place_y=0.0)
-    glide = glide.reindex(columns=list(SIGHTING_COLUMNS))
-    done = analyse(Measured((Path("glide.csv"),), glide, 25.0, 50, (), house=HOUSE))
+    glide = glide.reindex(columns=list(DETECTION_COLUMNS))
+    done = analyse(Measurement((Path("glide.csv"),), glide, 25.0, 50, (), house=HOUSE))
     assert (done.house is None, done.results.sheet) == (across, not across)
     assert any("put the origin on the tee" in text for text in done.results.warnings) == across
 
@@ -48,14 +48,14 @@ def test_a_table_that_goes_across_a_sheet_has_none(across: bool) -> None:
 @pytest.mark.parametrize(
     ("settings", "said"),
     [
-        (Settings(), "--house points at another"),
-        (Settings(stick=(1.0, 1.0, 90.0, 1.0, 0.5)), "check --radius and --stick"),
-        (Settings(camera=Path("camera.csv")), "check --radius and --camera"),
+        (Config(), "`house` points at another"),
+        (Config().replace(stick=(1.0, 1.0, 90.0, 1.0, 0.5)), "check `radius` and `stick`"),
+        (Config().replace(camera=Path("camera.csv")), "check `radius` and `camera`"),
     ],
 )
 def test_what_to_do_where_no_stone_was_found_goes_by_how_the_camera_was_known(
-    settings: Settings, said: str
+    settings: Config, said: str
 ) -> None:
-    nothing = pd.DataFrame(columns=list(SIGHTING_COLUMNS))
-    with pytest.raises(SceneError, match=rf"a\.mp4: no stone was found; curlshot check .*{said}$"):
-        analyse(Measured((Path("a.mp4"),), nothing, 25.0, 20, ()), settings)
+    nothing = pd.DataFrame(columns=list(DETECTION_COLUMNS))
+    with pytest.raises(SceneError, match=rf"a\.mp4: no stone was found; `check` .*{said}$"):
+        analyse(Measurement((Path("a.mp4"),), nothing, 25.0, 20, ()), settings)

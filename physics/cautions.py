@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from curlshot.work.measure import Measured
+from curlshot.data.measurement import Measurement
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -32,13 +32,13 @@ LISTED = 4
 
 
 def cautions(
-    measured: Measured, tracks: pd.DataFrame, friction: Estimate, sheet: bool
+    measured: Measurement, tracks: pd.DataFrame, friction: Estimate, sheet: bool
 ) -> tuple[str, ...]:
     """Say what makes the numbers of a shot doubtful.
 
     Parameters
     ----------
-    measured : Measured
+    measured : Measurement
         What was seen, or read.
     tracks : DataFrame
         As ``tracks.csv``.
@@ -49,15 +49,15 @@ def cautions(
     """
     from curlshot.physics.prediction.throws import later_throws
 
-    sightings = measured.sightings
+    detections = measured.detections
     pace = _pace_anywhere if measured.house is None else _pace
     return (
         *(() if sheet else (NO_SHEET,)),
         *pace(friction),
         *_throws(later_throws(tracks)),
-        *_few(sightings["frame"].nunique()),
+        *_few(detections["frame"].nunique()),
         # In a clip people cover stones in passing.
-        *(_left_out(sightings, tracks) if measured.clip is None else ()),
+        *(_left_out(detections, tracks) if measured.clip is None else ()),
     )
 
 
@@ -100,7 +100,7 @@ def _pace_anywhere(friction: Estimate) -> tuple[str, ...]:
         return ()
     return (
         f"friction: {value:.2g} is below that of any surface; a wrong number of"
-        " frames a second (--fps), slow motion or another length unit would look so: then speeds"
+        " frames a second (`fps`), slow motion or another length unit would look so: then speeds"
         " are not real ones, e is",
     )
 
@@ -113,16 +113,16 @@ def _throws(later: Mapping[str, float]) -> tuple[str, ...]:
     return (
         f"more than one throw: {each}, when all others have stopped; e and μ are of all,"
         " predictions of the first hit; to measure one alone cut the table, or name its frames"
-        " (--frames)",
+        " (`frames`)",
     )
 
 
-def _left_out(sightings: pd.DataFrame, tracks: pd.DataFrame) -> tuple[str, ...]:
+def _left_out(detections: pd.DataFrame, tracks: pd.DataFrame) -> tuple[str, ...]:
     """Name the marks that are far off the ways of their stones, so that no track heeds them."""
     import numpy as np
 
     refused = tracks.loc[tracks["seen"] == 0, ["stone", "frame", "t", "x", "y"]]
-    both = refused.merge(sightings, on=["stone", "frame"], suffixes=("", "_marked"))
+    both = refused.merge(detections, on=["stone", "frame"], suffixes=("", "_marked"))
     both["off"] = np.hypot(both["x"] - both["x_marked"], both["y"] - both["y_marked"])
     both = both.dropna(subset="off")
     if both.empty:

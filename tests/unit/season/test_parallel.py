@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from curlshot.cli import parallel
-from curlshot.cli.parallel import in_processes, processors
+from curlshot.season import parallel
+from curlshot.season.parallel import in_processes, processors
 
 
 def squared(number: int) -> tuple[int, int]:
@@ -193,8 +193,8 @@ def hung_up(number: int) -> int:
 ALONE = """
 import sys
 from pathlib import Path
-from curlshot.cli.parallel import in_processes
-from curlshot.tests.unit.cli.test_parallel import fails_beside
+from curlshot.season.parallel import in_processes
+from curlshot.tests.unit.season.test_parallel import fails_beside
 if __name__ == "__main__":
     folder = Path(sys.argv[1])
     in_processes(fails_beside, {role: (folder, role) for role in ("slow", "other")}, 2, "things")

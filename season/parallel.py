@@ -16,7 +16,7 @@ from multiprocessing.context import SpawnProcess
 from types import FrameType
 from typing import Any, TypeVar
 
-from curlshot.cli.garbage import collect_seldom
+from curlshot.data.garbage import collect_seldom
 from curlshot.data.progress import Progress, no_progress
 
 Item = TypeVar("Item")

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from curlshot import pipeline
+from curlshot.cli.main import main
 
 
 def glide(path: Path) -> Path:
@@ -21,17 +22,17 @@ def test_what_is_taken_for_the_tee_is_said(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     table, out = str(glide(tmp_path / "a.csv")), str(tmp_path / "out")
-    assert pipeline.main(["run", table, "-q", "-o", out]) == 0
+    assert main(["run", table, "-q", "-o", out]) == 0
     said = capsys.readouterr().out
     assert "house       the origin is taken for its tee (--no-house if it is not)" in said
     assert "shot stone" in said
-    assert pipeline.main(["run", table, "-q", "-o", out, "--no-house"]) == 0
+    assert main(["run", table, "-q", "-o", out, "--no-house"]) == 0
     said = capsys.readouterr().out
     assert "house" not in said and "shot stone" not in said
-    assert pipeline.main(["simulate", out, "--samples", "5", "-o", str(tmp_path / "w")]) == 0
+    assert main(["simulate", out, "--samples", "5", "-o", str(tmp_path / "w")]) == 0
     assert "in the house" not in capsys.readouterr().out
 
 
 def test_of_a_clip_there_is_nothing_to_say(capsys: pytest.CaptureFixture[str]) -> None:
-    assert pipeline.main(["run", str(pipeline.sample_clip()), "--no-house"]) == 2
+    assert main(["run", str(pipeline.sample_clip()), "--no-house"]) == 2
     assert "only tables take --no-house" in capsys.readouterr().err

@@ -6,38 +6,38 @@ import shlex
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from curlshot.config import Config
+from curlshot.data.messages import option
+
 MOST_FILES = 8
 """Input files that are named one by one."""
 
 
-def again(
-    files: Sequence[Path], settings: Mapping[str, object], usual: Mapping[str, object]
-) -> str:
-    """Write the ``curlshot run`` that reads the same files with the same settings.
+def command_of(files: Sequence[Path], config: Config) -> str:
+    """Return the ``curlshot run`` that reads the same files with the same settings.
 
     Parameters
     ----------
     files : sequence of Path
         What was read; of many the folder is named.
-    settings, usual : mapping
-        The fields of the settings and what they are where nothing is said.
+    config : Config
+        The settings of the run.
     """
     inputs = [file.name for file in files]
     if len(files) > MOST_FILES:
         inputs = [f"{files[0].parent.name}/"]
     words = ["curlshot", "run", *inputs]
-    for key, value in settings.items():
-        if value != usual[key]:
-            words += _option(key, value)
+    usual = Config().values()
+    for name, value in config.values().items():
+        if value != usual[name]:
+            words += _option(name, value)
     return shlex.join(words)
 
 
 def _option(key: str, value: object) -> list[str]:
     """Words of one option on the command line."""
-    if key == "overlay":
-        return ["--no-overlay"]
-    name = "--mass" if key == "masses" else f"--{key.replace('_', '-')}"
-    if value is True:
+    name = option(key)
+    if isinstance(value, bool):
         return [name]
     if isinstance(value, Mapping):
         return [word for stone, item in value.items() for word in (name, f"{stone}={item}")]

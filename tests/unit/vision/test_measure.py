@@ -6,13 +6,13 @@ import cv2
 import numpy as np
 import pytest
 
+from curlshot.config import Config
 from curlshot.data.errors import InputError
 from curlshot.data.progress import no_progress
 from curlshot.data.sheet import STONE
+from curlshot.vision.measure import check_size, disc_of, film
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.placed import nobody
-from curlshot.work.film import check_size, disc_of, film
-from curlshot.work.settings import Settings
 
 
 def camera(pixels_a_metre: float) -> Camera:
@@ -35,21 +35,21 @@ def test_what_is_no_stone_by_its_radius_is_not_looked_for_in_a_house(radius: flo
     with pytest.raises(
         InputError, match=rf"radius {radius:g} m: in a house .* --stick or --camera"
     ):
-        disc_of(Settings(radius=radius))
-    assert disc_of(Settings(radius=0.12)).radius == 0.12
-    assert disc_of(Settings(radius=radius, camera=Path("camera.csv"))).cap_radius == 0.0
+        disc_of(Config().replace(radius=radius))
+    assert disc_of(Config().replace(radius=0.12)).radius == 0.12
+    assert disc_of(Config().replace(radius=radius, camera=Path("camera.csv"))).cap_radius == 0.0
 
 
 def test_stones_are_looked_for_in_a_house_and_discs_elsewhere() -> None:
-    assert disc_of(Settings()) == STONE
-    assert disc_of(Settings(radius=0.14)).cap_height == STONE.cap_height
-    stick = Settings(stick=(0.0, 0.0, 10.0, 0.0, 1.0), radius=0.0382)
+    assert disc_of(Config()) == STONE
+    assert disc_of(Config().replace(radius=0.14)).cap_height == STONE.cap_height
+    stick = Config().replace(stick=(0.0, 0.0, 10.0, 0.0, 1.0), radius=0.0382)
     assert (disc_of(stick).radius, disc_of(stick).cap_height) == (0.0382, 0.0)
-    camera_and_size = Settings(camera=Path("camera.csv"), radius=0.0382)
+    camera_and_size = Config().replace(camera=Path("camera.csv"), radius=0.0382)
     assert disc_of(camera_and_size).cap_height == 0.0
-    assert disc_of(Settings(camera=Path("camera.csv"))) == STONE
+    assert disc_of(Config().replace(camera=Path("camera.csv"))) == STONE
     # Stones are not all as large as the rules allow.
-    smaller = disc_of(Settings(camera=Path("camera.csv"), radius=0.145))
+    smaller = disc_of(Config().replace(camera=Path("camera.csv"), radius=0.145))
     assert (smaller.radius, smaller.cap_height) == (0.145, STONE.cap_height)
 
 
@@ -57,7 +57,10 @@ def test_a_stick_gives_the_scale_and_no_house(tmp_path: Path) -> None:
     path = tmp_path / "a.png"
     cv2.imwrite(str(path), np.full((120, 160, 3), 90, np.uint8))
     seen = film(
-        (path,), Settings(stick=(20.0, 20.0, 120.0, 20.0, 0.5), radius=0.05), no_progress, nobody
+        (path,),
+        Config().replace(stick=(20.0, 20.0, 120.0, 20.0, 0.5), radius=0.05),
+        no_progress,
+        nobody,
     )
     assert seen.house is None
     ice = seen.cameras[0].ice(np.array([[20.0, 20.0], [120.0, 20.0]]))
@@ -68,7 +71,7 @@ def test_frames_of_which_none_can_be_read_are_refused(tmp_path: Path) -> None:
     files = (tmp_path / "a.png", tmp_path / "b.png")
     cv2.imwrite(str(files[0]), np.full((120, 160, 3), 90, np.uint8))
     files[1].write_bytes(b"no picture")
-    settings = Settings(stick=(20.0, 20.0, 120.0, 20.0, 0.5), frames=(1, 1))
+    settings = Config().replace(stick=(20.0, 20.0, 120.0, 20.0, 0.5), frames=(1, 1))
     with pytest.raises(InputError, match="none of the frames that are used can be read"):
         film(files, settings, no_progress, nobody)
 
@@ -83,4 +86,4 @@ def test_frames_of_which_none_can_be_read_are_refused(tmp_path: Path) -> None:
 )
 def test_what_is_no_clip_is_refused(names: list[str], said: str) -> None:
     with pytest.raises(InputError, match=said):
-        film(tuple(map(Path, names)), Settings(), no_progress, nobody)
+        film(tuple(map(Path, names)), Config(), no_progress, nobody)

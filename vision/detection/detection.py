@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 _NONE = np.empty((0, 3))
 
 
-class Sighting(NamedTuple):
+class Detection(NamedTuple):
     """One stone seen in one picture.
 
     Attributes
@@ -27,7 +27,7 @@ class Sighting(NamedTuple):
     sd_x, sd_y : float
         Standard error that is anew in each picture, m.
     sd_place : tuple of float
-        Standard error, x and y, that the sightings of a stone share by the camera and the slant of
+        Standard error, x and y, that the detections of a stone share by the camera and the slant of
         the view, m; NaN where it is not told yet.
     colour : ndarray, shape (3,)
         Colour of the cap, L*a*b*.
@@ -80,7 +80,7 @@ class Sighting(NamedTuple):
     measured: bool = True
     swept: bool = False
 
-    def without_samples(self) -> Sighting:
+    def without_samples(self) -> Detection:
         """Leave out what only learning needs."""
         return self._replace(cap_samples=_NONE, granite_samples=_NONE)
 

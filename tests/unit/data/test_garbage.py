@@ -6,7 +6,7 @@ import sys
 
 def test_cycles_are_looked_for_seldom_but_are() -> None:
     code = (
-        "import gc; from curlshot.cli.garbage import BETWEEN, collect_seldom; collect_seldom();"
+        "import gc; from curlshot.data.garbage import BETWEEN, collect_seldom; collect_seldom();"
         "before = gc.get_stats()[0]['collections'];"
         "held = [[] for _ in range(BETWEEN // 2)];"
         "middle = gc.get_stats()[0]['collections'];"
@@ -19,7 +19,7 @@ def test_cycles_are_looked_for_seldom_but_are() -> None:
 
 def test_nothing_is_looked_for_at_the_end() -> None:
     code = (
-        "import atexit, gc; from curlshot.cli.garbage import collect_seldom;"
+        "import atexit, gc; from curlshot.data.garbage import collect_seldom;"
         "atexit.register(lambda: print(gc.get_freeze_count() > 0));"  # runs after what comes later
         "collect_seldom()"
     )

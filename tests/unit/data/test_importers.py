@@ -6,9 +6,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from curlshot.config import Config
 from curlshot.data.errors import InputError
-from curlshot.work.measure import import_tables, measure, refuse_clips
-from curlshot.work.settings import Settings
+from curlshot.data.importers import import_tracks, refuse_clips
+from curlshot.pipeline import measure
 
 
 def table(path: Path, radius: float = 0.1455) -> Path:
@@ -23,32 +24,32 @@ def test_a_table_has_no_clip_and_no_cameras(tmp_path: Path) -> None:
     assert (found.clip, found.cameras) == (None, ())
     assert (found.frames, found.fps) == (40, pytest.approx(25.0))
     assert found.house is not None
-    assert found.sightings["stone"].unique().tolist() == ["A"]
+    assert found.detections["stone"].unique().tolist() == ["A"]
 
 
 def test_pucks_have_no_house(tmp_path: Path) -> None:
     path = table(tmp_path / "A.csv", 0.0465)
-    assert measure([path], Settings(radius=0.0465)).house is None
-    assert measure([path], Settings(radius=0.145)).house is not None
+    assert measure([path], Config().replace(radius=0.0465)).house is None
+    assert measure([path], Config().replace(radius=0.145)).house is not None
 
 
 def test_the_unit_of_the_table_is_taken(tmp_path: Path) -> None:
     path = table(tmp_path / "A.csv")
-    metres = import_tables((path,), Settings()).sightings
-    inches = import_tables((path,), Settings(length_unit="in")).sightings
+    metres = import_tracks([path]).detections
+    inches = import_tracks([path], length_unit="in").detections
     np.testing.assert_allclose(inches[["x", "y"]], 0.0254 * metres[["x", "y"]])
 
 
 @pytest.mark.parametrize(
     ("names", "settings", "said"),
     [
-        (("A.csv", "a.mp4"), Settings(), "do not mix"),
-        (("A.csv",), Settings(house=(0, 1.0, 1.0, 2.0, 2.0, 3.0, 3.0)), "A.csv"),
-        (("no.csv",), Settings(), "no such file"),
+        (("A.csv", "a.mp4"), Config(), "do not mix"),
+        (("A.csv",), Config().replace(house=(0, 1.0, 1.0, 2.0, 2.0, 3.0, 3.0)), "A.csv"),
+        (("no.csv",), Config(), "no such file"),
     ],
 )
 def test_what_does_not_go_together_is_refused(
-    tmp_path: Path, names: tuple[str, ...], settings: Settings, said: str
+    tmp_path: Path, names: tuple[str, ...], settings: Config, said: str
 ) -> None:
     table(tmp_path / "A.csv")
     (tmp_path / "a.mp4").touch()

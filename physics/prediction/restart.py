@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from curlshot.data.errors import InputError
 from curlshot.data.progress import Progress, no_progress
 from curlshot.data.sheet import curling_size
-from curlshot.work.analyse import as_tracks
+from curlshot.data.tracks import simulation_table
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -85,11 +85,11 @@ def sampled(simulation: Simulation, fps: float, model: str) -> pd.DataFrame:
     end = max((rest.t for rest in simulation.rest.values()), default=0.0)
     if end * fps > MOST_SAMPLES:
         raise InputError(
-            f"--fps {fps:g}: {end:.0f} s would be {end * fps:.1g} samples a"
+            f"`fps` {fps:g}: {end:.0f} s would be {end * fps:.1g} samples a"
             f" stone; at most {MOST_SAMPLES:g}, please"
         )
     times = np.append(np.arange(0.0, end, 1 / fps), end)
-    return as_tracks(simulation.sample(times), model)
+    return simulation_table(simulation.sample(times), model)
 
 
 def throw_often(

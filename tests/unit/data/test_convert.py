@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from curlshot.work.convert import convert
+from curlshot.pipeline import convert
 
 
 def test_text_of_tracker_has_no_teams_and_it_is_said(tmp_path: Path) -> None:

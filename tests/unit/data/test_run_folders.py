@@ -7,7 +7,7 @@ import pytest
 from curlshot.data.errors import InputError
 from curlshot.data.results import Estimate, Friction, Input, Results
 from curlshot.data.results_file import write_results
-from curlshot.work.runs import apart, find_runs
+from curlshot.data.run_folders import apart, find_runs
 
 
 def written(folder: Path, radius: float = 0.1455) -> Path:

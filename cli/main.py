@@ -1,0 +1,246 @@
+"""The command ``curlshot``: what each of its commands does and prints."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from curlshot.cli.arguments import config_of, out_folder, what_if_folder
+from curlshot.cli.bars import Bars
+from curlshot.cli.guard import guarded, one_line, write_anywhere
+from curlshot.cli.parser import command_line
+from curlshot.cli.threads import use_one_thread
+from curlshot.data.convert import targets_of
+from curlshot.data.errors import CurlshotError, InputError
+from curlshot.data.files import staged
+from curlshot.data.garbage import collect_seldom
+from curlshot.data.importers import refuse_clips
+from curlshot.data.inputs import IMAGE_SUFFIXES, TABLE_SUFFIXES, find_inputs
+from curlshot.data.run_folders import find_results, read_runs
+from curlshot.data.version import VERSION
+from curlshot.pipeline import analyse, convert, measure, run, sample_clip
+
+if TYPE_CHECKING:
+    from curlshot.data.results import Results
+    from curlshot.outcome import Run
+
+CHECK_DPI = 110
+
+MEASURED_THROWS = 1000
+"""Samples of a measured shot where the person gives no number."""
+
+WHAT_IF = ("outcomes.csv", "whatif.json", "spread.png")
+"""All that samples of a simulation write beside it."""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Entry point of the command; returns its exit code (0 well, 2 a person's mistake)."""
+    use_one_thread()
+    collect_seldom()
+    write_anywhere()
+    arguments = command_line(VERSION).parse_args(argv)
+    bars = Bars(quiet=arguments.quiet)
+    return guarded(lambda: WORK[arguments.command](arguments, bars), bars)
+
+
+def _summary(done: Run, folder: Path) -> str:
+    from curlshot.data.coach_units import UNITS
+    from curlshot.report.summary import summary
+
+    marked = done.cameras is None
+    unit = UNITS[done.config.report.units]
+    return summary(done.results, done.tracks, folder, done.house, unit, marked=marked)
+
+
+def _do_run(arguments: argparse.Namespace, bars: Bars) -> str:
+    inputs = arguments.inputs or [sample_clip()]
+    files = find_inputs(inputs)
+    if len(files) > 1 and not any(
+        f.suffix.lower() in TABLE_SUFFIXES | IMAGE_SUFFIXES for f in files
+    ):
+        return _run_season(arguments, files, bars)
+    folder = out_folder(arguments, inputs[0])
+    done = run(inputs, folder, config_of(arguments), bars)
+    return _summary(done, folder)
+
+
+def _run_season(arguments: argparse.Namespace, clips: Sequence[Path], bars: Bars) -> str:
+    from curlshot.season.batch import run_each
+    from curlshot.season.parallel import processors
+
+    folder = Path(arguments.out or "season")
+    jobs = arguments.jobs or processors()
+    done, failed = run_each(clips, folder, config_of(arguments), bars, jobs)
+    if not done:
+        name, error = next(iter(failed.items()))
+        raise InputError(f"none of {len(clips)} clips could be used; {name}: {error}")
+    runs = {name: run.results for name, run in done.items()}
+    unused = {name: f"not used: {one_line(str(why))}" for name, why in failed.items()}
+    return _season_summary(runs, folder, {name: folder / name for name in runs}, unused)
+
+
+def _do_season(arguments: argparse.Namespace, _: Bars) -> str:
+    files = find_results(arguments.runs)
+    folders = {name: file.parent for name, file in files.items()}
+    return _season_summary(read_runs(files), Path(arguments.out or "season"), folders, {})
+
+
+def _season_summary(
+    runs: Mapping[str, Results],
+    folder: Path,
+    folders: Mapping[str, Path],
+    unused: Mapping[str, str],
+) -> str:
+    """Say what many shots tell, which do not count, and where the page is."""
+    from curlshot.report.summary import season_text
+    from curlshot.season.together import season
+
+    together = season(runs, folder, folders, unused)
+    lines = season_text(together.shots, together.means)
+    lines += [f"{name}   {why}" for name, why in together.left_out.items()]
+    return "\n".join([*lines, f"written     {folder / 'season.html'}"])
+
+
+def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:
+    from curlshot.data.tracks import write_table, write_tracks
+    from curlshot.physics.kalman import smoothed
+    from curlshot.physics.local_fit.contacts import find_contacts
+    from curlshot.report.numbers import count, warned
+    from curlshot.report.write import left_by_earlier_run
+    from curlshot.vision.optics.camera import camera_columns
+
+    config, folder = config_of(arguments), out_folder(arguments, arguments.inputs[0])
+    radius = config.stones.radius
+    measured = measure(arguments.inputs, config.replace(clip=True), bars)
+    tracks = smoothed(measured.table, find_contacts(measured.table, radius), radius=radius)
+    with staged(folder, replaces=left_by_earlier_run(folder, measured.files)) as stage:
+        write_tracks(tracks, stage / "tracks.csv", measured.table)
+        write_table(camera_columns(measured.cameras), stage / "camera.csv")
+    stones = set(tracks["stone"].tolist())
+    lines = [
+        f"{count(len(stones), 'stone')} in {count(measured.frames, 'frame')}: "
+        f"{folder / 'tracks.csv'}, {folder / 'camera.csv'}"
+    ]
+    return "\n".join([*lines, *warned(measured.warnings)])
+
+
+def _do_check(arguments: argparse.Namespace, bars: Bars) -> str:
+    from curlshot.report.check_clip import check
+
+    config, folder = config_of(arguments), out_folder(arguments, arguments.inputs[0])
+    figure, lines = check(arguments.inputs, config, bars)
+    with staged(folder) as stage:
+        figure.savefig(stage / "check.png", dpi=CHECK_DPI)
+    return "\n".join([*lines, f"written     {folder / 'check.png'}"])
+
+
+def _do_estimate(arguments: argparse.Namespace, bars: Bars) -> str:
+    from curlshot.report.write import left_by_earlier_run, write_estimates
+
+    config, folder = config_of(arguments), out_folder(arguments, arguments.inputs[0])
+    refuse_clips(find_inputs(arguments.inputs), "run")
+    measured = measure(arguments.inputs, config, bars)
+    done = analyse(measured, config, bars)
+    with staged(folder, replaces=left_by_earlier_run(folder, measured.files)) as stage:
+        write_estimates(stage, done)
+    return _summary(done, folder)
+
+
+def _do_convert(arguments: argparse.Namespace, _: Bars) -> str:
+    from curlshot.report.numbers import count, warned
+
+    if Path(arguments.out).suffix == "" and Path(arguments.out).name.startswith("."):
+        return _convert_each(arguments)
+    measured = convert(arguments.inputs, arguments.out, config_of(arguments), arguments.over)
+    stones = measured.detections["stone"].nunique()
+    lines = [f"{count(stones, 'stone')} in {count(measured.frames, 'frame')}: {arguments.out}"]
+    return "\n".join([*lines, *warned(measured.warnings)])
+
+
+def _convert_each(arguments: argparse.Namespace) -> str:
+    from curlshot.report.numbers import count, warned
+
+    if arguments.over is not None:
+        raise InputError("`over`: one clip cannot be behind many projects; convert one at a time")
+    config, files = config_of(arguments), find_inputs(arguments.inputs)
+    targets = targets_of(files, arguments.out)
+    refused, written = [], []
+    for file, path in zip(files, targets, strict=True):
+        try:
+            written += [str(path), *warned(convert([file], path, config).warnings)]
+        except CurlshotError as refusal:
+            refused.append(str(refusal))
+    done = len(files) - len(refused)
+    if refused:
+        rest = ", the others were" if done else ""
+        reasons = "; ".join(refused)
+        raise InputError(f"{len(refused)} of {len(files)} not converted{rest}: {reasons}")
+    return "\n".join([f"{count(done, 'file')} written", *written])
+
+
+def _do_simulate(arguments: argparse.Namespace, bars: Bars) -> str:
+    import json
+
+    from curlshot.physics.prediction.restart import (
+        measured_shot,
+        read_start,
+        sampled,
+        shot_file,
+        throw_often,
+    )
+    from curlshot.physics.prediction.what_if import Changes, changed
+    from curlshot.physics.simulator.simulate import simulate
+    from curlshot.report.numbers import warned
+    from curlshot.report.summary import odds_text, simulation_json, simulation_text
+    from curlshot.report.whatif import write_odds, write_simulated
+
+    shot = shot_file(arguments.shot)
+    folder = what_if_folder(arguments, shot)
+    start = read_start(shot, folder)
+    changes = Changes(
+        arguments.restitution,
+        arguments.friction,
+        arguments.speed,
+        arguments.spin,
+        arguments.aim_offset,
+    )
+    start = changed(start, changes)
+    simulation = simulate(start.shot)
+    table = sampled(simulation, arguments.fps, start.shot.impact.name)
+    throws = arguments.samples
+    if throws is None:
+        throws = MEASURED_THROWS if measured_shot(shot) else 0
+    outcome = simulation_json(simulation)
+    written = [folder / name for name in ("simulation.csv", "plan.png")]
+    lines = [simulation_text(simulation, written)]
+    warnings = [*start.assumed.values()]
+    with staged(folder, replaces=WHAT_IF) as stage:
+        write_simulated(stage, start, simulation, table)
+        if throws:
+            outcomes, odds = throw_often(
+                start, changes, throws, arguments.throw_sd, shot.name, bars
+            )
+            write_odds(stage, start, outcomes, odds)
+            outcome = {"nominal": outcome, **odds}
+            lines += odds_text(odds, [folder / name for name in WHAT_IF])
+            warnings = odds["warnings"]
+    lines += warned(warnings)
+    return json.dumps(outcome, indent=1) if arguments.json else "\n".join(lines)
+
+
+def _do_config(arguments: argparse.Namespace, _: Bars) -> str:
+    return config_of(arguments).to_toml().rstrip()
+
+
+WORK = {
+    "run": _do_run,
+    "season": _do_season,
+    "track": _do_track,
+    "check": _do_check,
+    "estimate": _do_estimate,
+    "convert": _do_convert,
+    "simulate": _do_simulate,
+    "config": _do_config,
+}

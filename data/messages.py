@@ -1,0 +1,47 @@
+"""Messages name settings and commands in backticks; the command line spells them as it has them.
+
+So a message reads well from Python (`camera_height`), and on a terminal, in a file or a report
+(--camera-height), where people use the command.
+"""
+
+from __future__ import annotations
+
+import re
+
+OPTIONS = (
+    "angle_unit", "angles", "camera", "camera_height", "clip", "config", "fps", "frames",
+    "friction", "house", "length_unit", "masses", "names", "no_house", "overlay", "over", "radius",
+    "restitution", "samples", "stick", "tab", "units",
+)  # fmt: skip
+"""Settings and arguments that are options of the command."""
+
+COMMANDS = ("check", "convert", "estimate", "run", "season", "simulate", "track")
+
+_OTHER = {"masses": "--mass", "overlay": "--no-overlay"}
+_NAME = re.compile(rf"`({'|'.join((*OPTIONS, *COMMANDS))})`")
+
+
+def as_options(text: str) -> str:
+    """Return a message with settings and commands as the command line spells them.
+
+    Examples
+    --------
+    >>> as_options("give `camera_height`; `check` shows more")
+    'give --camera-height; curlshot check shows more'
+    """
+    return _NAME.sub(lambda match: _spelled(match[1]), text)
+
+
+def option(name: str) -> str:
+    """Return the option of the command that is the setting of that name.
+
+    Examples
+    --------
+    >>> option("camera_height"), option("masses")
+    ('--camera-height', '--mass')
+    """
+    return _OTHER.get(name, f"--{name.replace('_', '-')}")
+
+
+def _spelled(name: str) -> str:
+    return f"curlshot {name}" if name in COMMANDS else option(name)

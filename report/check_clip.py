@@ -1,0 +1,71 @@
+"""Check a clip: follow the camera, look for stones in a few frames, and show both."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from curlshot.config import Config
+from curlshot.data.inputs import find_inputs
+from curlshot.data.progress import Progress, no_progress
+from curlshot.report.check import check_figure
+from curlshot.report.looks import Look, check_lines, check_table, frames_to_show
+from curlshot.vision.detection.glance import glance
+from curlshot.vision.measure import film
+from curlshot.vision.optics.placed import nobody
+
+
+def check(
+    inputs: str | Path | Sequence[str | Path],
+    config: Config = Config(),
+    progress: Progress = no_progress,
+    **settings: Any,
+) -> tuple[Figure, list[str]]:
+    """Follow the camera and look for stones in a few frames, for a person to judge.
+
+    Parameters
+    ----------
+    inputs : str or Path, or sequence of them
+        A video or pictures.
+    config, **settings
+        What is known of the clip, as for `curlshot.run`.
+    progress : callable
+        Called as the work goes on.
+
+    Returns
+    -------
+    Figure
+        The contact sheet (see `curlshot.report.check.check_figure`).
+    list of str
+        The same in a few lines.
+
+    Raises
+    ------
+    curlshot.data.errors.CurlshotError
+        Where the input cannot be used; one line says why.
+    """
+    config = config.replace(**settings)
+    files = find_inputs(inputs)
+    seen = film(files, config, progress, nobody)
+    clip, cameras = seen.clip, seen.cameras
+    radii = () if seen.house is None else seen.house.painted
+    table = check_table(cameras, radii[0] if radii else 0.0)
+    by_frame = {camera.frame: camera for camera in cameras}
+    chosen = frozenset(frames_to_show(table))
+    frames = []
+    for done, frame in enumerate(clip, 1):
+        if frame.index in chosen:
+            frames.append(frame)
+        progress("frames to show", done, clip.expected)
+    stones = glance([(frame.image, by_frame[frame.index]) for frame in frames], seen.disc)
+    looks = [
+        Look(frame, by_frame[frame.index], found.stones, found.refused)
+        for frame, found in zip(frames, stones, strict=True)
+    ]
+    lines = check_lines(files[0].name, clip.read, table, looks, (*clip.warnings, *seen.warnings))
+    title = f"{files[0].name}: {' '.join(lines[1].split())}"
+    radius = config.stones.radius
+    return check_figure(looks, table, radii, title=title, radius=radius), lines
