@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from curlshot.data.estimates import Estimate as Estimate
 from curlshot.data.estimates import Friction as Friction
 from curlshot.data.estimates import Glide as Glide
+from curlshot.data.estimates import NotedEstimate as NotedEstimate
 from curlshot.data.sheet import STONE
 
 
@@ -21,13 +22,6 @@ class Joint:
 
 
 @dataclass(frozen=True)
-class Told(Estimate):
-    """An estimate with a ``note`` that says why there is none, or what it is worth."""
-
-    note: str | None = None
-
-
-@dataclass(frozen=True)
 class Method:
     """Restitution and friction by one method, beside which others can be held.
 
@@ -36,7 +30,7 @@ class Method:
 
     restitution: Estimate = field(default_factory=Estimate)
     friction: Estimate = field(default_factory=Estimate)
-    stone_friction: Told = field(default_factory=Told)
+    stone_friction: NotedEstimate = field(default_factory=NotedEstimate)
     hits: tuple[Estimate, ...] = ()
     note: str | None = None
 
@@ -237,7 +231,7 @@ class Results:
     laws: Joint | None = None
     methods: Mapping[str, Method] = field(default_factory=dict)
     law_choice: tuple[Law, ...] = ()
-    curl: Told = field(default_factory=Told)
+    curl: NotedEstimate = field(default_factory=NotedEstimate)
     stones: Mapping[str, StoneResult] = field(default_factory=dict)
     misfits: tuple[Misfit, ...] = ()
     posterior: Posterior | None = None

@@ -23,13 +23,13 @@ from curlshot.data.results import (
     MeasuredState,
     Method,
     Misfit,
+    NotedEstimate,
     Posterior,
     Prediction,
     Results,
     SimulatedHit,
     SimulationScore,
     StoneResult,
-    Told,
 )
 
 SCHEMA = 1
@@ -78,7 +78,7 @@ def read_results(path: Path) -> Results:
             law_choice=tuple(
                 _made(Law, _with_estimates(item, "friction")) for item in raw.get("law_choice", ())
             ),
-            curl=_made(Told, raw.get("curl", {})),
+            curl=_made(NotedEstimate, raw.get("curl", {})),
             stones={
                 name: _made(StoneResult, _with_estimates(item, "friction", "turn", "spin"))
                 for name, item in raw.get("stones", {}).items()
@@ -138,7 +138,7 @@ def _prediction(item: dict[str, Any]) -> Prediction:
 
 def _method(item: dict[str, Any]) -> Method:
     hits = tuple(_made(Estimate, hit) for hit in item["hits"])
-    told = _made(Told, item["stone_friction"])
+    told = _made(NotedEstimate, item["stone_friction"])
     own = _with_estimates(item, "restitution", "friction")
     return _made(Method, {**own, "stone_friction": told, "hits": hits})
 

@@ -259,34 +259,29 @@ def write_tracks(tracks: Table, path: Path, detections: Table | None = None) -> 
     """
     table = {name: tracks[name] for name in TRACK_COLUMNS}
     if detections is not None:
-        rank = {
-            key: k for k, key in enumerate(zip(detections["stone"], detections["t"], strict=True))
-        }
-        rows = [rank.get(key, -1) for key in zip(tracks["stone"], tracks["t"], strict=True)]
-        for written, name in MEASURED_AS.items():
-            table[written] = np.append(np.asarray(detections[name], float), np.nan)[rows]
+        table |= measured_columns(tracks, detections)
     write_table(table, path)
 
 
+def measured_columns(tracks: Table, detections: Table) -> Columns:
+    """Return the columns of `MEASURED_AS` for the rows of `tracks`; NaN where nothing was seen."""
+    rank = {key: k for k, key in enumerate(zip(detections["stone"], detections["t"], strict=True))}
+    rows = [rank.get(key, -1) for key in zip(tracks["stone"], tracks["t"], strict=True)]
+    return {
+        written: np.append(np.asarray(detections[name], float), np.nan)[rows]
+        for written, name in MEASURED_AS.items()
+    }
+
+
 def read_tracks(path: Path) -> pd.DataFrame:
-    """Read a ``tracks.csv`` as `write_tracks` wrote it.
+    """Read a ``tracks.csv`` as `write_tracks` wrote it, for a shot to throw again.
 
     Raises
     ------
     InputError
-        Where the file is missing or no such thing.
+        Where the file is missing or no such thing, or has no motion.
     """
-    import pandas as pd
-
-    texts = {"stone": str, "team": str}
-    numbers = {name: float for name in TRACK_COLUMNS if name not in (*texts, "frame", "seen")}
-    try:
-        table = pd.read_csv(path, dtype={**texts, **numbers})
-        table = table.assign(team=table.get("team", "")).fillna({"team": ""})[list(TRACK_COLUMNS)]
-    except OSError as error:
-        raise InputError(f"{path}: {error.strerror}") from None
-    except (ValueError, KeyError):  # pandas' own mistakes are ValueErrors
-        raise InputError(f"{path}: not a tracks.csv of this program") from None
+    table = load_tracks(path)[list(TRACK_COLUMNS)]
     if table.empty:
         raise InputError(f"{path}: a table without any row")
     if table[["vx", "vy"]].isna().all(axis=None):
@@ -295,6 +290,41 @@ def read_tracks(path: Path) -> pd.DataFrame:
     if not (np.abs(states) < FARTHEST).all():  # NaN is refused too
         raise InputError(f"{path}: times, places or velocities that are none")
     return table
+
+
+def load_tracks(path: Path, model: bool = False) -> pd.DataFrame:
+    """Read a table of tracks that a run wrote, or version 0.1 of the program.
+
+    Parameters
+    ----------
+    path : Path
+        ``tracks.csv``; ``simulation.csv`` with `model`.
+    model : bool
+        Whether a column ``model`` comes first.
+
+    Returns
+    -------
+    DataFrame
+        `TRACK_COLUMNS`, and of ``tracks.csv`` what there is of `MEASURED_AS`.
+
+    Raises
+    ------
+    InputError
+        Where the file is missing or no such thing.
+    """
+    import pandas as pd
+
+    texts = {"stone": str, "team": str, "model": str}
+    numbers = {name: float for name in TRACK_COLUMNS if name not in (*texts, "frame", "seen")}
+    columns = ["model", *TRACK_COLUMNS] if model else [*TRACK_COLUMNS]
+    try:
+        table = pd.read_csv(path, dtype={**texts, **numbers}).rename(columns=EARLIER_NAMES)
+        table = table.assign(team=table.get("team", "")).fillna({"team": ""})
+        return table[[*columns, *(name for name in MEASURED_AS if name in table)]]
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}") from None
+    except (ValueError, KeyError):  # pandas' own mistakes are ValueErrors
+        raise InputError(f"{path}: not a {path.name} of this program") from None
 
 
 def simulation_table(

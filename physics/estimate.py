@@ -23,8 +23,8 @@ from curlshot.data.results import (
     Joint,
     Method,
     Misfit,
+    NotedEstimate,
     StoneResult,
-    Told,
 )
 from curlshot.physics.local_fit.contacts import Contact
 from curlshot.physics.local_fit.finite_differences import by_finite_differences
@@ -93,7 +93,7 @@ class Estimates:
         The whole shot fitted through the simulator, where its stones move as it knows it.
     by_whole : Method
         What that fit says, even where it is not used, and then why.
-    curl : Told
+    curl : NotedEstimate
         Turn of the paths at 1 m/s for a stone that spins counter-clockwise, rad/s.
     misfits : tuple of Misfit
         How far each track is from its path in a fit that follows the shot, between its hits.
@@ -107,7 +107,7 @@ class Estimates:
     local: Local = field(default_factory=Local, compare=False)
     whole: GlobalFit | None = field(default=None, compare=False)
     by_whole: Method = field(default_factory=Method)
-    curl: Told = field(default_factory=Told)
+    curl: NotedEstimate = field(default_factory=NotedEstimate)
     misfits: tuple[Misfit, ...] = ()
 
     @property
@@ -117,7 +117,7 @@ class Estimates:
         alone = Method(
             local.restitution,
             Estimate(local.friction.value, local.friction.stderr),
-            Told(note="friction between the stones: each hit tells its own"),
+            NotedEstimate(note="friction between the stones: each hit tells its own"),
             hits=tuple(Estimate(hit.restitution, hit.stderr) for hit in local.collisions),
             note="from the paths beside the hits",
         )
@@ -207,24 +207,26 @@ def _global(fit: GlobalFit | None, doubt: str | None) -> Method:
     """Return what the whole shot says, used or not."""
     if fit is None:
         return Method(note=doubt or "the whole shot is not fitted: no stone glides")
-    rub = Told(note="any friction above what stops the stones sliding on each other does the same")
+    rub = NotedEstimate(
+        note="any friction above what stops the stones sliding on each other does the same"
+    )
     if fit.told("stone_friction"):
-        rub = Told(*_pair(fit["stone_friction"]))
+        rub = NotedEstimate(*_pair(fit["stone_friction"]))
     elif "stone_friction" in fit.names:
-        rub = Told(note="the shot tells no more of it than was known beforehand")
+        rub = NotedEstimate(note="the shot tells no more of it than was known beforehand")
     known = {name: fit[name] for name in ("restitution", "friction") if fit.told(name)}
     return Method(
         known.get("restitution", Estimate()), known.get("friction", Estimate()), rub, note=doubt
     )
 
 
-def _curl(fit: GlobalFit | None, doubt: str | None) -> Told:
+def _curl(fit: GlobalFit | None, doubt: str | None) -> NotedEstimate:
     """Turn of the paths at 1 m/s, rad/s, where it shows."""
     if fit is None:
-        return Told(note=doubt or "the whole shot is not fitted")
+        return NotedEstimate(note=doubt or "the whole shot is not fitted")
     if "turn" in fit.fixed:
-        return Told(note="no curl shows: the shot is as well explained without")
-    return Told(*_pair(fit["turn"]))
+        return NotedEstimate(note="no curl shows: the shot is as well explained without")
+    return NotedEstimate(*_pair(fit["turn"]))
 
 
 def _pair(estimate: Estimate) -> tuple[float | None, float | None]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from io import BytesIO
 from typing import Any
 
@@ -90,8 +91,25 @@ def styled() -> Iterator[None]:
         yield
 
 
+_SHOWN: ContextVar[bool] = ContextVar("shown", default=False)
+
+
+@contextmanager
+def shown() -> Iterator[None]:
+    """Make figures inside the block that notebooks and windows show."""
+    before = _SHOWN.set(True)
+    try:
+        yield
+    finally:
+        _SHOWN.reset(before)
+
+
 def new_figure(width: float, height: float) -> Figure:
-    """Return an empty figure, inches, that no window or notebook backend knows about."""
+    """Return an empty figure, inches; no window or notebook knows about it, but within `shown`."""
+    if _SHOWN.get():
+        from matplotlib import pyplot
+
+        return pyplot.figure(figsize=(width, height), layout="constrained")
     return Figure(figsize=(width, height), layout="constrained")
 
 

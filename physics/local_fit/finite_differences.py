@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from curlshot.data.results import Collision, Estimate, Method, Told
+from curlshot.data.results import Collision, Estimate, Method, NotedEstimate
 from curlshot.data.sheet import GRAVITY
 from curlshot.physics.local_fit.traces import Trace
 
@@ -51,7 +51,7 @@ def by_finite_differences(
     return Method(
         _mean(hits),
         _mean(slowed),
-        Told(note="friction between the stones is not told so"),
+        NotedEstimate(note="friction between the stones is not told so"),
         hits=tuple(hits),
         note=f"mean finite differences over at most {WINDOW:g} s on either side of a hit; errors"
         " are of noise alone",

@@ -22,11 +22,11 @@ from curlshot.data.results import (
     MeasuredState,
     Method,
     Misfit,
+    NotedEstimate,
     Posterior,
     Results,
     SimulationScore,
     StoneResult,
-    Told,
 )
 from curlshot.data.results_file import SCHEMA, read_results, results_json, write_results
 
@@ -61,10 +61,10 @@ RESULTS = Results(
     laws=Joint(("restitution", "friction"), (0.83, 0.0109), ((4e-4, 1e-7), (1e-7, 9e-8))),
     methods={
         "local": Method(Estimate(0.82, 0.03), hits=(Estimate(0.81, 0.03),)),
-        "global": Method(stone_friction=Told(note="nothing slides"), note="not used"),
+        "global": Method(stone_friction=NotedEstimate(note="nothing slides"), note="not used"),
     },
     law_choice=(Law("ice constant", 0.0, 0.9, Estimate(0.0109, 3e-4)),),
-    curl=Told(0.008, 0.001),
+    curl=NotedEstimate(0.008, 0.001),
     stones={
         "A": StoneResult(Estimate(0.01, 1e-3), Estimate(0.002, 0.001), 1.2, Estimate(0.6, 0.1))
     },

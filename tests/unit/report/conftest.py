@@ -20,11 +20,11 @@ from curlshot.data.results import (
     Law,
     MeasuredState,
     Method,
+    NotedEstimate,
     Results,
     SimulatedHit,
     SimulationScore,
     StoneResult,
-    Told,
 )
 from curlshot.data.tracks import TRACK_COLUMNS
 from curlshot.physics.curl import FCV1Curl
@@ -140,7 +140,10 @@ def make_shot(frames: int = 170) -> Shot:
         },
         methods={
             "local": Method(
-                Estimate(0.83, 0.02), Estimate(0.0109, 4e-4), Told(), (Estimate(0.83, 0.02),)
+                Estimate(0.83, 0.02),
+                Estimate(0.0109, 4e-4),
+                NotedEstimate(),
+                (Estimate(0.83, 0.02),),
             ),
             "global": Method(Estimate(0.831, 0.012), note="one fit"),
         },
@@ -148,7 +151,7 @@ def make_shot(frames: int = 170) -> Shot:
             Law("ice fit", 4.7, 0.087, Estimate(0.0111, 6e-4)),
             Law("ice constant", 0.0, 0.913, Estimate(0.0109, 4e-4)),
         ),
-        curl=Told(None, None, "no curl shows"),
+        curl=NotedEstimate(None, None, "no curl shows"),
         stones={"A": StoneResult(Estimate(0.0112, 0.0011), Estimate(), 1.1, Estimate(0.66, 0.01))},
         laws=Joint(
             ("restitution", "friction", "stone_friction"),

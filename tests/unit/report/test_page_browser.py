@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from curlshot.data.results import Results, Told
+from curlshot.data.results import NotedEstimate, Results
 from curlshot.data.sheet import HOUSE
 from curlshot.physics.curl import FCV1Curl
 from curlshot.physics.ice import FCV1
@@ -71,7 +71,7 @@ CONTRASTS = """(() => {
 @pytest.fixture(scope="module")
 def results(shot) -> Results:
     """What was found, with a curl that no law has by itself."""
-    return dataclasses.replace(shot.results, curl=Told(0.006, 0.001))
+    return dataclasses.replace(shot.results, curl=NotedEstimate(0.006, 0.001))
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from curlshot.data.results import Collision, Estimate, Friction, Joint, MeasuredState, Told
+from curlshot.data.results import Collision, Estimate, Friction, Joint, MeasuredState, NotedEstimate
 from curlshot.physics.curl import FCV1Curl, NoCurl
 from curlshot.physics.estimate import Estimates
 from curlshot.physics.ice import Constant, Fit
@@ -75,7 +75,7 @@ def test_what_a_shot_does_not_tell_is_assumed_with_its_doubt() -> None:
 
 def test_measured_laws_are_taken_as_they_are_if_they_can_be() -> None:
     falling = Friction(0.008, 0.0002, "fit", 0.002, 0.064, 0.0061)
-    shot = Estimates(Estimate(1.02, 0.03), falling, curl=Told(0.006, 0.001))
+    shot = Estimates(Estimate(1.02, 0.03), falling, curl=NotedEstimate(0.006, 0.001))
     laws = measured_laws(shot, R)
     assert laws.restitution == Estimate(1.0, 0.03)
     assert laws.ice == Fit(0.002, 0.064, 0.0061)
