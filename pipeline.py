@@ -66,7 +66,7 @@ def run(
         check_folder(out)
     measured = measure(named(inputs) or sample_clip(), config, progress)
     done = analyse(measured, config, progress)
-    return done if out is None else done.write(out, progress)
+    return done if out is None else done.report(out, progress)
 
 
 def convert(
@@ -154,7 +154,8 @@ def analyse(
     import numpy as np
     import pandas as pd
 
-    from curlshot.data.tracks import simulation_table, teams
+    from curlshot.data.column_units import with_units
+    from curlshot.data.tracks import measured_columns, simulation_table, teams
     from curlshot.physics.cautions import cautions
     from curlshot.physics.estimate import estimate
     from curlshot.physics.kalman import smooth
@@ -214,7 +215,7 @@ def analyse(
     ]
     progress("physics", 1, 1)
     return Run(
-        tracks,
+        with_units(tracks.assign(**measured_columns(tracks, measured.table))),
         _camera_table(measured),
         results,
         pd.concat(simulations, ignore_index=True) if simulations else simulation_table(None, ""),

@@ -11,8 +11,8 @@ if TYPE_CHECKING:
 _NAMES = {
     "s": ("t", "t0", "t1"),
     "m": ("x", "y", "x0", "y0", "x1", "y1", "path", "to_tee", "curl", "beyond", "place_x",
-          "place_y"),
-    "m/s": ("vx", "vy", "speed", "top_speed", "closing_speed"),
+          "place_y", "dx", "dy"),
+    "m/s": ("vx", "vy", "speed", "mean_speed", "top_speed", "closing_speed"),
     "rad": ("theta", "turned", "rise_a", "rise_b"),
     "rad/s": ("omega", "spin", "turn"),
 }  # fmt: skip

@@ -144,6 +144,11 @@ class Collision:
     note_stone_friction: str | None = None
 
     @property
+    def e(self) -> NotedEstimate:
+        """The coefficient of restitution, or why it is unknown."""
+        return NotedEstimate(self.restitution, self.stderr, self.note)
+
+    @property
     def earliest(self) -> float:
         """Time before which the stones have not met for certain, s: three standard errors."""
         return self.t - 3 * (self.stderr_t or 0.0)

@@ -273,6 +273,22 @@ def measured_columns(tracks: Table, detections: Table) -> Columns:
     }
 
 
+def measured_rows(tracks: pd.DataFrame) -> pd.DataFrame:
+    """Return the detections that `tracks` were made of, by their columns of `MEASURED_AS`.
+
+    Raises
+    ------
+    InputError
+        Where the tracks do not have them.
+    """
+    if "meas_x" not in tracks:
+        raise InputError("tracks: no column meas_x; what was measured is not known")
+    seen = tracks[tracks["meas_x"].notna() & tracks["meas_y"].notna()]
+    own = seen[["stone", "frame", "t", "team"]]
+    measured = {name: seen.get(written, np.nan) for written, name in MEASURED_AS.items()}
+    return own.assign(**measured)[list(DETECTION_COLUMNS)].reset_index(drop=True)
+
+
 def read_tracks(path: Path) -> pd.DataFrame:
     """Read a ``tracks.csv`` as `write_tracks` wrote it, for a shot to throw again.
 

@@ -5,6 +5,7 @@ Colours: Okabe and Ito, Color Universal Design, 2008.
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
@@ -145,15 +146,25 @@ def render(figure: Figure) -> tuple[bytes, bytes]:
     """Return the figure as SVG and as PNG, the layout worked out once."""
     with styled():
         # By the canvases themselves: ``savefig`` would draw each once more before.
-        png = _png(figure)
+        png = png_of(figure)
         svg = BytesIO()
         figure.set_layout_engine("none")  # placed by now; a second pass would cost as much again
         FigureCanvasSVG(figure).print_svg(svg, metadata={"Date": None})  # type: ignore[no-untyped-call]
     return svg.getvalue(), png
 
 
-def _png(figure: Figure) -> bytes:
-    figure.set_dpi(PNG_DPI)
+def inline_svg(figure: Figure) -> str:
+    """Return the figure as an SVG element for a page, its text as text, which is short."""
+    svg = BytesIO()
+    with styled(), matplotlib.rc_context({"svg.fonttype": "none"}):
+        FigureCanvasSVG(figure).print_svg(svg, metadata={"Date": None})  # type: ignore[no-untyped-call]
+    text = svg.getvalue().decode()
+    return re.sub(r">\s+<", "><", text[text.index("<svg") :])
+
+
+def png_of(figure: Figure, dpi: int = PNG_DPI) -> bytes:
+    """Return the figure as PNG with a palette."""
+    figure.set_dpi(dpi)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()  # type: ignore[no-untyped-call]
     pixels = bytes(canvas.buffer_rgba())  # type: ignore[no-untyped-call]
@@ -164,5 +175,5 @@ def _png(figure: Figure) -> bytes:
     palette[paper : paper + 3] = 255, 255, 255
     few.putpalette(palette)
     png = BytesIO()
-    few.save(png, "png", dpi=(PNG_DPI, PNG_DPI))
+    few.save(png, "png", dpi=(dpi, dpi))
     return png.getvalue()
