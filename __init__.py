@@ -28,14 +28,15 @@ if TYPE_CHECKING:
     )
     from curlshot.data.errors import CurlshotError, InputError, SceneError
     from curlshot.data.estimates import Estimate
-    from curlshot.data.results import Collision, Results
+    from curlshot.data.inputs import sample_clip
+    from curlshot.data.results import Collision
     from curlshot.outcome import Run, load
     from curlshot.physics.curl import FCV1Curl, NoCurl
     from curlshot.physics.ice import FCV1, Constant, Penner
     from curlshot.physics.impact import Frictional, PointMass, RigidBody
     from curlshot.physics.simulator.bounds import Bounds
     from curlshot.physics.simulator.simulation import Hit, Shot, StoneStart
-    from curlshot.pipeline import convert, run, sample_clip
+    from curlshot.pipeline import convert, run
     from curlshot.report.check_clip import check
     from curlshot.season.batch import run_each
     from curlshot.season.together import Season, combine
@@ -48,14 +49,15 @@ _MODULES = {
     ),
     "data.errors": ("CurlshotError", "InputError", "SceneError"),
     "data.estimates": ("Estimate",),
-    "data.results": ("Collision", "Results"),
+    "data.inputs": ("sample_clip",),
+    "data.results": ("Collision",),
     "outcome": ("Run", "load"),
     "physics.curl": ("FCV1Curl", "NoCurl"),
     "physics.ice": ("FCV1", "Constant", "Penner"),
     "physics.impact": ("Frictional", "PointMass", "RigidBody"),
     "physics.simulator.bounds": ("Bounds",),
     "physics.simulator.simulation": ("Hit", "Shot", "StoneStart"),
-    "pipeline": ("convert", "run", "sample_clip"),
+    "pipeline": ("convert", "run"),
     "report.check_clip": ("check",),
     "season.batch": ("run_each",),
     "season.together": ("Season", "combine"),
@@ -81,7 +83,6 @@ __all__ = [
     "PhysicsConfig",
     "PointMass",
     "ReportConfig",
-    "Results",
     "RigidBody",
     "Run",
     "SceneError",

@@ -59,18 +59,24 @@ class Run:
     Examples
     --------
     >>> import curlshot
-    >>> stones = (curlshot.StoneStart("A", 0.05, 2.0, vy=-1.5), curlshot.StoneStart("B", 0.0, 0.0))
-    >>> shot = curlshot.simulate(curlshot.Shot(stones, curlshot.Frictional(0.83)))
-    >>> shot.table(fps=30).to_csv("shot.csv")
-    >>> run = curlshot.run("shot.csv")
-    >>> f"{run.restitution:.2f}"
-    '0.83 ± 0.00'
-    >>> run.hits[["first", "second", "closing_speed"]].round(2)
-      first second  closing_speed
-    0     A      B           1.26
+    >>> stones = (curlshot.StoneStart("A", 0.5, 1.0), curlshot.StoneStart("B", 0.0, 0.0))
+    >>> table = curlshot.simulate(curlshot.Shot(stones)).sample([0.0, 0.1, 0.2, 0.3])
+    >>> table.to_csv("still.csv")
+    >>> run = curlshot.run("still.csv")
+    >>> run
+    input       still.csv: 4 frames, 0.30 s
+    stones      2 (A, B); moved: none
+    restitution e = —
+    friction    μ = —
+    warnings    3
     >>> run.tracks.attrs["units"]["vx"]
     'm/s'
-    >>> axes = run.plot_speed()
+    >>> run.stones[["stone", "to_tee"]].round(3)
+      stone  to_tee
+    0     A   1.118
+    1     B   0.000
+    >>> run.plot().get_xlabel()
+    '$x$ (m)'
     """
 
     tracks: pd.DataFrame
@@ -382,11 +388,11 @@ def load(folder: str | Path) -> Run:
     Examples
     --------
     >>> import curlshot
-    >>> stones = (curlshot.StoneStart("A", 0.0, 2.0), curlshot.StoneStart("B", 0.0, 0.0))
+    >>> stones = (curlshot.StoneStart("A", 0.5, 1.0), curlshot.StoneStart("B", 0.0, 0.0))
     >>> table = curlshot.simulate(curlshot.Shot(stones)).sample([0.0, 0.1, 0.2, 0.3])
-    >>> table.to_csv("shot.csv")
-    >>> run = curlshot.run("shot.csv", out="shot", overlay=False)
-    >>> again = curlshot.load("shot")
+    >>> table.to_csv("still.csv")
+    >>> run = curlshot.run("still.csv", out="still")
+    >>> again = curlshot.load("still")
     >>> again.tracks.shape == run.tracks.shape
     True
     """

@@ -21,7 +21,7 @@ from curlshot.physics.simulator.simulation import Hit, Rest, Shot, Simulation, c
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
 FPS = 60.0
 """Rate at which a path is drawn, 1/s."""
@@ -48,10 +48,10 @@ class SimulatedShot:
     >>> stones = (curlshot.StoneStart("A", 0.0, 2.0, vy=-1.5), curlshot.StoneStart("B", 0.0, 0.0))
     >>> curlshot.simulate(curlshot.Shot(stones))
     at rest:
-      A  x   +0.000 m   y   +0.291 m   after   1.32 s
-      B  x   +0.000 m   y   -8.442 m   after  13.14 s
+      A  x   +0.000 m   y   +0.291 m   after   1.17 s
+      B  x   -0.000 m   y  -11.965 m   after  16.12 s
     hits:
-       1.316 s  A on B
+       1.173 s  A on B
     """
 
     start: Start
@@ -149,14 +149,15 @@ class SimulatedShot:
         from curlshot.report.figures import simulated_figure
         from curlshot.report.notebook import drawn
 
-        axes = drawn(
+        axes: NDArray[Any] = drawn(
             lambda on: simulated_figure(
                 self.table(), self.hits, gone=self.simulation.gone, house=self.house,
                 radius=self.shot.radius, play=self.play, on=on,
             ),
             ax,
         )  # fmt: skip
-        return axes[0]
+        panel: Axes = axes[0]
+        return panel
 
     def summary(self, written: Sequence[Path] = ()) -> str:
         """Return rest places and hits in a few lines, and the files that have them."""
@@ -207,9 +208,9 @@ def simulate(
     >>> for speed in (None, "0.9x", 2.0):
     ...     outcome = curlshot.simulate(shot, speed=speed)
     ...     print(f"{outcome.rest['B'].y:.2f} m, {len(outcome.hits)} hit")
-    -6.66 m, 1 hit
-    -5.14 m, 1 hit
-    -14.15 m, 1 hit
+    -9.81 m, 1 hit
+    -7.45 m, 1 hit
+    -19.81 m, 1 hit
     >>> curlshot.simulate(shot, speed="fast")
     Traceback (most recent call last):
         ...

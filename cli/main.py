@@ -18,14 +18,13 @@ from curlshot.data.errors import CurlshotError, InputError
 from curlshot.data.files import staged
 from curlshot.data.garbage import collect_seldom
 from curlshot.data.importers import refuse_clips
-from curlshot.data.inputs import IMAGE_SUFFIXES, TABLE_SUFFIXES, find_inputs
+from curlshot.data.inputs import IMAGE_SUFFIXES, TABLE_SUFFIXES, find_inputs, sample_clip
 from curlshot.data.messages import as_options
-from curlshot.data.run_folders import find_results, read_runs
 from curlshot.data.version import VERSION
-from curlshot.pipeline import analyse, convert, measure, run, sample_clip
+from curlshot.pipeline import analyse, convert, measure, run
 
 if TYPE_CHECKING:
-    from curlshot.data.results import Results
+    from curlshot.outcome import Run
 
 CHECK_DPI = 110
 
@@ -68,31 +67,22 @@ def _run_season(arguments: argparse.Namespace, clips: Sequence[Path], bars: Bars
     if not done:
         name, error = next(iter(failed.items()))
         raise InputError(f"none of {len(clips)} clips could be used; {name}: {error}")
-    runs = {name: run.results for name, run in done.items()}
     unused = {name: f"not used: {one_line(as_options(str(why)))}" for name, why in failed.items()}
-    return _season_summary(runs, folder, {name: folder / name for name in runs}, unused)
+    return _season_summary(done, folder, unused)
 
 
 def _do_season(arguments: argparse.Namespace, _: Bars) -> str:
-    files = find_results(arguments.runs)
-    folders = {name: file.parent for name, file in files.items()}
-    return _season_summary(read_runs(files), Path(arguments.out or "season"), folders, {})
+    return _season_summary(arguments.runs, Path(arguments.out or "season"), {})
 
 
 def _season_summary(
-    runs: Mapping[str, Results],
-    folder: Path,
-    folders: Mapping[str, Path],
-    unused: Mapping[str, str],
+    runs: Sequence[str] | Mapping[str, Run], folder: Path, unused: Mapping[str, str]
 ) -> str:
-    """Say what many shots tell, which do not count, and where the page is."""
-    from curlshot.report.summary import season_text
-    from curlshot.season.together import season
+    """Say what many shots show, which do not count, and where the page is."""
+    from curlshot.season.together import combine
 
-    together = season(runs, folder, folders, unused)
-    lines = season_text(together.shots, together.means)
-    lines += [f"{name}   {why}" for name, why in together.left_out.items()]
-    return "\n".join([*lines, f"written     {folder / 'season.html'}"])
+    together = combine(runs, folder, unused)
+    return f"{together.summary()}\nwritten     {folder / 'season.html'}"
 
 
 def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import NDArray
+
 from curlshot.data.errors import InputError, MissingPackageError
 from curlshot.data.results import Input
 
@@ -46,15 +49,16 @@ def movement_dataset(tracks: pd.DataFrame, source: Input) -> xr.Dataset:
         raise MissingPackageError(
             "to_xarray needs the package xarray: pip install xarray"
         ) from None
-    import numpy as np
 
     if tracks.empty:
         raise InputError("no tracks: there is nothing to put into a dataset")
-    wide = tracks.pivot(index="t", columns="stone")
-    stones = sorted(str(name) for name in tracks["stone"].unique())
+    times, row = np.unique(tracks["t"].to_numpy(float), return_inverse=True)
+    stones, rank = np.unique(tracks["stone"].to_numpy(str), return_inverse=True)
 
-    def column(name: str) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
-        return wide[name].reindex(columns=stones).to_numpy(float)
+    def column(name: str) -> NDArray[np.float64]:
+        out = np.full((len(times), len(stones)), np.nan)
+        out[row, rank] = tracks[name].to_numpy(float)
+        return out
 
     data: dict[str, tuple[tuple[str, ...], object, dict[str, str]]] = {}
     for sd, ending in (("", ""), ("sd_", "_sd")):
@@ -75,6 +79,6 @@ def movement_dataset(tracks: pd.DataFrame, source: Input) -> xr.Dataset:
         attrs["fps"] = source.fps
     return xr.Dataset(
         data,
-        coords={"time": wide.index.to_numpy(float), "space": ["x", "y"], "individuals": stones},
+        coords={"time": times, "space": ["x", "y"], "individuals": stones},
         attrs=attrs,
     )

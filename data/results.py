@@ -125,6 +125,13 @@ class Collision:
     ``stone_friction`` (``note_stone_friction``),
     ``momentum_residual`` is |Σv' − Σv| / |Σv| (masses as given) and ``energy_lost`` the
     fraction of the translational kinetic energy that is gone.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> hit = curlshot.Collision(1.2, 0.01, ("A", "B"), (0.0, -1.0), 0.83, 0.02, {}, {})
+    >>> print(hit.e)
+    0.830 ± 0.020
     """
 
     t: float

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from curlshot.data.column_units import with_units
 from curlshot.data.errors import InputError
 from curlshot.data.files import whole_file
 from curlshot.data.text import printable
@@ -271,6 +272,11 @@ def measured_columns(tracks: Table, detections: Table) -> Columns:
         written: np.append(np.asarray(detections[name], float), np.nan)[rows]
         for written, name in MEASURED_AS.items()
     }
+
+
+def with_measured(tracks: pd.DataFrame, detections: Table) -> pd.DataFrame:
+    """Return tracks as ``tracks.csv`` has them: with what was measured, and units in ``attrs``."""
+    return with_units(tracks.assign(**measured_columns(tracks, detections)))
 
 
 def measured_rows(tracks: pd.DataFrame) -> pd.DataFrame:
