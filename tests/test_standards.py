@@ -32,7 +32,7 @@ MAY_IMPORT = {
         "pipeline",
         "simulated",
         "season",
-    },  # fmt: skip
+    },
 }
 """The rooms that each room may import. `outcome` and `report` are one floor: a run draws itself."""
 ORDER = {
