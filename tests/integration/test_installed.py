@@ -53,7 +53,7 @@ def test_the_wheel_has_one_name_at_its_top(wheel: Path) -> None:
 def test_the_wheel_holds_every_module_of_the_product(wheel: Path) -> None:
     with zipfile.ZipFile(wheel) as archive:
         packed = {name.removeprefix("curlshot/") for name in archive.namelist()}
-    outside = {"tests", "benchmarks", "docs", "examples"}
+    outside = {"tests", "benchmarks", "docs", "examples", "build"}
     tracked = [path.relative_to(wheel.parent / "tree") for path in wheel.parent.rglob("*.py")]
     modules = {path.as_posix() for path in tracked if path.parts[0] not in outside}
     assert "pipeline.py" in modules
