@@ -1,9 +1,9 @@
 """Run benchmarks, store their figures, and compare two records.
 
-    python -m benchmarks.record run camera stills frames shots variants cost
+    python -m benchmarks.record run "camera --size 720" stills frames shots variants cost
     python -m benchmarks.record compare benchmarks/history/A.json benchmarks/history/B.json
 
-A record is one JSON file in ``benchmarks/history``, named by date and commit. It holds the machine,
+A name may be followed by the options of its benchmark. A record is one JSON file in ``benchmarks/history``, named by date and commit. It holds the machine,
 and of each benchmark the lines that it printed and how long it took. Figures are the numbers in
 these lines, by the words before the first of them.
 """
@@ -70,7 +70,8 @@ def measured(name: str, words: Sequence[str] = ()) -> dict[str, Any]:
     )  # fmt: skip
     if done.returncode not in (0, 1):  # 1: a figure misses its bar
         raise SystemExit(f"{name}: exit code {done.returncode}\n{done.stderr}")
-    return {"wall_s": round(time.monotonic() - began, 1), "lines": done.stdout.splitlines()}
+    taken = round(time.monotonic() - began, 1)
+    return {"words": list(words), "wall_s": taken, "lines": done.stdout.splitlines()}
 
 
 def figures(lines: Sequence[str]) -> Iterator[tuple[str, list[float]]]:
@@ -121,8 +122,8 @@ def main() -> None:
         return
     date = datetime.now(UTC).date().isoformat()
     record = {"date": date, "commit": commit(), "machine": machine(), "benchmarks": {}}
-    for name in arguments.names:
-        record["benchmarks"][name] = measured(name)
+    for name, *words in map(str.split, arguments.names):
+        record["benchmarks"][name] = measured(name, words)
         print(f"{name}: {record['benchmarks'][name]['wall_s']} s", flush=True)
     path = arguments.out or HISTORY / f"{date}-{record['commit']}.json"
     write_text(path, json.dumps(record, indent=1, ensure_ascii=False) + "\n")
