@@ -3,9 +3,10 @@
     python -m benchmarks.record run "camera --size 720" stills frames shots variants cost
     python -m benchmarks.record compare benchmarks/history/A.json benchmarks/history/B.json
 
-A name may be followed by the options of its benchmark. A record is one JSON file in ``benchmarks/history``, named by date and commit. It holds the machine,
-and of each benchmark the lines that it printed and how long it took. Figures are the numbers in
-these lines, by the words before the first of them.
+A name may be followed by the options of its benchmark. A record is one JSON file in
+``benchmarks/history``, named by date and commit. It holds the machine, and of each benchmark the
+lines that it printed and how long it took. Figures are the numbers in these lines, by the words
+before the first of them.
 """
 
 from __future__ import annotations
