@@ -46,7 +46,7 @@ def seen_twice(
         return SimpleNamespace(ok=np.isfinite(evidence), evidence=evidence)
 
     monkeypatch.setattr(module, "strangers", lambda views, disc, search: ([Findings(first)], disc))
-    monkeypatch.setattr(module, "search_picture", lambda image, camera, appearance, disc: known)
+    monkeypatch.setattr(module, "search_picture", lambda *_: known)
     monkeypatch.setattr(module, "by_shape", lambda look, taken, disc, search: shapes)
     monkeypatch.setattr(module, "measure_discs", measure)
     (found,) = glance([(np.zeros((4, 4, 3), np.uint8), Camera(0, 0.0, np.eye(3), (4, 4)))])

@@ -53,7 +53,7 @@ def test_caps_on_paint_of_their_hue_are_told_where_coding_tinges_their_granite(
     told = measures(picture, ON_PAINT)
     monkeypatch.setattr("curlshot.vision.detection.measure.sharpened", lambda rays, _: rays)
     before = measures(picture, ON_PAINT)
-    assert before.evidence.min() < SEARCH.least_evidence < told.evidence.min()
+    assert before.evidence.min() < SEARCH.min_evidence < told.evidence.min()
     assert (told.evidence >= before.evidence).all()
     assert (told.visible >= before.visible).all()
     assert told.visible.min() > before.visible.min() + 0.1
