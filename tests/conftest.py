@@ -3,6 +3,7 @@ from __future__ import annotations
 import fcntl
 import os
 import pickle
+from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
 
@@ -11,6 +12,8 @@ import pytest
 from curlshot import pipeline
 from curlshot.cli.threads import use_one_thread
 from curlshot.outcome import Run
+from curlshot.tests.helpers.report.browser import Browser
+from curlshot.tests.helpers.report.shot import Shot, make_shot
 
 use_one_thread()  # the suite has a process for each core: more threads only wait for each other
 
@@ -41,6 +44,19 @@ def sample(tmp_path_factory: pytest.TempPathFactory) -> Run:
             run = pipeline.run(out=shared / "sample" / "out")
             kept.write_bytes(pickle.dumps(run))
         return pickle.loads(kept.read_bytes())
+
+
+@pytest.fixture(scope="session")
+def shot() -> Shot:
+    """Tracks and results of a shot in closed form."""
+    return make_shot()
+
+
+@pytest.fixture(scope="session")
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    """A Chromium without a window."""
+    with Browser(tmp_path_factory.mktemp("profile")) as browser:
+        yield browser
 
 
 class PackageModule(pytest.Module):

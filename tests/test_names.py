@@ -13,8 +13,8 @@ from curlshot import pipeline
 from curlshot.report.check import check_figure
 from curlshot.report.looks import Look
 from curlshot.report.style import plain_text
-from curlshot.tests.unit.report import looking
-from curlshot.tests.unit.report.looking import SIZE, camera
+from curlshot.tests.helpers.report import looking
+from curlshot.tests.helpers.report.looking import SIZE, camera
 from curlshot.vision.film.clip import Frame
 
 

@@ -13,7 +13,7 @@ from curlshot.data.sheet import HOUSE
 from curlshot.data.tracks import DETECTION_COLUMNS, check_detections
 from curlshot.physics.cautions import _pace_anywhere
 from curlshot.pipeline import analyse
-from curlshot.tests.unit.physics.watch import hit_motion, watch
+from curlshot.tests.helpers.physics.watch import hit_motion, watch
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,14 @@ from curlshot.physics.filter.stretch import (
 )  # fmt: skip
 from curlshot.physics.kalman import smooth
 from curlshot.physics.local_fit.contacts import find_contacts
-from curlshot.tests.unit.physics.watch import RADIUS, airtable, hit_motion, lasting, semireal, watch
+from curlshot.tests.helpers.physics.watch import (
+    RADIUS,
+    airtable,
+    hit_motion,
+    lasting,
+    semireal,
+    watch,
+)
 
 Floats = NDArray[np.float64]
 

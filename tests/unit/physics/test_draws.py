@@ -9,7 +9,7 @@ import pytest
 from curlshot.physics.estimate import Estimates, estimate
 from curlshot.physics.local_fit.contacts import find_contacts
 from curlshot.synthetic.physics import Ice, Impact, Start, simulate
-from curlshot.tests.unit.physics.watch import RADIUS, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, watch
 
 EVEN = Ice(b=0.0107)
 FALLING = Ice(b=0.00626286, a=0.00200985, v_c=0.06385782, curl=0.0082)

@@ -15,7 +15,7 @@ from curlshot.physics.kalman import smooth
 from curlshot.physics.local_fit.contacts import find_contacts
 from curlshot.physics.local_fit.local import estimate_locally
 from curlshot.synthetic.physics import Ice, Impact, Motion, Start, simulate
-from curlshot.tests.unit.physics.watch import (
+from curlshot.tests.helpers.physics.watch import (
     RADIUS,
     airtable,
     discs,

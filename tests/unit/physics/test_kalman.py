@@ -13,7 +13,7 @@ from curlshot.physics.filter.stretch import Filter
 from curlshot.physics.kalman import smooth
 from curlshot.physics.local_fit.contacts import Contact, find_contacts
 from curlshot.synthetic.physics import Motion, Start
-from curlshot.tests.unit.physics.watch import RADIUS, airtable, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, airtable, hit_motion, watch
 
 COLUMNS = ("x", "y", "theta", "vx", "vy", "omega")
 

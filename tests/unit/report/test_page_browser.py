@@ -23,8 +23,8 @@ from curlshot.physics.simulator.simulate import simulate
 from curlshot.physics.simulator.simulation import Shot as Throw
 from curlshot.report.overlay import write_overlay
 from curlshot.report.page import write_report
-from curlshot.tests.unit.report.browser import Browser, Tab, needs_chromium
-from curlshot.tests.unit.report.test_overlay import camera, pictures
+from curlshot.tests.helpers.report.browser import Browser, Tab, needs_chromium
+from curlshot.tests.helpers.report.clips import camera, pictures
 from curlshot.vision.film.clip import open_clip
 
 pytestmark = needs_chromium

@@ -10,9 +10,9 @@ import pytest
 from curlshot.cli.main import main
 from curlshot.data.results import Estimate, Results
 from curlshot.data.results_file import write_results
-from curlshot.tests.unit.report.browser import Browser, needs_chromium
-from curlshot.tests.unit.report.test_page import Page
-from curlshot.tests.unit.report.test_season import BARE, SHOT
+from curlshot.tests.helpers.report.browser import Browser, needs_chromium
+from curlshot.tests.helpers.report.page import Page
+from curlshot.tests.helpers.report.shots import BARE, SHOT
 
 NAMES = {"a < b": 0.82, "shot 2": 0.79, "shot 10": 0.91, "early": None}
 """Of shots, and what their e is."""

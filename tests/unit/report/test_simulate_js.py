@@ -21,7 +21,7 @@ from curlshot.physics.simulator.simulate import simulate
 from curlshot.physics.simulator.simulation import Shot, Simulation, StoneStart
 from curlshot.physics.simulator.values import shot_values
 from curlshot.report import page
-from curlshot.tests.unit.report.browser import Browser, Tab, needs_chromium
+from curlshot.tests.helpers.report.browser import Browser, Tab, needs_chromium
 
 WEB = Path(page.__file__).parent / "web"
 COUNT = 240

@@ -13,7 +13,7 @@ import pytest
 
 from curlshot.synthetic.camera import still_camera
 from curlshot.synthetic.clip import render_still
-from curlshot.tests.unit.vision.detection.test_stones import RED, YELLOW, scene_of
+from curlshot.tests.helpers.vision.stones import RED, YELLOW, scene_of
 from curlshot.vision.association.watch import Watch
 from curlshot.vision.camera_path.follow_house import follow_house
 from curlshot.vision.film.clip import Clip, Frame, Image

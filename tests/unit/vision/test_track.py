@@ -17,14 +17,14 @@ from curlshot.physics.kalman import smooth
 from curlshot.physics.local_fit.contacts import find_contacts
 from curlshot.synthetic.clip import render_still
 from curlshot.synthetic.scoring import score_tracks
-from curlshot.tests.unit.vision.association.test_follow import detection
-from curlshot.tests.unit.vision.detection.test_stones import (
+from curlshot.tests.helpers.vision.stones import (
     CAMERA,
     RED,
     camera_of,
     scene_of,
     without_colours,
 )
+from curlshot.tests.helpers.vision.tracks import detection
 from curlshot.vision.association.follow import Track
 from curlshot.vision.detection.roundness import edge_errors
 from curlshot.vision.detection.steady import lightness_of

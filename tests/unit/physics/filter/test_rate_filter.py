@@ -11,7 +11,7 @@ from curlshot.physics.filter import rate_filter, reference_filter
 from curlshot.physics.filter.stretch import SPIN_LOSS, Model, Stretch
 from curlshot.physics.kalman import smooth
 from curlshot.physics.local_fit.contacts import find_contacts
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 
 def random_stretch(rng: np.random.Generator, n: int) -> Stretch:

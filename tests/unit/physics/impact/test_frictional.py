@@ -8,7 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from curlshot.physics.impact import Frictional, resolve, tangent
-from curlshot.tests.unit.physics.impact.case import (
+from curlshot.tests.helpers.physics.impact_case import (
     Array,
     Case,
     R,

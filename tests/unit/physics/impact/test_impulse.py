@@ -8,7 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from curlshot.physics.impact import Frictional, PointMass, RigidBody, resolve
-from curlshot.tests.unit.physics.impact.case import Case, after_hit, closing, energy, hits, unit
+from curlshot.tests.helpers.physics.impact_case import Case, after_hit, closing, energy, hits, unit
 
 
 @settings(deadline=None)

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import assume, given, settings
 
 from curlshot.physics.impact import Frictional, PointMass, RigidBody, resolve
-from curlshot.tests.unit.physics.impact.case import Case, after_hit, closing, hits, unit
+from curlshot.tests.helpers.physics.impact_case import Case, after_hit, closing, hits, unit
 
 
 @settings(deadline=None)

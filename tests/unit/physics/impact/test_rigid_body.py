@@ -4,7 +4,15 @@ import pytest
 from hypothesis import assume, given, settings
 
 from curlshot.physics.impact import RigidBody, resolve, tangent
-from curlshot.tests.unit.physics.impact.case import Case, R, after_hit, closing, hits, spins, unit
+from curlshot.tests.helpers.physics.impact_case import (
+    Case,
+    R,
+    after_hit,
+    closing,
+    hits,
+    spins,
+    unit,
+)
 
 
 @settings(deadline=None)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from curlshot.physics.filter.stretch import PLACE_MEMORY
 from curlshot.physics.local_fit.breaks import breaks
-from curlshot.tests.unit.physics.watch import lasting
+from curlshot.tests.helpers.physics.watch import lasting
 
 T = np.arange(0, 4, 1 / 30)
 

@@ -11,7 +11,7 @@ from curlshot.physics.local_fit.candidate_pruning import MANY, prune_candidates
 from curlshot.physics.local_fit.candidates import candidates
 from curlshot.physics.local_fit.contacts import find_contacts
 from curlshot.physics.local_fit.traces import traces
-from curlshot.tests.unit.physics.watch import NAMES, RADIUS
+from curlshot.tests.helpers.physics.watch import NAMES, RADIUS
 
 TWO = 2 * RADIUS
 

@@ -14,7 +14,14 @@ from curlshot.physics.local_fit.fit import fit_shot
 from curlshot.physics.local_fit.shot_fit import Meeting
 from curlshot.physics.local_fit.traces import traces
 from curlshot.synthetic.physics import Ice, Impact, Motion, Start, simulate
-from curlshot.tests.unit.physics.watch import RADIUS, airtable, discs, hit_motion, semireal, watch
+from curlshot.tests.helpers.physics.watch import (
+    RADIUS,
+    airtable,
+    discs,
+    hit_motion,
+    semireal,
+    watch,
+)
 
 QUICK = (Phase.explicit, Phase.reuse, Phase.generate)  # shrinking repeats slow fits
 

@@ -10,7 +10,7 @@ from curlshot.physics.estimate import estimate
 from curlshot.physics.local_fit.contacts import find_contacts
 from curlshot.physics.local_fit.finite_differences import by_finite_differences
 from curlshot.physics.local_fit.traces import traces
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 E = 0.5
 

@@ -10,7 +10,7 @@ from curlshot.physics.local_fit.fit import _first_guess, _origin, fit_shot
 from curlshot.physics.local_fit.segments import Piece
 from curlshot.physics.local_fit.shot_fit import Deceleration, Meeting
 from curlshot.physics.local_fit.traces import Trace, traces
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 T = np.linspace(2.0, 3.0, 21)
 MEETINGS = [Meeting(2.4, ("A", "B"), 0.05)]

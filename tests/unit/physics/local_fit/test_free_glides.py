@@ -10,7 +10,7 @@ from curlshot.physics.local_fit.contacts import find_contacts
 from curlshot.physics.local_fit.free_glides import are_free, is_pushed
 from curlshot.physics.local_fit.local import Local, estimate_locally
 from curlshot.physics.local_fit.segments import Piece
-from curlshot.tests.unit.physics.watch import RADIUS, Floats, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, Floats, hit_motion, watch
 
 FPS = 60
 

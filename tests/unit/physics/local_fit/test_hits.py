@@ -9,7 +9,7 @@ from curlshot.physics.local_fit.contacts import find_contacts
 from curlshot.physics.local_fit.hits import pooled
 from curlshot.physics.local_fit.local import estimate_locally
 from curlshot.synthetic.physics import Start
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 
 def test_why_the_friction_between_stones_is_not_told() -> None:

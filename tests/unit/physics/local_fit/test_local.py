@@ -6,7 +6,7 @@ import pytest
 from curlshot.physics.local_fit.contacts import find_contacts
 from curlshot.physics.local_fit.local import estimate_locally
 from curlshot.synthetic.physics import Ice, Impact, Start, simulate
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 
 def test_long_glides_on_ice_that_slows_slow_stones_more() -> None:

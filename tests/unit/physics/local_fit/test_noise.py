@@ -13,7 +13,7 @@ from curlshot.physics.local_fit.fit import fit_shot
 from curlshot.physics.local_fit.noise import BRIEF, FEWEST, Noise, Run, _square, noises
 from curlshot.physics.local_fit.shot_fit import Deceleration
 from curlshot.physics.local_fit.traces import local_residuals, traces
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, lasting, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, lasting, watch
 
 Floats = NDArray[np.float64]
 

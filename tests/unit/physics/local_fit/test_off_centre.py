@@ -10,7 +10,7 @@ from curlshot.physics.local_fit.breaks import breaks
 from curlshot.physics.local_fit.off_centre import centred
 from curlshot.physics.local_fit.shot_fit import Meeting
 from curlshot.physics.local_fit.traces import Trace
-from curlshot.tests.unit.physics.watch import RADIUS, lasting
+from curlshot.tests.helpers.physics.watch import RADIUS, lasting
 
 Floats = NDArray[np.float64]
 

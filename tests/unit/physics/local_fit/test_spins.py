@@ -16,7 +16,7 @@ from curlshot.physics.local_fit.shot_fit import ShotFit
 from curlshot.physics.local_fit.spins import spin_on, spins_at
 from curlshot.physics.local_fit.traces import Trace
 from curlshot.synthetic.physics import Motion
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, lasting, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, lasting, watch
 
 HIT = 1.0
 """Time of the hit in `hit_motion`, s."""

@@ -22,7 +22,7 @@ from curlshot.physics.simulator.simulation import Shot, StoneStart
 from curlshot.physics.whole_shot.global_fit import fit_shots
 from curlshot.synthetic.physics import Motion, Start
 from curlshot.synthetic.physics import simulate as simulate_truth
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 MOTION = hit_motion(1.6, 0.06, before=1.2, after=3.0, others=[Start(0.03, 0.9)])
 

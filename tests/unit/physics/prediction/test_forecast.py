@@ -16,7 +16,7 @@ from curlshot.physics.prediction.forecast import ASSUMED, assumed, predict
 from curlshot.physics.whole_shot.priors import Priors
 from curlshot.synthetic.physics import Ice, Impact, Motion, Start
 from curlshot.synthetic.physics import simulate as move
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 
 def forecasts(seen: pd.DataFrame, *laws: Priors) -> Iterator[dict[str, Prediction]]:

@@ -12,7 +12,7 @@ from curlshot.physics.estimate import Estimates, estimate
 from curlshot.physics.kalman import smooth
 from curlshot.physics.local_fit.contacts import find_contacts
 from curlshot.physics.prediction.hindcast import simulate_measured
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, semireal, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, semireal, watch
 
 MODELS = {"point-mass", "rigid-body", "frictional"}
 

@@ -16,7 +16,7 @@ from curlshot.physics.prediction.hindcast import simulate_measured
 from curlshot.physics.prediction.spread import Doubt, drawn, path_spread, simulated, simulated_hits
 from curlshot.physics.simulator.simulate import simulate
 from curlshot.physics.simulator.simulation import Shot, Simulation, StoneStart
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 MU, G = 0.0109, 9.81
 CERTAIN = np.zeros(5)

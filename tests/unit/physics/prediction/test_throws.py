@@ -17,8 +17,8 @@ from curlshot.physics.prediction.start import measured_start
 from curlshot.physics.prediction.throws import along_sheet, come_in, foreseen_until, later_throws
 from curlshot.physics.simulator.simulation import StoneStart
 from curlshot.synthetic.physics import Ice, Impact, Start, simulate
-from curlshot.tests.unit.physics.measured import R, measured
-from curlshot.tests.unit.physics.watch import RADIUS, watch
+from curlshot.tests.helpers.physics.measured import R, measured
+from curlshot.tests.helpers.physics.watch import RADIUS, watch
 
 MU = 0.05
 """Ice on which two throws take seconds."""

@@ -22,8 +22,8 @@ from curlshot.physics.prediction.what_if import Amount, Changes, changed, odds, 
 from curlshot.physics.simulator.bounds import Bounds
 from curlshot.physics.simulator.simulate import simulate
 from curlshot.physics.simulator.simulation import Shot, StoneStart
-from curlshot.tests.unit.physics.measured import HIT, MU, R, measured
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
+from curlshot.tests.helpers.physics.measured import HIT, MU, R, measured
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 
 def test_changes_are_made_to_the_thrown_stone_and_the_laws() -> None:

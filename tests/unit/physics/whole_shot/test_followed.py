@@ -14,7 +14,7 @@ from curlshot.physics.whole_shot.followed import fit_followed
 from curlshot.physics.whole_shot.shot_model import Watched
 from curlshot.physics.whole_shot.whole_fit import GlobalFit
 from curlshot.synthetic.physics import Start
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 
 def seen_with_late_touch() -> pd.DataFrame:

@@ -25,7 +25,7 @@ from curlshot.physics.whole_shot.shot_model import Watched
 from curlshot.physics.whole_shot.watched import THROWN
 from curlshot.physics.whole_shot.whole_fit import GlobalFit
 from curlshot.synthetic.physics import Ice, Impact, Start, simulate
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 
 def measure(ice: Ice | None, sd: float = 0.002) -> Estimates:

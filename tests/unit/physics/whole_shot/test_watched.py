@@ -16,7 +16,7 @@ from curlshot.physics.whole_shot import shot_model, watched
 from curlshot.physics.whole_shot.priors import loose_priors
 from curlshot.physics.whole_shot.shot_model import curl, ice
 from curlshot.synthetic.physics import Start
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 
 def test_wherever_a_fit_may_go_stones_move_as_their_velocities_say() -> None:

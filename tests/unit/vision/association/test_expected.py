@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from curlshot.synthetic.clip import render_still
-from curlshot.tests.unit.vision.detection.test_stones import (
+from curlshot.tests.helpers.vision.stones import (
     CAMERA,
     RED,
     YELLOW,

@@ -5,7 +5,7 @@ import tracemalloc
 
 import numpy as np
 
-from curlshot.tests.unit.vision.association.test_follow import detection
+from curlshot.tests.helpers.vision.tracks import detection
 from curlshot.vision.association.rows import AT_ONCE, Rows
 from curlshot.vision.detection.detection import Detection
 from curlshot.vision.film.shelf import Kept, Shelf

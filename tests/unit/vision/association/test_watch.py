@@ -11,7 +11,7 @@ from curlshot.data.sheet import STONE, Stone
 from curlshot.synthetic.camera import still_camera
 from curlshot.synthetic.clip import render_still
 from curlshot.synthetic.scenes import PAINTS
-from curlshot.tests.unit.vision.detection.test_stones import (
+from curlshot.tests.helpers.vision.stones import (
     BLUE,
     CAMERA,
     RED,

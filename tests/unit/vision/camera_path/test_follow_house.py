@@ -27,7 +27,7 @@ from curlshot.synthetic import (
     tilted_camera,
 )
 from curlshot.synthetic.travelling import Travelling
-from curlshot.tests.unit.vision.places import RINGS
+from curlshot.tests.helpers.vision.places import RINGS
 from curlshot.vision.camera_path.follow_house import (
     PATIENCE,
     HouseFollower,

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from curlshot.tests.unit.vision.camera_path.test_edge_tracker import filmed, tracker
+from curlshot.tests.helpers.vision.filmed import filmed, tracker
 from curlshot.vision.camera_path.edge_tracker import EdgeTracker
 from curlshot.vision.camera_path.ice_tracker import IceTracker
 from curlshot.vision.camera_path.joint import Seen

@@ -17,12 +17,12 @@ from curlshot.synthetic import (
     tilted_camera,
 )
 from curlshot.synthetic.camera import CameraPath
-from curlshot.tests.unit.vision.camera_path.test_edge_tracker import (
+from curlshot.tests.helpers.vision.filmed import (
     filmed,
     smeared_evidence,
     tracker,
 )
-from curlshot.tests.unit.vision.places import RINGS
+from curlshot.tests.helpers.vision.places import RINGS
 from curlshot.vision.camera_path import edge_tracker
 from curlshot.vision.camera_path.edge_tracker import LONGEST_STRIDE, EdgeTracker
 from curlshot.vision.camera_path.piece import REFINE_AT, Piece

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from curlshot.tests.unit.vision.detection.test_rims import RADIUS, RAYS, rim_of
+from curlshot.tests.helpers.vision.rims import RADIUS, RAYS, rim_of
 from curlshot.vision.detection.circles import Fits, fit_circles
 from curlshot.vision.detection.rays import directions
 

@@ -9,10 +9,10 @@ import pytest
 
 from curlshot.synthetic.camera import tilted_camera
 from curlshot.synthetic.clip import render_still
-from curlshot.tests.unit.vision.association.test_follow import detection
-from curlshot.tests.unit.vision.detection import test_relief as relief
-from curlshot.tests.unit.vision.detection.test_stones import CAMERA, YELLOW, camera_of, scene_of
-from curlshot.tests.unit.vision.detection.test_stones import RED as SCARLET
+from curlshot.tests.helpers.vision import reliefs as relief
+from curlshot.tests.helpers.vision.stones import CAMERA, YELLOW, camera_of, scene_of
+from curlshot.tests.helpers.vision.stones import RED as SCARLET
+from curlshot.tests.helpers.vision.tracks import detection
 from curlshot.vision.detection import appearance
 from curlshot.vision.detection import glance as module
 from curlshot.vision.detection.appearance import Appearance

@@ -8,7 +8,7 @@ from curlshot.data.sheet import STONE
 from curlshot.synthetic.camera import still_camera
 from curlshot.synthetic.clip import render_still
 from curlshot.synthetic.scenes import PAINTS
-from curlshot.tests.unit.vision.detection.test_stones import RED, YELLOW, camera_of, scene_of
+from curlshot.tests.helpers.vision.stones import RED, YELLOW, camera_of, scene_of
 from curlshot.vision.detection.appearance import Appearance, learn
 from curlshot.vision.detection.hue import sharpened
 from curlshot.vision.detection.measure import Measures, _better, _on_paint, measure_discs

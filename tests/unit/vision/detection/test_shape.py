@@ -11,7 +11,7 @@ from curlshot.synthetic.camera import CameraPath, still_camera
 from curlshot.synthetic.clip import render_still
 from curlshot.synthetic.plain import plain_pictures
 from curlshot.synthetic.scene import Colour, Scene
-from curlshot.tests.unit.vision.detection.test_stones import (
+from curlshot.tests.helpers.vision.stones import (
     CAMERA,
     RED,
     YELLOW,

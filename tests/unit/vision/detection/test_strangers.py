@@ -8,7 +8,7 @@ import pytest
 from curlshot.data.sheet import STONE
 from curlshot.synthetic.clip import render_still
 from curlshot.synthetic.scene import Colour, Person, Scene
-from curlshot.tests.unit.vision.detection.test_stones import (
+from curlshot.tests.helpers.vision.stones import (
     BLUE,
     CAMERA,
     RED,

@@ -20,7 +20,7 @@ from curlshot.synthetic import (
     tilted_camera,
 )
 from curlshot.synthetic.scene import Paint
-from curlshot.tests.unit.vision.places import RINGS
+from curlshot.tests.helpers.vision.places import RINGS
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.rig import OVERHEAD
 from curlshot.vision.sheet import house

@@ -8,32 +8,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from curlshot.tests.helpers.vision.handles import RADII, RAYS, SURE, patch, spectrum
 from curlshot.vision.spin.align import ORDERS
 from curlshot.vision.spin.glints import unlit
 from curlshot.vision.spin.handle import cap_spectrum
 from curlshot.vision.spin.handle import handle_angles as angles_about
-
-RAYS = 64
-RADII = np.linspace(0.012, 0.09, 8)
-SURE = 0.0005
-"""Standard error of a centre, m, where the whole cap is seen."""
-
-
-def patch(
-    turn: float, rng: np.random.Generator | None = None, shift: tuple[float, float] = (0.0, 0.0)
-) -> NDArray[np.uint8]:
-    """A red cap with a pale bar that is longer on one side, turned counter-clockwise."""
-    angle = np.arange(RAYS)[:, None] * (2 * np.pi / RAYS)
-    x, y = RADII * np.cos(angle) - shift[0], RADII * np.sin(angle) - shift[1]
-    along, aside = x * np.cos(turn) + y * np.sin(turn), y * np.cos(turn) - x * np.sin(turn)
-    bar = 1 / (1 + np.exp((np.abs(aside) - 0.012) / 0.003))
-    bar = bar / (1 + np.exp((-along - 0.05) / 0.003))
-    value = np.stack([80 + 90 * bar, 170 - 30 * bar, 150 - 10 * bar], -1)
-    if rng is not None:
-        # Errors of compressed pictures hang together over several samples and all colours.
-        grain = cv2.GaussianBlur(rng.normal(0, 1, value.shape[:2]), (0, 0), 2.5)
-        value = value + 6 * (grain / grain.std())[..., None]
-    return np.asarray(np.clip(value, 0, 255), np.uint8)
 
 
 def handle_angles(
@@ -43,10 +22,6 @@ def handle_angles(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     told = angles_about(times, spectra, radii, np.full(len(times), SURE))
     return told.theta, told.sd
-
-
-def spectrum(turn: float, rng: np.random.Generator | None = None) -> NDArray[np.complex64]:
-    return cap_spectrum(patch(turn, rng), RADII)
 
 
 def test_many_turns_are_counted_without_drift() -> None:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-import pytest
 from numpy.typing import NDArray
 
 from curlshot.data.results import (
@@ -33,7 +31,6 @@ from curlshot.physics.impact import Frictional
 from curlshot.physics.prediction.ensemble import Ensemble
 from curlshot.physics.simulator.simulation import Shot as Throw
 from curlshot.physics.simulator.simulation import StoneStart
-from curlshot.tests.unit.report.browser import Browser
 
 RADIUS = 0.1455
 SLOWING = 0.0109 * 9.81
@@ -188,14 +185,3 @@ def collision(hit: tuple[float, str, str, Vector], pieces: dict[str, list[Piece]
         stderr_momentum=0.006, energy_lost=0.15, stone_friction=None,
         note=None if first == "A" else "the angle of the hit is known to 8° only",
     )  # fmt: skip
-
-
-@pytest.fixture(scope="session")
-def shot() -> Shot:
-    return make_shot()
-
-
-@pytest.fixture(scope="session")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
-    with Browser(tmp_path_factory.mktemp("profile")) as browser:
-        yield browser
