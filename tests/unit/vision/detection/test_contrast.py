@@ -43,7 +43,7 @@ def test_without_any_hue_lightness_tells_a_cap() -> None:
 def test_a_little_more_hue_changes_little(hue: float, light: float) -> None:
     caps = GRANITE + np.array([[light, hue, 0.0], [light, hue + 0.1, 0.0]])
     first, second = (by_hue(caps, GRANITE) * (caps - GRANITE))[:, 0]
-    assert abs(first - second) < 0.05
+    assert abs(first - second) < 0.08  # 2 h (1 − h²) is at most 0.77
 
 
 def test_what_is_as_light_as_its_granite_has_no_edge_by_lightness() -> None:
