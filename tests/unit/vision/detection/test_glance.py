@@ -3,16 +3,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from types import SimpleNamespace
 
-import cv2
 import numpy as np
 import pytest
 
-from curlshot.synthetic.camera import tilted_camera
-from curlshot.synthetic.clip import render_still
 from curlshot.tests.helpers.vision import reliefs as relief
-from curlshot.tests.helpers.vision.stones import CAMERA, YELLOW, camera_of, scene_of
-from curlshot.tests.helpers.vision.stones import RED as SCARLET
-from curlshot.tests.helpers.vision.tracks import detection
+from curlshot.tests.helpers.vision.glance import stone
 from curlshot.vision.detection import appearance
 from curlshot.vision.detection import glance as module
 from curlshot.vision.detection.appearance import Appearance
@@ -23,13 +18,6 @@ from curlshot.vision.detection.stones import Findings
 from curlshot.vision.optics.camera import Camera
 
 RED, BLUE = np.array([120.0, 190.0, 165.0]), np.array([50.0, 140.0, 92.0])
-
-
-def stone(x: float, colour: np.ndarray, score: float) -> Detection:
-    around = np.zeros((20, 3))
-    return detection((x, 0.0), colour, score)._replace(
-        cap_samples=around + colour, granite_samples=around + np.array([90.0, 128.0, 128.0])
-    )
 
 
 def seen_twice(
@@ -110,41 +98,3 @@ def test_a_square_of_a_painted_pattern_is_no_stone_beside_stones(
     assert learned == [1]
     assert [s.x for s in found.stones] == [0.0]
     assert [(place.x, place.reason) for place in found.refused] == [(0.6, "no handle on it")]
-
-
-@pytest.mark.parametrize("share", [1.0, 0.4, 0.2])
-def test_stones_are_found_in_dim_pictures_as_in_bright_ones(share: float) -> None:
-    places = [(0.3, 0.2), (-0.8, 1.0), (0.9, -0.6), (-0.2, -1.4)]
-    scene = scene_of(
-        [(*place, colour) for place, colour in zip(places, [SCARLET, YELLOW] * 2, strict=True)]
-    )
-    picture = np.asarray(render_still(scene, CAMERA) * share, np.uint8)
-    (found,) = glance([(picture, camera_of(CAMERA, scene))])
-    seen = np.array([(stone.x, stone.y) for stone in found.stones])
-    assert len(seen) == len(places)
-    np.testing.assert_allclose(
-        seen[np.lexsort(seen.T)], sorted(places, key=lambda p: p[::-1]), atol=0.004
-    )
-
-
-def test_red_caps_of_a_recording_whose_tones_are_linear_are_found() -> None:
-    """Dark red ones beside granite that is nearly black: one of three was not."""
-    red = (30, 20, 130)
-    places = [(0.3, 0.2, red), (-0.8, 1.0, YELLOW), (0.2, -1.5, red), (-1.5, 0.2, red)]
-    scene, path = scene_of(places), tilted_camera(np.radians(45), height=5.5, px_per_m=100.0)
-    image = np.asarray(render_still(scene, path, supersample=2), np.uint8)
-    dark = np.round(255 * (image / 255) ** 2.2).astype(np.uint8)
-    coded = cv2.imdecode(cv2.imencode(".jpg", dark, [cv2.IMWRITE_JPEG_QUALITY, 90])[1], 1)
-    (found,) = glance([(np.asarray(coded, np.uint8), camera_of(path, scene))])
-    assert len(found.stones) == len(places)
-
-
-def test_tones_of_a_picture_stay_where_no_stone_shows_once_they_are_lifted(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    scene = scene_of([(0.3, 0.2, SCARLET), (-0.8, 1.0, YELLOW)])
-    image = np.asarray(render_still(scene, CAMERA), np.uint8)
-    black = np.zeros(256, np.uint8)
-    monkeypatch.setattr("curlshot.vision.detection.glance.tones", lambda *_: black)
-    (found,) = glance([(image, camera_of(CAMERA, scene))])
-    assert len(found.stones) == 2
