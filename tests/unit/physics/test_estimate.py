@@ -336,20 +336,6 @@ def test_a_stone_that_is_pushed_on_its_way_to_the_hit() -> None:
         assert "friction between the stones" in str(found.methods[name].stone_friction.note)
 
 
-def test_what_glides_alone_do_not_tell_is_no_doubt_where_the_whole_shot_does(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    seen = watch(hit_motion(), np.random.default_rng(13), sd=0.002)
-    contacts = find_contacts(seen, RADIUS)
-    local = replace(estimate_locally(seen, contacts, radius=RADIUS), friction_doubt="friction: ?")
-    monkeypatch.setattr("curlshot.physics.estimate.estimate_locally", lambda *_, **__: local)
-    found = estimate(seen, contacts, radius=RADIUS)
-    assert found.whole is not None
-    assert "friction: ?" not in found.warnings
-    monkeypatch.setattr("curlshot.physics.estimate.POOR_FIT", 0.0)
-    assert "friction: ?" in estimate(seen, contacts, radius=RADIUS).warnings
-
-
 def test_what_two_ways_differ_by_is_in_the_error() -> None:
     """Both scatter about their mean as they should with a variance (d² - s1² - s2²) / 2 more."""
     local = Estimate(0.82, 0.01)

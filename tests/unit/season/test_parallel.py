@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from curlshot.season import parallel
 from curlshot.season.parallel import in_processes, processors
 
 
@@ -107,49 +106,6 @@ def test_processes_of_others_are_left_alone() -> None:
 
 def divided(number: int) -> float:
     return 1 / number
-
-
-def test_there_are_no_more_processes_than_a_system_can_wait_for(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    monkeypatch.setattr(parallel, "_MOST", 1)
-    assert not any(in_processes(beside, {n: tmp_path / n for n in "abc"}, 3, "things").values())
-
-
-def beside(mark: Path) -> int:
-    """Tell how many others are worked on meanwhile."""
-    mark.touch()
-    time.sleep(0.2)
-    others = len(list(mark.parent.iterdir())) - 1
-    mark.unlink()
-    return others
-
-
-def test_one_that_is_told_to_end_cleans_up_undisturbed(monkeypatch: pytest.MonkeyPatch) -> None:
-    handled = signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)
-    before = {number: signal.getsignal(number) for number in handled}
-    monkeypatch.setattr(parallel, "collect_seldom", lambda: None)
-    monkeypatch.setattr(parallel, "_end_with_the_first", lambda: None)
-    monkeypatch.setattr(parallel._Here, "stopped", False)
-    done: list[str] = []
-
-    def work(item: str) -> None:
-        try:
-            signal.raise_signal(signal.SIGTERM)
-        finally:
-            for number in handled:
-                signal.raise_signal(number)
-            done.append(item)
-
-    end, its_end = multiprocessing.Pipe(duplex=False)
-    try:
-        parallel._begin(its_end, handled, work, "one")
-        assert done == ["one"]
-        failed, outcome = end.recv()
-        assert failed and isinstance(outcome, KeyboardInterrupt)
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 def large(mark: Path) -> bytes:

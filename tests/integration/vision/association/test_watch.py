@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -19,24 +18,12 @@ from curlshot.tests.helpers.vision.stones import (
     scene_of,
 )
 from curlshot.tests.helpers.vision.watch import AT_REST, lasting, picture
-from curlshot.vision.association.follower import StoneView
 from curlshot.vision.association.watch import Watch
-from curlshot.vision.detection.appearance import Appearance
 from curlshot.vision.detection.placing import placed_by
-from curlshot.vision.detection.rays import Look
-from curlshot.vision.detection.seek import Candidates
 from curlshot.vision.detection.stones import (
-    FOLLOWING,
-    SEARCH,
-    Findings,
-    Search,
     plain_disc,
-    sought_in,
 )
-from curlshot.vision.detection.strangers import LARGE, strangers
 from curlshot.vision.film.clip import Frame
-from curlshot.vision.film.picture import Picture
-from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.cameras import Cameras
 
 LATE = (-0.2, -0.5)
@@ -57,30 +44,8 @@ def test_a_stone_found_late_is_followed_back_also_one_of_a_new_colour(
     assert counts == [3] * since + [4] * (50 - since)
 
 
-def test_with_fewer_pictures_kept_a_late_stone_is_followed_back_as_well(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    reds = [(x, y, RED) for x, y, _ in AT_REST]
-    before, after = picture(reds), picture([*reds, (*LATE, YELLOW)])
-    camera, since, held = camera_of(CAMERA, scene_of(reds)), 27, []
-    pixels = camera.size[0] * camera.size[1]
-    monkeypatch.setattr("curlshot.vision.association.watch.MOST_KEPT", 10 * pixels)
-    monkeypatch.setattr(
-        StoneView, "put_aside", lambda view, shelf: held.append((frame, view.frame.index))
-    )
-    watch = Watch()
-    for frame in range(50):
-        watch.look(Frame(frame, frame / 25, after if frame >= since else before), camera)
-    counts = [len(detections) for _, _, detections in watch.finish(lasting(camera))]
-    assert counts == [3] * since + [4] * (50 - since)
-    assert max(now - then for now, then in held) == 10
-
-
-def test_in_the_end_stones_are_placed_by_the_cameras_that_are_known_by_then(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_in_the_end_stones_are_placed_by_the_cameras_that_are_known_by_then() -> None:
     """At their times; a picture without a camera, and a camera without one, are left out."""
-    monkeypatch.setattr("curlshot.vision.association.watch.AT_ONCE", 5)
     image, camera = picture(AT_REST), camera_of(CAMERA, scene_of(AT_REST))
     watches = Watch(), Watch()
     for index in range(12):
@@ -168,50 +133,6 @@ def test_a_dull_cap_on_vivid_paint_is_learned_beside_a_vivid_one() -> None:
     for index in range(24):
         watch.look(Frame(index, index / 25, image), camera)
     assert [len(detections) for _, _, detections in watch.finish(lasting(camera))] == [2] * 24
-
-
-def test_two_teams_that_a_coarse_map_shows_are_not_sought_on_a_fine_one(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    image, camera = picture(AT_REST), camera_of(CAMERA, scene_of(AT_REST))
-    maps: list[float] = []
-
-    def noted(
-        looks: Sequence[Look], disc: Stone, search: Search, made: bool, rough: bool
-    ) -> tuple[list[Findings], Stone]:
-        maps.append(search.radius_px)
-        return strangers(looks, disc, search, made, rough)
-
-    monkeypatch.setattr("curlshot.vision.association.watch.strangers", noted)
-    watch = Watch()
-    for index in range(24):
-        watch.look(Frame(index, index / 25, image), camera)
-    assert [len(detections) for _, _, detections in watch.finish(lasting(camera))] == [3] * 24
-    assert maps == [FOLLOWING.radius_px]
-
-
-def test_how_stones_are_made_that_are_not_there_is_asked_on_the_fine_map_alone(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    image, camera = picture([]), camera_of(CAMERA, scene_of([]))
-    sought: list[tuple[float, float]] = []
-
-    def noted(
-        picture: Picture, camera: Camera, like: Appearance | None, disc: Stone, search: Search
-    ) -> Candidates:
-        sought.append((search.radius_px, disc.cap_radius))
-        return sought_in(picture, camera, like, disc, search)
-
-    monkeypatch.setattr("curlshot.vision.detection.strangers.sought_in", noted)
-    watch = Watch()
-    watch.look(Frame(0, 0.0, image), camera)
-    assert [len(detections) for _, _, detections in watch.finish(lasting(camera))] == [0]
-    large = LARGE * STONE.cap_radius
-    fine, coarse = SEARCH.radius_px, FOLLOWING.radius_px
-    assert sought == [
-        *[(coarse, STONE.cap_radius)] * 2,
-        *[(fine, STONE.cap_radius), (fine, large)] * 2,
-    ]
 
 
 def test_a_stone_that_is_hit_under_cover_is_found_in_the_moment_that_shows_it() -> None:

@@ -36,14 +36,3 @@ def test_red_caps_of_a_recording_whose_tones_are_linear_are_found() -> None:
     coded = cv2.imdecode(cv2.imencode(".jpg", dark, [cv2.IMWRITE_JPEG_QUALITY, 90])[1], 1)
     (found,) = glance([(np.asarray(coded, np.uint8), camera_of(path, scene))])
     assert len(found.stones) == len(places)
-
-
-def test_tones_of_a_picture_stay_where_no_stone_shows_once_they_are_lifted(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    scene = scene_of([(0.3, 0.2, SCARLET), (-0.8, 1.0, YELLOW)])
-    image = np.asarray(render_still(scene, CAMERA), np.uint8)
-    black = np.zeros(256, np.uint8)
-    monkeypatch.setattr("curlshot.vision.detection.glance.tones", lambda *_: black)
-    (found,) = glance([(image, camera_of(CAMERA, scene))])
-    assert len(found.stones) == 2

@@ -1,3 +1,5 @@
+from __future__ import annotations
+
 from dataclasses import replace
 
 import cv2
@@ -46,28 +48,11 @@ def measures(picture: np.ndarray, places: np.ndarray) -> Measures:
     return measure_discs([Look(picture, VIEW, places)], learned(picture), STONE)
 
 
-def test_caps_on_paint_of_their_hue_are_told_where_coding_tinges_their_granite(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_caps_on_paint_of_their_hue_are_told_where_coding_tinges_their_granite() -> None:
     picture = coded(render_still(SCENE, CAMERA), BLUR)
     told = measures(picture, ON_PAINT)
-    monkeypatch.setattr("curlshot.vision.detection.measure.sharpened", lambda rays, _: rays)
-    before = measures(picture, ON_PAINT)
-    assert before.evidence.min() < SEARCH.least_evidence < told.evidence.min()
-    assert (told.evidence >= before.evidence).all()
-    assert (told.visible >= before.visible).all()
-    assert told.visible.min() > before.visible.min() + 0.1
+    assert told.evidence.min() > SEARCH.least_evidence
     assert np.hypot(*(told.centre - ON_PAINT).T).max() < 0.01
-
-
-def test_what_is_clear_is_measured_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    def never(*_: object) -> Rays:
-        raise AssertionError
-
-    monkeypatch.setattr("curlshot.vision.detection.measure.sharpened", never)
-    picture = np.asarray(render_still(SCENE, CAMERA), np.uint8)
-    assert measures(picture, np.array([place[:2] for place in ON_ICE])).evidence.min() > 1.6
-    assert measures(picture, ON_PAINT).evidence.min() > 1.6
 
 
 @pytest.mark.parametrize(("around", "vivid"), [(0.15, False), (0.4, True)])

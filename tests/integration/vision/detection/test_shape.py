@@ -104,14 +104,3 @@ def test_another_size_takes_more_than_a_little_more_for_it() -> None:
     usually, *others = elected(say, STONE)
     assert usually is STONE
     assert [one.cap_radius for one in others] == pytest.approx(CAPS[[1, 2]] * STONE.radius)
-
-
-def test_a_size_by_which_stones_show_no_more_is_not_taken(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A stone that the picture's edge cuts has a say for smaller caps, and hides what tells."""
-    scene = with_caps(STONE.cap_radius)
-    look = Look(solid(scene, CAMERA), camera_of(CAMERA, scene), np.empty((0, 2)))
-    say = np.exp(-(((CAPS * STONE.radius - 0.09) / 0.01) ** 2))
-    monkeypatch.setattr("curlshot.vision.detection.strangers._say", lambda sought: say)
-    (found,), disc = strangers([look], STONE, SEARCH)
-    assert len(found.stones) == len(PLACES)
-    assert disc is STONE

@@ -2,7 +2,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from curlshot.synthetic.scene import Colour
@@ -11,7 +10,6 @@ from curlshot.tests.helpers.vision.stones import (
     YELLOW,
     look,
     misses,
-    scene_of,
 )  # fmt: skip
 from curlshot.tests.helpers.vision.strangers import (
     BLACK,
@@ -21,10 +19,6 @@ from curlshot.tests.helpers.vision.strangers import (
     painted,
     seen,
 )
-from curlshot.vision.detection.appearance import BY_SHAPE
-from curlshot.vision.detection.rays import Look
-from curlshot.vision.detection.seek import Candidates
-from curlshot.vision.detection.stones import Findings
 
 
 def test_black_and_white_caps_are_found() -> None:
@@ -46,24 +40,6 @@ def test_round_marks_on_vivid_paint_are_no_stones(paint: Colour, count: int) -> 
     scene = painted(BLACK, WHITE, BLACK, WHITE)
     scene = replace(scene, stones=tuple(replace(one, granite=paint) for one in scene.stones))
     assert len(seen(scene)) == count
-
-
-@pytest.mark.parametrize(("lighter", "count"), [(0.0, 2), (40.0, 1)])
-def test_stones_told_by_their_shape_tell_of_what_granite_others_are(
-    lighter: float, count: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    sure, *_ = seen(painted(BLACK, WHITE, BLACK, WHITE))
-    off = np.array([lighter, 0.0, 0.0])
-    doubtful = sure._replace(x=sure.x + 1.0, score=1.5, granite_samples=sure.granite_samples + off)
-    by_colour = sure._replace(score=1.2)  # does not convince
-
-    def measured(look: Look, sought: Candidates, *_: object) -> Findings:
-        return Findings((sure, doubtful) if sought.appearance is BY_SHAPE else (by_colour,), ())
-
-    monkeypatch.setattr("curlshot.vision.detection.strangers.measured", measured)
-    found = seen(scene_of([]))
-    assert len(found) == count
-    assert found[0].score > by_colour.score
 
 
 def test_dull_caps_are_found_beside_vivid_ones_by_what_they_differ_from_the_granite() -> None:

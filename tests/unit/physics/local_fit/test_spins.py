@@ -62,20 +62,6 @@ def test_spins_beside_a_hit_are_as_sure_as_they_say(slow: float) -> None:
     assert 0.25 < np.mean(np.square(pulls)) < 1.5  # what is open of the loss of spin widens them
 
 
-def test_what_is_open_of_the_loss_of_spin_is_in_their_errors(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    fit, known = fitted(watch(hit_motion(), np.random.default_rng(5), sd=0.002, sd_theta=0.015))
-    before = beside(fit, known)["A"][0].stderr
-    monkeypatch.setattr(
-        "curlshot.physics.local_fit.spins.shared_response",
-        lambda stretch, rise: np.full((len(rise), 2, 1), 0.7),
-    )
-    after = beside(fit, known)["A"][0].stderr
-    assert before is not None and after is not None
-    assert after > 0.7 > before
-
-
 def test_spins_are_those_of_the_tracks_filter(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("curlshot.physics.kalman.share_spins", lambda *_: None)
     seen = watch(hit_motion(), np.random.default_rng(5)).assign(sd_theta=0.05)

@@ -1,19 +1,12 @@
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Any
-
-import numpy as np
 import pytest
 
 from curlshot.data.sheet import STONE
 from curlshot.tests.helpers.vision.follower import START, Places, seen, view
 from curlshot.vision.association.follower import Follower, StoneView
 from curlshot.vision.association.lead import Lead
-from curlshot.vision.association.still import Portrait, portraits
 from curlshot.vision.detection.appearance import learn
-from curlshot.vision.detection.detection import Detection
-from curlshot.vision.detection.rays import Look
 from curlshot.vision.detection.stones import FOLLOWING, search_picture
 from curlshot.vision.film.clip import Frame
 
@@ -70,25 +63,6 @@ def test_a_stone_that_was_hit_unseen_is_looked_for_where_the_hit_sends_it(
     assert seen(shown, true[1:]).max() < 0.006
 
 
-def test_stones_at_rest_are_portrayed_where_they_will_not_be_measured_next(
-    follower: Follower, first: StoneView, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def counted(*about: Any) -> list[Portrait | None]:
-        taken.append(len(about[3]))
-        return portraits(*about)
-
-    taken: list[int] = []
-    monkeypatch.setattr("curlshot.vision.association.follower.portraits", counted)
-    frames = [replace(first.frame, index=k, t=k / 10) for k in range(1, 15)]
-    views = [StoneView(frame, first.camera) for frame in frames]
-    leads = [Lead.to(s, 0.0) for s in follower.sought(view(START, 0))]
-    left = follower.follow(views, leads)
-    # The first eight are measured together; what looks the same later is not.
-    assert taken == [*[0] * 7, 3, *[0] * 6]
-    assert all(lead.portrait is not None for lead in left)
-    assert [sum(s.measured for s in shown.detections) for shown in views] == [*[3] * 8, *[0] * 6]
-
-
 def test_a_stone_that_may_be_hit_is_measured_in_every_block(
     follower: Follower, first: StoneView
 ) -> None:
@@ -103,33 +77,3 @@ def test_a_stone_that_may_be_hit_is_measured_in_every_block(
     assert sum(s.measured for shown in still[8:16] for s in shown.detections) == 0
     measured = [s for shown in still[16:] for s in shown.detections if s.measured]
     assert [(s.x, s.y) for s in measured] == [pytest.approx(START[0], abs=0.01)]
-
-
-def test_what_shows_clearly_less_than_a_moment_ago_is_looked_for_beside_too(
-    follower: Follower, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def doubted(looks: list[Look], *_: object) -> list[Detection]:
-        places = np.concatenate([look.places for look in looks])
-        near = [min(known, key=lambda s: np.hypot(s.x - x, s.y - y)) for x, y in places]
-        return [s._replace(score=0.7 * s.score) for s in near]
-
-    known = follower.sought(view(START, 0))
-    moved = [(x + 0.02, y) for x, y in START]
-    after = view(moved, 1)
-    monkeypatch.setattr("curlshot.vision.association.follower.look_on_course", doubted)
-    follower.follow([after], [Lead.to(s, 0.0) for s in known])
-    assert seen([after], [moved]).max() < 0.003
-
-
-def test_what_is_beside_a_stone_must_show_clearly_more(
-    follower: Follower, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def little_more(look: Look, *_: object) -> list[Detection]:
-        near = [min(known, key=lambda s: np.hypot(s.x - x, s.y - y)) for x, y in look.places]
-        return [s._replace(x=s.x + 0.02, score=1.1 * s.score) for s in near]
-
-    known = follower.sought(view(START, 0))
-    after = view(START, 1)
-    monkeypatch.setattr("curlshot.vision.association.follower.look_beside", little_more)
-    follower.follow([after], [replace(Lead.to(s, 0.0), score=2 * s.score) for s in known])
-    assert seen([after], [START]).max() < 0.003

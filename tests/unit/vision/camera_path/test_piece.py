@@ -1,11 +1,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 
 import cv2
 import numpy as np
-import pytest
 
 from curlshot.synthetic import (
     PAINTS,
@@ -23,17 +21,15 @@ from curlshot.tests.helpers.vision.filmed import (
     tracker,
 )
 from curlshot.tests.helpers.vision.places import RINGS
-from curlshot.vision.camera_path import edge_tracker
 from curlshot.vision.camera_path.edge_tracker import LONGEST_STRIDE, EdgeTracker
 from curlshot.vision.camera_path.piece import REFINE_AT, Piece
 from curlshot.vision.film.clip import Frame, open_clip
 from curlshot.vision.optics.paint import CIRCLES, FIXED, joined
-from curlshot.vision.optics.pose import ROLL, aim, camera
+from curlshot.vision.optics.pose import aim, camera
 from curlshot.vision.optics.predict import MEMORY
 from curlshot.vision.optics.rig import OVERHEAD, R8, start_rig
 from curlshot.vision.sheet.house import find_house
 from curlshot.vision.sheet.house_fit import HouseFit
-from curlshot.vision.sheet.normals import lay_out
 from curlshot.vision.sheet.outline import PaintEdge
 
 SIZE = (640, 360)
@@ -180,18 +176,6 @@ def test_one_camera_explains_its_house_and_not_that_of_another() -> None:
     other = find_house(np.asarray(render_still(scene, beside), np.uint8))
     assert other is not None
     assert piece.explains(other) is None
-
-
-def test_where_no_line_is_seen_the_roll_stays_nearly_what_it_was(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(edge_tracker, "lay_out", partial(lay_out, lines=False))
-    frames, house = filmed()
-    piece = followed(house, frames)
-    assert not any((seen.marks.get().line >= CIRCLES).any() for seen in piece.seen[1:])
-    roll = np.array([seen.view.vector[ROLL] for seen in piece.seen])
-    assert np.abs(np.diff(roll)).max() < np.radians(0.25)
-    assert np.abs(roll - roll[0]).max() < np.radians(2.0)
 
 
 def test_frames_of_a_shaken_camera_are_followed_together() -> None:

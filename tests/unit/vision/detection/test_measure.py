@@ -80,14 +80,6 @@ def test_half_a_stone_on_one_side_says_more_than_more_of_it_here_and_there() -> 
     assert half.evidence[1] > scattered.evidence[1] + 0.05
 
 
-def test_to_a_whole_stone_that_says_nothing_more(monkeypatch: pytest.MonkeyPatch) -> None:
-    learned = learn(search_picture(PICTURE, VIEW).stones)
-    seen = measure_discs([Look(PICTURE, VIEW, PLACES)], learned, STONE).evidence
-    monkeypatch.setattr("curlshot.vision.detection.evidence.ON_ONE_SIDE", (1.0, 1.0))
-    without = measure_discs([Look(PICTURE, VIEW, PLACES)], learned, STONE).evidence
-    np.testing.assert_array_equal(seen, without)
-
-
 def test_dark_clothes_before_a_stone_are_not_taken_for_its_granite() -> None:
     x, y = VIEW.project(PLACES[1:2], STONE.cap_height)[0].astype(int)
     reach = round(0.6 * STONE.radius * float(VIEW.scale_at(PLACES[1])))

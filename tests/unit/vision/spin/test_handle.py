@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -9,8 +8,6 @@ import pytest
 from numpy.typing import NDArray
 
 from curlshot.tests.helpers.vision.handles import RADII, RAYS, SURE, patch, spectrum
-from curlshot.vision.spin.align import ORDERS
-from curlshot.vision.spin.glints import unlit
 from curlshot.vision.spin.handle import cap_spectrum
 from curlshot.vision.spin.handle import handle_angles as angles_about
 
@@ -222,26 +219,6 @@ def test_a_faint_handle_alike_at_both_ends_does_not_jump_by_half_a_turn() -> Non
     told = np.isfinite(theta)
     assert told.mean() > 0.5
     assert np.abs(theta - true - np.median((theta - true)[told]))[told].max() < 0.5
-
-
-@pytest.mark.parametrize(("share", "told"), [(0.04, False), (0.06, True)])
-def test_a_handle_that_was_lost_is_turned_by_its_spins_if_enough_of_it_turns_so(
-    monkeypatch: pytest.MonkeyPatch, share: float, told: bool
-) -> None:
-    rng, times, radii = np.random.default_rng(2), np.arange(150) / 25, np.linspace(0.012, 0.09, 8)
-    true = 1.4 * times
-    waves = np.exp(-((ORDERS / 6.0) ** 2)) * np.exp(-1j * ORDERS * true[:, None])
-    spectra = [np.repeat(wave, 24).reshape(-1, 8, 3).astype(np.complex64) for wave in waves]
-    lost = np.where(rng.random(150) < 0.6, np.nan, rng.uniform(-3, 3, 150))
-    monkeypatch.setattr("curlshot.vision.spin.handle._followed", lambda *_: lost)
-    monkeypatch.setattr(
-        "curlshot.vision.spin.handle.unlit", lambda *given: replace(unlit(*given), share=0.01)
-    )
-    monkeypatch.setattr("curlshot.vision.spin.handle.course", lambda *_: (true.copy(), share))
-    theta = angles_about(times, spectra, radii, np.full(150, 0.0005)).theta
-    assert np.isfinite(theta).all() == np.isfinite(theta).any() == told
-    if told:
-        assert np.abs(theta - true).max() < 0.01
 
 
 def test_what_is_unrolled_about_an_unsure_centre_is_less_sure() -> None:
