@@ -150,7 +150,7 @@ ALONE = """
 import sys
 from pathlib import Path
 from curlshot.season.parallel import in_processes
-from curlshot.tests.unit.season.test_parallel import fails_beside
+from curlshot.tests.integration.season.test_parallel import fails_beside
 if __name__ == "__main__":
     folder = Path(sys.argv[1])
     in_processes(fails_beside, {role: (folder, role) for role in ("slow", "other")}, 2, "things")

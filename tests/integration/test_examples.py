@@ -13,7 +13,7 @@ import pytest
 from curlshot.cli.parser import command_line
 from curlshot.outcome import Run
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 DOCS = sorted((ROOT / "docs").glob("*.md"))
 OF_A_RUN = ("coach", "figures", "from_tracks", "shared", "what_if")
 

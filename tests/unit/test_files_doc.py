@@ -17,7 +17,7 @@ from curlshot.physics.statistics.pool import Pooled
 from curlshot.physics.statistics.season import HIT_COLUMNS, SHOT_COLUMNS
 from curlshot.vision.optics.camera import CAMERA_COLUMNS
 
-PAGE = (Path(__file__).resolve().parents[1] / "docs" / "files.md").read_text("utf-8")
+PAGE = (Path(__file__).resolve().parents[2] / "docs" / "files.md").read_text("utf-8")
 OTHERS = {
     "schema", "model", "sample", "hits", "start", "shots", "input", "thrown", "changes", "samples",
     "throw_sd", "direction", "warnings", "size", "inertia", "loss", "local", "global",

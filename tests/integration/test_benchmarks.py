@@ -15,7 +15,7 @@ from curlshot.benchmarks.kinds import as_made
 from curlshot.synthetic import Scene, Truth, random_scene
 from curlshot.synthetic.stones import HEIGHT
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 RUN_BY_HAND = sorted(
     path.stem
     for path in (ROOT / "benchmarks").glob("*.py")
