@@ -44,21 +44,6 @@ def test_momentum_is_held_only_when_asked_for() -> None:
     assert changes[0] < 0.1 * changes[1]
 
 
-def test_covariance_follows_from_the_scatter() -> None:
-    motion = hit_motion()
-    rng = np.random.default_rng(63)
-    places, sd = [], []
-    for _ in range(40):
-        known = traces(watch(motion, rng, sd=0.005))
-        meetings = [Meeting(1.0, ("A", "B"), 1 / 30)]
-        pieces, _ = cut_all(known, meetings, RADIUS)
-        fit = fit_shot(known, pieces, meetings, RADIUS)
-        value, cov = fit.propagate([0], lambda states: states[0].before[0])
-        places.append(value)
-        sd.append(np.sqrt(np.diag(cov)))
-    assert np.allclose(np.std(places, axis=0), np.median(sd, axis=0), rtol=0.4)
-
-
 def trace() -> Trace:
     """A stone that glides by (0.3, -1.2) m/s from (1, 2) m at 2 s."""
     xy = np.array([1.0, 2.0]) + (T - 2.0)[:, None] * np.array([0.3, -1.2])
