@@ -16,7 +16,7 @@ from curlshot.data.trk_write import plain_view, project_xml, write_trk
 from curlshot.physics.estimate import estimate
 from curlshot.physics.kalman import smooth
 from curlshot.physics.local_fit.contacts import find_contacts
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 RESTITUTION, FRICTION = 0.83, 0.0109
 

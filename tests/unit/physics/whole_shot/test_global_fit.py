@@ -13,7 +13,7 @@ from curlshot.physics.whole_shot.global_fit import fit_shots
 from curlshot.physics.whole_shot.law_choice import STRAIGHT
 from curlshot.physics.whole_shot.whole_fit import GlobalFit
 from curlshot.synthetic.physics import Ice, Impact, Start, simulate
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 
 @cache

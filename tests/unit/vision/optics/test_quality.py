@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from curlshot.tests.unit.vision.cameras import SIZE, true_rig
+from curlshot.tests.helpers.vision.cameras import SIZE, true_rig
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.paint import CIRCLES
 from curlshot.vision.optics.pose import View
