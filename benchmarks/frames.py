@@ -25,10 +25,10 @@ from curlshot.data.progress import no_progress
 from curlshot.data.sheet import STONE
 from curlshot.vision.detection.glance import glance
 from curlshot.vision.detection.stones import SEARCH
-from curlshot.vision.film.clip import Image
 from curlshot.vision.measure import film
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.placed import nobody
+from curlshot.vision.video.reader import Image
 
 Array = NDArray[np.float64]
 

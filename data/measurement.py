@@ -33,7 +33,7 @@ class Measurement:
     warnings : tuple of str
         What a person should know.
     clip : object or None
-        The clip that was read (see `curlshot.vision.film.clip.Clip`); None for tables.
+        The clip that was read (see `curlshot.vision.video.reader.Video`); None for tables.
     cameras : tuple
         One per frame (see `curlshot.vision.optics.camera.Camera`); empty for tables.
     house : House or None

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from curlshot.physics.simulator.approach import nearest
 from curlshot.vision.association.still import Portrait
 from curlshot.vision.detection.detection import Detection
-from curlshot.vision.film.shelf import Kept
 from curlshot.vision.spin.align import Complex
 from curlshot.vision.spin.facing import angle_between
 from curlshot.vision.spin.handle import TURNING
+from curlshot.vision.video.disk_cache import Cached
 
 Array = NDArray[np.float64]
 
@@ -72,7 +72,7 @@ class Lead:
         Whether it was missed since.
     anchor : tuple of float
         The place that it has not left lately, m.
-    facing : Kept of ndarray, optional
+    facing : Cached of ndarray, optional
         How its cap looked when it came there (`curlshot.vision.spin.handle.cap_spectrum`).
     steady : int
         For how many clear detections it has neither left nor turned.
@@ -90,7 +90,7 @@ class Lead:
     anchor: tuple[float, float]
     score: float
     missed: bool = False
-    facing: Kept[Complex] | None = None
+    facing: Cached[Complex] | None = None
     steady: int = 0
     portrait: Portrait | None = None
     along: int = 1

@@ -19,28 +19,28 @@ from curlshot.data.progress import Progress, no_progress
 from curlshot.data.project import unpack_clip
 from curlshot.data.trk import Project
 from curlshot.data.units import LENGTH_UNITS, unit_of_lengths
-from curlshot.vision.film.clip import Clip, Frame, open_clip
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.placed import Placed, nobody
 from curlshot.vision.optics.tracker_view import CORNER
+from curlshot.vision.video.reader import Frame, Video, open_video
 
 
 @dataclass
-class ProjectClip(Clip):
+class ProjectClip(Video):
     """A clip of which the steps of a project are used.
 
     Attributes
     ----------
     project : Project
         Which frames are steps, and when the first was taken.
-    whole : Clip
+    whole : Video
         The frames of the video, at the video's own times.
     pace : float
         Time of the project per time of the video; not 1 where the video is in slow motion.
     """
 
     project: Project = field(kw_only=True)
-    whole: Clip = field(kw_only=True)
+    whole: Video = field(kw_only=True)
     pace: float = field(kw_only=True)
 
     @property
@@ -110,7 +110,9 @@ def _open(
     pictures = files[0].suffix.lower() in IMAGE_SUFFIXES
     # From the first step on, for the times count from there.
     try:
-        whole = open_clip(files, rate if pictures else None, (timing.start, max(end, timing.start)))
+        whole = open_video(
+            files, rate if pictures else None, (timing.start, max(end, timing.start))
+        )
     except InputError as error:
         raise InputError(_by_project(str(error), path, files[0])) from None
     clip = ProjectClip(
@@ -158,7 +160,7 @@ def _rate(video: Path, otherwise: float) -> float:
 
 
 def project_cameras(
-    clip: Clip,
+    clip: Video,
     project: Project,
     length_unit: str | None = None,
     progress: Progress = no_progress,
@@ -168,7 +170,7 @@ def project_cameras(
 
     Parameters
     ----------
-    clip : Clip
+    clip : Video
         Frames with their times.
     project : Project
         Whose calibration it is.

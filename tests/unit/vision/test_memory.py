@@ -16,12 +16,12 @@ from curlshot.synthetic.clip import render_still
 from curlshot.tests.unit.vision.detection.test_stones import RED, YELLOW, scene_of
 from curlshot.vision.association.watch import Watch
 from curlshot.vision.camera_path.follow_house import follow_house
-from curlshot.vision.film.clip import Clip, Frame, Image
+from curlshot.vision.video.reader import Frame, Image, Video
 
 PLACES = [(0.3, 0.2, RED), (-0.8, 1.0, YELLOW), (0.9, -0.6, RED)]
 
 
-class Counted(Clip):
+class Counted(Video):
     """A clip of one picture over and over, which counts how many of its copies are held.
 
     `traced` is the memory in use before two of the frames, bytes, if it is traced.

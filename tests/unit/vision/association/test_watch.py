@@ -36,11 +36,11 @@ from curlshot.vision.detection.stones import (
     sought_in,
 )
 from curlshot.vision.detection.strangers import LARGE, strangers
-from curlshot.vision.film.clip import Frame, Image
-from curlshot.vision.film.picture import Picture
-from curlshot.vision.film.shelf import Shelf
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.cameras import Cameras
+from curlshot.vision.video.disk_cache import DiskCache
+from curlshot.vision.video.picture import Picture
+from curlshot.vision.video.reader import Frame, Image
 
 AT_REST = [(0.3, 0.2, RED), (-0.8, 1.0, YELLOW), (0.9, -0.6, RED)]
 LATE = (-0.2, -0.5)
@@ -88,7 +88,7 @@ def test_with_fewer_pictures_kept_a_late_stone_is_followed_back_as_well(
     pixels = camera.size[0] * camera.size[1]
     monkeypatch.setattr("curlshot.vision.association.watch.MOST_KEPT", 10 * pixels)
     monkeypatch.setattr(
-        StoneView, "put_aside", lambda view, shelf: held.append((frame, view.frame.index))
+        StoneView, "put_aside", lambda view, cache: held.append((frame, view.frame.index))
     )
     watch = Watch()
     for frame in range(50):
@@ -101,8 +101,8 @@ def test_with_fewer_pictures_kept_a_late_stone_is_followed_back_as_well(
 def test_pictures_of_caps_are_left_where_they_were_put_aside(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    shelf = Shelf()
-    monkeypatch.setattr("curlshot.vision.association.watch.Shelf", lambda _: shelf)
+    cache = DiskCache()
+    monkeypatch.setattr("curlshot.vision.association.watch.DiskCache", lambda _: cache)
     watch, camera, image = Watch(), camera_of(CAMERA, scene_of(AT_REST)), picture(AT_REST)
     for index in range(50):
         watch.look(Frame(index, index / 25, image), camera)
@@ -110,7 +110,7 @@ def test_pictures_of_caps_are_left_where_they_were_put_aside(
     first = [seen for _, _, detections in found[:16] for seen in detections]
     caps = [seen.spectrum for seen in first if seen.spectrum]
     assert len(caps) >= 3
-    assert all(cap.place_on(shelf) is not None for cap in caps)
+    assert all(cap.place_on(cache) is not None for cap in caps)
 
 
 def test_in_the_end_stones_are_placed_by_the_cameras_that_are_known_by_then(

@@ -26,7 +26,6 @@ from curlshot.tests.unit.vision.places import RINGS
 from curlshot.vision.camera_path import edge_tracker
 from curlshot.vision.camera_path.edge_tracker import LONGEST_STRIDE, EdgeTracker
 from curlshot.vision.camera_path.piece import REFINE_AT, Piece
-from curlshot.vision.film.clip import Frame, open_clip
 from curlshot.vision.optics.paint import CIRCLES, FIXED, joined
 from curlshot.vision.optics.pose import ROLL, aim, camera
 from curlshot.vision.optics.predict import MEMORY
@@ -35,6 +34,7 @@ from curlshot.vision.sheet.house import find_house
 from curlshot.vision.sheet.house_fit import HouseFit
 from curlshot.vision.sheet.normals import lay_out
 from curlshot.vision.sheet.outline import PaintEdge
+from curlshot.vision.video.reader import Frame, open_video
 
 SIZE = (640, 360)
 POSITION = (0.0, 0.0, 8.5)
@@ -159,7 +159,7 @@ def test_a_lens_that_bends_with_the_zoom_is_learned_on_the_way() -> None:
         Key(1.2, 0.0, 0.1, 185, k1=0.06),
     )
     file, _ = cached_clip(scene, CameraPath((1280, 720), (-0.1, 0.1, 8.5), keys), duration=1.2)
-    frames = list(open_clip([file]))
+    frames = list(open_video([file]))
     house = find_house(frames[0].image)
     assert house is not None
     piece = followed(house, frames)

@@ -10,8 +10,8 @@ from curlshot.data.sheet import STONE
 from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.patch import handle_radii
 from curlshot.vision.detection.relief import contrast, contrast_turned, without_handle
-from curlshot.vision.film.shelf import Kept
 from curlshot.vision.spin.handle import cap_spectrum
+from curlshot.vision.video.disk_cache import Cached
 
 RADII = handle_radii(STONE)
 RAYS = 48
@@ -79,7 +79,7 @@ def seen(height: float, pixel: float = 0.01) -> Detection:
     """A stone whose handle is so much lighter than its cap."""
     return Detection(
         0.0, 0.0, 0.002, 0.002, (0.0, 0.0), np.array([120.0, 190.0, 165.0]), 1.0, 2.0,
-        (1.0, 0.98), 0.0, (0.0,) * 6, (0.0, 0.0), pixel, spectrum=Kept(cap(bar(height), 1.0)),
+        (1.0, 0.98), 0.0, (0.0,) * 6, (0.0, 0.0), pixel, spectrum=Cached(cap(bar(height), 1.0)),
     )  # fmt: skip
 
 

@@ -17,9 +17,9 @@ from curlshot.synthetic.scenes import PAINTS
 from curlshot.vision.detection.appearance import BY_SHAPE, colour_difference, convincing, learn
 from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.stones import FOLLOWING, SEARCH, Search, plain_disc, search_picture
-from curlshot.vision.film.clip import open_clip
 from curlshot.vision.optics.camera import Camera, CameraError
 from curlshot.vision.optics.stick import stick_camera
+from curlshot.vision.video.reader import open_video
 
 RED, YELLOW, BLUE = (30, 24, 150), (20, 190, 220), (170, 80, 30)
 CAMERA = still_camera(px_per_m=140.0, target=(0.0, 0.6))
@@ -220,7 +220,7 @@ def test_real_stills(shared: Path) -> None:
     errors: list[float] = []
     false = 0
     for still in stills[::3]:
-        picture = next(iter(open_clip([shared / "frames" / "images" / still["file"]])))
+        picture = next(iter(open_video([shared / "frames" / "images" / still["file"]])))
         size = (still["size"][0], still["size"][1])
         place = np.array(still["camera"]["xyz"])
         matrix = np.array(still["homography"])

@@ -17,9 +17,9 @@ from curlshot.data.project import read_project
 from curlshot.data.tracks import check_detections
 from curlshot.data.trk import Coordinates
 from curlshot.data.trk_write import View, project_xml, write_trk, write_trz
-from curlshot.vision.film.clip import open_clip
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.project_clip import ProjectClip, open_project_clip, project_cameras
+from curlshot.vision.video.reader import open_video
 
 SIZE = (320, 240)
 FRAMES = 12
@@ -244,5 +244,5 @@ def test_the_clips_of_users_are_read(shared: Path) -> None:
             camera.ice(marked.masses[0].marks[0] - 0.5), place[0], rtol=1e-9, atol=1e-12
         )
     sample = open_project_clip(shared / "tracker" / "samples" / "sample.trz")
-    whole = open_clip(sample.whole.files, fps=30)
+    whole = open_video(sample.whole.files, fps=30)
     assert len(list(sample)) == len(list(whole)) == 12

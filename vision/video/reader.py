@@ -15,11 +15,11 @@ import numpy as np
 
 from curlshot.data.errors import InputError
 from curlshot.data.inputs import IMAGE_SUFFIXES, picture_times
-from curlshot.vision.film.cadence import Cadence, cadence_of
-from curlshot.vision.film.fields import deinterlaced
-from curlshot.vision.film.picture import Image as Image
-from curlshot.vision.film.picture import Picture, Planes, image_of
-from curlshot.vision.film.repeats import Repeats
+from curlshot.vision.video.deinterlace import deinterlaced
+from curlshot.vision.video.duplicates import Repeats
+from curlshot.vision.video.picture import Image as Image
+from curlshot.vision.video.picture import Picture, Planes, image_of
+from curlshot.vision.video.telecine import Cadence, cadence_of
 
 DEFAULT_IMAGE_FPS = 25.0
 """Rate of pictures where none is given, 1/s."""
@@ -40,10 +40,10 @@ class Frame:
 
 
 @dataclass
-class Clip:
+class Video:
     """A clip that can be read through, again and again, always in order.
 
-    Pictures that repeat the one before are left out (`curlshot.vision.film.repeats`). Single ones
+    Pictures that repeat the one before are left out (`curlshot.vision.video.duplicates`). Single ones
     are where they come in a cadence, which one pass shows and from the next on is followed.
 
     Attributes
@@ -211,9 +211,9 @@ def _so_taken(cadence: Cadence | None) -> str:
     )
 
 
-def open_clip(
+def open_video(
     paths: Sequence[Path], fps: float | None = None, frames: tuple[int, int | None] | None = None
-) -> Clip:
+) -> Video:
     """Open a video, or pictures in the order given.
 
     Parameters
@@ -243,39 +243,39 @@ def open_clip(
     if first < 0 or (last is not None and last < first):
         raise InputError(f"frames {first}:{last}: the range is empty")
     if paths[0].suffix.lower() in IMAGE_SUFFIXES:
-        clip = _open_images(paths, fps, first, last)
+        video = _open_images(paths, fps, first, last)
     else:
-        clip = _open_video(paths, first, last)
+        video = _open_video(paths, first, last)
         if fps is not None:
-            clip.warnings.append(f"{paths[0]}: a video carries its own times; the rate is ignored")
-    if clip.expected == 0:
-        clip.close()
-        raise InputError(f"{paths[0]}: has only {clip.frames} frames; none from {first} on")
-    return clip
+            video.warnings.append(f"{paths[0]}: a video carries its own times; the rate is ignored")
+    if video.expected == 0:
+        video.close()
+        raise InputError(f"{paths[0]}: has only {video.frames} frames; none from {first} on")
+    return video
 
 
-def _open_images(paths: Sequence[Path], fps: float | None, first: int, last: int | None) -> Clip:
+def _open_images(paths: Sequence[Path], fps: float | None, first: int, last: int | None) -> Video:
     image = next((i for i in map(_read_image, paths) if i is not None), None)
     if image is None:
         raise InputError(f"{paths[0]}: not a readable picture")
     size = (image.shape[1], image.shape[0])
     rate = (fps or DEFAULT_IMAGE_FPS) if len(paths) > 1 else fps
-    clip = Clip(tuple(paths), size, rate, len(paths), first, last)
+    video = Video(tuple(paths), size, rate, len(paths), first, last)
     if fps is None and len(paths) > 1:
-        clip.warnings.append(
+        video.warnings.append(
             f"pictures carry no times: {DEFAULT_IMAGE_FPS:g} a second assumed; say `fps`"
         )
     times = picture_times(paths)
     longest = max((b - a for a, b in pairwise(times)), default=1.0) if times else 1.0
     if longest > 1.0:
-        clip.warnings.append(
+        video.warnings.append(
             f"{paths[0].parent}: pictures are missing, by the numbers in their names; up to"
             f" {longest:g} steps of time are left between two that are there"
         )
-    return clip
+    return video
 
 
-def _open_video(paths: Sequence[Path], first: int, last: int | None) -> Clip:
+def _open_video(paths: Sequence[Path], first: int, last: int | None) -> Video:
     if len(paths) > 1:
         raise InputError(f"{paths[1]}: one video at a time, please")
     broken = InputError(f"{paths[0]}: not a video that can be read (damaged, or not one at all)")
@@ -290,9 +290,9 @@ def _open_video(paths: Sequence[Path], first: int, last: int | None) -> Clip:
         container.close()  # Who keeps the error would keep it open.
         raise broken from None
     height, width, _ = first_one[1].shape
-    clip = Clip((paths[0],), (width, height), fps, max(count, 1), first, last)
-    clip._begun = container, chain([first_one], pictures)
-    return clip
+    video = Video((paths[0],), (width, height), fps, max(count, 1), first, last)
+    video._begun = container, chain([first_one], pictures)
+    return video
 
 
 def _opened(path: Path) -> tuple[Any, Iterator[tuple[float, Planes]]]:

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from curlshot.data.progress import Progress, no_progress
-from curlshot.vision.film.clip import Clip, Frame
-from curlshot.vision.film.picture import Image, Picture, Planes
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.projection import middle
+from curlshot.vision.video.picture import Image, Picture, Planes
+from curlshot.vision.video.reader import Frame, Video
 
 Flags = NDArray[np.bool_]
 Shares = NDArray[np.float64]
@@ -44,17 +44,17 @@ LEAST, MOST = 0.02, 0.4
 """What share of a picture's width or height a bar has."""
 
 
-class LitClip(Clip):
+class LitClip(Video):
     """A clip without its black bars.
 
     Parameters
     ----------
-    whole : Clip
+    whole : Video
     bars : tuple of int
         Even widths of the bars at either side, and at top and bottom, px.
     """
 
-    def __init__(self, whole: Clip, bars: tuple[int, int]) -> None:
+    def __init__(self, whole: Video, bars: tuple[int, int]) -> None:
         (w, h), (aside, above) = whole.size, bars
         super().__init__(
             whole.files, (w - 2 * aside, h - 2 * above), whole.fps, whole.frames, whole.first,
@@ -83,28 +83,28 @@ class LitClip(Clip):
         return any(bar and ends.max() > MARKED for bar, ends in zip(self.bars, lit, strict=True))
 
 
-def lit_clip(clip: Clip, progress: Progress = no_progress) -> Clip:
+def lit_clip(video: Video, progress: Progress = no_progress) -> Video:
     """Give a clip without its black bars; itself where it has none.
 
     Pictures coded by themselves, at each cut and every few seconds, are asked, and all if those
     are dark or dim.
     """
-    first = clip.peek()
+    first = video.peek()
     if first is None:
-        return clip
-    shown = _together(_shown(first), clip.key_pictures())
+        return video
+    shown = _together(_shown(first), video.key_pictures())
     if shown[2] < DIM:
         progress("black bars", 0, 1)
-        shown = _together(shown, (frame.picture for frame in clip.every()))
+        shown = _together(shown, (frame.picture for frame in video.every()))
     bars = _bar(shown[0]), _bar(shown[1])
-    return LitClip(clip, bars) if any(bars) else clip
+    return LitClip(video, bars) if any(bars) else video
 
 
-def in_whole(clip: Clip, cameras: Sequence[Camera]) -> tuple[Clip, tuple[Camera, ...]]:
+def in_whole(video: Video, cameras: Sequence[Camera]) -> tuple[Video, tuple[Camera, ...]]:
     """Give a clip with its bars, and its cameras in pixels of that."""
-    if not isinstance(clip, LitClip):
-        return clip, tuple(cameras)
-    return clip.whole, tuple(_with_bars(one, clip.bars, clip.whole.size) for one in cameras)
+    if not isinstance(video, LitClip):
+        return video, tuple(cameras)
+    return video.whole, tuple(_with_bars(one, video.bars, video.whole.size) for one in cameras)
 
 
 def without_bars(picture: Picture, bars: tuple[int, int]) -> Picture:

@@ -9,8 +9,8 @@ import pytest
 from numpy.typing import NDArray
 
 from curlshot.synthetic.video import write_video
-from curlshot.vision.film.clip import Clip, open_clip
 from curlshot.vision.optics.camera import Camera, carried
+from curlshot.vision.video.reader import Video, open_video
 
 Image = NDArray[np.uint8]
 
@@ -29,12 +29,12 @@ def scene(n: int, noise: float = 0.0, pace: float = 3.0) -> list[Image]:
     return out
 
 
-def film(path: Path, pictures: Sequence[Image], fps: float) -> Clip:
+def film(path: Path, pictures: Sequence[Image], fps: float) -> Video:
     write_video(path, [(k / fps, picture) for k, picture in enumerate(pictures)], fps=fps)
-    return open_clip([path])
+    return open_video([path])
 
 
-def left(clip: Clip) -> list[int]:
+def left(clip: Video) -> list[int]:
     given = [frame.index for frame in clip]
     assert sorted([*given, *clip.repeated]) == list(range(clip.passed))
     return sorted(clip.repeated)
@@ -79,7 +79,7 @@ def test_pictures_from_files_are_told_as_well(tmp_path: Path) -> None:
     paths = [tmp_path / f"{k:03}.png" for k in range(40)]
     for k, path in enumerate(paths):
         cv2.imwrite(str(path), scene(20, 2.0)[k // 2])
-    assert left(open_clip(paths, fps=50.0)) == [*range(1, 39, 2)]
+    assert left(open_video(paths, fps=50.0)) == [*range(1, 39, 2)]
 
 
 def test_a_repeat_has_the_camera_of_what_it_shows_as_one_that_was_carried() -> None:

@@ -12,10 +12,10 @@ import pytest
 from numpy.typing import NDArray
 
 from curlshot.synthetic import still_camera
-from curlshot.vision.film.clip import Clip, open_clip
-from curlshot.vision.film.picture import Planes
 from curlshot.vision.optics.camera import Camera, CameraError
-from curlshot.vision.optics.letterbox import LitClip, in_whole, lit_clip
+from curlshot.vision.video.letterbox import LitClip, in_whole, lit_clip
+from curlshot.vision.video.picture import Planes
+from curlshot.vision.video.reader import Video, open_video
 
 Image = NDArray[np.uint8]
 
@@ -44,7 +44,7 @@ def barred(picture: Image, left: int, right: int, above: int = 0) -> Image:
     return out
 
 
-def video(path: Path, pictures: Sequence[Image], crf: int = 28) -> Clip:
+def video(path: Path, pictures: Sequence[Image], crf: int = 28) -> Video:
     with av.open(str(path), "w") as container:
         stream = container.add_stream("libx264", rate=25)
         stream.height, stream.width = pictures[0].shape[:2]
@@ -55,7 +55,7 @@ def video(path: Path, pictures: Sequence[Image], crf: int = 28) -> Clip:
             frame.pts, frame.time_base = k, Fraction(1, 25)
             container.mux(stream.encode(frame))
         container.mux(stream.encode())
-    return open_clip([path])
+    return open_video([path])
 
 
 @pytest.mark.parametrize(("crf", "traces"), [(10, 0), (36, 8)])
@@ -91,15 +91,15 @@ def test_a_title_on_a_bar_leaves_it_one(tmp_path: Path, at: tuple[int, int]) -> 
 def test_bars_are_told_by_few_pictures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     clip = video(tmp_path / "pillars.mp4", [barred(scene(0), 110, 110)] * 30)
     assert len(list(clip.key_pictures())) < 3
-    monkeypatch.setattr(Clip, "every", None)
+    monkeypatch.setattr(Video, "every", None)
     assert lit_clip(clip).size[0] < W
 
 
 def test_of_a_part_of_a_clip_all_pictures_are_asked(tmp_path: Path) -> None:
     bars = [barred(scene(0), 110, 110)] * 30
     whole = video(tmp_path / "clip.mp4", [*bars, *[scene(1)] * 20])
-    assert lit_clip(open_clip(whole.files, frames=(0, 29))).size[0] < W
-    assert len(list(open_clip(whole.files, frames=(25, 34)).key_pictures())) == 10
+    assert lit_clip(open_video(whole.files, frames=(0, 29))).size[0] < W
+    assert len(list(open_video(whole.files, frames=(25, 34)).key_pictures())) == 10
 
 
 def test_pictures_of_another_size_have_no_say(tmp_path: Path) -> None:
@@ -107,7 +107,7 @@ def test_pictures_of_another_size_have_no_say(tmp_path: Path) -> None:
     video(paths[0], [barred(scene(0), 110, 110)] * 3)
     video(paths[1], [barred(scene(0), 110, 110)[: H // 2]] * 3)
     paths[0].write_bytes(b"".join(path.read_bytes() for path in paths))
-    lit = lit_clip(open_clip(paths[:1]))
+    lit = lit_clip(open_video(paths[:1]))
     assert lit.size[0] < W and len(list(lit)) == 3
 
 
@@ -119,14 +119,14 @@ def test_bars_that_give_way_between_the_pictures_that_are_asked_are_told_of(tmp_
     assert len(list(lit)) == 20
     (warning,) = lit.warnings
     assert "bars" in warning and "--frames" in warning
-    assert lit_clip(open_clip(lit.files, frames=(0, 19))).size == (W, H)
+    assert lit_clip(open_video(lit.files, frames=(0, 19))).size == (W, H)
 
 
 def test_above_and_below_and_of_pictures(tmp_path: Path) -> None:
     paths = [tmp_path / f"{k}.png" for k in range(2)]
     for k, path in enumerate(paths):
         cv2.imwrite(str(path), barred(scene(k), 0, 0, 23))
-    lit = lit_clip(open_clip(paths, 25.0))
+    lit = lit_clip(open_video(paths, 25.0))
     assert lit.size == (W, H - 48)  # to an even number
     assert [frame.image.shape for frame in lit] == [(H - 48, W, 3)] * 2
 
@@ -169,7 +169,7 @@ def test_cameras_in_pixels_of_the_whole() -> None:
         3, 0.12, view.homography / view.homography[2, 2], (SHOWN, H), k1=view.lens.k1, k2=0.03,
         f_px=view.focal, position=view.position, error=error,
     )  # fmt: skip
-    whole = Clip((Path("clip.mp4"),), (W, H), 25.0, 4)
+    whole = Video((Path("clip.mp4"),), (W, H), 25.0, 4)
     clip, (shown,) = in_whole(LitClip(whole, (110, 0)), [seen])
     assert clip is whole and shown.size == (W, H)
     ice = np.array([[0.0, 0.0], [1.2, -0.7], [-1.5, 1.9]])

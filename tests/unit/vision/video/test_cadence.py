@@ -13,8 +13,8 @@ import pytest
 from numpy.typing import NDArray
 
 from curlshot.synthetic.video import write_video
-from curlshot.vision.film.cadence import Shown, cadence_of
-from curlshot.vision.film.clip import Clip, open_clip
+from curlshot.vision.video.reader import Video, open_video
+from curlshot.vision.video.telecine import Shown, cadence_of
 
 Image = NDArray[np.uint8]
 TOLD = 30.0
@@ -38,13 +38,13 @@ def told(
     *,
     grain: float = 2.0,
     late: float | NDArray[np.float64] = 0.0,
-) -> Clip:
+) -> Video:
     """Write a clip whose frames show these pictures."""
     times = np.arange(len(shown)) / TOLD + late
     pictures = [*scene(np.broadcast_to(pace, max(shown) + 1).tolist(), grain)]
     frames = [(float(t), pictures[which]) for t, which in zip(times, shown, strict=True)]
     write_video(path, frames, fps=TOLD)
-    return open_clip([path])
+    return open_video([path])
 
 
 def pulled_down(rate: Fraction, pictures: int, begin: Fraction = Fraction(0)) -> list[int]:
@@ -57,7 +57,7 @@ def firsts(shown: Sequence[int]) -> list[int]:
     return [k for k, which in enumerate(shown) if which not in shown[:k]]
 
 
-def read_twice(clip: Clip) -> tuple[list[int], list[float]]:
+def read_twice(clip: Video) -> tuple[list[int], list[float]]:
     """Frames and times of a second pass; the first shows the cadence."""
     assert clip.cadence is None
     for _ in clip:
@@ -133,7 +133,7 @@ def test_a_cadence_stays_where_the_recording_halts(tmp_path: Path) -> None:
     np.testing.assert_allclose(np.diff(times)[:30], 1 / 24, rtol=5e-3)
 
 
-def as_told(clip: Clip, kept: Sequence[int] | None = None) -> bool:
+def as_told(clip: Video, kept: Sequence[int] | None = None) -> bool:
     """Whether a second pass gives frames at the times at which they are told."""
     frames, times = read_twice(clip)
     np.testing.assert_allclose(np.array(times) * TOLD, frames, atol=1e-3)

@@ -17,11 +17,11 @@ from typing import TYPE_CHECKING
 import cv2
 import numpy as np
 
-from curlshot.vision.film.cadence import Shown
-from curlshot.vision.film.picture import Image, Picture, Planes
+from curlshot.vision.video.picture import Image, Picture, Planes
+from curlshot.vision.video.telecine import Shown
 
 if TYPE_CHECKING:
-    from curlshot.vision.film.clip import Frame
+    from curlshot.vision.video.reader import Frame
 
 PLACES = 16000
 """Pixels, about, by which two pictures are compared."""
