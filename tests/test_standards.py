@@ -15,7 +15,7 @@ MAY_IMPORT = {
     "data": set(),
     "config": {"data"},
     "physics": {"data", "config"},
-    "vision": {"data", "config", "physics"},
+    "vision": {"data", "config"},
     "synthetic": set(),
     "report": {"data", "config", "physics", "vision", "outcome"},
     "outcome": {"data", "config", "physics", "report"},

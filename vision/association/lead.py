@@ -9,7 +9,7 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from curlshot.physics.simulator.approach import nearest
+from curlshot.data.geometry import origin_to_segment
 from curlshot.vision.association.still import Portrait
 from curlshot.vision.detection.detection import Detection
 from curlshot.vision.spin.align import Complex
@@ -128,7 +128,8 @@ class Lead:
     def nears(self, place: tuple[float, float], t: float, within: float) -> bool:
         """Whether the stone is expected to come so near to a place, m, `AHEAD` from then, s."""
         (x, y), (end_x, end_y) = self.at(t), self.at(t + AHEAD)
-        return nearest(x - place[0], y - place[1], end_x - place[0], end_y - place[1]) < within
+        start, end = (x - place[0], y - place[1]), (end_x - place[0], end_y - place[1])
+        return origin_to_segment(*start, *end) < within
 
     def _slowed(self, t: float) -> tuple[float, float]:
         """Tell what share of its velocity is left by then, and how long it moves till then, s."""
