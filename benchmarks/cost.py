@@ -35,7 +35,8 @@ from curlshot.report.encode import Encoder
 from curlshot.synthetic.camera import broadcast_camera
 from curlshot.synthetic.clip import cached_clip
 from curlshot.synthetic.scenes import random_scene, sweepers
-from curlshot.vision.video.reader import Image, open_video
+from curlshot.vision.video.picture import Image
+from curlshot.vision.video.reader import open_video
 
 FPS = 30.0
 

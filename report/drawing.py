@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from curlshot.data.sheet import SHEET
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.projection import apply_homography
-from curlshot.vision.video.reader import Image
+from curlshot.vision.video.picture import Image
 
 Array = NDArray[np.float64]
 Colour = tuple[int, int, int]

@@ -31,7 +31,9 @@ from curlshot.report.encode import Encoder
 from curlshot.report.style import stone_colours, team_colour
 from curlshot.report.tables import play
 from curlshot.vision.optics.camera import Camera
-from curlshot.vision.video.reader import Frame, Image, Video
+from curlshot.vision.video.frame import Frame
+from curlshot.vision.video.picture import Image
+from curlshot.vision.video.reader import Video
 
 Array = NDArray[np.float64]
 
@@ -136,8 +138,8 @@ def write_overlay(
     scene = _scene(tracks, collisions, rings, radius)
     by_frame = {camera.frame: camera for camera in cameras}
     total = video.expected
-    with whole_file(path) as part, Encoder(part, video.size, video.fps) as encoder:
-        for done, frame in enumerate(video, 1):
+    with whole_file(path) as part, Encoder(part, video.whole_size, video.fps) as encoder:
+        for done, frame in enumerate(video.uncut(), 1):
             camera = by_frame.get(frame.index)
             image = frame.image if camera is None else draw(frame, camera, scene)
             encoder.add(image, frame.t)

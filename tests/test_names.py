@@ -15,7 +15,7 @@ from curlshot.report.looks import Look
 from curlshot.report.style import plain_text
 from curlshot.tests.unit.report import looking
 from curlshot.tests.unit.report.looking import SIZE, camera
-from curlshot.vision.video.reader import Frame
+from curlshot.vision.video.frame import Frame
 
 
 @pytest.fixture

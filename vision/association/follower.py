@@ -28,7 +28,7 @@ from curlshot.vision.detection.stones import NEAREST, Search, search_picture
 from curlshot.vision.optics import projection
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.video.disk_cache import DiskCache
-from curlshot.vision.video.reader import Frame
+from curlshot.vision.video.frame import Frame
 
 Array = NDArray[np.float64]
 

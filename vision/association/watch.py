@@ -36,8 +36,8 @@ from curlshot.vision.detection.stones import FOLLOWING, SEARCH, Search
 from curlshot.vision.detection.strangers import strangers
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.video.disk_cache import Cached, DiskCache
-from curlshot.vision.video.picture import brightened, toned
-from curlshot.vision.video.reader import Frame, Image
+from curlshot.vision.video.frame import Frame
+from curlshot.vision.video.picture import Image, brightened, toned
 
 AT_ONCE = 64
 """Pictures whose stones are placed together in the end: more take memory, and no less time each."""

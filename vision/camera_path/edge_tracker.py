@@ -29,8 +29,8 @@ from curlshot.vision.sheet.normals import OUTSIDE, Normals, lay_out
 from curlshot.vision.sheet.outline import PaintEdge, find_edge
 from curlshot.vision.sheet.stations import THIN
 from curlshot.vision.video.disk_cache import Cached
+from curlshot.vision.video.frame import Frame
 from curlshot.vision.video.picture import Picture
-from curlshot.vision.video.reader import Frame
 
 Array = NDArray[np.float64]
 

@@ -29,8 +29,9 @@ from curlshot.vision.optics.pose import View
 from curlshot.vision.sheet.house import find_house
 from curlshot.vision.sheet.house_fit import HouseFit, at_height
 from curlshot.vision.video.disk_cache import DiskCache
+from curlshot.vision.video.frame import Frame
 from curlshot.vision.video.picture import image_of
-from curlshot.vision.video.reader import Frame, Video
+from curlshot.vision.video.reader import Video
 
 Array = NDArray[np.float64]
 
@@ -316,7 +317,7 @@ def follow_house(
     """
     follower = HouseFollower(video.size, first, height)
     for frame in video:
-        progress("house", video.passed, video.expected)
+        progress("house", video.decoded, video.expected)
         for seen, provisional in follower.look(frame):
             placed(seen, provisional)
     for seen, provisional in follower.catch_up():

@@ -30,7 +30,9 @@ from curlshot.vision.sheet.lines import y_up
 from curlshot.vision.sheet.rings import SQUASHES, Guess
 from curlshot.vision.video.disk_cache import Cached
 from curlshot.vision.video.flow import similarity
-from curlshot.vision.video.reader import Frame, Image, Video
+from curlshot.vision.video.frame import Frame
+from curlshot.vision.video.picture import Image
+from curlshot.vision.video.reader import Video
 
 Array = NDArray[np.float64]
 
@@ -173,9 +175,11 @@ def _frame(video: Video, house: GivenHouse) -> Frame:
     for frame in video:
         if house.frame is None or frame.index == house.frame:
             return frame
-        if shown is not None and house.frame in video.repeated:
+        if shown is not None and house.frame in video.duplicates:
             return shown
         shown = frame
+    if shown is not None and house.frame in video.duplicates:
+        return shown
     if house.frame is None:
         raise InputError(f"{video.files[0]}: none of the frames that are used can be read")
     raise InputError(

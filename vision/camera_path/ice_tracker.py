@@ -20,8 +20,8 @@ from curlshot.vision.optics.paint import Marks, joined
 from curlshot.vision.optics.pose import VIEW_SIZE, View
 from curlshot.vision.optics.resection import solve_view, solve_views
 from curlshot.vision.video.disk_cache import Cached
+from curlshot.vision.video.frame import Frame
 from curlshot.vision.video.picture import Picture
-from curlshot.vision.video.reader import Frame
 
 Array = NDArray[np.float64]
 

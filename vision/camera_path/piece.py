@@ -42,8 +42,8 @@ from curlshot.vision.optics.resection import solve_view, solve_views
 from curlshot.vision.optics.rig import Prior
 from curlshot.vision.sheet.house_fit import TILT_GAIN, HouseFit
 from curlshot.vision.video.disk_cache import Cached, DiskCache
+from curlshot.vision.video.frame import Frame
 from curlshot.vision.video.picture import Picture
-from curlshot.vision.video.reader import Frame
 
 Array = NDArray[np.float64]
 

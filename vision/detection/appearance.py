@@ -15,7 +15,7 @@ from curlshot.vision.detection.contrast import worth_of
 from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.relief import BARE, own_contrast
 from curlshot.vision.video.colour import bgr_of, chroma, lab_of
-from curlshot.vision.video.reader import Image
+from curlshot.vision.video.picture import Image
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]

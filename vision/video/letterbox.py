@@ -1,23 +1,20 @@
-"""Letterboxes and pillarboxes: black bars around a picture, cut off before a house is sought.
+"""Letterboxes and pillarboxes: black bars around a picture.
 
-A house that they cut would be sought in them. So such a clip is looked at without them, as one
-that ends where they begin, and its cameras are told in pixels of the whole picture. Bars of the
-same width on both sides leave the lens's axis in the middle; others are taken for picture.
+Bars of the same width on both sides leave the lens's axis in the middle. Uneven ones are taken for
+part of the picture.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from curlshot.data.progress import Progress, no_progress
-from curlshot.vision.optics.camera import Camera
-from curlshot.vision.optics.projection import middle
 from curlshot.vision.video.picture import Image, Picture, Planes
-from curlshot.vision.video.reader import Frame, Video
+from curlshot.vision.video.source import Source
 
 Flags = NDArray[np.bool_]
 Shares = NDArray[np.float64]
@@ -44,71 +41,38 @@ LEAST, MOST = 0.02, 0.4
 """What share of a picture's width or height a bar has."""
 
 
-class LitClip(Video):
-    """A clip without its black bars.
+def find_bars(source: Source, progress: Progress = no_progress) -> tuple[int, int]:
+    """Return even widths of the bars at either side, and at top and bottom, px; 0 where none are.
 
-    Parameters
-    ----------
-    whole : Video
-    bars : tuple of int
-        Even widths of the bars at either side, and at top and bottom, px.
+    Key pictures, at each cut and every few seconds, show them. Where these are dark or dim, all
+    are decoded.
     """
-
-    def __init__(self, whole: Video, bars: tuple[int, int]) -> None:
-        (w, h), (aside, above) = whole.size, bars
-        super().__init__(
-            whole.files, (w - 2 * aside, h - 2 * above), whole.fps, whole.frames, whole.first,
-            whole.last, whole.warnings,
-        )  # fmt: skip
-        self.whole, self.bars = whole, bars
-
-    def __iter__(self) -> Iterator[Frame]:
-        """Yield the frames in order, without the bars."""
-        hidden = False
-        for frame in self.whole:
-            self.read, self.passed = self.whole.read, self.whole.passed
-            if not hidden and self._hides(frame.picture):
-                hidden = True
-                self._warn(
-                    f"{self.files[0]}: black bars are cut off, but frame {frame.index} shows"
-                    " something there; give the frames of the shot alone (`frames`)"
-                )
-            yield Frame(frame.index, frame.t, without_bars(frame.picture, self.bars))
-        self.cadence = self.whole.cadence
-
-    def _hides(self, picture: Picture) -> bool:
-        """Whether a picture, which may not have been asked, shows something to its borders."""
-        values = _values(picture)
-        lit = _lit(values[:, [0, -1]]).mean(0), _lit(values[[0, -1]]).mean(1)
-        return any(bar and ends.max() > MARKED for bar, ends in zip(self.bars, lit, strict=True))
-
-
-def lit_clip(video: Video, progress: Progress = no_progress) -> Video:
-    """Give a clip without its black bars; itself where it has none.
-
-    Pictures coded by themselves, at each cut and every few seconds, are asked, and all if those
-    are dark or dim.
-    """
-    first = video.peek()
+    first = source.peek()
     if first is None:
-        return video
-    shown = _together(_shown(first), video.key_pictures())
+        return 0, 0
+    shown = _together(_shown(first), source.key_pictures())
     if shown[2] < DIM:
         progress("black bars", 0, 1)
-        shown = _together(shown, (frame.picture for frame in video.every()))
-    bars = _bar(shown[0]), _bar(shown[1])
-    return LitClip(video, bars) if any(bars) else video
+        shown = _together(shown, (frame.picture for frame in source))
+    return _bar(shown[0]), _bar(shown[1])
 
 
-def in_whole(video: Video, cameras: Sequence[Camera]) -> tuple[Video, tuple[Camera, ...]]:
-    """Give a clip with its bars, and its cameras in pixels of that."""
-    if not isinstance(video, LitClip):
-        return video, tuple(cameras)
-    return video.whole, tuple(_with_bars(one, video.bars, video.whole.size) for one in cameras)
+def hides(picture: Picture, bars: tuple[int, int]) -> bool:
+    """Return whether a picture, which `find_bars` may not have seen, is not black at its borders.
+
+    Only borders that `bars` would cut off count.
+    """
+    if not any(bars):
+        return False
+    values = _values(picture)
+    lit = _lit(values[:, [0, -1]]).mean(0), _lit(values[[0, -1]]).mean(1)
+    return any(bar and ends.max() > MARKED for bar, ends in zip(bars, lit, strict=True))
 
 
 def without_bars(picture: Picture, bars: tuple[int, int]) -> Picture:
-    """Cut bars of even widths, at either side and at top and bottom, off a picture."""
+    """Return a picture without bars of even widths, at either side and at top and bottom."""
+    if not any(bars):
+        return picture
     if isinstance(picture, Planes):
         luma, blue, red = (
             _inner(plane, bars[0] // share, bars[1] // share)
@@ -124,24 +88,24 @@ def _inner(values: Image, aside: int, above: int) -> Image:
 
 
 def _shown(picture: Picture) -> Shown:
-    """Tell how much of a picture is not black, and how light it is."""
+    """Return how much of a picture is not black, and how light it is."""
     values = _values(picture)
     lit, light = _lit(values), values if values.ndim == 2 else values.max(2)
     return lit.mean(0), lit.mean(1), np.percentile(light[::4, ::4], [95])
 
 
 def _values(picture: Picture) -> Image:
-    """Luma, or blue, green and red, of a picture."""
+    """Return luma, or blue, green and red, of a picture."""
     return picture.luma if isinstance(picture, Planes) else picture
 
 
 def _lit(values: Image) -> Flags:
-    """Which pixels are not black."""
+    """Return which pixels are not black."""
     return np.asarray(values > BLACK_LUMA if values.ndim == 2 else values.max(2) > BLACK)
 
 
 def _together(shown: Shown, pictures: Iterable[Picture]) -> Shown:
-    """Most that any picture shows in each column and row, till no bars are left at either end."""
+    """Return the most that any picture shows in each column and row, till no bars are left."""
     left = iter(pictures)
     while any(lit[[0, -1]].max() <= MARKED for lit in shown[:2]):
         more = next(left, None)
@@ -153,7 +117,7 @@ def _together(shown: Shown, pictures: Iterable[Picture]) -> Shown:
 
 
 def _bar(lit: Shares) -> int:
-    """Width of the bars at either end, px, to an even number; 0 where there are none."""
+    """Return the width of the bars at either end, px, to an even number; 0 where there are none."""
     for share, beside in ((SHARE, 0.0), (MARKED, FILLED)):
         first, last = int((lit > share).argmax()), int((lit > share)[::-1].argmax())
         width = max(first, last)
@@ -162,19 +126,3 @@ def _bar(lit: Shares) -> int:
         if lit[[width + UNEVEN, -1 - width - UNEVEN]].min() > beside:
             return width + width % 2
     return 0
-
-
-def _with_bars(seen: Camera, bars: tuple[int, int], size: tuple[int, int]) -> Camera:
-    """Give a camera in pixels of a picture of that size, of which it has seen all but the bars."""
-    moved = np.eye(3)
-    moved[:2, 2] = bars
-    # The lens's axis is in the middle of both, but distortion is told in half diagonals.
-    grown = (middle(size)[1] / middle(seen.size)[1]) ** 2
-    by = np.diag([*np.ones(7), grown, grown**2])
-    error = seen.error
-    if error is not None:
-        error = replace(error, shared=by @ error.shared @ by, own=by @ error.own @ by)
-    return replace(
-        seen, homography=moved @ seen.homography, size=size, k1=grown * seen.k1,
-        k2=grown**2 * seen.k2, error=error,
-    )  # fmt: skip

@@ -13,7 +13,7 @@ from curlshot.report.looks import Look
 from curlshot.tests.unit.report.looking import SIZE, camera, stone, table
 from curlshot.vision.detection.detection import Refusal
 from curlshot.vision.optics.camera import Camera
-from curlshot.vision.video.reader import Frame
+from curlshot.vision.video.frame import Frame
 
 
 def house_picture() -> np.ndarray:

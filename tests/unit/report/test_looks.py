@@ -16,7 +16,7 @@ from curlshot.report.looks import (
 from curlshot.tests.unit.report.looking import camera, stone, table
 from curlshot.vision.detection.detection import Refusal
 from curlshot.vision.optics.camera import CameraError
-from curlshot.vision.video.reader import Frame
+from curlshot.vision.video.frame import Frame
 
 
 @pytest.mark.parametrize("worst", [0, 17, 59])

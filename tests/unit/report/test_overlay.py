@@ -8,11 +8,13 @@ import cv2
 import numpy as np
 import pytest
 
+from curlshot.config import VideoConfig
 from curlshot.report import overlay
 from curlshot.report.overlay import _scene, draw, write_overlay
 from curlshot.tests.unit.report.browser import needs_chromium
 from curlshot.vision.optics.camera import Camera
-from curlshot.vision.video.reader import Frame, open_video
+from curlshot.vision.video.frame import Frame
+from curlshot.vision.video.reader import open_video
 
 SIZE = (321, 241)  # odd both ways
 TIMES = [0.0, 0.04, 0.08, 0.2, 0.24, 0.25, 0.3, 0.5]
@@ -67,7 +69,7 @@ def test_every_frame_keeps_its_time(tmp_path, shot):
 
 
 def test_odd_sizes_and_frames_without_a_camera(tmp_path, shot):
-    clip = open_video(pictures(tmp_path), fps=30.0)
+    clip = open_video(pictures(tmp_path), VideoConfig(fps=30.0))
     out = tmp_path / "overlay.mp4"
     cameras = [camera(k, k1=-0.05) for k in range(6) if k != 2]
     write_overlay(clip, cameras, shot.tracks, shot.results.collisions, out)
@@ -114,9 +116,9 @@ def test_no_rings_where_there_is_no_house(tmp_path, shot):
 
 def test_nothing_is_left_of_a_failure(tmp_path, shot):
     class Broken:
-        size, fps, expected = SIZE, 25.0, 5
+        whole_size, fps, expected = SIZE, 25.0, 5
 
-        def __iter__(self):
+        def uncut(self):
             yield from open_video(pictures(tmp_path, 2))
             raise OSError("the disk went away")
 
@@ -137,7 +139,7 @@ def test_points_behind_a_tilted_camera_are_not_drawn(tmp_path, shot):
 
 @needs_chromium
 def test_it_plays_in_a_browser(browser, tmp_path, shot):
-    clip = open_video(pictures(tmp_path, 25), fps=25.0)
+    clip = open_video(pictures(tmp_path, 25), VideoConfig(fps=25.0))
     path = tmp_path / "overlay.mp4"
     assert write_overlay(clip, [camera(k) for k in range(25)], shot.tracks, (), path) == 0.0
     with av.open(str(path)) as video:
@@ -160,7 +162,7 @@ def test_it_plays_in_a_browser(browser, tmp_path, shot):
 
 
 def test_the_first_picture_keeps_its_time(tmp_path, shot):
-    clip = open_video([uneven_clip(tmp_path / "in.mp4")], frames=(3, 6))
+    clip = open_video([uneven_clip(tmp_path / "in.mp4")], VideoConfig(frames=(3, 6)))
     start = write_overlay(clip, [], shot.tracks, (), tmp_path / "overlay.mp4")
     assert start == pytest.approx(TIMES[3], abs=1e-4)
     times, _ = read(tmp_path / "overlay.mp4")
@@ -168,7 +170,7 @@ def test_the_first_picture_keeps_its_time(tmp_path, shot):
 
 
 def test_one_can_step_back_quickly(tmp_path, shot):
-    clip = open_video(pictures(tmp_path, 60), fps=25.0)
+    clip = open_video(pictures(tmp_path, 60), VideoConfig(fps=25.0))
     write_overlay(clip, [], shot.tracks, (), tmp_path / "overlay.mp4")
     with av.open(str(tmp_path / "overlay.mp4")) as video:
         whole = [k for k, frame in enumerate(video.decode(video=0)) if frame.key_frame]
@@ -190,7 +192,7 @@ def test_colours_survive(tmp_path, shot):
 
 
 def test_labels_show_the_spin_and_the_colour_of_the_team(tmp_path, shot):
-    clip = open_video(pictures(tmp_path, 3), fps=25.0)
+    clip = open_video(pictures(tmp_path, 3), VideoConfig(fps=25.0))
     moving = shot.tracks[shot.tracks["frame"] < 3].assign(x=0.0, y=0.0, vx=1.0, vy=0.0)
     one = moving[moving["stone"] == "A"].assign(team="#00ff00", omega=1.5)
     shown = {}

@@ -9,6 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
+from curlshot.config import VideoConfig
 from curlshot.data.sheet import STONE, Stone
 from curlshot.data.tracks import DETECTION_COLUMNS, teams
 from curlshot.physics.filter.rate_filter import filtered, forward
@@ -69,7 +70,7 @@ def sample_truth() -> tuple[pd.DataFrame, tuple[Camera, ...]]:
 
 def test_the_sample_is_followed_from_end_to_end() -> None:
     truth, cameras = sample_truth()
-    clip = open_video([DATA / "sample.mp4"], frames=(0, 80))
+    clip = open_video([DATA / "sample.mp4"], VideoConfig(frames=(0, 80)))
     stones = track_stones(clip, cameras)
     assert tuple(stones.detections.columns) == DETECTION_COLUMNS
     score = score_tracks(stones.detections.assign(seen=1), truth[truth["frame"] <= 80], visible=0.5)
@@ -152,7 +153,7 @@ def test_real_stones(shared: Path, name: str) -> None:
     )  # fmt: skip
     assert all(frame["k1"] == 0 for frame in truth["frames"])
     tracks = pd.read_csv(shared / "clips" / f"semireal_{name}.truth.csv")
-    clip = open_video([shared / "clips" / f"semireal_{name}.mp4"], frames=(40, 110))
+    clip = open_video([shared / "clips" / f"semireal_{name}.mp4"], VideoConfig(frames=(40, 110)))
     stones = track_stones(clip, cameras, disc=STONE)
     score = score_tracks(stones.detections.assign(seen=1), tracks[tracks["frame"].between(40, 110)])
     assert score.recall > 0.97
@@ -168,7 +169,7 @@ def test_real_stones(shared: Path, name: str) -> None:
 def test_balls_among_projected_rings_hit_each_other(
     shared: Path, name: str, last: int | None, hit: float
 ) -> None:
-    clip = open_video([shared / "clips" / f"{name}.mp4"], frames=(0, last))
+    clip = open_video([shared / "clips" / f"{name}.mp4"], VideoConfig(frames=(0, last)))
     cameras = stick_cameras(clip, (70.0, 360.0, 1173.0, 360.0, 1.9))
     seen = track_stones(clip, cameras, disc=plain_disc(0.0286)).detections
     (contact,) = find_contacts(seen, 0.0286)
@@ -177,7 +178,7 @@ def test_balls_among_projected_rings_hit_each_other(
 
 
 def test_pucks_on_a_dark_table(shared: Path) -> None:
-    clip = open_video([shared / "clips" / "collision-pucks.mp4"], frames=(2, 31))
+    clip = open_video([shared / "clips" / "collision-pucks.mp4"], VideoConfig(frames=(2, 31)))
     cameras = stick_cameras(clip, (20.0, 219.8, 20.0, 35.9, 0.5))
     stones = track_stones(clip, cameras, disc=plain_disc(0.0465))
     table = stones.detections
@@ -195,7 +196,7 @@ def test_pucks_on_a_dark_table(shared: Path) -> None:
 
 def test_the_filter_is_no_surer_of_a_clip_than_it_may_be() -> None:
     truth, cameras = sample_truth()
-    clip = open_video([DATA / "sample.mp4"], frames=(0, 80))
+    clip = open_video([DATA / "sample.mp4"], VideoConfig(frames=(0, 80)))
     seen = track_stones(clip, cameras).detections
     stretches: list[Stretch] = []
 

@@ -24,7 +24,7 @@ from curlshot.vision.detection.appearance import learn
 from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.rays import Look
 from curlshot.vision.detection.stones import FOLLOWING, search_picture
-from curlshot.vision.video.reader import Frame
+from curlshot.vision.video.frame import Frame
 
 Places = list[tuple[float, float]]
 CAPS = (RED, YELLOW, RED)

@@ -39,8 +39,8 @@ from curlshot.vision.detection.strangers import LARGE, strangers
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.cameras import Cameras
 from curlshot.vision.video.disk_cache import DiskCache
-from curlshot.vision.video.picture import Picture
-from curlshot.vision.video.reader import Frame, Image
+from curlshot.vision.video.frame import Frame
+from curlshot.vision.video.picture import Image, Picture
 
 AT_REST = [(0.3, 0.2, RED), (-0.8, 1.0, YELLOW), (0.9, -0.6, RED)]
 LATE = (-0.2, -0.5)

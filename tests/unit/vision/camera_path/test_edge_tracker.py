@@ -14,7 +14,8 @@ from curlshot.vision.sheet.house import find_house
 from curlshot.vision.sheet.house_fit import HouseFit
 from curlshot.vision.sheet.marks import Evidence, measure_marks
 from curlshot.vision.sheet.outline import PaintEdge
-from curlshot.vision.video.reader import Frame, open_video
+from curlshot.vision.video.frame import Frame
+from curlshot.vision.video.reader import open_video
 
 SIZE = (1280, 720)
 ANGLE = np.arange(16) * np.pi / 8

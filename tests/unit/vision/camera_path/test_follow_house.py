@@ -40,8 +40,9 @@ from curlshot.vision.optics.lean import fit_leaning
 from curlshot.vision.optics.projection import apply_homography
 from curlshot.vision.sheet.house import find_house
 from curlshot.vision.sheet.house_fit import HouseFit
+from curlshot.vision.video.frame import Frame
 from curlshot.vision.video.picture import image_of
-from curlshot.vision.video.reader import Frame, open_video
+from curlshot.vision.video.reader import open_video
 
 SCENE = replace(sample_scene(), paint=PAINTS["navy-orange"])
 

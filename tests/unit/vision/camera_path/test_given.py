@@ -7,6 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
+from curlshot.config import VideoConfig
 from curlshot.data.errors import InputError
 from curlshot.synthetic import (
     PAINTS,
@@ -50,7 +51,7 @@ def textured(folder: Path, shifts: tuple[float, ...]) -> Video:
     for k, shift in enumerate(shifts):
         moved = cv2.warpAffine(grey, np.array([[1.0, 0.0, shift], [0.0, 1.0, 0.0]]), SMALL)
         cv2.imwrite(str(folder / f"{k}.png"), cv2.merge([moved] * 3))
-    return open_video([folder / f"{k}.png" for k in range(len(shifts))], 25.0)
+    return open_video([folder / f"{k}.png" for k in range(len(shifts))], VideoConfig(fps=25.0))
 
 
 @pytest.mark.parametrize(
@@ -160,6 +161,8 @@ def test_a_frame_that_is_not_there_is_refused(tmp_path: Path) -> None:
 def test_a_clip_of_which_nothing_can_be_read_says_so(tmp_path: Path) -> None:
     textured(tmp_path, (0.0,))
     (tmp_path / "1.png").write_bytes(b"no picture")
-    clip = open_video([tmp_path / "0.png", tmp_path / "1.png"], 25.0, (1, 1))
+    clip = open_video(
+        [tmp_path / "0.png", tmp_path / "1.png"], VideoConfig(fps=25.0, frames=(1, 1))
+    )
     with pytest.raises(InputError, match="none of the frames that are used can be read"):
         follow_given(clip, GivenHouse.of((320, 180, 420, 180, 320, 80)))

@@ -12,7 +12,7 @@ from curlshot.vision.camera_path.ice_tracker import IceTracker
 from curlshot.vision.camera_path.joint import Seen
 from curlshot.vision.camera_path.landmarks import Landmarks
 from curlshot.vision.sheet.house_fit import HouseFit
-from curlshot.vision.video.reader import Frame
+from curlshot.vision.video.frame import Frame
 
 
 def started() -> tuple[list[Frame], HouseFit, EdgeTracker, Seen]:

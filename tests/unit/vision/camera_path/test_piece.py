@@ -34,7 +34,8 @@ from curlshot.vision.sheet.house import find_house
 from curlshot.vision.sheet.house_fit import HouseFit
 from curlshot.vision.sheet.normals import lay_out
 from curlshot.vision.sheet.outline import PaintEdge
-from curlshot.vision.video.reader import Frame, open_video
+from curlshot.vision.video.frame import Frame
+from curlshot.vision.video.reader import open_video
 
 SIZE = (640, 360)
 POSITION = (0.0, 0.0, 8.5)

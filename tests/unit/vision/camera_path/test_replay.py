@@ -18,7 +18,8 @@ from curlshot.vision.camera_path.replay import (
     shows_again,
 )
 from curlshot.vision.video.disk_cache import Cached
-from curlshot.vision.video.reader import Frame, open_video
+from curlshot.vision.video.frame import Frame
+from curlshot.vision.video.reader import open_video
 
 RATE = 25
 

@@ -25,7 +25,7 @@ from curlshot.vision.sheet.house_fit import HouseFit
 from curlshot.vision.sheet.mixing import half_light
 from curlshot.vision.sheet.outline import PaintEdge
 from curlshot.vision.video.disk_cache import Cached
-from curlshot.vision.video.reader import Frame
+from curlshot.vision.video.frame import Frame
 
 SIZE = (960, 540)
 HEIGHT, PX_PER_M = 9.0, 100.0

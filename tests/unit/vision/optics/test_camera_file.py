@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from curlshot.config import VideoConfig
 from curlshot.data.errors import InputError
 from curlshot.data.tracks import write_table
 from curlshot.synthetic import still_camera
@@ -34,7 +35,7 @@ def clip(tmp_path: Path) -> Video:
     pictures = [tmp_path / f"{k}.png" for k in range(3)]
     for picture in pictures:
         cv2.imwrite(str(picture), np.full((*SIZE[::-1], 3), 200, np.uint8))
-    return open_video(pictures, 25.0)
+    return open_video(pictures, VideoConfig(fps=25.0))
 
 
 def test_what_is_written_is_read_back(clip: Video, tmp_path: Path) -> None:

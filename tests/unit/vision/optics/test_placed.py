@@ -4,7 +4,7 @@ import numpy as np
 
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.placed import Placed, nobody
-from curlshot.vision.video.reader import Frame
+from curlshot.vision.video.frame import Frame
 
 
 def test_whom_nobody_tells_anything_changes_nothing() -> None:
