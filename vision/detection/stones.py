@@ -23,8 +23,8 @@ from curlshot.vision.detection.placing import detections, placed_by
 from curlshot.vision.detection.rays import Look, Rays
 from curlshot.vision.detection.samples import CLEARLY, well_within
 from curlshot.vision.detection.seek import Bounds, Candidates, seek
-from curlshot.vision.film.picture import Picture
 from curlshot.vision.optics.camera import Camera
+from curlshot.vision.video.picture import Picture
 
 Array = NDArray[np.float64]
 
