@@ -76,7 +76,7 @@ def _pace(friction: Estimate) -> tuple[str, ...]:
 
     A clip that runs k times too slowly shows μ / k², tracks k times too long k μ.
     """
-    from curlshot.physics.whole_shot.priors import FRICTION
+    from curlshot.physics.shot_fit.priors import FRICTION
 
     value, stderr = friction.value, friction.stderr
     if value is None or stderr is None or value <= 0:

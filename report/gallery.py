@@ -96,13 +96,13 @@ def pictures(
                 figures.friction_figure, results.glides, results.friction, tracks, curling=curling
             ),
         )
-    if results.laws is not None or posterior is not None:
+    if results.joint_estimate is not None or posterior is not None:
         yield Picture(
             "posterior",
             "What is known of restitution and friction together: each alone on the diagonal, pairs"
             " below it.",
             "Distributions of restitution and friction, and ellipses for their pairs.",
-            partial(figures.posterior_figure, results.laws, posterior),
+            partial(figures.posterior_figure, results.joint_estimate, posterior),
         )
     if residuals is not None and residuals["t"].nunique() > 1:
         yield Picture(
@@ -112,7 +112,7 @@ def pictures(
             " against the normal distribution. Bars along the top: tracks that the fit of the"
             " whole shot hardly counts, for they are not of a stone on this ice.",
             "Residuals of x and y against time, and their histograms.",
-            partial(figures.residuals_figure, residuals, collisions, results.misfits),
+            partial(figures.residuals_figure, residuals, collisions, results.residuals),
         )
 
 

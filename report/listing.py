@@ -200,7 +200,9 @@ def _methods(results: Results) -> Table:
 
 
 def _simulated(results: Results) -> list[Table]:
-    start = "start that fits the shot best" if results.laws else "state before the first hit"
+    start = (
+        "start that fits the shot best" if results.joint_estimate else "state before the first hit"
+    )
     order = sorted(results.simulations, key=lambda model: (_PAPER.get(model, 5), model))
     return [
         Table(
@@ -217,7 +219,7 @@ def _simulated(results: Results) -> list[Table]:
 
 
 def _scores(results: Results) -> Table:
-    how = "as fitted to the whole shot" if results.laws else "from before the first hit"
+    how = "as fitted to the whole shot" if results.joint_estimate else "from before the first hit"
     return _off(
         "models",
         "Simulated against measured",

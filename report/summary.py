@@ -179,7 +179,7 @@ def summary(
         if score.rmse is not None:
             off = f"{unit.little(score.rmse)} RMS off"
         # Only a shot that was fitted as a whole begins with what fits it.
-        how = "" if results.laws is None else ", as fitted"
+        how = "" if results.joint_estimate is None else ", as fitted"
         lines.append(f"simulated   {models}{how}: {off}")
         lines += _each("at the end", score.rest_error, score.rest_sd, unit)
     for model, guess in results.predictions.items():
@@ -188,7 +188,9 @@ def summary(
                 f"predicted   {model}, from before the first hit, {assumed(guess)}:"
                 f" {unit.little(guess.rmse)} RMS off"
             )
-            lines += _each(f"{AFTER} s after it", guess.error_after, guess.sd_after, unit)
+            lines += _each(
+                f"{AFTER} s after it", guess.error_at_comparison, guess.sd_at_comparison, unit
+            )
             lines += _each("at the end", guess.rest_error, guess.rest_sd, unit)
             lines += [f"            {guess.note}"] if guess.note else []
     notes = [guess.note for guess in results.predictions.values()]

@@ -12,15 +12,15 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from curlshot.data.results import Collision, Estimate, Friction, Glide
+from curlshot.data.results import Estimate, Friction, Glide, Hit
 from curlshot.data.sheet import GRAVITY
-from curlshot.physics.local_fit.contacts import Contact, cut_all
 from curlshot.physics.local_fit.fit import fit_shot
 from curlshot.physics.local_fit.glides import WORST, Glides, free, measure_glides
+from curlshot.physics.local_fit.hit_detection import HitCandidate, cut_all
 from curlshot.physics.local_fit.hits import measure_hits, pooled
 from curlshot.physics.local_fit.off_centre import centred
 from curlshot.physics.local_fit.segments import Piece
-from curlshot.physics.local_fit.shot_fit import ContactState, Deceleration, Meeting, ShotFit
+from curlshot.physics.local_fit.solution import ContactState, Deceleration, LocalFit, Meeting
 from curlshot.physics.local_fit.traces import Trace, traces
 from curlshot.physics.local_fit.untold import untold_hits
 from curlshot.physics.statistics.residuals import huber_weights
@@ -44,7 +44,7 @@ class Local:
         Pooled over all hits that tell it.
     friction : Friction
         Pooled over all glides.
-    collisions : tuple of Collision
+    collisions : tuple of Hit
         In order of time.
     glides : tuple of Glide
         In order of stone and time.
@@ -52,7 +52,7 @@ class Local:
         Why the friction could not be told, or what is odd about it.
     warnings : tuple of str
         What else could not be told and why; what does not agree.
-    fit : ShotFit or None
+    fit : LocalFit or None
         Of the paths; None where no stone moves.
     known : mapping
         Stone to its detections.
@@ -60,17 +60,17 @@ class Local:
 
     restitution: Estimate = field(default_factory=Estimate)
     friction: Friction = field(default_factory=Friction)
-    collisions: tuple[Collision, ...] = ()
+    collisions: tuple[Hit, ...] = ()
     glides: tuple[Glide, ...] = ()
     friction_doubt: str | None = None
     warnings: tuple[str, ...] = ()
-    fit: ShotFit | None = None
+    fit: LocalFit | None = None
     known: Mapping[str, Trace] = field(default_factory=dict)
 
 
 def estimate_locally(
     detections: pd.DataFrame,
-    contacts: Sequence[Contact],
+    contacts: Sequence[HitCandidate],
     *,
     radius: float,
     masses: Mapping[str, float] | None = None,
@@ -85,7 +85,7 @@ def estimate_locally(
 
 def estimate_from_traces(
     known: Mapping[str, Trace],
-    contacts: Sequence[Contact],
+    contacts: Sequence[HitCandidate],
     *,
     radius: float,
     masses: Mapping[str, float] | None = None,
@@ -102,7 +102,7 @@ def estimate_from_traces(
     if not pieces:
         return Local(warnings=("no stone moves: neither restitution nor friction", *untold.said))
 
-    def fit(pieces: list[Piece], slowing: Deceleration, momentum: bool = True) -> ShotFit:
+    def fit(pieces: list[Piece], slowing: Deceleration, momentum: bool = True) -> LocalFit:
         return fit_shot(
             known, pieces, meetings, radius,
             masses=masses, still=still, deceleration=slowing, momentum=momentum,
@@ -160,7 +160,7 @@ def _pushes(told: Glides) -> Iterator[str]:
         )
 
 
-def _doubts(hit: Collision) -> list[str]:
+def _doubts(hit: Hit) -> list[str]:
     """Say what is missing or odd about a hit."""
     name = f"hit of {hit.stones[0]} and {hit.stones[1]} at {hit.t:.2f} s"
     out = [f"{name}: {hit.note}"] if hit.note else []
@@ -184,7 +184,7 @@ def _scatter(trace: Trace, piece: Piece) -> Floats:
     return out * huber_weights(out)
 
 
-def _distances(fit: ShotFit, radius: float) -> list[str]:
+def _distances(fit: LocalFit, radius: float) -> list[str]:
     """Say so where hits happen at another distance than two radii."""
 
     def ratios(states: Sequence[ContactState]) -> Floats:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from curlshot.physics.local_fit.breaks import breaks
 from curlshot.physics.local_fit.candidates import REACH, TOUCHING
 from curlshot.physics.local_fit.segments import MOVED
-from curlshot.physics.local_fit.shot_fit import Meeting
+from curlshot.physics.local_fit.solution import Meeting
 from curlshot.physics.local_fit.traces import Trace
 from curlshot.physics.local_fit.ways import (
     FEWEST,

@@ -99,7 +99,7 @@ def measured_start(tracks: pd.DataFrame, results: Results, ensemble: Ensemble) -
     way = _way_back(likely, thrown)
     shots = [_taken_back(shot, thrown, way) for shot in (likely, *others)]
     stone = shots[0].stones[thrown]
-    house = results.sheet and curling_size(results.radius)
+    house = results.origin_at_tee and curling_size(results.radius)
     release = 0.0
     if house:
         ahead = (stone.x * stone.vx + stone.y * stone.vy) / math.hypot(stone.vx, stone.vy)

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from curlshot.data.sheet import STONE, House
-from curlshot.physics.simulator.simulation import Hit
+from curlshot.physics.simulator.simulation import HitEvent
 from curlshot.report.figures.labels import name_stones
 from curlshot.report.figures.parts import Array, legend_below, line, rows_of, title
 from curlshot.report.figures.plan import contact_place, draw_house, new_sheet, pair, thickened
@@ -24,7 +24,7 @@ FAR = 6.4
 
 def simulated_figure(
     table: pd.DataFrame,
-    hits: Sequence[Hit] = (),
+    hits: Sequence[HitEvent] = (),
     *,
     gone: Collection[str] = (),
     house: House | None,
@@ -39,7 +39,7 @@ def simulated_figure(
     ----------
     table : DataFrame
         ``stone, t, x, y`` of the shot until all is at rest.
-    hits : sequence of Hit
+    hits : sequence of HitEvent
         A cross where the stones touched.
     gone : collection of str
         Stones that leave the sheet where their paths end.

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from curlshot.data.results import Collision, MeasuredState
+from curlshot.data.results import Hit, MeasuredState
 from curlshot.data.sheet import SHEET, STONE
 from curlshot.physics.prediction.throws import STILL, thrown
 from curlshot.report.tables.shot import moving_stones
@@ -18,7 +18,7 @@ from curlshot.report.tables.states import magnitude
 
 
 def speed_table(
-    tracks: pd.DataFrame, collisions: Sequence[Collision], radius: float = STONE.radius
+    tracks: pd.DataFrame, collisions: Sequence[Hit], radius: float = STONE.radius
 ) -> pd.DataFrame:
     """Speed of the thrown stone at the lines, and of every stone before and after its hits.
 
@@ -44,7 +44,7 @@ def speed_table(
     return pd.DataFrame(rows, columns=["stone", "at", "t", "speed", "sd", "note"])
 
 
-def takeout_table(collisions: Sequence[Collision]) -> pd.DataFrame:
+def takeout_table(collisions: Sequence[Hit]) -> pd.DataFrame:
     """Tell what each hit took from the stone that came and gave to the one that was struck.
 
     Returns

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from curlshot.data.results import Collision
+from curlshot.data.results import Hit
 from curlshot.data.sheet import HOUSE, STONE, House
 from curlshot.physics.prediction.throws import STILL, thrown
 from curlshot.report.tables.shot import moving_stones
@@ -32,7 +32,7 @@ POOR_CURL = 0.1
 
 def rest_table(
     tracks: pd.DataFrame,
-    collisions: Sequence[Collision] = (),
+    collisions: Sequence[Hit] = (),
     house: House = HOUSE,
     radius: float = STONE.radius,
 ) -> pd.DataFrame:

@@ -12,7 +12,7 @@ from curlshot.data.results import Estimate, Friction
 from curlshot.data.tracks import check_detections
 from curlshot.physics.estimate import Estimates, _of_two, _times, estimate
 from curlshot.physics.kalman import smooth
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.physics.local_fit.local import estimate_locally
 from curlshot.synthetic.physics import Ice, Impact, Motion, Start, simulate
 from curlshot.tests.unit.physics.watch import (
@@ -29,7 +29,7 @@ MASSES = {"a": 28.73, "b": 28.19}
 
 
 def measure(seen: pd.DataFrame, radius: float = RADIUS) -> Estimates:
-    return estimate(seen, find_contacts(seen, radius), radius=radius)
+    return estimate(seen, detect_hits(seen, radius), radius=radius)
 
 
 @cache
@@ -130,9 +130,7 @@ def test_three_stones_in_a_row() -> None:
 
 def test_air_table(shared: Path) -> None:
     seen = airtable(shared)
-    found = estimate(
-        seen, find_contacts(seen, 0.035), radius=0.035, masses={"1": 31.64, "2": 29.80}
-    )
+    found = estimate(seen, detect_hits(seen, 0.035), radius=0.035, masses={"1": 31.64, "2": 29.80})
     (hit,) = found.collisions
     assert hit.restitution == pytest.approx(0.91, abs=0.03)
     assert hit.stderr is not None
@@ -147,7 +145,7 @@ def test_air_table(shared: Path) -> None:
 @pytest.mark.parametrize("number", [38, 56, 80])
 def test_discs_of_a_motion_capture(shared: Path, number: int) -> None:
     seen = discs(shared, number)
-    found = estimate(seen, find_contacts(seen, 0.025), radius=0.025, masses=MASSES)
+    found = estimate(seen, detect_hits(seen, 0.025), radius=0.025, masses=MASSES)
     (hit,) = found.collisions
     assert hit.restitution is not None
     assert hit.stderr is not None
@@ -168,7 +166,7 @@ def test_momentum_that_a_rocking_disc_loses_to_the_table(shared: Path) -> None:
     amounts in each hit) explain it.
     """
     seen = discs(shared, 42)
-    found = estimate(seen, find_contacts(seen, 0.025), radius=0.025, masses=MASSES)
+    found = estimate(seen, detect_hits(seen, 0.025), radius=0.025, masses=MASSES)
     (hit,) = found.collisions
     assert hit.momentum_residual is not None
     assert hit.stderr_momentum is not None
@@ -189,7 +187,7 @@ def test_unequal_masses() -> None:
     # A heavy stone seen in a mirror of momentum: equal stones' truth must not fit.
     motion = hit_motion(1.5, 0.05)
     seen = watch(motion, np.random.default_rng(17), sd=0.002)
-    hits = find_contacts(seen, RADIUS)
+    hits = detect_hits(seen, RADIUS)
     wrong = estimate(seen, hits, radius=RADIUS, masses={"A": 1.0, "B": 2.0}).collisions[0]
     right = estimate(seen, hits, radius=RADIUS, masses={"A": 3.0, "B": 3.0}).collisions[0]
     assert right.momentum_residual is not None
@@ -227,7 +225,7 @@ def test_what_cannot_be_told_is_none_and_said() -> None:
     assert still.restitution.value is None
     assert still.friction.value is None
     assert still.warnings
-    hits = find_contacts(seen, RADIUS)
+    hits = detect_hits(seen, RADIUS)
     short = seen[seen["t"] < hits[0].t].reset_index(drop=True)
     cut = estimate(short, hits, radius=RADIUS)
     assert cut.collisions[0].restitution is None
@@ -244,9 +242,9 @@ def test_no_detections_at_all() -> None:
 def test_columns_that_a_table_lacks_are_as_good_as_empty_ones() -> None:
     bare = watch(hit_motion(), np.random.default_rng(23))[["stone", "t", "x", "y"]]
     full = check_detections(bare)
-    hits = find_contacts(bare, RADIUS)
+    hits = detect_hits(bare, RADIUS)
     assert len(hits) == 1
-    assert hits == find_contacts(full, RADIUS)
+    assert hits == detect_hits(full, RADIUS)
     assert estimate(bare, hits, radius=RADIUS) == estimate(full, hits, radius=RADIUS)
     tracks = [smooth(table, hits, radius=RADIUS) for table in (bare, full)]
     pd.testing.assert_frame_equal(*tracks)
@@ -276,9 +274,9 @@ def test_errors_that_places_share_are_in_that_of_restitution() -> None:
             wave = np.sin(first + rng.uniform(0, 6)) * np.sin(second + rng.uniform(0, 6))
             seen[axis] += 0.006 * wave
         if seed == 0:
-            alone = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).restitution
+            alone = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS).restitution
         seen[["sd_place_x", "sd_place_y"]] = 0.003
-        found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).restitution
+        found = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS).restitution
         assert found.value is not None
         assert found.stderr is not None
         assert alone.stderr is not None
@@ -298,7 +296,7 @@ def test_ice_that_slows_slow_stones_more_does_not_bias_restitution() -> None:
         fcv1 = Ice(a=0.00201, b=0.00626, v_c=0.0639)
         motion = simulate(starts, 2.6, ice=fcv1, impact=Impact(0.83), step=5e-4, keep_every=4)
         seen = watch(motion, rng, sd=0.003)
-        hit = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).collisions[0]
+        hit = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS).collisions[0]
         assert hit.restitution is not None
         assert hit.stderr is not None
         errors.append((hit.restitution - 0.83, hit.stderr))
@@ -326,12 +324,12 @@ def test_a_stone_that_is_pushed_on_its_way_to_the_hit() -> None:
     seen = watch(hit_motion(1.5, 0.08), np.random.default_rng(12), sd=0.001)
     early = (seen["stone"] == "A") & (seen["t"] < 0.6)
     seen.loc[early, "y"] += 0.5 * (0.6 - seen.loc[early, "t"])
-    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
-    assert found.whole is None
+    found = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
+    assert found.shot_fit is None
     assert found.restitution.value == pytest.approx(0.83, abs=0.02)
     (why,) = [text for text in found.warnings if "whole shot" in text]
     assert "something else than ice and hits moves a stone" in why
-    assert found.methods["global"].note == why
+    assert found.methods["shot_fit"].note == why
     for name in ("local", "finite-differences"):
         assert "friction between the stones" in str(found.methods[name].stone_friction.note)
 
@@ -340,11 +338,11 @@ def test_what_glides_alone_do_not_tell_is_no_doubt_where_the_whole_shot_does(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     seen = watch(hit_motion(), np.random.default_rng(13), sd=0.002)
-    contacts = find_contacts(seen, RADIUS)
+    contacts = detect_hits(seen, RADIUS)
     local = replace(estimate_locally(seen, contacts, radius=RADIUS), friction_doubt="friction: ?")
     monkeypatch.setattr("curlshot.physics.estimate.estimate_locally", lambda *_, **__: local)
     found = estimate(seen, contacts, radius=RADIUS)
-    assert found.whole is not None
+    assert found.shot_fit is not None
     assert "friction: ?" not in found.warnings
     monkeypatch.setattr("curlshot.physics.estimate.POOR_FIT", 0.0)
     assert "friction: ?" in estimate(seen, contacts, radius=RADIUS).warnings
@@ -365,7 +363,7 @@ def test_friction_of_the_whole_shot_that_is_not_that_of_the_glides_is_not_used(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     seen = watch(hit_motion(), np.random.default_rng(13), sd=0.002)
-    contacts = find_contacts(seen, RADIUS)
+    contacts = detect_hits(seen, RADIUS)
     local = estimate_locally(seen, contacts, radius=RADIUS)
     for value, used in ((0.0112, True), (0.02, False)):
         glides = replace(local, friction=Friction(value, 0.0004))
@@ -373,7 +371,7 @@ def test_friction_of_the_whole_shot_that_is_not_that_of_the_glides_is_not_used(
             "curlshot.physics.estimate.estimate_locally", lambda *_, r=glides, **__: r
         )
         found = estimate(seen, contacts, radius=RADIUS)
-        assert (found.whole is not None) == used
+        assert (found.shot_fit is not None) == used
         assert (found.friction.value == value) != used
     assert found.friction.stderr is not None
     assert found.friction.stderr > 0.004
@@ -396,14 +394,14 @@ def beside_its_centre(spin: float, way: float) -> pd.DataFrame:
 def test_a_cap_beside_the_centre_is_not_taken_for_velocity(spin: float, way: float) -> None:
     """It turns with its stone: beside the hit that is velocity, over the whole shot it is not."""
     seen = beside_its_centre(spin, way)
-    alone = estimate_locally(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    alone = estimate_locally(seen, detect_hits(seen, RADIUS), radius=RADIUS)
     assert abs(float(alone.restitution.value or 0) - 0.83) > 0.008
     found = measure(seen)
     assert found.local.restitution.value == pytest.approx(0.83, abs=0.006)
     (hit,) = found.collisions
     assert abs(float(hit.restitution or 0) - 0.83) < 2 * float(hit.stderr or 0)
-    assert found.whole is not None
-    assert found.restitution == found.whole["restitution"]
+    assert found.shot_fit is not None
+    assert found.restitution == found.shot_fit["restitution"]
     assert found.restitution.value == pytest.approx(0.83, abs=0.005)
     assert not [text for text in found.warnings if "disagree" in text]
 
@@ -431,10 +429,10 @@ def test_whole_shot_is_followed_where_no_spin_is_seen_before_the_hit(
     thrown = seen["stone"] == "A"
     seen.loc[thrown & (seen["t"] < t) | (angles == "none"), "theta"] = np.nan
     seen = seen[~(thrown & (seen["t"] > t - 1.9) & (seen["t"] < t + 0.16))].reset_index(drop=True)
-    told = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    told = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
     value, stderr = told.restitution.value, told.restitution.stderr
     assert value is not None and stderr is not None
-    assert told.whole is not None
+    assert told.shot_fit is not None
     assert stderr < 0.002
     assert value == pytest.approx(0.83, abs=3 * stderr)
 
@@ -445,14 +443,14 @@ def test_however_long_stones_rest_the_estimates_are_the_same(
 ) -> None:
     motion = hit_motion(0.8, 0.05, after=9.0)
     cut, long = [
-        estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+        estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
         for rests in ((3.0, 3.0), (160.0, 200.0))
         for seen in [uncut(motion, rests, sd=sd, at_rest=at_rest, given=given)]
     ]
-    assert cut.whole is not None
+    assert cut.shot_fit is not None
     assert cut.restitution.value == pytest.approx(0.83, abs=2.5 * (cut.restitution.stderr or 0))
     assert len(long.collisions) == 1
-    assert long.whole is not None
+    assert long.shot_fit is not None
     for told, known in (
         (long.restitution, cut.restitution),
         (long.local.restitution, cut.local.restitution),

@@ -35,7 +35,7 @@ def test_predictions_stand_beside_what_was_fitted(shot):
     assert "is known of μ beforehand, with e assumed." in made["predictions"].note
     assert "as fitted" in made["models"].note
     assert "fits the shot" in made["table_4_point-mass"].note
-    other = page_tables(replace(results, laws=None, predictions={}), shot.tracks)
+    other = page_tables(replace(results, joint_estimate=None, predictions={}), shot.tracks)
     alone = {table.name: table for table in other}
     assert "predictions" not in alone
     assert "from before" in alone["models"].note

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from curlshot.physics.local_fit.breaks import breaks
 from curlshot.physics.local_fit.off_centre import centred
-from curlshot.physics.local_fit.shot_fit import Meeting
+from curlshot.physics.local_fit.solution import Meeting
 from curlshot.physics.local_fit.traces import Trace
 from curlshot.tests.unit.physics.watch import RADIUS, lasting
 

@@ -7,12 +7,12 @@ import pytest
 
 from curlshot.data.sheet import STONE
 from curlshot.data.tracks import Columns
-from curlshot.physics.local_fit.contacts import Contact
+from curlshot.physics.local_fit.hit_detection import HitCandidate
 from curlshot.physics.local_fit.shared_spin import MAKES, share_spins
 
 PUCK = 0.03
-FIRST = Contact(1.0, 0.001, ("A", "B"), (0.0, -1.0))
-SECOND = Contact(1.12, 0.001, ("B", "C"), (0.0, -1.0))
+FIRST = HitCandidate(1.0, 0.001, ("A", "B"), (0.0, -1.0))
+SECOND = HitCandidate(1.12, 0.001, ("B", "C"), (0.0, -1.0))
 
 
 def rows(*pieces: tuple[float, float, float]) -> Columns:

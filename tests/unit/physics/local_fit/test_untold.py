@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 from numpy.typing import NDArray
 
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.physics.local_fit.local import estimate_locally
 
 R, FPS, BRAKE, E = 0.1455, 30.0, 0.1, 0.8
@@ -62,7 +62,7 @@ def table(
 
 
 def said(detections: pd.DataFrame) -> list[str]:
-    contacts = find_contacts(detections, R)
+    contacts = detect_hits(detections, R)
     warnings = estimate_locally(detections, contacts, radius=R).warnings
     return [text for text in warnings if not text.startswith(("restitution: no hit", "no stone"))]
 
@@ -77,7 +77,7 @@ def said(detections: pd.DataFrame) -> list[str]:
 )
 def test_hit_in_long_gaps_is_found(hidden: dict[str, tuple[float, float]]) -> None:
     detections = table(*hit(1.0), hidden)
-    (contact,) = find_contacts(detections, R)
+    (contact,) = detect_hits(detections, R)
     assert set(contact.stones) == {"A", "B"}
     assert contact.t == pytest.approx(1.5, abs=4 * contact.stderr_t + 0.005)
     local = estimate_locally(detections, [contact], radius=R)
@@ -132,7 +132,7 @@ def test_near_miss_says_nothing(hidden: dict[str, tuple[float, float]]) -> None:
     places["A"] = glide(start, np.array([0.0, -1.15]), t)
     places["B"] = np.zeros((len(t), 2))
     detections = table(t, places, hidden)
-    assert find_contacts(detections, R) == ()
+    assert detect_hits(detections, R) == ()
     assert said(detections) == []
 
 
@@ -203,7 +203,7 @@ def test_tables_marked_once_in_a_while_say_nothing_of_a_hit_that_is_told(step: f
     t, places = hit(1.0, at=4.0, end=14.0)
     detections = table(t, places, {})
     few = detections[detections["frame"] % round(step * FPS) == 0].reset_index(drop=True)
-    assert len(find_contacts(few, R)) == 1
+    assert len(detect_hits(few, R)) == 1
     assert not any("motion of" in text or "hit" in text for text in said(few))
 
 
@@ -266,7 +266,7 @@ def test_stone_moved_after_a_hit_that_is_told_is_not_said_to_be_moved_by_it() ->
 def test_hit_that_discs_of_this_radius_cannot_make_asks_for_the_scale(times: float) -> None:
     t, places = hit(1.0)
     seen = table(t, places, {})
-    contacts = find_contacts(seen, R * times)
+    contacts = detect_hits(seen, R * times)
     assert contacts == ()
     warnings = estimate_locally(seen, contacts, radius=R * times).warnings
     (text,) = [text for text in warnings if "motion" in text]

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from curlshot.data.results import Misfit
+from curlshot.data.results import TrackResidual
 from curlshot.report import figures
 from curlshot.tests.unit.report.figures.drawn import check_layout, residuals
 
@@ -35,7 +35,10 @@ def test_wild_detections_are_marks_at_the_edge(shot):
 
 
 def test_what_the_whole_shot_leaves_out_has_a_bar_in_the_colour_of_its_stone(shot):
-    misfits = (Misfit("A", 0.2, 0.9, 6.1, True, True), Misfit("B", 0.2, 0.9, 0.8, False, False))
+    misfits = (
+        TrackResidual("A", 0.2, 0.9, 6.1, True, True),
+        TrackResidual("B", 0.2, 0.9, 0.8, False, False),
+    )
     figure = figures.residuals_figure(residuals(shot), shot.results.collisions, misfits)
     check_layout(figure)
     bars = [

@@ -9,7 +9,7 @@ import pytest
 from curlshot.data.results import Estimate
 from curlshot.data.tracks import check_detections
 from curlshot.physics.local_fit.traces import traces
-from curlshot.physics.whole_shot.shot_model import SpinSeen, Unknown, Watched, curl, ice, penner
+from curlshot.physics.shot_fit.shot_model import ObservedShot, SpinSeen, Unknown, curl, ice, penner
 
 RADIUS = 0.1455
 VALUES = {
@@ -19,18 +19,18 @@ VALUES = {
 }  # fmt: skip
 
 
-def watched(hits: tuple[tuple[str, str], ...] = (), times: tuple[float, ...] = ()) -> Watched:
+def observed(hits: tuple[tuple[str, str], ...] = (), times: tuple[float, ...] = ()) -> ObservedShot:
     """Three stones in a row, seen where `VALUES` puts them, from 2 s on."""
     t = 2.0 + np.arange(60) / 30
     laws = tuple(Unknown(name, value) for name, value in VALUES.items())
     empty = check_detections(
         pd.concat([pd.DataFrame({"stone": s, "t": t, "x": 0.0, "y": 0.0}) for s in "ABC"])
     )
-    bare = Watched(traces(empty), 2.0, laws, radius=RADIUS)
+    bare = ObservedShot(traces(empty), 2.0, laws, radius=RADIUS)
     run = bare.replay(VALUES).sample(t - 2.0)
     seen = run[["stone", "x", "y"]].assign(t=2.0 + run["t"], sd_x=0.002, sd_y=0.002)
     spins = (SpinSeen("A", 2.1, 0.9, 0.05),)
-    return Watched(traces(check_detections(seen)), 2.0, laws, spins, hits, times, RADIUS)
+    return ObservedShot(traces(check_detections(seen)), 2.0, laws, spins, hits, times, RADIUS)
 
 
 @pytest.mark.parametrize(
@@ -40,14 +40,14 @@ def watched(hits: tuple[tuple[str, str], ...] = (), times: tuple[float, ...] = (
 def test_caps_are_in_the_middle_to_what_places_share_and_some_of_their_size(
     place: float, share: float | None, sd: float
 ) -> None:
-    shot = replace(watched(), off_centre=share)
+    shot = replace(observed(), off_centre=share)
     trace = shot.traces["A"]
     known = replace(trace, sd_place=np.full_like(trace.xy, place))
     assert shot.sd_off_centre(known) == pytest.approx(sd, rel=0.02)
 
 
 def test_the_right_values_leave_nothing() -> None:
-    shot = watched()
+    shot = observed()
     simulation = shot.replay(VALUES)
     assert [hit.stones for hit in simulation.hits] == [("A", "B"), ("B", "C")]
     assert max(float(np.abs(run).max()) for run in shot.residuals(simulation)) < 1e-6
@@ -56,19 +56,19 @@ def test_the_right_values_leave_nothing() -> None:
 
 
 def test_a_hit_that_was_not_seen_is_named() -> None:
-    run = watched().replay(VALUES)
+    run = observed().replay(VALUES)
     first, second = (hit.t + 2.0 for hit in run.hits)
     one, two = ("A", "B"), ("B", "C")
-    assert watched((one, two), (first, second)).first_other_hit(run) is None
-    assert watched((one,), (first,)).first_other_hit(run) == (pytest.approx(second), "B and C")
-    late = watched((one, two, ("A", "C")), (first, second, 3.5)).first_other_hit(run)
+    assert observed((one, two), (first, second)).first_other_hit(run) is None
+    assert observed((one,), (first,)).first_other_hit(run) == (pytest.approx(second), "B and C")
+    late = observed((one, two, ("A", "C")), (first, second, 3.5)).first_other_hit(run)
     assert late == (3.5, "A and C")
 
 
 @pytest.mark.parametrize(("speed", "named"), [(0.01, False), (0.05, True)])
 def test_a_hit_too_soft_to_be_seen_need_not_have_been(speed: float, named: bool) -> None:
     """As where a stone goes on behind the one that it has hit, and touches it again."""
-    run = watched().replay(VALUES)
+    run = observed().replay(VALUES)
     pairs, times = zip(*((hit.stones, hit.t + 2.0) for hit in run.hits), strict=True)
     last = run.hits[-1]
     first, second = last.stones
@@ -77,16 +77,16 @@ def test_a_hit_too_soft_to_be_seen_need_not_have_been(speed: float, named: bool)
     before = {first: behind, second: replace(behind, vx=0.0, vy=0.0)}
     again = replace(last, t=last.t + 0.2, before=before)
     assert again.closing_speed == pytest.approx(speed)
-    other = watched(pairs, times).first_other_hit(replace(run, hits=(*run.hits, again)))
+    other = observed(pairs, times).first_other_hit(replace(run, hits=(*run.hits, again)))
     assert other == ((pytest.approx(again.t + 2.0), "B and C") if named else None)
 
 
 def test_what_was_seen_before_a_time() -> None:
-    shot = watched((("A", "B"), ("B", "C")), (2.5, 3.0)).until(2.8)
+    shot = observed((("A", "B"), ("B", "C")), (2.5, 3.0)).until(2.8)
     assert shot.hits == (("A", "B"),)
     assert shot.end < 2.8
     assert len(shot.unknowns) == len(VALUES)
-    assert not watched().until(2.05).spins
+    assert not observed().until(2.05).spins
 
 
 @pytest.mark.parametrize("slope", [0.0, 0.002])
@@ -110,7 +110,7 @@ def test_an_unknown_knows_its_stone() -> None:
 
 
 def test_a_spin_is_expected_of_stones_whose_spin_nobody_saw_and_curl_to_its_side() -> None:
-    shot = watched()
+    shot = observed()
     shot = replace(shot, unknowns=(*shot.unknowns, Unknown("turn", 0.0, -0.1, 0.1)))
     blind = {u.name: u for u in replace(shot, spins=()).spinning(Estimate(-1.5, 1.0)).unknowns}
     spin, turn = blind.pop("A.omega"), blind.pop("turn")

@@ -86,7 +86,7 @@ def penner(values: Mapping[str, float]) -> Penner:
 
 
 @dataclass(frozen=True)
-class Watched:
+class ObservedShot:
     """What one shot showed, and the unknowns that it depends on.
 
     Attributes
@@ -136,7 +136,7 @@ class Watched:
             return trace.sd_off_centre(self.radius)
         return self.off_centre * trace.usual_sd_place
 
-    def spinning(self, prior: Estimate) -> Watched:
+    def spinning(self, prior: Estimate) -> ObservedShot:
         """Expect a spin, rad/s, of the stones that come with one that nobody saw.
 
         Which way its path curls then tells its sense: it curls to the side to which it spins.
@@ -204,7 +204,7 @@ class Watched:
                 return min([(hit.t + self.start, pair), *seen[:1]])
         return seen[0] if seen else None
 
-    def until(self, end: float) -> Watched:
+    def until(self, end: float) -> ObservedShot:
         """Return what was seen before a time, s."""
         traces = {name: trace.until(end) for name, trace in self.traces.items()}
         traces = {name: trace for name, trace in traces.items() if len(trace.t)}

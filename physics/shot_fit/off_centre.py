@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from curlshot.physics.local_fit.off_centre import moved
 from curlshot.physics.local_fit.traces import Trace
+from curlshot.physics.shot_fit.result import ShotFit
 from curlshot.physics.statistics.residuals import huber_weights
-from curlshot.physics.whole_shot.whole_fit import GlobalFit
 
 Floats = NDArray[np.float64]
 
@@ -49,14 +49,14 @@ def centred(trace: Trace, residuals: Floats, noise: float, sd: float) -> tuple[F
     return residuals - (rows @ beside).reshape(-1, 2), beside
 
 
-def centred_traces(known: Mapping[str, Trace], fit: GlobalFit) -> Mapping[str, Trace]:
+def centred_traces(known: Mapping[str, Trace], fit: ShotFit) -> Mapping[str, Trace]:
     """Put detections over the centres by what a fit of the whole shot has the caps beside them.
 
     Parameters
     ----------
     known : mapping
         Stone to its detections, of which the shot that was fitted may hold only a part.
-    fit : GlobalFit
+    fit : ShotFit
         Of that shot.
 
     Returns

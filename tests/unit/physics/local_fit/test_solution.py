@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from curlshot.physics.local_fit.segments import Piece
-from curlshot.physics.local_fit.shot_fit import Meeting, ShotFit
+from curlshot.physics.local_fit.solution import LocalFit, Meeting
 
 SIDES = {(0, "A"): (0, 1), (0, "B"): (2, 3)}
 ORIGINS = np.array([0.0, 1.0, 0.0, 1.0])
 
 
-def fit(cov: np.ndarray) -> ShotFit:
+def fit(cov: np.ndarray) -> LocalFit:
     """A comes up y at 2 m/s, slowed by 0.2 m/s², and hits B at the origin at 1 s."""
     pieces = tuple(
         Piece(stone, start, start + 1.0, np.arange(0))
@@ -22,7 +22,7 @@ def fit(cov: np.ndarray) -> ShotFit:
     ]  # fmt: skip
     even = np.zeros(4)  # the ice slows them alike at all speeds
     theta = np.concatenate([np.ravel(states), [1.0], even])
-    return ShotFit(pieces, (Meeting(1.0, ("A", "B"), 0.02),), theta, cov, ORIGINS, 1.0, SIDES)
+    return LocalFit(pieces, (Meeting(1.0, ("A", "B"), 0.02),), theta, cov, ORIGINS, 1.0, SIDES)
 
 
 def test_states_at_a_hit_are_those_of_the_pieces_on_either_side() -> None:

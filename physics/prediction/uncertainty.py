@@ -15,9 +15,9 @@ from curlshot.data.errors import InputError
 from curlshot.data.results import MeasuredState, SimulatedHit, StoneState
 from curlshot.physics.curl import FCV1Curl
 from curlshot.physics.local_fit.traces import shared_correlation
+from curlshot.physics.shot_fit.shot_model import STATE
 from curlshot.physics.simulator.simulate import simulate
-from curlshot.physics.simulator.simulation import Hit, Shot, Simulation, StoneStart
-from curlshot.physics.whole_shot.shot_model import STATE
+from curlshot.physics.simulator.simulation import HitEvent, Shot, Simulation, StoneStart
 
 Floats = NDArray[np.float64]
 
@@ -29,7 +29,7 @@ MOMENTS = 40
 
 
 @dataclass(frozen=True)
-class Doubt:
+class InitialUncertainty:
     """Standard errors of what a simulated shot begins with.
 
     Attributes
@@ -85,7 +85,7 @@ def simulated_hits(
     start : float
         Time of its beginning in the clip, s.
     """
-    by_key: dict[tuple[frozenset[str], int], list[Hit]] = {}
+    by_key: dict[tuple[frozenset[str], int], list[HitEvent]] = {}
     for other in others:
         for key, hit in _keyed(other.hits):
             by_key.setdefault(key, []).append(hit)
@@ -126,53 +126,55 @@ def path_spread(others: Sequence[Simulation], times: Floats) -> pd.DataFrame:
     return pd.concat(tables, ignore_index=True)
 
 
-def drawn(shot: Shot, doubt: Doubt, rng: np.random.Generator) -> Shot:
+def drawn(shot: Shot, uncertainty: InitialUncertainty, rng: np.random.Generator) -> Shot:
     """Return a shot with all that is doubtful drawn from normal distributions.
 
     What is drawn is independent but for what places share: stones near each other move together
     (`curlshot.physics.local_fit.traces.shared_correlation`).
     """
-    together = _together(shot, doubt, rng)
+    together = _together(shot, uncertainty, rng)
     stones = tuple(
-        _moved(stone, doubt, by, rng) for stone, by in zip(shot.stones, together, strict=True)
+        _moved(stone, uncertainty, by, rng) for stone, by in zip(shot.stones, together, strict=True)
     )
     known = {item.name for item in fields(shot.impact)}  # type: ignore[arg-type]
     laws: dict[str, float] = {}
     for name, sd, top in (
-        ("restitution", doubt.restitution, 1.0),
-        ("stone_friction", doubt.stone_friction, np.inf),
+        ("restitution", uncertainty.restitution, 1.0),
+        ("stone_friction", uncertainty.stone_friction, np.inf),
     ):
         if name in known:
             value = getattr(shot.impact, name) + sd * rng.standard_normal()
             laws[name] = float(np.clip(value, 0.0, top))
     impact: Any = replace(shot.impact, **laws)  # type: ignore[type-var]
-    factor = max(1.0 + doubt.friction * rng.standard_normal(), 0.1)
-    radius = shot.radius * (1.0 + doubt.size * rng.standard_normal())
+    factor = max(1.0 + uncertainty.friction * rng.standard_normal(), 0.1)
+    radius = shot.radius * (1.0 + uncertainty.size * rng.standard_normal())
     curl = shot.curl
-    if doubt.turn > 0 and isinstance(curl, FCV1Curl):
-        curl = replace(curl, turn=curl.turn + doubt.turn * rng.standard_normal())
+    if uncertainty.turn > 0 and isinstance(curl, FCV1Curl):
+        curl = replace(curl, turn=curl.turn + uncertainty.turn * rng.standard_normal())
     ice = shot.ice.scaled(factor)
     return replace(shot, stones=stones, impact=impact, ice=ice, curl=curl, radius=radius)
 
 
-def _together(shot: Shot, doubt: Doubt, rng: np.random.Generator) -> Floats:
+def _together(shot: Shot, uncertainty: InitialUncertainty, rng: np.random.Generator) -> Floats:
     """Draw what the places share: displacements of all stones, shape (n, 2), m."""
     xy = np.array([(stone.x, stone.y) for stone in shot.stones])
-    size = np.array([doubt.shared.get(stone.name, np.zeros(2)) for stone in shot.stones])
+    size = np.array([uncertainty.shared.get(stone.name, np.zeros(2)) for stone in shot.stones])
     shared = rng.multivariate_normal(np.zeros(len(xy)), shared_correlation(xy), 2, method="eigh").T
     return np.asarray(size * shared)
 
 
 def _moved(
-    stone: StoneStart, doubt: Doubt, together: Floats, rng: np.random.Generator
+    stone: StoneStart, uncertainty: InitialUncertainty, together: Floats, rng: np.random.Generator
 ) -> StoneStart:
     values = np.array([getattr(stone, name) for name in STATE])
-    sd = doubt.states[stone.name].copy()
-    sd[:2] = np.sqrt(np.maximum(sd[:2] ** 2 - doubt.shared.get(stone.name, np.zeros(2)) ** 2, 0.0))
+    sd = uncertainty.states[stone.name].copy()
+    sd[:2] = np.sqrt(
+        np.maximum(sd[:2] ** 2 - uncertainty.shared.get(stone.name, np.zeros(2)) ** 2, 0.0)
+    )
     moved = values + sd * rng.standard_normal(len(STATE))
     moved[:2] += together
     after = stone.omega_after
-    errors = doubt.spins_after.get(stone.name, ())
+    errors = uncertainty.spins_after.get(stone.name, ())
     if isinstance(after, tuple) and len(after) == len(errors):
         after = tuple(
             (np.array(after) + np.array(errors) * rng.standard_normal(len(errors))).tolist()
@@ -180,7 +182,7 @@ def _moved(
     return replace(stone, **dict(zip(STATE, moved.tolist(), strict=True)), omega_after=after)
 
 
-def _keyed(hits: Sequence[Hit]) -> Iterator[tuple[tuple[frozenset[str], int], Hit]]:
+def _keyed(hits: Sequence[HitEvent]) -> Iterator[tuple[tuple[frozenset[str], int], HitEvent]]:
     """Pair each hit with whom it is of and how many of the two came before it."""
     seen: Counter[frozenset[str]] = Counter()
     for hit in hits:
@@ -189,11 +191,11 @@ def _keyed(hits: Sequence[Hit]) -> Iterator[tuple[tuple[frozenset[str], int], Hi
         seen[pair] += 1
 
 
-def _before(hit: Hit) -> dict[str, StoneState]:
+def _before(hit: HitEvent) -> dict[str, StoneState]:
     return dict(hit.before)
 
 
-def _after(hit: Hit) -> dict[str, StoneState]:
+def _after(hit: HitEvent) -> dict[str, StoneState]:
     return dict(hit.after)
 
 

@@ -13,12 +13,12 @@ from curlshot.data.sheet import curling_size
 from curlshot.physics.curl import FCV1Curl
 from curlshot.physics.filter.slowing import V_C
 from curlshot.physics.local_fit.noise import Noise, noises
-from curlshot.physics.local_fit.shot_fit import ShotFit
+from curlshot.physics.local_fit.solution import LocalFit
 from curlshot.physics.local_fit.spins import spin_on
 from curlshot.physics.local_fit.traces import Trace
 from curlshot.physics.local_fit.untold import SUDDEN
-from curlshot.physics.whole_shot.priors import SPIN, Priors
-from curlshot.physics.whole_shot.shot_model import SpinSeen, Unknown, Watched
+from curlshot.physics.shot_fit.priors import SPIN, Priors
+from curlshot.physics.shot_fit.shot_model import ObservedShot, SpinSeen, Unknown
 
 Floats = NDArray[np.float64]
 
@@ -49,15 +49,15 @@ NEAR_HIT = 1.0
 """Time beside a hit in whose middle a spin is told, s: far enough from where it changes."""
 
 
-def watch(
+def observe(
     known: Mapping[str, Trace],
-    fit: ShotFit,
+    fit: LocalFit,
     radius: float,
     *,
     priors: Priors,
     masses: Mapping[str, float] | None = None,
     bystanders: Sequence[str] = (),
-) -> Watched | None:
+) -> ObservedShot | None:
     """Gather what a whole fit needs: detections, first guesses, spins and the order of hits.
 
     A stone counts until something else than ice and hits moves it, and so do those that it
@@ -68,7 +68,7 @@ def watch(
     ----------
     known : mapping
         Stone to its detections.
-    fit : ShotFit
+    fit : LocalFit
         Of the pieces of all stones that move.
     radius : float
         Of the discs, m.
@@ -81,7 +81,7 @@ def watch(
 
     Returns
     -------
-    Watched or None
+    ObservedShot or None
         None where no stone moves.
     """
     runs = {name: _without_slip(fit, run, known[name]) for name, run in _runs(fit).items()}
@@ -114,7 +114,7 @@ def watch(
         if run and name not in lie:
             first = seen[0][0].omega if seen[0] else THROWN
             states.append(Unknown(f"{name}.omega", first, prior=SPIN))
-    return Watched(
+    return ObservedShot(
         traces,
         start,
         (*_laws(priors, radius), *states),
@@ -150,7 +150,7 @@ def _laws(priors: Priors, radius: float) -> tuple[Unknown, ...]:
 
 def _traces(
     known: Mapping[str, Trace],
-    fit: ShotFit,
+    fit: LocalFit,
     runs: Mapping[str, Sequence[int]],
     ends: Mapping[str, float],
     hit: Collection[str],
@@ -190,7 +190,7 @@ def _pair(stones: tuple[str, str]) -> tuple[str, str]:
     return first, second
 
 
-def _runs(fit: ShotFit) -> dict[str, list[int]]:
+def _runs(fit: LocalFit) -> dict[str, list[int]]:
     """Ranks of each stone's pieces in order of time."""
     out: dict[str, list[int]] = {}
     for rank, piece in enumerate(fit.pieces):
@@ -198,7 +198,7 @@ def _runs(fit: ShotFit) -> dict[str, list[int]]:
     return {name: sorted(run, key=lambda r: fit.pieces[r].start) for name, run in out.items()}
 
 
-def _without_slip(fit: ShotFit, run: list[int], trace: Trace) -> list[int]:
+def _without_slip(fit: LocalFit, run: list[int], trace: Trace) -> list[int]:
     """Leave out a first piece after which a stone rests sooner than ice can stop it.
 
     Its places went astray there, as in the blend of two views.
@@ -214,7 +214,7 @@ def _without_slip(fit: ShotFit, run: list[int], trace: Trace) -> list[int]:
     return run[1:] if float(np.hypot(*speed)) > STOPPING * (first.end - start) else run
 
 
-def _set_off(fit: ShotFit, runs: Mapping[str, Sequence[int]]) -> dict[str, float]:
+def _set_off(fit: LocalFit, runs: Mapping[str, Sequence[int]]) -> dict[str, float]:
     """Tell when stones that lay still are set off by what no hit tells, while others move, s.
 
     Such a rest is no piece of the fit, for no hit bounds it. Taken for on its way from the start,
@@ -233,7 +233,7 @@ def _set_off(fit: ShotFit, runs: Mapping[str, Sequence[int]]) -> dict[str, float
 
 
 def _ends(
-    fit: ShotFit, runs: Mapping[str, Sequence[int]], set_off: Mapping[str, float]
+    fit: LocalFit, runs: Mapping[str, Sequence[int]], set_off: Mapping[str, float]
 ) -> dict[str, float]:
     """Find when something else than ice and hits moves each stone; infinity if never."""
     ends = dict.fromkeys(runs, np.inf) | dict(set_off)
@@ -251,7 +251,7 @@ def _ends(
     return ends
 
 
-def _rested(fit: ShotFit, run: Sequence[int], trace: Trace) -> float:
+def _rested(fit: LocalFit, run: Sequence[int], trace: Trace) -> float:
     """Time, s, by which a stone has been at rest for `RESTED` after its last motion."""
     last = fit.pieces[run[-1]]
     if last.rest:
@@ -259,7 +259,7 @@ def _rested(fit: ShotFit, run: Sequence[int], trace: Trace) -> float:
     return fit.stop(run[-1]) + RESTED
 
 
-def _jumps(fit: ShotFit, one: int | None, two: int) -> bool:
+def _jumps(fit: LocalFit, one: int | None, two: int) -> bool:
     """Whether the velocity changes from a piece, or rest, to the next by more than is uncertain."""
     t = fit.pieces[two].start
     speeds, variance = [], 0.0
@@ -281,7 +281,7 @@ def _jumps(fit: ShotFit, one: int | None, two: int) -> bool:
 def _state(
     name: str,
     trace: Trace,
-    fit: ShotFit,
+    fit: LocalFit,
     run: Sequence[int],
     start: float,
     lies: float | None,
@@ -303,7 +303,7 @@ def _state(
 
 
 def _seen(
-    fit: ShotFit, rank: int, known: Mapping[str, Trace], noise: Mapping[str, Noise], end: float
+    fit: LocalFit, rank: int, known: Mapping[str, Trace], noise: Mapping[str, Noise], end: float
 ) -> list[SpinSeen]:
     """Spin on one piece beside the first of the hits that bound it, or beside its start.
 

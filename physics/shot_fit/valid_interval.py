@@ -4,29 +4,29 @@ from __future__ import annotations
 
 import numpy as np
 
-from curlshot.physics.whole_shot.law_choice import BEFORE, fit_with_chosen_laws
-from curlshot.physics.whole_shot.misfit import fit_without_bent_tracks
-from curlshot.physics.whole_shot.shot_model import Watched
-from curlshot.physics.whole_shot.whole_fit import GlobalFit
+from curlshot.physics.shot_fit.model_selection import BEFORE, fit_with_chosen_laws
+from curlshot.physics.shot_fit.result import ShotFit
+from curlshot.physics.shot_fit.shot_model import ObservedShot
+from curlshot.physics.shot_fit.track_residuals import fit_without_bent_tracks
 
 AWAY, QUIETER, UNEXPLAINED = 0.2, 2.0, 2.0
 """Time, s, in which nothing is seen if a clip shows something else; how many times less noise the
 shot has before that if what comes after is not its continuation; and the least misfit of the whole
-(`GlobalFit.misfit`) at which it may be none. Of a clip a longer part is noisier, for its map errs:
+(`ShotFit.misfit`) at which it may be none. Of a clip a longer part is noisier, for its map errs:
 six that were shown on after something else came to 1.8 at most, with 20 ms lost to 3.6 and more."""
 
 
-def fit_followed(shot: Watched) -> tuple[GlobalFit, str | None]:
+def fit_valid_interval(shot: ObservedShot) -> tuple[ShotFit, str | None]:
     """Fit a shot up to the first hit that the simulator has and the tracks do not, or the reverse.
 
     Parameters
     ----------
-    shot : Watched
-        As `curlshot.physics.whole_shot.watched.watch` makes it.
+    shot : ObservedShot
+        As `curlshot.physics.shot_fit.observed.observe` makes it.
 
     Returns
     -------
-    fit : GlobalFit
+    fit : ShotFit
         Of the whole shot, or of its beginning, where that is followed and has a hit; else of
         the whole shot, not followed, as always without a hit.
     end : str or None
@@ -44,7 +44,7 @@ def fit_followed(shot: Watched) -> tuple[GlobalFit, str | None]:
     return _until_resumed(fit, end)
 
 
-def _until_resumed(fit: GlobalFit, end: str | None) -> tuple[GlobalFit, str | None]:
+def _until_resumed(fit: ShotFit, end: str | None) -> tuple[ShotFit, str | None]:
     """Leave a shot where it is not shown for a while, if it does not go on from there as it was.
 
     Such a clip may have lost time, or its map of the ice may be another one since.
@@ -65,7 +65,7 @@ def _until_resumed(fit: GlobalFit, end: str | None) -> tuple[GlobalFit, str | No
     return fit, end
 
 
-def _obstacle(fit: GlobalFit) -> tuple[float, str]:
+def _obstacle(fit: ShotFit) -> tuple[float, str]:
     """Time, s, of the hit at which a shot is not followed, and why it is not."""
     shot = fit.shots[0]
     other = shot.first_other_hit(fit.simulation())
@@ -74,6 +74,6 @@ def _obstacle(fit: GlobalFit) -> tuple[float, str]:
     return shot.times[-1], f"with the hit of {' and '.join(shot.hits[-1])} the fit does not settle"
 
 
-def followed(fit: GlobalFit) -> bool:
+def followed(fit: ShotFit) -> bool:
     """Whether a fit came to its end and its hits are those that were seen."""
     return fit.settled and fit.hits_as_seen

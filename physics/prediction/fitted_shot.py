@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from curlshot.data.errors import InputError
 from curlshot.physics.prediction.ensemble import Ensemble
-from curlshot.physics.prediction.spread import DRAWS, Doubt, drawn
+from curlshot.physics.prediction.uncertainty import DRAWS, InitialUncertainty, drawn
+from curlshot.physics.shot_fit.result import ShotFit, draw_choices
 from curlshot.physics.simulator.simulate import simulate
 from curlshot.physics.simulator.simulation import Shot, StoneStart, check_shot
-from curlshot.physics.whole_shot.whole_fit import GlobalFit, draw_choices
 
 Floats = NDArray[np.float64]
 
@@ -27,13 +27,17 @@ TRIES = 4
 """Draws at most for each that is asked for."""
 
 
-def by_itself(shot: Shot, doubt: Doubt, at: float, count: int = DRAWS) -> Ensemble:
+def by_itself(
+    shot: Shot, uncertainty: InitialUncertainty, at: float, count: int = DRAWS
+) -> Ensemble:
     """Return a shot that begins at a time, s, with laws and states drawn each by itself."""
     rng = np.random.default_rng(0)
-    return Ensemble(at, shot, _sound(drawn(shot, doubt, rng) for _ in range(count)))
+    return Ensemble(at, shot, _sound(drawn(shot, uncertainty, rng) for _ in range(count)))
 
 
-def as_fitted(fit: GlobalFit, shot: Shot, doubt: Doubt, at: float, count: int = DRAWS) -> Ensemble:
+def fitted_ensemble(
+    fit: ShotFit, shot: Shot, uncertainty: InitialUncertainty, at: float, count: int = DRAWS
+) -> Ensemble:
     """Return a shot as the fit of the whole of it has it.
 
     Other shots are drawn from the fits with all choices of laws, by their probabilities, the
@@ -43,11 +47,11 @@ def as_fitted(fit: GlobalFit, shot: Shot, doubt: Doubt, at: float, count: int = 
 
     Parameters
     ----------
-    fit : GlobalFit
+    fit : ShotFit
         Of one shot.
     shot : Shot
         As it is otherwise known: stones of which the fit knows nothing, angles, spins after hits.
-    doubt : Doubt
+    uncertainty : InitialUncertainty
         The errors of that.
     at : float
         Time of `shot`, s.
@@ -63,7 +67,7 @@ def as_fitted(fit: GlobalFit, shot: Shot, doubt: Doubt, at: float, count: int = 
     seen = fit.shots[0]
     since = at - seen.start
 
-    def joined(other: Shot, own: GlobalFit, values: Floats) -> Shot:
+    def joined(other: Shot, own: ShotFit, values: Floats) -> Shot:
         whole = own.shots[0].shot(own.state(values=values))
         known = {stone.name: stone for stone in whole.stones}
         stones = tuple(_joined(stone, known.get(stone.name), since) for stone in other.stones)
@@ -77,7 +81,7 @@ def as_fitted(fit: GlobalFit, shot: Shot, doubt: Doubt, at: float, count: int = 
         shot, stones=tuple(replace(s, theta=2 * s.theta - turned[s.name]) for s in shot.stones)
     )
     possible = islice(_possible(fit, rng, TRIES * count), count)
-    others = _sound(joined(drawn(shot, doubt, rng), own, values) for own, values in possible)
+    others = _sound(joined(drawn(shot, uncertainty, rng), own, values) for own, values in possible)
     return Ensemble(seen.start, joined(shot, fit, fit.values), others)
 
 
@@ -92,8 +96,8 @@ def _sound(shots: Iterable[Shot]) -> list[Shot]:
 
 
 def _possible(
-    fit: GlobalFit, rng: np.random.Generator, tries: int
-) -> Iterator[tuple[GlobalFit, Floats]]:
+    fit: ShotFit, rng: np.random.Generator, tries: int
+) -> Iterator[tuple[ShotFit, Floats]]:
     """Draw laws and values of their unknowns, and give those that the detections allow."""
     best: dict[int, list[Floats]] = {}
     for own, values in draw_choices(fit, tries, rng):
@@ -103,7 +107,7 @@ def _possible(
             yield own, values
 
 
-def _off(fit: GlobalFit, values: Floats, best: Sequence[Floats]) -> float:
+def _off(fit: ShotFit, values: Floats, best: Sequence[Floats]) -> float:
     """Sum of squares, beyond one for each number, by which they move the stone they move most."""
     seen = fit.shots[0]
     try:

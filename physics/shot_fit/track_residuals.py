@@ -10,13 +10,13 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from curlshot.data.results import Misfit
+from curlshot.data.results import TrackResidual
 from curlshot.physics.local_fit.traces import Trace
+from curlshot.physics.shot_fit.model_selection import fit_with_chosen_laws
+from curlshot.physics.shot_fit.off_centre import centred
+from curlshot.physics.shot_fit.result import ShotFit
+from curlshot.physics.shot_fit.shot_model import ObservedShot
 from curlshot.physics.statistics.residuals import huber_weights, inflation
-from curlshot.physics.whole_shot.law_choice import fit_with_chosen_laws
-from curlshot.physics.whole_shot.off_centre import centred
-from curlshot.physics.whole_shot.shot_model import Watched
-from curlshot.physics.whole_shot.whole_fit import GlobalFit
 
 Floats = NDArray[np.float64]
 
@@ -34,7 +34,7 @@ ROUNDS = 3
 """How many stones are suspected in turn, at most."""
 
 
-def fit_without_bent_tracks(shot: Watched) -> GlobalFit:
+def fit_without_bent_tracks(shot: ObservedShot) -> ShotFit:
     """Fit a shot with the laws that it asks for, without stretches that are not of stones on ice.
 
     Someone in front of a stone, another thing that is taken for it, or a hand draw a track aside,
@@ -45,28 +45,32 @@ def fit_without_bent_tracks(shot: Watched) -> GlobalFit:
 
     Parameters
     ----------
-    shot : Watched
-        As `curlshot.physics.whole_shot.watched.watch` makes it.
+    shot : ObservedShot
+        As `curlshot.physics.shot_fit.observed.observe` makes it.
 
     Returns
     -------
-    GlobalFit
+    ShotFit
         With larger errors of these places.
     """
     fit = fit_with_chosen_laws(shot)
     suspects, bent = set[str](), 0
     for _ in range(ROUNDS):
         known = fit.shots[0]
-        off = [one for one in misfits(known, fit, level=1.0) if one.certain]
+        off = [one for one in track_residuals(known, fit, level=1.0) if one.significant]
         new = [one for one in off if one.stone not in suspects]
-        worst = max(new, key=attrgetter("size"), default=None)
+        worst = max(new, key=attrgetter("rms_ratio"), default=None)
         if worst is None or 2 * (bent + 1) >= len(_moving(shot)):
             break
         suspects.add(worst.stone)
         # A bent track draws the others along: how noisy they are is told only without it.
         own = [one for one in off if one.stone == worst.stone]
         without = fit_with_chosen_laws(_loosened(known, own))
-        far = [one for one in misfits(known, without) if one.certain and one.stone == worst.stone]
+        far = [
+            one
+            for one in track_residuals(known, without)
+            if one.significant and one.stone == worst.stone
+        ]
         if far:
             less = len(far) < len(own)
             fit = fit_with_chosen_laws(_loosened(known, far)) if less else without
@@ -74,7 +78,9 @@ def fit_without_bent_tracks(shot: Watched) -> GlobalFit:
     return fit
 
 
-def misfits(shot: Watched, fit: GlobalFit, level: float | None = None) -> tuple[Misfit, ...]:
+def track_residuals(
+    shot: ObservedShot, fit: ShotFit, level: float | None = None
+) -> tuple[TrackResidual, ...]:
     """How far each stretch of each stone's track is from the path that a fit has it on.
 
     Paths are smooth, and so is what draws a track aside: what residuals have of low degree in time
@@ -83,9 +89,9 @@ def misfits(shot: Watched, fit: GlobalFit, level: float | None = None) -> tuple[
 
     Parameters
     ----------
-    shot : Watched
+    shot : ObservedShot
         The detections, with the errors to judge by.
-    fit : GlobalFit
+    fit : ShotFit
         Of that shot, of its beginning, or of the same with larger errors.
     level : float, optional
         Factor on the variances of the places, instead of what the other stones' residuals say.
@@ -114,7 +120,7 @@ def misfits(shot: Watched, fit: GlobalFit, level: float | None = None) -> tuple[
 
 def _misfit(
     trace: Trace, run: Floats, rows: NDArray[np.intp], level: float, left_out: bool
-) -> Misfit:
+) -> TrackResidual:
     t = trace.t[rows]
     degree = min(DEGREE, len(rows) // EACH - 1)
     basis = np.linalg.qr(legendre.legvander((t - t[0]) / np.ptp(t) * 2 - 1, degree))[0]
@@ -128,7 +134,7 @@ def _misfit(
     off = square(run[rows] * huber_weights(run[rows]))
     certain = bool(off > 1 + CERTAIN / np.sqrt(degree + 1))
     size = float(np.sqrt(square(run[rows]) if certain else off))
-    return Misfit(trace.stone, float(t[0]), float(t[-1]), size, certain, left_out)
+    return TrackResidual(trace.stone, float(t[0]), float(t[-1]), size, certain, left_out)
 
 
 def _noise_of_others(stone: str, runs: Mapping[str, Floats]) -> float:
@@ -137,18 +143,18 @@ def _noise_of_others(stone: str, runs: Mapping[str, Floats]) -> float:
     return inflation(others, sum(2 * (len(run) - 3) for run, _ in others)) if others else 1.0
 
 
-def _moving(shot: Watched) -> set[str]:
+def _moving(shot: ObservedShot) -> set[str]:
     """Stones that come with a speed, or are hit."""
     thrown = {u.stone for u in shot.unknowns if u.stone and u.name.endswith(".vx")}
     return thrown | {stone for pair in shot.hits for stone in pair}
 
 
-def _loosened(shot: Watched, bent: Sequence[Misfit]) -> Watched:
+def _loosened(shot: ObservedShot, bent: Sequence[TrackResidual]) -> ObservedShot:
     """Enlarge the errors of the places of bent stretches."""
     traces = dict(shot.traces)
     for one in bent:
         trace = traces[one.stone]
         rows = (trace.t >= one.t0) & (trace.t <= one.t1)
-        larger = np.where(rows[:, None], trace.sd * one.size**2, trace.sd)
+        larger = np.where(rows[:, None], trace.sd * one.rms_ratio**2, trace.sd)
         traces[one.stone] = replace(trace, sd=larger)
     return replace(shot, traces=traces)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from curlshot.physics.local_fit.traces import Trace
-from curlshot.physics.whole_shot.off_centre import centred, centred_traces
+from curlshot.physics.shot_fit.off_centre import centred, centred_traces
 
 SD, PLACE = 0.0005, 0.002
 COUNT = 200

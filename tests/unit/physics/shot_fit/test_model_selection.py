@@ -9,9 +9,9 @@ import pytest
 from curlshot.data.tracks import check_detections
 from curlshot.physics.estimate import Estimates, estimate
 from curlshot.physics.filter.slowing import V_C
-from curlshot.physics.local_fit.contacts import find_contacts
-from curlshot.physics.whole_shot.global_fit import fit_shots
-from curlshot.physics.whole_shot.law_choice import (
+from curlshot.physics.local_fit.hit_detection import detect_hits
+from curlshot.physics.shot_fit.global_fit import fit_shots
+from curlshot.physics.shot_fit.model_selection import (
     ROUGH,
     STRAIGHT,
     USUAL,
@@ -20,10 +20,10 @@ from curlshot.physics.whole_shot.law_choice import (
     _hit_by_hit,
     _values,
 )
-from curlshot.physics.whole_shot.priors import SLOPE
-from curlshot.physics.whole_shot.shot_model import Watched
-from curlshot.physics.whole_shot.watched import THROWN
-from curlshot.physics.whole_shot.whole_fit import GlobalFit
+from curlshot.physics.shot_fit.observed import THROWN
+from curlshot.physics.shot_fit.priors import SLOPE
+from curlshot.physics.shot_fit.result import ShotFit
+from curlshot.physics.shot_fit.shot_model import ObservedShot
 from curlshot.synthetic.physics import Ice, Impact, Start, simulate
 from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
 
@@ -36,13 +36,13 @@ def measure(ice: Ice | None, sd: float = 0.002) -> Estimates:
         stones = [Start(0.1, -2.8, 0.0, 1.4, 0.0, 1.0), Start(0.0, 0.0)]
         motion = simulate(stones, 7.0, ice=ice, impact=Impact(0.83), step=5e-4, keep_every=4)
     seen = watch(motion, np.random.default_rng(5), sd=sd)
-    return estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    return estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
 
 
 def test_constant_ice_and_no_curl() -> None:
     found = measure(None)
-    assert found.whole is not None
-    laws = found.whole.laws
+    assert found.shot_fit is not None
+    laws = found.shot_fit.laws
     assert laws[0].name.startswith("ice constant, curl none")
     assert laws[0].criterion == 0
     assert sum(law.weight for law in laws) == pytest.approx(1)
@@ -55,8 +55,8 @@ def test_constant_ice_and_no_curl() -> None:
 
 def test_friction_that_falls_with_the_speed_and_curl() -> None:
     found = measure(Ice(b=0.00626, a=0.00201, v_c=0.0639, curl=0.0082))
-    assert found.whole is not None
-    assert found.whole.laws[0].name.startswith("ice fit, curl fcv1")
+    assert found.shot_fit is not None
+    assert found.shot_fit.laws[0].name.startswith("ice fit, curl fcv1")
     assert found.friction.law == "fit"
     assert found.friction.stderr is not None
     assert abs(float(found.friction.value or 0) - 0.00815) < 3 * found.friction.stderr
@@ -70,24 +70,26 @@ def test_other_laws_are_fitted_with_the_noise_that_is_known(
     """With less they would set out to follow what is not there."""
     noises = []
 
-    def fit(*args: Any, **known: Any) -> GlobalFit:
+    def fit(*args: Any, **known: Any) -> ShotFit:
         noises.append(known.get("noise", 1.0))
         return fit_shots(*args, **known)
 
-    monkeypatch.setattr("curlshot.physics.whole_shot.law_choice.fit_shots", fit)
+    monkeypatch.setattr("curlshot.physics.shot_fit.model_selection.fit_shots", fit)
     seen = watch(hit_motion(1.2, 0.1, before=2.0, after=5.0), np.random.default_rng(5), sd=0.004)
     seen[["sd_x", "sd_y"]] /= 2
-    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
-    assert found.whole is not None
+    found = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
+    assert found.shot_fit is not None
     first = noises.index(next(noise for noise in noises if noise != 1))
     assert len(noises) - first >= 3
-    assert noises[first:] == pytest.approx(len(noises[first:]) * [found.whole.inflation], rel=0.02)
+    assert noises[first:] == pytest.approx(
+        len(noises[first:]) * [found.shot_fit.inflation], rel=0.02
+    )
 
 
 def test_a_fit_with_fewer_unknowns_sets_out_from_where_they_leave_the_others() -> None:
-    watched = measure(Ice(b=0.00626, a=0.00201, v_c=0.0639, curl=0.0082)).whole
-    assert watched is not None
-    full = fit_shots(watched.shots, fixed={"v_c": V_C}, start=USUAL)
+    observed = measure(Ice(b=0.00626, a=0.00201, v_c=0.0639, curl=0.0082)).shot_fit
+    assert observed is not None
+    full = fit_shots(observed.shots, fixed={"v_c": V_C}, start=USUAL)
     held = {"slope": 0.0, "v_c": V_C, "stone_friction": 2.0}
     values = _values(full, held)
     assert values["slope"] == pytest.approx(0.0, abs=1e-12)
@@ -106,11 +108,11 @@ def test_the_first_fit_sets_out_from_even_ice_and_lost_spins_from_either_sense(
 ) -> None:
     """As if every fit but those that set out from a spin had come to rest at none, far off."""
     seen = watch(hit_motion(before=0.6, after=0.6), np.random.default_rng(5), fps=25)
-    watched = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).whole
-    assert watched is not None
+    observed = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS).shot_fit
+    assert observed is not None
     calls: list[tuple[dict[str, float], dict[str, float]]] = []
 
-    def fit(shots: Any, *, fixed: Any, start: Any = None, ends: Any = ()) -> GlobalFit:
+    def fit(shots: Any, *, fixed: Any, start: Any = None, ends: Any = ()) -> ShotFit:
         calls.append((dict(fixed), dict(start or {})))
         found = fit_shots(shots, fixed=fixed, start=start)
         if abs(calls[-1][1].get("A.omega", 0.0)) == THROWN:
@@ -120,8 +122,8 @@ def test_the_first_fit_sets_out_from_even_ice_and_lost_spins_from_either_sense(
             found, values=np.where(spins, 0.0, found.values), deviance=found.deviance + 1e6
         )
 
-    monkeypatch.setattr("curlshot.physics.whole_shot.law_choice.fit_shots", fit)
-    best = _hit_by_hit(watched.shots[0], {"v_c": V_C})
+    monkeypatch.setattr("curlshot.physics.shot_fit.model_selection.fit_shots", fit)
+    best = _hit_by_hit(observed.shots[0], {"v_c": V_C})
     even, usual, further, *turning, rubless, rough = calls
     assert even == (STRAIGHT, {})
     assert usual[1] == USUAL
@@ -147,7 +149,7 @@ def test_friction_that_hardly_falls_is_no_better_than_constant_one(
     """What places share, as far as no error states it, looks like friction that falls a little."""
     prior = np.array([SLOPE.value, SLOPE.stderr])[:, None]
     one = np.array([value])
-    fit = GlobalFit(("slope",), one, np.array([[error**2]]), *prior, {}, (), 1.0, 0.0, 1, 1.0, True)
+    fit = ShotFit(("slope",), one, np.array([[error**2]]), *prior, {}, (), 1.0, 0.0, 1, 1.0, True)
     assert least < _against(fit, "slope") < most
 
 
@@ -158,22 +160,22 @@ def test_a_fit_of_fewer_unknowns_is_heard_if_stated_errors_are_large() -> None:
     motion = simulate(stones, 6.0, ice=ice, impact=Impact(0.83), step=5e-4, keep_every=4)
     seen = watch(motion, np.random.default_rng(5), sd=0.0002, fps=15)
     seen[["sd_x", "sd_y"]] = 0.01
-    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
-    assert found.whole is not None
-    assert found.whole.laws[0].name.startswith("ice constant")
+    found = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
+    assert found.shot_fit is not None
+    assert found.shot_fit.laws[0].name.startswith("ice constant")
 
 
 def test_other_laws_add_to_the_errors() -> None:
     """Where the tracks can hardly tell the laws apart the friction's error says so."""
     found = measure(None, sd=0.02)
-    assert found.whole is not None
-    best = found.whole.laws[0]
-    error = found.whole["friction"].stderr
+    assert found.shot_fit is not None
+    best = found.shot_fit.laws[0]
+    error = found.shot_fit["friction"].stderr
     assert error is not None
     value = float(best.friction.value or 0)
     squares = [
         law.weight * (float(law.friction.stderr or 0) ** 2 + (law.friction.value - value) ** 2)
-        for law in found.whole.laws
+        for law in found.shot_fit.laws
         if law.friction.value is not None
     ]
     assert error**2 == pytest.approx(sum(squares), rel=1e-6)
@@ -188,7 +190,7 @@ def test_the_friction_of_slow_stones_on_falling_ice_is_as_uncertain_as_it_says()
         ice = Ice(b=0.0075, a=0.0015, v_c=v_c)
         motion = simulate(stones, 5.0, ice=ice, impact=Impact(0.83), step=5e-4, keep_every=4)
         seen = watch(motion, np.random.default_rng(6), sd=0.003)
-        found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).friction
+        found = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS).friction
         assert found.law == "fit"
         pulls.append((float(found.value or 0) - ice.friction(1.0)) / float(found.stderr or 0))
     assert max(map(abs, pulls)) < 3
@@ -205,9 +207,9 @@ class Rooted(Ice):
 def test_ice_of_another_law_is_recognised_and_counts_in_the_errors() -> None:
     """What a / (v + v_c) + b makes of such ice is off at 1 m/s by more than noise explains."""
     found = measure(Rooted(b=0.008))
-    assert found.whole is not None
-    assert found.whole.laws[0].name.startswith("ice penner")
-    assert found.whole.laws[0].weight > 0.9
+    assert found.shot_fit is not None
+    assert found.shot_fit.laws[0].name.startswith("ice penner")
+    assert found.shot_fit.laws[0].weight > 0.9
     assert found.friction.stderr is not None
     assert abs(float(found.friction.value or 0) - 0.008) < 2.5 * found.friction.stderr
     assert found.friction.stderr < 0.05 * 0.008
@@ -221,9 +223,9 @@ def test_ice_of_another_law_counts_where_stones_do_not_slide_on_each_other() -> 
         step=5e-4, keep_every=4,
     )  # fmt: skip
     seen = watch(motion, np.random.default_rng(5), sd=0.001)
-    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
-    assert found.whole is not None
-    assert found.whole.laws[0].name == "ice penner, curl fcv1, stones stick"
+    found = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
+    assert found.shot_fit is not None
+    assert found.shot_fit.laws[0].name == "ice penner, curl fcv1, stones stick"
     assert found.friction.stderr is not None
     assert abs(float(found.friction.value or 0) - 0.008) < 2.5 * found.friction.stderr
 
@@ -239,9 +241,9 @@ def test_a_fit_that_has_come_to_rest_in_a_wrong_place_begins_anew() -> None:
     motion = simulate(stones, 4.96, ice=ice, impact=impact, step=5e-4, keep_every=4)
     seen = watch(motion, np.random.default_rng(1), fps=25, sd=0.0005)
     seen = seen[(seen["stone"] != "C") | (seen["t"] < 3.0)].reset_index(drop=True)
-    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
-    assert found.whole is not None
-    assert not found.whole.astray
+    found = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
+    assert found.shot_fit is not None
+    assert not found.shot_fit.diverged
     assert found.friction.value == pytest.approx(ice.friction(1.0), abs=1e-4)
     assert found.friction.stderr is not None
     assert found.friction.stderr < 1e-4
@@ -271,7 +273,7 @@ def test_slowing_and_curl_are_told_apart_in_a_shot_of_two_hits(
     motion = simulate(stones, end, ice=ice, impact=Impact(*impact), step=5e-4, keep_every=4)
     assert len(motion.hits) == 2
     seen = watch(motion, np.random.default_rng(8), fps=fps, sd=0.01)
-    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    found = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
     # Paths that curl do not keep momentum as parabolas: beside a slow hit that may not tell it.
     assert all("restitution unknown" in warning for warning in found.warnings)
     assert len(found.warnings) <= 1
@@ -289,9 +291,9 @@ def test_slowing_and_curl_are_told_apart_in_a_shot_of_two_hits(
 def test_spins_of_slow_stones_are_less_sure_at_the_hit() -> None:
     """A stone's loss of spin goes with the inverse of its speed, which holds only roughly."""
     seen = watch(hit_motion(1.5, 0.02), np.random.default_rng(3), sd=0.003)
-    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
-    assert found.whole is not None
-    spins = found.whole.shots[0].spins
+    found = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
+    assert found.shot_fit is not None
+    spins = found.shot_fit.shots[0].spins
     after = {spin.stone: spin.stderr for spin in spins if spin.t > found.collisions[0].t}
     assert after["B"] < 0.05
     assert after["A"] > 2 * after["B"]
@@ -303,16 +305,16 @@ def test_the_last_fits_set_out_from_stones_that_do_not_rub_and_that_stick(
 ) -> None:
     motion = hit_motion(1.5, 0.2, before=0.6, after=0.6, stone_friction=stone_friction)
     seen = watch(motion, np.random.default_rng(5), fps=25, sd=0.001)
-    watched = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).whole
-    assert watched is not None
+    observed = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS).shot_fit
+    assert observed is not None
     starts: list[dict[str, float]] = []
 
-    def fit(shots: Any, *, fixed: Any, start: Any = None, ends: Any = ()) -> GlobalFit:
+    def fit(shots: Any, *, fixed: Any, start: Any = None, ends: Any = ()) -> ShotFit:
         starts.append(dict(start or {}))
         return fit_shots(shots, fixed=fixed, start=start, ends=ends)
 
-    monkeypatch.setattr("curlshot.physics.whole_shot.law_choice.fit_shots", fit)
-    _hit_by_hit(watched.shots[0], {"v_c": V_C})
+    monkeypatch.setattr("curlshot.physics.shot_fit.model_selection.fit_shots", fit)
+    _hit_by_hit(observed.shots[0], {"v_c": V_C})
     assert [start["stone_friction"] for start in starts[-2:]] == [0.0, ROUGH]
 
 
@@ -323,7 +325,7 @@ def test_stones_that_stick_from_the_least_friction_on_may_not_rub_at_all() -> No
         ice=Ice(b=0.0073), impact=Impact(0.72, 0.0), step=5e-4, keep_every=4,
     )  # fmt: skip
     seen = watch(motion, np.random.default_rng(0), fps=60, sd=0.01)
-    fit = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).whole
+    fit = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS).shot_fit
     assert fit is not None
     assert fit["stone_friction"].value == pytest.approx(0.0, abs=0.01)
     assert abs(float(fit["restitution"].value or 0) - 0.72) < 2 * float(
@@ -341,11 +343,11 @@ def test_a_spin_that_nobody_saw_may_be_of_either_sense(seed: int) -> None:
     seen = watch(motion, np.random.default_rng(seed), fps=60, sd=0.003).drop(
         columns=["theta", "sd_theta"]
     )
-    found = estimate(check_detections(seen), find_contacts(seen, RADIUS), radius=RADIUS)
-    assert found.whole is not None
+    found = estimate(check_detections(seen), detect_hits(seen, RADIUS), radius=RADIUS)
+    assert found.shot_fit is not None
     assert float(found.curl.value or 0) == pytest.approx(0.0082, abs=0.002)
-    assert float(found.whole["A.omega"].value or 0) < 0
-    others = ["other sense" in law.name for law in found.whole.laws]
+    assert float(found.shot_fit["A.omega"].value or 0) < 0
+    others = ["other sense" in law.name for law in found.shot_fit.laws]
     assert any(others) and not others[0]
     for got, true in ((found.restitution, 0.65), (found.friction, 0.00824)):
         assert abs(float(got.value or 0) - true) < 2.5 * float(got.stderr or 0)
@@ -361,29 +363,29 @@ def test_a_path_curls_to_the_side_of_a_spin_that_nobody_saw(spin: float) -> None
     seen = watch(motion, np.random.default_rng(23), fps=25, sd=0.002).drop(
         columns=["theta", "sd_theta"]
     )
-    found = estimate(check_detections(seen), find_contacts(seen, RADIUS), radius=RADIUS)
-    assert found.whole is not None
+    found = estimate(check_detections(seen), detect_hits(seen, RADIUS), radius=RADIUS)
+    assert found.shot_fit is not None
     assert found.curl.value == pytest.approx(0.012, abs=0.002)
     assert abs(float(found.curl.value or 0) - 0.012) < 2.5 * float(found.curl.stderr or 0)
 
 
 def test_fits_of_either_sense_count_if_they_come_as_far(monkeypatch: pytest.MonkeyPatch) -> None:
     seen = watch(hit_motion(before=0.6, after=0.6), np.random.default_rng(5), fps=25)
-    whole = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).whole
+    whole = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS).shot_fit
     assert whole is not None
     shot = replace(whole.shots[0], spins=())
     settled = {THROWN: True, -THROWN: True}
 
-    def fit(shot: Watched, held: object) -> GlobalFit:
+    def fit(shot: ObservedShot, held: object) -> ShotFit:
         sense = next(u.guess for u in shot.unknowns if u.name == "A.omega")
         better = whole.deviance + (sense > 0)
         return replace(whole, shots=(shot,), deviance=better, settled=settled.get(sense, True))
 
-    def senses(shot: Watched) -> list[float]:
+    def senses(shot: ObservedShot) -> list[float]:
         fits = _either_sense(shot, {})
         return [u.guess for f in fits for u in f.shots[0].unknowns if u.name == "A.omega"]
 
-    monkeypatch.setattr("curlshot.physics.whole_shot.law_choice._hit_by_hit", fit)
+    monkeypatch.setattr("curlshot.physics.shot_fit.model_selection._hit_by_hit", fit)
     assert senses(shot) == [-THROWN, THROWN]
     assert len(senses(whole.shots[0])) == 1  # it was seen
     assert len(senses(replace(shot, hits=()))) == 1
@@ -396,13 +398,13 @@ def test_one_place_counts_once_whatever_led_there() -> None:
     """Stones that stick do so by any friction, and a spin may be set out for from either sense."""
     motion = hit_motion(1.5, 0.15, before=0.8, after=1.5, stone_friction=0.5)
     seen = watch(motion, np.random.default_rng(3), sd=0.002).drop(columns=["theta", "sd_theta"])
-    found = estimate(check_detections(seen), find_contacts(seen, RADIUS), radius=RADIUS).whole
+    found = estimate(check_detections(seen), detect_hits(seen, RADIUS), radius=RADIUS).shot_fit
     assert found is not None
     places = {
         (
             "slope" in fit.names, "turn" in fit.names, "v_c" in fit.names, fit.shots[0].ice,
             round(float(fit["A.omega"].value or 0), 1),
-            round(fit.state()["stone_friction"], 1) if fit.told("stone_friction") else None,
+            round(fit.state()["stone_friction"], 1) if fit.identifies("stone_friction") else None,
         )
         for _, fit in found.choices
     }  # fmt: skip

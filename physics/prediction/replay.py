@@ -21,16 +21,21 @@ from curlshot.physics.impact import Impact, PointMass, RigidBody
 from curlshot.physics.local_fit.traces import Trace
 from curlshot.physics.local_fit.untold import OFTEN, SUDDEN
 from curlshot.physics.local_fit.ways import SLOWING
-from curlshot.physics.prediction.as_fitted import as_fitted, by_itself
 from curlshot.physics.prediction.ensemble import Ensemble
+from curlshot.physics.prediction.fitted_shot import by_itself, fitted_ensemble
 from curlshot.physics.prediction.laws import Laws, assumed_of, measured_laws
-from curlshot.physics.prediction.spread import Doubt, path_spread, simulated, simulated_hits
 from curlshot.physics.prediction.throws import first_hit, foreseen_until, newcomers
+from curlshot.physics.prediction.uncertainty import (
+    InitialUncertainty,
+    path_spread,
+    simulated,
+    simulated_hits,
+)
+from curlshot.physics.shot_fit.priors import SPIN
+from curlshot.physics.shot_fit.result import ShotFit
+from curlshot.physics.shot_fit.shot_model import STATE
 from curlshot.physics.simulator.simulate import simulate
 from curlshot.physics.simulator.simulation import Shot, StoneStart
-from curlshot.physics.whole_shot.priors import SPIN
-from curlshot.physics.whole_shot.shot_model import STATE
-from curlshot.physics.whole_shot.whole_fit import GlobalFit
 
 MOVED = 0.05
 """Distance by which a stone must move to count in the score, m."""
@@ -43,7 +48,7 @@ WITHIN = 0.1
 
 
 @dataclass(frozen=True)
-class Hindcast:
+class Replay:
     """A measured shot simulated again.
 
     Attributes
@@ -75,7 +80,7 @@ def simulate_measured(
     *,
     radius: float,
     masses: Mapping[str, float] | None = None,
-) -> Hindcast:
+) -> Replay:
     """Simulate a measured shot with each impact model and score it against the tracks.
 
     Start and laws are those of the fit of the whole shot, so that `frictional` tells how far the
@@ -96,14 +101,14 @@ def simulate_measured(
 
     Returns
     -------
-    Hindcast
+    Replay
     """
     if tracks.empty:
-        return Hindcast({}, {}, ("no tracks to simulate",))
+        return Replay({}, {}, ("no tracks to simulate",))
     if tracks["vx"].isna().all():
-        return Hindcast({}, {}, ("no stone was seen twice: places only, nothing to simulate",))
+        return Replay({}, {}, ("no stone was seen twice: places only, nothing to simulate",))
     start = _start_time(tracks, estimates)
-    fit = estimates.whole
+    fit = estimates.shot_fit
     told = {*fit.shots[0].traces} if fit is not None else set()
     # What may not have lain there, and nothing brings back in time, can't begin with the others.
     late = newcomers(tracks, start).keys() - told
@@ -112,9 +117,9 @@ def simulate_measured(
     models, notes = _models(laws, estimates, stones)
     clock = tracks.groupby("frame", sort=True)["t"].first()
     clock = clock[clock >= start]
-    doubt = _doubt(tracks, start, estimates, laws)
+    uncertainty = _uncertainty(tracks, start, estimates, laws)
     again = Shot(stones, laws.frictional, laws.ice, laws.curl, radius * (laws.size.value or 1.0))
-    may = _may_have_been(fit, again, doubt, start)
+    may = _may_have_been(fit, again, uncertainty, start)
     explained = explained_until(tracks, estimates, start)
     ends = foreseen_until(explained, estimates.collisions, {stone.name for stone in stones})
     samples: dict[str, pd.DataFrame] = {}
@@ -132,7 +137,7 @@ def simulate_measured(
         found = score(tracks, table, start, ends, notes.get(name))
         scores[name] = replace(found, hits=hits, rest_sd=_rest_sd(tracks, table, found))
     warnings = _assumptions(estimates, assumed_of(laws, may.likely), explained)
-    return Hindcast(samples, scores, warnings, may.by(laws.frictional))
+    return Replay(samples, scores, warnings, may.by(laws.frictional))
 
 
 def _assumptions(
@@ -154,7 +159,7 @@ def _assumptions(
 def _sampled(
     shots: Ensemble, clock: pd.Series[float]
 ) -> tuple[pd.DataFrame, tuple[SimulatedHit, ...]]:
-    """Simulate a shot and its variants: table of `Hindcast.samples` at a clock of frames, hits.
+    """Simulate a shot and its variants: table of `Replay.samples` at a clock of frames, hits.
 
     Raises
     ------
@@ -169,12 +174,14 @@ def _sampled(
     return table, simulated_hits(run, others, shots.start)
 
 
-def _may_have_been(fit: GlobalFit | None, shot: Shot, doubt: Doubt, start: float) -> Ensemble:
+def _may_have_been(
+    fit: ShotFit | None, shot: Shot, uncertainty: InitialUncertainty, start: float
+) -> Ensemble:
     """Shots that may have been the one seen: of the fit of the whole of it where that is so."""
     if fit is not None:
         with suppress(InputError):
-            return as_fitted(fit, shot, doubt, start)
-    return by_itself(shot, doubt, start)
+            return fitted_ensemble(fit, shot, uncertainty, start)
+    return by_itself(shot, uncertainty, start)
 
 
 def _start_time(tracks: pd.DataFrame, estimates: Estimates) -> float:
@@ -225,7 +232,9 @@ def _states(
     return tuple(out)
 
 
-def _doubt(tracks: pd.DataFrame, start: float, estimates: Estimates, laws: Laws) -> Doubt:
+def _uncertainty(
+    tracks: pd.DataFrame, start: float, estimates: Estimates, laws: Laws
+) -> InitialUncertainty:
     """Collect the standard errors of start and laws; stones at rest have those of places alone."""
     states, spins = {}, {}
     for name, group in tracks.groupby("stone", sort=True):
@@ -238,7 +247,7 @@ def _doubt(tracks: pd.DataFrame, start: float, estimates: Estimates, laws: Laws)
         states[str(name)] = np.where([False, False, still, still, still], 0.0, errors)
         own = [hit.after[str(name)] for hit in estimates.collisions if name in hit.stones]
         spins[str(name)] = tuple(state.sd_omega or 0.0 for state in own)
-    return Doubt(
+    return InitialUncertainty(
         states,
         spins,
         restitution=laws.restitution.stderr or 0.0,
@@ -279,7 +288,7 @@ def _models(
     """Build the three models, None with a note where one cannot run."""
     notes: dict[str, str] = {}
     if estimates.collisions and "stone_friction" in laws.assumed:
-        notes["frictional"] = _as_it_fits(estimates.whole) or laws.assumed["stone_friction"]
+        notes["frictional"] = _as_it_fits(estimates.shot_fit) or laws.assumed["stone_friction"]
     e = laws.restitution.value or 0.0
     out: dict[str, Impact | None] = {
         "point-mass": PointMass(e),
@@ -294,7 +303,7 @@ def _models(
     return out, notes
 
 
-def _as_it_fits(fit: GlobalFit | None) -> str | None:
+def _as_it_fits(fit: ShotFit | None) -> str | None:
     """Say with which friction between the stones a shot that does not tell it goes on."""
     if fit is None:
         return None

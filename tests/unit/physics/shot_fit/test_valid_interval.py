@@ -9,10 +9,10 @@ import pandas as pd
 import pytest
 
 from curlshot.physics.estimate import Estimates, estimate
-from curlshot.physics.local_fit.contacts import find_contacts
-from curlshot.physics.whole_shot.followed import fit_followed
-from curlshot.physics.whole_shot.shot_model import Watched
-from curlshot.physics.whole_shot.whole_fit import GlobalFit
+from curlshot.physics.local_fit.hit_detection import detect_hits
+from curlshot.physics.shot_fit.result import ShotFit
+from curlshot.physics.shot_fit.shot_model import ObservedShot
+from curlshot.physics.shot_fit.valid_interval import fit_valid_interval
 from curlshot.synthetic.physics import Start
 from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
 
@@ -25,7 +25,7 @@ def seen_with_late_touch() -> pd.DataFrame:
 
 
 def measure(seen: pd.DataFrame, without: int = 0) -> Estimates:
-    contacts = find_contacts(seen, RADIUS)
+    contacts = detect_hits(seen, RADIUS)
     return estimate(seen, contacts[: len(contacts) - without], radius=RADIUS)
 
 
@@ -39,12 +39,12 @@ def near(found: Estimates) -> bool:
 def test_a_shot_is_followed_up_to_a_hit_that_was_not_seen() -> None:
     seen = seen_with_late_touch()
     every, fewer = measure(seen), measure(seen, without=1)
-    assert every.whole is not None
+    assert every.shot_fit is not None
     assert not [text for text in every.warnings if "follows" in text]
-    assert fewer.whole is not None
+    assert fewer.shot_fit is not None
     (text,) = [text for text in fewer.warnings if "follows" in text]
     assert "the hit of A and C is not as simulated" in text
-    end = max(float(trace.t[-1]) for trace in fewer.whole.shots[0].traces.values())
+    end = max(float(trace.t[-1]) for trace in fewer.shot_fit.shots[0].traces.values())
     assert end < every.collisions[-1].t
     assert near(every)
     assert near(fewer)
@@ -54,27 +54,27 @@ def test_a_shot_is_followed_up_to_a_hit_that_was_not_seen() -> None:
 
 def test_a_first_hit_that_is_not_as_simulated_leaves_the_values_beside_it() -> None:
     seen = seen_with_late_touch()
-    contacts = find_contacts(seen, RADIUS)
+    contacts = detect_hits(seen, RADIUS)
     # C is said to be hit by B, which never comes near it.
     wrong = [replace(contacts[0], stones=("B", "C")), *contacts[1:]]
     found = estimate(seen, wrong, radius=RADIUS)
-    assert found.whole is None
+    assert found.shot_fit is None
     assert any("does not follow" in text or "differ" in text for text in found.warnings)
 
 
 def test_a_fit_that_does_not_settle_is_left_before_its_last_hit(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    whole = measure(seen_with_late_touch()).whole
+    whole = measure(seen_with_late_touch()).shot_fit
     assert whole is not None
     (shot,) = whole.shots
 
-    def fit(part: Watched) -> GlobalFit:
+    def fit(part: ObservedShot) -> ShotFit:
         return replace(whole, shots=(part,), settled=part is not shot)
 
     for name in ("fit_with_chosen_laws", "fit_without_bent_tracks"):
-        monkeypatch.setattr(f"curlshot.physics.whole_shot.followed.{name}", fit)
-    found, end = fit_followed(shot)
+        monkeypatch.setattr(f"curlshot.physics.shot_fit.valid_interval.{name}", fit)
+    found, end = fit_valid_interval(shot)
     assert found.shots[0].hits == shot.hits[:1]
     assert (
         end
@@ -88,14 +88,14 @@ def test_places_that_slip_as_a_stone_comes_into_view_do_not_set_it_in_motion() -
     early = (seen["stone"] == "B") & (seen["t"] < 0.15)
     seen.loc[early, "x"] -= 0.25 * (0.15 - seen.loc[early, "t"])
     found = measure(seen)
-    assert found.whole is not None
-    assert "B.vx" not in found.whole.names
+    assert found.shot_fit is not None
+    assert "B.vx" not in found.shot_fit.names
     assert near(found)
 
 
 def test_hits_at_one_time_may_come_in_another_order() -> None:
     seen = seen_with_late_touch()
-    whole = measure(seen).whole
+    whole = measure(seen).shot_fit
     assert whole is not None
     shot, run = whole.shots[0], whole.simulation()
     (first, last), pairs = shot.times, shot.hits
@@ -116,17 +116,17 @@ def test_what_comes_after_a_gap_is_left_if_it_makes_all_much_noisier(
 ) -> None:
     seen = watch(hit_motion(), np.random.default_rng(4), sd=0.0005)
     away = (seen["t"] > 1.8) & (seen["t"] < 2.2)
-    whole = measure(seen[~away].reset_index(drop=True)).whole
+    whole = measure(seen[~away].reset_index(drop=True)).shot_fit
     assert whole is not None
     (shot,) = whole.shots
 
-    def fit(part: Watched) -> GlobalFit:
+    def fit(part: ObservedShot) -> ShotFit:
         return replace(whole, shots=(part,), inflation=noisier if part is shot else 1.0)
 
     for name in ("fit_with_chosen_laws", "fit_without_bent_tracks"):
-        monkeypatch.setattr(f"curlshot.physics.whole_shot.followed.{name}", fit)
-    monkeypatch.setattr("curlshot.physics.whole_shot.followed.followed", lambda _: True)
-    found, end = fit_followed(shot)
+        monkeypatch.setattr(f"curlshot.physics.shot_fit.valid_interval.{name}", fit)
+    monkeypatch.setattr("curlshot.physics.shot_fit.valid_interval.followed", lambda _: True)
+    found, end = fit_valid_interval(shot)
     assert (end is not None) == (found.shots[0] is not shot) == left
 
 
@@ -140,8 +140,8 @@ def test_a_map_that_errs_makes_a_longer_part_noisier_and_ends_no_shot(
     seen.loc[later, ["x", "y"]] += 0.002 * np.sin(4 * seen.loc[later, ["t", "t"]].to_numpy())
     seen = seen[~((seen["t"] > 1.8) & (seen["t"] < 2.2))].reset_index(drop=True)
     seen = seen.assign(sd_place_x=map_sd, sd_place_y=map_sd)
-    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
-    assert found.whole is not None
+    found = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
+    assert found.shot_fit is not None
     assert any("does not continue it" in text for text in found.warnings) == left
 
 
@@ -151,8 +151,8 @@ def test_a_shot_is_left_where_the_clip_has_lost_time(lost: float) -> None:
     away = (seen["t"] > 1.8) & (seen["t"] < 2.2)
     seen = seen[~away].reset_index(drop=True)
     seen.loc[seen["t"] > 2.0, "t"] -= lost
-    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
-    assert found.whole is not None
+    found = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
+    assert found.shot_fit is not None
     assert any("does not continue it" in text for text in found.warnings) == (lost > 0)
     assert found.friction.stderr is not None
     assert abs(float(found.friction.value or 0) - 0.0109) < 3 * found.friction.stderr

@@ -9,9 +9,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from curlshot.data.results import Estimate, Joint, Law
+from curlshot.data.results import Estimate, JointEstimate, Law
+from curlshot.physics.shot_fit.shot_model import ObservedShot
 from curlshot.physics.simulator.simulation import Simulation
-from curlshot.physics.whole_shot.shot_model import Watched
 
 Floats = NDArray[np.float64]
 
@@ -21,8 +21,8 @@ come to rest in a wrong place: those of good fits are off by up to 4."""
 
 
 @dataclass(frozen=True)
-class GlobalFit:
-    """Outcome of `curlshot.physics.whole_shot.global_fit.fit_shots`.
+class ShotFit:
+    """Outcome of `curlshot.physics.shot_fit.global_fit.fit_shots`.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class GlobalFit:
         What was known of each beforehand; 0 and infinite where nothing.
     fixed : mapping
         Unknowns that were held, and at what.
-    shots : tuple of Watched
+    shots : tuple of ObservedShot
         As given.
     deviance : float
         Huber's sum of squared residuals of the detections.
@@ -52,7 +52,7 @@ class GlobalFit:
         Whether the fit came to its end.
     laws : tuple of Law
         Choices of laws that were compared, the best first, if any.
-    choices : tuple of (float, GlobalFit)
+    choices : tuple of (float, ShotFit)
         The fits with these laws, each with its own covariance, and their probabilities.
     """
 
@@ -62,14 +62,14 @@ class GlobalFit:
     prior_mean: Floats
     prior_sd: Floats
     fixed: Mapping[str, float]
-    shots: tuple[Watched, ...]
+    shots: tuple[ObservedShot, ...]
     deviance: float
     elsewhere: float
     detections: int
     inflation: float
     settled: bool
     laws: tuple[Law, ...] = ()
-    choices: tuple[tuple[float, GlobalFit], ...] = ()
+    choices: tuple[tuple[float, ShotFit], ...] = ()
 
     def __getitem__(self, name: str) -> Estimate:
         """Value and standard error of an unknown; 0 as error where it was held."""
@@ -78,21 +78,21 @@ class GlobalFit:
             return Estimate(float(self.values[k]), float(np.sqrt(self.cov[k, k])))
         return Estimate(self.fixed[name], 0.0)
 
-    def told(self, name: str) -> bool:
+    def identifies(self, name: str) -> bool:
         """Whether the detections tell more of an unknown than was known beforehand."""
         if name not in self.names:
             return False
         k = self.names.index(name)
         return bool(self.cov[k, k] < 0.5 * self.prior_sd[k] ** 2)
 
-    def joint(self, names: Sequence[str]) -> Joint | None:
+    def joint(self, names: Sequence[str]) -> JointEstimate | None:
         """Return those of some unknowns that the detections tell of, None where it is none."""
-        told = [name for name in names if self.told(name)]
+        told = [name for name in names if self.identifies(name)]
         at = [self.names.index(name) for name in told]
         cov = self.cov[np.ix_(at, at)].tolist()
         if not told:
             return None
-        return Joint(tuple(told), tuple(self.values[at].tolist()), tuple(map(tuple, cov)))
+        return JointEstimate(tuple(told), tuple(self.values[at].tolist()), tuple(map(tuple, cov)))
 
     def state(self, rank: int = 0, values: Floats | None = None) -> dict[str, float]:
         """Every unknown of shot `rank` by its own name, fitted or held."""
@@ -123,7 +123,7 @@ class GlobalFit:
         return self.inflation / (1 + float(shared.mean()))
 
     @property
-    def astray(self) -> bool:
+    def diverged(self) -> bool:
         """Whether a stone is far from its simulated path for at least half of its detections.
 
         `misfit` does not tell: there, all that is far off counts as little as an outlier does.
@@ -149,7 +149,7 @@ class GlobalFit:
         return pd.concat(tables, ignore_index=True)
 
 
-def draw_values(fit: GlobalFit, count: int, rng: np.random.Generator) -> Floats:
+def draw_values(fit: ShotFit, count: int, rng: np.random.Generator) -> Floats:
     """Draw values of a fit's unknowns, shape (count, n), held within their bounds."""
     bounds = {unknown.name: (unknown.low, unknown.high) for unknown in fit.shots[0].unknowns}
     low, high = np.array([bounds[name] for name in fit.names]).T
@@ -158,8 +158,8 @@ def draw_values(fit: GlobalFit, count: int, rng: np.random.Generator) -> Floats:
 
 
 def draw_choices(
-    fit: GlobalFit, count: int, rng: np.random.Generator
-) -> Iterator[tuple[GlobalFit, Floats]]:
+    fit: ShotFit, count: int, rng: np.random.Generator
+) -> Iterator[tuple[ShotFit, Floats]]:
     """Draw choices of laws by their probabilities, each with values of its own unknowns."""
     weights, fits = zip(*(fit.choices or ((1.0, fit),)), strict=True)
     picked = rng.choice(len(fits), count, p=weights)
@@ -174,7 +174,7 @@ def own_values(
     names: Sequence[str],
     values: Floats,
     fixed: Mapping[str, float],
-    shot: Watched,
+    shot: ObservedShot,
 ) -> dict[str, float]:
     """Every unknown of the shot of that rank, of so many, by its own name, fitted or held."""
     own = {unknown.name for unknown in shot.unknowns}

@@ -8,19 +8,19 @@ import pytest
 
 from curlshot.data.errors import InputError
 from curlshot.physics.estimate import POOR_FIT, estimate
-from curlshot.physics.local_fit.contacts import find_contacts
-from curlshot.physics.whole_shot.global_fit import fit_shots
-from curlshot.physics.whole_shot.law_choice import STRAIGHT
-from curlshot.physics.whole_shot.whole_fit import GlobalFit
+from curlshot.physics.local_fit.hit_detection import detect_hits
+from curlshot.physics.shot_fit.global_fit import fit_shots
+from curlshot.physics.shot_fit.model_selection import STRAIGHT
+from curlshot.physics.shot_fit.result import ShotFit
 from curlshot.synthetic.physics import Ice, Impact, Start, simulate
 from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
 
 
 @cache
-def whole(speed: float = 1.5, seed: int = 1, sd: float = 0.005) -> GlobalFit:
+def whole(speed: float = 1.5, seed: int = 1, sd: float = 0.005) -> ShotFit:
     motion = hit_motion(speed, 0.08, others=(Start(0.0, 0.8),))
     seen = watch(motion, np.random.default_rng(seed), sd=sd)
-    fit = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).whole
+    fit = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS).shot_fit
     assert fit is not None
     return fit
 
@@ -55,7 +55,7 @@ def test_held_unknowns_stay_and_shared_ones_are_one() -> None:
 def test_a_spin_of_which_nothing_tells_is_none() -> None:
     motion = simulate([Start(0, -3, 0, 1.5, 0.3, 1.0)], 4, ice=Ice(b=0.0109), keep_every=4)
     seen = watch(motion, np.random.default_rng(3), sd=0.003).assign(theta=np.nan)
-    whole = estimate(seen, (), radius=RADIUS).whole
+    whole = estimate(seen, (), radius=RADIUS).shot_fit
     assert whole is not None
     found = fit_shots(whole.shots, fixed=STRAIGHT, start={"A.omega": 1.5})["A.omega"]
     assert (found.value, found.stderr) == (0.0, pytest.approx(3.0))
@@ -80,7 +80,7 @@ def test_friction_that_depends_on_the_speed_is_found() -> None:
         ice=Ice(a=0.00201, b=0.00626, v_c=0.0639), impact=Impact(0.83), step=5e-4, keep_every=4,
     )  # fmt: skip
     seen = watch(motion, np.random.default_rng(3), sd=0.003)
-    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    found = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
     assert found.friction.law == "fit"
     assert found.friction.value == pytest.approx(0.00815, rel=0.03)
     assert found.restitution.value == pytest.approx(0.83, abs=0.01)
@@ -94,12 +94,12 @@ def test_stones_that_slide_are_not_taken_to_stick() -> None:
         impact = Impact(0.83, stone_friction=between)
         motion = simulate(starts, 4, ice=fcv1, impact=impact, step=5e-4, keep_every=4)
         seen = watch(motion, rng, sd=0.003)
-        found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
-        assert found.whole is not None
-        assert found.whole.inflation < 1.5
+        found = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
+        assert found.shot_fit is not None
+        assert found.shot_fit.inflation < 1.5
         assert found.restitution.value == pytest.approx(0.83, abs=0.01)
         # 0.3 is more than it takes to stick: how much more, no track can tell.
-        assert found.whole.told("stone_friction") == (between == 0.05)
+        assert found.shot_fit.identifies("stone_friction") == (between == 0.05)
 
 
 def test_what_a_map_shares_is_no_wrong_simulation() -> None:
@@ -110,14 +110,14 @@ def test_what_a_map_shares_is_no_wrong_simulation() -> None:
     seen["x"] += field * np.sin(wave * seen["y"])
     seen["y"] += field * np.cos(wave * (seen["x"] + 0.7 * seen["y"]))
     told = estimate(
-        seen.assign(sd_place_x=field, sd_place_y=field), find_contacts(seen, RADIUS), radius=RADIUS
+        seen.assign(sd_place_x=field, sd_place_y=field), detect_hits(seen, RADIUS), radius=RADIUS
     )
-    untold = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
-    assert told.whole is not None
-    assert told.whole.inflation > POOR_FIT > told.whole.misfit
+    untold = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
+    assert told.shot_fit is not None
+    assert told.shot_fit.inflation > POOR_FIT > told.shot_fit.misfit
     # So the one uses the whole shot, the other what is beside the hit, and says so.
-    assert told.restitution.value == told.whole["restitution"].value
-    assert untold.whole is None
+    assert told.restitution.value == told.shot_fit["restitution"].value
+    assert untold.shot_fit is None
     assert any("differ from the tracks" in warning for warning in untold.warnings)
     assert told.restitution.stderr is not None
     assert abs((told.restitution.value or 0) - 0.83) < 2 * told.restitution.stderr
@@ -131,9 +131,9 @@ def test_how_ice_takes_spin_need_not_be_known() -> None:
     motion = simulate(starts, 8, ice=ice, impact=impact, step=5e-4, keep_every=4)
     for seed in range(2):
         seen = watch(motion, np.random.default_rng(seed), sd=0.001)
-        found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
-        assert found.whole is not None
-        told = found.whole["restitution"]
+        found = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
+        assert found.shot_fit is not None
+        told = found.shot_fit["restitution"]
         assert told.stderr is not None
         assert told.stderr < 0.001
         assert abs((told.value or 0.0) - 0.83) < 2.5 * told.stderr
@@ -147,10 +147,10 @@ def test_how_round_stones_are_need_not_be_known() -> None:
         impact = Impact(0.83, stone_friction=0.08, inertia=k)
         motion = simulate(starts, 7, ice=ice, impact=impact, step=5e-4, keep_every=4)
         seen = watch(motion, np.random.default_rng(0), sd=0.0007)
-        found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
-        assert found.whole is not None
+        found = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
+        assert found.shot_fit is not None
         for name, true in (("restitution", 0.83), ("inertia", k)):
-            told = found.whole[name]
+            told = found.shot_fit[name]
             assert told.stderr is not None
             assert told.stderr < 0.01
             assert abs((told.value or 0.0) - true) < 2.5 * told.stderr

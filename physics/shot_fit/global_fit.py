@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 from curlshot.data.errors import InputError
 from curlshot.data.results import Estimate
 from curlshot.physics.local_fit.shared_error import shared_error
+from curlshot.physics.shot_fit.off_centre import centred
+from curlshot.physics.shot_fit.result import ShotFit, own_values
+from curlshot.physics.shot_fit.shot_model import ObservedShot, Unknown
 from curlshot.physics.statistics.normal_equations import bounded, inverse
 from curlshot.physics.statistics.residuals import HUBER, huber_weights, inflation
-from curlshot.physics.whole_shot.off_centre import centred
-from curlshot.physics.whole_shot.shot_model import Unknown, Watched
-from curlshot.physics.whole_shot.whole_fit import GlobalFit, own_values
 
 Floats = NDArray[np.float64]
 
@@ -59,20 +59,20 @@ SAME = 0.1
 
 
 def fit_shots(
-    shots: Sequence[Watched],
+    shots: Sequence[ObservedShot],
     *,
     fixed: Mapping[str, float] | None = None,
     shared: Sequence[str] = (),
     start: Mapping[str, float] | None = None,
     noise: float = 1.0,
-    ends: Sequence[GlobalFit] = (),
-) -> GlobalFit:
+    ends: Sequence[ShotFit] = (),
+) -> ShotFit:
     """Fit all unknowns of one or several shots to all their detections at once.
 
     Parameters
     ----------
-    shots : sequence of Watched
-        As `curlshot.physics.whole_shot.watched.watch` makes them.
+    shots : sequence of ObservedShot
+        As `curlshot.physics.shot_fit.observed.observe` makes them.
     fixed : mapping, optional
         Unknowns to hold, and at what; a bare name holds it in every shot.
     shared : sequence of str
@@ -81,7 +81,7 @@ def fit_shots(
         Where to set out from, where not from the shots' own guesses.
     noise : float
         Factor on the variances of the detections to set out with.
-    ends : sequence of GlobalFit
+    ends : sequence of ShotFit
         Fits of the same unknowns that set out from elsewhere; one of them is returned where this
         comes to the same end.
 
@@ -97,12 +97,12 @@ def fit_shots(
 class _Problem:
     """Working state of one fit."""
 
-    shots: Sequence[Watched]
+    shots: Sequence[ObservedShot]
     fixed: Mapping[str, float]
     shared: Sequence[str]
     start: Mapping[str, float]
     noise: float = 1.0
-    ends: Sequence[GlobalFit] = ()
+    ends: Sequence[ShotFit] = ()
     unknowns: dict[str, Unknown] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -131,7 +131,7 @@ class _Problem:
         self.detections = sum(len(t.t) for shot in self.shots for t in shot.traces.values())
         self.ended = [(fit, inverse(fit.cov)) for fit in self.ends if fit.settled]
 
-    def solve(self) -> GlobalFit:
+    def solve(self) -> ShotFit:
         guesses = [self.start.get(n, u.guess) for n, u in self.unknowns.items()]
         at = np.clip(np.array(guesses, float), self.low, self.high)
         at, settled = self._descend(at)
@@ -160,7 +160,7 @@ class _Problem:
             )
             for shot, (places, _), (by_place, _) in zip(self.shots, residuals, slopes, strict=True)
         ]
-        return GlobalFit(
+        return ShotFit(
             self.names,
             at,
             cov + sum(shared),
@@ -220,7 +220,7 @@ class _Problem:
                 damping = max(damping * 10, 1e-3)
         return at, False
 
-    def _same_end(self, at: Floats) -> GlobalFit | None:
+    def _same_end(self, at: Floats) -> ShotFit | None:
         """Return the fit that has ended so near that this one goes there too."""
         for fit, normal in self.ended:
             off = at - fit.values

@@ -8,20 +8,20 @@ import numpy as np
 import pytest
 
 from curlshot.physics.estimate import estimate
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.physics.local_fit.local import estimate_locally
+from curlshot.physics.shot_fit import observed, shot_model
+from curlshot.physics.shot_fit.priors import loose_priors
+from curlshot.physics.shot_fit.shot_model import curl, ice
 from curlshot.physics.simulator.motion import Motion, Path
 from curlshot.physics.simulator.simulation import Simulation
-from curlshot.physics.whole_shot import shot_model, watched
-from curlshot.physics.whole_shot.priors import loose_priors
-from curlshot.physics.whole_shot.shot_model import curl, ice
 from curlshot.synthetic.physics import Start
 from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
 
 
 def test_wherever_a_fit_may_go_stones_move_as_their_velocities_say() -> None:
     seen = watch(hit_motion(1.5, 0.06), np.random.default_rng(2))
-    whole = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).whole
+    whole = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS).shot_fit
     assert whole is not None
     unknowns = {unknown.name: unknown for unknown in whole.shots[0].unknowns}
     values = {"friction": unknowns["friction"].low, "turn": unknowns["turn"].high}
@@ -42,10 +42,10 @@ def test_who_was_hit_out_of_sight_has_no_say_in_the_whole_shot() -> None:
         (seen["stone"] == "C") & (seen["t"] < again + 0.7)
     )
     seen = seen[~hidden].reset_index(drop=True)
-    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
-    assert found.whole is not None
-    assert set(found.whole.shots[0].traces) == {"A", "B"}
-    told = found.whole["restitution"]
+    found = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
+    assert found.shot_fit is not None
+    assert set(found.shot_fit.shots[0].traces) == {"A", "B"}
+    told = found.shot_fit["restitution"]
     assert abs((told.value or 0.0) - 0.83) < 2.5 * (told.stderr or 0.0) < 0.01
 
 
@@ -60,12 +60,12 @@ def test_who_is_set_off_by_a_hit_that_is_not_told_lay_there_until_then(
     motion = hit_motion(2.0, 0.05, others=[Start(-0.02, 2 * RADIUS + 0.01)])
     assert [(hit.first, hit.second) for hit in motion.hits] == [(0, 1), (1, 2)]
     seen = watch(motion, np.random.default_rng(3), sd=0.001)
-    contacts = find_contacts(seen, RADIUS)[:1]
+    contacts = detect_hits(seen, RADIUS)[:1]
     assert {*contacts[0].stones} == {"A", "B"}
 
     local = estimate_locally(seen, contacts, radius=RADIUS)
     assert local.fit is not None
-    shot = watched.watch(local.known, local.fit, RADIUS, priors=loose_priors(RADIUS))
+    shot = observed.observe(local.known, local.fit, RADIUS, priors=loose_priors(RADIUS))
     assert shot is not None
     place = {unknown.name: unknown.guess for unknown in shot.unknowns if unknown.stone == "C"}
     assert place == {
@@ -84,7 +84,7 @@ def test_who_is_set_off_by_a_hit_that_is_not_told_lay_there_until_then(
     once = shot_model.simulate
     monkeypatch.setattr(shot_model, "simulate", simulate)
     found = estimate(seen, contacts, radius=RADIUS)
-    assert found.whole is None
+    assert found.shot_fit is None
     assert any("does not follow" in text for text in found.warnings)
     changes = sum(len(paths) - 1 for run in runs for paths in run.paths.values())
     assert len(runs) < 2000

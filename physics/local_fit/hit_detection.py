@@ -15,7 +15,7 @@ from curlshot.physics.local_fit.candidates import LONG, REACH, candidates, in_ca
 from curlshot.physics.local_fit.fit import fit_shot
 from curlshot.physics.local_fit.glides import free
 from curlshot.physics.local_fit.segments import Piece, cut
-from curlshot.physics.local_fit.shot_fit import ContactState, Meeting, ShotFit
+from curlshot.physics.local_fit.solution import ContactState, LocalFit, Meeting
 from curlshot.physics.local_fit.traces import Trace, traces
 
 Floats = NDArray[np.float64]
@@ -44,7 +44,7 @@ MOST_RESTARTS = 4
 
 
 @dataclass(frozen=True)
-class Contact:
+class HitCandidate:
     """A hit of two stones.
 
     Attributes
@@ -63,7 +63,7 @@ class Contact:
     normal: tuple[float, float]
 
 
-def find_contacts(detections: Table, radius: float) -> tuple[Contact, ...]:
+def detect_hits(detections: Table, radius: float) -> tuple[HitCandidate, ...]:
     """Find the hits between the stones of a table of detections.
 
     Every approach of two stones to about 2R is a candidate. All are fitted at once as hits, and the
@@ -83,7 +83,7 @@ def find_contacts(detections: Table, radius: float) -> tuple[Contact, ...]:
 
     Returns
     -------
-    tuple of Contact
+    tuple of HitCandidate
         In order of time.
     """
     known = traces(detections)
@@ -119,7 +119,7 @@ def find_contacts(detections: Table, radius: float) -> tuple[Contact, ...]:
     return ()
 
 
-def _displaced(fit: ShotFit, k: int, known: Mapping[str, Trace], radius: float) -> bool:
+def _displaced(fit: LocalFit, k: int, known: Mapping[str, Trace], radius: float) -> bool:
     """Whether a stone that rested, and has no meeting but k, lies elsewhere afterwards."""
     return any(
         fit.pieces[fit.sides[k, stone][0]].rest
@@ -129,19 +129,19 @@ def _displaced(fit: ShotFit, k: int, known: Mapping[str, Trace], radius: float) 
     )
 
 
-def _reordered(fit: ShotFit, known: Mapping[str, Trace]) -> list[Meeting] | None:
+def _reordered(fit: LocalFit, known: Mapping[str, Trace]) -> list[Meeting] | None:
     """Meetings of a fit at the times that it found, if cause asks for another order; else None."""
     met = sorted(_at_times(fit), key=lambda meeting: meeting.t)
     other = in_causal_order(met, known)
     return other if [m.stones for m in other] != [m.stones for m in met] else None
 
 
-def _at_times(fit: ShotFit) -> list[Meeting]:
+def _at_times(fit: LocalFit) -> list[Meeting]:
     """Give the meetings of a fit at the times that it found."""
     return [replace(m, t=fit.time(k)) for k, m in enumerate(fit.meetings)]
 
 
-def _past(fit: ShotFit, asked: Iterable[int], known: Mapping[str, Trace], most: int) -> set[str]:
+def _past(fit: LocalFit, asked: Iterable[int], known: Mapping[str, Trace], most: int) -> set[str]:
     """Stones of the meetings asked for whose times went past as many detections, or more.
 
     These lie on the wrong side of the meeting: of one that was sought in a gap, all of those from
@@ -156,7 +156,7 @@ def _past(fit: ShotFit, asked: Iterable[int], known: Mapping[str, Trace], most: 
     return out
 
 
-def _ended(fit: ShotFit, k: int) -> set[str]:
+def _ended(fit: LocalFit, k: int) -> set[str]:
     """Stones of meeting k if the fit has one at rest by then on the path that opens with it.
 
     A stone that was hit moves. Of one at rest neither detections nor momentum tell how fast it was,
@@ -181,7 +181,7 @@ def _renumbered(cuts: Mapping[str, list[Piece]], gone: int) -> dict[str, list[Pi
 
 def cut_all(
     known: Mapping[str, Trace],
-    meetings: Sequence[Meeting | Contact],
+    meetings: Sequence[Meeting | HitCandidate],
     radius: float,
     done: Mapping[str, list[Piece]] | None = None,
 ) -> tuple[list[Piece], dict[str, list[Piece]]]:
@@ -219,7 +219,7 @@ class _Evidence(NamedTuple):
     near: float
 
 
-def _evidence(fit: ShotFit, k: int, known: Mapping[str, Trace], radius: float) -> _Evidence:
+def _evidence(fit: LocalFit, k: int, known: Mapping[str, Trace], radius: float) -> _Evidence:
     """Tell what speaks for meeting k."""
 
     def told(states: Sequence[ContactState]) -> Floats:
@@ -252,7 +252,7 @@ def _evidence(fit: ShotFit, k: int, known: Mapping[str, Trace], radius: float) -
     return _Evidence(both if possible else 0.0, met, pushed, seen, -away)
 
 
-def _once(evidence: Sequence[_Evidence], fit: ShotFit) -> list[_Evidence]:
+def _once(evidence: Sequence[_Evidence], fit: LocalFit) -> list[_Evidence]:
     """Of two meetings of a pair without anything between them, leave no evidence for the weaker.
 
     Stones that hit each other go apart, and ice does not bring them together again: before they
@@ -268,7 +268,7 @@ def _once(evidence: Sequence[_Evidence], fit: ShotFit) -> list[_Evidence]:
     return out
 
 
-def _needed(evidence: Sequence[_Evidence], fit: ShotFit) -> list[_Evidence]:
+def _needed(evidence: Sequence[_Evidence], fit: LocalFit) -> list[_Evidence]:
     """Let a meeting that set off a stone at rest count as much as the hit of it that follows.
 
     If that stone meets another one at rest, something drove it. What did is hardly seen by itself
@@ -287,7 +287,7 @@ def _needed(evidence: Sequence[_Evidence], fit: ShotFit) -> list[_Evidence]:
     return out
 
 
-def _contacts(fit: ShotFit) -> tuple[Contact, ...]:
+def _contacts(fit: LocalFit) -> tuple[HitCandidate, ...]:
     out = []
     for k, meeting in enumerate(fit.meetings):
         state = fit.contact_state(k)
@@ -295,5 +295,5 @@ def _contacts(fit: ShotFit) -> tuple[Contact, ...]:
         nx, ny = (float(value) for value in state.normal)
         if np.hypot(*state.before[1]) > np.hypot(*state.before[0]):
             first, second, nx, ny = second, first, -nx, -ny
-        out.append(Contact(state.t, fit.stderr_time(k), (first, second), (nx, ny)))
+        out.append(HitCandidate(state.t, fit.stderr_time(k), (first, second), (nx, ny)))
     return tuple(sorted(out, key=lambda contact: contact.t))

@@ -10,8 +10,8 @@ import pytest
 from curlshot.data.results import Estimate, SimulationScore
 from curlshot.physics.estimate import Estimates, estimate
 from curlshot.physics.kalman import smooth
-from curlshot.physics.local_fit.contacts import find_contacts
-from curlshot.physics.prediction.hindcast import simulate_measured
+from curlshot.physics.local_fit.hit_detection import detect_hits
+from curlshot.physics.prediction.replay import simulate_measured
 from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, semireal, watch
 
 MODELS = {"point-mass", "rigid-body", "frictional"}
@@ -20,7 +20,7 @@ MODELS = {"point-mass", "rigid-body", "frictional"}
 def again(
     seen: pd.DataFrame,
 ) -> tuple[dict[str, pd.DataFrame], dict[str, SimulationScore], tuple[str, ...]]:
-    hits = find_contacts(seen, RADIUS)
+    hits = detect_hits(seen, RADIUS)
     tracks = smooth(seen, hits, radius=RADIUS)
     done = simulate_measured(tracks, estimate(seen, hits, radius=RADIUS), radius=RADIUS)
     return done.samples, done.scores, done.warnings
@@ -40,7 +40,7 @@ def test_the_shot_again_lands_where_it_did() -> None:
         assert 0.25 * (error or 0.0) < sd < 0.1
     assert warnings == ()
     table = samples["frictional"]
-    hit = find_contacts(seen, RADIUS)[0].t
+    hit = detect_hits(seen, RADIUS)[0].t
     assert table["t"].min() < hit < table["t"].min() + 0.04
     assert set(table["frame"]) <= set(seen["frame"])
 
@@ -49,10 +49,10 @@ def test_stones_meet_where_the_tracks_have_them_meet() -> None:
     """Tracks 3 % too small: two radii are too far apart for where the stones were seen to hit."""
     seen = watch(hit_motion(1.5, 0.15), np.random.default_rng(48), sd=0.001)
     seen[["x", "y"]] *= 0.97
-    hits = find_contacts(seen, RADIUS)
+    hits = detect_hits(seen, RADIUS)
     found = estimate(seen, hits, radius=RADIUS)
-    assert found.laws is not None
-    size = found.laws.values[found.laws.names.index("size")]
+    assert found.joint_estimate is not None
+    size = found.joint_estimate.values[found.joint_estimate.names.index("size")]
     assert size == pytest.approx(0.97, abs=0.006)
 
     def farthest(of: Estimates) -> float:
@@ -61,13 +61,13 @@ def test_stones_meet_where_the_tracks_have_them_meet() -> None:
         return max(error or 0.0 for error in score.rest_error.values())
 
     # All but the size is told by the paths beside the hit too.
-    assert farthest(found) < 0.5 * farthest(replace(found, whole=None))
+    assert farthest(found) < 0.5 * farthest(replace(found, shot_fit=None))
 
 
 def test_a_frame_that_may_lie_behind_the_hit_is_no_start() -> None:
     # The tracks are cut at the contact; the fit's time of the same hit may be just behind a frame.
     seen = watch(hit_motion(1.5, 0.1), np.random.default_rng(44), sd=0.004)
-    (contact,) = find_contacts(seen, RADIUS)
+    (contact,) = detect_hits(seen, RADIUS)
     tracks = smooth(seen, (contact,), radius=RADIUS)
     found = estimate(seen, (contact,), radius=RADIUS)
     frame = float(tracks["t"][tracks["t"] >= contact.t].min())
@@ -130,12 +130,12 @@ def test_two_hits_in_quick_succession(shared: Path) -> None:
 def test_what_is_seen_after_the_hit_does_not_move_the_start_without_a_fit_of_the_whole() -> None:
     motion = hit_motion()
     seen = watch(motion, np.random.default_rng(45))
-    hits = find_contacts(seen, RADIUS)
+    hits = detect_hits(seen, RADIUS)
     found = estimate(seen, hits, radius=RADIUS)
     tracks = smooth(seen, hits, radius=RADIUS)
     other = tracks.copy()
     other.loc[other["t"] > hits[0].t, ["x", "y"]] += 0.5
-    alone = replace(found, whole=None)
+    alone = replace(found, shot_fit=None)
     one, two = (simulate_measured(t, alone, radius=RADIUS).samples for t in (tracks, other))
     pd.testing.assert_frame_equal(one["frictional"], two["frictional"])
     start = one["frictional"].groupby("stone")[["x", "y"]].first()
@@ -146,7 +146,7 @@ def test_what_is_seen_after_the_hit_does_not_move_the_start_without_a_fit_of_the
 def test_stones_that_grip_each_other_are_simulated_so() -> None:
     # Much friction: the slip ends within the contact.
     seen = watch(hit_motion(1.4, -0.12, stone_friction=0.4), np.random.default_rng(47), sd=0.002)
-    estimates = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    estimates = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
     assert estimates.collisions[0].stone_friction is None
     _, scores, _ = again(seen)
     point_mass, frictional = scores["point-mass"].rmse, scores["frictional"].rmse
@@ -154,23 +154,23 @@ def test_stones_that_grip_each_other_are_simulated_so() -> None:
     assert point_mass is not None
     assert frictional < min(0.02, 0.5 * point_mass)
     assert "as in the fit" in (scores["frictional"].note or "")
-    local = replace(estimates, whole=None)
-    tracks = smooth(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    local = replace(estimates, shot_fit=None)
+    tracks = smooth(seen, detect_hits(seen, RADIUS), radius=RADIUS)
     scores = simulate_measured(tracks, local, radius=RADIUS).scores
     assert "at least" in (scores["frictional"].note or "")
 
 
 def test_what_the_fit_of_the_whole_shot_tells_is_not_said_to_be_assumed() -> None:
     seen = watch(hit_motion(1.2, 0.08), np.random.default_rng(41), sd=0.002)
-    hits = find_contacts(seen, RADIUS)
+    hits = detect_hits(seen, RADIUS)
     tracks = smooth(seen, hits, radius=RADIUS)
     found = replace(estimate(seen, hits, radius=RADIUS), restitution=Estimate())
-    assert found.whole is not None
-    e = found.whole["restitution"].value or 0.0
+    assert found.shot_fit is not None
+    e = found.shot_fit["restitution"].value or 0.0
     done = simulate_measured(tracks, found, radius=RADIUS)
     said = f"simulation: restitution not measured: {e:.2g}, as in the fit of the whole shot"
     assert done.warnings == (said,)
-    done = simulate_measured(tracks, replace(found, whole=None), radius=RADIUS)
+    done = simulate_measured(tracks, replace(found, shot_fit=None), radius=RADIUS)
     assert done.warnings == ("simulation: restitution not measured, 0.83 assumed",)
 
 
@@ -185,7 +185,7 @@ def test_a_stone_counts_beyond_where_it_was_hidden() -> None:
 
 def test_a_stone_counts_until_something_else_moves_it() -> None:
     seen = watch(hit_motion(1.2, 0.08), np.random.default_rng(48), sd=0.002)
-    hit = find_contacts(seen, RADIUS)[0].t
+    hit = detect_hits(seen, RADIUS)[0].t
     b = seen["stone"] == "B"
     wall = hit + 0.8
     k = seen[b & (seen["t"] >= wall)].index

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
-import curlshot.physics.local_fit.contacts
-from curlshot.physics.local_fit.contacts import _Evidence, _once, cut_all, find_contacts
+import curlshot.physics.local_fit.hit_detection
 from curlshot.physics.local_fit.fit import fit_shot
-from curlshot.physics.local_fit.shot_fit import Meeting
+from curlshot.physics.local_fit.hit_detection import _Evidence, _once, cut_all, detect_hits
+from curlshot.physics.local_fit.solution import Meeting
 from curlshot.physics.local_fit.traces import traces
 from curlshot.synthetic.physics import Ice, Impact, Motion, Start, simulate
 from curlshot.tests.unit.physics.watch import RADIUS, airtable, discs, hit_motion, semireal, watch
@@ -24,7 +24,7 @@ def test_a_hit_is_timed_to_a_fraction_of_a_frame() -> None:
     motion = hit_motion()
     pulls = []
     for _ in range(20):
-        (hit,) = find_contacts(watch(motion, rng), RADIUS)
+        (hit,) = detect_hits(watch(motion, rng), RADIUS)
         pulls.append((hit.t - motion.hits[0].t) / hit.stderr_t)
         assert abs(hit.t - motion.hits[0].t) < 0.3 / 30
         assert hit.stones == ("A", "B")
@@ -41,7 +41,7 @@ def test_slow_stones_hit_away_from_where_they_seem_closest(
     # where it is sought from there. One such hit was found twice, one 7 standard errors early.
     motion = hit_motion(speed, 0.03, after=1.2, restitution=restitution, friction=0.007)
     seen = watch(motion, np.random.default_rng(seed), fps=60, sd=0.01)
-    (hit,) = find_contacts(seen, RADIUS)
+    (hit,) = detect_hits(seen, RADIUS)
     assert abs(hit.t - motion.hits[0].t) < 3 * hit.stderr_t
 
 
@@ -58,7 +58,7 @@ def test_a_stone_that_hardly_goes_on_hides_no_hit(seed: int) -> None:
         keep_every=4,
     )
     seen = watch(motion, np.random.default_rng(seed), fps=60, sd=0.01)
-    found = [hit.stones for hit in find_contacts(seen, RADIUS)]
+    found = [hit.stones for hit in detect_hits(seen, RADIUS)]
     assert found == [("A", "B"), ("B", "C"), ("C", "D")]
 
 
@@ -75,10 +75,10 @@ def test_a_stone_that_stops_at_once_hides_no_hit(monkeypatch: pytest.MonkeyPatch
     )
     early = Meeting(motion.hits[0].t - 2.6 / 25, ("A", "B"), 1 / 25)
     monkeypatch.setattr(
-        curlshot.physics.local_fit.contacts, "candidates", lambda known, radius: [early]
+        curlshot.physics.local_fit.hit_detection, "candidates", lambda known, radius: [early]
     )
     seen = watch(motion, np.random.default_rng(35), fps=25, sd=0.01)
-    (hit,) = find_contacts(seen, RADIUS)
+    (hit,) = detect_hits(seen, RADIUS)
     assert abs(hit.t - motion.hits[0].t) < 3 * hit.stderr_t
 
 
@@ -111,14 +111,14 @@ def test_a_near_miss_is_no_hit() -> None:
     states[:, 1, :2] = 0.0
     miss = type(free)(t, states, ())
     for given_sd in (True, False):
-        assert find_contacts(watch(miss, rng, given=given_sd), RADIUS) == ()
+        assert detect_hits(watch(miss, rng, given=given_sd), RADIUS) == ()
 
 
 def test_chain_of_hits_two_frames_apart(shared: Path) -> None:
     rng = np.random.default_rng(3)
     for sd, slow in ((0.005, 0.0), (0.01, 0.005), (0.015, 0.0)):
         seen = semireal(shared, "pyeongchang_two_hits", rng, sd=sd, slow=slow)
-        hits = find_contacts(seen, RADIUS)
+        hits = detect_hits(seen, RADIUS)
         assert [hit.stones for hit in hits] == [("A", "B"), ("B", "C")]
         assert hits[0].t == pytest.approx(2.3130, abs=0.02)
         assert hits[1].t == pytest.approx(2.3937, abs=0.02)
@@ -131,7 +131,7 @@ def test_two_side_by_side_are_hit_between_two_detections() -> None:
     assert motion.hits[1].t - motion.hits[0].t < 0.8 / 30
     for _ in range(5):
         # The two that are hit lie within reach of each other, too.
-        hits = find_contacts(watch(motion, rng, sd=0.002), RADIUS)
+        hits = detect_hits(watch(motion, rng, sd=0.002), RADIUS)
         assert [hit.stones for hit in hits] == [("A", "B"), ("A", "C")]
 
 
@@ -139,12 +139,12 @@ def test_stones_that_touch_at_rest_hit_only_when_one_is_hit() -> None:
     rng = np.random.default_rng(4)
     frozen = Start(0.0, 2 * RADIUS + 0.002)
     motion = hit_motion(offset=0.02, others=(frozen,))
-    hits = find_contacts(watch(motion, rng, sd=0.003), RADIUS)
+    hits = detect_hits(watch(motion, rng, sd=0.003), RADIUS)
     assert hits[0].stones == ("A", "B")
     assert all(abs(hit.t - motion.hits[0].t) < 0.1 for hit in hits)
     still = watch(motion, rng, sd=0.003)
     still = still[still["t"] < 0.9].reset_index(drop=True)
-    assert find_contacts(still, RADIUS) == ()
+    assert detect_hits(still, RADIUS) == ()
 
 
 @pytest.mark.parametrize(("aside", "seed"), [(30, 4), (60, 1), (60, 2)])
@@ -153,7 +153,7 @@ def test_a_slow_stone_that_moves_a_touching_pair_by_millimetres_hits_both(
 ) -> None:
     apart = (2 * RADIUS + 1e-5) * np.array([np.sin(np.radians(aside)), np.cos(np.radians(aside))])
     motion = hit_motion(0.1, 0.01, after=1.5, others=(Start(*apart),))
-    hits = find_contacts(watch(motion, np.random.default_rng(seed), fps=25.0, sd=0.001), RADIUS)
+    hits = detect_hits(watch(motion, np.random.default_rng(seed), fps=25.0, sd=0.001), RADIUS)
     assert [hit.stones for hit in hits] == [("A", "B"), ("B", "C")]
 
 
@@ -173,7 +173,7 @@ def test_touching_stones_pass_on_what_a_slow_one_brings(
     motion = simulate([come, *still], 6.0, ice=ice, step=5e-4, keep_every=4)
     assert len({(hit.first, hit.second) for hit in motion.hits}) == len(pairs)
     seen = watch(motion, np.random.default_rng(seed), sd=0.001)
-    assert ["".join(hit.stones) for hit in find_contacts(seen, RADIUS)] == pairs
+    assert ["".join(hit.stones) for hit in detect_hits(seen, RADIUS)] == pairs
 
 
 def packed(rows: int, come: Start, duration: float) -> Motion:
@@ -188,7 +188,7 @@ def test_of_three_packed_stones_the_front_one_drives_both_others(seed: int) -> N
     # All of it is between two detections: that the other two, which touch, met is not needed.
     rng = np.random.default_rng(seed)
     motion = packed(2, Start(rng.uniform(0.03, 0.05), -1.5, 0.0, 2.0, 0.0, 1.0), 2.0)
-    hits = find_contacts(watch(motion, rng, sd=0.001), RADIUS)
+    hits = detect_hits(watch(motion, rng, sd=0.001), RADIUS)
     assert sorted("".join(hit.stones) for hit in hits) == ["AB", "BC", "BD"]
 
 
@@ -196,7 +196,7 @@ def test_a_stone_goes_off_along_the_line_of_centres() -> None:
     rng = np.random.default_rng(5)
     motion = packed(3, Start(rng.uniform(0.03, 0.06), -1.0, 0.0, 1.8, 0.0, 1.0), 1.2)
     assert not any({hit.first, hit.second} == {5, 6} for hit in motion.hits)
-    pairs = ["".join(hit.stones) for hit in find_contacts(watch(motion, rng, sd=0.001), RADIUS)]
+    pairs = ["".join(hit.stones) for hit in detect_hits(watch(motion, rng, sd=0.001), RADIUS)]
     # The last stone is driven by D; F, which touches it too, lies 60 degrees aside of its way.
     assert pairs[:2] == ["AB", "BC"]
     assert "FG" not in pairs
@@ -213,7 +213,7 @@ def test_a_push_and_a_wall_are_no_hits() -> None:
     table["frame"] = np.round(table["t"] * 30).astype(int)
     table[["theta", "sd_x", "sd_y", "sd_theta"]] = np.nan
     table[["x", "y"]] += rng.normal(0, 0.003, (len(table), 2))
-    assert find_contacts(table, RADIUS) == ()
+    assert detect_hits(table, RADIUS) == ()
 
 
 def test_hit_behind_a_broom_is_found_from_the_paths_beside_it() -> None:
@@ -221,7 +221,7 @@ def test_hit_behind_a_broom_is_found_from_the_paths_beside_it() -> None:
     motion = hit_motion()
     seen = watch(motion, rng)
     hidden = (np.abs(seen["t"] - motion.hits[0].t) < 0.15) & (seen["stone"] == "A")
-    (hit,) = find_contacts(seen[~hidden].reset_index(drop=True), RADIUS)
+    (hit,) = detect_hits(seen[~hidden].reset_index(drop=True), RADIUS)
     assert hit.t == pytest.approx(motion.hits[0].t, abs=0.03)
 
 
@@ -231,7 +231,7 @@ def test_what_is_hidden_until_shortly_before_hides_no_hit(beside: float) -> None
     seen = watch(motion, np.random.default_rng(4), sd=0.001)
     before = motion.hits[0].t - seen["t"]
     hidden = (seen["stone"] == "B") & before.between(0.17, 0.61)
-    (hit,) = find_contacts(seen[~hidden].reset_index(drop=True), RADIUS)
+    (hit,) = detect_hits(seen[~hidden].reset_index(drop=True), RADIUS)
     assert hit.t == pytest.approx(motion.hits[0].t, abs=0.005)
 
 
@@ -243,7 +243,7 @@ def test_a_hit_while_both_stones_are_out_of_sight_is_where_their_ways_cross(
     motion = hit_motion(speed, beside, before=2.0, after=2.5)
     seen = watch(motion, np.random.default_rng(5), sd=0.002)
     since = seen["t"] - motion.hits[0].t + share * gap
-    (hit,) = find_contacts(seen[(since < 0) | (since > gap)].reset_index(drop=True), RADIUS)
+    (hit,) = detect_hits(seen[(since < 0) | (since > gap)].reset_index(drop=True), RADIUS)
     assert abs(hit.t - motion.hits[0].t) < max(0.01, 3 * hit.stderr_t)
 
 
@@ -256,7 +256,7 @@ def test_a_hit_while_the_stone_that_comes_is_out_of_sight_is_where_its_ways_cros
     seen = watch(motion, np.random.default_rng(2), fps=25.0, sd=0.012)
     since = seen["t"] - motion.hits[0].t + share * gap
     hidden = (seen["stone"] == "A") & since.between(0, gap)
-    (hit,) = find_contacts(seen[~hidden].reset_index(drop=True), RADIUS)
+    (hit,) = detect_hits(seen[~hidden].reset_index(drop=True), RADIUS)
     assert abs(hit.t - motion.hits[0].t) < max(0.01, 3 * hit.stderr_t)
 
 
@@ -267,7 +267,7 @@ def test_a_hit_that_goes_on_through_a_touching_stone_out_of_sight_is_both_hits()
     assert [(hit.first, hit.second) for hit in motion.hits] == [(0, 1), (1, 2)]
     seen = watch(motion, np.random.default_rng(7), fps=25.0, sd=0.004)
     since = seen["t"] - motion.hits[0].t
-    hits = find_contacts(seen[(since < -0.1) | (since > 0.2)].reset_index(drop=True), RADIUS)
+    hits = detect_hits(seen[(since < -0.1) | (since > 0.2)].reset_index(drop=True), RADIUS)
     assert [set(hit.stones) for hit in hits] == [{"A", "B"}, {"B", "C"}]
 
 
@@ -276,7 +276,7 @@ def test_a_near_miss_out_of_sight_is_no_hit() -> None:
     motion = simulate(starts, 4.0, ice=Ice(b=0.0109), impact=Impact(), step=5e-4, keep_every=4)
     seen = watch(motion, np.random.default_rng(5), sd=0.002)
     passing = seen["t"].between(1.4, 2.0)
-    assert find_contacts(seen[~passing].reset_index(drop=True), RADIUS) == ()
+    assert detect_hits(seen[~passing].reset_index(drop=True), RADIUS) == ()
 
 
 @pytest.mark.parametrize("until", [0.16, 0.35])
@@ -285,7 +285,7 @@ def test_hit_of_a_stone_long_out_of_sight_is_where_the_other_starts(until: float
     motion = hit_motion(0.9, before=2.2)
     seen, t = watch(motion, rng, sd=0.0005), motion.hits[0].t
     hidden = (seen["stone"] == "A") & (seen["t"] > t - 1.9) & (seen["t"] < t + until)
-    (hit,) = find_contacts(seen[~hidden].reset_index(drop=True), RADIUS)
+    (hit,) = detect_hits(seen[~hidden].reset_index(drop=True), RADIUS)
     assert hit.stones == ("A", "B")
     assert hit.t == pytest.approx(t, abs=0.01)
 
@@ -303,16 +303,16 @@ def test_a_stone_hardly_seen_on_one_side_of_its_hit_does_not_hide_it(
     beside = times[times > t][:count] if after else times[times < t][-count:]
     hidden = (seen["t"] > beside[-1]) if after else (seen["t"] < beside[0])
     hidden &= seen["stone"] == ("B" if after else "A")
-    (hit,) = find_contacts(seen[~hidden].reset_index(drop=True), RADIUS)
+    (hit,) = detect_hits(seen[~hidden].reset_index(drop=True), RADIUS)
     assert hit.stones == ("A", "B")
     assert hit.t == pytest.approx(t, abs=0.01)
 
 
 def test_real_tracks_have_one_hit_each(shared: Path) -> None:
-    (hit,) = find_contacts(airtable(shared), 0.035)
+    (hit,) = detect_hits(airtable(shared), 0.035)
     assert hit.t == pytest.approx(0.178, abs=0.01)
     for number, t in ((48, 1.624), (64, 1.024)):
-        (hit,) = find_contacts(discs(shared, number), 0.025)
+        (hit,) = detect_hits(discs(shared, number), 0.025)
         assert hit.t == pytest.approx(t, abs=0.003)
 
 
@@ -322,12 +322,12 @@ def test_real_tracks_have_one_hit_each(shared: Path) -> None:
 )
 def test_hits_do_not_depend_on_the_axes(turn: float, x: float, y: float, mirror: bool) -> None:
     seen = watch(hit_motion(), np.random.default_rng(7))
-    (hit,) = find_contacts(seen, RADIUS)
+    (hit,) = detect_hits(seen, RADIUS)
     c, s = np.cos(turn), np.sin(turn)
     matrix = np.array([[c, -s], [s, c]]) @ np.diag([-1.0 if mirror else 1.0, 1.0])
     moved = seen.copy()
     moved[["x", "y"]] = seen[["x", "y"]].to_numpy() @ matrix.T + [x, y]
-    (other,) = find_contacts(moved, RADIUS)
+    (other,) = detect_hits(moved, RADIUS)
     assert other.t == pytest.approx(hit.t, abs=0.05 * hit.stderr_t)
     assert other.stones == hit.stones
     assert np.allclose(other.normal, matrix @ np.array(hit.normal), atol=1e-3)
@@ -335,10 +335,10 @@ def test_hits_do_not_depend_on_the_axes(turn: float, x: float, y: float, mirror:
 
 def test_few_or_lonely_detections_have_no_hits() -> None:
     seen = watch(hit_motion(), np.random.default_rng(8))
-    assert find_contacts(seen[seen["stone"] == "A"].reset_index(drop=True), RADIUS) == ()
-    assert find_contacts(seen.iloc[:1], RADIUS) == ()
-    assert find_contacts(seen.iloc[:0], RADIUS) == ()
-    assert find_contacts(seen.groupby("stone").head(2).reset_index(drop=True), RADIUS) == ()
+    assert detect_hits(seen[seen["stone"] == "A"].reset_index(drop=True), RADIUS) == ()
+    assert detect_hits(seen.iloc[:1], RADIUS) == ()
+    assert detect_hits(seen.iloc[:0], RADIUS) == ()
+    assert detect_hits(seen.groupby("stone").head(2).reset_index(drop=True), RADIUS) == ()
 
 
 @pytest.mark.parametrize(
@@ -353,7 +353,7 @@ def test_a_frozen_pair_is_hit_and_hits_on(
     third = second + (2 * RADIUS + beyond) * aside
     motion = hit_motion(speed, -0.08, others=(Start(*second), Start(*third)))
     for fps in (25.0, 30.0, 50.0):
-        hits = find_contacts(watch(motion, rng, fps=fps, sd=sd), RADIUS)
+        hits = detect_hits(watch(motion, rng, fps=fps, sd=sd), RADIUS)
         assert [hit.stones for hit in hits] == [("A", "B"), ("B", "C"), ("C", "D")]
 
 
@@ -367,7 +367,7 @@ def test_a_hit_goes_on_through_a_row_of_three(fps: float, sd: float, seed: int) 
         second = (2 * RADIUS + gap) * np.array([0.25, 0.968])
         third = second + (2 * RADIUS + gap) * np.array([-0.5, 0.866])
         motion = hit_motion(1.9, 0.05, after=1.6, others=(Start(*second), Start(*third)))
-        hits = find_contacts(watch(motion, rng, fps=fps, sd=sd), RADIUS)
+        hits = detect_hits(watch(motion, rng, fps=fps, sd=sd), RADIUS)
         pairs = [hit.stones for hit in hits]
         assert pairs[:3] == [("A", "B"), ("B", "C"), ("C", "D")]
         assert hits[2].t - hits[0].t < 0.03

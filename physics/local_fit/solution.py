@@ -82,7 +82,7 @@ def times_of(pieces: int, meetings: int) -> slice:
 
 
 @dataclass(frozen=True)
-class ShotFit:
+class LocalFit:
     """Result of `curlshot.physics.local_fit.fit.fit_shot`.
 
     Attributes

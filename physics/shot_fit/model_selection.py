@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from curlshot.data.results import Estimate, Law
 from curlshot.data.sheet import curling_size
 from curlshot.physics.filter.slowing import V_C
-from curlshot.physics.whole_shot.global_fit import LOST, fit_shots
-from curlshot.physics.whole_shot.shot_model import Watched, penner
-from curlshot.physics.whole_shot.watched import THROWN
-from curlshot.physics.whole_shot.whole_fit import GlobalFit
+from curlshot.physics.shot_fit.global_fit import LOST, fit_shots
+from curlshot.physics.shot_fit.observed import THROWN
+from curlshot.physics.shot_fit.result import ShotFit
+from curlshot.physics.shot_fit.shot_model import ObservedShot, penner
 
 STRAIGHT = {"slope": 0.0, "v_c": V_C, "turn": 0.0}
 """Constant friction and no curl: one of two ways that a first fit sets out from, and what unknowns
@@ -48,7 +48,7 @@ SELDOM = 9.0
 """Twice the log of odds beyond which other laws do not count."""
 
 
-def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None) -> GlobalFit:
+def fit_with_chosen_laws(shot: ObservedShot, fixed: Mapping[str, float] | None = None) -> ShotFit:
     """Fit a shot with the laws that the detections ask for, some unknowns held if `fixed`.
 
     First friction depends on the speed and the paths curl. Each of the two is left out, and
@@ -71,7 +71,7 @@ def fit_with_chosen_laws(shot: Watched, fixed: Mapping[str, float] | None = None
 
 
 def _with_laws(
-    fit: GlobalFit, held: dict[str, float], criterion: float, fixed: Mapping[str, float]
+    fit: ShotFit, held: dict[str, float], criterion: float, fixed: Mapping[str, float]
 ) -> _Tried:
     """Try the laws that a fit may do with or without, from where it came to rest."""
     tried = _Tried([fit], [criterion], held)
@@ -94,21 +94,19 @@ def _with_laws(
     return tried
 
 
-def _distinct(
-    every: Sequence[tuple[float, GlobalFit]], best: GlobalFit
-) -> list[tuple[float, GlobalFit]]:
+def _distinct(every: Sequence[tuple[float, ShotFit]], best: ShotFit) -> list[tuple[float, ShotFit]]:
     """Leave out fits that came to the same place as another by the same laws: they count once."""
-    kept: list[tuple[float, GlobalFit]] = []
+    kept: list[tuple[float, ShotFit]] = []
     for criterion, fit in sorted(every, key=lambda pair: (pair[0], pair[1] is not best)):
         if not any(_same(fit, other) for _, other in kept):
             kept.append((criterion, fit))
     return kept
 
 
-def _same(one: GlobalFit, two: GlobalFit) -> bool:
+def _same(one: ShotFit, two: ShotFit) -> bool:
     """Whether two fits have the same laws and values, but for a friction that neither tells."""
     names, others = (
-        [name for name in fit.names if name != "stone_friction" or fit.told(name)]
+        [name for name in fit.names if name != "stone_friction" or fit.identifies(name)]
         for fit in (one, two)
     )
     if names != others or one.shots[0].ice is not two.shots[0].ice:
@@ -125,7 +123,7 @@ class _Tried:
 
     Attributes
     ----------
-    fits : list of GlobalFit
+    fits : list of ShotFit
     criteria : list of float
         Of each, minus twice the log probability of the detections, but for what all share.
     held : dict
@@ -134,13 +132,13 @@ class _Tried:
         Of the best.
     """
 
-    fits: list[GlobalFit]
+    fits: list[ShotFit]
     criteria: list[float]
     held: dict[str, float]
     rank: int = 0
 
     @property
-    def best(self) -> GlobalFit:
+    def best(self) -> ShotFit:
         """The fit that makes the detections most probable, of those that may be the best."""
         return self.fits[self.rank]
 
@@ -149,14 +147,14 @@ class _Tried:
         """Its criterion."""
         return self.criteria[self.rank]
 
-    def add(self, fit: GlobalFit, criterion: float, held: dict[str, float] | None = None) -> None:
+    def add(self, fit: ShotFit, criterion: float, held: dict[str, float] | None = None) -> None:
         """Count a fit in; it is the best from then on if it is better, and says what it holds."""
         if held is not None and criterion < self.least:
             self.held, self.rank = held, len(self.fits)
         self.fits.append(fit)
         self.criteria.append(criterion)
 
-    def refitted(self, held: Mapping[str, float]) -> GlobalFit:
+    def refitted(self, held: Mapping[str, float]) -> ShotFit:
         """Fit with other laws from where the best fit has them, with the noise that it has told."""
         best = self.best
         return fit_shots(best.shots, fixed=held, start=_values(best, held), noise=best.inflation)
@@ -187,7 +185,7 @@ def _let_bend(tried: _Tried) -> None:
         tried.fits[tried.rank], tried.held = bent, free
 
 
-def _either_sense(shot: Watched, held: Mapping[str, float]) -> list[GlobalFit]:
+def _either_sense(shot: ObservedShot, held: Mapping[str, float]) -> list[ShotFit]:
     """Fit a shot with spins that nobody saw of either sense, the better first.
 
     A path curls to the side to which its stone spins, which after a hit may be the other, and no
@@ -202,12 +200,12 @@ def _either_sense(shot: Watched, held: Mapping[str, float]) -> list[GlobalFit]:
     return [best, *(fit for fit in fits if fit is not best and _as_good(fit, best))]
 
 
-def _as_good(fit: GlobalFit, best: GlobalFit) -> bool:
+def _as_good(fit: ShotFit, best: ShotFit) -> bool:
     """Whether a fit came as far as another: to its end, with the hits that were seen."""
     return (fit.settled, fit.hits_as_seen) >= (best.settled, best.hits_as_seen)
 
 
-def _hit_by_hit(shot: Watched, held: Mapping[str, float]) -> GlobalFit:
+def _hit_by_hit(shot: ObservedShot, held: Mapping[str, float]) -> ShotFit:
     """Fit a shot up to its second hit, then up to the next, each from where the one before ended.
 
     From first guesses stones would miss what they hit later, from where no slope leads back. Nor
@@ -216,7 +214,7 @@ def _hit_by_hit(shot: Watched, held: Mapping[str, float]) -> GlobalFit:
     """
     start = {name: value for name, value in USUAL.items() if name not in held}
     apart = [two for one, two in pairwise(shot.times) if two - one > 2 * BEFORE]
-    best: GlobalFit | None = None
+    best: ShotFit | None = None
     for part in [*(shot.until(time - BEFORE) for time in apart), shot]:
         own = {unknown.name for unknown in part.unknowns}
         known = {name: value for name, value in start.items() if name in own}
@@ -237,11 +235,11 @@ def _hit_by_hit(shot: Watched, held: Mapping[str, float]) -> GlobalFit:
 
 
 def _best(
-    shot: Watched,
+    shot: ObservedShot,
     held: Mapping[str, float],
     ways: Sequence[dict[str, float]],
-    *others: GlobalFit,
-) -> GlobalFit:
+    *others: ShotFit,
+) -> ShotFit:
     """Fit a shot from where each of the ways sets out, and return the best, or another's."""
     fits = [*others]
     for way in ways:
@@ -249,18 +247,18 @@ def _best(
     return _best_of(fits)
 
 
-def _best_of(fits: Sequence[GlobalFit]) -> GlobalFit:
+def _best_of(fits: Sequence[ShotFit]) -> ShotFit:
     """Return the fit that explains a shot best: of those that settle, with the hits as seen."""
     noise = min(fit.inflation for fit in fits)
     return min(fits, key=lambda fit: (not fit.settled, not fit.hits_as_seen, _cost(fit, noise)))
 
 
-def _cost(fit: GlobalFit, noise: float) -> float:
+def _cost(fit: ShotFit, noise: float) -> float:
     """Least squares of a fit: its detections' with that much noise, and what else it heeds."""
     return fit.deviance / noise + fit.elsewhere
 
 
-def _against(fit: GlobalFit, name: str) -> float:
+def _against(fit: ShotFit, name: str) -> float:
     """Twice the log of how much more probable the detections are if an unknown is 0.
 
     It is the density of what the fit tells of the unknown over that of what was known of it
@@ -274,9 +272,7 @@ def _against(fit: GlobalFit, name: str) -> float:
     return float(told - known)
 
 
-def _with_others(
-    best: GlobalFit, tried: Sequence[GlobalFit], criteria: NDArray[np.float64]
-) -> GlobalFit:
+def _with_others(best: ShotFit, tried: Sequence[ShotFit], criteria: NDArray[np.float64]) -> ShotFit:
     """Put what the fits with other laws say into the errors of the best one.
 
     Every variance becomes the mean over the fits of their own and of the square of their
@@ -299,7 +295,7 @@ def _with_others(
             _name(tried[k], best),
             float(criteria[k] - criteria.min()),
             float(weights[k]),
-            tried[k]["friction"] if tried[k].told("friction") else Estimate(),
+            tried[k]["friction"] if tried[k].identifies("friction") else Estimate(),
         )
         for k in order
     )
@@ -307,7 +303,7 @@ def _with_others(
     return replace(best, cov=cov * np.outer(scale, scale), laws=laws, choices=choices)
 
 
-def _told_by(fit: GlobalFit, best: GlobalFit) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _told_by(fit: ShotFit, best: ShotFit) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Values and variances of the best fit's unknowns in another; its own where that holds them."""
     values, variance = best.values.copy(), np.diag(best.cov).copy()
     for k, name in enumerate(best.names):
@@ -317,7 +313,7 @@ def _told_by(fit: GlobalFit, best: GlobalFit) -> tuple[NDArray[np.float64], NDAr
     return values, variance
 
 
-def _name(fit: GlobalFit, best: GlobalFit) -> str:
+def _name(fit: ShotFit, best: ShotFit) -> str:
     """Return the laws of a fit in words, and whether it expects spins the other way round."""
     ice = "constant" if "slope" in fit.fixed else "fit"
     if fit.shots[0].ice is penner:
@@ -328,7 +324,7 @@ def _name(fit: GlobalFit, best: GlobalFit) -> str:
     return f"ice {ice}, curl {curl}, {hits}" + ", spins of the other sense" * other
 
 
-def _values(fit: GlobalFit, held: Mapping[str, float] = MappingProxyType({})) -> dict[str, float]:
+def _values(fit: ShotFit, held: Mapping[str, float] = MappingProxyType({})) -> dict[str, float]:
     """Where the next fit sets out from: what this one tells, if the ice is as it is held.
 
     Without a slope friction is another, and speeds with it: from where they are with one a fit may
@@ -341,12 +337,12 @@ def _values(fit: GlobalFit, held: Mapping[str, float] = MappingProxyType({})) ->
     return dict(zip(fit.names, values.tolist(), strict=True))
 
 
-def _beside(fit: GlobalFit, best: GlobalFit) -> float:
+def _beside(fit: ShotFit, best: ShotFit) -> float:
     """Twice the log of how much more probable the best fit makes the detections than another."""
     return _criterion(fit, best.inflation) - _criterion(best, best.inflation)
 
 
-def _criterion(fit: GlobalFit, noise: float) -> float:
+def _criterion(fit: ShotFit, noise: float) -> float:
     """Minus twice the log probability of the detections, but for what all fits share.
 
     By Laplace's method (Kass and Raftery, 1995, J. Am. Stat. Assoc. 90, 773).
