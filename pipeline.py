@@ -226,7 +226,7 @@ def analyse(
     )
 
 
-NO_SAMPLES = "no samples: the shot shows neither restitution nor friction"
+NO_SAMPLES = "no samples: neither restitution nor friction is identifiable"
 
 
 def _camera_table(measured: Measurement) -> pd.DataFrame | None:
@@ -242,5 +242,5 @@ def _way_out(config: Config) -> str:
     """Return what to do where no stone was found, by how the camera was known."""
     for name in ("stick", "camera"):
         if getattr(config.camera, name) is not None:
-            return f"`check` shows what was looked at; check `radius` and `{name}`"
-    return "`check` shows where the house was taken to be, and `house` points at another"
+            return f"`check` shows the frames; verify `radius` and `{name}`"
+    return "`check` shows the house that was found; `house` corrects it"

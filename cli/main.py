@@ -163,7 +163,7 @@ def _convert_each(arguments: argparse.Namespace) -> str:
     from curlshot.report.numbers import count, warned
 
     if arguments.over is not None:
-        raise InputError("`over`: one clip cannot be behind many projects; convert one at a time")
+        raise InputError("`over`: one clip does not fit many projects; convert one at a time")
     config, files = config_of(arguments), find_inputs(arguments.inputs)
     targets = targets_of(files, arguments.out)
     refused, written = [], []

@@ -166,7 +166,7 @@ def _made(kind: type[_Made], item: Mapping[str, Any]) -> _Made:
 
 def _length(value: Any) -> float:
     if type(value) not in (int, float) or not 0 < value < math.inf:
-        raise TypeError("no length nor mass")
+        raise TypeError("not a length or mass")
     return float(value)
 
 

@@ -52,18 +52,16 @@ good fits, on swept and uneven ice too, they differ by up to 2.7."""
 NEAR = 2.2
 """Distance of two stones' centres, in radii, from which they may have hit each other unseen."""
 
-INSTEAD = "values of each hit and glide used"
+INSTEAD = "local estimates of each hit and glide are used"
 """What is done where the whole shot is not used."""
 
 LED_ASTRAY = (
-    f"whole shot: something else than ice and hits moves a stone by its first hit; {INSTEAD}"
+    f"shot fit: something other than ice and hits moves a stone before its first hit; {INSTEAD}"
 )
 """Why a shot with hits is not fitted as a whole."""
 
-ALONE = "it counts all the same: something else moves the stone, or the track is bent"
-TOO_FEW = (
-    "it counts all the same, for too few stones move to tell whether this track is bent or another"
-)
+ALONE = "it keeps its weight: something else moves the stone, or its track is distorted"
+TOO_FEW = "it keeps its weight: too few stones move to identify which track is distorted"
 """What is said of a bent track of a stone by itself, and of one that may be the others' fault."""
 
 LAWS = ("restitution", "friction", "stone_friction")
@@ -117,9 +115,9 @@ class Estimates:
         alone = Method(
             local.restitution,
             Estimate(local.friction.value, local.friction.stderr),
-            NotedEstimate(note="friction between the stones: each hit tells its own"),
+            NotedEstimate(note="friction between the stones is estimated for each hit"),
             hits=tuple(Estimate(hit.restitution, hit.stderr) for hit in local.collisions),
-            note="from the paths beside the hits",
+            note="from the paths just before and after each hit",
         )
         plain = by_finite_differences(local.known, local.collisions, _rests(local))
         return {"local": alone, "shot_fit": self.by_shot_fit, "finite-differences": plain}
@@ -210,14 +208,17 @@ def _rests(local: Local) -> dict[str, float]:
 def _global(fit: ShotFit | None, doubt: str | None) -> Method:
     """Return what the whole shot says, used or not."""
     if fit is None:
-        return Method(note=doubt or "the whole shot is not fitted: no stone glides")
+        return Method(note=doubt or "no shot fit: no stone glides")
     rub = NotedEstimate(
-        note="any friction above what stops the stones sliding on each other does the same"
+        note=(
+            "not identifiable: any friction that stops the stones sliding on each other gives"
+            " the same motion"
+        )
     )
     if fit.identifies("stone_friction"):
         rub = NotedEstimate(*_pair(fit["stone_friction"]))
     elif "stone_friction" in fit.names:
-        rub = NotedEstimate(note="the shot tells no more of it than was known beforehand")
+        rub = NotedEstimate(note="not identifiable: the shot adds nothing to the prior")
     known = {name: fit[name] for name in ("restitution", "friction") if fit.identifies(name)}
     return Method(
         known.get("restitution", Estimate()), known.get("friction", Estimate()), rub, note=doubt
@@ -229,7 +230,7 @@ def _curl(fit: ShotFit | None, doubt: str | None) -> NotedEstimate:
     if fit is None:
         return NotedEstimate(note=doubt or "the whole shot is not fitted")
     if "turn" in fit.fixed:
-        return NotedEstimate(note="no curl shows: the shot is as well explained without")
+        return NotedEstimate(note="not identifiable: the shot is explained as well without curl")
     return NotedEstimate(*_pair(fit["turn"]))
 
 
@@ -288,7 +289,7 @@ def _whole(
     try:
         fit, part = fit_valid_interval(observed)
     except InputError:
-        return _Whole(None, seen, doubt=f"whole shot: no stones that slide move so; {INSTEAD}")
+        return _Whole(None, seen, doubt=f"shot fit: no sliding stones move like this; {INSTEAD}")
     off = track_residuals(observed, fit) if followed(fit) else ()
     # Caps beside the centres turn with the stones; paths beside a hit take that for velocity.
     over = centred(fit) if _fits(fit) else seen
@@ -297,8 +298,10 @@ def _whole(
     doubt = doubt or _other_ice(seen.friction, fit["friction"])
     so_far = part if hits else "until something else moves a stone"
     if doubt is None and so_far is not None and _blunt(fit["friction"], seen.friction):
-        doubt = f"whole shot: the simulator follows it {so_far}, too short; {INSTEAD}"
-    end = None if part is None else f"whole shot: the simulator follows it {part}"
+        doubt = (
+            f"shot fit: the simulator reproduces the shot {so_far}, which is too short; {INSTEAD}"
+        )
+    end = None if part is None else f"shot fit: the simulator reproduces the shot {part}"
     agrees = agrees and _other_ice(over.friction, fit["friction"]) is None
     return _Whole(fit, over if agrees and doubt is None else seen, off, doubt, end)
 
@@ -308,10 +311,10 @@ def _astray(off: Sequence[TrackResidual]) -> Iterator[str]:
     for one in off:
         if one.significant:
             alone = all(other.stone == one.stone for other in off)
-            so = "hardly counted there" if one.downweighted else ALONE if alone else TOO_FEW
+            so = "it has little weight there" if one.downweighted else ALONE if alone else TOO_FEW
             yield (
-                f"whole shot: from {one.t0:.2f} to {one.t1:.2f} s the track of {one.stone} is"
-                f" {_times(one.rms_ratio)} times its errors off a path on this ice; {so}"
+                f"shot fit: from {one.t0:.2f} to {one.t1:.2f} s the track of {one.stone} deviates"
+                f" from a path on this ice by {_times(one.rms_ratio)} times its errors; {so}"
             )
 
 
@@ -334,14 +337,14 @@ def _beside(local: Local, radius: float) -> list[str]:
 def _doubt(fit: ShotFit, local: Estimate) -> str | None:
     """Say why what a fit of the whole shot gives is not to be used, None where it is."""
     if not followed(fit):
-        return f"whole shot: the simulator does not follow it; {INSTEAD}"
+        return f"shot fit: the simulator does not reproduce the shot; {INSTEAD}"
     if fit.misfit > POOR_FIT:
         return (
-            "whole shot: the simulated paths differ from the tracks by more than their errors"
-            f" (variance × {fit.misfit:.0f}); {INSTEAD}"
+            "shot fit: simulated paths and tracks differ by more than their errors (variance ×"
+            f" {fit.misfit:.0f}); {INSTEAD}"
         )
     if fit.diverged:
-        return f"whole shot: stones are far from their simulated paths; {INSTEAD}"
+        return f"shot fit: stones are far from their simulated paths; {INSTEAD}"
     return _disagreement(local, fit["restitution"])
 
 
@@ -374,9 +377,9 @@ def _other_ice(local: Friction, whole: Estimate) -> str | None:
     if abs(whole.value - local.value) <= OTHER_ICE * max(local.stderr, whole.stderr):
         return None
     return (
-        f"friction: {local.value:.4f} ± {local.stderr:.4f} from the glides,"
-        f" {whole.value:.4f} ± {whole.stderr:.4f} from the whole shot, which disagree;"
-        " the first used, its error widened by that"
+        f"friction: {local.value:.4f} ± {local.stderr:.4f} from the glides and {whole.value:.4f}"
+        f" ± {whole.stderr:.4f} from the shot fit disagree; the first is used, with its error"
+        " enlarged by the difference"
     )
 
 
@@ -392,13 +395,13 @@ def _disagreement(local: Estimate, whole: Estimate) -> str | None:
         return None
     if _blunt(whole, local):
         return (
-            f"whole shot: tells the restitution to ± {whole.stderr:.2g} only;"
-            f" {INSTEAD} (± {local.stderr:.2g})"
+            f"shot fit: its error of the restitution is ± {whole.stderr:.2g}; {INSTEAD} (±"
+            f" {local.stderr:.2g})"
         )
     if abs(whole.value - local.value) <= 3 * max(local.stderr, whole.stderr):
         return None
     return (
-        f"restitution: {local.value:.3f} ± {local.stderr:.3f} beside the hits,"
-        f" {whole.value:.3f} ± {whole.stderr:.3f} from the whole shot, which disagree;"
-        " the first used, its error widened by that"
+        f"restitution: {local.value:.3f} ± {local.stderr:.3f} from the local estimates and"
+        f" {whole.value:.3f} ± {whole.stderr:.3f} from the shot fit disagree; the first is used,"
+        " with its error enlarged by the difference"
     )

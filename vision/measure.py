@@ -66,7 +66,7 @@ def film(files: tuple[Path, ...], config: Config, progress: Progress, placed: Pl
 
         filmed = replace(filmed, cameras=taken_at(filmed.cameras, clip.cadence.times))
     if not filmed.cameras:
-        raise InputError(f"{files[0]}: none of the frames that are used can be read")
+        raise InputError(f"{files[0]}: none of the selected frames can be read")
     check_size(config.stones.radius, filmed.cameras[0])
     return filmed
 
@@ -87,7 +87,9 @@ def _open_clip(files: tuple[Path, ...], config: Config) -> Clip:
 
     clip = open_project_clip(files[0], config.video.tab, config.video.frames)
     if config.video.fps is not None:
-        clip.warnings.append(f"{files[0]}: a project says how long frames last; `fps` is ignored")
+        clip.warnings.append(
+            f"{files[0]}: the project gives the duration of a frame; `fps` is ignored"
+        )
     return clip
 
 
@@ -124,7 +126,7 @@ def check_size(radius: float, camera: Camera) -> None:
     pixels = radius * float(camera.scale_at((0.0, 0.0)))
     if not 1.5 < pixels < max(camera.size):
         raise InputError(
-            f"discs of radius {radius:g} m would have {pixels:.2g} px in the picture; check"
+            f"discs of radius {radius:g} m would have {pixels:.2g} px in the frame; verify"
             " `radius`, and `stick` or `camera` if given"
         )
 
@@ -146,9 +148,9 @@ def disc_of(config: Config) -> Stone:
     least, most = STONE_RADII
     if not least <= config.stones.radius <= most:
         raise InputError(
-            f"radius {config.stones.radius:g} m: in a house stones are looked for, which have"
-            f" {STONE.radius:g} m ({least:g} to {most:g} are taken); for other discs give the scale"
-            " with `stick` or `camera`"
+            f"radius {config.stones.radius:g} m: in a house the discs must be stones,"
+            f" {STONE.radius:g} m ({least:g} to {most:g} are accepted); for other discs give the"
+            " scale with `stick` or `camera`"
         )
     return replace(STONE, radius=config.stones.radius)
 

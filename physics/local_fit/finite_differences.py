@@ -51,10 +51,12 @@ def by_finite_differences(
     return Method(
         _mean(hits),
         _mean(slowed),
-        NotedEstimate(note="friction between the stones is not told so"),
+        NotedEstimate(note="finite differences do not give the friction between the stones"),
         hits=tuple(hits),
-        note=f"mean finite differences over at most {WINDOW:g} s on either side of a hit; errors"
-        " are of noise alone",
+        note=(
+            f"mean finite differences over at most {WINDOW:g} s on either side of a hit; errors"
+            " from noise alone"
+        ),
     )
 
 

@@ -196,13 +196,13 @@ def _why_not(
     )
     if scatter > UNLIKE:
         return (
-            f"restitution unknown: hits in quick succession would have ones that differ by"
-            f" {scatter:.2g}, as where a hit between them was not told"
+            "restitution unknown: the values of hits in quick succession would differ by"
+            f" {scatter:.2g}, as if a hit between them was missed"
         )
     if value > 1 + 2 * stderr:
         return (
             f"restitution unknown: {value:.3f} ± {stderr:.3f} is more than 1, which no hit gives:"
-            " times or tracks are off, or something pushed a stone"
+            " times or tracks are wrong, or something pushed a stone"
         )
     lost = _lost(momentum)
     if lost or stderr < WORST:
@@ -213,7 +213,7 @@ def _why_not(
             seen = len(piece.samples)
             if seen < SEEN:
                 between = piece.opens is not None and piece.closes is not None
-                often = ("not seen", "seen once", f"seen {seen} times")[min(seen, 2)]
+                often = ("not seen", "measured once", f"measured {seen} times")[min(seen, 2)]
                 where = "between two hits" if between else f"{when} it"
                 return f"restitution unknown: {stone} is {often} {where}"
     return f"restitution unknown: its standard error would be {stderr:.2g}"
@@ -225,7 +225,7 @@ def _lost(momentum: Estimate) -> str | None:
     if change is None or stderr is None or change < max(LOST, 3 * stderr):
         return None
     off = f"{100 * change:.0f} % ± {100 * stderr:.0f} %"
-    return f"restitution unknown: momentum changes by {off}, something else touched the stones"
+    return f"restitution unknown: momentum changes by {off}; something else touched the stones"
 
 
 def _momentum(fit: LocalFit, k: int, mass: Floats) -> Estimate:

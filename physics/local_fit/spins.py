@@ -136,7 +136,7 @@ def stone_friction(
     first, second = spins[0][0], spins[1][0]
     if first.value is None or second.value is None:
         stone = fit.meetings[k].stones[0 if first.value is None else 1]
-        return Estimate(), f"the spin of {stone} before the hit is not seen"
+        return Estimate(), f"the spin of {stone} before the hit was not measured"
     turn = radius * (first.value + second.value)
 
     def parts(states: Sequence[ContactState]) -> Floats:
@@ -164,7 +164,8 @@ def stone_friction(
         return Estimate(), f"the tangential impulse ({rub:.3f} ± {sd:.3f}) has the wrong sign"
     if room < 2 * sd_room:
         return Estimate(), (
-            f"the stones may have stopped sliding on each other: an impulse of {stick:.3f} does it,"
-            f" {rub:.3f} ± {sd_room:.3f} was seen, in units of the normal one"
+            "the stones may have stopped sliding on each other: the tangential impulse that"
+            f" stops it is {stick:.3f}, the measured one {rub:.3f} ± {sd_room:.3f}, in units of"
+            " the normal impulse"
         )
     return Estimate(max(float(rub), 0.0), sd), None

@@ -100,8 +100,8 @@ def predict(
     if not estimates.collisions:
         return {}
     first = first_hit(estimates.collisions)
-    rigid = Prediction(None, note="needs spins after the hit, which only the shot itself tells")
-    note = "too little is seen before the first hit"
+    rigid = Prediction(None, note="needs the spins after the hit, which a prediction does not have")
+    note = "too few detections before the first hit"
     try:
         fit = _before(detections[detections["t"] < first], radius, masses or {}, laws)
     except InputError as error:
@@ -175,7 +175,7 @@ def _scored(
     clock = tracks.groupby("frame", sort=True)["t"].first()
     clock = clock[clock >= first]
     if clock.empty:
-        return Prediction(None, note="nothing is seen after the first hit")
+        return Prediction(None, note="no detections after the first hit")
     times = clock.to_numpy(float)
     seen = tracks[(tracks["seen"] != 0) & (tracks["t"] >= first)]
     at = {str(stone): float(t) for stone, t in seen.groupby("stone")["t"].max().items()}
@@ -188,7 +188,7 @@ def _scored(
     soon_enough = dict.fromkeys(stones, first + AFTER)
     if not any(frozenset(stones) in one.pairs(soon_enough) for one in (likely, *drawn)):
         # None of the draws is of this shot: as where a hand moves a stone before the hit.
-        note = f"as foretold, {' and '.join(stones)} do not hit each other within {AFTER} s"
+        note = f"in the prediction, {' and '.join(stones)} do not hit each other within {AFTER} s"
         return Prediction(None, note=note)
     spread = dict(zip(ends, _spreads(drawn, ends, places), strict=True))
     frames = pd.Series(clock.index, index=np.searchsorted(every, times))
@@ -218,9 +218,11 @@ def _other_hits(
     seen = {frozenset(hit.stones) for hit in collisions}
     notes = [note] if note else []
     for stones in sorted(map(sorted, pairs - seen)):
-        notes.append(f"as foretold, {' and '.join(stones)} hit each other, which they did not")
+        notes.append(
+            f"in the prediction, {' and '.join(stones)} hit each other; in the clip they did not"
+        )
     for stones in sorted(map(sorted, seen - pairs)):
-        notes.append(f"as foretold, {' and '.join(stones)} do not hit each other")
+        notes.append(f"in the prediction, {' and '.join(stones)} do not hit each other")
     return "; ".join(notes) or None
 
 

@@ -113,7 +113,7 @@ def assumed_of(laws: Laws, shot: Shot) -> dict[str, str]:
     said = dict(laws.assumed)
     for name in own.keys() & said.keys():
         if not isclose(own[name], usual[name], rel_tol=1e-6):
-            said[name] = f"{name} not measured: {own[name]:.2g}, as in the fit of the whole shot"
+            said[name] = f"{name} not measured: {own[name]:.2g}, as in the shot fit"
     return said
 
 
@@ -160,7 +160,7 @@ def _ice(friction: Friction, usual: Estimate, assumed: dict[str, str]) -> tuple[
         assumed["friction"] = f"friction not measured, {usual.value} assumed"
     value = friction.value or 0.0
     if value <= 0:
-        assumed["friction"] = f"friction came out as {value:.4f}, 0 used"
+        assumed["friction"] = f"friction measured as {value:.4f}, 0 used"
         return Constant(LEAST_FRICTION), 0.0
     sd = (friction.stderr or 0.0) / value
     return law_of(friction), sd

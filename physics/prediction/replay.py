@@ -106,7 +106,7 @@ def simulate_measured(
     if tracks.empty:
         return Replay({}, {}, ("no tracks to simulate",))
     if tracks["vx"].isna().all():
-        return Replay({}, {}, ("no stone was seen twice: places only, nothing to simulate",))
+        return Replay({}, {}, ("no stone was detected twice: places only, nothing to simulate",))
     start = _start_time(tracks, estimates)
     fit = estimates.shot_fit
     told = {*fit.shots[0].traces} if fit is not None else set()
@@ -148,8 +148,8 @@ def _assumptions(
     used = ("restitution", "friction") if estimates.collisions else ("friction",)
     out += [f"simulation: {assumed[name]}" for name in used if name in assumed]
     out += [
-        f"simulation: {name} is compared until {end:.2f} s; neither ice nor a hit in view"
-        " explains how it moves then"
+        f"simulation: {name} is compared until {end:.2f} s; neither the ice nor a detected hit"
+        " explains its motion afterwards"
         for name, end in explained.items()
         if np.isfinite(end)
     ]
@@ -308,9 +308,9 @@ def _as_it_fits(fit: ShotFit | None) -> str | None:
     if fit is None:
         return None
     if "stone_friction" in fit.fixed:
-        return "friction between the stones not told: they stick, as in the fit of the whole shot"
+        return "friction between the stones not identifiable: they stick, as in the shot fit"
     rub = fit.state()["stone_friction"]
-    return f"friction between the stones not told: {rub:.2g}, as in the fit of the whole shot"
+    return f"friction between the stones not identifiable: {rub:.2g}, as in the shot fit"
 
 
 def explained_until(tracks: pd.DataFrame, estimates: Estimates, start: float) -> dict[str, float]:

@@ -60,7 +60,7 @@ def _until_resumed(fit: ShotFit, end: str | None) -> tuple[ShotFit, str | None]:
         if shorter.hits:
             part = fit_with_chosen_laws(shorter)
             if followed(part) and QUIETER * part.inflation < fit.inflation:
-                why = "what is shown from then on does not continue it"
+                why = "the clip does not continue the same motion from there"
                 return part, f"until {time:.2f} s: {why}"
     return fit, end
 
@@ -70,8 +70,10 @@ def _obstacle(fit: ShotFit) -> tuple[float, str]:
     shot = fit.shots[0]
     other = shot.first_other_hit(fit.simulation())
     if other is not None:
-        return other[0], f"the hit of {other[1]} is not as simulated"
-    return shot.times[-1], f"with the hit of {' and '.join(shot.hits[-1])} the fit does not settle"
+        return other[0], f"the hit of {other[1]} differs from the simulated one"
+    return shot.times[
+        -1
+    ], f"the fit does not converge with the hit of {' and '.join(shot.hits[-1])}"
 
 
 def followed(fit: ShotFit) -> bool:

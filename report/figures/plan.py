@@ -128,7 +128,7 @@ def _handles(
         handles.append(line("hit", color=BLACK, marker="x", ls="none", mew=1.6))
     if under_way:
         shaft: dict[str, Any] = {"marker": r"$\rightarrow$", "ls": "none", "ms": 11, "mew": 0}
-        handles.append(line("last seen under way", color=GREY, **shaft))
+        handles.append(line("last detected, moving", color=GREY, **shaft))
     if factor:
         by = "" if factor == 1 else f", {factor} × enlarged"
         shade: dict[str, Any] = {"color": GREY, "marker": "o", "ls": "none", "alpha": 0.5}

@@ -52,7 +52,7 @@ def posterior_figure(laws: JointEstimate | None, samples: pd.DataFrame | None = 
     )
     names = [name for name in NAMES if name in known]
     if not names:
-        raise ValueError("neither laws nor samples: nothing to draw")
+        raise ValueError("neither a shot fit nor samples: nothing to draw")
     ranges = {name: _range(name, laws, samples) for name in names}
     count = len(names)
     with styled():
@@ -79,7 +79,7 @@ def posterior_figure(laws: JointEstimate | None, samples: pd.DataFrame | None = 
                     ax.tick_params(labelleft=False)
                 if j < i:  # the lines of a row are those of its numbers at the left
                     ax.locator_params(axis="y", nbins=4)
-        title(figure, "Restitution and friction: how well they are known")
+        title(figure, "Joint uncertainty of restitution and friction")
         handles = []
         if laws is not None:
             handles.append(line("fit: 1 and 2 standard deviations", color=BLUE))

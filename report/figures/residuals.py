@@ -77,18 +77,18 @@ def residuals_figure(
             residuals["t"].to_numpy(float),
         )
         figure.align_ylabels(grid[:, 0])
-        title(figure, "Residuals: sighted less smoothed places")
+        title(figure, "Residuals: detections minus smoothed places")
         handles: list[Artist] = [
             line(f"stone {short(name)}", color=colours[name], marker="o", ms=3, ls="none")
             for name in stones[:_MOST_NAMED]
         ]
         handles += [
-            line("± 2 sd as stated", color=PALE, alpha=_BAND, lw=6),
-            line("beyond the edge", color=BLACK, marker=6, ms=4, ls="none"),
+            line("± 2 sd, as estimated", color=PALE, alpha=_BAND, lw=6),
+            line("outside the plot", color=BLACK, marker=6, ms=4, ls="none"),
             line("normal distribution", color=BLACK),
         ]
         if left_out:
-            handles.append(line("left out of the whole shot", color=PALE, lw=4))
+            handles.append(line("down-weighted in the shot fit", color=PALE, lw=4))
         legend_below(figure, handles)
     return figure
 

@@ -83,10 +83,10 @@ def _crossing(track: pd.DataFrame, line: float, side: float) -> dict[str, object
     t, y, vx, vy, sx, sy = track[["t", "y", "vx", "vy", "sd_vx", "sd_vy"]].to_numpy(float).T
     ahead = side * (y - line)
     if ahead[0] < 0:
-        return {"note": f"first seen {abs(y[0] - line):.1f} m past it"}
+        return {"note": f"first detected {abs(y[0] - line):.1f} m past it"}
     past = np.flatnonzero(ahead <= 0)
     if not len(past):
-        return {"note": f"came no nearer than {ahead.min():.1f} m, as far as was seen"}
+        return {"note": f"came no closer than {ahead.min():.1f} m in the measured interval"}
     k = max(int(past[0]), 1)
     share = ahead[k - 1] / max(ahead[k - 1] - ahead[k], 1e-12)
     speed, sd = magnitude(vx, vy, sx, sy)

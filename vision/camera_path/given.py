@@ -125,10 +125,10 @@ def hypotheses(house: GivenHouse, size: tuple[int, int]) -> list[Guess]:
     points = np.vstack([house.tee, house.ring])
     reach = np.linalg.norm(house.ring - house.tee, axis=1)
     if not np.isfinite(points).all() or np.abs(points).max() > 10 * max(size):
-        raise InputError(f"house {house}: not in a picture of {size[0]} × {size[1]} px")
+        raise InputError(f"house {house}: outside a frame of {size[0]} × {size[1]} px")
     if reach.min() < SMALLEST * size[0]:
         raise InputError(
-            f"house {house}: the two points on the 12-ft circle need to be at least"
+            f"house {house}: the two points on the 12-ft circle must be at least"
             f" {SMALLEST * size[0]:.0f} px from the tee"
         )
     found = []
@@ -177,10 +177,10 @@ def _frame(clip: Clip, house: GivenHouse) -> Frame:
             return shown
         shown = frame
     if house.frame is None:
-        raise InputError(f"{clip.files[0]}: none of the frames that are used can be read")
+        raise InputError(f"{clip.files[0]}: none of the selected frames can be read")
     raise InputError(
-        f"house {house}: frame {house.frame} is not among those of {clip.files[0].name} that are"
-        f" used, {clip.first} to {clip.first + clip.expected - 1}"
+        f"house {house}: frame {house.frame} is not among the selected frames of"
+        f" {clip.files[0].name}, {clip.first} to {clip.first + clip.expected - 1}"
     )
 
 
@@ -215,11 +215,11 @@ def _as_given(
             placed(other, cameras[-1])
         progress("camera", done, clip.expected)
     note = (
-        f"house {house}: no rings are seen there; the camera rests on the three points alone, y up"
-        " in the picture"
+        f"house {house}: no rings found there; the camera is set by the three points alone, with"
+        " y up in the frame"
     )
     if len(cameras) < clip.read:
-        note += f", and only the {len(cameras)} frames with the same picture are used"
+        note += f", and only the {len(cameras)} frames with the same image are used"
     return replace(track, cameras=tuple(cameras), warnings=(note, *track.warnings))
 
 

@@ -210,12 +210,12 @@ def judge(seen: Measures, disc: Stone, search: Search) -> list[str]:
     else:
         beside = np.abs(seen.centre[:, 0]) > search.x_max - 0.4 * disc.radius
     for wrong, why in (
-        (beside, "beside the sheet"),
-        (seen.evidence + seen.excused < least, "too little of a stone about it"),
-        (seen.shift > search.most_shift * size, "its edges are those of something else"),
-        (seen.visible < search.least_visible, "hardly any of it is seen"),
-        (hollow, "a ring with nothing in it"),
-        (~seen.ok, "no cap with granite around it" if not plain else "no circle of that size"),
+        (beside, "outside the sheet"),
+        (seen.evidence + seen.excused < least, "too little resemblance to a stone"),
+        (seen.shift > search.most_shift * size, "its edges belong to something else"),
+        (seen.visible < search.least_visible, "barely visible"),
+        (hollow, "an empty ring"),
+        (~seen.ok, "no cap surrounded by granite" if not plain else "no circle of the right size"),
     ):
         faults[wrong] = why
     return [str(fault) for fault in faults]

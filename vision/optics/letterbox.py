@@ -70,8 +70,8 @@ class LitClip(Clip):
             if not hidden and self._hides(frame.picture):
                 hidden = True
                 self._warn(
-                    f"{self.files[0]}: black bars are cut off, but frame {frame.index} shows"
-                    " something there; give the frames of the shot alone (`frames`)"
+                    f"{self.files[0]}: black bars are cut off, but frame {frame.index} has"
+                    " content there; select the frames of the shot (`frames`)"
                 )
             yield Frame(frame.index, frame.t, without_bars(frame.picture, self.bars))
         self.cadence = self.whole.cadence
