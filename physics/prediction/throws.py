@@ -93,7 +93,8 @@ def along_sheet(tracks: pd.DataFrame, hit: float, radius: float) -> bool:
     fastest = int(np.argmax(speeds))
     begin, (vx, vy) = ways[fastest].iloc[0], velocities[fastest]
     bounds = Bounds(1 if vy > 0 else -1, half_width=SHEET.half_width_max)
-    return float(bounds.beyond(begin["x"], begin["y"], radius)) <= 0 and abs(vx) < abs(vy)
+    inside = float(bounds.beyond(begin["x"], begin["y"], radius)) <= 0
+    return inside and bool(abs(vx) < abs(vy))
 
 
 def foreseen_until(
