@@ -48,7 +48,7 @@ def test_a_table_that_goes_across_a_sheet_has_none(across: bool) -> None:
 @pytest.mark.parametrize(
     ("settings", "said"),
     [
-        (Config(), "`house` points at another"),
+        (Config(), "`house` corrects it"),
         (Config().replace(stick=(1.0, 1.0, 90.0, 1.0, 0.5)), "check `radius` and `stick`"),
         (Config().replace(camera=Path("camera.csv")), "check `radius` and `camera`"),
     ],

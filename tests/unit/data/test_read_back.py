@@ -115,7 +115,7 @@ def test_single_places_that_were_edited_or_added_count(tmp_path: Path) -> None:
     table.loc[40, "y"] = np.nan  # struck out
     table.to_csv(path, index=False)
     found = read_table([path])
-    assert [text for text in found.warnings if " 1 of its places" in text and "edited" in text]
+    assert [text for text in found.warnings if " 1 places differ" in text and "edited" in text]
     for row in (one, other):
         mine = found.detections[
             (found.detections[["stone", "t"]] == table.loc[row, ["stone", "t"]]).all(axis=1)
@@ -145,7 +145,7 @@ def test_rows_that_a_filter_carried_alone_are_refused(tmp_path: Path, measured: 
     if not measured:
         carried = carried.drop(columns=list(MEASURED_AS))
     carried.to_csv(path, index=False)
-    with pytest.raises(InputError, match="no row in which a stone was seen"):
+    with pytest.raises(InputError, match="no row with a place"):
         read_table([path])
     table.drop(columns="seen").to_csv(path, index=False)
     assert len(read_table([path]).detections) == len(table) - len(carried)

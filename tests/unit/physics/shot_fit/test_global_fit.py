@@ -118,7 +118,7 @@ def test_what_a_map_shares_is_no_wrong_simulation() -> None:
     # So the one uses the whole shot, the other what is beside the hit, and says so.
     assert told.restitution.value == told.shot_fit["restitution"].value
     assert untold.shot_fit is None
-    assert any("differ from the tracks" in warning for warning in untold.warnings)
+    assert any("simulated paths and tracks differ" in warning for warning in untold.warnings)
     assert told.restitution.stderr is not None
     assert abs((told.restitution.value or 0) - 0.83) < 2 * told.restitution.stderr
 

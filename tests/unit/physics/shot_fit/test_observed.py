@@ -85,7 +85,7 @@ def test_who_is_set_off_by_a_hit_that_is_not_told_lay_there_until_then(
     monkeypatch.setattr(shot_model, "simulate", simulate)
     found = estimate(seen, contacts, radius=RADIUS)
     assert found.shot_fit is None
-    assert any("does not follow" in text for text in found.warnings)
+    assert any("does not reproduce" in text for text in found.warnings)
     changes = sum(len(paths) - 1 for run in runs for paths in run.paths.values())
     assert len(runs) < 2000
     assert changes < 10 * len(runs)

@@ -100,7 +100,7 @@ def test_a_second_bent_track_is_named_beside_one_that_is_left_out() -> None:
 def test_of_two_stones_that_contradict_each_other_neither_is_left_out() -> None:
     found = measure(bent(seen(0), "B", 0.03))
     assert not any(one.downweighted for one in found.residuals)
-    assert any("too few stones move to tell" in text for text in found.warnings)
+    assert any("too few stones move to identify" in text for text in found.warnings)
 
 
 def test_outliers_bend_no_track() -> None:

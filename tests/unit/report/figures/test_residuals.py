@@ -31,7 +31,7 @@ def test_wild_detections_are_marks_at_the_edge(shot):
         assert list(mark.get_xdata()) == [table.loc[row, "t"]]
         assert mark.get_ydata()[0] == (high if sign > 0 else low)
     said = [entry.get_text() for entry in figure.legends[0].get_texts()]
-    assert {"± 2 sd as stated", "beyond the edge"} <= set(said)
+    assert {"± 2 sd, as estimated", "outside the plot"} <= set(said)
 
 
 def test_what_the_whole_shot_leaves_out_has_a_bar_in_the_colour_of_its_stone(shot):
@@ -46,4 +46,4 @@ def test_what_the_whole_shot_leaves_out_has_a_bar_in_the_colour_of_its_stone(sho
     ]
     assert bars == [[0.2, 0.9], [0.2, 0.9]]
     said = [entry.get_text() for entry in figure.legends[0].get_texts()]
-    assert "left out of the whole shot" in said
+    assert "down-weighted in the shot fit" in said

@@ -59,7 +59,7 @@ def test_a_stone_of_another_colour_stays_though_it_convinces_less(
     first = (
         stone(0.0, RED, 2.0), stone(0.6, BLUE, 1.2), stone(1.2, RED, 1.1), stone(0.1, BLUE, 1.1),
     )  # fmt: skip
-    refused = tuple(Refusal(s.x, s.y, 0.4, "too little of a stone about it") for s in first[1:3])
+    refused = tuple(Refusal(s.x, s.y, 0.4, "too little resemblance to a stone") for s in first[1:3])
     found = seen_twice(monkeypatch, first, Findings(first[:1], refused), {1.2: 1.2})
     assert [s.x for s in found.stones] == [0.0, 0.6]
     assert [place.x for place in found.refused] == [1.2]  # what is taken is not refused too
