@@ -163,7 +163,7 @@ class VideoConfig(_Section):
     """
 
     fps: float | None = setting(
-        None, "rate of pictures, or of a table without times", POSITIVE.check, "1/s"
+        None, "frame rate of pictures, or of a table without times", POSITIVE.check, "1/s"
     )
     frames: tuple[int, int | None] | None = setting(
         None,
@@ -171,7 +171,7 @@ class VideoConfig(_Section):
         _tuple_of((FRAME, False), (FRAME, True)),
     )
     clip: bool = setting(
-        False, "measure the clip of a Tracker project, not what is marked in it", _YES_NO
+        False, "measure the clip of a Tracker project, not the marks in it", _YES_NO
     )
     tab: str | None = setting(None, "tab of a Tracker project that has several", _TEXT)
 
@@ -227,7 +227,7 @@ class CameraConfig(_Section):
             raise InputError(f"{names} exclude each other; give one of them")
         if self.camera_height is not None and given not in ([], ["house"]):
             raise InputError(
-                f"`camera_height` is of a camera found by its house, not by `{given[0]}`"
+                f"`camera_height` belongs to a camera found by its house, not to `{given[0]}`"
             )
 
 
@@ -353,9 +353,13 @@ class PhysicsConfig(_Section):
         None, "e that predictions assume (literature: 0.83)", FRACTION.check
     )
     friction: float | None = setting(
-        None, "μ that predictions assume (literature, then what is seen)", FRICTION.check
+        None,
+        "μ that predictions assume (literature, then the motion before the hit)",
+        FRICTION.check,
     )
-    samples: int = setting(0, "draws of e and the frictions, into posterior.csv", SAMPLES.check)
+    samples: int = setting(
+        0, "number of draws of e and the frictions for posterior.csv", SAMPLES.check
+    )
 
 
 @dataclass(frozen=True)
@@ -371,7 +375,7 @@ class ReportConfig(_Section):
     """
 
     overlay: bool = setting(True, "write the annotated clip", _YES_NO, option="--no-overlay")
-    units: str = setting("m", "unit of what coaches read, m or ft", _one_of(UNITS))
+    units: str = setting("m", "unit of the coach's tables, m or ft", _one_of(UNITS))
 
 
 @dataclass(frozen=True)

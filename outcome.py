@@ -76,11 +76,11 @@ class Run:
 
         path = check_folder(folder)
         if self.measurement is None:
-            raise InputError(f"{path}: a run that was loaded is not written again; copy its folder")
+            raise InputError(f"{path}: a loaded run is not written again; copy its folder")
         own = {path.resolve() / name for name in WRITTEN}
         lost = [file for file in self.measurement.files if file.resolve() in own]
         if lost:
-            raise InputError(f"{lost[0]}: would be written over; name another folder")
+            raise InputError(f"{lost[0]}: would be overwritten; name another folder")
         with staged(path, replaces=WRITTEN) as stage:
             write_run(stage, self, progress)
         return replace(self, out=path)

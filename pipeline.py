@@ -158,10 +158,10 @@ def analyse(
     from curlshot.physics.cautions import cautions
     from curlshot.physics.estimate import estimate
     from curlshot.physics.kalman import smooth
-    from curlshot.physics.local_fit.contacts import find_contacts
+    from curlshot.physics.local_fit.hit_detection import detect_hits
     from curlshot.physics.posterior import sample_posterior
     from curlshot.physics.prediction.forecast import predict
-    from curlshot.physics.prediction.hindcast import simulate_measured
+    from curlshot.physics.prediction.replay import simulate_measured
     from curlshot.physics.prediction.throws import along_sheet, first_hit
     from curlshot.physics.steps import (
         check_masses,
@@ -177,7 +177,7 @@ def analyse(
     stones = list(detections["stone"].unique())
     masses = check_masses(config.stones.masses, stones) or measured.masses or None
 
-    contacts = find_contacts(detections, radius)
+    contacts = detect_hits(detections, radius)
     fit = estimate(detections, contacts, radius=radius, masses=masses)
     hits = times_of_hits(contacts, fit.collisions)
     tracks = smooth(detections, hits, radius=radius, masses=masses, duplicates=measured.duplicates)
@@ -208,7 +208,7 @@ def analyse(
         posterior=samples,
         teams={stone: team for stone, team in team_of.items() if team},
         masses=masses or {},
-        sheet=house is not None,
+        origin_at_tee=house is not None,
     )
     simulations = [
         simulation_table(table, model, team_of) for model, table in replay.samples.items()
@@ -227,7 +227,7 @@ def analyse(
     )
 
 
-NO_SAMPLES = "no samples: the shot shows neither restitution nor friction"
+NO_SAMPLES = "no samples: neither restitution nor friction is identifiable"
 
 
 def _camera_table(measured: Measurement) -> pd.DataFrame | None:
@@ -243,5 +243,5 @@ def _way_out(config: Config) -> str:
     """Return what to do where no stone was found, by how the camera was known."""
     for name in ("stick", "camera"):
         if getattr(config.camera, name) is not None:
-            return f"`check` shows what was looked at; check `radius` and `{name}`"
-    return "`check` shows where the house was taken to be, and `house` points at another"
+            return f"`check` shows the frames; verify `radius` and `{name}`"
+    return "`check` shows the house that was found; `house` corrects it"

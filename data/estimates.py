@@ -1,4 +1,4 @@
-"""Values with their errors that the free glides of stones tell, parts of `data.results`."""
+"""Values with standard errors: parts of `data.results`."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Estimate:
-    """A value with its standard error; both None where the input cannot tell."""
+    """A value with its standard error; both None where it is not identifiable."""
 
     value: float | None = None
     stderr: float | None = None
@@ -31,7 +31,7 @@ class Friction(Estimate):
 class Glide:
     """One free glide of one stone and the friction that slowed it.
 
-    ``turn`` is how its path turned (rad/s, to the left positive) at its mean ``speed`` (m/s).
+    ``turn_rate`` is that of its path (rad/s, left positive) at its mean ``speed`` (m/s).
     """
 
     stone: str
@@ -39,6 +39,6 @@ class Glide:
     t1: float
     friction: float | None
     stderr: float | None
-    turn: float | None = None
-    stderr_turn: float | None = None
+    turn_rate: float | None = None
+    stderr_turn_rate: float | None = None
     speed: float | None = None

@@ -92,12 +92,12 @@ def summarise(sample: pd.DataFrame) -> Posterior:
 def _joint(estimates: Estimates) -> tuple[Floats, Floats]:
     """Mean and covariance of `LAWS`, NaN where unknown."""
     mean, cov = np.full(len(LAWS), np.nan), np.zeros((len(LAWS), len(LAWS)))
-    whole = estimates.whole
+    whole = estimates.shot_fit
     alone: dict[str, Estimate] = {
         "restitution": estimates.restitution,
         "friction": estimates.friction,
     }
-    at = [] if whole is None else [k for k, name in enumerate(LAWS) if whole.told(name)]
+    at = [] if whole is None else [k for k, name in enumerate(LAWS) if whole.identifies(name)]
     if whole is not None and at:
         ranks = [whole.names.index(LAWS[k]) for k in at]
         mean[at] = whole.values[ranks]

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from curlshot.data.results import Collision, Glide, MeasuredState
+from curlshot.data.results import Glide, Hit, MeasuredState
 from curlshot.data.sheet import GRAVITY, STONE
 from curlshot.report.figures.parts import (
     LABELS,
@@ -48,7 +48,7 @@ _RATES = {
 def motion_figure(
     tracks: pd.DataFrame,
     stone: str,
-    collisions: Sequence[Collision],
+    collisions: Sequence[Hit],
     glides: Sequence[Glide] = (),
 ) -> Figure:
     """One stone's x, y and speed against time, with the velocities fitted at each hit.
@@ -64,7 +64,7 @@ def motion_figure(
         With `curlshot.data.tracks.TRACK_COLUMNS`.
     stone : str
         Which stone.
-    collisions : sequence of Collision
+    collisions : sequence of Hit
         All hits of the shot, in order; those of this stone are marked, by their rank.
     glides : sequence of Glide
         With their friction; those of this stone are drawn.
@@ -91,7 +91,7 @@ def motion_figure(
     return figure
 
 
-def spin_figure(tracks: pd.DataFrame, stone: str, collisions: Sequence[Collision]) -> Figure:
+def spin_figure(tracks: pd.DataFrame, stone: str, collisions: Sequence[Hit]) -> Figure:
     """One stone's angle and spin against time, with the spins fitted at each hit.
 
     Drawn as `motion_figure`; the spins at the hits are points with bars of two standard
@@ -103,7 +103,7 @@ def spin_figure(tracks: pd.DataFrame, stone: str, collisions: Sequence[Collision
         With `curlshot.data.tracks.TRACK_COLUMNS`.
     stone : str
         Which stone.
-    collisions : sequence of Collision
+    collisions : sequence of Hit
         All hits of the shot, in order; those of this stone are marked, by their rank.
     """
     rows, hits = rows_of(tracks, stone), hits_of(collisions, stone)
@@ -124,7 +124,7 @@ def spin_figure(tracks: pd.DataFrame, stone: str, collisions: Sequence[Collision
 
 
 def speed_figure(
-    tracks: pd.DataFrame, collisions: Sequence[Collision] = (), radius: float = STONE.radius
+    tracks: pd.DataFrame, collisions: Sequence[Hit] = (), radius: float = STONE.radius
 ) -> Figure:
     """Speed of every stone that moved against time, with bands of two standard deviations."""
     stones = moving_stones(tracks, collisions, radius)
@@ -157,7 +157,7 @@ def _panels(count: int, entries: int) -> tuple[Figure, list[Axes]]:
     return figure, list(figure.subplots(count, 1, sharex=True))
 
 
-def _sides(stone: str, hits: Hits) -> list[tuple[str, str, Collision, MeasuredState, float]]:
+def _sides(stone: str, hits: Hits) -> list[tuple[str, str, Hit, MeasuredState, float]]:
     """Each known state of a stone at its hits: label, colour, hit, state, end of its validity."""
     times = [c.t for _, c in hits]
     out = []

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 
-from curlshot.data.results import Joint
+from curlshot.data.results import JointEstimate
 from curlshot.report.figures.parts import WIDTH, Array, legend_below, line, title
 from curlshot.report.numbers import plus_minus
 from curlshot.report.style import BLUE, GREY, PALE, new_figure, styled
@@ -28,7 +28,7 @@ _LEVELS = (1.0, 2.0)
 _MOST_DOTS = 2000
 
 
-def posterior_figure(laws: Joint | None, samples: pd.DataFrame | None = None) -> Figure:
+def posterior_figure(laws: JointEstimate | None, samples: pd.DataFrame | None = None) -> Figure:
     """Distribution of restitution and frictions: each alone on the diagonal, pairs below it.
 
     Lines are the normal distribution that values and covariance stand for, with ellipses of
@@ -36,7 +36,7 @@ def posterior_figure(laws: Joint | None, samples: pd.DataFrame | None = None) ->
 
     Parameters
     ----------
-    laws : Joint or None
+    laws : JointEstimate or None
         Values and covariance of some of ``restitution, friction, stone_friction``.
     samples : DataFrame, optional
         A column for each, a row a sample.
@@ -52,7 +52,7 @@ def posterior_figure(laws: Joint | None, samples: pd.DataFrame | None = None) ->
     )
     names = [name for name in NAMES if name in known]
     if not names:
-        raise ValueError("neither laws nor samples: nothing to draw")
+        raise ValueError("neither a shot fit nor samples: nothing to draw")
     ranges = {name: _range(name, laws, samples) for name in names}
     count = len(names)
     with styled():
@@ -79,7 +79,7 @@ def posterior_figure(laws: Joint | None, samples: pd.DataFrame | None = None) ->
                     ax.tick_params(labelleft=False)
                 if j < i:  # the lines of a row are those of its numbers at the left
                     ax.locator_params(axis="y", nbins=4)
-        title(figure, "Restitution and friction: how well they are known")
+        title(figure, "Joint uncertainty of restitution and friction")
         handles = []
         if laws is not None:
             handles.append(line("fit: 1 and 2 standard deviations", color=BLUE))
@@ -89,7 +89,7 @@ def posterior_figure(laws: Joint | None, samples: pd.DataFrame | None = None) ->
     return figure
 
 
-def _part(laws: Joint | None, names: list[str]) -> tuple[Array, Array] | None:
+def _part(laws: JointEstimate | None, names: list[str]) -> tuple[Array, Array] | None:
     """Values and covariance of some unknowns, None where not all of them are known."""
     if laws is None or not set(names) <= set(laws.names):
         return None
@@ -97,7 +97,9 @@ def _part(laws: Joint | None, names: list[str]) -> tuple[Array, Array] | None:
     return np.array(laws.values)[at], np.array(laws.cov)[np.ix_(at, at)]
 
 
-def _range(name: str, laws: Joint | None, samples: pd.DataFrame | None) -> tuple[float, float]:
+def _range(
+    name: str, laws: JointEstimate | None, samples: pd.DataFrame | None
+) -> tuple[float, float]:
     ends: list[float] = []
     part = _part(laws, [name])
     if part is not None:
@@ -113,7 +115,7 @@ def _draw_one(
     ax: Axes,
     name: str,
     limits: tuple[float, float],
-    laws: Joint | None,
+    laws: JointEstimate | None,
     samples: pd.DataFrame | None,
 ) -> None:
     ax.set_yticks([])
@@ -135,7 +137,7 @@ def _draw_one(
 
 
 def _draw_two(
-    ax: Axes, across: str, below: str, laws: Joint | None, samples: pd.DataFrame | None
+    ax: Axes, across: str, below: str, laws: JointEstimate | None, samples: pd.DataFrame | None
 ) -> None:
     if samples is not None and {across, below} <= set(samples.columns):
         dots: dict[str, Any] = {"color": GREY, "ms": 2, "alpha": 0.4, "mew": 0}

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from curlshot.physics.estimate import Estimates, estimate
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.synthetic.physics import Motion
 from curlshot.tests.helpers.physics.watch import (
     RADIUS,
@@ -18,7 +18,7 @@ from curlshot.tests.helpers.physics.watch import (
 
 
 def measure(seen: pd.DataFrame, radius: float = RADIUS) -> Estimates:
-    return estimate(seen, find_contacts(seen, radius), radius=radius)
+    return estimate(seen, detect_hits(seen, radius), radius=radius)
 
 
 @cache

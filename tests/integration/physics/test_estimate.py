@@ -9,7 +9,7 @@ import pytest
 
 from curlshot.data.results import Friction
 from curlshot.physics.estimate import estimate
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.physics.local_fit.local import estimate_locally
 from curlshot.synthetic.physics import Ice, Impact, Start, simulate
 from curlshot.tests.helpers.physics.estimate import CASES, measure, repeated
@@ -95,9 +95,7 @@ def test_three_stones_in_a_row() -> None:
 
 def test_air_table(shared: Path) -> None:
     seen = airtable(shared)
-    found = estimate(
-        seen, find_contacts(seen, 0.035), radius=0.035, masses={"1": 31.64, "2": 29.80}
-    )
+    found = estimate(seen, detect_hits(seen, 0.035), radius=0.035, masses={"1": 31.64, "2": 29.80})
     (hit,) = found.collisions
     assert hit.restitution == pytest.approx(0.91, abs=0.03)
     assert hit.stderr is not None
@@ -112,7 +110,7 @@ def test_air_table(shared: Path) -> None:
 @pytest.mark.parametrize("number", [38, 56, 80])
 def test_discs_of_a_motion_capture(shared: Path, number: int) -> None:
     seen = discs(shared, number)
-    found = estimate(seen, find_contacts(seen, 0.025), radius=0.025, masses=MASSES)
+    found = estimate(seen, detect_hits(seen, 0.025), radius=0.025, masses=MASSES)
     (hit,) = found.collisions
     assert hit.restitution is not None
     assert hit.stderr is not None
@@ -133,7 +131,7 @@ def test_momentum_that_a_rocking_disc_loses_to_the_table(shared: Path) -> None:
     amounts in each hit) explain it.
     """
     seen = discs(shared, 42)
-    found = estimate(seen, find_contacts(seen, 0.025), radius=0.025, masses=MASSES)
+    found = estimate(seen, detect_hits(seen, 0.025), radius=0.025, masses=MASSES)
     (hit,) = found.collisions
     assert hit.momentum_residual is not None
     assert hit.stderr_momentum is not None
@@ -154,7 +152,7 @@ def test_friction_of_the_whole_shot_that_is_not_that_of_the_glides_is_not_used(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     seen = watch(hit_motion(), np.random.default_rng(13), sd=0.002)
-    contacts = find_contacts(seen, RADIUS)
+    contacts = detect_hits(seen, RADIUS)
     local = estimate_locally(seen, contacts, radius=RADIUS)
     for value, used in ((0.0112, True), (0.02, False)):
         glides = replace(local, friction=Friction(value, 0.0004))
@@ -162,7 +160,7 @@ def test_friction_of_the_whole_shot_that_is_not_that_of_the_glides_is_not_used(
             "curlshot.physics.estimate.estimate_locally", lambda *_, r=glides, **__: r
         )
         found = estimate(seen, contacts, radius=RADIUS)
-        assert (found.whole is not None) == used
+        assert (found.shot_fit is not None) == used
         assert (found.friction.value == value) != used
     assert found.friction.stderr is not None
     assert found.friction.stderr > 0.004
@@ -185,14 +183,14 @@ def beside_its_centre(spin: float, way: float) -> pd.DataFrame:
 def test_a_cap_beside_the_centre_is_not_taken_for_velocity(spin: float, way: float) -> None:
     """It turns with its stone: beside the hit that is velocity, over the whole shot it is not."""
     seen = beside_its_centre(spin, way)
-    alone = estimate_locally(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    alone = estimate_locally(seen, detect_hits(seen, RADIUS), radius=RADIUS)
     assert abs(float(alone.restitution.value or 0) - 0.83) > 0.008
     found = measure(seen)
     assert found.local.restitution.value == pytest.approx(0.83, abs=0.006)
     (hit,) = found.collisions
     assert abs(float(hit.restitution or 0) - 0.83) < 2 * float(hit.stderr or 0)
-    assert found.whole is not None
-    assert found.restitution == found.whole["restitution"]
+    assert found.shot_fit is not None
+    assert found.restitution == found.shot_fit["restitution"]
     assert found.restitution.value == pytest.approx(0.83, abs=0.005)
     assert not [text for text in found.warnings if "disagree" in text]
 
@@ -220,10 +218,10 @@ def test_whole_shot_is_followed_where_no_spin_is_seen_before_the_hit(
     thrown = seen["stone"] == "A"
     seen.loc[thrown & (seen["t"] < t) | (angles == "none"), "theta"] = np.nan
     seen = seen[~(thrown & (seen["t"] > t - 1.9) & (seen["t"] < t + 0.16))].reset_index(drop=True)
-    told = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    told = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
     value, stderr = told.restitution.value, told.restitution.stderr
     assert value is not None and stderr is not None
-    assert told.whole is not None
+    assert told.shot_fit is not None
     assert stderr < 0.002
     assert value == pytest.approx(0.83, abs=3 * stderr)
 
@@ -234,14 +232,14 @@ def test_however_long_stones_rest_the_estimates_are_the_same(
 ) -> None:
     motion = hit_motion(0.8, 0.05, after=9.0)
     cut, long = [
-        estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+        estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
         for rests in ((3.0, 3.0), (160.0, 200.0))
         for seen in [uncut(motion, rests, sd=sd, at_rest=at_rest, given=given)]
     ]
-    assert cut.whole is not None
+    assert cut.shot_fit is not None
     assert cut.restitution.value == pytest.approx(0.83, abs=2.5 * (cut.restitution.stderr or 0))
     assert len(long.collisions) == 1
-    assert long.whole is not None
+    assert long.shot_fit is not None
     for told, known in (
         (long.restitution, cut.restitution),
         (long.local.restitution, cut.local.restitution),

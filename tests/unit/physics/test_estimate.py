@@ -10,7 +10,7 @@ from curlshot.data.results import Estimate
 from curlshot.data.tracks import check_detections
 from curlshot.physics.estimate import _of_two, _times, estimate
 from curlshot.physics.kalman import smooth
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.synthetic.physics import Ice, Impact, Start, simulate
 from curlshot.tests.helpers.physics.estimate import CASES, measure, repeated
 from curlshot.tests.helpers.physics.watch import (
@@ -42,7 +42,7 @@ def test_unequal_masses() -> None:
     # A heavy stone seen in a mirror of momentum: equal stones' truth must not fit.
     motion = hit_motion(1.5, 0.05)
     seen = watch(motion, np.random.default_rng(17), sd=0.002)
-    hits = find_contacts(seen, RADIUS)
+    hits = detect_hits(seen, RADIUS)
     wrong = estimate(seen, hits, radius=RADIUS, masses={"A": 1.0, "B": 2.0}).collisions[0]
     right = estimate(seen, hits, radius=RADIUS, masses={"A": 3.0, "B": 3.0}).collisions[0]
     assert right.momentum_residual is not None
@@ -80,7 +80,7 @@ def test_what_cannot_be_told_is_none_and_said() -> None:
     assert still.restitution.value is None
     assert still.friction.value is None
     assert still.warnings
-    hits = find_contacts(seen, RADIUS)
+    hits = detect_hits(seen, RADIUS)
     short = seen[seen["t"] < hits[0].t].reset_index(drop=True)
     cut = estimate(short, hits, radius=RADIUS)
     assert cut.collisions[0].restitution is None
@@ -97,9 +97,9 @@ def test_no_detections_at_all() -> None:
 def test_columns_that_a_table_lacks_are_as_good_as_empty_ones() -> None:
     bare = watch(hit_motion(), np.random.default_rng(23))[["stone", "t", "x", "y"]]
     full = check_detections(bare)
-    hits = find_contacts(bare, RADIUS)
+    hits = detect_hits(bare, RADIUS)
     assert len(hits) == 1
-    assert hits == find_contacts(full, RADIUS)
+    assert hits == detect_hits(full, RADIUS)
     assert estimate(bare, hits, radius=RADIUS) == estimate(full, hits, radius=RADIUS)
     tracks = [smooth(table, hits, radius=RADIUS) for table in (bare, full)]
     pd.testing.assert_frame_equal(*tracks)
@@ -129,9 +129,9 @@ def test_errors_that_places_share_are_in_that_of_restitution() -> None:
             wave = np.sin(first + rng.uniform(0, 6)) * np.sin(second + rng.uniform(0, 6))
             seen[axis] += 0.006 * wave
         if seed == 0:
-            alone = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).restitution
+            alone = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS).restitution
         seen[["sd_place_x", "sd_place_y"]] = 0.003
-        found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).restitution
+        found = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS).restitution
         assert found.value is not None
         assert found.stderr is not None
         assert alone.stderr is not None
@@ -151,7 +151,7 @@ def test_ice_that_slows_slow_stones_more_does_not_bias_restitution() -> None:
         fcv1 = Ice(a=0.00201, b=0.00626, v_c=0.0639)
         motion = simulate(starts, 2.6, ice=fcv1, impact=Impact(0.83), step=5e-4, keep_every=4)
         seen = watch(motion, rng, sd=0.003)
-        hit = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS).collisions[0]
+        hit = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS).collisions[0]
         assert hit.restitution is not None
         assert hit.stderr is not None
         errors.append((hit.restitution - 0.83, hit.stderr))
@@ -179,12 +179,12 @@ def test_a_stone_that_is_pushed_on_its_way_to_the_hit() -> None:
     seen = watch(hit_motion(1.5, 0.08), np.random.default_rng(12), sd=0.001)
     early = (seen["stone"] == "A") & (seen["t"] < 0.6)
     seen.loc[early, "y"] += 0.5 * (0.6 - seen.loc[early, "t"])
-    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
-    assert found.whole is None
+    found = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
+    assert found.shot_fit is None
     assert found.restitution.value == pytest.approx(0.83, abs=0.02)
     (why,) = [text for text in found.warnings if "whole shot" in text]
     assert "something else than ice and hits moves a stone" in why
-    assert found.methods["global"].note == why
+    assert found.methods["shot_fit"].note == why
     for name in ("local", "finite-differences"):
         assert "friction between the stones" in str(found.methods[name].stone_friction.note)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from curlshot.physics.kalman import smooth
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.physics.local_fit.local import estimate_locally
 from curlshot.tests.helpers.physics.free_glides import FPS, told
 from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
@@ -25,7 +25,7 @@ def test_a_push_up_to_the_hit_spoils_neither_restitution_nor_tracks(gain: float)
     pushed = (detections["stone"] == "A") & (detections["t"] < 1.0)
     away = 1.0 - detections.loc[pushed, "t"]
     detections.loc[pushed, "y"] += 0.5 * (gain + 0.0109 * 9.81) * away**2
-    contacts = find_contacts(detections, RADIUS)
+    contacts = detect_hits(detections, RADIUS)
     found = estimate_locally(detections, contacts, radius=RADIUS)
     assert found.restitution.value == pytest.approx(0.83, abs=0.02)
     assert found.restitution.stderr is not None and found.restitution.stderr < 0.02

@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.physics.local_fit.local import estimate_locally
 from curlshot.tests.helpers.physics.untold import FPS, Floats, R, glide, hit, said, table
 
@@ -159,7 +159,7 @@ def test_stone_moved_after_a_hit_that_is_told_is_not_said_to_be_moved_by_it() ->
 def test_hit_that_discs_of_this_radius_cannot_make_asks_for_the_scale(times: float) -> None:
     t, places = hit(1.0)
     seen = table(t, places, {})
-    contacts = find_contacts(seen, R * times)
+    contacts = detect_hits(seen, R * times)
     assert contacts == ()
     warnings = estimate_locally(seen, contacts, radius=R * times).warnings
     (text,) = [text for text in warnings if "motion" in text]
