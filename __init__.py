@@ -29,13 +29,13 @@ if TYPE_CHECKING:
     from curlshot.data.errors import CurlshotError, InputError, SceneError
     from curlshot.data.estimates import Estimate
     from curlshot.data.inputs import sample_clip
-    from curlshot.data.results import Collision
+    from curlshot.data.results import Hit
     from curlshot.outcome import Run, load
     from curlshot.physics.curl import FCV1Curl, NoCurl
     from curlshot.physics.ice import FCV1, Constant, Penner
     from curlshot.physics.impact import Frictional, PointMass, RigidBody
     from curlshot.physics.simulator.bounds import Bounds
-    from curlshot.physics.simulator.simulation import Hit, Shot, StoneStart
+    from curlshot.physics.simulator.simulation import HitEvent, Shot, StoneStart
     from curlshot.pipeline import convert, run
     from curlshot.report.check_clip import check
     from curlshot.season.batch import run_each
@@ -50,13 +50,13 @@ _MODULES = {
     "data.errors": ("CurlshotError", "InputError", "SceneError"),
     "data.estimates": ("Estimate",),
     "data.inputs": ("sample_clip",),
-    "data.results": ("Collision",),
+    "data.results": ("Hit",),
     "outcome": ("Run", "load"),
     "physics.curl": ("FCV1Curl", "NoCurl"),
     "physics.ice": ("FCV1", "Constant", "Penner"),
     "physics.impact": ("Frictional", "PointMass", "RigidBody"),
     "physics.simulator.bounds": ("Bounds",),
-    "physics.simulator.simulation": ("Hit", "Shot", "StoneStart"),
+    "physics.simulator.simulation": ("HitEvent", "Shot", "StoneStart"),
     "pipeline": ("convert", "run"),
     "report.check_clip": ("check",),
     "season.batch": ("run_each",),
@@ -69,7 +69,6 @@ __all__ = [
     "FCV1",
     "Bounds",
     "CameraConfig",
-    "Collision",
     "Config",
     "Constant",
     "CurlshotError",
@@ -77,6 +76,7 @@ __all__ = [
     "FCV1Curl",
     "Frictional",
     "Hit",
+    "HitEvent",
     "InputError",
     "NoCurl",
     "Penner",

@@ -273,7 +273,9 @@ class Run:
 
         residuals, results = self.residuals, self.results
         return self._several(
-            lambda on: figures.residuals_figure(residuals, results.collisions, results.misfits, on),
+            lambda on: figures.residuals_figure(
+                residuals, results.collisions, results.residuals, on
+            ),
             ax,
         )
 
@@ -281,10 +283,10 @@ class Run:
         """Draw what is known of restitution and frictions together, on a square of axes."""
         from curlshot.report import figures
 
-        if self.results.laws is None and self.posterior is None:
+        if self.results.joint_estimate is None and self.posterior is None:
             raise InputError("the whole shot was not fitted: no posterior to draw")
         return self._several(
-            lambda on: figures.posterior_figure(self.results.laws, self.posterior, on), ax
+            lambda on: figures.posterior_figure(self.results.joint_estimate, self.posterior, on), ax
         )
 
     @property
@@ -350,11 +352,11 @@ class Run:
 
         path = check_folder(folder)
         if self.measurement is None:
-            raise InputError(f"{path}: a run that was loaded is not written again; copy its folder")
+            raise InputError(f"{path}: a loaded run is not written again; copy its folder")
         own = {path.resolve() / name for name in WRITTEN}
         lost = [file for file in self.measurement.files if file.resolve() in own]
         if lost:
-            raise InputError(f"{lost[0]}: would be written over; name another folder")
+            raise InputError(f"{lost[0]}: would be overwritten; name another folder")
         with staged(path, replaces=WRITTEN) as stage:
             write_run(stage, self, progress)
         return replace(self, out=path)
@@ -414,7 +416,7 @@ def load(folder: str | Path) -> Run:
         )
     results = read_results(out / "results.json")
     there = {name: out / name for name in _OPTIONAL if (out / name).exists()}
-    at_tee = results.sheet and curling_size(results.radius)
+    at_tee = results.origin_at_tee and curling_size(results.radius)
     return Run(
         with_units(load_tracks(there["tracks.csv"]) if "tracks.csv" in there else empty_tracks()),
         pd.read_csv(there["camera.csv"]) if "camera.csv" in there else None,

@@ -169,10 +169,10 @@ def analyse(
     from curlshot.physics.cautions import cautions
     from curlshot.physics.estimate import estimate
     from curlshot.physics.kalman import smooth
-    from curlshot.physics.local_fit.contacts import find_contacts
+    from curlshot.physics.local_fit.hit_detection import detect_hits
     from curlshot.physics.posterior import NO_SAMPLES, sample_posterior
     from curlshot.physics.prediction.forecast import predict
-    from curlshot.physics.prediction.hindcast import simulate_measured
+    from curlshot.physics.prediction.replay import simulate_measured
     from curlshot.physics.prediction.throws import along_sheet, first_hit
     from curlshot.physics.steps import (
         check_masses,
@@ -188,10 +188,10 @@ def analyse(
     stones = list(detections["stone"].unique())
     masses = check_masses(config.stones.masses, stones) or measured.masses or None
 
-    contacts = find_contacts(detections, radius)
+    contacts = detect_hits(detections, radius)
     fit = estimate(detections, contacts, radius=radius, masses=masses)
     hits = times_of_hits(contacts, fit.collisions)
-    tracks = smooth(detections, hits, radius=radius, masses=masses, unseen=measured.repeats)
+    tracks = smooth(detections, hits, radius=radius, masses=masses, duplicates=measured.duplicates)
     replay = simulate_measured(tracks, fit, radius=radius, masses=masses)
     laws = laws_to_assume(radius, config.physics.restitution, config.physics.friction)
     predictions = predict(detections, tracks, fit, radius=radius, masses=masses, laws=laws)
@@ -200,6 +200,7 @@ def analyse(
     # A clip shows the house; tables may have their origin anywhere.
     placed = measured.clip is None and measured.house is not None
     sheet = not placed or along_sheet(tracks, first_hit(fit.collisions), radius)
+    house = measured.house if sheet else None
     team_of = teams(tracks)
     warnings = (
         *measured.warnings,
@@ -218,7 +219,7 @@ def analyse(
         posterior=samples,
         teams={stone: team for stone, team in team_of.items() if team},
         masses=masses or {},
-        sheet=measured.house is not None and sheet,
+        origin_at_tee=house is not None,
     )
     simulations = [
         simulation_table(table, model, team_of) for model, table in replay.samples.items()
@@ -234,7 +235,7 @@ def analyse(
         cameras,
         results,
         pd.concat(simulations, ignore_index=True) if simulations else simulation_table(None, ""),
-        house=measured.house if sheet else None,
+        house=house,
         posterior=samples,
         ensemble=replay.ensemble,
         measurement=measured,
@@ -246,5 +247,5 @@ def _way_out(config: Config) -> str:
     """Return what to do where no stone was found, by how the camera was known."""
     for name in ("stick", "camera"):
         if getattr(config.camera, name) is not None:
-            return f"`check` shows what was looked at; check `radius` and `{name}`"
-    return "`check` shows where the house was taken to be, and `house` points at another"
+            return f"`check` shows the frames; verify `radius` and `{name}`"
+    return "`check` shows the house that was found; `house` corrects it"

@@ -16,7 +16,7 @@ from curlshot.physics.prediction.restart import read_start, sampled, shot_file, 
 from curlshot.physics.prediction.start import Start, measured_start, written_start
 from curlshot.physics.prediction.what_if import Amount, Changes, changed
 from curlshot.physics.simulator import simulate as simulator
-from curlshot.physics.simulator.simulation import Hit, Rest, Shot, Simulation, check_shot
+from curlshot.physics.simulator.simulation import HitEvent, Rest, Shot, Simulation, check_shot
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -65,7 +65,7 @@ class SimulatedShot:
         return self.start.shot
 
     @property
-    def hits(self) -> tuple[Hit, ...]:
+    def hits(self) -> tuple[HitEvent, ...]:
         """The hits in their order."""
         return self.simulation.hits
 

@@ -88,7 +88,7 @@ def _season_summary(
 def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:
     from curlshot.data.tracks import write_table, write_tracks
     from curlshot.physics.kalman import smoothed
-    from curlshot.physics.local_fit.contacts import find_contacts
+    from curlshot.physics.local_fit.hit_detection import detect_hits
     from curlshot.report.numbers import count, warned
     from curlshot.report.write import left_by_earlier_run
     from curlshot.vision.optics.camera import camera_columns
@@ -96,7 +96,7 @@ def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:
     config, folder = config_of(arguments), out_folder(arguments, arguments.inputs[0])
     radius = config.stones.radius
     measured = measure(arguments.inputs, config.replace(clip=True), bars)
-    tracks = smoothed(measured.table, find_contacts(measured.table, radius), radius=radius)
+    tracks = smoothed(measured.table, detect_hits(measured.table, radius), radius=radius)
     with staged(folder, replaces=left_by_earlier_run(folder, measured.files)) as stage:
         write_tracks(tracks, stage / "tracks.csv", measured.table)
         write_table(camera_columns(measured.cameras), stage / "camera.csv")
@@ -145,7 +145,7 @@ def _convert_each(arguments: argparse.Namespace) -> str:
     from curlshot.report.numbers import count, warned
 
     if arguments.over is not None:
-        raise InputError("`over`: one clip cannot be behind many projects; convert one at a time")
+        raise InputError("`over`: one clip does not fit many projects; convert one at a time")
     config, files = config_of(arguments), find_inputs(arguments.inputs)
     targets = targets_of(files, arguments.out)
     refused, written = [], []

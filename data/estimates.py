@@ -75,7 +75,7 @@ class Friction(Estimate):
 class Glide:
     """One free glide of one stone and the friction that slowed it.
 
-    ``turn`` is how its path turned (rad/s, to the left positive) at its mean ``speed`` (m/s).
+    ``turn_rate`` is that of its path (rad/s, left positive) at its mean ``speed`` (m/s).
     """
 
     stone: str
@@ -83,6 +83,6 @@ class Glide:
     t1: float
     friction: float | None
     stderr: float | None
-    turn: float | None = None
-    stderr_turn: float | None = None
+    turn_rate: float | None = None
+    stderr_turn_rate: float | None = None
     speed: float | None = None

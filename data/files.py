@@ -86,7 +86,10 @@ def check_folder(out: str | Path, how: str = " with `out`") -> Path:
     if not there.is_dir():
         raise InputError(f"{there}: is a file; name a folder for the results{how}")
     if there != folder and folder.suffix.lower() in FILES:
-        raise InputError(f"{folder}: would be a folder of results; name it unlike a file{how}")
+        raise InputError(
+            f"{folder}: would be a folder of results; choose a name without the ending of a"
+            f" file{how}"
+        )
     if not os.access(there, os.W_OK | os.X_OK):
         raise InputError(f"{there}: nothing can be written here; name another folder{how}")
     return folder

@@ -307,10 +307,12 @@ def read_tracks(path: Path) -> pd.DataFrame:
     if table.empty:
         raise InputError(f"{path}: a table without any row")
     if table[["vx", "vy"]].isna().all(axis=None):
-        raise InputError(f"{path}: places without velocities, as of one picture: no shot is known")
+        raise InputError(
+            f"{path}: places without velocities, as from one frame: no shot to reconstruct"
+        )
     states = table[["t", "x", "y", "vx", "vy"]].to_numpy()
     if not (np.abs(states) < FARTHEST).all():  # NaN is refused too
-        raise InputError(f"{path}: times, places or velocities that are none")
+        raise InputError(f"{path}: times, places or velocities are not numbers")
     return table
 
 

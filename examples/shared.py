@@ -18,10 +18,10 @@ from curlshot.data.sheet import STONE
 from curlshot.data.tracks import check_detections
 from curlshot.physics.estimate import estimate
 from curlshot.physics.impact.frictional import Frictional
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
+from curlshot.physics.shot_fit.global_fit import fit_shots
 from curlshot.physics.simulator.simulate import simulate
 from curlshot.physics.simulator.simulation import Shot, StoneStart
-from curlshot.physics.whole_shot.global_fit import fit_shots
 
 RADIUS = STONE.radius  # of the discs, m
 
@@ -38,7 +38,7 @@ def made_up(speed: float, aside: float) -> pd.DataFrame:
 runs = [pipeline.measure(Path(run) / "tracks.csv").detections for run in sys.argv[1:]]
 fits = []
 for detections in runs or [made_up(1.5, 0.05), made_up(2.0, -0.08)]:
-    found = estimate(detections, find_contacts(detections, RADIUS), radius=RADIUS)
+    found = estimate(detections, detect_hits(detections, RADIUS), radius=RADIUS)
     if found.whole is None:
         sys.exit(f"a shot that cannot be fitted as a whole: {found.by_whole.note}")
     fits.append(found.whole)

@@ -23,19 +23,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from curlshot.data.measurement import Duplicate
 from curlshot.data.tracks import TRACK_COLUMNS, Columns, Table, no_rows, teams
 from curlshot.physics.filter.rate_filter import filtered, shared_response
 from curlshot.physics.filter.spin_loss import spin_loss
 from curlshot.physics.filter.stretch import GATE, PATIENCE, START_SD, Filter, Model, Stretch
-from curlshot.physics.local_fit.contacts import Contact, cut_all
 from curlshot.physics.local_fit.fit import fit_shot
 from curlshot.physics.local_fit.glides import free, measure_glides
+from curlshot.physics.local_fit.hit_detection import HitCandidate, cut_all
 from curlshot.physics.local_fit.last_pictures import widen_last
 from curlshot.physics.local_fit.noise import Noise, noises
 from curlshot.physics.local_fit.off_centre import centred
 from curlshot.physics.local_fit.segments import lies_still
 from curlshot.physics.local_fit.shared_spin import share_spins
-from curlshot.physics.local_fit.shot_fit import ShotFit
+from curlshot.physics.local_fit.solution import LocalFit
 from curlshot.physics.local_fit.traces import Trace, traces
 
 if TYPE_CHECKING:
@@ -55,29 +56,29 @@ it); clip by clip these are .90 to .98 in 28, fewer in 5 and more in 35 (with 0.
 
 def smooth(
     detections: Table,
-    contacts: Sequence[Contact],
+    contacts: Sequence[HitCandidate],
     *,
     radius: float,
     masses: Mapping[str, float] | None = None,
     run: Filter = filtered,
-    unseen: Mapping[int, float] = MappingProxyType({}),
+    duplicates: Mapping[int, Duplicate] = MappingProxyType({}),
 ) -> pd.DataFrame:
     """Turn detections into tracks, as a DataFrame: see `smoothed`."""
     import pandas as pd
 
     return pd.DataFrame(
-        smoothed(detections, contacts, radius=radius, masses=masses, run=run, unseen=unseen)
+        smoothed(detections, contacts, radius=radius, masses=masses, run=run, duplicates=duplicates)
     )
 
 
 def smoothed(
     detections: Table,
-    contacts: Sequence[Contact],
+    contacts: Sequence[HitCandidate],
     *,
     radius: float,
     masses: Mapping[str, float] | None = None,
     run: Filter = filtered,
-    unseen: Mapping[int, float] = MappingProxyType({}),
+    duplicates: Mapping[int, Duplicate] = MappingProxyType({}),
 ) -> Columns:
     """Turn detections into tracks: one row per stone and time from its first to its last.
 
@@ -86,7 +87,7 @@ def smoothed(
     detections : Table
         Of `curlshot.data.tracks.DETECTION_COLUMNS` at least ``stone, t, x, y``; standard deviations
         are estimated where missing, frames without a number are counted.
-    contacts : sequence of Contact
+    contacts : sequence of HitCandidate
         The hits. The filter never runs across one. What both sides share is put right besides:
         their spins, by how hits change them; caps beside centres; and where a stone was seen once
         at most between two hits, its way is told by its motion outside them.
@@ -97,14 +98,15 @@ def smoothed(
     run : Filter
         Filters one stone from hit to hit; `curlshot.physics.filter.reference_filter.filtered` does
         it with matrices.
-    unseen : mapping of int to float
-        Frames with their times, s, at which nothing was measured but states are wanted.
+    duplicates : mapping of int to Duplicate
+        Frames that repeat one before. Nothing was measured in them, and they have states at their
+        own times, also those that repeat the last frame in which a stone was seen.
 
     Returns
     -------
     Columns
         `curlshot.data.tracks.TRACK_COLUMNS`. ``seen`` is 0 in rows at which other stones were seen
-        but not this one, at frames `unseen`, or at which its detection was refused as an outlier.
+        but not this one, at `duplicates`, or at which its detection was refused as an outlier.
         Angles and spins are NaN where the stone's angle was not seen from one hit to the next,
         velocities where it was seen once. The standard deviations of places include what the
         detections share (``sd_place_x``, ``sd_place_y``).
@@ -114,12 +116,15 @@ def smoothed(
         return no_rows(TRACK_COLUMNS)
     t = np.asarray(detections["t"], float)
     rank = detections["frame"] if "frame" in detections else np.unique(t, return_inverse=True)[1]
-    times, first = np.unique(np.append(t, [*unseen.values()]), return_index=True)
-    frames = np.append(np.asarray(rank, int), np.array([*unseen], int))[first]
+    times, first = np.unique(np.append(t, [d.t for d in duplicates.values()]), return_index=True)
+    frames = np.append(np.asarray(rank, int), np.array([*duplicates], int))[first]
     fit, model, noise = _fit_pieces(known, contacts, radius)
-    stones = {}
+    stones, at_end = {}, {}
     for name, trace in known.items():
-        inside = (times >= trace.t[0]) & (times <= trace.t[-1])
+        last = frames[times == trace.t[-1]]
+        after = (times > trace.t[-1]) & np.isin(frames, _repeating(last, duplicates))
+        inside = (times >= trace.t[0]) & (times <= trace.t[-1]) | after
+        at_end[name] = int(after.sum())
         hits = sorted((c for c in contacts if name in c.stones), key=lambda c: c.t)
         when = times[inside], frames[inside]
         stones[name] = _cut_at_hits(trace, *when, hits, fit, model, noise[name], radius)
@@ -133,16 +138,27 @@ def smoothed(
     for name, stone in stones.items():
         for column, alike in zip(("sd_x", "sd_y"), stone.trace.sd_place[stone.row].T, strict=True):
             each[name][column] = np.hypot(each[name][column], alike)
-    widen_last(each, contacts, radius, masses)
+    widen_last(each, contacts, radius, masses, at_end)
     team, tables = teams(detections), list(each.values())
     tracks = {name: np.concatenate([table[name] for table in tables]) for name in tables[0]}
     tracks["team"] = np.array([team[stone] for stone in tracks["stone"].tolist()])
     return {name: tracks[name] for name in TRACK_COLUMNS}
 
 
+def _repeating(frames: NDArray[np.int64], duplicates: Mapping[int, Duplicate]) -> list[int]:
+    """Return the frames that show one of these again, as duplicates of it or of a duplicate."""
+    known = set(frames.tolist())
+    found = []
+    for frame, duplicate in sorted(duplicates.items()):
+        if duplicate.of in known:
+            known.add(frame)
+            found.append(frame)
+    return found
+
+
 def _fit_pieces(
-    known: dict[str, Trace], contacts: Sequence[Contact], radius: float
-) -> tuple[ShotFit, Model, dict[str, Noise]]:
+    known: dict[str, Trace], contacts: Sequence[HitCandidate], radius: float
+) -> tuple[LocalFit, Model, dict[str, Noise]]:
     """Fit each stretch between hits by itself: rests, the law of the ice, noise of detections."""
     by_hits, _ = cut_all(known, contacts, radius)
     pieces = [replace(piece, opens=None, closes=None) for piece in by_hits]
@@ -166,7 +182,7 @@ class _Stone:
     t, frames, row, part : (n,) array
         Times, s, with their frames, the detection nearest to each, and how many hits it comes
         after.
-    hits : sequence of Contact
+    hits : sequence of HitCandidate
         Of the stone, in order of time.
     stretches : list of (array of int, Stretch)
         Which of the times each holds, and what the filter is given.
@@ -177,7 +193,7 @@ class _Stone:
     frames: NDArray[np.int64]
     row: NDArray[np.int64]
     part: NDArray[np.int64]
-    hits: Sequence[Contact]
+    hits: Sequence[HitCandidate]
     stretches: list[tuple[NDArray[np.intp], Stretch]]
 
     @property
@@ -190,8 +206,8 @@ def _cut_at_hits(
     trace: Trace,
     t: Floats,
     frames: NDArray[np.int64],
-    hits: Sequence[Contact],
-    fit: ShotFit,
+    hits: Sequence[HitCandidate],
+    fit: LocalFit,
     model: Model,
     noise: Noise,
     radius: float,
@@ -204,9 +220,9 @@ def _cut_at_hits(
         The detections.
     t, frames : (n,) array
         Times at which states are wanted, s, and their frames.
-    hits : sequence of Contact
+    hits : sequence of HitCandidate
         Of the stone, in order of time.
-    fit : ShotFit
+    fit : LocalFit
         Of the pieces of all stones, each by itself.
     model : Model
         How the ice slows it.
@@ -297,7 +313,7 @@ def _carry(cut: Stretch, mean: Floats, spread: Floats, at: NDArray[np.intp]) -> 
         mean[rows, 4:], spread[rows, 4:] = np.nan, np.nan
 
 
-def _residuals(fit: ShotFit, piece: NDArray[np.int64], t: Floats, xy: Floats) -> Floats:
+def _residuals(fit: LocalFit, piece: NDArray[np.int64], t: Floats, xy: Floats) -> Floats:
     """How far detections are from the fits of their pieces, (n, 2), m; NaN where there are none."""
     out = np.empty_like(xy)
     for rank in np.unique(piece):
@@ -324,7 +340,7 @@ def _false_start(at: NDArray[np.intp], residual: Floats) -> NDArray[np.intp]:
 
 
 def _modes(
-    stone: str, t: Floats, fit: ShotFit
+    stone: str, t: Floats, fit: LocalFit
 ) -> tuple[NDArray[np.int64], NDArray[np.bool_], NDArray[np.bool_], Floats]:
     """Per time: rank of its piece, whether it rests, whether its spin does too, rough velocity."""
     ranks = np.zeros(len(t), dtype=int)
@@ -345,7 +361,7 @@ def _modes(
 
 
 def _motions(
-    trace: Trace, piece: NDArray[np.int64], rest: NDArray[np.bool_], fit: ShotFit, radius: float
+    trace: Trace, piece: NDArray[np.int64], rest: NDArray[np.bool_], fit: LocalFit, radius: float
 ) -> NDArray[np.int64]:
     """Tell motions apart: pieces, but a rest that is kept apart for a hit is one with its stop."""
     out = piece.copy()
@@ -359,7 +375,7 @@ def _motions(
 
 
 def _interpolate(
-    hits: Sequence[Contact],
+    hits: Sequence[HitCandidate],
     part: NDArray[np.int64],
     t: Floats,
     mean: Floats,
@@ -373,7 +389,7 @@ def _interpolate(
 
     Parameters
     ----------
-    hits : sequence of Contact
+    hits : sequence of HitCandidate
         Of the stone, in order of time.
     part : (n,) array of int
         How many of them each row comes after.
@@ -403,7 +419,7 @@ def _interpolate(
 
 
 def _widen(
-    hits: Sequence[Contact], part: NDArray[np.int64], t: Floats, mean: Floats, spread: Floats
+    hits: Sequence[HitCandidate], part: NDArray[np.int64], t: Floats, mean: Floats, spread: Floats
 ) -> None:
     """Widen the errors of velocity and spin of rows that may lie on the other side of a hit.
 

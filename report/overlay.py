@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from curlshot.data.files import whole_file
 from curlshot.data.progress import Progress, no_progress
-from curlshot.data.results import Collision
+from curlshot.data.results import Hit
 from curlshot.data.sheet import HOUSE, STONE
 from curlshot.report.drawing import (
     WHITE,
@@ -30,8 +30,10 @@ from curlshot.report.drawing import (
 from curlshot.report.encode import Encoder
 from curlshot.report.style import stone_colours, team_colour
 from curlshot.report.tables import play
-from curlshot.vision.film.clip import Clip, Frame, Image
 from curlshot.vision.optics.camera import Camera
+from curlshot.vision.video.frame import Frame
+from curlshot.vision.video.picture import Image
+from curlshot.vision.video.reader import Video
 
 Array = NDArray[np.float64]
 
@@ -94,10 +96,10 @@ class Scene:
 
 
 def write_overlay(
-    clip: Clip,
+    video: Video,
     cameras: Iterable[Camera],
     tracks: pd.DataFrame,
-    collisions: Sequence[Collision],
+    collisions: Sequence[Hit],
     path: Path,
     *,
     rings: Sequence[float] | None = RINGS,
@@ -111,13 +113,13 @@ def write_overlay(
 
     Parameters
     ----------
-    clip : Clip
+    video : Video
         Read once, from the start.
     cameras : iterable of Camera
         Found by their `frame`.
     tracks : DataFrame
         With `curlshot.data.tracks.TRACK_COLUMNS`, `frame` counting as the clip does.
-    collisions : sequence of Collision
+    collisions : sequence of Hit
         Each flashed for a moment, and named for two seconds.
     path : Path
         Ends in .mp4.
@@ -126,7 +128,7 @@ def write_overlay(
     radius : float
         Radius of the stones, m.
     progress : Progress
-        Told after each frame.
+        Called after each frame.
 
     Returns
     -------
@@ -135,9 +137,9 @@ def write_overlay(
     """
     scene = _scene(tracks, collisions, rings, radius)
     by_frame = {camera.frame: camera for camera in cameras}
-    total = clip.expected
-    with whole_file(path) as part, Encoder(part, clip.size, clip.fps) as encoder:
-        for done, frame in enumerate(clip, 1):
+    total = video.expected
+    with whole_file(path) as part, Encoder(part, video.whole_size, video.fps) as encoder:
+        for done, frame in enumerate(video.uncut(), 1):
             camera = by_frame.get(frame.index)
             image = frame.image if camera is None else draw(frame, camera, scene)
             encoder.add(image, frame.t)
@@ -177,7 +179,7 @@ def draw(frame: Frame, camera: Camera, scene: Scene) -> Image:
 
 def _scene(
     tracks: pd.DataFrame,
-    collisions: Sequence[Collision],
+    collisions: Sequence[Hit],
     rings: Sequence[float] | None,
     radius: float,
 ) -> Scene:

@@ -9,7 +9,7 @@ from typing import Any
 import pandas as pd
 
 from curlshot.data.coach_units import METRES, Unit
-from curlshot.data.results import Collision, Results, SimulationScore
+from curlshot.data.results import Hit, Results, SimulationScore
 from curlshot.data.sheet import House
 from curlshot.physics.prediction.forecast import AFTER
 from curlshot.physics.simulator.simulation import Simulation
@@ -84,7 +84,7 @@ def simulation_text(simulation: Simulation, written: Sequence[Path] = ()) -> str
     lines = ["at rest:"]
     lines += [
         f"  {name}  x {rest.x:+8.3f} m   y {rest.y:+8.3f} m   after {rest.t:6.2f} s"
-        f"{'' if rest.in_play else '   (there it left the sheet)'}"
+        f"{'' if rest.in_play else '   (where it left the sheet)'}"
         for name, rest in simulation.rest.items()
     ]
     lines.append("hits:" if simulation.hits else "no hits")
@@ -117,7 +117,7 @@ def season_text(shots: pd.DataFrame, pooled: Mapping[str, Pooled]) -> list[str]:
         if mean.scatter is not None:
             text += f"; shot to shot {plus_minus(mean.scatter, mean.stderr_scatter)}"
         elif mean.shots:
-            text += f"; from shot to shot it may scatter by {SCATTER[name]:g} or so, as assumed"
+            text += f"; scatter from shot to shot assumed to be about {SCATTER[name]:g}"
         lines.append(text)
     return [*lines, *warned(impossible(shots))]
 
@@ -128,8 +128,8 @@ def impossible(shots: pd.DataFrame) -> list[str]:
     for name, sign in (("restitution", "e"), ("friction", "μ")):
         low, high = POSSIBLE[name]
         said += [
-            f"{shot['shot']}: {sign} = {plus_minus(shot[name], shot[f'stderr_{name}'])}"
-            " cannot be; it counts in the mean with its error"
+            f"{shot['shot']}: {sign} = {plus_minus(shot[name], shot[f'stderr_{name}'])} is"
+            " impossible; it counts in the mean with its error"
             for shot in shots.to_dict("records")
             if shot[name] < low or shot[name] > high
         ]
@@ -169,16 +169,21 @@ def summary(
         if guess.rmse is not None:
             lines.append(
                 f"predicted   {model}, from before the first hit, {assumed(guess)}:"
-                f" {unit.little(guess.rmse)} RMS off"
+                f" {unit.little(guess.rmse)} RMS error"
             )
-            lines += _each(f"{AFTER} s after it", guess.error_after, guess.sd_after, unit)
-            lines += _each("at the end", guess.rest_error, guess.rest_sd, unit)
+            lines += _each(
+                f"{AFTER} s after the first hit",
+                guess.error_at_comparison,
+                guess.sd_at_comparison,
+                unit,
+            )
+            lines += _each(f"{'at the end':24s}", guess.rest_error, guess.rest_sd, unit)
             lines += [f"            {guess.note}"] if guess.note else []
     notes = [guess.note for guess in results.predictions.values()]
     if all(guess.rmse is None for guess in results.predictions.values()) and any(notes):
         lines.append(f"predicted   — ({next(filter(None, notes))})")
     if house is not None and marked:
-        lines.append("house       the origin is taken for its tee (`no_house` if it is not)")
+        lines.append("house       the origin is assumed to be its tee (`no_house` if it is not)")
     if house is not None and len(tracks):
         lines.append(f"shot stone  {shot_stone_text(results, tracks, house, unit)}")
     return "\n".join([*lines, *warned(results.warnings), *_written(out)])
@@ -222,7 +227,7 @@ def _written(out: Path | None) -> list[str]:
     return [f"written     {report if report.exists() else out}"]
 
 
-def _measured(results: Results, tracks: pd.DataFrame, collisions: Sequence[Collision]) -> list[str]:
+def _measured(results: Results, tracks: pd.DataFrame, collisions: Sequence[Hit]) -> list[str]:
     """Name the input, the stones, some hits, e and μ."""
     moved = moving_stones(tracks, results.collisions, results.radius)
     names = sorted(tracks["stone"].unique()) or sorted(results.stones)
@@ -252,9 +257,9 @@ def _simulated(
     for models, score in _alike(simulations):
         off = f"— ({score.note or 'nothing to compare'})"
         if score.rmse is not None:
-            off = f"{unit.little(score.rmse)} RMS off"
+            off = f"{unit.little(score.rmse)} RMS error"
         # Only a shot that was fitted as a whole begins with what fits it.
-        how = "" if results.laws is None else ", as fitted"
+        how = "" if results.joint_estimate is None else ", as fitted"
         yield f"{models}{how}: {off}", _each("at the end", score.rest_error, score.rest_sd, unit)
 
 
@@ -274,15 +279,16 @@ def _alike(
 def _each(
     when: str, errors: Mapping[str, float | None], stated: Mapping[str, float | None], unit: Unit
 ) -> list[str]:
-    """By how much each stone's place was off, and by how much it may be, a few stones a line."""
+    """Return the errors of the stones' places with their uncertainties, a few stones a line."""
     texts = [
         f"{stone} {unit.little(error, sd)} (± {unit.little(sd, error)})"
         for stone, error in errors.items()
         if error is not None and (sd := stated.get(stone)) is not None
     ]
+    width = max(15, len(when))
     rows = [", ".join(texts[k : k + ABREAST]) for k in range(0, len(texts), ABREAST)]
     return [
-        f"{'':12s}{'' if k else when:15s} {row}{',' if k < len(rows) - 1 else ''}"
+        f"{'':12s}{'' if k else when:{width}s} {row}{',' if k < len(rows) - 1 else ''}"
         for k, row in enumerate(rows)
     ]
 

@@ -194,7 +194,7 @@ def spread_figure(
         figure.suptitle(plain_text(title), x=0.01, ha="left", fontsize=10, fontweight="bold")
         handles = _of_thrown(plain_text(thrown), len(ends), throws, gone[thrown])
         if _shows(low, high, np.array([*lying.values()]).reshape(-1, 2)):
-            handles.append(_ring(GREY, "as it lay before"))
+            handles.append(_ring(GREY, "before the shot"))
         handles += [
             _dots(colours[name], f"{plain_text(name)} where hit{_gone(gone[name])}")
             for name, struck in places.items()

@@ -49,7 +49,7 @@ def write_run(stage: Path, run: Run, progress: Progress = no_progress) -> None:
 
     measured, config = run.measurement, run.config
     results = replace(run.results, warnings=tuple(map(as_options, run.results.warnings)))
-    assert measured is not None, "a run that was loaded has its files already"
+    assert measured is not None, "a loaded run has its files already"
     write_tracks(run.tracks, stage / "tracks.csv", measured.table)
     write_table(run.simulations, stage / "simulation.csv")
     write_estimates(stage, run)

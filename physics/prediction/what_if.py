@@ -164,14 +164,14 @@ def changed(start: Start, changes: Changes) -> Start:
     if changes.aim_offset:
         if shot.bounds is not None and shot.bounds.beyond(stone.x, stone.y, shot.radius) > 0:
             raise InputError(
-                f"`aim_offset` {changes.aim_offset:g}: {stone.name} would begin off the sheet;"
-                " choose another"
+                f"`aim_offset` {changes.aim_offset:g}: {stone.name} would start outside the"
+                " sheet; choose another"
             )
         for other in shot.stones:
             apart = math.dist((stone.x, stone.y), (other.x, other.y))
             if other is not stone and apart < 2 * shot.radius:
                 raise InputError(
-                    f"`aim_offset` {changes.aim_offset:g}: {stone.name} would begin on top of"
+                    f"`aim_offset` {changes.aim_offset:g}: {stone.name} would start on top of"
                     f" {other.name}; choose another"
                 )
     told = {

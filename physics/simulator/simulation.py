@@ -126,7 +126,7 @@ class States:
 
 
 @dataclass(frozen=True)
-class Hit:
+class HitEvent:
     """One hit: when, of whom, and their states before and after.
 
     The first stone is the one that was faster before the hit; ``normal`` is the unit vector
@@ -172,7 +172,7 @@ class Simulation:
 
     Attributes
     ----------
-    hits : tuple of Hit
+    hits : tuple of HitEvent
         In the order in which they happened.
     rest : dict
         Per stone its place of rest, or its place at the end where the simulation was ended
@@ -183,7 +183,7 @@ class Simulation:
         Time at which stones left the play, s, of those that did.
     """
 
-    hits: tuple[Hit, ...]
+    hits: tuple[HitEvent, ...]
     rest: Mapping[str, Rest]
     paths: Mapping[str, tuple[Path, ...]]
     gone: Mapping[str, float] = field(default_factory=dict)

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from curlshot.data.results import Collision, Results
+from curlshot.data.results import Hit, Results
 from curlshot.physics.statistics.pool import FRICTION_SCATTER, RESTITUTION_SCATTER, Pooled, pool
 
 SHOT_COLUMNS = (
@@ -98,7 +98,7 @@ def hits_table(season: Mapping[str, Results]) -> pd.DataFrame:
     return _numbers(rows, HIT_COLUMNS, texts=("shot", "first", "second", "note"))
 
 
-def closing_speed(hit: Collision) -> float:
+def closing_speed(hit: Hit) -> float:
     """Speed at which the stones came together along the normal, m/s."""
     first, second = (hit.before[name] for name in hit.stones)
     return float(np.dot(hit.normal, (first.vx - second.vx, first.vy - second.vy)))

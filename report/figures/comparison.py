@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pandas as pd
 from matplotlib.figure import Figure
 
-from curlshot.data.results import Collision
+from curlshot.data.results import Hit
 from curlshot.report.figures.parts import (
     LABELS,
     WIDTH,
@@ -34,7 +34,7 @@ def comparison_figure(
     tracks: pd.DataFrame,
     simulations: Mapping[str, pd.DataFrame],
     stone: str,
-    collisions: Sequence[Collision] = (),
+    collisions: Sequence[Hit] = (),
     on: OnAxes = None,
 ) -> Figure:
     """One stone's simulated x and y, a line per model, against the measured ones.
@@ -50,7 +50,7 @@ def comparison_figure(
         Sampled simulation of each model: ``stone, t, x, y`` and, if known, ``sd_x, sd_y``.
     stone : str
         Which stone.
-    collisions : sequence of Collision
+    collisions : sequence of Hit
         All hits of the shot, in order.
     on : sequence of Axes, optional
         Where to draw, two panels; a figure of its own without.

@@ -101,7 +101,7 @@ def friction_figure(
         for name in sorted({glide.stone for glide, _ in known}):
             handles.append(line(f"stone {short(name)}", color=colours[name], lw=2.2))
         if len(telling) < len(known):
-            handles.append(line("poorly known (▴▾ beyond)", color=GREY, alpha=FAINT, lw=2.2))
+            handles.append(line("uncertain (▴▾ beyond)", color=GREY, alpha=FAINT, lw=2.2))
         if friction.value is not None:
             mu = _friction(law_of(friction), v)
             error = 2 * (friction.stderr or 0.0)

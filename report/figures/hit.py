@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from curlshot.data.results import Collision, MeasuredState
+from curlshot.data.results import Hit, MeasuredState
 from curlshot.data.sheet import STONE
 from curlshot.report.figures.parts import WIDTH, Array, OnAxes, panels, said, short, symbols, title
 from curlshot.report.numbers import DASH, plus_minus
@@ -21,7 +21,7 @@ _COLUMNS = ((0.47, "$v_n$ (m/s)"), (0.74, "$v_t$ (m/s)"), (1.0, "ω (rad/s)"))
 
 
 def hit_figure(
-    collision: Collision, rank: int = 1, radius: float = STONE.radius, on: OnAxes = None
+    collision: Hit, rank: int = 1, radius: float = STONE.radius, on: OnAxes = None
 ) -> Figure:
     """One hit in its normal and tangential axes, with the velocities before and after it.
 
@@ -30,7 +30,7 @@ def hit_figure(
 
     Parameters
     ----------
-    collision : Collision
+    collision : Hit
         The hit.
     rank : int
         Its rank among the hits of the shot, for the title.
@@ -51,7 +51,7 @@ def hit_figure(
     return figure
 
 
-def _draw_stones(ax: Axes, collision: Collision, radius: float) -> None:
+def _draw_stones(ax: Axes, collision: Hit, radius: float) -> None:
     n = np.array(collision.normal, float)
     t = np.array([-n[1], n[0]])
     first, second = collision.stones
@@ -88,7 +88,7 @@ def _draw_stones(ax: Axes, collision: Collision, radius: float) -> None:
     ax.spines[:].set_visible(False)
 
 
-def _arrows(collision: Collision) -> dict[tuple[str, str], Array]:
+def _arrows(collision: Hit) -> dict[tuple[str, str], Array]:
     """Known velocities by when and stone, m/s."""
     out = {}
     for when, side in (("before", collision.before), ("after", collision.after)):
@@ -117,7 +117,7 @@ def _free_direction(busy: Sequence[Array]) -> Array:
     return np.asarray(candidates[int(np.argmin(nearest))], float)
 
 
-def _write_components(ax: Axes, collision: Collision) -> None:
+def _write_components(ax: Axes, collision: Hit) -> None:
     """Write the n and t components and the spins as a small table, and e below it."""
     ax.set_axis_off()
     ax.set(xlim=(0, 1), ylim=(0, 1))

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from curlshot.data.results import Collision, Glide, MeasuredState
+from curlshot.data.results import Glide, Hit, MeasuredState
 from curlshot.data.sheet import GRAVITY, STONE
 from curlshot.report.figures.parts import (
     LABELS,
@@ -50,7 +50,7 @@ _RATES = {
 def motion_figure(
     tracks: pd.DataFrame,
     stone: str,
-    collisions: Sequence[Collision],
+    collisions: Sequence[Hit],
     glides: Sequence[Glide] = (),
     on: OnAxes = None,
 ) -> Figure:
@@ -67,7 +67,7 @@ def motion_figure(
         With `curlshot.data.tracks.TRACK_COLUMNS`.
     stone : str
         Which stone.
-    collisions : sequence of Collision
+    collisions : sequence of Hit
         All hits of the shot, in order; those of this stone are marked, by their rank.
     glides : sequence of Glide
         With their friction; those of this stone are drawn.
@@ -97,7 +97,7 @@ def motion_figure(
 
 
 def spin_figure(
-    tracks: pd.DataFrame, stone: str, collisions: Sequence[Collision], on: OnAxes = None
+    tracks: pd.DataFrame, stone: str, collisions: Sequence[Hit], on: OnAxes = None
 ) -> Figure:
     """One stone's angle and spin against time, with the spins fitted at each hit.
 
@@ -110,7 +110,7 @@ def spin_figure(
         With `curlshot.data.tracks.TRACK_COLUMNS`.
     stone : str
         Which stone.
-    collisions : sequence of Collision
+    collisions : sequence of Hit
         All hits of the shot, in order; those of this stone are marked, by their rank.
     on : sequence of Axes, optional
         Where to draw, two panels; a figure of its own without.
@@ -134,7 +134,7 @@ def spin_figure(
 
 def speed_figure(
     tracks: pd.DataFrame,
-    collisions: Sequence[Collision] = (),
+    collisions: Sequence[Hit] = (),
     radius: float = STONE.radius,
     on: OnAxes = None,
 ) -> Figure:
@@ -171,7 +171,7 @@ def _panels(on: OnAxes, count: int, entries: int) -> tuple[Figure, list[Axes]]:
     return figure, list(grid[:, 0])
 
 
-def _sides(stone: str, hits: Hits) -> list[tuple[str, str, Collision, MeasuredState, float]]:
+def _sides(stone: str, hits: Hits) -> list[tuple[str, str, Hit, MeasuredState, float]]:
     """Each known state of a stone at its hits: label, colour, hit, state, end of its validity."""
     times = [c.t for _, c in hits]
     out = []

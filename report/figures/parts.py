@@ -15,7 +15,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike, NDArray
 
 from curlshot.data.errors import InputError
-from curlshot.data.results import Collision
+from curlshot.data.results import Hit
 from curlshot.report.numbers import fixed, parts
 from curlshot.report.style import BLACK, GREY, PALE, new_figure, plain_text
 from curlshot.report.tables import magnitude
@@ -40,7 +40,7 @@ LABELS = {
 MOST_ENTRIES = 10
 """Entries of a legend beside a panel, at most."""
 
-Hits = Sequence[tuple[int, Collision]]
+Hits = Sequence[tuple[int, Hit]]
 """Hits with their ranks."""
 
 
@@ -80,7 +80,7 @@ def rows_of(table: pd.DataFrame, stone: str) -> pd.DataFrame:
     return table[table["stone"] == stone].sort_values("t")
 
 
-def hits_of(collisions: Sequence[Collision], stone: str) -> list[tuple[int, Collision]]:
+def hits_of(collisions: Sequence[Hit], stone: str) -> list[tuple[int, Hit]]:
     """Hits of one stone, each with its rank among all."""
     return [(rank, c) for rank, c in enumerate(collisions, 1) if stone in c.stones]
 

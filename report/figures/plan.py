@@ -11,9 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Ellipse
 
-from curlshot.data.results import Collision
+from curlshot.data.results import Hit
 from curlshot.data.sheet import SHEET, STONE, House
-from curlshot.physics.simulator.simulation import Hit
+from curlshot.physics.simulator.simulation import HitEvent
 from curlshot.report.figures.labels import name_stones
 from curlshot.report.figures.parts import (
     WIDTH,
@@ -52,7 +52,7 @@ _ENLARGED = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 def plan_figure(
     tracks: pd.DataFrame,
     simulations: Mapping[str, pd.DataFrame] | None = None,
-    collisions: Sequence[Collision] = (),
+    collisions: Sequence[Hit] = (),
     *,
     house: House | None,
     radius: float = STONE.radius,
@@ -71,7 +71,7 @@ def plan_figure(
     simulations : mapping of str to DataFrame, optional
         Sampled simulation of each model; their last places are drawn as empty circles, of stones
         that were last seen under way those at that time.
-    collisions : sequence of Collision
+    collisions : sequence of Hit
         The hits, a cross where the stones touched.
     house : House or None
         The rings to draw; None where the scene has no house.
@@ -140,7 +140,7 @@ def _handles(
         handles.append(line("hit", color=BLACK, marker="x", ls="none", mew=1.6))
     if under_way:
         shaft: dict[str, Any] = {"marker": r"$\rightarrow$", "ls": "none", "ms": 11, "mew": 0}
-        handles.append(line("last seen under way", color=GREY, **shaft))
+        handles.append(line("last detected, moving", color=GREY, **shaft))
     if factor:
         by = "" if factor == 1 else f", {factor} × enlarged"
         shade: dict[str, Any] = {"color": GREY, "marker": "o", "ls": "none", "alpha": 0.5}
@@ -231,7 +231,7 @@ def _draw_ellipses(
     return factor
 
 
-def _way(track: pd.DataFrame, stone: str, collisions: Sequence[Collision]) -> Array:
+def _way(track: pd.DataFrame, stone: str, collisions: Sequence[Hit]) -> Array:
     """Path of a stone, x and y: where it was seen, and where it was as it hit another."""
     hits = [(hit.t, hit.before[stone]) for hit in collisions if stone in hit.before]
     t, x, y = track[["t", "x", "y"]].to_numpy(float).T
@@ -244,7 +244,7 @@ def _way(track: pd.DataFrame, stone: str, collisions: Sequence[Collision]) -> Ar
     )
 
 
-def contact_place(collision: Collision | Hit, radius: float) -> Array:
+def contact_place(collision: Hit | HitEvent, radius: float) -> Array:
     """Where two stones touched, m; NaN where neither's place is told."""
     first, second = collision.stones
     n = np.array(collision.normal)

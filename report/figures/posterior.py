@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 
-from curlshot.data.results import Joint
+from curlshot.data.results import JointEstimate
 from curlshot.report.figures.parts import WIDTH, Array, OnAxes, legend_below, line, panels, title
 from curlshot.report.numbers import plus_minus
 from curlshot.report.style import BLUE, GREY, PALE, styled
@@ -29,7 +29,7 @@ _MOST_DOTS = 2000
 
 
 def posterior_figure(
-    laws: Joint | None, samples: pd.DataFrame | None = None, on: OnAxes = None
+    laws: JointEstimate | None, samples: pd.DataFrame | None = None, on: OnAxes = None
 ) -> Figure:
     """Distribution of restitution and frictions: each alone on the diagonal, pairs below it.
 
@@ -38,7 +38,7 @@ def posterior_figure(
 
     Parameters
     ----------
-    laws : Joint or None
+    laws : JointEstimate or None
         Values and covariance of some of ``restitution, friction, stone_friction``.
     samples : DataFrame, optional
         A column for each, a row a sample.
@@ -56,7 +56,7 @@ def posterior_figure(
     )
     names = [name for name in NAMES if name in known]
     if not names:
-        raise ValueError("neither laws nor samples: nothing to draw")
+        raise ValueError("neither a shot fit nor samples: nothing to draw")
     ranges = {name: _range(name, laws, samples) for name in names}
     count = len(names)
     with styled():
@@ -83,7 +83,7 @@ def posterior_figure(
                     ax.tick_params(labelleft=False)
                 if j < i:  # the lines of a row are those of its numbers at the left
                     ax.locator_params(axis="y", nbins=4)
-        title(figure, "Restitution and friction: how well they are known", first)
+        title(figure, "Joint uncertainty of restitution and friction", first)
         handles = []
         if laws is not None:
             handles.append(line("fit: 1 and 2 standard deviations", color=BLUE))
@@ -93,7 +93,7 @@ def posterior_figure(
     return figure
 
 
-def _part(laws: Joint | None, names: list[str]) -> tuple[Array, Array] | None:
+def _part(laws: JointEstimate | None, names: list[str]) -> tuple[Array, Array] | None:
     """Values and covariance of some unknowns, None where not all of them are known."""
     if laws is None or not set(names) <= set(laws.names):
         return None
@@ -101,7 +101,9 @@ def _part(laws: Joint | None, names: list[str]) -> tuple[Array, Array] | None:
     return np.array(laws.values)[at], np.array(laws.cov)[np.ix_(at, at)]
 
 
-def _range(name: str, laws: Joint | None, samples: pd.DataFrame | None) -> tuple[float, float]:
+def _range(
+    name: str, laws: JointEstimate | None, samples: pd.DataFrame | None
+) -> tuple[float, float]:
     ends: list[float] = []
     part = _part(laws, [name])
     if part is not None:
@@ -117,7 +119,7 @@ def _draw_one(
     ax: Axes,
     name: str,
     limits: tuple[float, float],
-    laws: Joint | None,
+    laws: JointEstimate | None,
     samples: pd.DataFrame | None,
 ) -> None:
     ax.set_yticks([])
@@ -139,7 +141,7 @@ def _draw_one(
 
 
 def _draw_two(
-    ax: Axes, across: str, below: str, laws: Joint | None, samples: pd.DataFrame | None
+    ax: Axes, across: str, below: str, laws: JointEstimate | None, samples: pd.DataFrame | None
 ) -> None:
     if samples is not None and {across, below} <= set(samples.columns):
         dots: dict[str, Any] = {"color": GREY, "ms": 2, "alpha": 0.4, "mew": 0}

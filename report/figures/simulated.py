@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from curlshot.data.sheet import STONE, House
-from curlshot.physics.simulator.simulation import Hit
+from curlshot.physics.simulator.simulation import HitEvent
 from curlshot.report.figures.labels import name_stones
 from curlshot.report.figures.parts import Array, OnAxes, legend_below, line, rows_of, title
 from curlshot.report.figures.plan import contact_place, draw_house, new_sheet, pair, thickened
@@ -24,7 +24,7 @@ FAR = 6.4
 
 def simulated_figure(
     table: pd.DataFrame,
-    hits: Sequence[Hit] = (),
+    hits: Sequence[HitEvent] = (),
     *,
     gone: Collection[str] = (),
     house: House | None,
@@ -40,7 +40,7 @@ def simulated_figure(
     ----------
     table : DataFrame
         ``stone, t, x, y`` of the shot until all is at rest.
-    hits : sequence of Hit
+    hits : sequence of HitEvent
         A cross where the stones touched.
     gone : collection of str
         Stones that leave the sheet where their paths end.
@@ -78,7 +78,7 @@ def simulated_figure(
             ax.plot(*contact_place(hit, radius), "x", color=BLACK, ms=6, mew=1.6, zorder=6)
         name_stones(ax, shown, colours, radius, scale)
         title(figure, f"Simulated: {count(len(paths), 'stone')}, {count(len(hits), 'hit')}", given)
-        handles = [line("where it began", color=GREY, marker="o", mfc="none", ls="none", ms=8)]
+        handles = [line("start", color=GREY, marker="o", mfc="none", ls="none", ms=8)]
         if hits:
             handles.append(line("hit", color=BLACK, marker="x", ls="none", mew=1.6))
         handles += [
@@ -95,7 +95,7 @@ def _told(name: str, end: Array, far: bool, gone: bool) -> str:
     place = f"({fixed(end[0], 1)}, {fixed(end[1], 1)}) m"
     if gone:
         return f"{name} leaves the sheet{f' at {place}' if far else ''}"
-    return f"{name} goes on to {place}"
+    return f"{name} continues to {place}"
 
 
 def _near(place: Array, centre: Array) -> bool:

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from curlshot.data.column_units import with_units
-from curlshot.data.results import Collision, Glide, Results
+from curlshot.data.results import Glide, Hit, Results
 from curlshot.data.sheet import HOUSE, House
 from curlshot.physics.statistics.season import closing_speed
 from curlshot.report.tables.laws import ice_table
@@ -33,7 +33,7 @@ def hits_of_run(results: Results) -> pd.DataFrame:
     return with_units(table.astype({"hit": int, **numbers}))
 
 
-def _closing(hit: Collision) -> float:
+def _closing(hit: Hit) -> float:
     """Return the closing speed of a hit, m/s; NaN where a state before it is not known."""
     return closing_speed(hit) if set(hit.stones) <= set(hit.before) else np.nan
 

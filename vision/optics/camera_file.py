@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from curlshot.data.errors import InputError
 from curlshot.data.progress import Progress, no_progress
 from curlshot.data.sheet import STONE
-from curlshot.vision.film.clip import Clip
 from curlshot.vision.optics.camera import CAMERA_COLUMNS, Camera
 from curlshot.vision.optics.placed import Placed, nobody
+from curlshot.vision.video.reader import Video
 
 Array = NDArray[np.float64]
 
@@ -28,13 +28,13 @@ LEAST_AREA = 1e-3
 
 
 def given_cameras(
-    clip: Clip, path: Path, progress: Progress = no_progress, placed: Placed = nobody
+    video: Video, path: Path, progress: Progress = no_progress, placed: Placed = nobody
 ) -> tuple[tuple[Camera, ...], tuple[str, ...]]:
     """Give the frames of a clip the cameras of a table, and what a person should know.
 
     Parameters
     ----------
-    clip : Clip
+    video : Video
         Says the size of the picture and the time of each frame.
     path : Path
         A table as ``camera.csv``: of one row, for all frames, or of one row per frame; frames
@@ -53,26 +53,26 @@ def given_cameras(
     frames = table["frame"].astype(int).tolist()
     row = {frame: k for k, frame in enumerate(frames)}
     cameras = []
-    for done, frame in enumerate(clip, 1):
+    for done, frame in enumerate(video, 1):
         if len(row) == 1 or frame.index in row:
             given = table.iloc[row.get(frame.index, 0)]
-            cameras.append(_camera(given, frame.index, frame.t, clip.size))
+            cameras.append(_camera(given, frame.index, frame.t, video.size))
             placed(frame, cameras[-1])
-        progress("camera", done, clip.expected)
+        progress("camera", done, video.expected)
     if not cameras:
         raise InputError(
-            f"{path}: has frames {min(row)} to {max(row)}, none of those of"
-            f" {clip.files[0].name} that are used"
+            f"{path}: has frames {min(row)} to {max(row)}, none of the selected ones of"
+            f" {video.files[0].name}"
         )
-    notes = [f"{path.name}: how well the given camera is known is not part of the errors"]
+    notes = [f"{path.name}: the errors do not include that of the given camera"]
     if any(camera.position is None for camera in cameras):
         notes.append(
-            f"{path.name}: the camera's place is not given; stones away from the point below it"
-            " may be centimetres off, for their caps are above the ice"
+            f"{path.name}: the position of the camera is not given; since caps are above the ice,"
+            " stones away from the point below it may be centimetres wrong"
         )
-    if len(cameras) < clip.read:
-        left = clip.read - len(cameras)
-        notes.append(f"{path.name}: no camera for {left} of {clip.read} frames; left out")
+    if len(cameras) < video.read:
+        left = video.read - len(cameras)
+        notes.append(f"{path.name}: no camera for {left} of {video.read} frames; left out")
     return tuple(cameras), tuple(notes)
 
 
@@ -119,11 +119,11 @@ def read_cameras(path: Path, columns: Sequence[str] = ()) -> pd.DataFrame:
     for wrong, what in (
         (~np.isfinite(matrices).all(1), "h33 is 0: the tee would be at the horizon"),
         (np.abs(area) < LEAST_AREA, "the homography is singular"),
-        (area < 0, "the homography is mirrored; x goes to the right and y up in the picture"),
-        (~(slope > 0), "k1 and k2 fold the picture"),
+        (area < 0, "the homography is mirrored; x goes to the right and y up in the frame"),
+        (~(slope > 0), "k1 and k2 fold the image"),
         (low, "cam_z is not above the stones"),
         (~whole, "frame is not a whole number from 0"),
-        (doubled, "its frame was there before; one row per frame, please"),
+        (doubled, "a repeated frame; one row per frame"),
     ):
         if np.any(wrong):
             raise InputError(f"{path}: line {_line(np.asarray(wrong))}: {what}")
@@ -144,7 +144,7 @@ def _table(path: Path, columns: Sequence[str]) -> pd.DataFrame:
     text.columns = text.columns.str.strip()
     doubled = text.columns[text.columns.duplicated()]
     if len(doubled):
-        raise InputError(f"{path}: column {doubled[0]} is there twice")
+        raise InputError(f"{path}: column {doubled[0]} occurs twice")
     needed = HOMOGRAPHY if len(text) == 1 else ("frame", *HOMOGRAPHY)
     missing = [name for name in dict.fromkeys((*needed, *columns)) if name not in text]
     if missing:

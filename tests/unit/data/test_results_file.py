@@ -12,21 +12,21 @@ from hypothesis import strategies as st
 
 from curlshot.data.errors import InputError
 from curlshot.data.results import (
-    Collision,
     Estimate,
     Friction,
     Glide,
+    Hit,
     Input,
-    Joint,
+    JointEstimate,
     Law,
     MeasuredState,
     Method,
-    Misfit,
     NotedEstimate,
     Posterior,
     Results,
     SimulationScore,
     StoneResult,
+    TrackResidual,
 )
 from curlshot.data.results_file import SCHEMA, read_results, results_json, write_results
 
@@ -35,7 +35,7 @@ RESULTS = Results(
     restitution=Estimate(0.83, 0.02),
     friction=Friction(0.0109, 3e-4, "constant"),
     collisions=(
-        Collision(
+        Hit(
             t=1.12,
             stderr_t=0.004,
             stones=("A", "B"),
@@ -58,20 +58,25 @@ RESULTS = Results(
         "rigid-body": SimulationScore(None, note="no spins"),
     },
     warnings=("two frames are missing",),
-    laws=Joint(("restitution", "friction"), (0.83, 0.0109), ((4e-4, 1e-7), (1e-7, 9e-8))),
+    joint_estimate=JointEstimate(
+        ("restitution", "friction"), (0.83, 0.0109), ((4e-4, 1e-7), (1e-7, 9e-8))
+    ),
     methods={
         "local": Method(Estimate(0.82, 0.03), hits=(Estimate(0.81, 0.03),)),
-        "global": Method(stone_friction=NotedEstimate(note="nothing slides"), note="not used"),
+        "shot_fit": Method(stone_friction=NotedEstimate(note="nothing slides"), note="not used"),
     },
-    law_choice=(Law("ice constant", 0.0, 0.9, Estimate(0.0109, 3e-4)),),
+    model_selection=(Law("ice constant", 0.0, 0.9, Estimate(0.0109, 3e-4)),),
     curl=NotedEstimate(0.008, 0.001),
     stones={
         "A": StoneResult(Estimate(0.01, 1e-3), Estimate(0.002, 0.001), 1.2, Estimate(0.6, 0.1))
     },
-    misfits=(Misfit("A", 0.0, 1.2, 0.8, False, False), Misfit("A", 1.2, 5.5, 6.1, True, True)),
+    residuals=(
+        TrackResidual("A", 0.0, 1.2, 0.8, False, False),
+        TrackResidual("A", 1.2, 5.5, 6.1, True, True),
+    ),
     posterior=Posterior(100, {"restitution": {"0.5": 0.83}}, {"restitution": {"restitution": 1.0}}),
     teams={"A": "#d8c020"},
-    sheet=False,
+    origin_at_tee=False,
 )
 
 
@@ -89,14 +94,68 @@ def test_round_trip(tmp_path: Path) -> None:
     assert read_results(tmp_path / "results.json") == RESULTS
 
 
+VERSION_1 = """{
+ "schema": 1,
+ "input": {"files": ["shot.mp4"], "fps": 25.0, "frames": 150, "duration": 5.96},
+ "restitution": {"value": 0.83, "stderr": 0.02},
+ "friction": {"value": 0.011, "stderr": 0.0003, "law": "constant", "a": null, "v_c": null,
+  "b": null},
+ "collisions": [],
+ "glides": [{"stone": "A", "t0": 1.2, "t1": 5.5, "friction": 0.011, "stderr": 0.0004,
+  "turn": 0.002, "stderr_turn": 0.001, "speed": 1.2}],
+ "simulations": {},
+ "warnings": ["two frames are missing"],
+ "radius": 0.145,
+ "predictions": {"frictional": {"rmse": 0.03, "rest_error": {"A": 0.05}, "rest_sd": {"A": 0.2},
+  "restitution": {"value": 0.85, "stderr": 0.05}, "friction": {"value": 0.01, "stderr": 0.001},
+  "note": null, "error_after": {"A": 0.04}, "sd_after": {"A": 0.06}}},
+ "laws": {"names": ["friction"], "values": [0.011], "cov": [[1e-8]]},
+ "methods": {"global": {"restitution": {"value": 0.83, "stderr": 0.02},
+  "friction": {"value": 0.011, "stderr": 0.0003},
+  "stone_friction": {"value": null, "stderr": null, "note": null}, "hits": [], "note": null}},
+ "law_choice": [{"name": "ice constant", "criterion": 0.0, "weight": 1.0,
+  "friction": {"value": 0.011, "stderr": 0.0003}}],
+ "curl": {"value": 0.008, "stderr": 0.001, "note": null},
+ "stones": {"A": {"friction": {"value": 0.011, "stderr": 0.0004},
+  "turn": {"value": 0.002, "stderr": 0.001}, "speed": 1.2,
+  "spin": {"value": 0.6, "stderr": 0.1}}},
+ "misfits": [{"stone": "A", "t0": 1.2, "t1": 5.5, "size": 6.1, "certain": true,
+  "left_out": false}],
+ "posterior": null,
+ "masses": {},
+ "teams": {"A": "#d8c020"},
+ "sheet": false
+}"""
+
+
+def test_a_file_of_version_1_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "results.json"
+    path.write_text(VERSION_1, encoding="utf-8")
+    old = read_results(path)
+    assert old.joint_estimate == JointEstimate(("friction",), (0.011,), ((1e-8,),))
+    assert old.model_selection == (Law("ice constant", 0.0, 1.0, Estimate(0.011, 3e-4)),)
+    assert old.residuals == (TrackResidual("A", 1.2, 5.5, 6.1, True, False),)
+    assert not old.origin_at_tee
+    assert old.methods["shot_fit"].restitution == Estimate(0.83, 0.02)
+    assert (old.glides[0].turn_rate, old.glides[0].stderr_turn_rate) == (0.002, 0.001)
+    assert old.stones["A"].turn_rate == Estimate(0.002, 0.001)
+    guess = old.predictions["frictional"]
+    assert guess.error_at_comparison == {"A": 0.04}
+    assert guess.sd_at_comparison == {"A": 0.06}
+    write_results(old, path)
+    assert strict(path.read_text(encoding="utf-8"))["schema"] == 2
+    assert read_results(path) == old
+
+
 def test_the_form_of_the_file() -> None:
     raw = strict(results_json(RESULTS))
-    assert raw["schema"] == SCHEMA == 1
+    assert raw["schema"] == SCHEMA == 2
     assert set(raw) == {
         *("schema", "input", "restitution", "friction", "collisions", "glides"),
-        *("simulations", "warnings", "radius", "predictions", "laws", "methods", "law_choice"),
-        *("curl", "stones", "misfits", "posterior", "masses", "teams"),
-        "sheet",
+        *("simulations", "warnings", "radius", "predictions", "joint_estimate", "methods"),
+        "model_selection",
+        *("curl", "stones", "residuals", "posterior", "masses", "teams"),
+        "origin_at_tee",
     }
     assert raw["input"] == {
         "files": ["clip Ä.mp4"],
@@ -153,7 +212,7 @@ def test_any_value_is_strict_json(value: float | None, stderr: float | None, tex
         ("3", "not a results.json"),
         ("null", "not a results.json"),
         ("{}", "not a results.json"),
-        ('{"schema": 2}', "another version"),
+        ('{"schema": 3}', "another version"),
         ('{"schema": 1}', "not a results.json"),
     ],
 )

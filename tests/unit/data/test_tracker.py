@@ -10,7 +10,7 @@ from curlshot.data.errors import InputError
 from curlshot.data.export import write_csv
 from curlshot.data.tracker import Imported, read_table
 from curlshot.data.tracks import DETECTION_COLUMNS, teams, write_tracks
-from curlshot.tests.unit.data.dialects import RED, export, put, truth
+from curlshot.tests.helpers.data.dialects import RED, export, put, truth
 
 
 def read(folder: Path, text: str | bytes, **options: object) -> Imported:
@@ -177,7 +177,7 @@ def test_whole_numbers_as_time_are_frames_or_refused(tmp_path: Path) -> None:
     text = "t,x,y\n1,0,0\n2,0.1,0\n4,0.3,0\n"
     frames = read(tmp_path, text, fps=25)
     assert list(frames.detections["t"]) == [0.04, 0.08, 0.16]
-    assert "taken as frames" in frames.warnings[0]
+    assert "read as frames" in frames.warnings[0]
     with pytest.raises(InputError, match=r"whole numbers: frames\? give their rate"):
         read(tmp_path, text)
     seconds = "t,x,y\n1.000,0,0\n2.000,0.1,0\n4.000,0.3,0\n"

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from curlshot.data.errors import InputError
 from curlshot.data.tracker import read_table
 from curlshot.data.trk import Coordinates, PointMass, Project, Timing
-from curlshot.tests.unit.data.dialects import project, put
+from curlshot.tests.helpers.data.dialects import project, put
 
 SYSTEM = Coordinates(
     np.array([0, 3]),
@@ -75,7 +75,7 @@ def test_what_was_done_to_the_picture_and_between_marks_is_told() -> None:
     ).file()
     assert found.tracks["stone"].tolist() == ["red"] * 4
     assert found.masses["red"] == 19.0
-    for words in ("(rotate)", "2 places of red were filled in", "late has no mark in the clip"):
+    for words in ("(rotate)", "filled in 2 places of red", "late has no mark in the clip"):
         assert any(words in text for text in found.warnings), words
 
 

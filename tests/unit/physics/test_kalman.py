@@ -1,19 +1,18 @@
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pandas as pd
 import pytest
 
+from curlshot.data.measurement import Duplicate
 from curlshot.data.tracks import TRACK_COLUMNS, check_detections
 from curlshot.physics.filter import reference_filter as reference
 from curlshot.physics.filter.rate_filter import filtered
 from curlshot.physics.filter.stretch import Filter
 from curlshot.physics.kalman import smooth
-from curlshot.physics.local_fit.contacts import Contact, find_contacts
+from curlshot.physics.local_fit.hit_detection import HitCandidate, detect_hits
 from curlshot.synthetic.physics import Motion, Start
-from curlshot.tests.unit.physics.watch import RADIUS, airtable, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 COLUMNS = ("x", "y", "theta", "vx", "vy", "omega")
 
@@ -33,7 +32,7 @@ def test_errors_are_as_large_as_stated() -> None:
     pulls = []
     for _ in range(12):
         seen = watch(motion, rng, sd=0.006)
-        tracks = smooth(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+        tracks = smooth(seen, detect_hits(seen, RADIUS), radius=RADIUS)
         off, sd = errors(tracks, motion)
         speed = np.hypot(*motion.at(tracks["t"].to_numpy())[:, 0, 3:5].T)
         beside = np.abs(tracks["t"] - motion.hits[0].t) < 0.01  # the hit itself may lie between
@@ -69,7 +68,7 @@ def test_slow_stones_are_slowed_more_on_real_ice(speed: float) -> None:
 def test_smoothing_is_better_than_looking() -> None:
     motion = hit_motion(1.2, 0.08, after=1.5)
     seen = watch(motion, np.random.default_rng(32), sd=0.006)
-    tracks = smooth(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    tracks = smooth(seen, detect_hits(seen, RADIUS), radius=RADIUS)
     off, _ = errors(tracks, motion)
     far = np.abs(tracks["t"] - motion.hits[0].t) > 0.05
     assert np.sqrt(np.mean(off[far, :2] ** 2)) < 0.003
@@ -80,7 +79,7 @@ def test_smoothing_is_better_than_looking() -> None:
 def test_nothing_leaks_across_a_hit() -> None:
     motion = hit_motion()
     seen = watch(motion, np.random.default_rng(33))
-    hits = find_contacts(seen, RADIUS)
+    hits = detect_hits(seen, RADIUS)
     whole = smooth(seen, hits, radius=RADIUS)
     late = seen["t"] > hits[0].t
     other = seen.copy()
@@ -103,7 +102,9 @@ def test_a_row_that_may_lie_on_the_other_side_of_a_hit_says_so() -> None:
     frame = seen["t"].unique()[np.searchsorted(seen["t"].unique(), motion.hits[0].t)]
     sure, unsure = (
         smooth(
-            seen, [Contact(frame - 0.001, error, ("A", "B"), motion.hits[0].normal)], radius=RADIUS
+            seen,
+            [HitCandidate(frame - 0.001, error, ("A", "B"), motion.hits[0].normal)],
+            radius=RADIUS,
         )
         for error in (1e-5, 1e-3)
     )
@@ -122,7 +123,7 @@ def test_an_angle_seen_beside_a_hit_is_kept_whatever_becomes_of_the_spin() -> No
     turned = 9.0 * np.minimum(t - 1.0, 0.0) - 9.0 * np.maximum(t - 1.0, 0.0)
     seen = pd.DataFrame({"stone": "A", "t": t, "x": 0.0, "y": np.minimum(t - 1.0, 0.0)})
     seen = check_detections(seen.assign(theta=turned, sd_x=0.002, sd_y=0.002, sd_theta=0.01))
-    tracks = smooth(seen, [Contact(1.0, 0.005, ("A", "B"), (0.0, 1.0))], radius=RADIUS)
+    tracks = smooth(seen, [HitCandidate(1.0, 0.005, ("A", "B"), (0.0, 1.0))], radius=RADIUS)
     assert np.abs(tracks["theta"] - turned).max() < 0.05
     beside = tracks["omega"][t == 1.0].item(), tracks["sd_omega"][t == 1.0].item()
     assert beside[0] == pytest.approx(-9.0, abs=0.5)
@@ -132,7 +133,7 @@ def test_an_angle_seen_beside_a_hit_is_kept_whatever_becomes_of_the_spin() -> No
 def test_a_stone_at_rest_stays_at_rest() -> None:
     motion = hit_motion()
     seen = watch(motion, np.random.default_rng(34))
-    hits = find_contacts(seen, RADIUS)
+    hits = detect_hits(seen, RADIUS)
     tracks = smooth(seen, hits, radius=RADIUS)
     resting = tracks[(tracks["stone"] == "B") & (tracks["t"] < hits[0].t)]
     assert (resting[["vx", "vy", "omega"]] == 0).all().all()
@@ -173,7 +174,7 @@ def test_gaps_are_bridged_and_marked() -> None:
     dropped = seen["frame"].isin(rng.choice(150, 40, replace=False))
     hidden = (seen["stone"] == "A") & seen["t"].between(0.4, 0.7)
     left = seen[~dropped & ~hidden].reset_index(drop=True)
-    tracks = smooth(left, find_contacts(left, RADIUS), radius=RADIUS)
+    tracks = smooth(left, detect_hits(left, RADIUS), radius=RADIUS)
     assert tuple(tracks.columns) == TRACK_COLUMNS
     carried = tracks[tracks["seen"] == 0]
     assert set(carried["stone"]) == {"A"}
@@ -188,10 +189,10 @@ def test_gaps_are_bridged_and_marked() -> None:
 def test_frames_in_which_nothing_was_measured_have_states_where_they_are_wanted() -> None:
     motion = hit_motion(1.0, 0.05)
     seen = watch(motion, np.random.default_rng(8), sd=0.002)
-    hits = find_contacts(seen, RADIUS)
+    hits = detect_hits(seen, RADIUS)
     without = smooth(seen, hits, radius=RADIUS)
     t = float(seen["t"].iloc[10]) + 0.005
-    tracks = smooth(seen, hits, radius=RADIUS, unseen={9999: t})
+    tracks = smooth(seen, hits, radius=RADIUS, duplicates={9999: Duplicate(t, 10)})
     added = tracks["frame"] == 9999
     off, sd = errors(tracks[added], motion)
     assert len(off) == 2 and (tracks["seen"][added] == 0).all() and (tracks["t"][added] == t).all()
@@ -213,7 +214,7 @@ def test_a_way_too_short_to_be_seen_twice_is_told_by_its_ends() -> None:
             kept = (seen.loc[near, "t"] - middle).abs().nsmallest(detections).index
             left = seen.drop(seen.index[near].difference(kept)).reset_index(drop=True)
             contacts = [
-                Contact(hit.t + rng.normal(0, 5e-4), 5e-4, stones, hit.normal)
+                HitCandidate(hit.t + rng.normal(0, 5e-4), 5e-4, stones, hit.normal)
                 for hit, stones in ((first, ("A", "B")), (second, ("B", "C")))
             ]
             tracks = smooth(left, contacts, radius=RADIUS)
@@ -233,7 +234,7 @@ def test_outliers_are_refused() -> None:
     wild = rng.choice(np.flatnonzero(seen["t"] > 0.3), 5, replace=False)
     bad = seen.copy()
     bad.loc[wild, "x"] += 0.3
-    tracks = smooth(bad, find_contacts(bad, RADIUS), radius=RADIUS)
+    tracks = smooth(bad, detect_hits(bad, RADIUS), radius=RADIUS)
     keys = pd.MultiIndex.from_frame(bad.loc[wild, ["stone", "frame"]])
     refused = tracks.set_index(["stone", "frame"]).loc[keys, "seen"]
     assert (refused == 0).all()
@@ -249,25 +250,18 @@ def test_a_slip_that_a_way_begins_with_is_refused(stone: str, since: float) -> N
     seen = watch(motion, np.random.default_rng(38), sd=0.002)
     first = seen.index[(seen["stone"] == stone) & (seen["t"] > since)][0]
     seen.loc[first, "x"] += 0.3
-    tracks = smooth(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    tracks = smooth(seen, detect_hits(seen, RADIUS), radius=RADIUS)
     own = tracks[tracks["stone"] == stone]
     assert own["t"][own["seen"] == 0].tolist() == [seen.loc[first, "t"]]
     off, _ = errors(tracks, motion)
     assert np.abs(off[:, :2]).max() < 0.01
 
 
-def test_angles_that_nobody_saw_are_empty(shared: Path) -> None:
-    seen = airtable(shared)
-    tracks = smooth(seen, find_contacts(seen, 0.035), radius=0.035)
-    assert tracks[["theta", "omega", "sd_theta", "sd_omega"]].isna().all().all()
-    assert tracks[["x", "vx", "sd_x", "sd_vx"]].notna().all().all()
-
-
 def test_a_spin_is_seen_through_missing_angles() -> None:
     motion = hit_motion(stone_friction=0.2)
     seen = watch(motion, np.random.default_rng(37))
     seen.loc[seen["frame"] % 3 == 0, ["theta", "sd_theta"]] = np.nan
-    tracks = smooth(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    tracks = smooth(seen, detect_hits(seen, RADIUS), radius=RADIUS)
     off, _ = errors(tracks, motion)
     assert np.abs(off[:, 5]).max() < 0.3
     late = tracks[(tracks["stone"] == "B") & tracks["t"].between(1.3, 2.0)]["omega"]
@@ -301,7 +295,7 @@ def test_what_detections_share_is_not_averaged_out() -> None:
 def test_what_places_share_does_not_turn_the_line_on_which_stones_hit() -> None:
     """Velocities tell spins of poorly seen handles as well wherever all of it happens."""
     seen = watch(hit_motion(), np.random.default_rng(5), sd=0.001, sd_theta=0.3)
-    hits = find_contacts(seen, RADIUS)
+    hits = detect_hits(seen, RADIUS)
     alike = seen.assign(sd_place_x=0.006, sd_place_y=0.006)
     sure, shared = (smooth(table, hits, radius=RADIUS) for table in (seen, alike))
     turning = sure["sd_omega"] > 0.05
@@ -319,8 +313,8 @@ def test_a_stone_at_rest_that_was_moved_unseen_lies_where_it_is_seen(run: Filter
     table[["x", "y"]] += rng.normal(0, 0.001, (len(t), 2))
     hidden = (t > 1.05) & (t < 1.55)
     table = table[~hidden]
-    unseen = {int(k): float(t[k]) for k in np.flatnonzero(hidden)}
-    tracks = smooth(check_detections(table), (), radius=RADIUS, run=run, unseen=unseen)
+    unseen = {int(k): Duplicate(float(t[k]), -1) for k in np.flatnonzero(hidden)}
+    tracks = smooth(check_detections(table), (), radius=RADIUS, run=run, duplicates=unseen)
     off, sd = (tracks["y"] - y).to_numpy(), tracks["sd_y"].to_numpy()
     assert np.abs(off[~hidden]).max() < 0.001
     assert (tracks["seen"] == ~hidden).all()
@@ -350,9 +344,9 @@ def test_a_stone_that_stops_unseen_and_is_hit_later_was_not_moved(run: Filter) -
     hitting = pd.DataFrame({"stone": "A", "frame": np.arange(len(t)), "t": t, "y": 0.8})
     hitting["x"] = np.where(t < 7, 1.5, 0.1) * (t - 7) - 2 * RADIUS
     detections = check_detections(pd.concat([hitting, table]))
-    contacts = [Contact(7.0, 0.001, ("A", "B"), (1.0, 0.0))]
-    unseen = {round(25 * at): float(at) for at in when}
-    tracks = smooth(detections, contacts, radius=RADIUS, run=run, unseen=unseen)
+    contacts = [HitCandidate(7.0, 0.001, ("A", "B"), (1.0, 0.0))]
+    unseen = {round(25 * at): Duplicate(float(at), -1) for at in when}
+    tracks = smooth(detections, contacts, radius=RADIUS, run=run, duplicates=unseen)
     b = tracks[(tracks["stone"] == "B") & tracks["t"].between(3.6, 4.6)]
     assert (np.abs(b["y"] - 0.8 + 0.05 * np.maximum(4 - b["t"], 0) ** 2) < 0.003).all()
     assert b["omega"].notna().all()
@@ -363,8 +357,8 @@ def test_a_stone_that_stops_unseen_and_is_hit_later_was_not_moved(run: Filter) -
 def test_a_stone_that_stopped_and_was_turned_unseen_did_not_spin_before(run: Filter) -> None:
     later = (np.arange(0, 9, 1 / 25) > 6).astype(float)
     table, when = stopped((5.8, 6.4), y=0.3 * later, theta=2.5 * later)
-    unseen = {round(25 * at): float(at) for at in when}
-    tracks = smooth(check_detections(table), (), radius=RADIUS, run=run, unseen=unseen)
+    unseen = {round(25 * at): Duplicate(float(at), -1) for at in when}
+    tracks = smooth(check_detections(table), (), radius=RADIUS, run=run, duplicates=unseen)
     before = tracks[tracks["t"].between(5.0, 5.79)]
     assert (np.abs(before["omega"]) < 3 * before["sd_omega"]).all()
     assert np.abs(tracks.loc[tracks["t"] > 6.41, "theta"] - 4.5).max() < 0.02

@@ -10,10 +10,10 @@ from curlshot.cli.main import main
 from curlshot.pipeline import sample_clip
 from curlshot.report.check import check_figure
 from curlshot.report.looks import Look
-from curlshot.tests.unit.report.looking import SIZE, camera, stone, table
+from curlshot.tests.helpers.report.looking import SIZE, camera, stone, table
 from curlshot.vision.detection.detection import Refusal
-from curlshot.vision.film.clip import Frame
 from curlshot.vision.optics.camera import Camera
+from curlshot.vision.video.frame import Frame
 
 
 def house_picture() -> np.ndarray:
@@ -118,7 +118,7 @@ def test_the_command_writes_the_sheet_whole(tmp_path, capsys) -> None:
     out = tmp_path / "out"
     assert main(["check", str(sample_clip()), "--frames", "0:30", "-o", str(out), "-q"]) == 0
     said = capsys.readouterr().out
-    assert "carried in 0" in said
+    assert "carried over in 0" in said
     assert [item.name for item in out.iterdir()] == ["check.png"]
     assert cv2.imread(str(out / "check.png")).shape[1] > 1500
 

@@ -11,7 +11,7 @@ from curlshot.data.sheet import SHEET, STONE
 from curlshot.physics.prediction.what_if import Amount, Changes
 from curlshot.report.style import render
 from curlshot.report.whatif import spread_figure, told
-from curlshot.tests.unit.report.figures.drawn import check_layout
+from curlshot.tests.helpers.report.drawn import check_layout
 
 
 def outcomes(centre: tuple[float, float], count: int = 300) -> pd.DataFrame:
@@ -40,7 +40,7 @@ def test_the_heat_map_shows_where_the_thrown_stone_ends(centre: tuple[float, flo
     assert float(heat.sum()) / 4 == pytest.approx(100, abs=10)
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     # B is never hit; what lies out of view has no entry.
-    at_home = ["as it lay before", r"\$C where hit"] if centre[1] < 10 else []
+    at_home = ["before the shot", r"\$C where hit"] if centre[1] < 10 else []
     assert labels == ["median of A", *at_home]
     drawn = [patch.center for patch in ax.patches if isinstance(patch, Circle)]
     assert (0.5, 0.5) in drawn and (0.0, -5.0) not in drawn

@@ -9,39 +9,39 @@ import pytest
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
+from curlshot.config import VideoConfig
 from curlshot.data.sheet import STONE, Stone
 from curlshot.data.tracks import DETECTION_COLUMNS, teams
 from curlshot.physics.filter.rate_filter import filtered, forward
 from curlshot.physics.filter.stretch import Smoothed, Stretch
 from curlshot.physics.kalman import smooth
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.synthetic.clip import render_still
 from curlshot.synthetic.scoring import score_tracks
-from curlshot.tests.unit.vision.association.test_follow import detection
-from curlshot.tests.unit.vision.detection.test_stones import (
+from curlshot.tests.helpers.vision.stones import (
     CAMERA,
     RED,
     camera_of,
     scene_of,
     without_colours,
 )
+from curlshot.tests.helpers.vision.tracks import detection
 from curlshot.vision.association.follow import Track
 from curlshot.vision.detection.roundness import edge_errors
 from curlshot.vision.detection.steady import lightness_of
 from curlshot.vision.detection.stones import plain_disc
-from curlshot.vision.film.clip import open_clip
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.stick import stick_cameras
 from curlshot.vision.spin.handle import HandleAngles
 from curlshot.vision.track import (
     HARDLY_TOLD,
-    _angles,
     _by_edges,
     _rows,
     off_axis,
     slants_of,
     track_stones,
 )
+from curlshot.vision.video.reader import open_video
 
 Array = NDArray[np.float64]
 DATA = Path(__file__).resolve().parents[3] / "data"
@@ -69,7 +69,7 @@ def sample_truth() -> tuple[pd.DataFrame, tuple[Camera, ...]]:
 
 def test_the_sample_is_followed_from_end_to_end() -> None:
     truth, cameras = sample_truth()
-    clip = open_clip([DATA / "sample.mp4"], frames=(0, 80))
+    clip = open_video([DATA / "sample.mp4"], VideoConfig(frames=(0, 80)))
     stones = track_stones(clip, cameras)
     assert tuple(stones.detections.columns) == DETECTION_COLUMNS
     score = score_tracks(stones.detections.assign(seen=1), truth[truth["frame"] <= 80], visible=0.5)
@@ -99,7 +99,7 @@ def test_a_clip_without_stones_says_so(tmp_path: Path) -> None:
 
     path = tmp_path / "ice.png"
     cv2.imwrite(str(path), np.full((120, 160, 3), 220, np.uint8))
-    clip = open_clip([path])
+    clip = open_video([path])
     camera = Camera(
         0, 0.0, np.array([[20.0, 0, 80], [0, -20, 60], [0, 0, 1]]), (160, 120),
         position=np.array([0.0, 0, 10]),
@@ -117,7 +117,7 @@ def test_where_caps_of_one_lightness_are_all_that_is_told_the_others_are_warned_
 
     scene, path = scene_of([(0.3, 0.2, RED), (1.4, 0.6, RED)]), tmp_path / "ice.png"
     cv2.imwrite(str(path), without_colours(scene) if grey else render_still(scene, CAMERA))
-    stones = track_stones(open_clip([path]), (camera_of(CAMERA, scene),))
+    stones = track_stones(open_video([path]), (camera_of(CAMERA, scene),))
     assert len(stones.detections) == 2
     assert ["without colour" in text for text in stones.warnings] == [True] * warned
 
@@ -132,7 +132,7 @@ def test_caps_that_are_hardly_told_from_granite_lie_less_surely(tmp_path: Path) 
             tmp_path / "i.png",
         )
         cv2.imwrite(str(path), without_colours(scene))
-        stones = track_stones(open_clip([path]), (camera_of(CAMERA, scene),)).detections
+        stones = track_stones(open_video([path]), (camera_of(CAMERA, scene),)).detections
         assert len(stones) == 2
         shared.append(stones[["sd_place_x", "sd_place_y"]].to_numpy().max())
     assert max(shared[:2]) < 0.007
@@ -152,7 +152,7 @@ def test_real_stones(shared: Path, name: str) -> None:
     )  # fmt: skip
     assert all(frame["k1"] == 0 for frame in truth["frames"])
     tracks = pd.read_csv(shared / "clips" / f"semireal_{name}.truth.csv")
-    clip = open_clip([shared / "clips" / f"semireal_{name}.mp4"], frames=(40, 110))
+    clip = open_video([shared / "clips" / f"semireal_{name}.mp4"], VideoConfig(frames=(40, 110)))
     stones = track_stones(clip, cameras, disc=STONE)
     score = score_tracks(stones.detections.assign(seen=1), tracks[tracks["frame"].between(40, 110)])
     assert score.recall > 0.97
@@ -168,16 +168,16 @@ def test_real_stones(shared: Path, name: str) -> None:
 def test_balls_among_projected_rings_hit_each_other(
     shared: Path, name: str, last: int | None, hit: float
 ) -> None:
-    clip = open_clip([shared / "clips" / f"{name}.mp4"], frames=(0, last))
+    clip = open_video([shared / "clips" / f"{name}.mp4"], VideoConfig(frames=(0, last)))
     cameras = stick_cameras(clip, (70.0, 360.0, 1173.0, 360.0, 1.9))
     seen = track_stones(clip, cameras, disc=plain_disc(0.0286)).detections
-    (contact,) = find_contacts(seen, 0.0286)
+    (contact,) = detect_hits(seen, 0.0286)
     assert contact.t == pytest.approx(hit, abs=0.05)
     assert {*seen.loc[seen["t"] > hit, "stone"]} == {*contact.stones}
 
 
 def test_pucks_on_a_dark_table(shared: Path) -> None:
-    clip = open_clip([shared / "clips" / "collision-pucks.mp4"], frames=(2, 31))
+    clip = open_video([shared / "clips" / "collision-pucks.mp4"], VideoConfig(frames=(2, 31)))
     cameras = stick_cameras(clip, (20.0, 219.8, 20.0, 35.9, 0.5))
     stones = track_stones(clip, cameras, disc=plain_disc(0.0465))
     table = stones.detections
@@ -195,7 +195,7 @@ def test_pucks_on_a_dark_table(shared: Path) -> None:
 
 def test_the_filter_is_no_surer_of_a_clip_than_it_may_be() -> None:
     truth, cameras = sample_truth()
-    clip = open_clip([DATA / "sample.mp4"], frames=(0, 80))
+    clip = open_video([DATA / "sample.mp4"], VideoConfig(frames=(0, 80)))
     seen = track_stones(clip, cameras).detections
     stretches: list[Stretch] = []
 
@@ -203,7 +203,7 @@ def test_the_filter_is_no_surer_of_a_clip_than_it_may_be() -> None:
         stretches.append(stretch)
         return filtered(stretch)
 
-    tracks = smooth(seen, find_contacts(seen, STONE.radius), radius=STONE.radius, run=spy)
+    tracks = smooth(seen, detect_hits(seen, STONE.radius), radius=STONE.radius, run=spy)
     moving = [forward(s) for s in stretches if not s.rest.any()]
     square = np.concatenate([each.normalised_innovations[6:] for each in moving]) ** 2
     for axis in range(3):
@@ -236,37 +236,6 @@ def angles(theta: Array, unlike: tuple[float, float], height: int) -> HandleAngl
     return HandleAngles(
         theta, 0 * theta + 0.01, np.zeros((len(theta), 2)), np.array(unlike), frozenset({height})
     )
-
-
-def test_stones_that_hardly_turn_are_seen_at_the_height_of_those_that_do(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    wide, little = np.linspace(0, 3, 20), np.linspace(0, 0.6, 20)
-    own = {
-        20.0: angles(wide, (2.0, 10.0), 0),
-        21.0: angles(little, (1.0, 0.7), 1),  # light makes it more alike at the other height
-        22.0: angles(little, (0.7, 1.0), 0),
-        23.0: angles(wide, (4.0, 2.0), 1),  # its handle may be another one
-    }
-    given = []
-
-    def told(times: Array, *_: object, slants: Array, height: int | None = None) -> HandleAngles:
-        given.append((float(times[0]), slants[0, 0], height))
-        return own[float(times[0])] if height is None else angles(little, (0.0, 0.0), height)
-
-    monkeypatch.setattr("curlshot.vision.track.angles_in_parts", told)
-    tracks, slants = {}, {}
-    for time in own:
-        tracks[str(time)] = track = Track()
-        track.add(0, time, detection((0.5, -12.0)), STONE.radius)
-        slants[str(time)] = np.array([[0.1 * time, 0.0]])
-    found = _angles(tracks, STONE, slants)
-    # Each with the slants of its view.
-    assert given == [(t, pytest.approx(0.1 * t), None) for t in own] + [
-        (21.0, pytest.approx(2.1), 0)
-    ]
-    assert found["21.0"].heights == {0}
-    assert all(found[str(time)] is own[time] for time in (20.0, 22.0, 23.0))
 
 
 def test_no_clip_has_all_of_what_places_may_share() -> None:

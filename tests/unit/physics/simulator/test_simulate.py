@@ -16,7 +16,7 @@ from curlshot.physics.curl import FCV1Curl, NoCurl
 from curlshot.physics.ice import FCV1, Constant, IceLaw, Penner
 from curlshot.physics.impact import Frictional, Impact, PointMass, RigidBody
 from curlshot.physics.simulator.simulate import simulate
-from curlshot.physics.simulator.simulation import Hit, Shot, Simulation, StoneStart
+from curlshot.physics.simulator.simulation import HitEvent, Shot, Simulation, StoneStart
 
 R = 0.145
 LAWS: list[IceLaw] = [Constant(), FCV1(), Penner()]
@@ -55,7 +55,7 @@ def houses(draw: st.DrawFn) -> tuple[StoneStart, ...]:
     return tuple(stones)
 
 
-def momentum(hit: Hit, states: dict[str, StoneState], masses: dict[str, float]) -> np.ndarray:
+def momentum(hit: HitEvent, states: dict[str, StoneState], masses: dict[str, float]) -> np.ndarray:
     one, two = (masses[n] * np.array([states[n].vx, states[n].vy]) for n in hit.stones)
     return one + two
 
@@ -229,7 +229,7 @@ def test_laws_of_conservation(stones: tuple[StoneStart, ...], law: IceLaw, model
     assert total[-1] == 0
 
 
-def angular(hit: Hit, states: dict[str, StoneState]) -> float:
+def angular(hit: HitEvent, states: dict[str, StoneState]) -> float:
     total = 0.0
     for name in hit.stones:
         s = states[name]
@@ -275,7 +275,7 @@ def test_mirror_and_rotation(stones: tuple[StoneStart, ...], angle: float, mirro
         assert (two.rest[name].x, two.rest[name].y) == pytest.approx(expected, abs=1e-6)
 
 
-def closing(hit: Hit) -> float:
+def closing(hit: HitEvent) -> float:
     one, two = (hit.before[name] for name in hit.stones)
     return (one.vx - two.vx) * hit.normal[0] + (one.vy - two.vy) * hit.normal[1]
 

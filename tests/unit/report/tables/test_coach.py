@@ -5,7 +5,7 @@ import pytest
 
 from curlshot.data.sheet import SHEET
 from curlshot.report import tables
-from curlshot.tests.unit.report.glides import MU_G, glide
+from curlshot.tests.helpers.report.glides import MU_G, glide
 
 
 def test_speeds_at_the_lines_are_those_of_the_closed_form():
@@ -24,7 +24,7 @@ def test_a_line_that_was_not_passed_in_view_has_a_reason():
     assert table["speed"].isna().all()
     assert table.loc["hog line", "note"] == "first seen 2.4 m past it"
     way = 0.8**2 / (2 * MU_G)
-    assert table.loc["tee line", "note"].startswith(f"came no nearer than {4.0 - way:.1f} m")
+    assert table.loc["tee line", "note"].startswith(f"came no closer than {4.0 - way:.1f} m")
 
 
 def test_stones_from_the_other_end_pass_the_other_hog_line():
