@@ -62,7 +62,7 @@ def run(
     >>> shot = curlshot.Shot((curlshot.StoneStart("A", 0.5, 1.0),))
     >>> curlshot.simulate(shot).sample([0.0, 0.1, 0.2]).to_csv("still.csv")
     >>> print(curlshot.run("still.csv").restitution)
-    — (no stone moves: neither restitution nor friction)
+    — (no stone moves: restitution and friction are not identifiable)
     """
     config = config.replace(**settings)
     if out is not None:
@@ -174,12 +174,7 @@ def analyse(
     from curlshot.physics.prediction.forecast import predict
     from curlshot.physics.prediction.replay import simulate_measured
     from curlshot.physics.prediction.throws import along_sheet, first_hit
-    from curlshot.physics.steps import (
-        check_masses,
-        gather_results,
-        laws_to_assume,
-        times_of_hits,
-    )
+    from curlshot.physics.steps import check_masses, gather_results, laws_to_assume, times_of_hits
 
     detections, radius = measured.detections, config.stones.radius
     if detections.empty:

@@ -167,7 +167,7 @@ def test_one_bad_clip_does_not_stop_the_others(
         shot = replace(SHOT, friction=Friction(0.01 + len(clips[0].stem) / 1e4, 0.001))
         return Run(pd.DataFrame(), None, shot, pd.DataFrame(), out)
 
-    monkeypatch.setattr(pipeline, "run", run_or_not)
+    monkeypatch.setattr("curlshot.season.batch.run", run_or_not)
     for name in ("good.mp4", "bad.mp4", "other.mp4"):
         (tmp_path / name).touch()
     clips = [str(tmp_path / name) for name in ("good.mp4", "bad.mp4", "other.mp4")]
