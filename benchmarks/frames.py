@@ -87,8 +87,8 @@ def _look(file: Path, camera: Camera, boxes: Array, tally: Tally) -> None:
     size = np.array(camera.size)
     places = camera.ice(boxes[:, :2] * size - 0.5, STONE.cap_height)
     in_view = np.all(np.abs(boxes[:, :2] - 0.5) < 0.5 - 0.25 * boxes[:, 2:], axis=1)
-    on_sheet = np.abs(places[:, 0]) < SEARCH.x_max - 0.1
-    on_sheet &= np.abs(places[:, 1]) < SEARCH.y_max
+    on_sheet = np.abs(places[:, 0]) < SEARCH.half_width - 0.1
+    on_sheet &= np.abs(places[:, 1]) < SEARCH.half_length
     apart = np.hypot(*(seen[:, None] - places).transpose(2, 0, 1))
     counts = in_view & on_sheet
     missed = counts & ~(apart < NEAR).any(0)

@@ -151,7 +151,7 @@ def stills_table() -> pd.DataFrame:
         boxes = stone_boxes(SHARED / "frames", Path(still["file"]).stem)
         marked = camera.ice(boxes[:, :2] * size - 0.5, STONE.cap_height)
         whole = np.all(np.abs(boxes[:, :2] - 0.5) < 0.5 - 0.1 * boxes[:, 2:], axis=1)
-        on_sheet = np.abs(marked[:, 0]) < SEARCH.x_max - 0.1
+        on_sheet = np.abs(marked[:, 0]) < SEARCH.half_width - 0.1
         marked = marked[on_sheet & whole]
         apart = np.hypot(*(found[:, None] - marked[None]).transpose(2, 0, 1))
         measured = np.array([(s["x"], s["y"]) for s in still["stones"]])

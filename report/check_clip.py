@@ -14,6 +14,7 @@ from curlshot.data.progress import Progress, no_progress
 from curlshot.report.check import check_figure
 from curlshot.report.looks import Look, check_lines, check_table, frames_to_show
 from curlshot.vision.detection.glance import glance
+from curlshot.vision.detection.stones import Search
 from curlshot.vision.measure import film
 from curlshot.vision.optics.placed import nobody
 
@@ -60,7 +61,8 @@ def check(
         if frame.index in chosen:
             frames.append(frame)
         progress("frames to show", done, clip.expected)
-    stones = glance([(frame.image, by_frame[frame.index]) for frame in frames], seen.disc)
+    placed = [(frame.image, by_frame[frame.index]) for frame in frames]
+    stones = glance(placed, seen.disc, Search.of(config.search))
     looks = [
         Look(frame, by_frame[frame.index], found.stones, found.refused)
         for frame, found in zip(frames, stones, strict=True)

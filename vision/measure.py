@@ -180,14 +180,15 @@ def measure_clip(
         Where the clip cannot be used; one line says why.
     """
     from curlshot.vision.association.watch import Watch
-    from curlshot.vision.detection.stones import FOLLOWING, SEARCH
+    from curlshot.vision.detection.stones import Search
     from curlshot.vision.optics.camera import carried
     from curlshot.vision.optics.letterbox import in_whole
     from curlshot.vision.track import tracks_of
 
     alone = len(files) == 1 and files[0].suffix.lower() in IMAGE_SUFFIXES
     # A picture by itself has one chance.
-    watch = Watch(disc_of(config), SEARCH if alone else FOLLOWING)
+    fine, rough = (Search.of(config.search, clip=clip) for clip in (False, True))
+    watch = Watch(disc_of(config), fine if alone else rough, fine)
 
     def look(frame: Frame, camera: Camera) -> None:
         if not watch.begun:

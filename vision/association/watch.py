@@ -82,9 +82,11 @@ class Watch:
         Where stones are sought and what they must show.
     """
 
-    def __init__(self, disc: Stone = STONE, search: Search = FOLLOWING):
+    def __init__(
+        self, disc: Stone = STONE, search: Search = FOLLOWING, finer: Search = SEARCH
+    ) -> None:
         self.appearance: Appearance | None = None
-        self.disc, self._search = disc, search
+        self.disc, self._search, self._finer = disc, search, finer
         self._lessons: list[Detection] = []
         self._waiting: list[StoneView] = []
         self._recent: deque[StoneView] = deque()
@@ -206,16 +208,19 @@ class Watch:
             self._waiting, self._lessons = as_they_are
 
     def _of_any_colour(
-        self, views: Iterable[StoneView], radius_px: float = SEARCH.radius_px
+        self, views: Iterable[StoneView], radius_px: float | None = None
     ) -> list[Detection]:
         """Stones of any colour that were not seen in the views so far.
 
         A dull cap on vivid paint answers too faintly on a map much coarser than that of `SEARCH`.
         """
         # Too much on the ice answers faintly to any colour.
-        search = replace(self._search, least_score=SEARCH.least_score, radius_px=radius_px)
+        fine = self._finer.radius_px
+        radius_px = fine if radius_px is None else radius_px
+        response = self._finer.min_response
+        search = replace(self._search, min_response=response, radius_px=radius_px)
         looks = [Look(view.frame.picture, view.camera, view.places) for view in views]
-        rough = radius_px < SEARCH.radius_px
+        rough = radius_px < fine
         found, disc = strangers(looks, self.disc, search, bool(self._lessons), rough)
         stones = [stone for one in found for stone in one.stones]
         if convincing(stones):
@@ -273,7 +278,7 @@ class Watch:
         So are plain discs, of which nothing but a rim answers.
         """
         finer = not self._leads or is_plain(self.disc)
-        radius_px = SEARCH.radius_px if finer else self._search.radius_px
+        radius_px = (self._finer if finer else self._search).radius_px
         search = replace(self._search, radius_px=radius_px)
         fresh = replace(self._follower, search=search).sought(view)
         view.detections.extend(fresh)

@@ -11,8 +11,8 @@ from curlshot.data import archive
 from curlshot.data.archive import unpack
 from curlshot.data.errors import InputError
 from curlshot.data.project import unpack_clip
-from curlshot.tests.unit.data import dialects
-from curlshot.tests.unit.data.dialects import project
+from curlshot.tests.helpers.data import dialects
+from curlshot.tests.helpers.data.dialects import project
 
 CLIP = '<property name="path" type="string">v/c.mp4</property>'
 

@@ -12,7 +12,7 @@ from curlshot.data.errors import InputError
 from curlshot.data.sheet import STONE
 from curlshot.data.tracker import read_table
 from curlshot.data.tracks import check_detections
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 
 def shot(size: float = 1.0) -> pd.DataFrame:

@@ -18,7 +18,7 @@ from curlshot.data.project import unpack_clip
 from curlshot.data.tracker import read_table
 from curlshot.data.tracks import check_detections
 from curlshot.data.trk_write import plain_view, project_xml
-from curlshot.tests.unit.data.dialects import archive, export, project, put, truth
+from curlshot.tests.helpers.data.dialects import archive, export, project, put, truth
 
 MOST_MEMORY = 500_000_000
 """Bytes by which reading whatever files may make the process grow."""

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from curlshot.tests.unit.data.reading import read, stones, xy
+from curlshot.tests.helpers.data.reading import read, stones, xy
 
 
 def test_times_in_milliseconds_and_frames(tmp_path: Path) -> None:

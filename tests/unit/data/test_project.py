@@ -8,7 +8,7 @@ import pytest
 
 from curlshot.data.errors import InputError
 from curlshot.data.tracker import read_table
-from curlshot.tests.unit.data.dialects import archive, numbers, project, put
+from curlshot.tests.helpers.data.dialects import archive, numbers, project, put
 
 
 def test_masses_count_only_if_all_were_set(tmp_path: Path) -> None:

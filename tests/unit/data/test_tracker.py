@@ -10,7 +10,7 @@ from curlshot.data.errors import InputError
 from curlshot.data.export import write_csv
 from curlshot.data.tracker import Imported, read_table
 from curlshot.data.tracks import DETECTION_COLUMNS, teams, write_tracks
-from curlshot.tests.unit.data.dialects import RED, export, put, truth
+from curlshot.tests.helpers.data.dialects import RED, export, put, truth
 
 
 def read(folder: Path, text: str | bytes, **options: object) -> Imported:

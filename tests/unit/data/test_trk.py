@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from curlshot.data.errors import InputError
 from curlshot.data.tracker import read_table
 from curlshot.data.trk import Coordinates, PointMass, Project, Timing
-from curlshot.tests.unit.data.dialects import project, put
+from curlshot.tests.helpers.data.dialects import project, put
 
 SYSTEM = Coordinates(
     np.array([0, 3]),

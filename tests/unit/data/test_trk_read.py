@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from curlshot.data.tracker import read_table
-from curlshot.tests.unit.data.dialects import KEYS, MARKS, numbers, project, put
+from curlshot.tests.helpers.data.dialects import KEYS, MARKS, numbers, project, put
 
 
 def test_places_are_those_of_the_moving_coordinate_system(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from curlshot.data.errors import InputError
-from curlshot.tests.unit.data.reading import read, stones, xy
+from curlshot.tests.helpers.data.reading import read, stones, xy
 
 
 @pytest.mark.parametrize(

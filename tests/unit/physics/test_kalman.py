@@ -1,7 +1,5 @@
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pandas as pd
 import pytest
@@ -13,7 +11,7 @@ from curlshot.physics.filter.stretch import Filter
 from curlshot.physics.kalman import smooth
 from curlshot.physics.local_fit.hit_detection import HitCandidate, detect_hits
 from curlshot.synthetic.physics import Motion, Start
-from curlshot.tests.unit.physics.watch import RADIUS, airtable, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 COLUMNS = ("x", "y", "theta", "vx", "vy", "omega")
 
@@ -256,13 +254,6 @@ def test_a_slip_that_a_way_begins_with_is_refused(stone: str, since: float) -> N
     assert own["t"][own["seen"] == 0].tolist() == [seen.loc[first, "t"]]
     off, _ = errors(tracks, motion)
     assert np.abs(off[:, :2]).max() < 0.01
-
-
-def test_angles_that_nobody_saw_are_empty(shared: Path) -> None:
-    seen = airtable(shared)
-    tracks = smooth(seen, detect_hits(seen, 0.035), radius=0.035)
-    assert tracks[["theta", "omega", "sd_theta", "sd_omega"]].isna().all().all()
-    assert tracks[["x", "vx", "sd_x", "sd_vx"]].notna().all().all()
 
 
 def test_a_spin_is_seen_through_missing_angles() -> None:

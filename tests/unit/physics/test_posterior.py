@@ -9,7 +9,7 @@ from curlshot.data.results import Estimate, Friction
 from curlshot.physics.estimate import Estimates, estimate
 from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.physics.posterior import sample_posterior, summarise
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 
 def test_draws_have_the_errors_of_the_estimates_and_their_correlation() -> None:

@@ -10,7 +10,7 @@ from curlshot.cli.main import main
 from curlshot.pipeline import sample_clip
 from curlshot.report.check import check_figure
 from curlshot.report.looks import Look
-from curlshot.tests.unit.report.looking import SIZE, camera, stone, table
+from curlshot.tests.helpers.report.looking import SIZE, camera, stone, table
 from curlshot.vision.detection.detection import Refusal
 from curlshot.vision.film.clip import Frame
 from curlshot.vision.optics.camera import Camera

@@ -4,7 +4,7 @@ import dataclasses
 
 from curlshot.data.results import MeasuredState
 from curlshot.report import figures
-from curlshot.tests.unit.report.figures.drawn import check_layout, residuals
+from curlshot.tests.helpers.report.drawn import check_layout, residuals
 
 
 def test_long_and_strange_names_and_close_hits_fit(shot):

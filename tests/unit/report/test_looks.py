@@ -13,7 +13,7 @@ from curlshot.report.looks import (
     numbered,
     way_of_play,
 )
-from curlshot.tests.unit.report.looking import camera, stone, table
+from curlshot.tests.helpers.report.looking import camera, stone, table
 from curlshot.vision.detection.detection import Refusal
 from curlshot.vision.film.clip import Frame
 from curlshot.vision.optics.camera import CameraError

@@ -10,18 +10,12 @@ import pytest
 
 from curlshot.report import overlay
 from curlshot.report.overlay import _scene, draw, write_overlay
-from curlshot.tests.unit.report.browser import needs_chromium
+from curlshot.tests.helpers.report.browser import needs_chromium
+from curlshot.tests.helpers.report.clips import GREY, SIZE, camera, pictures
 from curlshot.vision.film.clip import Frame, open_clip
 from curlshot.vision.optics.camera import Camera
 
-SIZE = (321, 241)  # odd both ways
 TIMES = [0.0, 0.04, 0.08, 0.2, 0.24, 0.25, 0.3, 0.5]
-GREY = 120
-
-
-def camera(frame: int, **kwargs) -> Camera:
-    homography = np.array([[60.0, 0, 160], [0, -60.0, 120], [0, 0, 1]])
-    return Camera(frame, 0.0, homography, SIZE, **kwargs)
 
 
 def uneven_clip(path: Path) -> Path:
@@ -36,15 +30,6 @@ def uneven_clip(path: Path) -> Path:
             out.mux(stream.encode(frame))
         out.mux(stream.encode())
     return path
-
-
-def pictures(folder: Path, count: int = 6) -> list[Path]:
-    paths = []
-    for k in range(count):
-        path = folder / f"{k:03}.png"
-        cv2.imwrite(str(path), np.full((SIZE[1], SIZE[0], 3), GREY, np.uint8))
-        paths.append(path)
-    return paths
 
 
 def read(path: Path) -> tuple[list[float], list[np.ndarray]]:

@@ -13,7 +13,7 @@ from curlshot import pipeline
 from curlshot.cli.main import main
 from curlshot.config import Config
 from curlshot.data.errors import InputError
-from curlshot.data.results import Estimate, Friction, Hit, Input, MeasuredState, Results
+from curlshot.data.results import Estimate, Friction, Results
 from curlshot.data.results_file import write_results
 from curlshot.data.run_folders import find_runs
 from curlshot.outcome import Run
@@ -21,19 +21,7 @@ from curlshot.physics.statistics.season import hits_table, pooled, shots_table
 from curlshot.report.season import season_figure
 from curlshot.season.batch import run_each
 from curlshot.season.together import season
-
-HIT = Hit(
-    1.0, 0.01, ("A", "B"), (0.6, 0.8), 0.82, 0.01,
-    {"A": MeasuredState(0, 0, 1.2, 1.6), "B": MeasuredState(0.1, 0.2, 0.3, 0.4)},
-    {"A": MeasuredState(0, 0, 0.2, 0.3), "B": MeasuredState(0.1, 0.2, 1.0, 1.1)},
-)  # fmt: skip
-SHOT = Results(
-    Input(("a.mp4",), 25.0, 100, 4.0),
-    Estimate(0.82, 0.01),
-    Friction(0.011, 0.0002),
-    (HIT,),
-)
-BARE = replace(SHOT, restitution=Estimate(), friction=Friction(), collisions=())
+from curlshot.tests.helpers.report.shots import BARE, SHOT
 
 
 def test_tables_say_what_the_results_say() -> None:
@@ -48,7 +36,10 @@ def test_tables_say_what_the_results_say() -> None:
 def test_a_shot_says_why_it_does_not_tell_e_or_friction(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    unseen, short = "restitution: no hit detected", "friction: not identifiable, no stone glides freely for long enough"
+    unseen, short = (
+        "restitution: no hit detected",
+        "friction: not identifiable, no stone glides freely for long enough",
+    )
     rub = "friction between the stones not identifiable: 0.2, as in the shot fit"
     told = replace(SHOT, warnings=(rub, "the friction differs from glide to glide"))
     bare = replace(BARE, warnings=(unseen, "D is not followed", rub, short))

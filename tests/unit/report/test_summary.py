@@ -11,7 +11,7 @@ from curlshot.data.results import Prediction
 from curlshot.data.sheet import HOUSE
 from curlshot.report import tables
 from curlshot.report.summary import summary
-from curlshot.tests.unit.report.glides import glide
+from curlshot.tests.helpers.report.glides import glide
 
 
 def test_the_law_is_named_beside_a_friction_that_is_known(shot):

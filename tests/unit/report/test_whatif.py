@@ -11,7 +11,7 @@ from curlshot.data.sheet import SHEET, STONE
 from curlshot.physics.prediction.what_if import Amount, Changes
 from curlshot.report.style import render
 from curlshot.report.whatif import spread_figure, told
-from curlshot.tests.unit.report.figures.drawn import check_layout
+from curlshot.tests.helpers.report.drawn import check_layout
 
 
 def outcomes(centre: tuple[float, float], count: int = 300) -> pd.DataFrame:

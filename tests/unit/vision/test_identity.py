@@ -9,7 +9,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from curlshot.synthetic.physics import Impact, Motion, Start, simulate
-from curlshot.tests.unit.vision.association.test_follow import R, detection
+from curlshot.tests.helpers.vision.tracks import R, detection
 from curlshot.vision.association.follow import Track, follow
 from curlshot.vision.association.rejoin import rejoined
 

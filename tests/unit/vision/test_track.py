@@ -17,14 +17,14 @@ from curlshot.physics.kalman import smooth
 from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.synthetic.clip import render_still
 from curlshot.synthetic.scoring import score_tracks
-from curlshot.tests.unit.vision.association.test_follow import detection
-from curlshot.tests.unit.vision.detection.test_stones import (
+from curlshot.tests.helpers.vision.stones import (
     CAMERA,
     RED,
     camera_of,
     scene_of,
     without_colours,
 )
+from curlshot.tests.helpers.vision.tracks import detection
 from curlshot.vision.association.follow import Track
 from curlshot.vision.detection.roundness import edge_errors
 from curlshot.vision.detection.steady import lightness_of
@@ -35,7 +35,6 @@ from curlshot.vision.optics.stick import stick_cameras
 from curlshot.vision.spin.handle import HandleAngles
 from curlshot.vision.track import (
     HARDLY_TOLD,
-    _angles,
     _by_edges,
     _rows,
     off_axis,
@@ -236,37 +235,6 @@ def angles(theta: Array, unlike: tuple[float, float], height: int) -> HandleAngl
     return HandleAngles(
         theta, 0 * theta + 0.01, np.zeros((len(theta), 2)), np.array(unlike), frozenset({height})
     )
-
-
-def test_stones_that_hardly_turn_are_seen_at_the_height_of_those_that_do(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    wide, little = np.linspace(0, 3, 20), np.linspace(0, 0.6, 20)
-    own = {
-        20.0: angles(wide, (2.0, 10.0), 0),
-        21.0: angles(little, (1.0, 0.7), 1),  # light makes it more alike at the other height
-        22.0: angles(little, (0.7, 1.0), 0),
-        23.0: angles(wide, (4.0, 2.0), 1),  # its handle may be another one
-    }
-    given = []
-
-    def told(times: Array, *_: object, slants: Array, height: int | None = None) -> HandleAngles:
-        given.append((float(times[0]), slants[0, 0], height))
-        return own[float(times[0])] if height is None else angles(little, (0.0, 0.0), height)
-
-    monkeypatch.setattr("curlshot.vision.track.angles_in_parts", told)
-    tracks, slants = {}, {}
-    for time in own:
-        tracks[str(time)] = track = Track()
-        track.add(0, time, detection((0.5, -12.0)), STONE.radius)
-        slants[str(time)] = np.array([[0.1 * time, 0.0]])
-    found = _angles(tracks, STONE, slants)
-    # Each with the slants of its view.
-    assert given == [(t, pytest.approx(0.1 * t), None) for t in own] + [
-        (21.0, pytest.approx(2.1), 0)
-    ]
-    assert found["21.0"].heights == {0}
-    assert all(found[str(time)] is own[time] for time in (20.0, 22.0, 23.0))
 
 
 def test_no_clip_has_all_of_what_places_may_share() -> None:

@@ -4,49 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from curlshot.physics.filter import rate_filter, reference_filter
 from curlshot.physics.filter.stretch import SPIN_LOSS, Model, Stretch
 from curlshot.physics.kalman import smooth
 from curlshot.physics.local_fit.hit_detection import detect_hits
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
-
-
-def random_stretch(rng: np.random.Generator, n: int) -> Stretch:
-    """A path that moves and rests by turns, at uneven times, with gaps and outliers."""
-    t = np.cumsum(rng.uniform(0.01, 0.2, n))
-    rest = np.cumsum(rng.random(n) < 0.1) % 2 == 1
-    idle = rest & (rng.random(n) < 0.8)
-    z = np.cumsum(rng.normal(0, 0.05, (n, 3)), axis=0) + rng.normal(0, 3, 3)
-    z[rng.random(n) < 0.1, :2] += 5.0
-    z[rng.random(n) < 0.2, :2] = np.nan
-    z[rng.random(n) < 0.2, 2] = np.nan
-    z[rng.integers(n), :2] = 1.0
-    return Stretch(
-        t,
-        z,
-        rng.uniform(1e-4, 0.02, (n, 3)),
-        rng.uniform(0, 0.02, (n, 3)),
-        np.cumsum(rng.random(n) < 0.05),
-        rest,
-        idle,
-        rng.normal(0, 1, (n, 2)) * ~rest[:, None],
-        Model(float(rng.uniform(0, 0.2)), 0.05),
-    )
-
-
-@settings(max_examples=30, deadline=None)
-@given(seed=st.integers(0, 1 << 30), n=st.integers(1, 60))
-def test_closed_form_is_the_textbook_filter(seed: int, n: int) -> None:
-    stretch = random_stretch(np.random.default_rng(seed), n)
-    mean, spread, seen = rate_filter.filtered(stretch)
-    its_mean, its_spread, its_seen = reference_filter.filtered(stretch)
-    np.testing.assert_array_equal(seen, its_seen)
-    np.testing.assert_allclose(mean, its_mean, rtol=1e-7, atol=1e-7)
-    # Where nothing was known but 100 rad, rounding is what differs.
-    np.testing.assert_allclose(spread, its_spread, rtol=2e-3)
+from curlshot.tests.helpers.physics.rate_filter import random_stretch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 
 def test_tracks_are_the_same_by_either_filter() -> None:

@@ -11,7 +11,7 @@ from curlshot.physics.filter.rate_filter import filtered, shared_response
 from curlshot.physics.filter.spin_loss import spin_loss
 from curlshot.physics.filter.stretch import SPIN_LOSS, SPIN_LOSS_SD, Model, Stretch
 from curlshot.physics.kalman import smooth
-from curlshot.tests.unit.physics.watch import RADIUS
+from curlshot.tests.helpers.physics.watch import RADIUS
 
 Floats = NDArray[np.float64]
 

@@ -2,21 +2,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from curlshot.physics.filter.stretch import PLACE_MEMORY
 from curlshot.physics.local_fit.breaks import breaks
-from curlshot.tests.unit.physics.watch import lasting
-
-T = np.arange(0, 4, 1 / 30)
-
-
-def seen(y: NDArray[np.float64], sd: float, seed: int = 0) -> NDArray[np.float64]:
-    """Places of a stone that goes up y, with white errors."""
-    rng = np.random.default_rng(seed)
-    return np.column_stack([np.zeros_like(y), y]) + rng.normal(0, sd, (len(y), 2))
+from curlshot.tests.helpers.physics.breaks import T, seen
+from curlshot.tests.helpers.physics.watch import lasting
 
 
 def test_an_even_motion_has_no_breaks() -> None:
@@ -24,17 +14,6 @@ def test_an_even_motion_has_no_breaks() -> None:
         sd = np.full((len(T), 2), 0.005)
         assert breaks(T, seen(1.5 * T - 0.05 * T**2, 0.005, seed), sd) == []
         assert breaks(T, seen(0 * T, 0.005, seed), sd) == []
-
-
-@settings(max_examples=20, deadline=None)
-@given(when=st.floats(0.5, 3.5), before=st.floats(-1.5, 1.5), after=st.floats(-1.5, 1.5))
-def test_a_kink_is_found_within_two_frames(when: float, before: float, after: float) -> None:
-    if abs(before - after) < 0.4:
-        return
-    y = np.where(when > T, before * (T - when), after * (T - when))
-    assert breaks(T, seen(y, 0.003), np.full((len(T), 2), 0.003)) == pytest.approx(
-        [when], abs=2.5 / 30
-    )
 
 
 def test_errors_that_last_for_a_while_are_no_breaks_and_a_push_among_them_is_one() -> None:

@@ -9,7 +9,7 @@ import pytest
 from curlshot.physics.local_fit.candidates import _extent, _through_gaps, candidates
 from curlshot.physics.local_fit.traces import Trace, traces
 from curlshot.synthetic.physics import Start
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 
 def straight(name: str, place: tuple[float, float], velocity: tuple[float, float]) -> Trace:

@@ -11,7 +11,7 @@ from curlshot.physics.local_fit.constraints import (
     contact_constraints,
 )
 from curlshot.physics.local_fit.solution import Deceleration, Meeting
-from curlshot.tests.unit.physics.watch import RADIUS
+from curlshot.tests.helpers.physics.watch import RADIUS
 
 RANKS = ((0, 1), (2, 3))
 """Pieces of the first and of the second stone, before and after the hit."""

@@ -10,7 +10,7 @@ from curlshot.physics.local_fit.hit_detection import cut_all
 from curlshot.physics.local_fit.segments import Piece
 from curlshot.physics.local_fit.solution import Deceleration, Meeting
 from curlshot.physics.local_fit.traces import Trace, traces
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 T = np.linspace(2.0, 3.0, 21)
 MEETINGS = [Meeting(2.4, ("A", "B"), 0.05)]
@@ -42,21 +42,6 @@ def test_momentum_is_held_only_when_asked_for() -> None:
         state = fit.contact_state(0)
         changes.append(float(np.hypot(*np.sum(state.after - state.before, axis=0))))
     assert changes[0] < 0.1 * changes[1]
-
-
-def test_covariance_follows_from_the_scatter() -> None:
-    motion = hit_motion()
-    rng = np.random.default_rng(63)
-    places, sd = [], []
-    for _ in range(40):
-        known = traces(watch(motion, rng, sd=0.005))
-        meetings = [Meeting(1.0, ("A", "B"), 1 / 30)]
-        pieces, _ = cut_all(known, meetings, RADIUS)
-        fit = fit_shot(known, pieces, meetings, RADIUS)
-        value, cov = fit.propagate([0], lambda states: states[0].before[0])
-        places.append(value)
-        sd.append(np.sqrt(np.diag(cov)))
-    assert np.allclose(np.std(places, axis=0), np.median(sd, axis=0), rtol=0.4)
 
 
 def trace() -> Trace:

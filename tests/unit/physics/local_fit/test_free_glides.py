@@ -1,33 +1,13 @@
 from __future__ import annotations
 
 import numpy as np
-import pandas as pd
 import pytest
 
-from curlshot.data.tracks import check_detections
 from curlshot.physics.kalman import smooth
 from curlshot.physics.local_fit.free_glides import are_free, is_pushed
-from curlshot.physics.local_fit.hit_detection import detect_hits
-from curlshot.physics.local_fit.local import Local, estimate_locally
 from curlshot.physics.local_fit.segments import Piece
-from curlshot.tests.unit.physics.watch import RADIUS, Floats, hit_motion, watch
-
-FPS = 60
-
-
-def seen(*ways: Floats, sd: float = 0.001) -> pd.DataFrame:
-    """Detections of ways, (n, 2) at `FPS`, of as many stones."""
-    tables = []
-    for k, way in enumerate(ways):
-        x, y = (way + np.random.default_rng(k).normal(0, sd, way.shape)).T
-        tables.append(
-            pd.DataFrame({"stone": f"S{k}", "t": np.arange(len(way)) / FPS, "x": x, "y": y})
-        )
-    return check_detections(pd.concat(tables))
-
-
-def told(*ways: Floats) -> Local:
-    return estimate_locally(seen(*ways), (), radius=RADIUS)
+from curlshot.tests.helpers.physics.free_glides import FPS, seen, told
+from curlshot.tests.helpers.physics.watch import Floats
 
 
 def by_turns(slowing: Floats, speed: float, each: float = 0.75) -> Floats:
@@ -90,15 +70,6 @@ def test_a_motion_that_changes_all_the_time_is_led(apart: float, count: int, so:
     assert are_free(rests, (), times).all() == so  # however it is cut
 
 
-def test_an_orbit_has_no_friction() -> None:
-    t = np.arange(0.0, 10.0, 1 / FPS)
-    found = told(np.column_stack([np.cos(1.3 * t), 0.5 * np.sin(1.3 * t)]))
-    assert not found.glides
-    assert found.friction.value is None
-    assert "no stone glides freely" in str(found.friction_doubt)
-    assert any("S0 is apparently pushed or carried" in text for text in found.warnings)
-
-
 def test_the_slowed_halves_of_a_swing_are_no_friction() -> None:
     found = told(by_turns(np.array([0.5, -0.5] * 4), 1.0))
     assert found.friction.value is None
@@ -107,9 +78,7 @@ def test_the_slowed_halves_of_a_swing_are_no_friction() -> None:
 def test_a_stone_that_is_thrown_in_view_tells_friction_afterwards() -> None:
     found = told(by_turns(np.array([-1.0, 0.107, 0.107, 0.107, 0.107]), 0.4))
     assert found.friction.value == pytest.approx(0.0109, abs=0.0005)
-    assert any(
-        "S0 is apparently pushed or carried between 0.0" in t for t in found.warnings
-    )
+    assert any("S0 is apparently pushed or carried between 0.0" in t for t in found.warnings)
 
 
 @pytest.mark.parametrize(("each", "so"), [(0.8, True), (0.4, False)])
@@ -128,23 +97,6 @@ def test_frictions_that_differ_are_a_mean_if_that_tells_something() -> None:
     assert len(vague.glides) == 4
     assert vague.friction.value is None
     assert "tells nothing" in str(vague.friction_doubt)
-
-
-@pytest.mark.parametrize("gain", [0.3, 0.6, 1.0])
-def test_a_push_up_to_the_hit_spoils_neither_restitution_nor_tracks(gain: float) -> None:
-    detections = watch(hit_motion(1.5, 0.08), np.random.default_rng(3), sd=0.002)
-    pushed = (detections["stone"] == "A") & (detections["t"] < 1.0)
-    away = 1.0 - detections.loc[pushed, "t"]
-    detections.loc[pushed, "y"] += 0.5 * (gain + 0.0109 * 9.81) * away**2
-    contacts = detect_hits(detections, RADIUS)
-    found = estimate_locally(detections, contacts, radius=RADIUS)
-    assert found.restitution.value == pytest.approx(0.83, abs=0.02)
-    assert found.restitution.stderr is not None and found.restitution.stderr < 0.02
-    assert found.friction.value == pytest.approx(0.0109, abs=0.0005)
-    assert any("A is pushed, carried or led" in text for text in found.warnings)
-    tracks = smooth(detections, contacts, radius=RADIUS).query("stone == 'A' and t < 0.98")
-    speed = 1.5 - gain * (1.0 - tracks["t"])
-    assert np.sqrt(np.mean((tracks["vy"] - speed) ** 2)) < 0.05
 
 
 def test_what_gains_speed_all_the_way_is_followed() -> None:

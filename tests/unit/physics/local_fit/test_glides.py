@@ -5,23 +5,9 @@ import pandas as pd
 import pytest
 
 from curlshot.data.sheet import GRAVITY
-from curlshot.data.tracks import check_detections
 from curlshot.physics.local_fit.glides import measure_glides
-from curlshot.physics.local_fit.local import Local, estimate_locally
 from curlshot.synthetic.physics import Ice, Start, simulate
-
-
-def glide(duration: float, sd_place: float, wobble: float) -> pd.DataFrame:
-    """A stone that slows by 0.1 m/s², seen with an error that bends with the place."""
-    t = np.arange(0, duration, 0.04)
-    y = 1.5 * t - 0.05 * t**2
-    seen = y + wobble * np.sin(2 * np.pi * y / y[-1])
-    table = pd.DataFrame({"stone": "A", "frame": np.arange(len(t)), "t": t, "x": 0.0, "y": seen})
-    return table.assign(sd_x=0.001, sd_y=0.001, sd_place_x=sd_place, sd_place_y=sd_place)
-
-
-def local(table: pd.DataFrame) -> Local:
-    return estimate_locally(check_detections(table), (), radius=0.1455)
+from curlshot.tests.helpers.physics.glides import glide, local, slowed
 
 
 @pytest.mark.parametrize("duration", [1.0, 2.0, 4.0])
@@ -33,30 +19,6 @@ def test_an_error_that_places_share_tells_in_the_friction(duration: float) -> No
     (blind,) = local(glide(duration, 0.0, 0.0)).glides
     assert honest.stderr is not None and blind.stderr is not None
     assert 1.3 * blind.stderr < honest.stderr < 0.02
-
-
-def slowed(power: float, duration: float, turn: float = 0.0) -> pd.DataFrame:
-    """A stone of 2 m/s that 0.1 m/s² slow at 1 m/s, less by a power of its speed if faster."""
-    t = np.arange(0, duration, 1e-3)
-    q = 1 + power
-    speed = (2.0**q - 0.1 * q * t) ** (1 / q)
-    ways = np.stack([-np.sin(turn * t), np.cos(turn * t)], axis=1) * speed[:, None]
-    x, y = (np.cumsum(ways, axis=0) * 1e-3)[::40].T
-    table = pd.DataFrame({"stone": "A", "frame": np.arange(len(x)), "t": t[::40], "x": x, "y": y})
-    return table.assign(sd_x=0.003, sd_y=0.003)
-
-
-@pytest.mark.parametrize("power", [0.0, 0.25, 0.5])
-def test_errors_of_a_glide_s_friction_are_those_stated(power: float) -> None:
-    rng = np.random.default_rng(7)
-    table = slowed(power, 4.0)
-    off = []
-    for _ in range(40):
-        noisy = table.assign(**{k: table[k] + rng.normal(0, 0.003, len(table)) for k in "xy"})
-        (glide,) = local(noisy).glides
-        assert glide.friction is not None and glide.stderr is not None and glide.speed is not None
-        off.append((glide.friction - 0.1 / GRAVITY * glide.speed**-power) / glide.stderr)
-    assert 0.7 < np.sqrt(np.mean(np.square(off))) < 1.3
 
 
 def test_the_friction_at_1_m_s_is_as_unsure_as_the_power_of_the_speed() -> None:
@@ -118,24 +80,6 @@ def test_glides_that_no_power_of_the_speed_explains_tell_none() -> None:
         )
     friction = local(pd.concat(tables).assign(sd_x=0.003, sd_y=0.003)).friction
     assert friction.law == "constant"
-
-
-@pytest.mark.parametrize(("speed", "duration"), [(0.75, 5.6), (1.0, 8.0)])
-def test_slow_glides_tell_no_more_of_1_m_s_than_the_form_of_the_law_allows(
-    speed: float, duration: float
-) -> None:
-    """Two pieces, an error that both share: weights that do away with it lead outside both."""
-    ice = Ice(b=0.0084, a=0.0027, v_c=0.0639)
-    motion = simulate([Start(0, 3, 0, -speed)], duration + 0.1, ice=ice, step=1e-3, keep_every=4)
-    t = np.arange(0, duration, 0.04)
-    xy = motion.at(t)[:, 0, :2]
-    for seed in range(4):
-        x, y = (xy + np.random.default_rng(seed).normal(0, 0.001, xy.shape)).T
-        table = pd.DataFrame({"stone": "A", "frame": np.arange(len(t)), "t": t, "x": x, "y": y})
-        friction = local(table.assign(sd_x=0.001, sd_y=0.001)).friction
-        assert friction.value is not None and friction.stderr is not None
-        truth = ice.b + ice.a / (1 + ice.v_c)
-        assert abs(friction.value - truth) < 4 * friction.stderr < 0.6 * truth
 
 
 @pytest.mark.parametrize("share", [0.0, 0.232])

@@ -4,15 +4,7 @@ import numpy as np
 import pytest
 
 from curlshot.physics.local_fit.segments import cut
-from curlshot.physics.local_fit.traces import Trace
-
-
-def trace(t: np.ndarray, y: np.ndarray, sd: float, seed: int = 0) -> Trace:
-    rng = np.random.default_rng(seed)
-    xy = np.column_stack([np.zeros_like(y), y]) + rng.normal(0, sd, (len(t), 2))
-    nothing = np.full(len(t), np.nan)
-    return Trace("A", t, xy, np.full((len(t), 2), sd), nothing, nothing, 0 * xy, 0 * xy)
-
+from curlshot.tests.helpers.physics.segments import trace
 
 T = np.arange(0, 4, 1 / 30)
 
@@ -37,17 +29,6 @@ def test_a_glide_and_the_rest_that_it_ends_in_are_one_piece() -> None:
     assert len(pieces) == 1
     assert pieces[0].stops or len(pieces[0].samples) == len(T)
     assert not pieces[0].rest
-
-
-def test_a_glide_stays_one_however_long_its_stone_rests_in_the_end() -> None:
-    t = np.arange(0, 300, 1 / 25)
-    tau = np.minimum(t, 6.0)
-    one = trace(t, 0.6 * tau - 0.05 * tau**2, 0.002)
-    for hits in ([], [(0, 0.0)]):
-        piece = cut(one, hits, 0.1455)[-1]
-        assert len(piece.samples) == len(t)
-        assert piece.stops
-        assert not piece.rest
 
 
 @pytest.mark.parametrize("hidden", [(1.0, 1.5), (1.21, 1.45)])

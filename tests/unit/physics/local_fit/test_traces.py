@@ -9,7 +9,7 @@ from curlshot.physics.local_fit.traces import (
     shared_correlation,
     traces,
 )
-from curlshot.tests.unit.physics.watch import hit_motion, uncut, watch
+from curlshot.tests.helpers.physics.watch import hit_motion, uncut, watch
 
 
 def test_noise_is_estimated_where_it_is_not_given() -> None:

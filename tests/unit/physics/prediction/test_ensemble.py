@@ -12,7 +12,7 @@ from curlshot.physics.ice import Fit, Penner
 from curlshot.physics.impact import Frictional, PointMass
 from curlshot.physics.prediction.ensemble import Ensemble, read_ensemble, write_ensemble
 from curlshot.physics.simulator.simulation import Shot, StoneStart
-from curlshot.tests.unit.physics.measured import measured
+from curlshot.tests.helpers.physics.measured import measured
 
 
 def test_what_is_written_is_read(tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ from curlshot.physics.prediction.start import BACK, HOG_TO_TEE, measured_start, 
 from curlshot.physics.simulator.bounds import Bounds
 from curlshot.physics.simulator.simulate import simulate
 from curlshot.physics.simulator.simulation import Shot, StoneStart
-from curlshot.tests.unit.physics.measured import HIT, MU, R, measured
+from curlshot.tests.helpers.physics.measured import HIT, MU, R, measured
 
 CLOSE = replace(HIT.stones[0], y=1.1, vy=-1.5)
 """Some 0.3 m before its hit."""

@@ -8,22 +8,16 @@ import pandas as pd
 import pytest
 
 from curlshot.data.errors import InputError
-from curlshot.data.results import Input, Results
 from curlshot.data.sheet import GRAVITY
 from curlshot.physics.curl import FCV1Curl, NoCurl
-from curlshot.physics.estimate import estimate
 from curlshot.physics.ice import FCV1, Constant, Fit, Penner
 from curlshot.physics.impact import Frictional, PointMass
-from curlshot.physics.kalman import smooth
-from curlshot.physics.local_fit.hit_detection import detect_hits
-from curlshot.physics.prediction.replay import simulate_measured
 from curlshot.physics.prediction.start import Start, measured_start, written_start
 from curlshot.physics.prediction.what_if import Amount, Changes, changed, odds, sample
 from curlshot.physics.simulator.bounds import Bounds
 from curlshot.physics.simulator.simulate import simulate
 from curlshot.physics.simulator.simulation import Shot, StoneStart
-from curlshot.tests.unit.physics.measured import HIT, MU, R, measured
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
+from curlshot.tests.helpers.physics.measured import HIT, MU, R, measured
 
 
 def test_changes_are_made_to_the_thrown_stone_and_the_laws() -> None:
@@ -133,35 +127,6 @@ def test_what_is_given_need_not_be_assumed() -> None:
     left = changed(start, Changes(0.9, 0.012, spin=Amount(1.5))).assumed
     assert set(left) == {"stone_friction", "spin of B"}
     assert changed(start, Changes(spin=Amount(0.5, relative=True))).assumed == start.assumed
-
-
-def test_a_shot_thrown_again_ends_as_far_from_where_it_did_as_is_stated() -> None:
-    """From tracks of places alone, good to 3 mm, of one hit; the true end is the renderer's."""
-    pulls, off = [], []
-    for seed in range(6):
-        motion = hit_motion(1.6, 0.06, before=1.2, after=1.5)
-        table = watch(motion, np.random.default_rng(seed), sd=0.003)
-        hits = detect_hits(table, RADIUS)
-        found = estimate(table, hits, radius=RADIUS)
-        tracks = smooth(table, hits, radius=RADIUS)
-        again = simulate_measured(tracks, found, radius=RADIUS)
-        results = Results(
-            Input(("a.csv",), 30.0, 80, 2.7), found.restitution, found.friction,
-            found.collisions, radius=RADIUS, simulations=again.scores, sheet=False,
-        )  # fmt: skip
-        assert again.ensemble is not None
-        start = measured_start(tracks, results, again.ensemble)
-        told = odds(sample(start, 200, (0.0, 0.0)), start)
-        truth = hit_motion(1.6, 0.06, before=1.2, after=40.0)
-        ends = dict(zip("AB", truth.at(truth.times[-1:])[0][:, :2], strict=True))
-        for name, (x, y) in ends.items():
-            item = told[name]
-            assert item.x is not None and item.y is not None and item.sd_x and item.sd_y
-            pulls += [(item.x - x) / item.sd_x, (item.y - y) / item.sd_y]
-            off.append(math.hypot(item.x - x, item.y - y))
-    assert np.sqrt(np.mean(np.square(pulls))) < 1.6
-    assert np.sqrt(np.mean(np.square(pulls))) > 0.4
-    assert np.median(off) < 0.05
 
 
 def test_odds_count() -> None:

@@ -13,7 +13,7 @@ from curlshot.physics.shot_fit.global_fit import fit_shots
 from curlshot.physics.shot_fit.model_selection import STRAIGHT
 from curlshot.physics.shot_fit.result import ShotFit
 from curlshot.synthetic.physics import Ice, Impact, Start, simulate
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 
 @cache

@@ -1,7 +1,6 @@
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
@@ -12,20 +11,14 @@ from curlshot.physics.filter.slowing import V_C
 from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.physics.shot_fit.global_fit import fit_shots
 from curlshot.physics.shot_fit.model_selection import (
-    ROUGH,
-    STRAIGHT,
     USUAL,
     _against,
-    _either_sense,
-    _hit_by_hit,
     _values,
 )
-from curlshot.physics.shot_fit.observed import THROWN
 from curlshot.physics.shot_fit.priors import SLOPE
 from curlshot.physics.shot_fit.result import ShotFit
-from curlshot.physics.shot_fit.shot_model import ObservedShot
 from curlshot.synthetic.physics import Ice, Impact, Start, simulate
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 
 def measure(ice: Ice | None, sd: float = 0.002) -> Estimates:
@@ -64,32 +57,10 @@ def test_friction_that_falls_with_the_speed_and_curl() -> None:
     assert abs(float(found.curl.value or 0) - 0.0082) < 3 * found.curl.stderr
 
 
-def test_other_laws_are_fitted_with_the_noise_that_is_known(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """With less they would set out to follow what is not there."""
-    noises = []
-
-    def fit(*args: Any, **known: Any) -> ShotFit:
-        noises.append(known.get("noise", 1.0))
-        return fit_shots(*args, **known)
-
-    monkeypatch.setattr("curlshot.physics.shot_fit.model_selection.fit_shots", fit)
-    seen = watch(hit_motion(1.2, 0.1, before=2.0, after=5.0), np.random.default_rng(5), sd=0.004)
-    seen[["sd_x", "sd_y"]] /= 2
-    found = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
-    assert found.shot_fit is not None
-    first = noises.index(next(noise for noise in noises if noise != 1))
-    assert len(noises) - first >= 3
-    assert noises[first:] == pytest.approx(
-        len(noises[first:]) * [found.shot_fit.inflation], rel=0.02
-    )
-
-
 def test_a_fit_with_fewer_unknowns_sets_out_from_where_they_leave_the_others() -> None:
-    observed = measure(Ice(b=0.00626, a=0.00201, v_c=0.0639, curl=0.0082)).shot_fit
-    assert observed is not None
-    full = fit_shots(observed.shots, fixed={"v_c": V_C}, start=USUAL)
+    watched = measure(Ice(b=0.00626, a=0.00201, v_c=0.0639, curl=0.0082)).shot_fit
+    assert watched is not None
+    full = fit_shots(watched.shots, fixed={"v_c": V_C}, start=USUAL)
     held = {"slope": 0.0, "v_c": V_C, "stone_friction": 2.0}
     values = _values(full, held)
     assert values["slope"] == pytest.approx(0.0, abs=1e-12)
@@ -101,38 +72,6 @@ def test_a_fit_with_fewer_unknowns_sets_out_from_where_they_leave_the_others() -
     assert np.abs(moved[others] / sd[others]).max() > 0.01
     assert np.abs(slope[others]).max() < 1e-6 * np.abs(slope).max()
     assert _values(full) == dict(zip(full.names, full.values.tolist(), strict=True))
-
-
-def test_the_first_fit_sets_out_from_even_ice_and_lost_spins_from_either_sense(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """As if every fit but those that set out from a spin had come to rest at none, far off."""
-    seen = watch(hit_motion(before=0.6, after=0.6), np.random.default_rng(5), fps=25)
-    observed = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS).shot_fit
-    assert observed is not None
-    calls: list[tuple[dict[str, float], dict[str, float]]] = []
-
-    def fit(shots: Any, *, fixed: Any, start: Any = None, ends: Any = ()) -> ShotFit:
-        calls.append((dict(fixed), dict(start or {})))
-        found = fit_shots(shots, fixed=fixed, start=start)
-        if abs(calls[-1][1].get("A.omega", 0.0)) == THROWN:
-            return found
-        spins = np.array([name == "A.omega" for name in found.names])
-        return replace(
-            found, values=np.where(spins, 0.0, found.values), deviance=found.deviance + 1e6
-        )
-
-    monkeypatch.setattr("curlshot.physics.shot_fit.model_selection.fit_shots", fit)
-    best = _hit_by_hit(observed.shots[0], {"v_c": V_C})
-    even, usual, further, *turning, rubless, rough = calls
-    assert even == (STRAIGHT, {})
-    assert usual[1] == USUAL
-    assert further[0] == {"v_c": V_C}
-    assert further[1]["A.omega"] == 0.0
-    assert [start["A.omega"] for _, start in turning] == [-THROWN, THROWN]
-    assert rubless[1]["stone_friction"] == 0.0
-    assert rough[1]["stone_friction"] == ROUGH
-    assert best["A.omega"].value == pytest.approx(1.0, abs=0.1)
 
 
 @pytest.mark.parametrize(
@@ -299,25 +238,6 @@ def test_spins_of_slow_stones_are_less_sure_at_the_hit() -> None:
     assert after["A"] > 2 * after["B"]
 
 
-@pytest.mark.parametrize("stone_friction", [0.02, 0.5])
-def test_the_last_fits_set_out_from_stones_that_do_not_rub_and_that_stick(
-    monkeypatch: pytest.MonkeyPatch, stone_friction: float
-) -> None:
-    motion = hit_motion(1.5, 0.2, before=0.6, after=0.6, stone_friction=stone_friction)
-    seen = watch(motion, np.random.default_rng(5), fps=25, sd=0.001)
-    observed = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS).shot_fit
-    assert observed is not None
-    starts: list[dict[str, float]] = []
-
-    def fit(shots: Any, *, fixed: Any, start: Any = None, ends: Any = ()) -> ShotFit:
-        starts.append(dict(start or {}))
-        return fit_shots(shots, fixed=fixed, start=start, ends=ends)
-
-    monkeypatch.setattr("curlshot.physics.shot_fit.model_selection.fit_shots", fit)
-    _hit_by_hit(observed.shots[0], {"v_c": V_C})
-    assert [start["stone_friction"] for start in starts[-2:]] == [0.0, ROUGH]
-
-
 def test_stones_that_stick_from_the_least_friction_on_may_not_rub_at_all() -> None:
     """With little to rub they stick in every fit that sets out from some friction."""
     motion = simulate(
@@ -367,31 +287,6 @@ def test_a_path_curls_to_the_side_of_a_spin_that_nobody_saw(spin: float) -> None
     assert found.shot_fit is not None
     assert found.curl.value == pytest.approx(0.012, abs=0.002)
     assert abs(float(found.curl.value or 0) - 0.012) < 2.5 * float(found.curl.stderr or 0)
-
-
-def test_fits_of_either_sense_count_if_they_come_as_far(monkeypatch: pytest.MonkeyPatch) -> None:
-    seen = watch(hit_motion(before=0.6, after=0.6), np.random.default_rng(5), fps=25)
-    whole = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS).shot_fit
-    assert whole is not None
-    shot = replace(whole.shots[0], spins=())
-    settled = {THROWN: True, -THROWN: True}
-
-    def fit(shot: ObservedShot, held: object) -> ShotFit:
-        sense = next(u.guess for u in shot.unknowns if u.name == "A.omega")
-        better = whole.deviance + (sense > 0)
-        return replace(whole, shots=(shot,), deviance=better, settled=settled.get(sense, True))
-
-    def senses(shot: ObservedShot) -> list[float]:
-        fits = _either_sense(shot, {})
-        return [u.guess for f in fits for u in f.shots[0].unknowns if u.name == "A.omega"]
-
-    monkeypatch.setattr("curlshot.physics.shot_fit.model_selection._hit_by_hit", fit)
-    assert senses(shot) == [-THROWN, THROWN]
-    assert len(senses(whole.shots[0])) == 1  # it was seen
-    assert len(senses(replace(shot, hits=()))) == 1
-    assert len(senses(replace(shot, radius=0.05))) == 1  # may not spin at all
-    settled[-THROWN] = False
-    assert senses(shot) == [THROWN]
 
 
 def test_one_place_counts_once_whatever_led_there() -> None:

@@ -9,7 +9,7 @@ import pytest
 from curlshot.physics.estimate import Estimates, estimate
 from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.synthetic.physics import Ice, Start, simulate
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 SLOW, RESTITUTION, NOISE = 0.0109, 0.83, 0.003
 

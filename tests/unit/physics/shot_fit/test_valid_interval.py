@@ -14,7 +14,7 @@ from curlshot.physics.shot_fit.result import ShotFit
 from curlshot.physics.shot_fit.shot_model import ObservedShot
 from curlshot.physics.shot_fit.valid_interval import fit_valid_interval
 from curlshot.synthetic.physics import Start
-from curlshot.tests.unit.physics.watch import RADIUS, hit_motion, watch
+from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 
 def seen_with_late_touch() -> pd.DataFrame:
@@ -108,26 +108,6 @@ def test_hits_at_one_time_may_come_in_another_order() -> None:
     )  # fmt: skip
     more = replace(shot, hits=(*pairs, ("B", "C")), times=(first, last, last + 1))
     assert more.first_other_hit(run) == (last + 1, "B and C")
-
-
-@pytest.mark.parametrize(("noisier", "left"), [(1.6, False), (2.6, True)])
-def test_what_comes_after_a_gap_is_left_if_it_makes_all_much_noisier(
-    monkeypatch: pytest.MonkeyPatch, noisier: float, left: bool
-) -> None:
-    seen = watch(hit_motion(), np.random.default_rng(4), sd=0.0005)
-    away = (seen["t"] > 1.8) & (seen["t"] < 2.2)
-    whole = measure(seen[~away].reset_index(drop=True)).shot_fit
-    assert whole is not None
-    (shot,) = whole.shots
-
-    def fit(part: ObservedShot) -> ShotFit:
-        return replace(whole, shots=(part,), inflation=noisier if part is shot else 1.0)
-
-    for name in ("fit_with_chosen_laws", "fit_without_bent_tracks"):
-        monkeypatch.setattr(f"curlshot.physics.shot_fit.valid_interval.{name}", fit)
-    monkeypatch.setattr("curlshot.physics.shot_fit.valid_interval.followed", lambda _: True)
-    found, end = fit_valid_interval(shot)
-    assert (end is not None) == (found.shots[0] is not shot) == left
 
 
 @pytest.mark.parametrize(("map_sd", "left"), [(0.0, True), (0.002, False)])

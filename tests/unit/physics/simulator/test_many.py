@@ -10,7 +10,6 @@ from curlshot.data.errors import InputError
 from curlshot.physics.curl import FCV1Curl, NoCurl
 from curlshot.physics.ice import FCV1, Constant, IceLaw
 from curlshot.physics.impact import Frictional, Impact, PointMass, RigidBody
-from curlshot.physics.simulator import many
 from curlshot.physics.simulator.batch import FEW
 from curlshot.physics.simulator.many import Outcomes, simulate_many
 from curlshot.physics.simulator.simulate import simulate
@@ -150,8 +149,7 @@ def test_mistakes_are_told() -> None:
         simulate_many(shot, states)
 
 
-def test_it_says_how_many_are_done(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(many, "BATCH", 2 * COUNT // 3)
+def test_it_says_how_many_are_done() -> None:
     shot, told = Shot(FROZEN[:1]), list[tuple[str, int, int | None]]()
     simulate_many(shot, States.of(shot, COUNT), progress=lambda *at: told.append(at))
-    assert told == [("throws", n, COUNT) for n in (0, 2 * COUNT // 3, COUNT)]
+    assert told == [("throws", n, COUNT) for n in (0, COUNT)]

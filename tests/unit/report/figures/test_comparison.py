@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 
 from curlshot.report import figures
-from curlshot.tests.unit.report.figures.drawn import check_layout
+from curlshot.tests.helpers.report.drawn import check_layout
 
 
 @pytest.mark.parametrize("stone", ["A", "B", "C"])

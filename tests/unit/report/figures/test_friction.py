@@ -7,7 +7,7 @@ from matplotlib.colors import to_rgba
 from curlshot.data.results import Friction, Glide
 from curlshot.report import figures
 from curlshot.report.style import BLACK
-from curlshot.tests.unit.report.figures.drawn import check_layout
+from curlshot.tests.helpers.report.drawn import check_layout
 
 
 @pytest.mark.parametrize("curling", [True, False])

@@ -4,7 +4,7 @@ import numpy as np
 
 from curlshot.report import figures
 from curlshot.report.numbers import plus_minus
-from curlshot.tests.unit.report.figures.drawn import check_layout, texts
+from curlshot.tests.helpers.report.drawn import check_layout, texts
 
 
 def test_hit_gives_normal_and_tangential_parts(shot):

@@ -6,7 +6,7 @@ import pytest
 from curlshot.data.results import Glide
 from curlshot.report import figures
 from curlshot.report.style import GREEN
-from curlshot.tests.unit.report.figures.drawn import check_layout, texts
+from curlshot.tests.helpers.report.drawn import check_layout, texts
 
 
 @pytest.mark.parametrize("stone", ["A", "B", "C"])

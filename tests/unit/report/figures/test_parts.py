@@ -7,7 +7,7 @@ import pytest
 
 from curlshot.report import figures
 from curlshot.report.figures import parts
-from curlshot.tests.unit.report.figures.drawn import check_layout
+from curlshot.tests.helpers.report.drawn import check_layout
 
 
 def test_close_hits_share_a_label(shot):

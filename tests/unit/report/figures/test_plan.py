@@ -8,7 +8,7 @@ from matplotlib.text import Annotation
 from curlshot.data.sheet import HOUSE, SHEET
 from curlshot.report import figures
 from curlshot.report.figures.parts import rows_of
-from curlshot.tests.unit.report.figures.drawn import check_layout
+from curlshot.tests.helpers.report.drawn import check_layout
 
 
 @pytest.mark.parametrize("house", [HOUSE, None])

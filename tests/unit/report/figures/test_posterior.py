@@ -8,7 +8,7 @@ import pytest
 
 from curlshot.data.results import JointEstimate
 from curlshot.report import figures
-from curlshot.tests.unit.report.figures.drawn import check_layout
+from curlshot.tests.helpers.report.drawn import check_layout
 
 
 def test_posterior_from_covariance_and_from_samples(shot):

@@ -4,7 +4,7 @@ import pytest
 
 from curlshot.data.results import TrackResidual
 from curlshot.report import figures
-from curlshot.tests.unit.report.figures.drawn import check_layout, residuals
+from curlshot.tests.helpers.report.drawn import check_layout, residuals
 
 
 def test_residuals_that_are_normal_look_so(shot):

@@ -9,7 +9,7 @@ from curlshot.physics.simulator.bounds import Bounds
 from curlshot.physics.simulator.simulate import simulate
 from curlshot.physics.simulator.simulation import Shot, Simulation, StoneStart
 from curlshot.report.figures import simulated_figure
-from curlshot.tests.unit.report.figures.drawn import check_layout, texts
+from curlshot.tests.helpers.report.drawn import check_layout, texts
 
 
 def thrown(vy: float, y: float = -5.0, x: float = 0.05) -> Simulation:

@@ -5,7 +5,7 @@ import pytest
 
 from curlshot.data.sheet import SHEET
 from curlshot.report import tables
-from curlshot.tests.unit.report.glides import MU_G, glide
+from curlshot.tests.helpers.report.glides import MU_G, glide
 
 
 def test_speeds_at_the_lines_are_those_of_the_closed_form():

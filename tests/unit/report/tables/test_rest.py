@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from curlshot.report import tables
-from curlshot.tests.unit.report.glides import MU_G, glide
+from curlshot.tests.helpers.report.glides import MU_G, glide
 
 
 @pytest.mark.parametrize("turn", [0.02, -0.02, 0.0])

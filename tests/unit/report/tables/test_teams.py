@@ -4,7 +4,7 @@ import pandas as pd
 import pytest
 
 from curlshot.report.tables.teams import colour_word, team_names
-from curlshot.tests.unit.report.glides import glide
+from curlshot.tests.helpers.report.glides import glide
 
 
 @pytest.mark.parametrize(

@@ -6,8 +6,8 @@ import numpy as np
 
 from curlshot.data.sheet import STONE
 from curlshot.synthetic.clip import render_still
-from curlshot.tests.unit.vision.detection.test_smeared import LEARNED, PATH, PICTURES, VIEW
-from curlshot.tests.unit.vision.detection.test_stones import CAMERA, RED, scene_of
+from curlshot.tests.helpers.vision.smeared import LEARNED, PATH, PICTURES, VIEW
+from curlshot.tests.helpers.vision.stones import CAMERA, RED, scene_of
 from curlshot.vision.association.again import drifts, measure_again
 from curlshot.vision.association.follower import StoneView
 from curlshot.vision.detection.stones import FOLLOWING, search_picture

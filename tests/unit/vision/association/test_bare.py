@@ -11,8 +11,8 @@ import pytest
 from numpy.typing import NDArray
 
 from curlshot.data.sheet import STONE
-from curlshot.tests.unit.vision.association.test_follow import RED, YELLOW, detection
-from curlshot.tests.unit.vision.detection.test_relief import bar, cap
+from curlshot.tests.helpers.vision.reliefs import bar, cap
+from curlshot.tests.helpers.vision.tracks import RED, YELLOW, detection
 from curlshot.vision.association.bare import bare, contrast_of, with_handles
 from curlshot.vision.association.follow import Track
 from curlshot.vision.detection.appearance import BY_SHAPE, Colour

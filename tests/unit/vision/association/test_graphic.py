@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from curlshot.data.sheet import STONE
-from curlshot.tests.unit.vision.association.test_follow import detection
+from curlshot.tests.helpers.vision.tracks import detection
 from curlshot.vision.association.follow import Track
 from curlshot.vision.association.graphic import glide, is_graphic
 from curlshot.vision.optics.camera import Camera, CameraError

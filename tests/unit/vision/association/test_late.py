@@ -8,8 +8,8 @@ import pytest
 
 from curlshot.data.sheet import STONE
 from curlshot.synthetic.camera import still_camera
-from curlshot.tests.unit.vision.association.test_follow import Place, clip
-from curlshot.tests.unit.vision.detection.test_stones import camera_of, scene_of
+from curlshot.tests.helpers.vision.stones import camera_of, scene_of
+from curlshot.tests.helpers.vision.tracks import Place, clip
 from curlshot.vision.association.follow import follow
 from curlshot.vision.association.late import seen_late
 from curlshot.vision.optics.camera import Camera

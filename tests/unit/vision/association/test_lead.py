@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from curlshot.tests.unit.vision.association.test_follow import detection
+from curlshot.tests.helpers.vision.tracks import detection
 from curlshot.vision.association.lead import DECELERATION, MEMORY, STEADY, Lead
 from curlshot.vision.film.shelf import Kept
 

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from curlshot.tests.unit.vision.association.test_follow import R, clip
+from curlshot.tests.helpers.vision.tracks import R, clip
 from curlshot.vision.association.follow import follow
 from curlshot.vision.association.naming import first_motion, named_by_motion
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from curlshot.tests.unit.vision.association.test_follow import (
+from curlshot.tests.helpers.vision.tracks import (
     RED,
     YELLOW,
     Place,

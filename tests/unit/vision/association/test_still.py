@@ -5,7 +5,7 @@ import pytest
 
 from curlshot.data.sheet import STONE
 from curlshot.synthetic.clip import render_still
-from curlshot.tests.unit.vision.detection.test_stones import (
+from curlshot.tests.helpers.vision.stones import (
     CAMERA,
     RED,
     YELLOW,

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from curlshot.tests.unit.vision.association.test_follow import Place, R, detection
+from curlshot.tests.helpers.vision.tracks import Place, R, detection
 from curlshot.vision.association.follow import Track
 from curlshot.vision.association.strays import without_strays
 

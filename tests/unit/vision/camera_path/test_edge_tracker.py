@@ -1,39 +1,20 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 
-from curlshot.synthetic import PAINTS, Key, Paint, cached_clip, render_still, sample_scene
+from curlshot.synthetic import PAINTS, Key, Paint, render_still, sample_scene
 from curlshot.synthetic.camera import CameraPath
+from curlshot.tests.helpers.vision.filmed import SIZE, filmed, smeared_evidence, tracker
 from curlshot.vision.camera_path.edge_tracker import LONGEST_STRIDE, SHARPER, EdgeTracker, put_right
-from curlshot.vision.film.clip import Frame, open_clip
+from curlshot.vision.film.clip import Frame
 from curlshot.vision.optics.paint import CENTRE_LINE, CIRCLES, EIGHT, FOUR, HOG_LINE, TWELVE
 from curlshot.vision.optics.pose import View, project
 from curlshot.vision.sheet.house import find_house
-from curlshot.vision.sheet.house_fit import HouseFit
-from curlshot.vision.sheet.marks import Evidence, measure_marks
 from curlshot.vision.sheet.outline import PaintEdge
 
-SIZE = (1280, 720)
 ANGLE = np.arange(16) * np.pi / 8
-
-
-@cache
-def filmed() -> tuple[list[Frame], HouseFit]:
-    """Frames of a camera that turns slowly, and the house in the first."""
-    scene = replace(sample_scene(), paint=PAINTS["navy-orange"])
-    keys = (Key(0.0, 0.0, 0.3, 110), Key(2.0, 0.2, 0.6, 116, 0.02))
-    file, _ = cached_clip(scene, CameraPath(SIZE, (-0.1, 0.1, 8.5), keys, 0.2), duration=0.6)
-    frames = list(open_clip([file]))
-    house = find_house(frames[0].image)
-    assert house is not None
-    return frames, house
-
-
-def tracker(house: HouseFit) -> EdgeTracker:
-    return EdgeTracker(SIZE, house.evidence.palette, house.edge)
 
 
 def test_frames_followed_together_are_placed_as_alone() -> None:
@@ -116,14 +97,6 @@ def test_outlines_alone_that_are_wider_than_usual_normals_are_followed() -> None
     rim = 1.829 * np.stack([np.cos(ANGLE), np.sin(ANGLE)], -1)
     true = path.at(0.0).project(np.c_[rim, 0 * ANGLE])
     assert np.abs(project(rim, seen.view.vector, house.rig, SIZE) - true).max() < 0.2
-
-
-def smeared_evidence(edge: PaintEdge, steeper: float) -> Evidence:
-    """What the first frame shows, with its edges so much steeper."""
-    frames, house = filmed()
-    camera = house.view.vector, house.rig
-    shown = measure_marks(frames[0].image, *camera, reach=9.0, lines=False, edge=edge)
-    return replace(shown, slope=steeper * shown.slope)
 
 
 def test_a_sharper_frame_tells_anew_where_circles_are() -> None:

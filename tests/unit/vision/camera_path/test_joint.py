@@ -9,6 +9,7 @@ import pytest
 from curlshot import pipeline
 from curlshot.synthetic.camera import Lens
 from curlshot.synthetic.camera import View as TrueView
+from curlshot.tests.helpers.vision.clip_marks import SIZE, seen_marks
 from curlshot.vision.camera_path.follow_house import follow_house
 from curlshot.vision.camera_path.joint import TOGETHER, Seen, fit_clip
 from curlshot.vision.camera_path.keyframe import Keyframe
@@ -20,7 +21,6 @@ from curlshot.vision.optics.paint import (
     HOG_LINE,
     LEFT,
     RIGHT,
-    TEE_LINE,
     TWELVE,
     Marks,
     joined,
@@ -29,7 +29,6 @@ from curlshot.vision.optics.pose import View
 from curlshot.vision.optics.resection import solve_view
 from curlshot.vision.optics.rig import OVERHEAD, start_rig
 
-SIZE = (1280, 720)
 SAMPLE = pipeline.sample_clip()
 HOUSE = np.array([(x, y) for x in np.linspace(-1.5, 1.5, 5) for y in np.linspace(-1.5, 1.5, 5)])
 
@@ -39,28 +38,6 @@ def true_view(x: float, focal: float) -> TrueView:
     c, s = np.cos(0.1), np.sin(0.1)
     look = np.array([[1, 0, 0], [0, -c, -s], [0, s, -c]])
     return TrueView(np.array([x, -0.3, 9.0]), look, focal, Lens(SIZE, -0.03, 0.01))
-
-
-def seen_marks(true: TrueView, rng: np.random.Generator, kinds: int, noise: float) -> Marks:
-    """Points of the first `kinds` lines of a nominal house, measured with noise."""
-    angle = np.linspace(-np.pi, np.pi, 60, endpoint=False)
-    straight = np.linspace(-1.9, 1.9, 60)
-    rig = OVERHEAD.mean
-    radius = np.repeat([1.829, rig[6], rig[7], 0, 0], 60)[: 60 * kinds]
-    line = np.repeat(np.arange(5), 60)[: 60 * kinds]
-    along = np.concatenate([angle] * 3 + [straight] * 2)[: 60 * kinds]
-
-    def places(at: np.ndarray) -> np.ndarray:
-        x = np.where(line < 3, radius * np.cos(at), np.where(line == TEE_LINE, at, 0.0))
-        y = np.where(line < 3, radius * np.sin(at), np.where(line == TEE_LINE, 0.0, at))
-        return true.project(np.stack([x, y, np.zeros(len(line))], axis=-1))
-
-    pixel = places(along)
-    ahead = places(along + 1e-4) - pixel
-    normal = np.stack([ahead[:, 1], -ahead[:, 0]], axis=-1)
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-    pixel = pixel + normal * rng.normal(0, noise, (len(line), 1))
-    return Marks(line, along, pixel, normal, np.full(len(line), 0.45))
 
 
 def clip(

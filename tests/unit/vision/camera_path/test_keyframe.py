@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 
 from curlshot.synthetic import render_still
-from curlshot.tests.unit.vision.camera_path.test_landmarks import PATH, SCENE, SIZE, truth
+from curlshot.tests.helpers.vision.landmarks import PATH, SCENE, SIZE, truth
 from curlshot.vision.camera_path.keyframe import enlarged, keyframe, replaced, shrunk, small_of
 from curlshot.vision.optics.paint import fixed
 from curlshot.vision.optics.pose import View, camera, project

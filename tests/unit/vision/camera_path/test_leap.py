@@ -5,7 +5,7 @@ import pytest
 
 from curlshot.synthetic import Key, render_still
 from curlshot.synthetic.camera import CameraPath
-from curlshot.tests.unit.vision.camera_path.test_landmarks import SCENE, SIZE, truth
+from curlshot.tests.helpers.vision.landmarks import SCENE, SIZE, truth
 from curlshot.vision.camera_path.leap import leapt
 from curlshot.vision.optics.pose import project
 

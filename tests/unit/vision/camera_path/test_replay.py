@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from curlshot.synthetic import broadcast_camera, cached_clip, sample_scene
-from curlshot.tests.unit.vision.camera_path.test_joint import SIZE
+from curlshot.tests.helpers.vision.clip_marks import SIZE
 from curlshot.vision.camera_path.follow_house import HouseFollower
 from curlshot.vision.camera_path.replay import (
     CELLS,

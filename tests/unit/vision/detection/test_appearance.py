@@ -6,9 +6,9 @@ import cv2
 import numpy as np
 import pytest
 
-from curlshot.tests.unit.vision.association.test_follow import detection
-from curlshot.tests.unit.vision.detection.test_relief import bar
-from curlshot.tests.unit.vision.detection.test_relief import cap as picture_of
+from curlshot.tests.helpers.vision.reliefs import bar
+from curlshot.tests.helpers.vision.reliefs import cap as picture_of
+from curlshot.tests.helpers.vision.tracks import detection
 from curlshot.vision.detection.appearance import (
     BY_SHAPE,
     UNLIKE,

@@ -6,7 +6,7 @@ import pytest
 from numpy.typing import NDArray
 
 from curlshot.synthetic.clip import render_still
-from curlshot.tests.unit.vision.detection.test_stones import (
+from curlshot.tests.helpers.vision.stones import (
     CAMERA,
     RED,
     YELLOW,

@@ -3,30 +3,11 @@ from __future__ import annotations
 from dataclasses import astuple, replace
 
 import numpy as np
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
-from curlshot.tests.unit.vision.detection.test_rims import RADIUS, RAYS, rim_of
-from curlshot.vision.detection.circles import Fits, fit_circles
+from curlshot.tests.helpers.vision.circles import fitted
+from curlshot.tests.helpers.vision.rims import RADIUS, RAYS, rim_of
+from curlshot.vision.detection.circles import fit_circles
 from curlshot.vision.detection.rays import directions
-
-
-def fitted(edge: np.ndarray, inside: np.ndarray, lean: np.ndarray | None = None) -> Fits:
-    rays, rim = rim_of(edge, inside, lean)
-    return fit_circles(rays, (rim,), slack=0.05, reach=0.035, noise=np.array([0.0005]))
-
-
-@settings(deadline=None, max_examples=30)
-@given(x=st.floats(-0.01, 0.01), y=st.floats(-0.01, 0.01), growth=st.floats(-0.004, 0.004))
-def test_a_circle_aside_is_found_where_it_is(x: float, y: float, growth: float) -> None:
-    around = directions(RAYS)[1]
-    along = around @ [x, y]
-    edge = along + np.sqrt(along**2 - x * x - y * y + (RADIUS + growth) ** 2)
-    fits = fitted(edge, np.ones(RAYS, bool))
-    assert fits.ok[0]
-    np.testing.assert_allclose(fits.shift[0], (x, y), atol=0.0008)
-    np.testing.assert_allclose(fits.radii[0, 0], RADIUS + growth, atol=0.0015)
-    assert fits.shares[0, 0] > 0.9
 
 
 def test_what_covers_a_part_of_the_circle_does_not_draw_it_aside() -> None:

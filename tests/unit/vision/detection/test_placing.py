@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from curlshot.data.sheet import STONE, Stone
-from curlshot.tests.unit.vision.association.test_follow import detection
+from curlshot.tests.helpers.vision.tracks import detection
 from curlshot.vision.detection.placing import (
     CAP_END_SD,
     GIVEN_ASTRAY,

@@ -3,7 +3,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from curlshot.tests.unit.vision.association.test_follow import detection
+from curlshot.tests.helpers.vision.tracks import detection
 from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.roundness import PIXELS, SHARE, SMALL, USUAL, edge_errors
 

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from curlshot.tests.unit.vision.association.test_follow import detection
+from curlshot.tests.helpers.vision.tracks import detection
 
 
 def test_what_only_learning_needs_can_be_left_out() -> None:

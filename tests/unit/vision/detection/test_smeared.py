@@ -8,16 +8,14 @@ from numpy.typing import NDArray
 
 from curlshot.data.sheet import STONE
 from curlshot.synthetic.clip import render_still
-from curlshot.tests.unit.vision.association.test_follow import detection
-from curlshot.tests.unit.vision.detection.test_stones import CAMERA, RED, camera_of, scene_of
-from curlshot.vision.detection.appearance import learn
+from curlshot.tests.helpers.vision.smeared import LEARNED, PATH, PICTURES, SCENES, VIEW
+from curlshot.tests.helpers.vision.stones import CAMERA
+from curlshot.tests.helpers.vision.tracks import detection
 from curlshot.vision.detection.measure import measure_discs
 from curlshot.vision.detection.rays import Look, Rays, directions
 from curlshot.vision.detection.smeared import BY_EDGES_OFF, _covered, middles, swept_share, widened
-from curlshot.vision.detection.stones import search_picture
 
 Array = NDArray[np.float64]
-
 RAYS = Rays(
     np.zeros((1, 48, 44, 3), np.uint8), np.zeros((1, 48, 44, 3), np.uint8),
     np.ones((1, 48, 44), bool), np.linspace(0.029, 0.154, 44), directions(48)[0],
@@ -75,17 +73,6 @@ def test_what_is_covered_changes_as_it_is_said_to() -> None:
 def test_slow_stones_are_left_to_their_edges_and_fast_ones_are_not() -> None:
     share = swept_share(np.array([[0.0, 0.0], [0.03, 0.02], [0.0, -0.07], [0.09, 0.05]]))
     assert share[:2].tolist() == [0, 0] and 0.2 < share[2] < 0.8 and share[3] == 1
-
-
-PATH = np.array([[0.3, 1.7], [0.29, 1.6], [0.28, 1.5]])
-SCENES = [[scene_of([(x, y, RED)]) for x, y in PATH + s * (PATH[1] - PATH[0])]
-          for s in np.linspace(-0.3, 0.3, 9)]  # fmt: skip
-VIEW = camera_of(CAMERA, SCENES[0][0])
-PICTURES = [
-    np.mean([render_still(scenes[k], CAMERA) for scenes in SCENES], axis=0).round().astype(np.uint8)
-    for k in range(3)
-]
-LEARNED = learn(search_picture(render_still(SCENES[4][1], CAMERA), VIEW).stones)
 
 
 @pytest.mark.parametrize("aside", [(0.0, 0.0), (0.004, 0.012), (-0.003, -0.012)])

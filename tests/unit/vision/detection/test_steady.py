@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from curlshot.tests.unit.vision.association.test_follow import detection
+from curlshot.tests.helpers.vision.tracks import detection
 from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.steady import FEWEST, MEMORY, common_share, lightness_of, steadied
 

@@ -7,58 +7,32 @@ import pytest
 
 from curlshot.data.sheet import STONE
 from curlshot.synthetic.clip import render_still
-from curlshot.synthetic.scene import Colour, Person, Scene
-from curlshot.tests.unit.vision.detection.test_stones import (
+from curlshot.synthetic.scene import Colour, Person
+from curlshot.tests.helpers.vision.stones import (
     BLUE,
     CAMERA,
     RED,
     YELLOW,
     camera_of,
-    look,
     misses,
     scene_of,
     without_colours,
 )  # fmt: skip
-from curlshot.vision.detection.appearance import BY_SHAPE, CONVINCING
+from curlshot.tests.helpers.vision.strangers import (
+    BLACK,
+    DULL,
+    MAROON,
+    PLACES,
+    SLATE,
+    WHITE,
+    painted,
+    seen,
+)
+from curlshot.vision.detection.appearance import CONVINCING
 from curlshot.vision.detection.appearance import Colour as Granite
-from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.rays import Look
-from curlshot.vision.detection.seek import Candidates
-from curlshot.vision.detection.stones import FOLLOWING, Findings, plain_disc
+from curlshot.vision.detection.stones import FOLLOWING, plain_disc
 from curlshot.vision.detection.strangers import strangers, weighed
-
-BLACK, WHITE, DULL = (32, 30, 30), (232, 234, 234), (77, 77, 77)
-MAROON, SLATE = (84, 76, 124), (124, 92, 78)
-PLACES = [(0.3, 0.2), (-0.35, 0.3), (1.4, 0.6), (0.1, 2.4)]
-
-
-def painted(*caps: Colour) -> Scene:
-    return scene_of([(x, y, cap) for (x, y), cap in zip(PLACES, caps, strict=True)])
-
-
-def seen(
-    scene: Scene, known: list[tuple[float, float]] | None = None, contrast: float = 1.0
-) -> tuple[Detection, ...]:
-    image = (255 - contrast * (255 - np.asarray(render_still(scene, CAMERA), float))).astype(
-        np.uint8
-    )
-    places = np.array(known or []).reshape(-1, 2)
-    (found,), _ = strangers([Look(image, camera_of(CAMERA, scene), places)], STONE, FOLLOWING)
-    return found.stones
-
-
-def test_black_and_white_caps_are_found() -> None:
-    scene = painted(BLACK, WHITE, BLACK, WHITE)
-    assert not look(scene)  # by colour none is told
-    found = seen(scene)
-    assert len(found) == len(scene.stones)
-    assert misses(found, scene).max() < 0.010
-
-
-def test_of_one_coloured_and_one_white_team_both_are_found() -> None:
-    scene = painted(BLUE, WHITE, BLUE, WHITE)
-    assert misses(seen(scene), scene).max() < 0.010
-    assert len(seen(scene, PLACES[1:])) == 1  # nothing twice, and nothing of what is known
 
 
 def test_caps_little_darker_than_granite_are_found_beside_light_ones() -> None:
@@ -80,13 +54,6 @@ def test_black_caps_in_light_granite_are_found_beside_vivid_ones_in_dark_granite
     assert misses(found, scene).max() < 0.010
 
 
-@pytest.mark.parametrize(("paint", "count"), [((225, 60, 200), 0), ((120, 122, 124), 4)])
-def test_round_marks_on_vivid_paint_are_no_stones(paint: Colour, count: int) -> None:
-    scene = painted(BLACK, WHITE, BLACK, WHITE)
-    scene = replace(scene, stones=tuple(replace(one, granite=paint) for one in scene.stones))
-    assert len(seen(scene)) == count
-
-
 def test_granite_that_others_have_makes_a_doubtful_stone_one() -> None:
     """Evidence by shape that convinces beside stones of such granite, and not alone."""
     scene = painted(BLUE, DULL, BLUE, DULL)
@@ -98,32 +65,6 @@ def test_granite_that_others_have_makes_a_doubtful_stone_one() -> None:
     lighter = np.tile(granite.mean + np.array([40.0, 0, 0]), (9, 1))
     other = doubtful._replace(granite_samples=lighter)
     assert weighed(other, granite).score < CONVINCING
-
-
-@pytest.mark.parametrize(("lighter", "count"), [(0.0, 2), (40.0, 1)])
-def test_stones_told_by_their_shape_tell_of_what_granite_others_are(
-    lighter: float, count: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    sure, *_ = seen(painted(BLACK, WHITE, BLACK, WHITE))
-    off = np.array([lighter, 0.0, 0.0])
-    doubtful = sure._replace(x=sure.x + 1.0, score=1.5, granite_samples=sure.granite_samples + off)
-    by_colour = sure._replace(score=1.2)  # does not convince
-
-    def measured(look: Look, sought: Candidates, *_: object) -> Findings:
-        return Findings((sure, doubtful) if sought.appearance is BY_SHAPE else (by_colour,), ())
-
-    monkeypatch.setattr("curlshot.vision.detection.strangers.measured", measured)
-    found = seen(scene_of([]))
-    assert len(found) == count
-    assert found[0].score > by_colour.score
-
-
-def test_dull_caps_are_found_beside_vivid_ones_by_what_they_differ_from_the_granite() -> None:
-    scene = painted(BLUE, MAROON, BLUE, MAROON)
-    assert len(look(scene)) == 2
-    found = seen(scene)
-    assert len(found) == len(scene.stones)
-    assert misses(found, scene).max() < 0.010
 
 
 def test_dull_caps_of_both_teams_are_found() -> None:
@@ -144,14 +85,6 @@ def test_beside_one_vivid_team_no_person_in_dull_clothes_is_a_stone() -> None:
 def test_caps_are_found_where_the_picture_has_lost_half_its_contrast() -> None:
     scene = painted(RED, YELLOW, BLUE, RED)
     found = seen(scene, contrast=0.5)
-    assert len(found) == len(scene.stones)
-    assert misses(found, scene).max() < 0.010
-
-
-@pytest.mark.parametrize("other", [BLACK, WHITE])
-def test_black_and_white_caps_are_found_in_haze_beside_vivid_ones(other: Colour) -> None:
-    scene = painted(YELLOW, other, YELLOW, other)
-    found = seen(scene, contrast=0.45)
     assert len(found) == len(scene.stones)
     assert misses(found, scene).max() < 0.010
 

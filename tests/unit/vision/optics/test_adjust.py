@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from curlshot.data.sheet import HOUSE
-from curlshot.tests.unit.vision.cameras import SD, SIZE, marks, true_rig, views
+from curlshot.tests.helpers.vision.cameras import SD, SIZE, marks, true_rig, views
 from curlshot.vision.optics.adjust import Solution, solve
 from curlshot.vision.optics.paint import CIRCLES
 from curlshot.vision.optics.pose import View, project

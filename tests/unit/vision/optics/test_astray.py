@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from curlshot.tests.unit.vision.cameras import SIZE, marks, true_rig
+from curlshot.tests.helpers.vision.cameras import SIZE, marks, true_rig
 from curlshot.vision.optics.astray import COPIED, LASTING, MUCH, NONE, REPEATED, astray, motion
 from curlshot.vision.optics.linear import Observations, linearised
 from curlshot.vision.optics.paint import joined

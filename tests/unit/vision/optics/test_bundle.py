@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from curlshot.tests.unit.vision.cameras import SIZE, marks, true_rig, views
+from curlshot.tests.helpers.vision.cameras import SIZE, marks, true_rig, views
 from curlshot.vision.optics.bundle import FAMILIES, PAINT_SD, _is_cropped, _Problem, _State, bundle
 from curlshot.vision.optics.paint import CIRCLES, Marks
 from curlshot.vision.optics.pose import View

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from curlshot.synthetic import CameraPath, Key
-from curlshot.tests.unit.vision.camera_path.test_joint import seen_marks
+from curlshot.tests.helpers.vision.clip_marks import seen_marks
 from curlshot.vision.optics.adjust import solve
 from curlshot.vision.optics.lean import fit_leaning
 from curlshot.vision.optics.pose import aim

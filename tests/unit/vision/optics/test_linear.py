@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from curlshot.tests.unit.vision.cameras import SIZE, marks, true_rig, views
+from curlshot.tests.helpers.vision.cameras import SIZE, marks, true_rig, views
 from curlshot.vision.optics.linear import Observations, by_measure, by_rig, linearised
 from curlshot.vision.optics.paint import MEASURED, joined
 from curlshot.vision.optics.pose import VIEW_SIZE

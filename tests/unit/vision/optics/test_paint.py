@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from curlshot.tests.unit.vision.cameras import ice_points
+from curlshot.tests.helpers.vision.cameras import ice_points
 from curlshot.vision.optics.paint import EIGHT, FIXED, TEE_LINE, TWELVE, Marks, fixed, joined
 from curlshot.vision.optics.rig import OVERHEAD, start_rig
 

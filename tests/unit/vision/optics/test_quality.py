@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from curlshot.tests.unit.vision.cameras import SIZE, true_rig
+from curlshot.tests.helpers.vision.cameras import SIZE, true_rig
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.paint import CIRCLES
 from curlshot.vision.optics.pose import View
@@ -68,7 +68,13 @@ def test_a_good_clip_has_no_warnings() -> None:
             "in 1 of 3 frames (1 to 1) the camera model explains little",
         ),
         ([0.9, 0.0, 0.0], 0.1, True, False, "2 of 3 frames do not show the rings"),
-        ([0.9] * 3, 1.4, True, False, "height is not identifiable from this view (8.0 ± 1.4 m assumed)"),
+        (
+            [0.9] * 3,
+            1.4,
+            True,
+            False,
+            "height is not identifiable from this view (8.0 ± 1.4 m assumed)",
+        ),
         ([0.9] * 3, 0.1, False, False, "neither centre line nor tee line is visible"),
         ([0.9] * 3, 0.1, True, True, "cropped off-centre or stretched"),
     ],

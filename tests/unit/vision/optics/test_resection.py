@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from curlshot.tests.unit.vision.cameras import SD, SIZE, marks, true_rig, views
+from curlshot.tests.helpers.vision.cameras import SD, SIZE, marks, true_rig, views
 from curlshot.vision.optics.linear import Observations
 from curlshot.vision.optics.paint import CENTRE_LINE, fixed, joined
 from curlshot.vision.optics.pose import View, project

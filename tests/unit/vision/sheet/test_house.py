@@ -20,13 +20,11 @@ from curlshot.synthetic import (
     tilted_camera,
 )
 from curlshot.synthetic.scene import Paint
-from curlshot.tests.unit.vision.places import RINGS
+from curlshot.tests.helpers.vision.places import RINGS
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.rig import OVERHEAD
-from curlshot.vision.sheet import house
-from curlshot.vision.sheet.house import find_house, fit_house
-from curlshot.vision.sheet.house_fit import HouseFit, RoughFit, fit_roughly
-from curlshot.vision.sheet.rings import guesses
+from curlshot.vision.sheet.house import find_house
+from curlshot.vision.sheet.house_fit import HouseFit
 
 SIZE = (1280, 720)
 ANGLE = np.arange(16) * np.pi / 8
@@ -272,25 +270,3 @@ def test_real_close_ups_are_refused(shared: Path) -> None:
     for negative in known["negatives"]:
         image = cv2.imread(str(shared / "frames/images" / negative["file"]))
         assert find_house(np.asarray(image, np.uint8)) is None, negative["file"]
-
-
-@pytest.mark.parametrize("aside", [0.3, 2.2])  # the whole house in view, and half of it
-def test_rings_seen_by_much_less_than_those_that_fit_are_not_tried(
-    aside: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    camera = still_camera(px_per_m=130.0, target=(0.0, aside))
-    image = render_still(sample_scene(), camera, 1.0)
-    best, *_ = guesses(np.asarray(cv2.resize(image, (320, 180)), np.uint8))
-    there = replace(best, centre=4 * (best.centre + 0.5) - 0.5, scale=4 * best.scale)
-    tried = []
-
-    def fitted(*inputs: object) -> RoughFit | None:
-        tried.append(inputs)
-        return fit_roughly(*inputs)  # type: ignore[arg-type]
-
-    monkeypatch.setattr(house, "ENOUGH", 9.0)
-    monkeypatch.setattr(house, "fit_roughly", fitted)
-    for less, count in ((0.5, 2), (1.5, 1)):
-        tried.clear()
-        assert fit_house(image, [there, replace(there, score=there.score - less)]) is not None
-        assert len(tried) == count

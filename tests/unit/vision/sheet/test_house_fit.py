@@ -7,7 +7,7 @@ import pytest
 
 from curlshot.synthetic import PAINTS, Scene, render_still, still_camera, tilted_camera
 from curlshot.synthetic.camera import CameraPath, Key
-from curlshot.tests.unit.vision.places import RINGS
+from curlshot.tests.helpers.vision.places import RINGS
 from curlshot.vision.optics.pose import ROLL, camera
 from curlshot.vision.optics.rig import ANYWHERE, OVERHEAD
 from curlshot.vision.sheet.house import find_house

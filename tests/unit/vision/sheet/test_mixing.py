@@ -113,23 +113,6 @@ def test_rings_too_pale_tell_what_is_usual_of_light_and_rings_out_of_view_nothin
     assert share_of_light(image, view, away, slope) is None
 
 
-def test_more_light_than_there_can_be_tells_of_light_only_where_it_is_told_vaguely(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Else it is an outline's doing."""
-    image, found = picture("navy-orange", 2.2), house("navy-orange", 2.2)
-    slope = found.evidence.steepness
-    blur = 1 / (np.sqrt(2 * np.pi) * slope)
-    for share_sd, errors, vaguely in ((0.4, 2.0, False), (0.6, 2.0, True), (0.6, 3.0, False)):
-        sd = share_sd * 0.7 * blur
-        moved = 0.85 * blur + errors * sd
-        given = moved, 2 * sd**2
-        monkeypatch.setattr("curlshot.vision.sheet.mixing._slope_of", lambda _, given=given: given)
-        told = share_of_light(image, found.view, found.rig, slope)
-        expected = likely(moved / blur / 0.7, share_sd) if vaguely else None
-        assert told == (expected and pytest.approx(expected))
-
-
 @pytest.mark.parametrize("measured", [-0.2, 0.05, 0.5, 0.9, 1.1])
 def test_a_share_of_light_is_as_likely_as_among_those_measured_alike(measured: float) -> None:
     rng = np.random.default_rng(3)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from curlshot.data.sheet import HOUSE
-from curlshot.tests.unit.vision.cameras import ice_points
+from curlshot.tests.helpers.vision.cameras import ice_points
 from curlshot.vision.optics.paint import CENTRE_LINE, CIRCLES, LEFT, RIGHT, TEE_LINE, TWELVE
 from curlshot.vision.optics.pose import aim, project
 from curlshot.vision.optics.rig import ANYWHERE, HOG_Y, OVERHEAD, start_rig

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from curlshot.tests.unit.vision.spin.test_handle import RADII, patch
+from curlshot.tests.helpers.vision.handles import RADII, patch
 from curlshot.vision.spin.align import Complex, align, rings_seen, turned
 from curlshot.vision.spin.handle import cap_spectrum
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from curlshot.tests.unit.vision.spin.test_handle import RADII, SURE, spectrum
+from curlshot.tests.helpers.vision.handles import RADII, SURE, spectrum
 from curlshot.vision.film.shelf import Kept
 from curlshot.vision.spin.angles import angles_in_parts
 

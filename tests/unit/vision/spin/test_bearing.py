@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from curlshot.tests.unit.vision.spin.test_handle import RADII, RAYS, patch
+from curlshot.tests.helpers.vision.handles import RADII, RAYS, patch
 from curlshot.vision.spin.bearing import bearing
 from curlshot.vision.spin.handle import cap_spectrum
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from curlshot.tests.unit.vision.spin.test_handle import RADII, SURE, patch
+from curlshot.tests.helpers.vision.handles import RADII, SURE, patch
 from curlshot.vision.film.shelf import Kept
 from curlshot.vision.spin.angles import angles_in_parts
 from curlshot.vision.spin.common_height import common_height, turned_widely

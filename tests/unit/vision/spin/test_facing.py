@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from curlshot.tests.unit.vision.spin.test_handle import spectrum
+from curlshot.tests.helpers.vision.handles import spectrum
 from curlshot.vision.spin.facing import angle_between, angles_between
 
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from curlshot.vision.spin.align import ORDERS
 from curlshot.vision.spin.glints import SPINS, _likely, _solved, course, unlit
-from curlshot.vision.spin.handle import LEAST, cap_spectrum, handle_angles
+from curlshot.vision.spin.handle import cap_spectrum, handle_angles
 
 RAYS = 64
 RADII = np.linspace(0.012, 0.09, 8)
@@ -141,19 +141,6 @@ def test_a_faint_handle_that_noise_hides_in_each_picture_is_told_by_all_of_them(
     assert told.mean() > 0.5
     assert np.polyfit(TIMES[told], theta[told], 1)[0] == pytest.approx(-1.6, abs=0.06)
     assert np.nanmedian(sd) > 0.2
-
-
-def test_a_spin_by_which_less_turns_than_by_the_light_s_own_angles_is_not_heard(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    def less(times: NDArray[np.float64], seen: NDArray[np.complex64]) -> tuple[object, float]:
-        return -course(times, seen)[0], 1.5 * LEAST
-
-    monkeypatch.setattr("curlshot.vision.spin.handle.course", less)
-    theta = handle_angles(TIMES, faint(0), RADII, np.full(len(TIMES), 0.0005)).theta
-    told = np.isfinite(theta)
-    assert told.mean() > 0.5  # by its own angles, between the few pictures that tell one
-    assert np.polyfit(TIMES[told], theta[told], 1)[0] == pytest.approx(-1.6, abs=0.06)
 
 
 def test_pictures_too_few_for_a_spin_have_no_course() -> None:

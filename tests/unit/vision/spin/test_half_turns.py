@@ -1,11 +1,9 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from curlshot.vision.spin import handle
 from curlshot.vision.spin.align import ORDERS
 from curlshot.vision.spin.half_turns import unfolded
 
@@ -94,16 +92,3 @@ def test_few_or_no_angles_stay_as_they_are() -> None:
         seen = pictures(np.zeros(len(angles)))
         same = unfolded(np.arange(len(angles)) / 25, seen, angles)
         assert np.array_equal(same, angles, equal_nan=True)
-
-
-def test_a_handle_found_again_the_wrong_way_round_is_put_right(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Of a bar alike at both ends the pictures themselves do not tell."""
-    times, radii = np.arange(50) / 25, np.linspace(0.012, 0.09, 8)
-    true = 1.4 * times
-    wrong = true + np.pi * (times > 0.9)
-    monkeypatch.setattr(handle, "_followed", lambda *_: wrong)
-    theta = handle.handle_angles(times, [*pictures(true, 0, 0)], radii, np.full(50, 0.0005)).theta
-    ends = np.pi * round((theta[0] - true[0]) / np.pi)
-    assert np.abs(theta - true - ends).max() < 0.01

@@ -1,39 +1,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import cv2
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from curlshot.vision.spin.align import ORDERS
-from curlshot.vision.spin.glints import unlit
+from curlshot.tests.helpers.vision.handles import RADII, RAYS, SURE, patch, spectrum
 from curlshot.vision.spin.handle import cap_spectrum
 from curlshot.vision.spin.handle import handle_angles as angles_about
-
-RAYS = 64
-RADII = np.linspace(0.012, 0.09, 8)
-SURE = 0.0005
-"""Standard error of a centre, m, where the whole cap is seen."""
-
-
-def patch(
-    turn: float, rng: np.random.Generator | None = None, shift: tuple[float, float] = (0.0, 0.0)
-) -> NDArray[np.uint8]:
-    """A red cap with a pale bar that is longer on one side, turned counter-clockwise."""
-    angle = np.arange(RAYS)[:, None] * (2 * np.pi / RAYS)
-    x, y = RADII * np.cos(angle) - shift[0], RADII * np.sin(angle) - shift[1]
-    along, aside = x * np.cos(turn) + y * np.sin(turn), y * np.cos(turn) - x * np.sin(turn)
-    bar = 1 / (1 + np.exp((np.abs(aside) - 0.012) / 0.003))
-    bar = bar / (1 + np.exp((-along - 0.05) / 0.003))
-    value = np.stack([80 + 90 * bar, 170 - 30 * bar, 150 - 10 * bar], -1)
-    if rng is not None:
-        # Errors of compressed pictures hang together over several samples and all colours.
-        grain = cv2.GaussianBlur(rng.normal(0, 1, value.shape[:2]), (0, 0), 2.5)
-        value = value + 6 * (grain / grain.std())[..., None]
-    return np.asarray(np.clip(value, 0, 255), np.uint8)
 
 
 def handle_angles(
@@ -43,10 +19,6 @@ def handle_angles(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     told = angles_about(times, spectra, radii, np.full(len(times), SURE))
     return told.theta, told.sd
-
-
-def spectrum(turn: float, rng: np.random.Generator | None = None) -> NDArray[np.complex64]:
-    return cap_spectrum(patch(turn, rng), RADII)
 
 
 def test_many_turns_are_counted_without_drift() -> None:
@@ -247,26 +219,6 @@ def test_a_faint_handle_alike_at_both_ends_does_not_jump_by_half_a_turn() -> Non
     told = np.isfinite(theta)
     assert told.mean() > 0.5
     assert np.abs(theta - true - np.median((theta - true)[told]))[told].max() < 0.5
-
-
-@pytest.mark.parametrize(("share", "told"), [(0.04, False), (0.06, True)])
-def test_a_handle_that_was_lost_is_turned_by_its_spins_if_enough_of_it_turns_so(
-    monkeypatch: pytest.MonkeyPatch, share: float, told: bool
-) -> None:
-    rng, times, radii = np.random.default_rng(2), np.arange(150) / 25, np.linspace(0.012, 0.09, 8)
-    true = 1.4 * times
-    waves = np.exp(-((ORDERS / 6.0) ** 2)) * np.exp(-1j * ORDERS * true[:, None])
-    spectra = [np.repeat(wave, 24).reshape(-1, 8, 3).astype(np.complex64) for wave in waves]
-    lost = np.where(rng.random(150) < 0.6, np.nan, rng.uniform(-3, 3, 150))
-    monkeypatch.setattr("curlshot.vision.spin.handle._followed", lambda *_: lost)
-    monkeypatch.setattr(
-        "curlshot.vision.spin.handle.unlit", lambda *given: replace(unlit(*given), share=0.01)
-    )
-    monkeypatch.setattr("curlshot.vision.spin.handle.course", lambda *_: (true.copy(), share))
-    theta = angles_about(times, spectra, radii, np.full(150, 0.0005)).theta
-    assert np.isfinite(theta).all() == np.isfinite(theta).any() == told
-    if told:
-        assert np.abs(theta - true).max() < 0.01
 
 
 def test_what_is_unrolled_about_an_unsure_centre_is_less_sure() -> None:

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from curlshot.tests.unit.vision.spin.test_handle import RADII
-from curlshot.tests.unit.vision.spin.test_pitch import TIMES, TRUE, pictures, spin_off, turning
+from curlshot.tests.helpers.vision.handles import RADII
+from curlshot.tests.helpers.vision.steep_handles import TIMES, TRUE, pictures, spin_off, turning
 from curlshot.vision.spin.align import Complex, align
 from curlshot.vision.spin.handle import handle_angles
 from curlshot.vision.spin.inclined import ASLANT, inclined, rise_of_handle
