@@ -180,7 +180,7 @@ def analyse(
     contacts = detect_hits(detections, radius)
     fit = estimate(detections, contacts, radius=radius, masses=masses)
     hits = times_of_hits(contacts, fit.collisions)
-    tracks = smooth(detections, hits, radius=radius, masses=masses, unseen=measured.repeats)
+    tracks = smooth(detections, hits, radius=radius, masses=masses, duplicates=measured.duplicates)
     replay = simulate_measured(tracks, fit, radius=radius, masses=masses)
     laws = laws_to_assume(radius, config.physics.restitution, config.physics.friction)
     predictions = predict(detections, tracks, fit, radius=radius, masses=masses, laws=laws)

@@ -26,9 +26,9 @@ from curlshot.synthetic.scenes import random_scene, sweepers
 from curlshot.synthetic.scoring import score_tracks
 from curlshot.vision.detection.glance import glance
 from curlshot.vision.detection.stones import SEARCH
-from curlshot.vision.film.clip import open_clip
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.track import track_stones
+from curlshot.vision.video.reader import open_video
 
 ROOT = Path(__file__).resolve().parents[1]
 SHARED = ROOT.parent / "shared"
@@ -111,7 +111,7 @@ def spin_error(found: pd.DataFrame, truth: pd.DataFrame, names: dict[str, str]) 
 def clips_table() -> pd.DataFrame:
     rows = []
     for name, path, cameras, truth in (*real_clips(), *rendered_clips()):
-        clip = open_clip([path])
+        clip = open_video([path])
         start = time.process_time()
         stones = track_stones(clip, cameras)
         spent = time.process_time() - start
@@ -140,7 +140,7 @@ def stills_table() -> pd.DataFrame:
     rows = []
     stills = json.loads((SHARED / "frames" / "stills.json").read_text())["frames"]
     for still in stills:
-        picture = open_clip([SHARED / "frames" / "images" / still["file"]])
+        picture = open_video([SHARED / "frames" / "images" / still["file"]])
         image = next(iter(picture)).image
         size = (still["size"][0], still["size"][1])
         place = np.array(still["camera"]["xyz"])

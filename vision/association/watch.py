@@ -34,10 +34,10 @@ from curlshot.vision.detection.placing import placed_by
 from curlshot.vision.detection.rays import Look
 from curlshot.vision.detection.stones import FOLLOWING, SEARCH, Search
 from curlshot.vision.detection.strangers import strangers
-from curlshot.vision.film.clip import Frame, Image
-from curlshot.vision.film.picture import brightened, toned
-from curlshot.vision.film.shelf import Kept, Shelf
 from curlshot.vision.optics.camera import Camera
+from curlshot.vision.video.disk_cache import Cached, DiskCache
+from curlshot.vision.video.frame import Frame
+from curlshot.vision.video.picture import Image, brightened, toned
 
 AT_ONCE = 64
 """Pictures whose stones are placed together in the end: more take memory, and no less time each."""
@@ -90,7 +90,7 @@ class Watch:
         self._lessons: list[Detection] = []
         self._waiting: list[StoneView] = []
         self._recent: deque[StoneView] = deque()
-        self._shelf = Shelf(ROOM)
+        self._cache = DiskCache(ROOM)
         self._balance: Balance | None = None
         self._gain = np.ones(3)
         self._tones: Image | None = None
@@ -98,7 +98,7 @@ class Watch:
         self._leads: list[Lead] = []
         self._since = self._most = MEMORY
         self._searched_first = False
-        self._seen: dict[int, Kept[Sequence[Detection]]] = {}
+        self._seen: dict[int, Cached[Sequence[Detection]]] = {}
 
     def look(self, frame: Frame, camera: Camera) -> None:
         """Take in a frame; it waits for some more, the first ones until the stones are learned."""
@@ -117,7 +117,7 @@ class Watch:
         # The next search goes back no farther: no more pictures than that are held at all.
         while self._recent and len(self._recent) + len(self._waiting) > self._most:
             self._put_aside(self._recent.popleft())
-        self._seen[frame.index] = Kept(view.detections)
+        self._seen[frame.index] = Cached(view.detections)
         if len(self._waiting) >= (BLOCK if self._knows else self._most):
             self._catch_up()
 
@@ -238,9 +238,9 @@ class Watch:
 
     def _put_aside(self, view: StoneView) -> None:
         """Keep of a view that is done what takes little memory."""
-        view.put_aside(self._shelf)
-        rows: Kept[Sequence[Detection]] = Kept(Rows(view.detections))
-        rows.put_aside(self._shelf)
+        view.put_aside(self._cache)
+        rows: Cached[Sequence[Detection]] = Cached(Rows(view.detections))
+        rows.put_aside(self._cache)
         self._seen[view.frame.index] = rows
 
     def _misses(self, view: StoneView) -> bool:

@@ -17,9 +17,8 @@ from curlshot.vision.detection.rays import Look
 from curlshot.vision.detection.relief import without_handle
 from curlshot.vision.detection.stones import NEAREST, SEARCH, Findings, Search, search_picture
 from curlshot.vision.detection.strangers import by_shape, strangers, weighed
-from curlshot.vision.film.clip import Image
-from curlshot.vision.film.picture import brightened, image_of, toned
 from curlshot.vision.optics.camera import Camera
+from curlshot.vision.video.picture import Image, brightened, image_of, toned
 
 BOTH_MEASURES = 1.2
 """Least mean of the two evidences of a stone: by its shape, or before any was known, and by what

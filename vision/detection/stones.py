@@ -23,8 +23,8 @@ from curlshot.vision.detection.placing import detections, placed_by
 from curlshot.vision.detection.rays import Look, Rays
 from curlshot.vision.detection.samples import CLEARLY, well_within
 from curlshot.vision.detection.seek import Bounds, Candidates, seek
-from curlshot.vision.film.picture import Picture
 from curlshot.vision.optics.camera import Camera
+from curlshot.vision.video.picture import Picture
 
 Array = NDArray[np.float64]
 
@@ -223,10 +223,7 @@ def judge(seen: Measures, disc: Stone, search: Search) -> list[str]:
     for wrong, why in (
         (beside, "outside the sheet"),
         (seen.evidence + seen.excused < least, "too little resemblance to a stone"),
-        (
-            seen.shift > search.max_centre_shift_ratio * size,
-            "its edges belong to something else",
-        ),
+        (seen.shift > search.max_centre_shift_ratio * size, "its edges belong to something else"),
         (seen.visible < search.min_visible_ratio, "barely visible"),
         (hollow, "an empty ring"),
         (~seen.ok, "no cap surrounded by granite" if not plain else "no circle of the right size"),

@@ -9,6 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
+from curlshot.config import VideoConfig
 from curlshot.data.sheet import STONE, Stone
 from curlshot.data.tracks import DETECTION_COLUMNS, teams
 from curlshot.physics.filter.rate_filter import filtered, forward
@@ -29,7 +30,6 @@ from curlshot.vision.association.follow import Track
 from curlshot.vision.detection.roundness import edge_errors
 from curlshot.vision.detection.steady import lightness_of
 from curlshot.vision.detection.stones import plain_disc
-from curlshot.vision.film.clip import open_clip
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.stick import stick_cameras
 from curlshot.vision.spin.handle import HandleAngles
@@ -41,6 +41,7 @@ from curlshot.vision.track import (
     slants_of,
     track_stones,
 )
+from curlshot.vision.video.reader import open_video
 
 Array = NDArray[np.float64]
 DATA = Path(__file__).resolve().parents[3] / "data"
@@ -68,7 +69,7 @@ def sample_truth() -> tuple[pd.DataFrame, tuple[Camera, ...]]:
 
 def test_the_sample_is_followed_from_end_to_end() -> None:
     truth, cameras = sample_truth()
-    clip = open_clip([DATA / "sample.mp4"], frames=(0, 80))
+    clip = open_video([DATA / "sample.mp4"], VideoConfig(frames=(0, 80)))
     stones = track_stones(clip, cameras)
     assert tuple(stones.detections.columns) == DETECTION_COLUMNS
     score = score_tracks(stones.detections.assign(seen=1), truth[truth["frame"] <= 80], visible=0.5)
@@ -98,7 +99,7 @@ def test_a_clip_without_stones_says_so(tmp_path: Path) -> None:
 
     path = tmp_path / "ice.png"
     cv2.imwrite(str(path), np.full((120, 160, 3), 220, np.uint8))
-    clip = open_clip([path])
+    clip = open_video([path])
     camera = Camera(
         0, 0.0, np.array([[20.0, 0, 80], [0, -20, 60], [0, 0, 1]]), (160, 120),
         position=np.array([0.0, 0, 10]),
@@ -116,7 +117,7 @@ def test_where_caps_of_one_lightness_are_all_that_is_told_the_others_are_warned_
 
     scene, path = scene_of([(0.3, 0.2, RED), (1.4, 0.6, RED)]), tmp_path / "ice.png"
     cv2.imwrite(str(path), without_colours(scene) if grey else render_still(scene, CAMERA))
-    stones = track_stones(open_clip([path]), (camera_of(CAMERA, scene),))
+    stones = track_stones(open_video([path]), (camera_of(CAMERA, scene),))
     assert len(stones.detections) == 2
     assert ["without colour" in text for text in stones.warnings] == [True] * warned
 
@@ -131,7 +132,7 @@ def test_caps_that_are_hardly_told_from_granite_lie_less_surely(tmp_path: Path) 
             tmp_path / "i.png",
         )
         cv2.imwrite(str(path), without_colours(scene))
-        stones = track_stones(open_clip([path]), (camera_of(CAMERA, scene),)).detections
+        stones = track_stones(open_video([path]), (camera_of(CAMERA, scene),)).detections
         assert len(stones) == 2
         shared.append(stones[["sd_place_x", "sd_place_y"]].to_numpy().max())
     assert max(shared[:2]) < 0.007
@@ -151,7 +152,7 @@ def test_real_stones(shared: Path, name: str) -> None:
     )  # fmt: skip
     assert all(frame["k1"] == 0 for frame in truth["frames"])
     tracks = pd.read_csv(shared / "clips" / f"semireal_{name}.truth.csv")
-    clip = open_clip([shared / "clips" / f"semireal_{name}.mp4"], frames=(40, 110))
+    clip = open_video([shared / "clips" / f"semireal_{name}.mp4"], VideoConfig(frames=(40, 110)))
     stones = track_stones(clip, cameras, disc=STONE)
     score = score_tracks(stones.detections.assign(seen=1), tracks[tracks["frame"].between(40, 110)])
     assert score.recall > 0.97
@@ -167,7 +168,7 @@ def test_real_stones(shared: Path, name: str) -> None:
 def test_balls_among_projected_rings_hit_each_other(
     shared: Path, name: str, last: int | None, hit: float
 ) -> None:
-    clip = open_clip([shared / "clips" / f"{name}.mp4"], frames=(0, last))
+    clip = open_video([shared / "clips" / f"{name}.mp4"], VideoConfig(frames=(0, last)))
     cameras = stick_cameras(clip, (70.0, 360.0, 1173.0, 360.0, 1.9))
     seen = track_stones(clip, cameras, disc=plain_disc(0.0286)).detections
     (contact,) = detect_hits(seen, 0.0286)
@@ -176,7 +177,7 @@ def test_balls_among_projected_rings_hit_each_other(
 
 
 def test_pucks_on_a_dark_table(shared: Path) -> None:
-    clip = open_clip([shared / "clips" / "collision-pucks.mp4"], frames=(2, 31))
+    clip = open_video([shared / "clips" / "collision-pucks.mp4"], VideoConfig(frames=(2, 31)))
     cameras = stick_cameras(clip, (20.0, 219.8, 20.0, 35.9, 0.5))
     stones = track_stones(clip, cameras, disc=plain_disc(0.0465))
     table = stones.detections
@@ -194,7 +195,7 @@ def test_pucks_on_a_dark_table(shared: Path) -> None:
 
 def test_the_filter_is_no_surer_of_a_clip_than_it_may_be() -> None:
     truth, cameras = sample_truth()
-    clip = open_clip([DATA / "sample.mp4"], frames=(0, 80))
+    clip = open_video([DATA / "sample.mp4"], VideoConfig(frames=(0, 80)))
     seen = track_stones(clip, cameras).detections
     stretches: list[Stretch] = []
 

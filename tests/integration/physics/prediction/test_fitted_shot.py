@@ -113,7 +113,7 @@ def test_of_hits_a_shot_without_any_is_told_nothing() -> None:
     found = seen(1, motion)[1]
     assert not found.collisions and found.shot_fit is not None
     shot = Shot((StoneStart("A", 0, 0), StoneStart("B", 1, 1)), Frictional(0.7, 0.05))
-    doubt = InitialUncertainty({name: np.zeros(5) for name in "AB"}, {}, restitution=0.06)
-    may = fitted_ensemble(found.shot_fit, shot, doubt, 1.0, 100)
+    uncertainty = InitialUncertainty({name: np.zeros(5) for name in "AB"}, {}, restitution=0.06)
+    may = fitted_ensemble(found.shot_fit, shot, uncertainty, 1.0, 100)
     assert may.likely.impact == shot.impact
     assert np.std([other.impact.restitution for other in may.others]) > 0.04

@@ -13,7 +13,6 @@ from curlshot.vision.optics.camera import (
     Camera,
     CameraError,
     camera_table,
-    taken_at,
 )
 from curlshot.vision.optics.projection import PARAMETERS, apply_homography
 
@@ -58,14 +57,6 @@ pinholes = st.builds(
 places = st.tuples(st.floats(-3, 3), st.floats(-3, 3))
 # From none to the strongest that was measured, invertible within the picture.
 distortions = st.sampled_from([(0.0, 0.0), (-0.11, 0.0), (0.06, 0.06), (-0.28, 0.06), (0.0, 0.02)])
-
-
-def test_cameras_are_told_the_times_at_which_frames_were_taken() -> None:
-    matrix = np.diag([100.0, -100.0, 1.0])
-    cameras = [Camera(k, 0.04 * k, matrix + k, SIZE) for k in (0, 2, 3)]
-    some = taken_at(cameras, {0: -0.01, 1: 0.04, 3: 0.13})
-    assert [(c.frame, c.t) for c in some] == [(0, -0.01), (3, 0.13)]
-    assert np.array_equal(some[1].homography, cameras[2].homography)
 
 
 @given(pinhole=pinholes, place=places, height=st.floats(0, 2))

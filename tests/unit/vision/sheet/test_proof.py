@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from curlshot.synthetic import PAINTS, render_still, sample_scene, tilted_camera
-from curlshot.vision.film.picture import Image
 from curlshot.vision.optics.pose import View, project
 from curlshot.vision.optics.rig import OVERHEAD, start_rig
 from curlshot.vision.sheet.house import find_house
 from curlshot.vision.sheet.house_fit import HouseFit
 from curlshot.vision.sheet.marks import Evidence, measure_marks
 from curlshot.vision.sheet.proof import is_house, stands_alone, worth
+from curlshot.vision.video.picture import Image
 
 SCENE = replace(sample_scene(), paint=PAINTS["navy-orange"])
 

@@ -13,11 +13,11 @@ from curlshot.tests.helpers.vision.steep_handles import (
     spin_off,
     turning,
 )
-from curlshot.vision.film.shelf import Kept
 from curlshot.vision.spin.align import align
 from curlshot.vision.spin.angles import angles_in_parts
 from curlshot.vision.spin.handle import handle_angles
 from curlshot.vision.spin.pitch import levelled
+from curlshot.vision.video.disk_cache import Cached
 
 
 def size(rise: Array) -> float:
@@ -103,7 +103,7 @@ def test_angles_of_a_stone_are_levelled() -> None:
 
 @pytest.mark.parametrize("most", [500, 40])
 def test_angles_that_are_told_part_by_part_are_levelled_too(most: int) -> None:
-    shown = [*map(Kept, pictures(0.35))]
+    shown = [*map(Cached, pictures(0.35))]
     sd = np.full(len(TIMES), 0.0005)
     plain = angles_in_parts(TIMES, shown, RADII, sd, most)
     aslant = angles_in_parts(TIMES, shown, RADII, sd, most, SLANTS)
@@ -113,7 +113,7 @@ def test_angles_that_are_told_part_by_part_are_levelled_too(most: int) -> None:
 @pytest.mark.parametrize("turn", [0.0, 1.0, 2.5])
 def test_what_is_left_is_by_the_same_axes_in_all_parts_of_a_long_track(turn: float) -> None:
     """One number says for all pictures of a stone how much steeper it is along its handle."""
-    shown = [*map(Kept, turning(TRUE + turn, SLANTS, 0.35))]
+    shown = [*map(Cached, turning(TRUE + turn, SLANTS, 0.35))]
     sd = np.full(len(TIMES), 0.0005)
     whole, parts = (angles_in_parts(TIMES, shown, RADII, sd, n, SLANTS).rise for n in (500, 35))
     for first, last in ((0, 34), (35, 69)):
