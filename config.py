@@ -509,7 +509,7 @@ class Config:
         >>> for line in Config().replace(fps=25.0).to_toml().splitlines()[:3]:
         ...     print(line)
         [video]
-        fps = 25.0                # 1/s: rate of pictures, or of a table without times
+        fps = 25.0                # 1/s: frame rate of pictures, or of a table without times
         # frames =                # first and last frame of a clip to use, both included
         """
         lines: list[str] = []

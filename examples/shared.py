@@ -39,10 +39,10 @@ runs = [pipeline.measure(Path(run) / "tracks.csv").detections for run in sys.arg
 fits = []
 for detections in runs or [made_up(1.5, 0.05), made_up(2.0, -0.08)]:
     found = estimate(detections, detect_hits(detections, RADIUS), radius=RADIUS)
-    if found.whole is None:
-        sys.exit(f"a shot that cannot be fitted as a whole: {found.by_whole.note}")
-    fits.append(found.whole)
-    print("by itself: e =", found.whole["restitution"], " μ =", found.whole["friction"])
+    if found.shot_fit is None:
+        sys.exit(f"no shot fit: {found.by_shot_fit.note}")
+    fits.append(found.shot_fit)
+    print("by itself: e =", found.shot_fit["restitution"], " μ =", found.shot_fit["friction"])
 
 held = {name: value for fit in fits for name, value in fit.fixed.items()}
 shots = [shot for fit in fits for shot in fit.shots]

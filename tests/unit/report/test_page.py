@@ -95,7 +95,7 @@ def test_the_answer_comes_first(written, tmp_path, shot):
         assert said.index(words) < first
     assert "1.2.3" in said
     said = " ".join(said.split())
-    assert "frictional, the shot again as fitted to the whole of it" in said
+    assert "frictional, simulated with the laws and the start of the shot fit" in said
     results = dataclasses.replace(
         shot.results, collisions=shot.results.collisions[:1], glides=shot.results.glides[:1]
     )

@@ -36,8 +36,11 @@ def test_tables_say_what_the_results_say() -> None:
 def test_a_shot_says_why_it_does_not_tell_e_or_friction(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    unseen, short = "restitution: no hit seen", "friction: no stone glides freely for long enough"
-    rub = "friction between the stones not told: 0.2, as in the fit of the whole shot"
+    unseen, short = (
+        "restitution: no hit detected",
+        "friction: not identifiable, no stone glides freely for long enough",
+    )
+    rub = "friction between the stones not identifiable: 0.2, as in the shot fit"
     told = replace(SHOT, warnings=(rub, "the friction differs from glide to glide"))
     bare = replace(BARE, warnings=(unseen, "D is not followed", rub, short))
     no_hit = replace(SHOT, restitution=Estimate(), warnings=(unseen, short))

@@ -58,9 +58,9 @@ def test_friction_that_falls_with_the_speed_and_curl() -> None:
 
 
 def test_a_fit_with_fewer_unknowns_sets_out_from_where_they_leave_the_others() -> None:
-    observed = measure(Ice(b=0.00626, a=0.00201, v_c=0.0639, curl=0.0082)).shot_fit
-    assert observed is not None
-    full = fit_shots(observed.shots, fixed={"v_c": V_C}, start=USUAL)
+    watched = measure(Ice(b=0.00626, a=0.00201, v_c=0.0639, curl=0.0082)).shot_fit
+    assert watched is not None
+    full = fit_shots(watched.shots, fixed={"v_c": V_C}, start=USUAL)
     held = {"slope": 0.0, "v_c": V_C, "stone_friction": 2.0}
     values = _values(full, held)
     assert values["slope"] == pytest.approx(0.0, abs=1e-12)

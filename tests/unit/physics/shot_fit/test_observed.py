@@ -10,6 +10,7 @@ import pytest
 from curlshot.physics.estimate import estimate
 from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.physics.local_fit.local import estimate_locally
+from curlshot.physics.shot_fit import observed
 from curlshot.physics.shot_fit.priors import loose_priors
 from curlshot.physics.shot_fit.shot_model import curl, ice
 from curlshot.physics.simulator.motion import Motion, Path
@@ -69,4 +70,4 @@ def test_who_is_set_off_by_a_hit_that_is_not_told_lay_there_until_then() -> None
 
     found = estimate(seen, contacts, radius=RADIUS)
     assert found.shot_fit is None
-    assert any("does not follow" in text for text in found.warnings)
+    assert any("does not reproduce" in text for text in found.warnings)
