@@ -114,16 +114,15 @@ SHARED_TABLES = (
     "cases/05_side9.txt",
     "cases/12_drop1.csv",
     "cases/12_drop4.csv",
-    "cases/17_late26.csv",
-    "cases/17_pre_60_4.csv",
-    "cases/19_struck_unseen.csv",
 )
 """Tables of the second set in ``{shared}`` that tell of stones at speeds of curling."""
 
 SHARED_CLIPS = (
-    "12_dropvid.mp4", "15_drone.mp4", "15_stillfirst.mkv", "16_flipm.mp4", "17_cut.mp4",
+    "12_dropvid.mp4",
+    "15_stillfirst.mkv",
+    "16_flipm.mp4",
     "18_dam.ts",
-)  # fmt: skip
+)
 """Clips of the second set in ``{shared}/cases``."""
 
 

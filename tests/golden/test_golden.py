@@ -29,7 +29,7 @@ def test_a_run_comes_to_what_is_stored(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.golden
-@pytest.mark.parametrize("name", map(case_of, SHARED_TABLES))
+@pytest.mark.parametrize("name", [case_of(path) for path in SHARED_TABLES])
 def test_tables_of_others_come_to_what_is_stored(name: str, tmp_path: Path) -> None:
     if name not in shared_tables():
         pytest.skip("the folder ../shared with tables of others is not here")
