@@ -177,7 +177,7 @@ def _simulate(name: str, shot: str, *options: str, needs: tuple[str, ...] = ()) 
 def _read(path: str) -> Case:
     """Return a case that imports a table of ``{shared}``, and estimates from it if it can."""
     name = case_of(path)
-    words = [("convert", f"{{shared}}/{path}", f"{{out}}/{name}/tracks.csv")]
+    words: list[tuple[str, ...]] = [("convert", f"{{shared}}/{path}", f"{{out}}/{name}/tracks.csv")]
     if path in SHARED_TABLES:
         words.append(("estimate", f"{{shared}}/{path}", "-o", f"{{out}}/{name}", "-q"))
     return Case(name, tuple(words))

@@ -125,8 +125,8 @@ def compare_csv(name: str, before: Path, after: Path) -> Iterator[Difference]:
             off = (left - right).abs().fillna(np.inf).to_numpy()[differing]
             worst = int(differing[off.argmax()])
             place = f"column {column}, {len(differing)} of {len(old)} rows, worst row {worst}"
-            values = (_cell(table[column].iloc[worst]) for table in (old, new))
-            yield Difference(place, *values, words=column in WORDS)
+            before_it, after_it = (_cell(table[column].iloc[worst]) for table in (old, new))
+            yield Difference(place, before_it, after_it, column in WORDS)
 
 
 def _read(path: Path, name: str) -> pd.DataFrame:

@@ -69,12 +69,14 @@ def _rendered(name: str) -> Path:
 
 def _write_pictures(clip: Path, folder: Path) -> None:
     import av
+    from PIL import Image
 
     folder.mkdir(exist_ok=True)
     with av.open(str(clip)) as container:
         for number, frame in enumerate(container.decode(video=0)):
             if number % 2 == 0:
-                frame.to_image().save(folder / f"{number // 2:04d}.png")
+                image = Image.fromarray(frame.to_ndarray(format="rgb24"))
+                image.save(folder / f"{number // 2:04d}.png")
 
 
 def write_outputs(inputs: Path, out: Path, command: str, only: Sequence[str]) -> list[str]:

@@ -60,7 +60,7 @@ LIMITS: Mapping[str, float] = {
 
 SHARES: Mapping[str, float] = {
     **dict.fromkeys(("rmse", "rest_error", "error_after", "criterion"), 0.02),
-    **dict.fromkeys(("rest_sd", "sd_after", "size", "cov"), LOOSE),
+    **dict.fromkeys(("rest_sd", "sd_after", "size", "a", "v_c", "b"), LOOSE),
 }
 """Tolerance by key as a share of the value."""
 
@@ -139,7 +139,7 @@ def _rounded(value: float) -> float | None:
 def _thinned(table: pd.DataFrame) -> dict[str, list[Any]]:
     rows = table[table["frame"] % EVERY == 0]
     return {
-        renamed("tracks.csv", column): [
+        renamed("tracks.csv", str(column)): [
             _rounded(value) if isinstance(value, float) else value
             for value in rows[column].tolist()
         ]
@@ -204,19 +204,20 @@ def _number(value: object) -> bool:
 
 def _tolerance(place: Place, leaves: Mapping[Place, Any]) -> float:
     """Return by how much the number at a place of the results may differ."""
-    value = abs(leaves[place])
+    value = abs(float(leaves[place]))
     for at in reversed(range(len(place))):
         key, rest = place[at], place[at + 1 :]
         if key == "quantiles":
             low, high = (leaves[(*place[:-1], end)] for end in ("0.16", "0.84"))
             return float(SHARE * (high - low) / 2)
-        if key == "values":
-            return float(SHARE * math.sqrt(leaves[(*place[:at], "cov", *rest, *rest)]))
+        if key in ("values", "cov"):
+            errors = [math.sqrt(leaves[(*place[:at], "cov", index, index)]) for index in rest]
+            return SHARE * math.prod(errors)
         if key.startswith(("sd_", "stderr")) and key not in SHARES:
             key = key.removeprefix("sd_").removeprefix("stderr_")
             return LOOSE * value + LOOSE * LIMITS.get(key, 0.0)
-        errors = (leaves.get((*place[:at], name, *rest)) for name in _errors_of(key))
-        known = [error for error in errors if error is not None]
+        found = (leaves.get((*place[:at], name, *rest)) for name in _errors_of(key))
+        known = [float(error) for error in found if error is not None]
         if known or key in LIMITS or key in SHARES:
             return max(
                 LIMITS.get(key, 0.0), SHARES.get(key, 0.0) * value, SHARE * max(known, default=0.0)
@@ -298,7 +299,8 @@ def _cameras_unlike(old: pd.DataFrame, new: pd.DataFrame, size: tuple[int, int])
             continue
         pixels = _lens(before, size).distort(_mapped(_matrix(before), HOUSE_POINTS))
         shown = ((pixels >= 0) & (pixels <= np.array(size) - 1)).all(-1)
-        back = _mapped(np.linalg.inv(_matrix(after)), _lens(after, size).undistort(pixels))
+        inverse = np.asarray(np.linalg.inv(_matrix(after)), np.float64)
+        back = _mapped(inverse, _lens(after, size).undistort(pixels))
         off = np.hypot(*(back - HOUSE_POINTS)[shown].T)
         compared += len(off)
         if len(off) and off.max() > worst:
@@ -316,7 +318,7 @@ def _lens(camera: pd.Series[Any], size: tuple[int, int]) -> Lens:
 def _matrix(camera: pd.Series[Any]) -> Floats:
     """Return the homography from ice metres to undistorted pixels."""
     names = [f"h{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3)]
-    return np.array(camera[names], float).reshape(3, 3)
+    return np.array(camera[names].tolist(), np.float64).reshape(3, 3)
 
 
 def _mapped(matrix: Floats, points: Floats) -> Floats:
