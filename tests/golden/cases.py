@@ -18,7 +18,7 @@ SAMPLE = "sample"
 
 SETTINGS: Mapping[str, Mapping[str, object]] = {
     "clip_frozen": {"camera_height": 9.0},
-    "clip_oblique": {"frames": (5, 50)},
+    "clip_oblique": {"frames": (2, 58)},
     "table_centimetres": {"length_unit": "cm"},
     "table_degrees": {"angle_unit": "deg"},
     "table_long_frames": {"fps": 25.0},

@@ -12,6 +12,7 @@ import json
 import math
 import tempfile
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -37,11 +38,39 @@ EVERY = 5
 DIGITS = 7
 """Significant digits that are kept."""
 
-SHARE = 0.2
-"""Largest difference of a value, in its standard errors."""
+DROPPED = IGNORED | WORDS | {"methods", "law_choice", "laws", "misfits", "posterior", "hits"}
+"""Keys of results that are not kept: sentences, and what is not of the answer itself.
 
-LOOSE = 0.2
-"""Largest difference of a standard error, as a share of it."""
+The last bits of a number decide which of two laws of almost the same weight comes first."""
+
+
+@dataclass(frozen=True)
+class Nearness:
+    """How near runs of a case must come to each other.
+
+    Attributes
+    ----------
+    errors : float
+        Largest difference of a value, in its standard errors.
+    of_error : float
+        Largest difference of a standard error, as a share of it.
+    half_turns : bool
+        Whether angles of stones may differ by half a turn.
+    """
+
+    errors: float
+    of_error: float
+    half_turns: bool = False
+
+
+EXACT_INPUT = Nearness(0.2, 0.2)
+"""Of the bundled clip and of tables, which are the same files everywhere."""
+
+RENDERED = Nearness(1.5, 0.7, half_turns=True)
+"""Of rendered clips. Renderer and encoder round otherwise on a processor without AVX2, and that is
+other noise in every frame. Estimates from 2.4 s of such a clip differ by about their standard
+errors then, as between two takes of one shot. Where a handle hardly shows its free end, angles may
+differ by half a turn."""
 
 MILLIMETRE = 1e-3
 LIMITS: Mapping[str, float] = {
@@ -52,15 +81,14 @@ LIMITS: Mapping[str, float] = {
     **dict.fromkeys(("t", "duration"), 1e-3),
     # A stone comes to rest slowly: the moment is known less well.
     **dict.fromkeys(("t0", "t1"), 0.05),
-    "energy_lost": 5e-3,
-    **dict.fromkeys(("correlation", "weight"), 0.1),
-    "criterion": 1.0,
+    "energy_lost": 0.01,
+    "turn": 1e-3,
 }
 """Tolerance by key or column: m, m/s, rad, s."""
 
 SHARES: Mapping[str, float] = {
-    **dict.fromkeys(("rmse", "rest_error", "error_after", "criterion"), 0.02),
-    **dict.fromkeys(("rest_sd", "sd_after", "size", "a", "v_c", "b"), LOOSE),
+    # Constants of a law that the shot hardly tells apart, and a mean over all that was predicted.
+    **dict.fromkeys(("rmse", "a", "v_c", "b"), 0.3),
 }
 """Tolerance by key as a share of the value."""
 
@@ -69,6 +97,7 @@ ERRORS: Mapping[str, str] = {
     "momentum_residual": "stderr_momentum",
     "rest_error": "rest_sd",
     "error_after": "sd_after",
+    **{name: f"sd_{name}" for name in ("x", "y", "vx", "vy", "omega")},
 }
 """Key of the standard error of a value, where it is neither stderr_KEY nor sd_KEY."""
 
@@ -120,12 +149,12 @@ def measured(name: str, folder: Path) -> dict[str, Any]:
 
 
 def _kept(value: Any) -> Any:
-    """Return results under their new keys, without sentences and what is of the run itself."""
+    """Return results under their new keys, without what `DROPPED` names."""
     if isinstance(value, dict):
         return {
             renamed("results.json", key): _kept(item)
             for key, item in value.items()
-            if key not in IGNORED | WORDS
+            if key not in DROPPED
         }
     if isinstance(value, list):
         return [_kept(item) for item in value]
@@ -168,11 +197,12 @@ def path_of(name: str) -> Path:
     return EXPECTED / f"{name}.json.gz"
 
 
-def differences(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:
+def differences(name: str, old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:
     """Return where a new run of a case is not near enough to the stored one, a line for each."""
-    lines = [*_unlike(old["results"], new["results"])]
+    near = RENDERED if name.startswith("clip_") else EXACT_INPUT
+    lines = [*_unlike(old["results"], new["results"], near)]
     if "tracks" in old:
-        lines += _tracks_unlike(pd.DataFrame(old["tracks"]), pd.DataFrame(new["tracks"]))
+        lines += _tracks_unlike(pd.DataFrame(old["tracks"]), pd.DataFrame(new["tracks"]), near)
     if ("camera" in old) != ("camera" in new):
         lines.append("camera: only in one of both")
     elif "camera" in old:
@@ -181,7 +211,7 @@ def differences(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:
     return lines
 
 
-def _unlike(old: Any, new: Any) -> Iterator[str]:
+def _unlike(old: Any, new: Any, near: Nearness) -> Iterator[str]:
     """Yield the leaves of results that differ by more than their tolerance."""
     before, after = (dict(flat(value, "results.json")) for value in (old, new))
     for place in dict.fromkeys([*before, *after]):
@@ -191,7 +221,7 @@ def _unlike(old: Any, new: Any) -> Iterator[str]:
             continue
         left, right = before[place], after[place]
         if _number(left) and _number(right):
-            tolerance = _tolerance(place, before)
+            tolerance = _tolerance(place, before, near)
             if not abs(left - right) <= tolerance:
                 yield f"{where}: {left:.9g}, off by {right - left:.3g}, more than {tolerance:.3g}"
         elif not (left == right or _same_colour(left, right)):
@@ -202,32 +232,19 @@ def _number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _tolerance(place: Place, leaves: Mapping[Place, Any]) -> float:
+def _tolerance(place: Place, leaves: Mapping[Place, Any], near: Nearness) -> float:
     """Return by how much the number at a place of the results may differ."""
     value = abs(float(leaves[place]))
+    names = [key.removeprefix("sd_").removeprefix("stderr_") for key in place]
+    limit = max(LIMITS.get(key, 0.0) for key in (*names, *place))
     for at in reversed(range(len(place))):
         key, rest = place[at], place[at + 1 :]
-        if key == "quantiles":
-            low, high = (leaves[(*place[:-1], end)] for end in ("0.16", "0.84"))
-            return float(SHARE * (high - low) / 2)
-        if key in ("values", "cov"):
-            errors = [math.sqrt(leaves[(*place[:at], "cov", index, index)]) for index in rest]
-            return SHARE * math.prod(errors)
-        if key.startswith(("sd_", "stderr")) and key not in SHARES:
-            key = key.removeprefix("sd_").removeprefix("stderr_")
-            return LOOSE * value + LOOSE * LIMITS.get(key, 0.0)
-        found = (leaves.get((*place[:at], name, *rest)) for name in _errors_of(key))
-        known = [float(error) for error in found if error is not None]
-        if known or key in LIMITS or key in SHARES:
-            return max(
-                LIMITS.get(key, 0.0), SHARES.get(key, 0.0) * value, SHARE * max(known, default=0.0)
-            )
+        if key.startswith(("stderr", "sd_")) or key == "rest_sd":
+            return near.of_error * (value + limit)
+        found = leaves.get((*place[:at], ERRORS.get(key, f"stderr_{key}"), *rest))
+        if found is not None or key in LIMITS or key in SHARES:
+            return max(limit, SHARES.get(key, 0.0) * value, near.errors * float(found or 0.0))
     return 1e-6 * value
-
-
-def _errors_of(key: str) -> tuple[str, ...]:
-    """Return the keys that may hold the standard error of a value."""
-    return (ERRORS[key],) if key in ERRORS else (f"stderr_{key}", f"sd_{key}")
 
 
 def _same_colour(old: object, new: object) -> bool:
@@ -241,7 +258,7 @@ def _same_colour(old: object, new: object) -> bool:
     return bool((np.abs(first.astype(int) - second) <= COLOUR).all())
 
 
-def _tracks_unlike(old: pd.DataFrame, new: pd.DataFrame) -> Iterator[str]:
+def _tracks_unlike(old: pd.DataFrame, new: pd.DataFrame, near: Nearness) -> Iterator[str]:
     """Yield the columns of tracks that differ by more than their tolerance."""
     rows = ["stone", "frame"]
     both = old.merge(new, on=rows, how="outer", suffixes=("", "_new"), indicator=True)
@@ -256,15 +273,16 @@ def _tracks_unlike(old: pd.DataFrame, new: pd.DataFrame) -> Iterator[str]:
         )
         off = np.abs(right - left)
         if column == "theta":
-            off = np.abs((off + math.pi) % (2 * math.pi) - math.pi)
+            turn = math.pi if near.half_turns else 2 * math.pi
+            off = np.abs((off + turn / 2) % turn - turn / 2)
         limit = LIMITS[column.removeprefix("sd_")]
         if column.startswith("sd_"):
-            tolerance = LOOSE * left + LOOSE * limit
+            tolerance = near.of_error * (left + limit)
         else:
             tolerance = np.full(len(both), limit)
             if f"sd_{column}" in both:
                 error = pd.to_numeric(both[f"sd_{column}"]).to_numpy(float)
-                tolerance = np.fmax(tolerance, SHARE * error)
+                tolerance = np.fmax(tolerance, near.errors * error)
         known = np.isfinite(left) & np.isfinite(right)
         wrong = (known & ~(off <= tolerance)) | (np.isfinite(left) != np.isfinite(right))
         if wrong.any():

@@ -25,7 +25,8 @@ SUBSET = (
     ],
 )
 def test_a_run_comes_to_what_is_stored(name: str, tmp_path: Path) -> None:
-    assert not stored.differences(stored.read(name), stored.measured(name, tmp_path))
+    found = stored.differences(name, stored.read(name), stored.measured(name, tmp_path))
+    assert not found, "\n".join(found)
 
 
 @pytest.mark.golden
@@ -33,7 +34,8 @@ def test_a_run_comes_to_what_is_stored(name: str, tmp_path: Path) -> None:
 def test_tables_of_others_come_to_what_is_stored(name: str, tmp_path: Path) -> None:
     if name not in shared_tables():
         pytest.skip("the folder ../shared with tables of others is not here")
-    assert not stored.differences(stored.read(name), stored.measured(name, tmp_path))
+    found = stored.differences(name, stored.read(name), stored.measured(name, tmp_path))
+    assert not found, "\n".join(found)
 
 
 @pytest.mark.golden
