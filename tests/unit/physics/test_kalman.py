@@ -204,7 +204,7 @@ def test_frames_in_which_nothing_was_measured_have_states_where_they_are_wanted(
 def test_duplicates_of_the_last_frame_have_states_too() -> None:
     motion = hit_motion(1.0, 0.05)
     seen = watch(motion, np.random.default_rng(8), sd=0.002)
-    hits = find_contacts(seen, RADIUS)
+    hits = detect_hits(seen, RADIUS)
     without = smooth(seen, hits, radius=RADIUS)
     last, t = int(seen["frame"].max()), float(seen["t"].max())
     # The second repeats the first, and the third another frame than the last.
