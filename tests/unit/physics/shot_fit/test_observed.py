@@ -58,7 +58,7 @@ def test_who_is_set_off_by_a_hit_that_is_not_told_lay_there_until_then() -> None
 
     local = estimate_locally(seen, contacts, radius=RADIUS)
     assert local.fit is not None
-    shot = observed.watch(local.known, local.fit, RADIUS, priors=loose_priors(RADIUS))
+    shot = observed.observe(local.known, local.fit, RADIUS, priors=loose_priors(RADIUS))
     assert shot is not None
     place = {unknown.name: unknown.guess for unknown in shot.unknowns if unknown.stone == "C"}
     assert place == {
