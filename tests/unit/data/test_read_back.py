@@ -145,7 +145,7 @@ def test_rows_that_a_filter_carried_alone_are_refused(tmp_path: Path, measured: 
     if not measured:
         carried = carried.drop(columns=list(MEASURED_AS))
     carried.to_csv(path, index=False)
-    with pytest.raises(InputError, match="no row in which a stone was seen"):
+    with pytest.raises(InputError, match="no row with a place"):
         read_table([path])
     table.drop(columns="seen").to_csv(path, index=False)
     assert len(read_table([path]).detections) == len(table) - len(carried)

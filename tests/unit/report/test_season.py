@@ -114,7 +114,7 @@ def test_one_shot_says_that_its_scatter_is_assumed(
         shot = replace(SHOT, restitution=Estimate(value, 0.01))
         write_results(shot, tmp_path / name / "results.json")
         assert main(["season", str(tmp_path), "-o", str(tmp_path / "out")]) == 0
-        said = capsys.readouterr().out.count("may scatter by 0.05 or so, as assumed")
+        said = capsys.readouterr().out.count("assumed to be about 0.05")
         assert said == (1 if name == "one" else 0)
 
 

@@ -59,7 +59,7 @@ def test_a_first_hit_that_is_not_as_simulated_leaves_the_values_beside_it() -> N
     wrong = [replace(contacts[0], stones=("B", "C")), *contacts[1:]]
     found = estimate(seen, wrong, radius=RADIUS)
     assert found.shot_fit is None
-    assert any("does not follow" in text or "differ" in text for text in found.warnings)
+    assert any("does not reproduce" in text or "differ" in text for text in found.warnings)
 
 
 def test_a_fit_that_does_not_settle_is_left_before_its_last_hit(
@@ -122,7 +122,7 @@ def test_a_map_that_errs_makes_a_longer_part_noisier_and_ends_no_shot(
     seen = seen.assign(sd_place_x=map_sd, sd_place_y=map_sd)
     found = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
     assert found.shot_fit is not None
-    assert any("does not continue it" in text for text in found.warnings) == left
+    assert any("does not continue the same motion" in text for text in found.warnings) == left
 
 
 @pytest.mark.parametrize("lost", [0.0, 0.02])
@@ -133,6 +133,6 @@ def test_a_shot_is_left_where_the_clip_has_lost_time(lost: float) -> None:
     seen.loc[seen["t"] > 2.0, "t"] -= lost
     found = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
     assert found.shot_fit is not None
-    assert any("does not continue it" in text for text in found.warnings) == (lost > 0)
+    assert any("does not continue the same motion" in text for text in found.warnings) == (lost > 0)
     assert found.friction.stderr is not None
     assert abs(float(found.friction.value or 0) - 0.0109) < 3 * found.friction.stderr
