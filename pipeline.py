@@ -11,21 +11,16 @@ from curlshot.data.convert import check_conversion, write_converted
 from curlshot.data.errors import SceneError
 from curlshot.data.files import check_folder
 from curlshot.data.importers import are_tables, import_tracks
-from curlshot.data.inputs import find_inputs, named
+from curlshot.data.inputs import find_inputs, named, sample_clip
 from curlshot.data.measurement import Measurement
 from curlshot.data.progress import Progress, no_progress
 from curlshot.outcome import Run
 
 if TYPE_CHECKING:
-    import pandas as pd
+    pass
 
 Inputs = str | Path | Sequence[str | Path]
 """A video, pictures (files, a folder or a glob), or tables of tracks."""
-
-
-def sample_clip() -> Path:
-    """Return the path of the bundled, rendered clip of the paper's shot."""
-    return Path(__file__).resolve().parent / "data" / "sample.mp4"
 
 
 def run(
@@ -60,13 +55,21 @@ def run(
     ------
     curlshot.data.errors.CurlshotError
         Where the input cannot be used; then nothing is written.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> shot = curlshot.Shot((curlshot.StoneStart("A", 0.5, 1.0),))
+    >>> curlshot.simulate(shot).sample([0.0, 0.1, 0.2]).to_csv("still.csv")
+    >>> print(curlshot.run("still.csv").restitution)
+    — (no stone moves: neither restitution nor friction)
     """
     config = config.replace(**settings)
     if out is not None:
         check_folder(out)
     measured = measure(named(inputs) or sample_clip(), config, progress)
     done = analyse(measured, config, progress)
-    return done if out is None else done.write(out, progress)
+    return done if out is None else done.report(out, progress)
 
 
 def convert(
@@ -99,6 +102,14 @@ def convert(
     ------
     curlshot.data.errors.CurlshotError
         Where the input cannot be used, or there is no such form; then nothing is written.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> with open("tracks.csv", "w") as file:
+    ...     print("stone t x y", "A 0.0 0.5 1.0", "A 0.1 0.5 0.9", sep=chr(10), file=file)
+    >>> curlshot.convert("tracks.csv", "tracks.txt").frames
+    2
     """
     files, path = find_inputs(inputs), Path(out)
     check_conversion(files, path, over is not None)
@@ -154,12 +165,12 @@ def analyse(
     import numpy as np
     import pandas as pd
 
-    from curlshot.data.tracks import simulation_table, teams
+    from curlshot.data.tracks import simulation_table, teams, with_measured
     from curlshot.physics.cautions import cautions
     from curlshot.physics.estimate import estimate
     from curlshot.physics.kalman import smooth
     from curlshot.physics.local_fit.hit_detection import detect_hits
-    from curlshot.physics.posterior import sample_posterior
+    from curlshot.physics.posterior import NO_SAMPLES, sample_posterior
     from curlshot.physics.prediction.forecast import predict
     from curlshot.physics.prediction.replay import simulate_measured
     from curlshot.physics.prediction.throws import along_sheet, first_hit
@@ -213,10 +224,15 @@ def analyse(
     simulations = [
         simulation_table(table, model, team_of) for model, table in replay.samples.items()
     ]
+    cameras = None
+    if measured.cameras:
+        from curlshot.vision.optics.camera import camera_table
+
+        cameras = camera_table(measured.cameras)
     progress("physics", 1, 1)
     return Run(
-        tracks,
-        _camera_table(measured),
+        with_measured(tracks, measured.table),
+        cameras,
         results,
         pd.concat(simulations, ignore_index=True) if simulations else simulation_table(None, ""),
         house=house,
@@ -225,18 +241,6 @@ def analyse(
         measurement=measured,
         config=config,
     )
-
-
-NO_SAMPLES = "no samples: neither restitution nor friction is identifiable"
-
-
-def _camera_table(measured: Measurement) -> pd.DataFrame | None:
-    """Return the table of ``camera.csv``; None for tables of tracks."""
-    if not measured.cameras:
-        return None
-    from curlshot.vision.optics.camera import camera_table
-
-    return camera_table(measured.cameras)
 
 
 def _way_out(config: Config) -> str:

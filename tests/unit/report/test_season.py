@@ -20,7 +20,7 @@ from curlshot.outcome import Run
 from curlshot.physics.statistics.season import hits_table, pooled, shots_table
 from curlshot.report.season import season_figure
 from curlshot.season.batch import run_each
-from curlshot.season.together import season
+from curlshot.season.together import combine
 from curlshot.tests.helpers.report.shots import BARE, SHOT
 
 
@@ -135,7 +135,7 @@ def test_runs_of_one_name_are_told_apart(tmp_path: Path) -> None:
         write_results(shot, tmp_path / parent / "shot" / "results.json")
     found = find_runs([tmp_path / "p" / "shot", tmp_path / "q" / "shot", tmp_path / "p" / "shot"])
     assert list(found) == ["p-shot", "q-shot"]
-    assert season(found)[0]["shot"].tolist() == ["p-shot", "q-shot"]
+    assert combine(found).shots["shot"].tolist() == ["p-shot", "q-shot"]
 
 
 def test_a_shot_that_is_there_twice_counts_once(
@@ -150,8 +150,8 @@ def test_a_shot_that_is_there_twice_counts_once(
     said = capsys.readouterr().out
     assert "two   the same shot as one: counted once" in said and "of 2 shots" in said
     assert pd.read_csv(tmp_path / "out" / "shots.csv")["shot"].tolist() == ["one", "three"]
-    shots, means = season({"a": BARE, "b": BARE})  # of which nothing is known that could be alike
-    assert len(shots) == 2 and means["restitution"].value is None
+    both = combine({"a": BARE, "b": BARE})  # of which nothing is known that could be alike
+    assert len(both.shots) == 2 and both.means["restitution"].value is None
 
 
 def test_folder_without_runs_is_refused(tmp_path: Path) -> None:
