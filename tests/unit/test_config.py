@@ -5,8 +5,6 @@ from typing import Any
 
 import pytest
 
-from curlshot import pipeline
-from curlshot.cli.main import main
 from curlshot.config import Config, refuse_table_settings
 from curlshot.data.errors import InputError
 
@@ -23,12 +21,6 @@ def test_a_project_has_tabs_as_a_clip_and_as_a_camera() -> None:
     refuse_table_settings(
         Path("shot.mp4"), Config().replace(tab="a", length_unit="cm", camera=Path("shot.trk"))
     )
-
-
-def test_check_refuses_them_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    words = ["check", str(pipeline.sample_clip()), "-o", str(tmp_path / "o"), "-q", "--tab", "x"]
-    assert main(words) == 2
-    assert "only tables take --tab" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -7,81 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 
 from curlshot.data.errors import InputError
 from curlshot.data.results import (
-    Collision,
     Estimate,
-    Friction,
-    Glide,
-    Input,
-    Joint,
-    Law,
-    MeasuredState,
-    Method,
-    Misfit,
-    Posterior,
-    Results,
     SimulationScore,
-    StoneResult,
-    Told,
 )
 from curlshot.data.results_file import SCHEMA, read_results, results_json, write_results
-
-RESULTS = Results(
-    input=Input(("clip Ä.mp4",), 25.0, 150, 5.96),
-    restitution=Estimate(0.83, 0.02),
-    friction=Friction(0.0109, 3e-4, "constant"),
-    collisions=(
-        Collision(
-            t=1.12,
-            stderr_t=0.004,
-            stones=("A", "B"),
-            normal=(0.6, -0.8),
-            restitution=0.81,
-            stderr=0.03,
-            before={"A": MeasuredState(0, 1, 0.05, -1.36, 0.66), "B": MeasuredState(0, 0, 0, 0)},
-            after={
-                "A": MeasuredState(0, 1, -0.4, -0.3, 2.0),
-                "B": MeasuredState(0, 0, 0.4, -1.0, 1.5),
-            },
-            momentum_residual=0.05,
-            energy_lost=0.2,
-            note="seen for four frames only",
-        ),
-    ),
-    glides=(Glide("A", 1.2, 5.5, 0.011, 4e-4), Glide("B", 1.2, 1.4, None, None)),
-    simulations={
-        "point-mass": SimulationScore(0.03, {"A": 0.05, "B": None}),
-        "rigid-body": SimulationScore(None, note="no spins"),
-    },
-    warnings=("two frames are missing",),
-    laws=Joint(("restitution", "friction"), (0.83, 0.0109), ((4e-4, 1e-7), (1e-7, 9e-8))),
-    methods={
-        "local": Method(Estimate(0.82, 0.03), hits=(Estimate(0.81, 0.03),)),
-        "global": Method(stone_friction=Told(note="nothing slides"), note="not used"),
-    },
-    law_choice=(Law("ice constant", 0.0, 0.9, Estimate(0.0109, 3e-4)),),
-    curl=Told(0.008, 0.001),
-    stones={
-        "A": StoneResult(Estimate(0.01, 1e-3), Estimate(0.002, 0.001), 1.2, Estimate(0.6, 0.1))
-    },
-    misfits=(Misfit("A", 0.0, 1.2, 0.8, False, False), Misfit("A", 1.2, 5.5, 6.1, True, True)),
-    posterior=Posterior(100, {"restitution": {"0.5": 0.83}}, {"restitution": {"restitution": 1.0}}),
-    teams={"A": "#d8c020"},
-    sheet=False,
-)
-
-
-def strict(text: str) -> dict[str, object]:
-    def refuse(word: str) -> float:
-        raise AssertionError(f"{word} is no JSON")
-
-    parsed = json.loads(text, parse_constant=refuse)
-    assert isinstance(parsed, dict)
-    return parsed
+from curlshot.tests.helpers.data.results_file import RESULTS, strict
 
 
 def test_round_trip(tmp_path: Path) -> None:
@@ -127,23 +60,6 @@ def test_what_is_not_finite_is_null(tmp_path: Path) -> None:
     assert back.simulations["frictional"].rest_error == {"A": None}
 
 
-numbers = st.one_of(st.none(), st.floats())
-
-
-@given(value=numbers, stderr=numbers, text=st.text())
-def test_any_value_is_strict_json(value: float | None, stderr: float | None, text: str) -> None:
-    results = replace(
-        RESULTS,
-        restitution=Estimate(value, stderr),
-        warnings=(text,),
-        glides=(Glide(text, 0.0, 1.0, value, stderr),),
-    )
-    raw = strict(results_json(results))
-    known = value is not None and math.isfinite(value)
-    assert raw["restitution"]["value"] == (value if known else None)  # type: ignore[index]
-    assert raw["warnings"] == [text]
-
-
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
@@ -167,26 +83,6 @@ def test_other_files_are_refused(tmp_path: Path, text: str, reason: str) -> None
         read_results(path)
     with pytest.raises(InputError, match="No such file"):
         read_results(tmp_path / "none.json")
-
-
-@settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(
-    key=st.sampled_from(sorted(json.loads(results_json(RESULTS)))),
-    value=st.recursive(
-        st.one_of(st.none(), st.integers(), st.text(max_size=5), st.booleans()),
-        lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner),
-        max_leaves=4,
-    ),
-)
-def test_damaged_results_are_read_or_refused(tmp_path: Path, key: str, value: object) -> None:
-    raw = json.loads(results_json(RESULTS))
-    raw[key] = value
-    path = tmp_path / "results.json"
-    path.write_text(json.dumps(raw))
-    try:
-        read_results(path)
-    except InputError as refusal:
-        assert str(path) in str(refusal)
 
 
 @pytest.mark.parametrize(
